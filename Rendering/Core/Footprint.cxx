@@ -1,0 +1,358 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Footprint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace splatting
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+/// Gauss-Legendre rules on [-1, 1], the non-negative half.
+struct Quadrature
+{
+  int pairs;  // nodes +-x
+  bool centre; // and one at 0, stored first
+  std::array<double, 5> x, w;
+};
+constexpr Quadrature Gauss3{ 1, true, { 0.0, 0.774596669241483377 },
+  { 0.888888888888888889, 0.555555555555555556 } };
+constexpr Quadrature Gauss10{ 5, false,
+  { 0.148874338981631211, 0.433395394129247191, 0.679409568299024406, 0.865063366688984511,
+    0.973906528517171720 },
+  { 0.295524224714752870, 0.269266719309996355, 0.219086362515982044, 0.149451349150580593,
+    0.066671344308688138 } };
+
+/// Calls f(z, weight) for the nodes in [from, to].
+template <class F>
+void integrate(const Quadrature& rule, double from, double to, F&& f)
+{
+  const double centre = 0.5 * (from + to), half = 0.5 * (to - from);
+  if (rule.centre)
+  {
+    f(centre, rule.w[0] * half);
+  }
+  for (int n = rule.centre ? 1 : 0; n < rule.pairs + (rule.centre ? 1 : 0); ++n)
+  {
+    f(centre - rule.x[n] * half, rule.w[n] * half);
+    f(centre + rule.x[n] * half, rule.w[n] * half);
+  }
+}
+
+const Quadrature& ruleFor(const Kernel& kernel)
+{
+  return kernel.shape == Reconstruction::CosineBell ? Gauss10 : Gauss3;
+}
+
+/// Sorted places where a piecewise smooth function of z has kinks, with both ends of the range.
+class Breaks
+{
+public:
+  Breaks(double from, double to)
+    : From(from)
+    , To(to)
+  {
+    this->Places.reserve(16);
+    this->Places = { from, to };
+  }
+  void add(double z)
+  {
+    if (z > this->From && z < this->To)
+    {
+      this->Places.push_back(z);
+    }
+  }
+  /// z where (a - shear z) equals `kink` modulo 1: all voxels of a row are kinked together.
+  void addPeriodic(double a, double shear, double kink)
+  {
+    if (shear == 0.0)
+    {
+      return;
+    }
+    const double low = std::min(a - shear * this->From, a - shear * this->To);
+    const double high = std::max(a - shear * this->From, a - shear * this->To);
+    for (double n = std::ceil(low - kink); n + kink <= high; n += 1.0)
+    {
+      this->add((a - n - kink) / shear);
+    }
+  }
+  const std::vector<double>& sorted()
+  {
+    std::sort(this->Places.begin(), this->Places.end());
+    return this->Places;
+  }
+
+private:
+  double From, To;
+  std::vector<double> Places;
+};
+
+void normalise(WeightTable& weights)
+{
+  double sum = 0.0;
+  for (const auto& slice : weights)
+  {
+    for (const auto& line : slice)
+    {
+      for (double w : line)
+      {
+        sum += w;
+      }
+    }
+  }
+  for (auto& slice : weights)
+  {
+    for (auto& line : slice)
+    {
+      for (double& w : line)
+      {
+        w /= sum;
+      }
+    }
+  }
+}
+
+/// H of the five voxels around a pixel, at depth z.
+std::array<double, 5> profile(const Kernel& kernel, double fraction, double shear, double z)
+{
+  std::array<double, 5> values;
+  for (int d = -2; d <= 2; ++d)
+  {
+    values[d + 2] = kernel.overPixel(-d - fraction - shear * z);
+  }
+  return values;
+}
+}
+
+double Kernel::support() const
+{
+  switch (this->shape)
+  {
+    case Reconstruction::Box:
+      return 0.5;
+    case Reconstruction::Hat:
+      return 1.0;
+    case Reconstruction::CosineBell:
+      break;
+  }
+  return this->radius;
+}
+
+double Kernel::operator()(double t) const
+{
+  t = std::abs(t);
+  if (t >= this->support())
+  {
+    return 0.0;
+  }
+  switch (this->shape)
+  {
+    case Reconstruction::Box:
+      return 1.0;
+    case Reconstruction::Hat:
+      return 1.0 - t;
+    case Reconstruction::CosineBell:
+      break;
+  }
+  return 0.5 * (1.0 + std::cos(Pi * t / this->radius));
+}
+
+double Kernel::overPixel(double t) const
+{
+  t = std::abs(t);
+  if (t >= this->support() + 0.5)
+  {
+    return 0.0;
+  }
+  switch (this->shape)
+  {
+    case Reconstruction::Box: // box * box, the hat
+      return 1.0 - t;
+    case Reconstruction::Hat: // box * hat, the quadratic B-spline
+      return t <= 0.5 ? 0.75 - t * t : 0.5 * (1.5 - t) * (1.5 - t);
+    case Reconstruction::CosineBell:
+      break;
+  }
+  const double r = this->radius;
+  const auto integral = [r](double x)
+  {
+    x = std::clamp(x, -r, r);
+    return 0.5 * (x + r / Pi * std::sin(Pi * x / r));
+  };
+  return std::max(0.0, integral(t + 0.5) - integral(t - 0.5));
+}
+
+WeightTable closedFormWeights(
+  const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction)
+{
+  const double support = kernel.support();
+  Breaks breaks(-0.5, 0.5);
+  // H has kinks where an end of the box meets an end of h, or its tip: there, too, for the hat.
+  for (double kink : { support + 0.5, -support - 0.5 })
+  {
+    breaks.addPeriodic(-fraction.x, shear.x, kink);
+    breaks.addPeriodic(-fraction.y, shear.y, kink);
+  }
+  for (double kink : { 0.0, 1.0 - support, support - 1.0, support, -support })
+  {
+    breaks.add(kink); // h(z - c)
+  }
+
+  WeightTable weights{};
+  const auto add = [&](double z, double share)
+  {
+    const auto x = profile(kernel, fraction.x, shear.x, z);
+    const auto y = profile(kernel, fraction.y, shear.y, z);
+    for (int c = -1; c <= 1; ++c)
+    {
+      const double depth = share * kernel(z - c);
+      if (depth == 0.0)
+      {
+        continue;
+      }
+      for (int j = 0; j < 5; ++j)
+      {
+        for (int i = 0; i < 5; ++i)
+        {
+          weights[c + 1][j][i] += depth * (x[i] * y[j]);
+        }
+      }
+    }
+  };
+  const std::vector<double>& places = breaks.sorted();
+  for (std::size_t p = 1; p < places.size(); ++p)
+  {
+    if (places[p] > places[p - 1])
+    {
+      integrate(ruleFor(kernel), places[p - 1], places[p], add);
+    }
+  }
+  normalise(weights);
+  return weights;
+}
+
+GeneralTable::GeneralTable(const Kernel& kernel, const glm::dvec2& shear, int sampling)
+  : Shear(shear)
+  , Sampling(sampling)
+{
+  // The sheared voxel covers support * (1 + |shear|) on either side: 2 x 2 pixels for a box, 4 x 4
+  // for the trilinear kernel [CS98, section 3].
+  const double s = kernel.support();
+  const double reach = s * (1.0 + std::max(std::abs(shear.x), std::abs(shear.y)));
+  this->Pixels = 2 * static_cast<int>(std::ceil(reach));
+  const int n = this->Pixels * sampling;
+  for (int part = -1; part <= 1; ++part)
+  {
+    auto& entries = this->Entries[part + 1];
+    entries.resize(static_cast<std::size_t>(n) * n);
+    for (int y = 0; y < n; ++y)
+    {
+      for (int x = 0; x < n; ++x)
+      {
+        const glm::dvec2 p = (glm::dvec2(x, y) + 0.5) / double(sampling) - 0.5 * this->Pixels;
+        entries[static_cast<std::size_t>(y) * n + x] = this->entry(kernel, part, p);
+      }
+    }
+  }
+}
+
+double GeneralTable::entry(const Kernel& kernel, int part, const glm::dvec2& p) const
+{
+  // Along the ray through p, as far as it runs in slice -part seen from the voxel's own (the voxel
+  // of slice k + c meets slice k at its own depth z - c).
+  const double from = -0.5 - part, to = 0.5 - part;
+  const double support = kernel.support();
+  Breaks breaks(from, to);
+  for (int a = 0; a < 2; ++a)
+  {
+    if (this->Shear[a] == 0.0)
+    {
+      continue;
+    }
+    for (double kink : { -support, 0.0, support })
+    {
+      breaks.add((p[a] - kink) / this->Shear[a]);
+    }
+  }
+  for (double kink : { -support, 0.0, support })
+  {
+    breaks.add(kink);
+  }
+  double sum = 0.0;
+  const auto add = [&](double z, double share)
+  {
+    sum += share * kernel(z) * kernel(p.x - this->Shear.x * z) * kernel(p.y - this->Shear.y * z);
+  };
+  const std::vector<double>& places = breaks.sorted();
+  for (std::size_t b = 1; b < places.size(); ++b)
+  {
+    integrate(ruleFor(kernel), places[b - 1], places[b], add);
+  }
+  return sum;
+}
+
+WeightTable GeneralTable::weights(const glm::dvec2& fraction) const
+{
+  WeightTable weights{};
+  const int n = this->Pixels * this->Sampling;
+  for (int c = -1; c <= 1; ++c)
+  {
+    // The voxel lies at pixel d + fraction of slice k's frame, and c shears away in its own.
+    const glm::dvec2 centre = fraction + double(c) * this->Shear;
+    const auto pixel = [&](int index, int axis)
+    {
+      const double p = (index + 0.5) / this->Sampling - 0.5 * this->Pixels;
+      return static_cast<int>(std::floor(p + centre[axis] + 0.5));
+    };
+    for (int y = 0; y < n; ++y)
+    {
+      const int dj = -pixel(y, 1);
+      for (int x = 0; x < n; ++x)
+      {
+        const int di = -pixel(x, 0);
+        if (std::abs(di) <= 2 && std::abs(dj) <= 2)
+        {
+          weights[c + 1][dj + 2][di + 2] +=
+            this->Entries[c + 1][static_cast<std::size_t>(y) * n + x];
+        }
+      }
+    }
+  }
+  normalise(weights);
+  return weights;
+}
+
+std::vector<Tap> quantisedTaps(const WeightTable& weights, int bits)
+{
+  const double one = std::ldexp(1.0, bits);
+  std::vector<Tap> taps;
+  double sum = 0.0;
+  for (int c = -1; c <= 1; ++c)
+  {
+    for (int dj = -2; dj <= 2; ++dj)
+    {
+      for (int di = -2; di <= 2; ++di)
+      {
+        const double weight = std::round(weights[c + 1][dj + 2][di + 2] * one);
+        if (weight > 0.0)
+        {
+          taps.push_back({ c, di, dj, weight });
+          sum += weight;
+        }
+      }
+    }
+  }
+  const auto largest = std::max_element(taps.begin(), taps.end(),
+    [](const Tap& a, const Tap& b) { return a.weight < b.weight; });
+  largest->weight += one - sum;
+  for (Tap& tap : taps)
+  {
+    tap.weight /= one;
+  }
+  return taps;
+}
+}

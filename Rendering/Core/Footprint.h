@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Footprints [CS98, section 3]: how much each voxel adds to a pixel of a slice's worksheet.
+ *
+ * A pixel averages the reconstructed volume over its area and the slice's thickness. With the
+ * reconstruction kernel h(x) h(y) h(z) and H = box * h, the voxel of slice k + c at offset (a, b)
+ * (pixel minus voxel, in slice k's frame) weighs
+ *
+ *   w_c(a, b) = integral over z in [-1/2, 1/2] of h(z - c) H(a - s_x z) H(b - s_y z) dz.
+ *
+ * Standard mode is the case h = box: w_0 alone, and H the hat.
+ */
+#ifndef splattingFootprint_h
+#define splattingFootprint_h
+
+#include <glm/vec2.hpp>
+
+#include <array>
+#include <vector>
+
+namespace splatting
+{
+/// Reconstruction kernels: voxels as boxes (standard mode), trilinear and cosine bell (high mode).
+enum class Reconstruction
+{
+  Box,
+  Hat,
+  CosineBell
+};
+
+/**
+ * A reconstruction kernel in one dimension.
+ */
+struct Kernel
+{
+  Reconstruction shape = Reconstruction::Hat;
+  /// Half-width of the cosine bell in voxels, in [0.5, 1.5]; ignored by the others.
+  double radius = 1.0;
+
+  /// Half-width in voxels.
+  double support() const;
+  /// h(t).
+  double operator()(double t) const;
+  /// H(t) = integral of h over [t - 1/2, t + 1/2].
+  double overPixel(double t) const;
+
+  bool operator==(const Kernel& other) const
+  {
+    return this->shape == other.shape &&
+      (this->shape != Reconstruction::CosineBell || this->radius == other.radius);
+  }
+};
+
+/**
+ * The weights of all voxels around a pixel, [c + 1][dj + 2][di + 2]; non-negative, sum 1. The pixel
+ * (u, v) reads voxel (u - nearest.x + di, v - nearest.y + dj) of slice k + c.
+ */
+using WeightTable = std::array<std::array<std::array<double, 5>, 5>, 3>;
+
+/**
+ * Weights in closed form: the integrand is smooth between the kinks of h and H, where
+ * Gauss-Legendre quadrature is exact for the polynomial kernels (3 nodes) and accurate to 1e-13 for
+ * the cosine bell (10 nodes).
+ * `fraction` is where the nearest voxel lies, relative to the pixel, in [-1/2, 1/2].
+ */
+WeightTable closedFormWeights(
+  const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction);
+
+/**
+ * The paper's way: a general table of the sheared voxel's thickness, weighted by h, at the
+ * mid-points of N x N sub-pixels, made once per view; a slice's weights are sums over the
+ * sub-pixels that fall into a pixel.
+ */
+class GeneralTable
+{
+public:
+  GeneralTable() = default;
+  GeneralTable(const Kernel& kernel, const glm::dvec2& shear, int sampling);
+  WeightTable weights(const glm::dvec2& fraction) const;
+
+private:
+  double entry(const Kernel& kernel, int part, const glm::dvec2& p) const;
+
+  glm::dvec2 Shear{ 0.0 };
+  int Sampling = 0;
+  int Pixels = 0;                              // the table covers Pixels x Pixels pixels
+  std::array<std::vector<double>, 3> Entries; // "up", "middle" and "down" footprint
+};
+
+/**
+ * One voxel of a footprint that counts.
+ */
+struct Tap
+{
+  int slice; ///< c: -1, 0 or 1
+  int di, dj;
+  double weight;
+};
+
+/**
+ * The taps with non-zero weight after rounding to multiples of 2^-bits. What rounding adds or
+ * removes is given back to the largest, so that the sum is exactly 1.
+ */
+std::vector<Tap> quantisedTaps(const WeightTable& weights, int bits);
+}
+
+#endif

@@ -1,0 +1,309 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Compiled once per instruction set, with SPLATTING_KERNELS the name of the table that it defines
+// and SPLATTING_VECTOR_BYTES the width of a register. It must use no inline function from outside
+// (not even std::max): the linker keeps one copy of those for the whole library, and it might be
+// the one that only the newest processors can run. For the same reason all is in an anonymous
+// namespace, but the table.
+#include "Kernels.h"
+
+namespace splatting
+{
+namespace
+{
+#if defined(__GNUC__)
+/// A register full of T. Vector extensions of GCC and Clang; elsewhere one element.
+template <class T>
+struct PackOf
+{
+  typedef T type __attribute__((vector_size(SPLATTING_VECTOR_BYTES)));
+  typedef T loose __attribute__((vector_size(SPLATTING_VECTOR_BYTES), aligned(sizeof(T)), may_alias));
+};
+template <class T>
+using Pack = typename PackOf<T>::type;
+template <class T>
+inline Pack<T> load(const T* p)
+{
+  return *reinterpret_cast<const typename PackOf<T>::loose*>(p);
+}
+template <class T>
+inline void store(T* p, Pack<T> value)
+{
+  *reinterpret_cast<typename PackOf<T>::loose*>(p) = value;
+}
+#else
+template <class T>
+using Pack = T;
+template <class T>
+inline Pack<T> load(const T* p)
+{
+  return *p;
+}
+template <class T>
+inline void store(T* p, Pack<T> value)
+{
+  *p = value;
+}
+#endif
+
+template <class T>
+constexpr std::ptrdiff_t width = sizeof(Pack<T>) / sizeof(T);
+
+/// The larger; the second if either is NaN.
+template <class P>
+inline P larger(P a, P b)
+{
+  return a > b ? a : b;
+}
+
+/// Calls block.run<V>(x) for blocks of V registers that cover [0, n), the last one overlapping the
+/// one before (a maximum may be taken twice), and single(x) for each x if n is too short for one.
+template <class T, class Block, class Single>
+inline void blocks(std::ptrdiff_t n, Block&& block, Single&& single)
+{
+  constexpr std::ptrdiff_t w = width<T>;
+  std::ptrdiff_t x = 0;
+  for (; n - x >= 4 * w; x += 4 * w)
+  {
+    block.template run<4>(x);
+  }
+  if (n - x >= 2 * w)
+  {
+    block.template run<2>(x);
+    x += 2 * w;
+  }
+  if (n - x >= w)
+  {
+    block.template run<1>(x);
+    x += w;
+  }
+  if (x < n && n >= w)
+  {
+    block.template run<1>(n - w);
+    x = n;
+  }
+  for (; x < n; ++x)
+  {
+    single(x);
+  }
+}
+
+template <class T, int Count>
+struct MaximumBlock
+{
+  T* image;
+  const T* const* rows;
+  template <int V>
+  inline void run(std::ptrdiff_t x) const
+  {
+    for (int v = 0; v < V; ++v)
+    {
+      T* const p = this->image + x + v * width<T>;
+      Pack<T> best = load<T>(p);
+      for (int r = 0; r < Count; ++r)
+      {
+        best = larger(load<T>(this->rows[r] + x + v * width<T>), best);
+      }
+      store<T>(p, best);
+    }
+  }
+};
+
+template <class T, int Count>
+void maximumOf(T* image, const T* const* rows, std::ptrdiff_t n)
+{
+  blocks<T>(n, MaximumBlock<T, Count>{ image, rows },
+    [&](std::ptrdiff_t x)
+    {
+      for (int r = 0; r < Count; ++r)
+      {
+        image[x] = larger(rows[r][x], image[x]);
+      }
+    });
+}
+
+template <class T>
+void maximum(T* image, const T* const* rows, int count, std::ptrdiff_t n)
+{
+  switch (count)
+  {
+    case 1:
+      return maximumOf<T, 1>(image, rows, n);
+    case 2:
+      return maximumOf<T, 2>(image, rows, n);
+    default:
+      return maximumOf<T, 3>(image, rows, n);
+  }
+}
+
+template <class T>
+void maximumValid(T* image, const T* const* rows, int count, std::ptrdiff_t n)
+{
+  for (int r = 0; r < count; ++r)
+  {
+    const T* const row = rows[r];
+    for (std::ptrdiff_t x = 0; x < n; ++x)
+    {
+      const bool empty = image[x] != image[x];
+      image[x] = empty || row[x] > image[x] ? row[x] : image[x];
+    }
+  }
+}
+
+template <class T>
+void widen(const T* row, Accumulator<T>* out, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    out[x] = static_cast<Accumulator<T>>(row[x]);
+  }
+}
+
+template <class T>
+void range(const T* row, std::ptrdiff_t n, T& low, T& high, bool& special)
+{
+  T l = low, h = high;
+  unsigned odd = 0;
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const T value = row[x];
+    l = value < l ? value : l;
+    h = value > h ? value : h;
+    // Only NaN and infinities are no zero when subtracted from themselves.
+    odd |= static_cast<unsigned>(!(static_cast<T>(value - value) == static_cast<T>(0)));
+  }
+  low = l;
+  high = h;
+  special = special || odd != 0;
+}
+
+template <class A>
+struct SplatBlock
+{
+  A* image;
+  const A* const* rows;
+  const A* weights;
+  int count;
+  template <int V>
+  inline void run(std::ptrdiff_t x) const
+  {
+    Pack<A> sum[V];
+    for (int v = 0; v < V; ++v)
+    {
+      sum[v] = this->weights[0] * load<A>(this->rows[0] + x + v * width<A>);
+    }
+    for (int t = 1; t < this->count; ++t)
+    {
+      const A weight = this->weights[t];
+      const A* const row = this->rows[t] + x;
+      for (int v = 0; v < V; ++v)
+      {
+        sum[v] += weight * load<A>(row + v * width<A>);
+      }
+    }
+    for (int v = 0; v < V; ++v)
+    {
+      A* const p = this->image + x + v * width<A>;
+      store<A>(p, larger(sum[v], load<A>(p)));
+    }
+  }
+};
+
+template <class A>
+void splat(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n)
+{
+  blocks<A>(n, SplatBlock<A>{ image, rows, weights, count },
+    [&](std::ptrdiff_t x)
+    {
+      A sum = weights[0] * rows[0][x];
+      for (int t = 1; t < count; ++t)
+      {
+        sum += weights[t] * rows[t][x];
+      }
+      image[x] = larger(sum, image[x]);
+    });
+}
+
+template <class A>
+void splatValid(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    A sum = 0, weight = 0;
+    for (int t = 0; t < count; ++t)
+    {
+      const A value = rows[t][x];
+      if (value == value)
+      {
+        sum += weights[t] * value;
+        weight += weights[t];
+      }
+    }
+    // All weights add up to exactly 1, so that nothing changes where there is no NaN. The quotient
+    // is NaN if nothing is left, or if opposite infinities met.
+    const A average = sum / weight;
+    if (average > image[x] || (image[x] != image[x] && average == average))
+    {
+      image[x] = average;
+    }
+  }
+}
+
+template <class A>
+void clamp(A* image, A low, A high, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const A value = image[x] < low ? low : image[x];
+    image[x] = value > high ? high : value;
+  }
+}
+
+template <class A>
+void interpolate(const A* image, std::ptrdiff_t stride, const double start[2],
+  const double step[2], A* out, std::ptrdiff_t n)
+{
+  const double u0 = start[0], v0 = start[1], du = step[0], dv = step[1];
+  const std::int32_t rowLength = static_cast<std::int32_t>(stride);
+  for (std::int32_t x = 0; x < static_cast<std::int32_t>(n); ++x)
+  {
+    const double u = u0 + x * du, v = v0 + x * dv; // both positive: truncation is floor
+    const std::int32_t i = static_cast<std::int32_t>(u), j = static_cast<std::int32_t>(v);
+    const A fu = static_cast<A>(u - i), fv = static_cast<A>(v - j);
+    const std::int32_t at = j * rowLength + i;
+    const A a = image[at], b = image[at + 1];
+    const A c = image[at + rowLength], d = image[at + rowLength + 1];
+    const A lower = a + fu * (b - a);
+    const A upper = c + fu * (d - c);
+    out[x] = lower + fv * (upper - lower);
+  }
+}
+
+template <class A>
+void lookUp(const A* values, A low, A scale, std::int32_t last, const std::uint32_t* colors,
+  std::uint32_t* out, std::ptrdiff_t n)
+{
+  const A top = static_cast<A>(last), zero = 0, half = static_cast<A>(0.5);
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    A place = (values[x] - low) * scale;
+    place = place > zero ? place : zero; // also NaN
+    place = place < top ? place : top;
+    out[x] = colors[static_cast<std::int32_t>(place + half)];
+  }
+}
+
+template <class T>
+constexpr VoxelLoops<T> voxelLoops{ &maximum<T>, &maximumValid<T>, &widen<T>, &range<T> };
+template <class A>
+constexpr WorksheetLoops<A> worksheetLoops{ &splat<A>, &splatValid<A>, &clamp<A>, &interpolate<A>,
+  &lookUp<A> };
+}
+
+extern const Kernels SPLATTING_KERNELS;
+const Kernels SPLATTING_KERNELS = { voxelLoops<std::int8_t>, voxelLoops<std::uint8_t>,
+  voxelLoops<std::int16_t>, voxelLoops<std::uint16_t>, voxelLoops<std::int32_t>,
+  voxelLoops<std::uint32_t>, voxelLoops<std::int64_t>, voxelLoops<std::uint64_t>,
+  voxelLoops<float>, voxelLoops<double>, worksheetLoops<float>, worksheetLoops<double> };
+}

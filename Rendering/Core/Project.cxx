@@ -1,0 +1,439 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Project.h"
+
+#include <vtkSMPThreadLocal.h>
+#include <vtkSMPTools.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace splatting
+{
+namespace
+{
+/// Rows of a band. Its part of the image and of three slices stays in the second-level cache.
+constexpr int BandHeight = 16;
+/// Voxels repeated beyond both ends of a row: a footprint reaches three voxels out.
+constexpr int Pad = 4;
+
+/// One slice as seen by all pixels.
+struct SliceGeometry
+{
+  RayPath path;
+  int vBegin, vEnd; // image rows whose rays cross the slice
+};
+
+/// The footprint of one slice, with weights of the accumulator's type.
+template <class A>
+struct SliceFootprint
+{
+  glm::ivec2 nearest; // pixel minus voxel, for the voxel nearest to a pixel
+  std::vector<Tap> taps;
+  std::vector<A> weights;
+};
+
+/// Rows of up to three slices, widened to the accumulator's type, with repeated ends.
+struct RowCache
+{
+  std::vector<unsigned char> bytes;
+  std::ptrdiff_t rowLength = 0;
+  int rowsPerSlice = 0;
+  int first[3]; // the row of the volume that the slot begins with
+  template <class A>
+  A* row(int slice, int j)
+  {
+    const int slot = slice % 3;
+    return reinterpret_cast<A*>(this->bytes.data()) +
+      (std::ptrdiff_t(slot) * this->rowsPerSlice + (j - this->first[slot])) * this->rowLength + Pad;
+  }
+};
+
+template <class T>
+constexpr T emptyPixel(bool special)
+{
+  using Limits = std::numeric_limits<T>;
+  return Limits::has_infinity ? (special ? Limits::quiet_NaN() : -Limits::infinity())
+                              : Limits::lowest();
+}
+
+/// What all bands of one projection share.
+template <class T>
+struct Frame
+{
+  const ShearWarp& geometry;
+  const Kernels& kernels;
+  Slices slices;
+  const std::vector<SliceGeometry>& sliceGeometry;
+  const std::vector<glm::dvec4>& halfSpaces; // in pixels
+  ShearImage& image;
+
+  const T* voxelRow(int j, int k) const
+  {
+    return static_cast<const T*>(this->slices.voxels) + j * this->slices.rowStride +
+      k * this->slices.sliceStride;
+  }
+
+  /// The pixels of row v that slice k counts for; they are noted in the image.
+  Span pixels(int v, int k) const
+  {
+    Span span = this->geometry.coverage(this->sliceGeometry[k].path, v);
+    if (!this->halfSpaces.empty())
+    {
+      span = ShearWarp::clipped(span, v, k, this->halfSpaces);
+      if (!span.empty())
+      {
+        unsigned char* mask = &this->image.mask[std::ptrdiff_t(v) * this->image.width];
+        std::fill(mask + span.begin, mask + span.end, static_cast<unsigned char>(1));
+      }
+    }
+    if (!span.empty())
+    {
+      Span& all = this->image.spans[v];
+      all.begin = std::min(all.begin, span.begin);
+      all.end = std::max(all.end, span.end);
+    }
+    return span;
+  }
+};
+
+/// The slices that rows [v0, v1) meet: a range, because the stack only moves one way.
+Span slicesOf(const std::vector<SliceGeometry>& slices, int v0, int v1)
+{
+  const auto meets = [=](const SliceGeometry& s) { return s.vBegin < v1 && s.vEnd > v0; };
+  const auto first = std::find_if(slices.begin(), slices.end(), meets);
+  const auto last = std::find_if(slices.rbegin(), slices.rend(), meets).base();
+  return { static_cast<int>(first - slices.begin()),
+    static_cast<int>(std::max(first, last) - slices.begin()) };
+}
+
+/// Slice k of row v in preview mode: the voxels on the ray path, as far as they exist.
+template <class T>
+void previewRow(const Frame<T>& frame, int v, int k)
+{
+  const Span span = frame.pixels(v, k);
+  if (span.empty())
+  {
+    return;
+  }
+  const RayPath& path = frame.sliceGeometry[k].path;
+  const glm::ivec3& size = frame.geometry.size();
+  const VoxelLoops<T>& loops = frame.kernels;
+  const auto maximum = frame.image.special ? loops.maximumValid : loops.maximum;
+  T* const image = frame.image.template row<T>(v);
+  // The paths' voxels are different columns: all of them exist for most pixels, at the rim some.
+  const T* rows[3];
+  Span ranges[3];
+  Span all = span;
+  int count = 0;
+  for (int t = 0; t < path.count; ++t)
+  {
+    const int j = v + path.dj[t];
+    if (j >= 0 && j < size.y)
+    {
+      rows[count] = frame.voxelRow(j, k) + path.di[t];
+      ranges[count] = { std::max(span.begin, -path.di[t]),
+        std::min(span.end, size.x - path.di[t]) };
+      all.begin = std::max(all.begin, ranges[count].begin);
+      all.end = std::min(all.end, ranges[count].end);
+      ++count;
+    }
+  }
+  if (all.empty())
+  {
+    all = { span.end, span.end };
+  }
+  const T* shifted[3];
+  for (int t = 0; t < count; ++t)
+  {
+    const auto part = [&](int begin, int end)
+    {
+      if (begin < end)
+      {
+        shifted[0] = rows[t] + begin;
+        maximum(image + begin, shifted, 1, end - begin);
+      }
+    };
+    part(ranges[t].begin, std::min(all.begin, ranges[t].end));
+    part(std::max(all.end, ranges[t].begin), ranges[t].end);
+  }
+  if (!all.empty())
+  {
+    for (int t = 0; t < count; ++t)
+    {
+      shifted[t] = rows[t] + all.begin;
+    }
+    maximum(image + all.begin, shifted, count, all.end - all.begin);
+  }
+}
+
+template <class T>
+void previewBand(const Frame<T>& frame, int v0, int v1)
+{
+  const Span slices = slicesOf(frame.sliceGeometry, v0, v1);
+  for (int k = slices.begin; k < slices.end; ++k)
+  {
+    const SliceGeometry& slice = frame.sliceGeometry[k];
+    for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
+    {
+      previewRow(frame, v, k);
+    }
+  }
+}
+
+/// A band in standard and high mode: `reach` slices and 1 + reach rows beyond.
+template <class T>
+class WorksheetBand
+{
+public:
+  using A = Accumulator<T>;
+
+  WorksheetBand(const Frame<T>& frame, const std::vector<SliceFootprint<A>>& footprints, int reach,
+    RowCache& cache, int v0, int v1)
+    : Shared(frame)
+    , Footprints(footprints)
+    , Reach(reach)
+    , Cache(cache)
+    , V0(v0)
+    , V1(v1)
+  {
+    const glm::ivec3& size = frame.geometry.size();
+    cache.rowLength = size.x + 2 * Pad;
+    cache.rowsPerSlice = std::min(size.y, v1 - v0 + 2 * (1 + reach) + 2);
+    const std::size_t bytes = std::size_t(3) * cache.rowsPerSlice * cache.rowLength * sizeof(A);
+    if (cache.bytes.size() < bytes)
+    {
+      cache.bytes.resize(bytes);
+    }
+  }
+
+  void splat()
+  {
+    const Span slices = slicesOf(this->Shared.sliceGeometry, this->V0, this->V1);
+    const int last = this->Shared.geometry.size().z - 1;
+    int loaded = std::max(slices.begin - this->Reach, 0);
+    for (int k = slices.begin; k < slices.end; ++k)
+    {
+      for (; loaded <= std::min(k + this->Reach, last); ++loaded)
+      {
+        this->load(loaded);
+      }
+      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+      for (int v = std::max(this->V0, slice.vBegin); v < std::min(this->V1, slice.vEnd); ++v)
+      {
+        this->splatRow(v, k);
+      }
+    }
+    this->clampToRange();
+  }
+
+  void setRange(const VolumeIndex::Range& range) { this->ValueRange = range; }
+
+private:
+  /// Widens the rows of a slice that this and the neighbouring slices' footprints read.
+  void load(int slice)
+  {
+    const glm::ivec3& size = this->Shared.geometry.size();
+    int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::lowest();
+    for (int k = std::max(slice - this->Reach, 0); k <= std::min(slice + this->Reach, size.z - 1);
+         ++k)
+    {
+      low = std::min(low, this->V0 - this->Footprints[k].nearest.y);
+      high = std::max(high, this->V1 - 1 - this->Footprints[k].nearest.y);
+    }
+    low = std::clamp(low - 1 - this->Reach, 0, size.y - 1);
+    high = std::clamp(high + 1 + this->Reach, 0, size.y - 1);
+    this->Cache.first[slice % 3] = low;
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    for (int j = low; j <= high; ++j)
+    {
+      A* const row = this->Cache.template row<A>(slice, j);
+      loops.widen(this->Shared.voxelRow(j, slice), row, size.x);
+      std::fill(row - Pad, row, row[0]);
+      std::fill(row + size.x, row + size.x + Pad, row[size.x - 1]);
+    }
+  }
+
+  void splatRow(int v, int k)
+  {
+    const Span span = this->Shared.pixels(v, k);
+    if (span.empty())
+    {
+      return;
+    }
+    const glm::ivec3& size = this->Shared.geometry.size();
+    const SliceFootprint<A>& footprint = this->Footprints[k];
+    const A* rows[75];
+    const int count = static_cast<int>(footprint.taps.size());
+    for (int t = 0; t < count; ++t)
+    {
+      const Tap& tap = footprint.taps[t];
+      const int slice = std::clamp(k + tap.slice, 0, size.z - 1);
+      const int j = std::clamp(v - footprint.nearest.y + tap.dj, 0, size.y - 1);
+      rows[t] =
+        this->Cache.template row<A>(slice, j) + (span.begin - footprint.nearest.x + tap.di);
+    }
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    (this->Shared.image.special ? loops.splatValid : loops.splat)(
+      this->Shared.image.template row<A>(v) + span.begin, rows, footprint.weights.data(), count,
+      span.end - span.begin);
+  }
+
+  /// Rounding must not show values that the data do not have.
+  void clampToRange()
+  {
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    for (int v = this->V0; v < this->V1; ++v)
+    {
+      const Span& span = this->Shared.image.spans[v];
+      if (!span.empty())
+      {
+        loops.clamp(this->Shared.image.template row<A>(v) + span.begin,
+          static_cast<A>(this->ValueRange.low), static_cast<A>(this->ValueRange.high),
+          span.end - span.begin);
+      }
+    }
+  }
+
+  const Frame<T>& Shared;
+  const std::vector<SliceFootprint<A>>& Footprints;
+  int Reach;
+  RowCache& Cache;
+  int V0, V1;
+  VolumeIndex::Range ValueRange;
+};
+
+std::vector<SliceGeometry> sliceGeometry(const ShearWarp& geometry)
+{
+  std::vector<SliceGeometry> slices(geometry.size().z);
+  for (int k = 0; k < geometry.size().z; ++k)
+  {
+    SliceGeometry& slice = slices[k];
+    slice.path = geometry.rayPath(k);
+    const auto end = slice.path.dj.begin() + slice.path.count;
+    slice.vBegin = -*std::max_element(slice.path.dj.begin(), end);
+    slice.vEnd = geometry.size().y - *std::min_element(slice.path.dj.begin(), end);
+  }
+  return slices;
+}
+
+/// Weights are rounded so that 8-bit sums are exact, else to the accumulator's precision.
+template <class T>
+constexpr int weightBits = sizeof(T) == 1 ? 16 : std::is_same_v<Accumulator<T>, float> ? 24 : 48;
+
+template <class T>
+std::vector<SliceFootprint<Accumulator<T>>> sliceFootprints(
+  const ShearWarp& geometry, const ProjectionSettings& settings)
+{
+  using A = Accumulator<T>;
+  const Kernel kernel =
+    settings.quality == Quality::Standard ? Kernel{ Reconstruction::Box } : settings.kernel;
+  const glm::dvec2 shear = geometry.shear();
+  GeneralTable table;
+  if (settings.footprintSampling > 0)
+  {
+    table = GeneralTable(kernel, shear, settings.footprintSampling);
+  }
+  std::vector<SliceFootprint<A>> footprints(geometry.size().z);
+  vtkSMPTools::For(0, geometry.size().z, 8,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType k = first; k < last; ++k)
+      {
+        SliceFootprint<A>& footprint = footprints[k];
+        const glm::dvec2 position = geometry.position(static_cast<double>(k));
+        footprint.nearest = { static_cast<int>(std::floor(position.x + 0.5)),
+          static_cast<int>(std::floor(position.y + 0.5)) };
+        const glm::dvec2 fraction = position - glm::dvec2(footprint.nearest);
+        footprint.taps = quantisedTaps(settings.footprintSampling > 0
+            ? table.weights(fraction)
+            : closedFormWeights(kernel, shear, fraction),
+          weightBits<T>);
+        for (const Tap& tap : footprint.taps)
+        {
+          footprint.weights.push_back(static_cast<A>(tap.weight));
+        }
+      }
+    });
+  return footprints;
+}
+
+/// Sets type and size, and every pixel to "no sample".
+template <class P>
+void prepare(ShearImage& image, const ShearWarp& geometry, bool special, bool cut)
+{
+  image.type = scalarTypeOf<P>();
+  image.width = geometry.width();
+  image.height = geometry.height();
+  image.special = special;
+  const std::size_t pixels = std::size_t(image.width) * image.height;
+  image.bytes.resize(pixels * sizeof(P));
+  std::fill_n(image.row<P>(0), pixels, emptyPixel<P>(special));
+  image.spans.assign(image.height, Span{ image.width, 0 });
+  image.mask.assign(cut ? pixels : 0, 0);
+}
+
+template <class Body>
+void forBands(int height, Body&& body)
+{
+  vtkSMPTools::For(0, (height + BandHeight - 1) / BandHeight, 1,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType b = first; b < last; ++b)
+      {
+        const int v0 = static_cast<int>(b) * BandHeight;
+        body(v0, std::min(v0 + BandHeight, height));
+      }
+    });
+}
+}
+
+struct Projector::Scratch
+{
+  vtkSMPThreadLocal<RowCache> rows;
+};
+
+Projector::Projector()
+  : Memory(new Scratch)
+{
+}
+
+Projector::~Projector() = default;
+
+void Projector::project(VolumeIndex& index, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const std::vector<glm::dvec4>& halfSpaces, ShearImage& image)
+{
+  const VolumeIndex::Range& range = index.range();
+  const std::vector<SliceGeometry> slices = sliceGeometry(geometry);
+  std::vector<glm::dvec4> bounds;
+  for (const glm::dvec4& h : halfSpaces)
+  {
+    bounds.push_back(geometry.inPixels(h));
+  }
+  dispatch(index.volume().type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      const Frame<T> frame{ geometry, kernelsFor(settings.instructionSet),
+        index.slices(geometry.principalAxis()), slices, bounds, image };
+      if (settings.quality == Quality::Preview)
+      {
+        prepare<T>(image, geometry, range.special, !bounds.empty());
+        forBands(image.height, [&](int v0, int v1) { previewBand(frame, v0, v1); });
+        return;
+      }
+      prepare<Accumulator<T>>(image, geometry, range.special, !bounds.empty());
+      const auto footprints = sliceFootprints<T>(geometry, settings);
+      const int reach = settings.quality == Quality::High ? 1 : 0;
+      forBands(image.height,
+        [&](int v0, int v1)
+        {
+          WorksheetBand<T> band(frame, footprints, reach, this->Memory->rows.Local(), v0, v1);
+          band.setRange(range);
+          band.splat();
+        });
+    });
+}
+}

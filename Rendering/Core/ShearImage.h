@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef splattingShearImage_h
+#define splattingShearImage_h
+
+#include "ScalarType.h"
+#include "ShearWarp.h"
+
+#include <vector>
+
+namespace splatting
+{
+/**
+ * The projection before the warp, one pixel per voxel.
+ */
+struct ShearImage
+{
+  ScalarType type = ScalarType::UInt8;
+  int width = 0;
+  int height = 0;
+  /// width * height scalars of `type`, row after row. The buffer only grows, frames re-use it.
+  std::vector<unsigned char> bytes;
+  /// Per row, the pixels whose ray crosses the volume; what lies outside has no meaning.
+  std::vector<Span> spans;
+  /// If half-spaces cut the volume: per pixel, whether a sample is left. Else empty.
+  std::vector<unsigned char> mask;
+  /// NaN pixels have no sample, infinities occur.
+  bool special = false;
+
+  template <class T>
+  T* row(int v)
+  {
+    return reinterpret_cast<T*>(this->bytes.data()) + std::ptrdiff_t(v) * this->width;
+  }
+  template <class T>
+  const T* row(int v) const
+  {
+    return const_cast<ShearImage*>(this)->row<T>(v);
+  }
+  /// Whether a ray of the image has samples, NaN aside.
+  bool covers(int u, int v) const
+  {
+    return v >= 0 && v < this->height && u >= this->spans[v].begin && u < this->spans[v].end &&
+      (this->mask.empty() || this->mask[std::ptrdiff_t(v) * this->width + u]);
+  }
+};
+}
+
+#endif

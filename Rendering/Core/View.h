@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef splattingView_h
+#define splattingView_h
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <cmath>
+#include <vector>
+
+namespace splatting
+{
+/**
+ * One volume seen in one viewport, as plain numbers. Index space: voxel centres lie at integers,
+ * the volume's first voxel at (0, 0, 0).
+ */
+struct View
+{
+  /// Size of the volume in voxels.
+  glm::ivec3 dimensions{ 0 };
+  /// Index space to clip space: spacing, origin, direction, prop matrix, view and projection.
+  glm::dmat4 indexToClip{ 1.0 };
+  /// Size of the viewport in pixels; the clip cube [-1, 1]^2 covers it.
+  glm::ivec2 viewport{ 0 };
+  /// Half-spaces of index space that samples must lie in: dot(h, (x, y, z, 1)) >= 0.
+  std::vector<glm::dvec4> halfSpaces;
+};
+
+/**
+ * Whether all rays of the view are parallel, told by the matrix.
+ */
+inline bool isParallel(const View& view)
+{
+  const glm::dmat4& m = view.indexToClip;
+  // w is constant over the volume. Products of matrices leave rounding errors, and the perspective
+  // of a camera so far away that w varies by 1e-9 over the volume moves nothing by a pixel.
+  double variation = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    variation += std::abs(m[c][3]) * view.dimensions[c];
+  }
+  return variation <= 1e-9 * std::abs(m[3][3]);
+}
+}
+
+#endif

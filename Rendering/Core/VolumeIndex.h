@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What is known of a volume beyond its voxels: made on first need, kept until the data change.
+ */
+#ifndef splattingVolumeIndex_h
+#define splattingVolumeIndex_h
+
+#include "ScalarType.h"
+
+#include <glm/vec3.hpp>
+
+#include <memory>
+
+namespace splatting
+{
+/**
+ * The voxels as somebody else holds them, first axis fastest, without gaps.
+ */
+struct VoxelArray
+{
+  const void* voxels = nullptr;
+  ScalarType type = ScalarType::UInt8;
+  glm::ivec3 dimensions{ 0 };
+};
+
+/**
+ * The slices along one axis: voxel (i, j, k) at voxels[i + j * rowStride + k * sliceStride].
+ */
+struct Slices
+{
+  const void* voxels = nullptr;
+  std::ptrdiff_t rowStride = 0;
+  std::ptrdiff_t sliceStride = 0;
+};
+
+class VolumeIndex
+{
+public:
+  /// Forgets all that was known and looks at other (or changed) voxels.
+  void reset(const VoxelArray& volume);
+
+  const VoxelArray& volume() const { return this->Volume; }
+
+  /**
+   * The volume seen along an axis, rows without gaps, (i, j) as in ShearWarp::axes(). Along the
+   * first axis voxels of a row would lie a whole row of memory apart; there it is a copy with axes
+   * (1, 2, 0), made on first use (one pass, reads and writes each byte once).
+   */
+  Slices slices(int principalAxis);
+
+  struct Range
+  {
+    double low = 0.0, high = 0.0; ///< of all voxels but NaN; low > high if there are none
+    bool special = false;         ///< whether there are NaN or infinities
+  };
+  /// Made on first use: one pass over the voxels.
+  const Range& range();
+
+  /// Bytes held besides the volume.
+  std::size_t memorySize() const { return this->CopySize; }
+
+private:
+  VoxelArray Volume;
+  std::unique_ptr<unsigned char[]> Copy;
+  std::size_t CopySize = 0;
+  Range ValueRange;
+  bool RangeKnown = false;
+};
+}
+
+#endif

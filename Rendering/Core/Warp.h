@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Shear image to viewport: the scalar is interpolated, then its colour looked up.
+ */
+#ifndef splattingWarp_h
+#define splattingWarp_h
+
+#include "Kernels.h"
+#include "ShearImage.h"
+
+#include <glm/vec2.hpp>
+
+#include <vector>
+
+namespace splatting
+{
+/**
+ * Premultiplied RGBA colours (bytes in this order in memory) at equal steps over [low, high];
+ * values outside take the first or the last.
+ */
+struct ColorTable
+{
+  double low = 0.0;
+  double high = 0.0;
+  std::vector<std::uint32_t> colors;
+};
+
+/**
+ * The part of a viewport that a volume may cover. Rows from bottom to top.
+ */
+struct Picture
+{
+  glm::ivec2 origin{ 0 };
+  glm::ivec2 size{ 0 };
+  std::vector<std::uint32_t> pixels;
+};
+
+/**
+ * Warps shear images. Holds work space between frames.
+ */
+class Warper
+{
+public:
+  /**
+   * Fills the picture with the shear image as seen in a viewport. The picture ends where the
+   * volume's outermost voxel centres are seen (half a voxel further out along axes with one voxel);
+   * pixels beyond and pixels without a sample are transparent.
+   */
+  void warp(const ShearImage& image, const ShearWarp& geometry, const ColorTable& table,
+    const glm::ivec2& viewport, InstructionSet instructionSet, Picture& picture);
+
+private:
+  /// A preview image in the accumulator's type.
+  std::vector<unsigned char> Widened;
+};
+}
+
+#endif

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkOpenGLSplattingMIPVolumeMapper
+ * @brief   draws the pictures of vtkSplattingMIPVolumeMapper with OpenGL
+ *
+ * The class that the object factory gives for vtkSplattingMIPVolumeMapper. All it adds is the
+ * display: one texture, texel on pixel, blended over what the renderer has drawn before. It neither
+ * reads nor writes depth.
+ */
+#ifndef vtkOpenGLSplattingMIPVolumeMapper_h
+#define vtkOpenGLSplattingMIPVolumeMapper_h
+
+#include "vtkNew.h" // for the texture
+#include "vtkRenderingSplattingMIPModule.h" // for the export macro
+#include "vtkSplattingMIPVolumeMapper.h"
+
+class vtkTextureObject;
+
+class VTKRENDERINGSPLATTINGMIP_EXPORT vtkOpenGLSplattingMIPVolumeMapper
+  : public vtkSplattingMIPVolumeMapper
+{
+public:
+  static vtkOpenGLSplattingMIPVolumeMapper* New();
+  vtkTypeMacro(vtkOpenGLSplattingMIPVolumeMapper, vtkSplattingMIPVolumeMapper);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
+   */
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkOpenGLSplattingMIPVolumeMapper();
+  ~vtkOpenGLSplattingMIPVolumeMapper() override;
+
+  void DisplayImage(vtkRenderer* ren, const int origin[2], const int size[2],
+    const unsigned char* rgba) override;
+
+private:
+  vtkOpenGLSplattingMIPVolumeMapper(const vtkOpenGLSplattingMIPVolumeMapper&) = delete;
+  void operator=(const vtkOpenGLSplattingMIPVolumeMapper&) = delete;
+
+  vtkNew<vtkTextureObject> Texture;
+};
+
+#endif

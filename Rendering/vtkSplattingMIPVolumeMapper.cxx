@@ -1,0 +1,750 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "Project.h"
+#include "ShearWarp.h"
+#include "View.h"
+#include "VolumeIndex.h"
+#include "Warp.h"
+
+#include "vtkCamera.h"
+#include "vtkColorTransferFunction.h"
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFixedPointVolumeRayCastMapper.h"
+#include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
+#include "vtkMatrix4x4.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
+#include "vtkPointData.h"
+#include "vtkRenderer.h"
+#include "vtkSmartPointer.h"
+#include "vtkTimerLog.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
+
+namespace
+{
+template <class T>
+splatting::ScalarType sizedType()
+{
+  constexpr bool isSigned = std::numeric_limits<T>::is_signed;
+  switch (sizeof(T))
+  {
+    case 1:
+      return isSigned ? splatting::ScalarType::Int8 : splatting::ScalarType::UInt8;
+    case 2:
+      return isSigned ? splatting::ScalarType::Int16 : splatting::ScalarType::UInt16;
+    case 4:
+      return isSigned ? splatting::ScalarType::Int32 : splatting::ScalarType::UInt32;
+    default:
+      return isSigned ? splatting::ScalarType::Int64 : splatting::ScalarType::UInt64;
+  }
+}
+
+/// Float for the types that vtkTemplateMacro does not know, too; they are refused before.
+splatting::ScalarType scalarType(int vtkType)
+{
+  if (vtkType == VTK_DOUBLE)
+  {
+    return splatting::ScalarType::Float64;
+  }
+  if (vtkType == VTK_FLOAT)
+  {
+    return splatting::ScalarType::Float32;
+  }
+  switch (vtkType)
+  {
+    vtkTemplateMacro(return sizedType<VTK_TT>());
+  }
+  return splatting::ScalarType::Float32;
+}
+
+int vtkTypeOf(splatting::ScalarType type, int inputType)
+{
+  if (type == scalarType(inputType))
+  {
+    return inputType; // keeps char apart from signed char, long from long long
+  }
+  return type == splatting::ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
+}
+
+glm::dmat4 toGlm(const double* rowMajor)
+{
+  glm::dmat4 m;
+  for (int r = 0; r < 4; ++r)
+  {
+    for (int c = 0; c < 4; ++c)
+    {
+      m[c][r] = rowMajor[4 * r + c];
+    }
+  }
+  return m;
+}
+
+glm::dmat4 toGlm(const vtkMatrix4x4* matrix)
+{
+  return toGlm(matrix->GetData());
+}
+
+glm::dvec4 row(const glm::dmat4& m, int r)
+{
+  return { m[0][r], m[1][r], m[2][r], m[3][r] };
+}
+
+/// Index space (first voxel at 0) to world.
+glm::dmat4 indexToWorld(vtkImageData* image, vtkVolume* volume)
+{
+  glm::dmat4 physical = toGlm(image->GetIndexToPhysicalMatrix());
+  const int* extent = image->GetExtent();
+  physical[3] = physical * glm::dvec4(extent[0], extent[2], extent[4], 1.0);
+  return toGlm(volume->GetMatrix()) * physical;
+}
+
+/// Whether a matrix flattens the volume, or has no meaning (NaN).
+bool isSingular(const glm::dmat4& m)
+{
+  const glm::dmat3 linear(m);
+  const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+  return !(std::abs(glm::determinant(linear)) > 1e-10 * lengths) || !std::isfinite(lengths);
+}
+
+/// Keeps a half-space of index space if it cuts into the volume's voxels at all.
+void addHalfSpace(splatting::View& view, const glm::dvec4& h)
+{
+  double least = h.w;
+  for (int a = 0; a < 3; ++a)
+  {
+    least += std::min(-0.5 * h[a], (view.dimensions[a] - 0.5) * h[a]);
+  }
+  if (least < 0.0)
+  {
+    view.halfSpaces.push_back(h);
+  }
+}
+
+std::uint32_t premultiplied(const float rgb[3], float opacity)
+{
+  const float alpha = std::clamp(opacity, 0.0f, 1.0f);
+  unsigned char bytes[4];
+  for (int c = 0; c < 3; ++c)
+  {
+    bytes[c] = static_cast<unsigned char>(255.0f * alpha * std::clamp(rgb[c], 0.0f, 1.0f) + 0.5f);
+  }
+  bytes[3] = static_cast<unsigned char>(255.0f * alpha + 0.5f);
+  std::uint32_t color;
+  std::memcpy(&color, bytes, sizeof(color));
+  return color;
+}
+
+/// Widens [low, high] by the nodes of a function; beyond them it is constant.
+template <class Function>
+void addNodes(Function* function, double& low, double& high)
+{
+  if (function->GetSize() > 0)
+  {
+    const double* nodes = function->GetRange();
+    low = std::min(low, nodes[0]);
+    high = std::max(high, nodes[1]);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+class vtkSplattingMIPVolumeMapper::Internals
+{
+public:
+  std::string Problem(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
+  const char* ReasonToRayCast(
+    vtkSplattingMIPVolumeMapper* self, vtkVolume* volume, const splatting::View& view);
+  splatting::View MakeView(
+    vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
+  void LookAt(vtkImageData* image, vtkDataArray* scalars);
+  void Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
+  void UpdateColors(vtkVolumeProperty* property);
+  void ConfigureRayCaster(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
+  void CopyShearImage(vtkImageData* output) const;
+
+  vtkImageData* Input = nullptr;     // set by Problem(), valid during a render
+  vtkDataArray* Scalars = nullptr;   // likewise
+  std::string Reported;              // the last problem, so that each is told once
+  std::set<std::string> Announced;   // reasons to ray cast that were told
+
+  splatting::VolumeIndex Index;
+  vtkSmartPointer<vtkDataArray> Contiguous; // a copy, if the scalars are stored in another way
+  const vtkDataArray* IndexedScalars = nullptr;
+  vtkMTimeType IndexedTime = 0;
+  int ScalarType = VTK_VOID;
+
+  splatting::Projector Projector;
+  splatting::ShearWarp Geometry;
+  splatting::ProjectionSettings Settings;
+  std::vector<glm::dvec4> HalfSpaces;
+  splatting::ShearImage Image;
+  bool ImageValid = false;
+  vtkIdType Projections = 0;
+  double ProjectionTime = 0.0;
+  double Shear[2] = { 0.0, 0.0 };
+  vtkSmartPointer<vtkImageData> ShearImageOutput;
+
+  splatting::ColorTable Colors;
+  vtkVolumeProperty* ColoredBy = nullptr;
+  vtkMTimeType ColorTime = 0;
+  bool ColorsValid = false;
+  splatting::Warper Warper;
+  splatting::Picture Picture;
+
+  vtkSmartPointer<vtkFixedPointVolumeRayCastMapper> RayCaster;
+  vtkNew<vtkVolume> RayCastVolume;
+  vtkNew<vtkVolumeProperty> RayCastProperty;
+  vtkNew<vtkImageData> RayCastInput;
+};
+
+//------------------------------------------------------------------------------
+vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
+  : QualityMode(HIGH)
+  , Kernel(TRILINEAR)
+  , KernelRadius(1.0)
+  , FootprintSampling(0)
+  , LastRenderUsedRayCasting(false)
+  , Internal(new Internals)
+{
+  this->BlendMode = MAXIMUM_INTENSITY_BLEND;
+}
+
+//------------------------------------------------------------------------------
+vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper() = default;
+
+//------------------------------------------------------------------------------
+// The gate: a sentence that says why this input cannot be rendered and what to do, or nothing.
+std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
+  vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
+{
+  vtkDataSet* const input = self->GetInput();
+  this->Input = vtkImageData::SafeDownCast(input);
+  this->Scalars = nullptr;
+  if (!input)
+  {
+    return "There is no input: connect a vtkImageData with SetInputData or SetInputConnection.";
+  }
+  if (!this->Input)
+  {
+    return std::string("The input is a ") + input->GetClassName() +
+      ", only vtkImageData can be splatted: resample it with vtkResampleToImage.";
+  }
+  const int* dimensions = this->Input->GetDimensions();
+  const vtkIdType points = this->Input->GetNumberOfPoints();
+  if (points < 1)
+  {
+    return "The input has no voxels: its extent is empty.";
+  }
+  int cellFlag = 0;
+  this->Scalars = vtkAbstractMapper::GetScalars(this->Input, self->ScalarMode,
+    self->ArrayAccessMode, self->ArrayId, self->ArrayName, cellFlag);
+  if (!this->Scalars)
+  {
+    return "The input has no numeric scalars under the chosen ScalarMode and array: set them on the "
+           "input or choose another with SelectScalarArray.";
+  }
+  if (cellFlag)
+  {
+    return "The chosen scalars belong to cells: convert them with vtkCellDataToPointData.";
+  }
+  if (this->Scalars->GetDataType() == VTK_BIT)
+  {
+    return "The scalars are bits: convert them with vtkImageCast.";
+  }
+  if (this->Scalars->GetNumberOfTuples() != points)
+  {
+    return "The scalars have " + std::to_string(this->Scalars->GetNumberOfTuples()) +
+      " tuples for " + std::to_string(points) + " voxels: the two must agree.";
+  }
+  // Positions in rows, slices and the shear image are counted in int and must be exact in double.
+  if (*std::max_element(dimensions, dimensions + 3) > 16384)
+  {
+    return "The input has more than 16384 voxels along an axis: extract a part of it.";
+  }
+  if (isSingular(indexToWorld(this->Input, volume)))
+  {
+    return "Spacing, direction and prop matrix flatten the volume: none of them may be singular.";
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
+  vtkSplattingMIPVolumeMapper* self, vtkVolume*, const splatting::View& view)
+{
+  if (self->BlendMode != MAXIMUM_INTENSITY_BLEND)
+  {
+    return "the blend mode is not maximum intensity";
+  }
+  if (self->Cropping)
+  {
+    return "cropping is on";
+  }
+  if (this->Scalars->GetNumberOfComponents() != 1)
+  {
+    return "the scalars have several components";
+  }
+  if (!splatting::isParallel(view))
+  {
+    return "the camera is perspective";
+  }
+  return nullptr;
+}
+
+//------------------------------------------------------------------------------
+splatting::View vtkSplattingMIPVolumeMapper::Internals::MakeView(
+  vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume)
+{
+  splatting::View view;
+  const int* dimensions = this->Input->GetDimensions();
+  view.dimensions = { dimensions[0], dimensions[1], dimensions[2] };
+  int left, bottom;
+  renderer->GetTiledSizeAndOrigin(&view.viewport.x, &view.viewport.y, &left, &bottom);
+  const glm::dmat4 world = indexToWorld(this->Input, volume);
+  view.indexToClip = toGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
+                       renderer->GetTiledAspectRatio(), -1.0, 1.0)) *
+    world;
+  // Near and far plane: -w <= z <= w.
+  const glm::dvec4 z = row(view.indexToClip, 2), w = row(view.indexToClip, 3);
+  addHalfSpace(view, w + z);
+  addHalfSpace(view, w - z);
+  if (vtkPlaneCollection* planes = self->GetClippingPlanes())
+  {
+    vtkCollectionSimpleIterator it;
+    planes->InitTraversal(it);
+    while (vtkPlane* plane = planes->GetNextPlane(it))
+    {
+      const glm::dvec3 normal(plane->GetNormal()[0], plane->GetNormal()[1], plane->GetNormal()[2]);
+      const glm::dvec3 origin(plane->GetOrigin()[0], plane->GetOrigin()[1], plane->GetOrigin()[2]);
+      // A plane is a row vector: it transforms from the right.
+      addHalfSpace(view, glm::dvec4(normal, -glm::dot(normal, origin)) * world);
+    }
+  }
+  return view;
+}
+
+//------------------------------------------------------------------------------
+// Points the index at the scalars, anew if they changed.
+void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkImageData* image, vtkDataArray* scalars)
+{
+  const int* dimensions = image->GetDimensions();
+  const splatting::VoxelArray& known = this->Index.volume();
+  const glm::ivec3 size(dimensions[0], dimensions[1], dimensions[2]);
+  if (this->IndexedScalars == scalars && this->IndexedTime == scalars->GetMTime() &&
+    known.dimensions == size)
+  {
+    return;
+  }
+  this->IndexedScalars = scalars;
+  this->IndexedTime = scalars->GetMTime();
+  this->ScalarType = scalars->GetDataType();
+  this->Contiguous = nullptr;
+  if (!scalars->HasStandardMemoryLayout())
+  {
+    this->Contiguous.TakeReference(vtkDataArray::CreateDataArray(this->ScalarType));
+    this->Contiguous->DeepCopy(scalars);
+    scalars = this->Contiguous;
+  }
+  this->Index.reset({ scalars->GetVoidPointer(0), scalarType(this->ScalarType), size });
+  this->ImageValid = false;
+  this->ColorsValid = false;
+}
+
+//------------------------------------------------------------------------------
+// Projects, unless the last shear image shows the same.
+void vtkSplattingMIPVolumeMapper::Internals::Project(
+  vtkSplattingMIPVolumeMapper* self, const splatting::View& view)
+{
+  const splatting::ShearWarp geometry(view);
+  splatting::ProjectionSettings settings;
+  settings.quality = static_cast<splatting::Quality>(self->QualityMode);
+  settings.kernel = { self->Kernel == COSINE_BELL ? splatting::Reconstruction::CosineBell
+                                                  : splatting::Reconstruction::Hat,
+    self->KernelRadius };
+  settings.footprintSampling = self->FootprintSampling;
+  const bool same = this->ImageValid && geometry.sameShear(this->Geometry) &&
+    this->HalfSpaces == view.halfSpaces && settings.quality == this->Settings.quality &&
+    settings.kernel == this->Settings.kernel &&
+    settings.footprintSampling == this->Settings.footprintSampling;
+  this->Geometry = geometry;
+  if (same || !geometry.valid())
+  {
+    return;
+  }
+  this->Settings = settings;
+  this->HalfSpaces = view.halfSpaces;
+  const double start = vtkTimerLog::GetUniversalTime();
+  this->Projector.project(this->Index, geometry, settings, view.halfSpaces, this->Image);
+  this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
+  this->ImageValid = true;
+  this->ShearImageOutput = nullptr;
+  ++this->Projections;
+}
+
+//------------------------------------------------------------------------------
+// Transfer functions to a table of colours.
+void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* property)
+{
+  if (this->ColorsValid && this->ColoredBy == property && this->ColorTime == property->GetMTime())
+  {
+    return;
+  }
+  const bool gray = property->GetColorChannels() == 1;
+  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity();
+  vtkPiecewiseFunction* const grays = gray ? property->GetGrayTransferFunction() : nullptr;
+  vtkColorTransferFunction* const colors = gray ? nullptr : property->GetRGBTransferFunction();
+
+  // The table spends its entries where the functions vary: between their nodes, as far as the data
+  // go. Functions that do not clamp vanish beyond their nodes, so there it covers all data.
+  const splatting::VolumeIndex::Range range = this->Index.range();
+  constexpr double largest = std::numeric_limits<float>::max();
+  double low = largest, high = -largest;
+  addNodes(opacity, low, high);
+  const bool clamping = opacity->GetClamping() && (gray ? grays->GetClamping() : colors->GetClamping());
+  if (gray)
+  {
+    addNodes(grays, low, high);
+  }
+  else
+  {
+    addNodes(colors, low, high);
+  }
+  const double dataLow = std::clamp(range.low, -largest, largest);
+  const double dataHigh = std::clamp(range.high, dataLow, largest);
+  low = clamping ? std::clamp(low, dataLow, dataHigh) : dataLow;
+  high = clamping ? std::clamp(high, low, dataHigh) : dataHigh;
+
+  // Sixteen entries per grey level of integers, as far as 65536 go; floats take all of them.
+  const bool integers = this->ScalarType != VTK_FLOAT && this->ScalarType != VTK_DOUBLE;
+  const double wanted = integers ? 16.0 * (high - low) + 1.0 : 65536.0;
+  const int entries = high > low ? static_cast<int>(std::clamp(wanted, 2.0, 65536.0)) : 1;
+  const double end = high > low ? high : low + 1.0; // the functions want a range
+  const int sampled = std::max(entries, 2);
+  std::vector<float> alpha(sampled), rgb(3 * static_cast<std::size_t>(sampled));
+  opacity->GetTable(low, end, sampled, alpha.data());
+  if (gray)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      grays->GetTable(low, end, sampled, rgb.data() + c, 3);
+    }
+  }
+  else
+  {
+    colors->GetTable(low, end, sampled, rgb.data());
+  }
+  this->Colors.low = low;
+  this->Colors.high = high;
+  this->Colors.colors.resize(entries);
+  for (int e = 0; e < entries; ++e)
+  {
+    this->Colors.colors[e] = premultiplied(&rgb[3 * static_cast<std::size_t>(e)], alpha[e]);
+  }
+  this->ColoredBy = property;
+  this->ColorTime = property->GetMTime();
+  this->ColorsValid = true;
+}
+
+//------------------------------------------------------------------------------
+// Hands this mapper's settings to VTK's ray caster, on a volume that it renders rightly: it ignores
+// direction matrices, so the direction goes into the prop's matrix.
+void vtkSplattingMIPVolumeMapper::Internals::ConfigureRayCaster(
+  vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
+{
+  if (!this->RayCaster)
+  {
+    this->RayCaster = vtkSmartPointer<vtkFixedPointVolumeRayCastMapper>::New();
+    this->RayCaster->AutoAdjustSampleDistancesOff();
+    this->RayCastVolume->SetMapper(this->RayCaster);
+    this->RayCastVolume->SetProperty(this->RayCastProperty);
+    this->RayCaster->SetInputData(this->RayCastInput);
+  }
+  this->RayCastInput->ShallowCopy(this->Input);
+  vtkMatrix3x3* const direction = this->Input->GetDirectionMatrix();
+  glm::dmat4 turn(1.0);
+  for (int r = 0; r < 3; ++r)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      turn[c][r] = direction->GetElement(r, c);
+    }
+  }
+  this->RayCastInput->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
+  const double* o = this->Input->GetOrigin();
+  const glm::dvec4 origin(o[0], o[1], o[2], 0.0);
+  turn[3] += origin - turn * origin;
+  const glm::dmat4 world = toGlm(volume->GetMatrix()) * turn;
+  vtkNew<vtkMatrix4x4> matrix;
+  for (int r = 0; r < 4; ++r)
+  {
+    for (int c = 0; c < 4; ++c)
+    {
+      matrix->SetElement(r, c, world[c][r]);
+    }
+  }
+  this->RayCastVolume->SetUserMatrix(matrix);
+
+  vtkVolumeProperty* const property = volume->GetProperty();
+  if (this->RayCastProperty->GetMTime() < property->GetMTime())
+  {
+    this->RayCastProperty->DeepCopy(property);
+  }
+  if (self->BlendMode == MAXIMUM_INTENSITY_BLEND)
+  {
+    this->RayCastProperty->SetInterpolationType(
+      self->QualityMode == PREVIEW ? VTK_NEAREST_INTERPOLATION : VTK_LINEAR_INTERPOLATION);
+  }
+  else
+  {
+    this->RayCastProperty->SetInterpolationType(property->GetInterpolationType());
+  }
+  const double* spacing = this->Input->GetSpacing();
+  const double step = std::min(
+    { std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
+  this->RayCaster->SetSampleDistance(static_cast<float>(step));
+  this->RayCaster->SetInteractiveSampleDistance(static_cast<float>(step));
+  this->RayCaster->SetBlendMode(self->BlendMode);
+  this->RayCaster->SetCropping(self->Cropping);
+  this->RayCaster->SetCroppingRegionPlanes(self->CroppingRegionPlanes);
+  this->RayCaster->SetCroppingRegionFlags(self->CroppingRegionFlags);
+  this->RayCaster->SetClippingPlanes(self->GetClippingPlanes());
+  this->RayCaster->SetScalarMode(self->ScalarMode);
+  if (self->ArrayAccessMode == VTK_GET_ARRAY_BY_ID)
+  {
+    this->RayCaster->SelectScalarArray(self->ArrayId);
+  }
+  else if (self->ArrayName)
+  {
+    this->RayCaster->SelectScalarArray(self->ArrayName);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
+{
+  this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
+  this->Timer->StartTimer();
+  this->LastRenderUsedRayCasting = false;
+  const std::string problem = this->Internal->Problem(this, vol);
+  if (!problem.empty())
+  {
+    // Told once, not in every frame.
+    if (problem != this->Internal->Reported)
+    {
+      vtkErrorMacro(<< problem);
+    }
+  }
+  else
+  {
+    this->RenderBySplatting(ren, vol);
+  }
+  this->Internal->Reported = problem;
+  this->Timer->StopTimer();
+  this->TimeToDraw = this->Timer->GetElapsedTime();
+  this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent);
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
+{
+  Internals& in = *this->Internal;
+  const splatting::View view = in.MakeView(this, ren, vol);
+  if (const char* reason = in.ReasonToRayCast(this, vol, view))
+  {
+    this->RenderByRayCasting(ren, vol, reason);
+    return;
+  }
+  in.LookAt(in.Input, in.Scalars);
+  in.Project(this, view);
+  if (!in.Geometry.valid())
+  {
+    return; // seen edge-on by a camera that has no extent: nothing to see
+  }
+  in.UpdateColors(vol->GetProperty());
+  in.Warper.warp(in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet,
+    in.Picture);
+  if (!in.Picture.pixels.empty())
+  {
+    this->DisplayImage(ren, &in.Picture.origin.x, &in.Picture.size.x,
+      reinterpret_cast<const unsigned char*>(in.Picture.pixels.data()));
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
+  vtkRenderer* ren, vtkVolume* vol, const char* reason)
+{
+  Internals& in = *this->Internal;
+  if (in.Announced.insert(reason).second)
+  {
+    vtkWarningMacro(<< "Rendering by vtkFixedPointVolumeRayCastMapper, because " << reason << ".");
+  }
+  in.ConfigureRayCaster(this, vol);
+  in.RayCaster->Render(ren, in.RayCastVolume);
+  this->LastRenderUsedRayCasting = true;
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::DisplayImage(
+  vtkRenderer*, const int*, const int*, const unsigned char*)
+{
+  vtkErrorMacro(<< "There is no OpenGL to draw with: initialise the module with "
+                   "vtk_module_autoinit or VTK_MODULE_INIT(vtkRenderingSplattingMIP).");
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
+{
+  if (this->Internal->RayCaster)
+  {
+    this->Internal->RayCaster->ReleaseGraphicsResources(window);
+  }
+  this->Superclass::ReleaseGraphicsResources(window);
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::Internals::CopyShearImage(vtkImageData* output) const
+{
+  const int type = vtkTypeOf(this->Image.type, this->ScalarType);
+  output->SetDimensions(this->Image.width, this->Image.height, 1);
+  output->SetOrigin(-this->Geometry.margin().x, -this->Geometry.margin().y, 0.0);
+  output->AllocateScalars(type, 1);
+  std::memcpy(output->GetScalarPointer(), this->Image.bytes.data(), this->Image.bytes.size());
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfValues(output->GetNumberOfPoints());
+  for (int v = 0; v < this->Image.height; ++v)
+  {
+    for (int u = 0; u < this->Image.width; ++u)
+    {
+      const vtkIdType pixel = static_cast<vtkIdType>(v) * this->Image.width + u;
+      const bool sample = this->Image.covers(u, v) &&
+        !std::isnan(output->GetPointData()->GetScalars()->GetComponent(pixel, 0));
+      ghosts->SetValue(
+        pixel, sample ? 0 : static_cast<unsigned char>(vtkDataSetAttributes::HIDDENPOINT));
+    }
+  }
+  output->GetPointData()->AddArray(ghosts);
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* vtkSplattingMIPVolumeMapper::GetShearImage()
+{
+  Internals& in = *this->Internal;
+  if (in.ImageValid && !in.ShearImageOutput)
+  {
+    in.ShearImageOutput = vtkSmartPointer<vtkImageData>::New();
+    in.CopyShearImage(in.ShearImageOutput);
+  }
+  return in.ShearImageOutput;
+}
+
+//------------------------------------------------------------------------------
+int vtkSplattingMIPVolumeMapper::GetPrincipalAxis()
+{
+  return this->Internal->ImageValid ? this->Internal->Geometry.principalAxis() : -1;
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::GetShear(double shear[2])
+{
+  shear[0] = this->Internal->Geometry.shear().x;
+  shear[1] = this->Internal->Geometry.shear().y;
+}
+
+//------------------------------------------------------------------------------
+double* vtkSplattingMIPVolumeMapper::GetShear()
+{
+  this->GetShear(this->Internal->Shear);
+  return this->Internal->Shear;
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkSplattingMIPVolumeMapper::GetIndexMemorySize()
+{
+  const vtkDataArray* const copy = this->Internal->Contiguous;
+  const vtkIdType packed = copy
+    ? copy->GetNumberOfValues() * const_cast<vtkDataArray*>(copy)->GetDataTypeSize()
+    : 0;
+  return static_cast<vtkIdType>(this->Internal->Index.memorySize()) + packed;
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkSplattingMIPVolumeMapper::GetNumberOfProjections()
+{
+  return this->Internal->Projections;
+}
+
+//------------------------------------------------------------------------------
+double vtkSplattingMIPVolumeMapper::GetProjectionTime()
+{
+  return this->Internal->ProjectionTime;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSplattingMIPVolumeMapper::GetInstructionSet()
+{
+  return splatting::nameOf(this->Internal->Settings.instructionSet);
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSplattingMIPVolumeMapper::GetQualityModeAsString()
+{
+  switch (this->QualityMode)
+  {
+    case PREVIEW:
+      return "preview";
+    case STANDARD:
+      return "standard";
+    default:
+      return "high";
+  }
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSplattingMIPVolumeMapper::GetKernelAsString()
+{
+  return this->Kernel == COSINE_BELL ? "cosine bell" : "trilinear";
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "QualityMode: " << this->GetQualityModeAsString() << "\n";
+  os << indent << "Kernel: " << this->GetKernelAsString() << "\n";
+  os << indent << "KernelRadius: " << this->KernelRadius << "\n";
+  os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";
+  os << indent << "LastRenderUsedRayCasting: " << (this->LastRenderUsedRayCasting ? "Yes" : "No")
+     << "\n";
+  os << indent << "PrincipalAxis: " << this->GetPrincipalAxis() << "\n";
+  os << indent << "Shear: " << this->GetShear()[0] << ", " << this->GetShear()[1] << "\n";
+  os << indent << "IndexMemorySize: " << this->GetIndexMemorySize() << "\n";
+  os << indent << "NumberOfProjections: " << this->GetNumberOfProjections() << "\n";
+  os << indent << "ProjectionTime: " << this->GetProjectionTime() << "\n";
+  os << indent << "InstructionSet: " << this->GetInstructionSet() << "\n";
+}

@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSplattingMIPVolumeMapper
+ * @brief   maximum intensity projection by splatting in sheared object space
+ *
+ * A vtkVolumeMapper that renders maximum intensity projections (MIP) of image data on the CPU. It
+ * implements W. Cai and G. Sakas, "Maximum Intensity Projection Using Splatting in Sheared Object
+ * Space", Computer Graphics Forum 17(3), 1998 ([CS98] below): the volume is sheared so that all
+ * rays run along its principal axis, the image axis that the view direction follows most. Every
+ * voxel of a slice then has the same footprint, a slice is splatted into a worksheet with a few
+ * constant weights, the maximum over the worksheets is the shear image, and an affine warp brings
+ * the shear image to the viewport, where the interpolated scalar is looked up in the transfer
+ * functions of the vtkVolumeProperty. Averages are taken within a slice, maxima between slices.
+ *
+ * What is splatted: vtkImageData with point scalars of any numeric type and one component, any
+ * extent, spacing, origin and direction matrix, any invertible prop matrix, any orthographic view,
+ * cut by the camera's clipping range and by this mapper's ClippingPlanes. Perspective cameras,
+ * blend modes other than maximum intensity, cropping and several components are passed, with the
+ * same settings, to an internal vtkFixedPointVolumeRayCastMapper, and a warning says so once. The
+ * blend mode of a new mapper is maximum intensity.
+ *
+ * A slice counts for a ray if the ray crosses it (voxels being boxes) and, where planes cut the
+ * volume, if the point where the ray crosses the middle of the slice is inside. Footprints that
+ * stick out of the volume repeat its outermost voxels.
+ *
+ * The picture ends where VTK's ray casters end it, at the outermost voxel centres (GetBounds());
+ * an axis with one voxel is as thick as that voxel.
+ *
+ * Arithmetic. The preview compares voxels in their own type. Standard and high add weight times
+ * voxel in float for 8- and 16-bit voxels and for float, in double for the other types; weights
+ * are rounded to multiples of 2^-16 for 8-bit voxels (all sums are then exact), 2^-24 and 2^-48
+ * else, and always sum to exactly 1. For n weights (9 standard, 75 high) the error is at most
+ * n 2^-17 (max-min) for 8 bits, n 2^-24 (max-min) + (n+1) 2^-24 max|v| for 16 bits and float, and
+ * the same with 2^-48 and 2^-53 for double. No step depends on the number of threads or on the
+ * instruction set: the same input gives the same bits.
+ *
+ * NaN voxels are no samples: they never win and, in a worksheet, the average is taken over the
+ * other voxels. Infinities are ordinary values. A ray without a sample is transparent.
+ *
+ * Memory. The mapper holds, per data set, a transposed copy of the volume once a view along its
+ * first (fastest) image axis was asked for, and the shear image; GetIndexMemorySize() counts the
+ * former.
+ *
+ * Objects are made through VTK's object factory; the class that New() returns draws with OpenGL.
+ *
+ * @sa vtkFixedPointVolumeRayCastMapper vtkGPUVolumeRayCastMapper vtkVolumeProperty
+ */
+#ifndef vtkSplattingMIPVolumeMapper_h
+#define vtkSplattingMIPVolumeMapper_h
+
+#include "vtkRenderingSplattingMIPModule.h" // for the export macro
+#include "vtkVolumeMapper.h"
+
+#include <memory> // for the hidden implementation
+
+class vtkImageData;
+class vtkVolumeProperty;
+
+class VTKRENDERINGSPLATTINGMIP_EXPORT vtkSplattingMIPVolumeMapper : public vtkVolumeMapper
+{
+public:
+  static vtkSplattingMIPVolumeMapper* New();
+  vtkTypeMacro(vtkSplattingMIPVolumeMapper, vtkVolumeMapper);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum QualityModes
+  {
+    PREVIEW = 0,
+    STANDARD = 1,
+    HIGH = 2
+  };
+
+  enum Kernels
+  {
+    TRILINEAR = 0,
+    COSINE_BELL = 1
+  };
+
+  ///@{
+  /**
+   * What a slice contributes to a pixel of the shear image [CS98, section 2 and 3]. Default HIGH.
+   *
+   * PREVIEW: the largest of the voxels that the pixel's ray crosses in the slice (up to three), so
+   * that the image equals an exact voxel traversal bit for bit. Fastest.
+   * STANDARD: the average of the piecewise constant volume over the pixel's area and the slice's
+   * thickness (3x3 weights).
+   * HIGH: the average of the volume, interpolated with Kernel, over the same region (5x5 weights
+   * from each of three slices).
+   */
+  vtkSetClampMacro(QualityMode, int, PREVIEW, HIGH);
+  vtkGetMacro(QualityMode, int);
+  void SetQualityModeToPreview() { this->SetQualityMode(PREVIEW); }
+  void SetQualityModeToStandard() { this->SetQualityMode(STANDARD); }
+  void SetQualityModeToHigh() { this->SetQualityMode(HIGH); }
+  const char* GetQualityModeAsString();
+  ///@}
+
+  ///@{
+  /**
+   * The reconstruction kernel h of mode HIGH along each axis, t in voxels [CS98, section 3].
+   * TRILINEAR (default): h(t) = 1-|t| for |t| < 1. COSINE_BELL: h(t) = (1 + cos(pi t / r)) / 2 for
+   * |t| < r = KernelRadius. The other modes ignore it.
+   */
+  vtkSetClampMacro(Kernel, int, TRILINEAR, COSINE_BELL);
+  vtkGetMacro(Kernel, int);
+  void SetKernelToTrilinear() { this->SetKernel(TRILINEAR); }
+  void SetKernelToCosineBell() { this->SetKernel(COSINE_BELL); }
+  const char* GetKernelAsString();
+  ///@}
+
+  ///@{
+  /**
+   * The radius r of the cosine bell in voxels, default 1, clamped to [0.5, 1.5] (a wider bell would
+   * leave the 5x5 weights). r = 1 sums to one by itself, other radii are normalised.
+   */
+  vtkSetClampMacro(KernelRadius, double, 0.5, 1.5);
+  vtkGetMacro(KernelRadius, double);
+  ///@}
+
+  ///@{
+  /**
+   * How the footprint weights are obtained. 0 (default): closed form. N in [1, 64]: from the
+   * paper's general table, digitised at N x N sub-pixels per pixel [CS98, section 3], whose weights
+   * tend to the closed form as N grows.
+   */
+  vtkSetClampMacro(FootprintSampling, int, 0, 64);
+  vtkGetMacro(FootprintSampling, int);
+  ///@}
+
+  /**
+   * The last shear image, one pixel per voxel, or nullptr before the first native render. Scalars:
+   * the input's type in mode PREVIEW, else float (double for 32- and 64-bit integers and double).
+   * The image's physical coordinates are voxel indices, relative to the volume's first voxel, on
+   * the volume's middle slice along the principal axis: the ray of pixel (u, v) at origin + (u, v)
+   * crosses slice k there at that point minus GetShear() * (k - (slices-1)/2). Pixels whose ray
+   * meets no sample are marked hidden in the ghost array. Axes: for principal axis 2 the image's x
+   * and y are the volume's first and second axis, for 1 first and third, for 0 second and third.
+   * Costs a copy of the shear image; the caller must not change it.
+   */
+  vtkImageData* GetShearImage();
+
+  /**
+   * The image axis (0, 1 or 2) along which the last native render projected; -1 before.
+   */
+  int GetPrincipalAxis();
+
+  ///@{
+  /**
+   * The shears of the last native render, in pixels per slice: slice k is moved by shear * k along
+   * the shear image's x and y. At most 1 in magnitude; rounded to multiples of 2^-24 so that equal
+   * views have equal bits.
+   */
+  void GetShear(double shear[2]);
+  double* GetShear() VTK_SIZEHINT(2);
+  ///@}
+
+  /**
+   * Bytes held besides the input for the data set last rendered: the transposed copy.
+   */
+  vtkIdType GetIndexMemorySize();
+
+  /**
+   * How often this mapper has projected the volume. A render that changes only colours, opacity,
+   * the window, or the camera's position and zoom re-uses the last shear image and leaves the
+   * number as it is.
+   */
+  vtkIdType GetNumberOfProjections();
+
+  /**
+   * Seconds that the last projection (volume to shear image) took.
+   */
+  double GetProjectionTime();
+
+  /**
+   * The instruction set of the loops in use: "baseline", "AVX2" or "AVX-512", the best that both
+   * the processor and the build have.
+   */
+  const char* GetInstructionSet();
+
+  /**
+   * Whether the last render was passed to the internal vtkFixedPointVolumeRayCastMapper.
+   */
+  vtkGetMacro(LastRenderUsedRayCasting, bool);
+
+  /**
+   * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
+   */
+  void Render(vtkRenderer* ren, vtkVolume* vol) override;
+
+  /**
+   * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
+   */
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkSplattingMIPVolumeMapper();
+  ~vtkSplattingMIPVolumeMapper() override;
+
+  void RenderBySplatting(vtkRenderer* ren, vtkVolume* vol);
+  void RenderByRayCasting(vtkRenderer* ren, vtkVolume* vol, const char* reason);
+
+  /**
+   * Draw a premultiplied RGBA picture of size[0] x size[1] pixels, bottom row first, with its lower
+   * left pixel at origin in the renderer's viewport. The rendering backend's subclass does it.
+   */
+  virtual void DisplayImage(
+    vtkRenderer* ren, const int origin[2], const int size[2], const unsigned char* rgba);
+
+  int QualityMode;
+  int Kernel;
+  double KernelRadius;
+  int FootprintSampling;
+  bool LastRenderUsedRayCasting;
+
+private:
+  vtkSplattingMIPVolumeMapper(const vtkSplattingMIPVolumeMapper&) = delete;
+  void operator=(const vtkSplattingMIPVolumeMapper&) = delete;
+
+  class Internals;
+  std::unique_ptr<Internals> Internal;
+};
+
+#endif
