@@ -144,21 +144,18 @@ double Kernel::support() const
 
 double Kernel::operator()(double t) const
 {
+  if (this->shape == Reconstruction::Box)
+  {
+    // Half-open, so that a sub-pixel on the face between two voxels belongs to one of them.
+    return t >= -0.5 && t < 0.5 ? 1.0 : 0.0;
+  }
   t = std::abs(t);
   if (t >= this->support())
   {
     return 0.0;
   }
-  switch (this->shape)
-  {
-    case Reconstruction::Box:
-      return 1.0;
-    case Reconstruction::Hat:
-      return 1.0 - t;
-    case Reconstruction::CosineBell:
-      break;
-  }
-  return 0.5 * (1.0 + std::cos(Pi * t / this->radius));
+  return this->shape == Reconstruction::Hat ? 1.0 - t
+                                            : 0.5 * (1.0 + std::cos(Pi * t / this->radius));
 }
 
 double Kernel::overPixel(double t) const

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What the tests of the core share: checks, views with chosen shears, and the bridge between the
+ * reference's volumes and images and the core's.
+ */
+#ifndef CoreTesting_h
+#define CoreTesting_h
+
+#include "Project.h"
+#include "Projection.h"
+#include "ShearWarp.h"
+#include "Volume.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+
+namespace coretesting
+{
+/// Counts failures and prints the first few of them.
+class Checks
+{
+public:
+  template <class... Message>
+  bool operator()(bool condition, const Message&... message)
+  {
+    if (!condition && ++this->Failures <= 20)
+    {
+      std::cerr << "ERROR: ";
+      (std::cerr << ... << message) << std::endl;
+    }
+    return condition;
+  }
+  int result() const
+  {
+    if (this->Failures)
+    {
+      std::cerr << this->Failures << " checks failed" << std::endl;
+    }
+    return this->Failures ? EXIT_FAILURE : EXIT_SUCCESS;
+  }
+
+private:
+  int Failures = 0;
+};
+
+inline glm::ivec3 toGlm(const std::array<int, 3>& size)
+{
+  return { size[0], size[1], size[2] };
+}
+
+/// A parallel view with a given principal axis and shears, one screen pixel per shear pixel.
+inline splatting::View viewWithShear(
+  const std::array<int, 3>& size, int axis, double shearX, double shearY)
+{
+  const int i = axis == 0 ? 1 : 0, j = axis == 2 ? 1 : 2;
+  splatting::View view;
+  view.dimensions = toGlm(size);
+  view.viewport = { 400, 400 };
+  glm::dmat4& m = view.indexToClip;
+  m = glm::dmat4(0.0);
+  m[i][0] = m[j][1] = 2.0 / 400;
+  m[axis][0] = shearX * 2.0 / 400;
+  m[axis][1] = shearY * 2.0 / 400;
+  m[axis][2] = 1e-3;
+  m[3][3] = 1.0;
+  return view;
+}
+
+/// A view from anywhere, with any spacing.
+inline splatting::View randomView(const std::array<int, 3>& size, reference::Random& random)
+{
+  splatting::View view;
+  view.dimensions = toGlm(size);
+  view.viewport = { random.uniform(50, 400), random.uniform(50, 400) };
+  glm::dmat4 m(1.0);
+  m = glm::scale(m, glm::dvec3(0.02, 0.02, 0.001));
+  for (int turn = 0; turn < 3; ++turn)
+  {
+    const glm::dvec3 axis(
+      random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(0.1, 1.0));
+    m = glm::rotate(m, random.uniform(0.0, 6.3), glm::normalize(axis));
+  }
+  m = glm::scale(m, glm::dvec3(random.uniform(0.3, 3.0), random.uniform(0.3, 3.0),
+                      random.uniform(0.3, 3.0)));
+  view.indexToClip = glm::translate(m, -0.5 * glm::dvec3(view.dimensions - 1));
+  return view;
+}
+
+/// Shears at which rays meet edges and corners: no shear, diagonals, simple fractions.
+inline double specialShear(reference::Random& random)
+{
+  static const double shears[] = { 0.0, 1.0, 0.5, 0.25, 0.75, 1.0 / 3.0, 0x1p-24, 1.0 - 0x1p-24 };
+  const double shear = shears[random.uniform(0, 7)];
+  return random.uniform(0, 1) ? shear : -shear;
+}
+
+/// Half of the views are random, half have special shears.
+inline splatting::View anyView(const std::array<int, 3>& size, reference::Random& random)
+{
+  return random.uniform(0, 1)
+    ? randomView(size, random)
+    : viewWithShear(size, random.uniform(0, 2), specialShear(random), specialShear(random));
+}
+
+inline std::array<int, 3> randomSize(reference::Random& random, int largest)
+{
+  return { random.uniform(1, largest), random.uniform(1, largest), random.uniform(1, largest) };
+}
+
+/// Noise over the whole range of a type; [-1, 1] for floating point.
+template <class T>
+reference::Volume<T> wholeRangeNoise(const std::array<int, 3>& size, std::uint64_t seed)
+{
+  using Limits = std::numeric_limits<T>;
+  return reference::uniformNoise<T>(
+    size, seed, Limits::is_integer ? Limits::lowest() : T(-1), Limits::is_integer ? Limits::max() : T(1));
+}
+
+inline reference::ShearView referenceView(const splatting::ShearWarp& geometry)
+{
+  return { geometry.principalAxis(), { geometry.shear().x, geometry.shear().y } };
+}
+
+template <class T>
+splatting::ShearImage project(const reference::Volume<T>& volume,
+  const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
+  const std::vector<glm::dvec4>& halfSpaces = {})
+{
+  splatting::VolumeIndex index;
+  index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
+  splatting::Projector projector;
+  splatting::ShearImage image;
+  projector.project(index, geometry, settings, halfSpaces, image);
+  return image;
+}
+
+/// The pixels of an image of type P in the reference's form.
+template <class P>
+reference::Image<P> toReference(const splatting::ShearImage& image)
+{
+  reference::Image<P> result(image.width, image.height);
+  for (int v = 0; v < image.height; ++v)
+  {
+    for (int u = 0; u < image.width; ++u)
+    {
+      const P value = image.row<P>(v)[u];
+      if (image.covers(u, v) && value == value)
+      {
+        result.value[result.index(u, v)] = value;
+        result.hit[result.index(u, v)] = 1;
+      }
+    }
+  }
+  return result;
+}
+
+template <class P>
+bool sameBits(const reference::Image<P>& a, const reference::Image<P>& b)
+{
+  return a.width == b.width && a.height == b.height && a.hit == b.hit && a.value == b.value;
+}
+
+/// Calls f with a null pointer to each voxel type.
+template <class F>
+void forEachType(F&& f)
+{
+  for (int type = 0; type <= static_cast<int>(splatting::ScalarType::Float64); ++type)
+  {
+    splatting::dispatch(static_cast<splatting::ScalarType>(type), f);
+  }
+}
+
+/**
+ * How far standard and high may be from the exact average, as the class documentation of
+ * vtkSplattingMIPVolumeMapper derives it: rounded weights, of which one takes up all the others'
+ * residue, then rounded products and sums.
+ */
+template <class T>
+double errorBound(splatting::Quality quality, double low, double high)
+{
+  const double n = quality == splatting::Quality::Standard ? 9 : 75;
+  const double range = high - low, largest = std::max(std::abs(low), std::abs(high));
+  if (sizeof(T) == 1)
+  {
+    return n * 0x1p-17 * range;
+  }
+  return std::is_same_v<splatting::Accumulator<T>, float>
+    ? n * 0x1p-24 * range + (n + 1) * 0x1p-24 * largest
+    : n * 0x1p-48 * range + (n + 1) * 0x1p-53 * largest;
+}
+}
+
+#endif

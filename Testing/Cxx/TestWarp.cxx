@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The warp: linear images stay linear, the picture ends where the volume's box ends, missing
+// samples and infinities do not spread.
+#include "CoreTesting.h"
+#include "Warp.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+using namespace coretesting;
+
+namespace
+{
+/// A shear image of a float function of the pixel.
+template <class F>
+splatting::ShearImage imageOf(const splatting::ShearWarp& geometry, F&& f)
+{
+  const reference::Volume<float> volume(
+    { geometry.size().x, geometry.size().y, geometry.size().z }, 0.0f);
+  splatting::ShearImage image;
+  image.type = splatting::ScalarType::Float32;
+  image.width = geometry.width();
+  image.height = geometry.height();
+  image.bytes.resize(sizeof(float) * image.width * image.height);
+  image.spans.assign(image.height, { image.width, 0 });
+  for (int v = 0; v < image.height; ++v)
+  {
+    for (int k = 0; k < geometry.size().z; ++k)
+    {
+      const splatting::Span span = geometry.coverage(geometry.rayPath(k), v);
+      image.spans[v].begin = std::min(image.spans[v].begin, span.begin);
+      image.spans[v].end = std::max(image.spans[v].end, span.end);
+    }
+    for (int u = 0; u < image.width; ++u)
+    {
+      // What lies outside has no meaning and must not be read.
+      image.row<float>(v)[u] =
+        image.covers(u, v) ? static_cast<float>(f(u, v)) : std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  return image;
+}
+
+/// Colours that name their entry, from 1 on; 0 is the transparent pixel.
+splatting::ColorTable countingTable(double low, double high)
+{
+  splatting::ColorTable table;
+  table.low = low;
+  table.high = high;
+  for (std::uint32_t entry = 0; entry < 65536; ++entry)
+  {
+    table.colors.push_back(entry + 1);
+  }
+  return table;
+}
+
+/// Whether the ray of a screen pixel meets the box from the first voxel centres to the last, grown
+/// by `margin` voxels.
+bool meetsBox(const splatting::View& view, const splatting::ShearWarp& geometry, int x, int y,
+  double margin)
+{
+  const glm::dvec2 pixel = geometry.screenToShear() * glm::dvec3(x, y, 1.0);
+  double enter = -1e30, leave = 1e30;
+  for (int a = 0; a < 3; ++a)
+  {
+    // Position along axis a at depth z is p - s z.
+    const double p = a < 2 ? pixel[a] - geometry.position(0.0)[a] : 0.0;
+    const double s = a < 2 ? geometry.shear()[a] : -1.0;
+    const int n = view.dimensions[geometry.axes()[a]];
+    const double low = (n > 1 ? 0.0 : -0.5) - margin, high = (n > 1 ? n - 1.0 : 0.5) + margin;
+    if (s == 0.0)
+    {
+      if (p < low || p > high)
+      {
+        return false;
+      }
+      continue;
+    }
+    enter = std::max(enter, std::min((p - low) / s, (p - high) / s));
+    leave = std::min(leave, std::max((p - low) / s, (p - high) / s));
+  }
+  return enter <= leave;
+}
+
+void testLinearImages(Checks& check)
+{
+  reference::Random random(41);
+  for (int n = 0; n < 60; ++n)
+  {
+    const auto size = randomSize(random, 40);
+    const splatting::View view = anyView(size, random);
+    const splatting::ShearWarp geometry(view);
+    const double a = random.uniform(-1.0, 1.0), b = random.uniform(-1.0, 1.0);
+    const auto f = [=](double u, double v) { return a * u + b * v; };
+    const splatting::ShearImage image = imageOf(geometry, f);
+    const splatting::ColorTable table = countingTable(-400.0, 400.0);
+    splatting::Picture picture;
+    splatting::Warper warper;
+    warper.warp(image, geometry, table, view.viewport,
+      static_cast<splatting::InstructionSet>(random.uniform(0, 2)), picture);
+    for (int y = 0; y < view.viewport.y; ++y)
+    {
+      for (int x = 0; x < view.viewport.x; ++x)
+      {
+        const int px = x - picture.origin.x, py = y - picture.origin.y;
+        const bool inPicture = px >= 0 && py >= 0 && px < picture.size.x && py < picture.size.y;
+        const std::uint32_t color =
+          inPicture ? picture.pixels[std::size_t(py) * picture.size.x + px] : 0;
+        // Rays within a thousandth of a voxel of the rim may go either way.
+        if (!meetsBox(view, geometry, x, y, 1e-3))
+        {
+          check(color == 0, "a pixel outside the volume has a colour");
+          continue;
+        }
+        if (!meetsBox(view, geometry, x, y, -1e-3))
+        {
+          continue;
+        }
+        if (!check(color != 0, "a pixel inside the volume is transparent, view ", n))
+        {
+          continue;
+        }
+        const glm::dvec2 p = geometry.screenToShear() * glm::dvec3(x, y, 1.0);
+        // At the rim the last samples stand for missing neighbours, up to a pixel away in u and v.
+        bool rim = false;
+        for (int corner = 0; corner < 4; ++corner)
+        {
+          rim = rim ||
+            !image.covers(int(std::floor(p.x)) + corner % 2, int(std::floor(p.y)) + corner / 2);
+        }
+        const double bound =
+          (rim ? std::abs(a) + std::abs(b) : 0.0) + 800.0 / 65535 + 800.0 * 0x1p-22;
+        const double found = (double(color) - 1.0) * 800.0 / 65535 - 400.0;
+        check(std::abs(found - f(p.x, p.y)) <= bound, "a linear image is off by ",
+          found - f(p.x, p.y));
+      }
+    }
+  }
+}
+
+void testOddPixels(Checks& check)
+{
+  const splatting::View view = viewWithShear({ 30, 30, 5 }, 2, 0.0, 0.0);
+  const splatting::ShearWarp geometry(view);
+  const auto odd = [&](float value)
+  {
+    splatting::ShearImage image = imageOf(geometry, [](int, int) { return 50.0; });
+    image.row<float>(15)[15] = value;
+    image.special = true;
+    splatting::Picture picture;
+    splatting::Warper().warp(image, geometry, countingTable(0.0, 100.0), view.viewport,
+      splatting::bestInstructionSet(), picture);
+    // One screen pixel per shear pixel, perhaps half-way between: at most four show the odd one.
+    int others = 0;
+    for (std::uint32_t color : picture.pixels)
+    {
+      others += color != 0 && std::abs(double(color) - 32768.5) > 2;
+    }
+    return std::make_pair(others, std::count(picture.pixels.begin(), picture.pixels.end(), 0u));
+  };
+  const auto usual = odd(50.0f);
+  check(usual.first == 0, "a constant image is not constant");
+  const auto hole = odd(std::numeric_limits<float>::quiet_NaN());
+  check(hole.first == 0, "NaN spreads into other pixels");
+  check(hole.second - usual.second <= 1, "NaN makes more than one pixel transparent");
+  const auto bright = odd(std::numeric_limits<float>::infinity());
+  check(bright.first >= 1 && bright.first <= 4, "infinity shows in ", bright.first, " pixels");
+  check(bright.second == usual.second, "infinity makes pixels transparent");
+}
+
+void testOutsideTheViewport(Checks& check)
+{
+  splatting::View view = viewWithShear({ 30, 30, 5 }, 2, 0.25, 0.5);
+  view.indexToClip[3][0] = 5.0; // far to the right
+  const splatting::ShearWarp geometry(view);
+  splatting::Picture picture;
+  splatting::Warper().warp(imageOf(geometry, [](int, int) { return 1.0; }), geometry,
+    countingTable(0.0, 1.0), view.viewport, splatting::bestInstructionSet(), picture);
+  check(picture.pixels.empty(), "a volume outside the viewport leaves a picture");
+}
+}
+
+int TestWarp(int, char*[])
+{
+  Checks check;
+  testLinearImages(check);
+  testOddPixels(check);
+  testOutsideTheViewport(check);
+  return check.result();
+}

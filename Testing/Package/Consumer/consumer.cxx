@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A program outside this tree: renders a sphere of values and looks for it in the picture.
+#include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkNew.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkSampleFunction.h>
+#include <vtkSphere.h>
+#include <vtkSplattingMIPVolumeMapper.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+
+#include <cstdlib>
+#include <iostream>
+
+int main()
+{
+  vtkNew<vtkSphere> sphere;
+  sphere->SetRadius(0.5);
+  vtkNew<vtkSampleFunction> source; // negative inside the sphere
+  source->SetImplicitFunction(sphere);
+  source->SetSampleDimensions(40, 40, 40);
+  source->ComputeNormalsOff();
+
+  vtkNew<vtkSplattingMIPVolumeMapper> mapper;
+  mapper->SetInputConnection(source->GetOutputPort());
+  vtkNew<vtkColorTransferFunction> red;
+  red->AddRGBPoint(0.0, 1.0, 0.0, 0.0);
+  vtkNew<vtkPiecewiseFunction> opaque;
+  opaque->AddPoint(0.0, 1.0);
+  vtkNew<vtkVolume> volume;
+  volume->SetMapper(mapper);
+  volume->GetProperty()->SetColor(red);
+  volume->GetProperty()->SetScalarOpacity(opaque);
+
+  vtkNew<vtkRenderer> renderer;
+  renderer->AddVolume(volume);
+  renderer->GetActiveCamera()->ParallelProjectionOn();
+  renderer->ResetCamera();
+  vtkNew<vtkRenderWindow> window;
+  window->SetOffScreenRendering(1);
+  window->SetSize(64, 64);
+  window->AddRenderer(renderer);
+  window->Render();
+
+  vtkNew<vtkUnsignedCharArray> pixels;
+  window->GetRGBACharPixelData(0, 0, 63, 63, 0, pixels);
+  const vtkIdType centre = 32 * 64 + 32;
+  if (pixels->GetTypedComponent(centre, 0) != 255 || pixels->GetTypedComponent(centre, 1) != 0 ||
+    pixels->GetTypedComponent(0, 0) != 0)
+  {
+    std::cerr << "The volume is not in the picture." << std::endl;
+    return EXIT_FAILURE;
+  }
+  std::cout << mapper->GetClassName() << " with " << mapper->GetInstructionSet() << std::endl;
+  return EXIT_SUCCESS;
+}

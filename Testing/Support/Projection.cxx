@@ -1,0 +1,620 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Projection.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace reference
+{
+
+namespace
+{
+
+constexpr double Pi = 3.14159265358979323846;
+
+//------------------------------------------------------------------------------
+// Exact traversal: positions are integers in units of 2^-25 voxel. Shears are multiples of 2^-24,
+// and depths measured from the middle of the volume multiples of 1/2.
+
+constexpr std::int64_t Half = std::int64_t(1) << 24; // half a voxel
+constexpr std::int64_t Whole = 2 * Half;
+
+__extension__ typedef __int128 Wide;
+
+/**
+ * The time num / den, or never for den = 0. Time runs from 0 where the ray enters the first slice
+ * at z = -1/2 to n_k where it leaves the last: one per slice.
+ */
+struct Time
+{
+  std::int64_t num;
+  std::int64_t den;
+};
+
+bool isBefore(const Time& a, const Time& b)
+{
+  if (a.den == 0 || b.den == 0)
+  {
+    return a.den != 0;
+  }
+  return static_cast<Wide>(a.num) * b.den < static_cast<Wide>(b.num) * a.den;
+}
+
+std::int64_t floorDivide(std::int64_t a, std::int64_t b)
+{
+  return a >= 0 ? a / b : -((-a + b - 1) / b);
+}
+
+/**
+ * The ray's motion along one axis.
+ */
+struct AxisMotion
+{
+  std::int64_t start;    // position at time 0
+  std::int64_t velocity; // change of position per slice
+  std::int64_t cell;     // the voxel index at present
+
+  AxisMotion(std::int64_t position, std::int64_t change)
+    : start(position),
+      velocity(change),
+      cell(floorDivide(position + Half, Whole))
+  {
+    // A ray that starts on a face and moves down leaves the upper cell at once.
+    if (change < 0 && (position + Half) % Whole == 0)
+    {
+      --this->cell;
+    }
+  }
+
+  Time nextCrossing() const
+  {
+    const std::int64_t face = this->cell * Whole + (this->velocity > 0 ? Half : -Half);
+    return { std::llabs(face - this->start), std::llabs(this->velocity) };
+  }
+
+  void step() { this->cell += this->velocity > 0 ? 1 : -1; }
+};
+
+std::int64_t shearAsInteger(double shear)
+{
+  return static_cast<std::int64_t>(shear * 0x1p24);
+}
+
+/**
+ * x(z) = pixel - margin - s (z - kc), where z - kc = -n_k / 2 at the start.
+ */
+AxisMotion inSliceMotion(int pixel, int margin, double shear, int slices)
+{
+  const std::int64_t s = shearAsInteger(shear);
+  return { (pixel - margin) * Whole + s * slices, -2 * s };
+}
+
+//------------------------------------------------------------------------------
+// Numerical integration
+
+struct Node
+{
+  double position;
+  double weight;
+};
+
+struct Legendre
+{
+  double value;
+  double derivative;
+};
+
+Legendre legendrePolynomial(int degree, double x)
+{
+  double previous = 1.0;
+  double value = x;
+  for (int n = 2; n <= degree; ++n)
+  {
+    const double next = ((2 * n - 1) * x * value - (n - 1) * previous) / n;
+    previous = value;
+    value = next;
+  }
+  return { value, degree * (x * value - previous) / (x * x - 1.0) };
+}
+
+/**
+ * The Gauss-Legendre rule on [-1, 1], its nodes by Newton's method.
+ */
+std::vector<Node> gaussLegendre(int count)
+{
+  std::vector<Node> rule;
+  for (int n = 0; n < count; ++n)
+  {
+    double x = std::cos(Pi * (n + 0.75) / (count + 0.5));
+    for (int iteration = 0; iteration < 10; ++iteration)
+    {
+      const Legendre p = legendrePolynomial(count, x);
+      x -= p.value / p.derivative;
+    }
+    const double slope = legendrePolynomial(count, x).derivative;
+    rule.push_back({ x, 2.0 / ((1.0 - x * x) * slope * slope) });
+  }
+  return rule;
+}
+
+/**
+ * The rule applied to each piece of [low, high] between kinks (in any order, inside or not).
+ */
+std::vector<Node> compositeRule(
+  const std::vector<Node>& rule, double low, double high, std::vector<double> kinks)
+{
+  kinks.push_back(high);
+  std::sort(kinks.begin(), kinks.end());
+  std::vector<Node> nodes;
+  double begin = low;
+  for (double end : kinks)
+  {
+    if (end > begin && end <= high)
+    {
+      for (const Node& node : rule)
+      {
+        nodes.push_back({ 0.5 * (begin + end) + 0.5 * (end - begin) * node.position,
+          0.5 * (end - begin) * node.weight });
+      }
+      begin = end;
+    }
+  }
+  return nodes;
+}
+
+/**
+ * A weighted sum of voxels and the sum of the weights.
+ */
+struct WeightedSum
+{
+  double sum = 0.0;
+  double weight = 0.0;
+
+  // The weight 0 is left out as 0 times infinity is NaN.
+  void addVoxel(double factor, double voxel)
+  {
+    if (factor > 0.0 && !std::isnan(voxel))
+    {
+      this->sum += factor * voxel;
+      this->weight += factor;
+    }
+  }
+  void add(double factor, const WeightedSum& other)
+  {
+    if (factor > 0.0)
+    {
+      this->sum += factor * other.sum;
+      this->weight += factor * other.weight;
+    }
+  }
+};
+
+//------------------------------------------------------------------------------
+// The interpolated volume
+
+/**
+ * The indices from first on whose kernels reach into some interval.
+ */
+struct IndexRange
+{
+  int first;
+  int count;
+};
+
+IndexRange reachingIndices(const Kernel& kernel, double low, double high)
+{
+  const int first = static_cast<int>(std::ceil(low - kernel.support()));
+  const int last = static_cast<int>(std::floor(high + kernel.support()));
+  return { first, last - first + 1 };
+}
+
+/**
+ * Where the field may have a kink or a step along one axis: where a voxel's kernel ends. (The hat's
+ * kink at its own voxel is the end of the next voxel's.)
+ */
+std::vector<double> fieldKinks(const Kernel& kernel, double low, double high)
+{
+  const IndexRange range = reachingIndices(kernel, low, high);
+  std::vector<double> kinks;
+  for (int index = range.first; index < range.first + range.count; ++index)
+  {
+    kinks.push_back(index - kernel.support());
+    kinks.push_back(index + kernel.support());
+  }
+  return kinks;
+}
+
+/**
+ * The volume seen along the principal axis, continued by its outermost voxels.
+ */
+struct ShearedVolume
+{
+  const Volume<double>& volume;
+  const ShearGrid grid;
+  const ShearView view;
+
+  double voxel(int i, int j, int k) const
+  {
+    const int indices[3] = { i, j, k };
+    std::array<int, 3> position;
+    for (int a = 0; a < 3; ++a)
+    {
+      position[this->grid.axes[a]] = std::clamp(indices[a], 0, this->grid.size[a] - 1);
+    }
+    return this->volume.at(position);
+  }
+
+  double rayPosition(int inSliceAxis, int pixel, double z) const
+  {
+    return pixel - this->grid.margin[inSliceAxis] -
+      this->view.shear[inSliceAxis] * (z - this->grid.middle);
+  }
+};
+
+/**
+ * Numerical integration of the field over one pixel's part of one slice.
+ */
+class SlabIntegral
+{
+public:
+  SlabIntegral(const ShearedVolume& source, const Kernel& kernel)
+    : Source(source),
+      H(kernel),
+      InSliceRule(gaussLegendre(kernel.shape == Kernel::CosineBell ? 10 : 4)),
+      DepthRule(gaussLegendre(kernel.shape == Kernel::CosineBell ? 16 : 4))
+  {
+  }
+
+  WeightedSum operator()(int u, int v, int slice) const
+  {
+    const int pixel[2] = { u, v };
+    const double low = slice - 0.5;
+    const double high = slice + 0.5;
+    std::vector<double> kinks = fieldKinks(this->H, low, high);
+    this->appendWindowKinks(0, u, low, high, kinks);
+    this->appendWindowKinks(1, v, low, high, kinks);
+    WeightedSum slab;
+    for (const Node& z : compositeRule(this->DepthRule, low, high, kinks))
+    {
+      slab.add(z.weight, this->integrateWindow(pixel, z.position));
+    }
+    return slab;
+  }
+
+private:
+  /**
+   * Points across the pixel along one axis and the kernel of each reaching index at each of them.
+   */
+  struct Samples
+  {
+    IndexRange range;
+    std::vector<double> weights;               // one per point
+    std::vector<std::array<double, 8>> kernel; // [point][index - first]
+  };
+
+  /**
+   * The integral over the pixel's window is smooth in z but where an edge of the window, moving
+   * with the ray, passes a kink of the field.
+   */
+  void appendWindowKinks(
+    int axis, int pixel, double low, double high, std::vector<double>& kinks) const
+  {
+    const double shear = this->Source.view.shear[axis];
+    if (shear == 0.0)
+    {
+      return;
+    }
+    const double a = this->Source.rayPosition(axis, pixel, low);
+    const double b = this->Source.rayPosition(axis, pixel, high);
+    const double left = std::min(a, b) - 0.5;
+    const double right = std::max(a, b) + 0.5;
+    for (double kink : fieldKinks(this->H, left, right))
+    {
+      kinks.push_back(low + (a - 0.5 - kink) / shear);
+      kinks.push_back(low + (a + 0.5 - kink) / shear);
+    }
+  }
+
+  Samples samplePixel(int axis, int pixel, double z) const
+  {
+    const double centre = this->Source.rayPosition(axis, pixel, z);
+    const double low = centre - 0.5;
+    const double high = centre + 0.5;
+    Samples samples;
+    samples.range = reachingIndices(this->H, low, high);
+    for (const Node& x :
+      compositeRule(this->InSliceRule, low, high, fieldKinks(this->H, low, high)))
+    {
+      std::array<double, 8> kernel = {};
+      for (int n = 0; n < samples.range.count; ++n)
+      {
+        kernel[n] = this->H(x.position - (samples.range.first + n));
+      }
+      samples.weights.push_back(x.weight);
+      samples.kernel.push_back(kernel);
+    }
+    return samples;
+  }
+
+  /**
+   * The sum of h(z - k) times voxel (i, j, k) over k.
+   */
+  WeightedSum sumColumn(int i, int j, double z) const
+  {
+    const IndexRange range = reachingIndices(this->H, z, z);
+    WeightedSum column;
+    for (int k = range.first; k < range.first + range.count; ++k)
+    {
+      column.addVoxel(this->H(z - k), this->Source.voxel(i, j, k));
+    }
+    return column;
+  }
+
+  /**
+   * The field summed over all points (x, y) at depth z. The field at a point is the sum over k, j
+   * and i; what does not depend on x and y is summed outside their loops.
+   */
+  WeightedSum integrateWindow(const int pixel[2], double z) const
+  {
+    const Samples x = this->samplePixel(0, pixel[0], z);
+    const Samples y = this->samplePixel(1, pixel[1], z);
+    std::array<std::array<WeightedSum, 8>, 8> columns;
+    for (int j = 0; j < y.range.count; ++j)
+    {
+      for (int i = 0; i < x.range.count; ++i)
+      {
+        columns[j][i] = this->sumColumn(x.range.first + i, y.range.first + j, z);
+      }
+    }
+    WeightedSum window;
+    for (std::size_t point = 0; point < y.weights.size(); ++point)
+    {
+      std::array<WeightedSum, 8> row;
+      for (int i = 0; i < x.range.count; ++i)
+      {
+        for (int j = 0; j < y.range.count; ++j)
+        {
+          row[i].add(y.kernel[point][j], columns[j][i]);
+        }
+      }
+      window.add(y.weights[point], this->integrateRow(x, row));
+    }
+    return window;
+  }
+
+  WeightedSum integrateRow(const Samples& x, const std::array<WeightedSum, 8>& row) const
+  {
+    WeightedSum line;
+    for (std::size_t point = 0; point < x.weights.size(); ++point)
+    {
+      WeightedSum field;
+      for (int i = 0; i < x.range.count; ++i)
+      {
+        field.add(x.kernel[point][i], row[i]);
+      }
+      line.add(x.weights[point], field);
+    }
+    return line;
+  }
+
+  const ShearedVolume& Source;
+  const Kernel H;
+  const std::vector<Node> InSliceRule;
+  const std::vector<Node> DepthRule;
+};
+
+WeightedSum fieldAt(const ShearedVolume& source, const Kernel& h, double x, double y, double z)
+{
+  const IndexRange is = reachingIndices(h, x, x);
+  const IndexRange js = reachingIndices(h, y, y);
+  const IndexRange ks = reachingIndices(h, z, z);
+  WeightedSum field;
+  for (int k = ks.first; k < ks.first + ks.count; ++k)
+  {
+    for (int j = js.first; j < js.first + js.count; ++j)
+    {
+      for (int i = is.first; i < is.first + is.count; ++i)
+      {
+        field.addVoxel(h(x - i) * h(y - j) * h(z - k), source.voxel(i, j, k));
+      }
+    }
+  }
+  return field;
+}
+
+bool isInside(double x, int count)
+{
+  return x >= -0.5 && x <= count - 0.5;
+}
+
+/**
+ * The slices in which the pixel's ray crosses a voxel, ascending.
+ */
+std::vector<int> crossedSlices(const Volume<double>& volume, const ShearView& view, int u, int v)
+{
+  std::vector<int> slices;
+  for (const std::array<int, 3>& position : crossedVoxels(volume.size, view, u, v))
+  {
+    if (slices.empty() || slices.back() != position[view.axis])
+    {
+      slices.push_back(position[view.axis]);
+    }
+  }
+  return slices;
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+ShearGrid makeShearGrid(const std::array<int, 3>& volumeSize, const ShearView& view)
+{
+  if (view.axis < 0 || view.axis > 2)
+  {
+    throw std::invalid_argument("The principal axis must be 0, 1 or 2.");
+  }
+  ShearGrid grid;
+  grid.axes = { view.axis == 0 ? 1 : 0, view.axis == 2 ? 1 : 2, view.axis };
+  for (int a = 0; a < 3; ++a)
+  {
+    grid.size[a] = volumeSize[grid.axes[a]];
+  }
+  for (int a = 0; a < 2; ++a)
+  {
+    const double shear = view.shear[a];
+    if (!(std::abs(shear) <= 1.0) || shear * 0x1p24 != std::floor(shear * 0x1p24))
+    {
+      throw std::invalid_argument("Shears must be multiples of 2^-24 in [-1, 1].");
+    }
+    grid.margin[a] = static_cast<int>(std::ceil(std::abs(shear) * grid.size[2] / 2.0)) + 1;
+  }
+  grid.width = grid.size[0] + 2 * grid.margin[0];
+  grid.height = grid.size[1] + 2 * grid.margin[1];
+  grid.middle = (grid.size[2] - 1) / 2.0;
+  return grid;
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::array<int, 3>> crossedVoxels(
+  const std::array<int, 3>& volumeSize, const ShearView& view, int u, int v)
+{
+  const ShearGrid grid = makeShearGrid(volumeSize, view);
+  std::array<AxisMotion, 3> motion = {
+    inSliceMotion(u, grid.margin[0], view.shear[0], grid.size[2]),
+    inSliceMotion(v, grid.margin[1], view.shear[1], grid.size[2]),
+    AxisMotion(-Half, Whole),
+  };
+  std::vector<std::array<int, 3>> crossed;
+  while (motion[2].cell < grid.size[2])
+  {
+    std::array<int, 3> position;
+    bool isWithin = true;
+    Time next = { 0, 0 };
+    for (int a = 0; a < 3; ++a)
+    {
+      position[grid.axes[a]] = static_cast<int>(motion[a].cell);
+      isWithin = isWithin && motion[a].cell >= 0 && motion[a].cell < grid.size[a];
+      next = isBefore(motion[a].nextCrossing(), next) ? motion[a].nextCrossing() : next;
+    }
+    if (isWithin)
+    {
+      crossed.push_back(position);
+    }
+    for (AxisMotion& axis : motion)
+    {
+      if (!isBefore(next, axis.nextCrossing()))
+      {
+        axis.step();
+      }
+    }
+  }
+  return crossed;
+}
+
+//------------------------------------------------------------------------------
+double Kernel::support() const
+{
+  switch (this->shape)
+  {
+    case Nearest:
+      return 0.5;
+    case Trilinear:
+      return 1.0;
+    default:
+      return this->radius;
+  }
+}
+
+//------------------------------------------------------------------------------
+double Kernel::operator()(double t) const
+{
+  if (!(std::abs(t) < this->support()))
+  {
+    return 0.0;
+  }
+  switch (this->shape)
+  {
+    case Nearest:
+      return 1.0;
+    case Trilinear:
+      return 1.0 - std::abs(t);
+    default:
+      return 0.5 * (1.0 + std::cos(Pi * t / this->radius));
+  }
+}
+
+//------------------------------------------------------------------------------
+Image<double> slabAverage(const Volume<double>& volume, const ShearView& view, const Kernel& kernel)
+{
+  if (kernel.shape == Kernel::CosineBell && !(kernel.radius >= 0.5 && kernel.radius <= 1.5))
+  {
+    throw std::invalid_argument("The radius of the cosine bell must be in [0.5, 1.5].");
+  }
+  const ShearedVolume source = { volume, makeShearGrid(volume.size, view), view };
+  const SlabIntegral integral(source, kernel);
+  Image<double> image(source.grid.width, source.grid.height);
+  for (int v = 0; v < image.height; ++v)
+  {
+    for (int u = 0; u < image.width; ++u)
+    {
+      for (int slice : crossedSlices(volume, view, u, v))
+      {
+        const WeightedSum slab = integral(u, v, slice);
+        image.raise(u, v, slab.sum / slab.weight); // no weight: 0 / 0, a NaN, no sample
+      }
+    }
+  }
+  return image;
+}
+
+//------------------------------------------------------------------------------
+Image<double> pointSampledTrilinear(
+  const Volume<double>& volume, const ShearView& view, double distance)
+{
+  const ShearedVolume source = { volume, makeShearGrid(volume.size, view), view };
+  const Kernel hat;
+  const int first = static_cast<int>(std::ceil(-0.5 / distance));
+  const int last = static_cast<int>(std::floor((source.grid.size[2] - 0.5) / distance));
+  Image<double> image(source.grid.width, source.grid.height);
+  for (int v = 0; v < image.height; ++v)
+  {
+    for (int u = 0; u < image.width; ++u)
+    {
+      for (int step = first; step <= last; ++step)
+      {
+        const double z = step * distance;
+        const double x = source.rayPosition(0, u, z);
+        const double y = source.rayPosition(1, v, z);
+        if (isInside(x, source.grid.size[0]) && isInside(y, source.grid.size[1]))
+        {
+          const WeightedSum field = fieldAt(source, hat, x, y, z);
+          image.raise(u, v, field.sum / field.weight);
+        }
+      }
+    }
+  }
+  return image;
+}
+
+//------------------------------------------------------------------------------
+ShearView transformed(const ShearView& view, const AxisSymmetry& symmetry)
+{
+  const ShearGrid from = makeShearGrid({ 1, 1, 1 }, view);
+  ShearView result;
+  for (int a = 0; a < 3; ++a)
+  {
+    result.axis = symmetry.axis[a] == view.axis ? a : result.axis;
+  }
+  const ShearGrid to = makeShearGrid({ 1, 1, 1 }, result);
+  for (int a = 0; a < 2; ++a)
+  {
+    const int axis = to.axes[a];
+    const double shear = view.shear[symmetry.axis[axis] == from.axes[0] ? 0 : 1];
+    result.shear[a] = symmetry.sign[axis] * symmetry.sign[result.axis] * shear;
+  }
+  return result;
+}
+
+} // namespace reference
