@@ -178,51 +178,157 @@ void range(const T* row, std::ptrdiff_t n, T& low, T& high, bool& special)
   special = special || odd != 0;
 }
 
+/// Adds one part of the footprint to the worksheets of Rows x V registers. Rows of pixels share
+/// rows of voxels, so each register of voxels is loaded once for all of them; a pixel's sum still
+/// runs through the weights row by row.
+template <class A, int Rows, int V, int WeightRows>
+inline void addPart(
+  Pack<A> (&sum)[Rows][V], const A* source, std::ptrdiff_t stride, const A* weights, int columns)
+{
+#pragma GCC unroll 8
+  for (int r = 0; r < Rows + WeightRows - 1; ++r)
+  {
+    const A* const row = source + r * stride;
+    for (int i = 0; i < columns; ++i)
+    {
+      Pack<A> voxels[V];
+#pragma GCC unroll 4
+      for (int v = 0; v < V; ++v)
+      {
+        voxels[v] = load<A>(row + i + v * width<A>);
+      }
+#pragma GCC unroll 4
+      for (int o = 0; o < Rows; ++o)
+      {
+        if (r - o >= 0 && r - o < WeightRows)
+        {
+          const A weight = weights[(r - o) * columns + i];
+#pragma GCC unroll 4
+          for (int v = 0; v < V; ++v)
+          {
+            sum[o][v] += weight * voxels[v];
+          }
+        }
+      }
+    }
+  }
+}
+
+/// Rows x V registers of pixels, from (x, y) of the rectangle.
+template <class A, int Rows, int V>
+inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
+{
+  Pack<A> sum[Rows][V];
+#pragma GCC unroll 4
+  for (int o = 0; o < Rows; ++o)
+  {
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      sum[o][v] = Pack<A>{};
+    }
+  }
+  for (int p = 0; p < s.partCount; ++p)
+  {
+    const SplatPart<A>& part = s.parts[p];
+    const A* const source = part.source + y * s.sourceStride + x;
+    switch (part.rows)
+    {
+      case 1:
+        addPart<A, Rows, V, 1>(sum, source, s.sourceStride, part.weights, part.columns);
+        break;
+      case 2:
+        addPart<A, Rows, V, 2>(sum, source, s.sourceStride, part.weights, part.columns);
+        break;
+      case 3:
+        addPart<A, Rows, V, 3>(sum, source, s.sourceStride, part.weights, part.columns);
+        break;
+      case 4:
+        addPart<A, Rows, V, 4>(sum, source, s.sourceStride, part.weights, part.columns);
+        break;
+      default:
+        addPart<A, Rows, V, 5>(sum, source, s.sourceStride, part.weights, part.columns);
+        break;
+    }
+  }
+#pragma GCC unroll 4
+  for (int o = 0; o < Rows; ++o)
+  {
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      A* const pixels = s.image + (y + o) * s.imageStride + x + v * width<A>;
+      store<A>(pixels, larger(sum[o][v], load<A>(pixels)));
+    }
+  }
+}
+
 template <class A>
+inline void splatPixel(const Splat<A>& s, std::ptrdiff_t x, int y)
+{
+  A sum = 0;
+  for (int p = 0; p < s.partCount; ++p)
+  {
+    const SplatPart<A>& part = s.parts[p];
+    for (int j = 0; j < part.rows; ++j)
+    {
+      for (int i = 0; i < part.columns; ++i)
+      {
+        sum += part.weights[j * part.columns + i] *
+          part.source[(y + j) * s.sourceStride + x + i];
+      }
+    }
+  }
+  A& pixel = s.image[y * s.imageStride + x];
+  pixel = larger(sum, pixel);
+}
+
+template <class A, int Rows>
 struct SplatBlock
 {
-  A* image;
-  const A* const* rows;
-  const A* weights;
-  int count;
+  const Splat<A>& splat;
+  int y;
   template <int V>
   inline void run(std::ptrdiff_t x) const
   {
-    Pack<A> sum[V];
-    for (int v = 0; v < V; ++v)
+    // Rows x V sums must fit the registers, of which there are 32 with AVX-512 and 16 without.
+    if constexpr (V == 4 && Rows == 4 && SPLATTING_VECTOR_BYTES < 64)
     {
-      sum[v] = this->weights[0] * load<A>(this->rows[0] + x + v * width<A>);
+      this->run<2>(x);
+      this->run<2>(x + 2 * width<A>);
     }
-    for (int t = 1; t < this->count; ++t)
+    else
     {
-      const A weight = this->weights[t];
-      const A* const row = this->rows[t] + x;
-      for (int v = 0; v < V; ++v)
-      {
-        sum[v] += weight * load<A>(row + v * width<A>);
-      }
-    }
-    for (int v = 0; v < V; ++v)
-    {
-      A* const p = this->image + x + v * width<A>;
-      store<A>(p, larger(sum[v], load<A>(p)));
+      splatTile<A, Rows, V>(this->splat, x, this->y);
     }
   }
 };
 
-template <class A>
-void splat(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n)
+template <class A, int Rows>
+inline void splatStrip(const Splat<A>& s, int y)
 {
-  blocks<A>(n, SplatBlock<A>{ image, rows, weights, count },
+  blocks<A>(s.width, SplatBlock<A, Rows>{ s, y },
     [&](std::ptrdiff_t x)
     {
-      A sum = weights[0] * rows[0][x];
-      for (int t = 1; t < count; ++t)
+      for (int o = 0; o < Rows; ++o)
       {
-        sum += weights[t] * rows[t][x];
+        splatPixel(s, x, y + o);
       }
-      image[x] = larger(sum, image[x]);
     });
+}
+
+template <class A>
+void splat(const Splat<A>& s)
+{
+  int y = 0;
+  for (; y + 4 <= s.height; y += 4)
+  {
+    splatStrip<A, 4>(s, y);
+  }
+  for (; y < s.height; ++y)
+  {
+    splatStrip<A, 1>(s, y);
+  }
 }
 
 template <class A>

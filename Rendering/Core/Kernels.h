@@ -34,14 +34,38 @@ struct VoxelLoops
   void (*range)(const T* row, std::ptrdiff_t n, T& low, T& high, bool& special);
 };
 
+/// A rectangle of footprint weights and the voxels that it meets first.
+template <class A>
+struct SplatPart
+{
+  const A* source;  ///< the voxel under the first weight of the first pixel
+  const A* weights; ///< rows x columns of them
+  int rows;         ///< 1 to 5
+  int columns;
+};
+
+/// A rectangle of the image, and the parts of the footprint: one per slice that adds to it.
+template <class A>
+struct Splat
+{
+  A* image;
+  std::ptrdiff_t imageStride;
+  std::ptrdiff_t width;
+  int height;
+  std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
+  SplatPart<A> parts[3];
+  int partCount;
+};
+
 /// Loops over worksheets and images of type A (float or double).
 template <class A>
 struct WorksheetLoops
 {
-  /// image[x] = max(image[x], sum over t of weights[t] rows[t][x]); NaN never wins.
-  void (*splat)(
-    A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
-  /// The same where rows may hold NaN: the average of the others. image[x] = NaN is "no sample".
+  /// Every pixel of the rectangle: the maximum of it and the weighted sum of its voxels, which must
+  /// be finite.
+  void (*splat)(const Splat<A>& splat);
+  /// image[x] = max(image[x], average of rows[0..count)[x], NaN left out, weighted and divided by
+  /// the weights that remain). image[x] = NaN is "no sample yet". Rows may hold infinities.
   void (*splatValid)(
     A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
   /// image[x] = clamp(image[x], low, high); NaN stays.

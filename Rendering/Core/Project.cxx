@@ -26,22 +26,69 @@ struct SliceGeometry
   int vBegin, vEnd; // image rows whose rays cross the slice
 };
 
+/// The part of a footprint that lies in one slice: the rectangle around its taps.
+template <class A>
+struct FootprintPart
+{
+  int slice;    // -1, 0 or 1
+  int di, dj;   // the first column and row
+  int columns, rows;
+  std::vector<A> weights; // zero where there is no tap
+};
+
 /// The footprint of one slice, with weights of the accumulator's type.
 template <class A>
 struct SliceFootprint
 {
   glm::ivec2 nearest; // pixel minus voxel, for the voxel nearest to a pixel
   std::vector<Tap> taps;
-  std::vector<A> weights;
+  std::vector<A> weights; // of the taps
+  std::vector<FootprintPart<A>> parts;
 };
 
-/// Rows of up to three slices, widened to the accumulator's type, with repeated ends.
+template <class A>
+void addParts(SliceFootprint<A>& footprint)
+{
+  for (int c = -1; c <= 1; ++c)
+  {
+    int first[2] = { 3, 3 }, last[2] = { -3, -3 };
+    for (const Tap& tap : footprint.taps)
+    {
+      if (tap.slice == c)
+      {
+        first[0] = std::min(first[0], tap.di);
+        last[0] = std::max(last[0], tap.di);
+        first[1] = std::min(first[1], tap.dj);
+        last[1] = std::max(last[1], tap.dj);
+      }
+    }
+    if (first[0] > last[0])
+    {
+      continue;
+    }
+    FootprintPart<A> part{ c, first[0], first[1], last[0] - first[0] + 1, last[1] - first[1] + 1,
+      {} };
+    part.weights.assign(std::size_t(part.columns) * part.rows, A(0));
+    for (const Tap& tap : footprint.taps)
+    {
+      if (tap.slice == c)
+      {
+        part.weights[(tap.dj - part.dj) * part.columns + tap.di - part.di] =
+          static_cast<A>(tap.weight);
+      }
+    }
+    footprint.parts.push_back(std::move(part));
+  }
+}
+
+/// Rows of up to three slices, widened to the accumulator's type. What footprints read beyond the
+/// volume repeats its outermost voxels.
 struct RowCache
 {
   std::vector<unsigned char> bytes;
   std::ptrdiff_t rowLength = 0;
   int rowsPerSlice = 0;
-  int first[3]; // the row of the volume that the slot begins with
+  int first[3]; // the row of the volume (or beyond) that the slot begins with
   template <class A>
   A* row(int slice, int j)
   {
@@ -199,9 +246,8 @@ public:
     , V0(v0)
     , V1(v1)
   {
-    const glm::ivec3& size = frame.geometry.size();
-    cache.rowLength = size.x + 2 * Pad;
-    cache.rowsPerSlice = std::min(size.y, v1 - v0 + 2 * (1 + reach) + 2);
+    cache.rowLength = frame.geometry.size().x + 2 * Pad;
+    cache.rowsPerSlice = v1 - v0 + 2 * (1 + reach) + 2;
     const std::size_t bytes = std::size_t(3) * cache.rowsPerSlice * cache.rowLength * sizeof(A);
     if (cache.bytes.size() < bytes)
     {
@@ -220,11 +266,7 @@ public:
       {
         this->load(loaded);
       }
-      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
-      for (int v = std::max(this->V0, slice.vBegin); v < std::min(this->V1, slice.vEnd); ++v)
-      {
-        this->splatRow(v, k);
-      }
+      this->splatSlice(k);
     }
     this->clampToRange();
   }
@@ -243,42 +285,103 @@ private:
       low = std::min(low, this->V0 - this->Footprints[k].nearest.y);
       high = std::max(high, this->V1 - 1 - this->Footprints[k].nearest.y);
     }
-    low = std::clamp(low - 1 - this->Reach, 0, size.y - 1);
-    high = std::clamp(high + 1 + this->Reach, 0, size.y - 1);
+    low -= 1 + this->Reach;
+    high += 1 + this->Reach;
     this->Cache.first[slice % 3] = low;
     const VoxelLoops<T>& loops = this->Shared.kernels;
     for (int j = low; j <= high; ++j)
     {
       A* const row = this->Cache.template row<A>(slice, j);
-      loops.widen(this->Shared.voxelRow(j, slice), row, size.x);
+      if (j > low && (j <= 0 || j >= size.y)) // the same voxels as the row before
+      {
+        std::copy(row - Pad - this->Cache.rowLength, row - Pad, row - Pad);
+        continue;
+      }
+      loops.widen(this->Shared.voxelRow(std::clamp(j, 0, size.y - 1), slice), row, size.x);
       std::fill(row - Pad, row, row[0]);
       std::fill(row + size.x, row + size.x + Pad, row[size.x - 1]);
     }
   }
 
-  void splatRow(int v, int k)
+  /// Splats runs of rows that cover the same columns together: nearly always all of the band.
+  void splatSlice(int k)
   {
-    const Span span = this->Shared.pixels(v, k);
-    if (span.empty())
+    const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+    const int end = std::min(this->V1, slice.vEnd);
+    int first = std::max(this->V0, slice.vBegin);
+    Span span = first < end ? this->Shared.pixels(first, k) : Span{};
+    while (first < end)
     {
+      int v = first + 1;
+      Span next;
+      for (; v < end; ++v)
+      {
+        next = this->Shared.pixels(v, k);
+        if (next.begin != span.begin || next.end != span.end)
+        {
+          break;
+        }
+      }
+      if (!span.empty())
+      {
+        this->splatRows(first, v, span, k);
+      }
+      first = v;
+      span = next;
+    }
+  }
+
+  void splatRows(int first, int end, const Span& span, int k)
+  {
+    if (this->Shared.image.special)
+    {
+      for (int v = first; v < end; ++v)
+      {
+        this->splatValidRow(v, span, k);
+      }
       return;
     }
-    const glm::ivec3& size = this->Shared.geometry.size();
+    const SliceFootprint<A>& footprint = this->Footprints[k];
+    Splat<A> splat;
+    splat.image = this->Shared.image.template row<A>(first) + span.begin;
+    splat.imageStride = this->Shared.image.width;
+    splat.width = span.end - span.begin;
+    splat.height = end - first;
+    splat.sourceStride = this->Cache.rowLength;
+    splat.partCount = static_cast<int>(footprint.parts.size());
+    for (int p = 0; p < splat.partCount; ++p)
+    {
+      const FootprintPart<A>& part = footprint.parts[p];
+      splat.parts[p] = { this->voxel(footprint, part.slice, part.di, part.dj, span.begin, first, k),
+        part.weights.data(), part.rows, part.columns };
+    }
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    loops.splat(splat);
+  }
+
+  void splatValidRow(int v, const Span& span, int k)
+  {
     const SliceFootprint<A>& footprint = this->Footprints[k];
     const A* rows[75];
     const int count = static_cast<int>(footprint.taps.size());
     for (int t = 0; t < count; ++t)
     {
       const Tap& tap = footprint.taps[t];
-      const int slice = std::clamp(k + tap.slice, 0, size.z - 1);
-      const int j = std::clamp(v - footprint.nearest.y + tap.dj, 0, size.y - 1);
-      rows[t] =
-        this->Cache.template row<A>(slice, j) + (span.begin - footprint.nearest.x + tap.di);
+      rows[t] = this->voxel(footprint, tap.slice, tap.di, tap.dj, span.begin, v, k);
     }
     const WorksheetLoops<A>& loops = this->Shared.kernels;
-    (this->Shared.image.special ? loops.splatValid : loops.splat)(
-      this->Shared.image.template row<A>(v) + span.begin, rows, footprint.weights.data(), count,
-      span.end - span.begin);
+    loops.splatValid(this->Shared.image.template row<A>(v) + span.begin, rows,
+      footprint.weights.data(), count, span.end - span.begin);
+  }
+
+  /// The voxel that a tap of pixel (u, v) reads, in the cache.
+  const A* voxel(
+    const SliceFootprint<A>& footprint, int slice, int di, int dj, int u, int v, int k) const
+  {
+    return this->Cache.template row<A>(
+             std::clamp(k + slice, 0, this->Shared.geometry.size().z - 1),
+             v - footprint.nearest.y + dj) +
+      (u - footprint.nearest.x + di);
   }
 
   /// Rounding must not show values that the data do not have.
@@ -355,6 +458,7 @@ std::vector<SliceFootprint<Accumulator<T>>> sliceFootprints(
         {
           footprint.weights.push_back(static_cast<A>(tap.weight));
         }
+        addParts(footprint);
       }
     });
   return footprints;
