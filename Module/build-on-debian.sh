@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# build-on-debian.sh FOLDER [CMAKE OPTION ...]
+#
+# Installs what Debian 12 needs to build and run this project, as far as it is missing (with sudo
+# where the caller is not root), then configures and builds it in FOLDER.
+set -euo pipefail
+
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build_dir=$1
+shift
+
+packages=(
+  cmake ninja-build g++ ccache
+  libvtk9-dev python3-vtk9 libglm-dev          # the module and its Python package
+  libcli11-dev libvtk-dicom-dev                # splatmip
+  libbenchmark-dev                             # the benchmark
+  xvfb xauth libgl1-mesa-dri                   # OpenGL without a display
+)
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null || true)
+  [[ $status == ii* ]] || missing+=("$package")
+done
+if ((${#missing[@]})); then
+  echo "Installing ${missing[*]}"
+  as_root=()
+  ((EUID == 0)) || as_root=(sudo)
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+fi
+
+cmake -S "$source_dir" -B "$build_dir" -G Ninja -Wno-dev \
+  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"
+cmake --build "$build_dir"

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# run-tests.sh [CTEST OPTION ...]
+#
+# All that a fresh Debian 12 needs to run every test: installs, builds with warnings as errors, and
+# runs ctest on a virtual display.
+set -euo pipefail
+
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build_dir=$source_dir/build/tests
+bash "$source_dir/Module/build-on-debian.sh" "$build_dir" \
+  -DSPLATTINGMIP_STRICT=ON -DSPLATTINGMIP_BUILD_BENCHMARK=ON
+# The tests compare with pictures that were rendered without multisampling.
+export VTK_TESTING=1
+exec xvfb-run -a --server-args "-screen 0 1280x1024x24" \
+  ctest --test-dir "$build_dir" --output-on-failure --timeout 600 "$@"
