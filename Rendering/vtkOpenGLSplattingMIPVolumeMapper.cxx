@@ -49,11 +49,17 @@ void vtkOpenGLSplattingMIPVolumeMapper::DisplayImage(
   state->vtkglEnable(GL_BLEND);
   state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
 
+  // In the current viewport, which is the renderer's, not the whole window.
   int width, height, left, bottom;
   ren->GetTiledSizeAndOrigin(&width, &height, &left, &bottom);
+  const float x0 = 2.0f * origin[0] / width - 1.0f;
+  const float y0 = 2.0f * origin[1] / height - 1.0f;
+  const float x1 = 2.0f * (origin[0] + size[0]) / width - 1.0f;
+  const float y1 = 2.0f * (origin[1] + size[1]) / height - 1.0f;
+  float texture[] = { 0, 0, 1, 0, 1, 1, 0, 1 };
+  float corners[] = { x0, y0, 0, x1, y0, 0, x1, y1, 0, x0, y1, 0 };
   this->Texture->Activate();
-  this->Texture->CopyToFrameBuffer(0, 0, size[0] - 1, size[1] - 1, origin[0], origin[1],
-    origin[0] + size[0] - 1, origin[1] + size[1] - 1, width, height, nullptr, nullptr);
+  this->Texture->CopyToFrameBuffer(texture, corners, nullptr, nullptr);
   this->Texture->Deactivate();
 }
 

@@ -180,9 +180,10 @@ public:
     vtkSplattingMIPVolumeMapper* self, vtkVolume* volume, const splatting::View& view);
   splatting::View MakeView(
     vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
-  void LookAt(vtkImageData* image, vtkDataArray* scalars);
+  void LookAt(vtkDataArray* scalars);
   void Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
   void UpdateColors(vtkVolumeProperty* property);
+  void PlaceRayCastVolume(vtkVolume* volume);
   void ConfigureRayCaster(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
   void CopyShearImage(vtkImageData* output) const;
 
@@ -219,6 +220,10 @@ public:
   vtkNew<vtkVolume> RayCastVolume;
   vtkNew<vtkVolumeProperty> RayCastProperty;
   vtkNew<vtkImageData> RayCastInput;
+  vtkImageData* RayCastFrom = nullptr; // what RayCastInput was made from
+  vtkMTimeType RayCastInputTime = 0;
+  vtkVolumeProperty* RayCastLook = nullptr; // what RayCastProperty was made from
+  vtkMTimeType RayCastLookTime = 0;
 };
 
 //------------------------------------------------------------------------------
@@ -349,18 +354,18 @@ splatting::View vtkSplattingMIPVolumeMapper::Internals::MakeView(
 
 //------------------------------------------------------------------------------
 // Points the index at the scalars, anew if they changed.
-void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkImageData* image, vtkDataArray* scalars)
+void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkDataArray* scalars)
 {
-  const int* dimensions = image->GetDimensions();
-  const splatting::VoxelArray& known = this->Index.volume();
+  const int* dimensions = this->Input->GetDimensions();
   const glm::ivec3 size(dimensions[0], dimensions[1], dimensions[2]);
-  if (this->IndexedScalars == scalars && this->IndexedTime == scalars->GetMTime() &&
-    known.dimensions == size)
+  // Who changes voxels in place may say so at the array or at the image.
+  const vtkMTimeType time = std::max(scalars->GetMTime(), this->Input->GetMTime());
+  if (this->IndexedScalars == scalars && this->IndexedTime == time)
   {
     return;
   }
   this->IndexedScalars = scalars;
-  this->IndexedTime = scalars->GetMTime();
+  this->IndexedTime = time;
   this->ScalarType = scalars->GetDataType();
   this->Contiguous = nullptr;
   if (!scalars->HasStandardMemoryLayout())
@@ -470,20 +475,25 @@ void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* pro
 }
 
 //------------------------------------------------------------------------------
-// Hands this mapper's settings to VTK's ray caster, on a volume that it renders rightly: it ignores
-// direction matrices, so the direction goes into the prop's matrix.
-void vtkSplattingMIPVolumeMapper::Internals::ConfigureRayCaster(
-  vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
+// Shows the ray caster our volume. It ignores direction matrices, so the direction goes into the
+// matrix of the prop.
+void vtkSplattingMIPVolumeMapper::Internals::PlaceRayCastVolume(vtkVolume* volume)
 {
   if (!this->RayCaster)
   {
     this->RayCaster = vtkSmartPointer<vtkFixedPointVolumeRayCastMapper>::New();
     this->RayCaster->AutoAdjustSampleDistancesOff();
+    this->RayCaster->SetInputData(this->RayCastInput);
     this->RayCastVolume->SetMapper(this->RayCaster);
     this->RayCastVolume->SetProperty(this->RayCastProperty);
-    this->RayCaster->SetInputData(this->RayCastInput);
   }
-  this->RayCastInput->ShallowCopy(this->Input);
+  if (this->RayCastFrom != this->Input || this->RayCastInputTime != this->Input->GetMTime())
+  {
+    this->RayCastInput->ShallowCopy(this->Input);
+    this->RayCastInput->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
+    this->RayCastFrom = this->Input;
+    this->RayCastInputTime = this->Input->GetMTime();
+  }
   vtkMatrix3x3* const direction = this->Input->GetDirectionMatrix();
   glm::dmat4 turn(1.0);
   for (int r = 0; r < 3; ++r)
@@ -493,7 +503,6 @@ void vtkSplattingMIPVolumeMapper::Internals::ConfigureRayCaster(
       turn[c][r] = direction->GetElement(r, c);
     }
   }
-  this->RayCastInput->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
   const double* o = this->Input->GetOrigin();
   const glm::dvec4 origin(o[0], o[1], o[2], 0.0);
   turn[3] += origin - turn * origin;
@@ -507,26 +516,28 @@ void vtkSplattingMIPVolumeMapper::Internals::ConfigureRayCaster(
     }
   }
   this->RayCastVolume->SetUserMatrix(matrix);
+}
 
+//------------------------------------------------------------------------------
+// Hands this mapper's settings to VTK's ray caster.
+void vtkSplattingMIPVolumeMapper::Internals::ConfigureRayCaster(
+  vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
+{
   vtkVolumeProperty* const property = volume->GetProperty();
-  if (this->RayCastProperty->GetMTime() < property->GetMTime())
+  if (this->RayCastLook != property || this->RayCastLookTime != property->GetMTime())
   {
     this->RayCastProperty->DeepCopy(property);
+    this->RayCastLook = property;
+    this->RayCastLookTime = property->GetMTime();
   }
-  if (self->BlendMode == MAXIMUM_INTENSITY_BLEND)
-  {
-    this->RayCastProperty->SetInterpolationType(
-      self->QualityMode == PREVIEW ? VTK_NEAREST_INTERPOLATION : VTK_LINEAR_INTERPOLATION);
-  }
-  else
-  {
-    this->RayCastProperty->SetInterpolationType(property->GetInterpolationType());
-  }
+  // Its nearest interpolation truncates, which moves a MIP by half a voxel: no mode asks for that.
+  this->RayCastProperty->SetInterpolationType(self->BlendMode == MAXIMUM_INTENSITY_BLEND
+      ? VTK_LINEAR_INTERPOLATION
+      : property->GetInterpolationType());
   const double* spacing = this->Input->GetSpacing();
-  const double step = std::min(
-    { std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
+  const double step =
+    std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
   this->RayCaster->SetSampleDistance(static_cast<float>(step));
-  this->RayCaster->SetInteractiveSampleDistance(static_cast<float>(step));
   this->RayCaster->SetBlendMode(self->BlendMode);
   this->RayCaster->SetCropping(self->Cropping);
   this->RayCaster->SetCroppingRegionPlanes(self->CroppingRegionPlanes);
@@ -578,7 +589,7 @@ void vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume*
     this->RenderByRayCasting(ren, vol, reason);
     return;
   }
-  in.LookAt(in.Input, in.Scalars);
+  in.LookAt(in.Scalars);
   in.Project(this, view);
   if (!in.Geometry.valid())
   {
@@ -603,6 +614,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
   {
     vtkWarningMacro(<< "Rendering by vtkFixedPointVolumeRayCastMapper, because " << reason << ".");
   }
+  in.PlaceRayCastVolume(vol);
   in.ConfigureRayCaster(this, vol);
   in.RayCaster->Render(ren, in.RayCastVolume);
   this->LastRenderUsedRayCasting = true;

@@ -59,15 +59,17 @@ class TestRender(unittest.TestCase):
         caster.AutoAdjustSampleDistancesOff()
         caster.SetSampleDistance(0.25)
         expected = picture(caster)
-        for mode in ("Preview", "Standard", "High"):
+        # The wavelet varies by up to 10 grey levels from voxel to voxel. The averages of standard
+        # and high differ from point samples by a part of that; preview shows whole voxels, half a
+        # voxel's difference brighter on average. A picture shifted by one voxel differs by more,
+        # an empty one by about 90.
+        for mode, bound in (("Preview", 5.0), ("Standard", 3.0), ("High", 3.0)):
             mapper = vtkSplattingMIPVolumeMapper()
             getattr(mapper, f"SetQualityModeTo{mode}")()
             found = picture(mapper)
             error = sum(abs(a - b) for a, b in zip(found, expected)) / len(found)
             print(f"{mode}: mean difference {error:.2f} of 255")
-            # The wavelet varies by up to 10 grey levels from voxel to voxel; a picture that is
-            # shifted by one voxel differs by several levels, an empty one by about 90.
-            self.assertLess(error, 3.0)
+            self.assertLess(error, bound)
 
     def test_shear_image_and_state(self):
         mapper = vtkSplattingMIPVolumeMapper()

@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Measures vtkSplattingMIPVolumeMapper beside VTK's ray casters. See --help.
+ */
+#include "BenchmarkCases.h"
+#include "BenchmarkStage.h"
+#include "BenchmarkVolumes.h"
+#include "SummaryReporter.h"
+
+#include "vtkSMPTools.h"
+#include "vtkSmartPointer.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+#include "vtkVersion.h"
+
+#include <benchmark/benchmark.h>
+#include <vtksys/SystemInformation.hxx>
+
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace
+{
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+struct Options
+{
+  std::string Data = SPLATTINGMIP_TEST_DATA;
+  int Threads = 0;
+  bool Quick = false;
+  bool IsConsole = true; // what Google Benchmark prints is meant for people
+};
+
+void PrintHelp()
+{
+  std::cout <<
+    R"(splatmip-benchmark: maximum intensity projections by splatting beside VTK's ray casters
+
+  frame/VOLUME/WINDOW/MAPPER  a whole frame, render and read-back
+  projection/VOLUME/MODE      the projection alone, volume to shear image
+  floor/VOLUME                the largest byte of the volume, read once by all threads
+
+VOLUME   vessels128-uint8, vessels256-uint8, -int16, -float, vessels512-uint8 (noise and vessels),
+         aorta-int16, and if they are there ch2better-uint8 (Debian: mricron-data) and
+         lidc0314-int16
+WINDOW   300 or 1024 pixels along each side
+MAPPER   preview, standard, high: the modes of vtkSplattingMIPVolumeMapper
+         raycast-nearest, raycast-linear: vtkFixedPointVolumeRayCastMapper
+         gpu: vtkOpenGLGPUVolumeRayCastMapper, linear
+
+Everything goes through the same two turns of the camera, 36 views in all; slow mappers and big
+volumes through a part of them, evenly spaced (counter views). The summary comes last; where
+--benchmark_format is not console, on the standard error stream. It is made from the single runs,
+so there is none with --benchmark_report_aggregates_only.
+
+  --quick        64^3 voxels, 100 pixels, few views: whether it works, in a few seconds
+  --data=DIR     where lidc-idri-0314.nrrd lies
+  --threads=N    threads of vtkSMPTools and of the ray caster on the CPU
+
+  For JSON, too: --benchmark_out=FILE. The rows that matter most:
+    splatmip-benchmark --benchmark_filter='frame/vessels256-uint8/[0-9]+/[^g]'
+  All but the GPU's:
+    splatmip-benchmark --benchmark_filter=-gpu
+
+)";
+  benchmark::PrintDefaultHelp();
+}
+
+bool Starts(const std::string& text, const std::string& start, std::string& rest)
+{
+  if (text.compare(0, start.size(), start) != 0)
+  {
+    return false;
+  }
+  rest = text.substr(start.size());
+  return true;
+}
+
+/// Takes the options that Google Benchmark does not know from the arguments.
+Options TakeOptions(int& argc, char** argv)
+{
+  Options options;
+  int kept = 1;
+  for (int i = 1; i < argc; ++i)
+  {
+    std::string value;
+    if (std::string(argv[i]) == "--quick")
+    {
+      options.Quick = true;
+    }
+    else if (Starts(argv[i], "--data=", value))
+    {
+      options.Data = value;
+    }
+    else if (Starts(argv[i], "--threads=", value))
+    {
+      options.Threads = std::atoi(value.c_str());
+    }
+    else
+    {
+      if (Starts(argv[i], "--benchmark_format=", value))
+      {
+        options.IsConsole = value == "console";
+      }
+      argv[kept++] = argv[i];
+    }
+  }
+  argc = kept;
+  return options;
+}
+
+/// The processor's name as Linux, or else VTK's system library, has it.
+std::string GetProcessorName()
+{
+  std::ifstream file("/proc/cpuinfo");
+  std::string line, value;
+  while (std::getline(file, line))
+  {
+    if (Starts(line, "model name\t: ", value))
+    {
+      return value;
+    }
+  }
+  vtksys::SystemInformation system;
+  system.RunCPUCheck();
+  return system.GetExtendedProcessorName();
+}
+
+/// What the numbers depend on, besides the program.
+Facts DescribeMachine()
+{
+  auto mapper = vtkSmartPointer<vtkSplattingMIPVolumeMapper>::New();
+  return { { "processor", GetProcessorName() },
+    { "threads",
+      std::to_string(vtkSMPTools::GetEstimatedNumberOfThreads()) + " (vtkSMPTools, " +
+        vtkSMPTools::GetBackend() + ")" },
+    { "instruction set", mapper->GetInstructionSet() },
+    { "OpenGL renderer", BenchmarkStage::GetInstance().GetDeviceName() },
+    { "VTK", vtkVersion::GetVTKVersion() } };
+}
+
+/// Few views where a single one takes a second or more; 5 and 9 of them have the three principal
+/// axes in about the same proportion as all of them.
+BenchmarkRotation ChooseRotation(const BenchmarkMapper& mapper, bool isBig, bool isQuick)
+{
+  if (isQuick)
+  {
+    return { 4, 1 };
+  }
+  if (mapper.Kind == BenchmarkMapper::SPLATTING)
+  {
+    return { isBig ? BenchmarkStage::NumberOfViews / 2 : BenchmarkStage::NumberOfViews, 3 };
+  }
+  return { isBig || mapper.Kind == BenchmarkMapper::GPU_RAY_CASTING ? 5 : 9, 1 };
+}
+
+template <class Function>
+void Register(const std::string& name, int iterations, Function function)
+{
+  benchmark::RegisterBenchmark(name.c_str(), function)
+    ->Iterations(iterations)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+}
+
+void RegisterFrames(const BenchmarkVolume& volume, int window, bool isQuick)
+{
+  for (const BenchmarkMapper& mapper : GetBenchmarkMappers())
+  {
+    if (mapper.Kind == BenchmarkMapper::SPLATTING || volume.ForAllMappers)
+    {
+      const BenchmarkRotation rotation = ChooseRotation(mapper, volume.IsBig, isQuick);
+      Register("frame/" + volume.Name + "/" + std::to_string(window) + "/" + mapper.Name,
+        rotation.Views * rotation.Passes,
+        [=](benchmark::State& state) { MeasureFrames(state, volume, window, mapper, rotation); });
+    }
+  }
+}
+
+void RegisterVolume(const BenchmarkVolume& volume, bool isQuick)
+{
+  Register(
+    "floor/" + volume.Name, 30, [=](benchmark::State& state) { MeasureFloor(state, volume); });
+  for (const BenchmarkMapper& mapper : GetBenchmarkMappers())
+  {
+    if (mapper.Kind == BenchmarkMapper::SPLATTING)
+    {
+      const BenchmarkRotation rotation = ChooseRotation(mapper, volume.IsBig, isQuick);
+      Register("projection/" + volume.Name + "/" + mapper.Name, rotation.Views * rotation.Passes,
+        [=](benchmark::State& state) { MeasureProjections(state, volume, mapper, rotation); });
+    }
+  }
+  for (int window : isQuick ? std::vector<int>{ 100 } : std::vector<int>{ 300, 1024 })
+  {
+    RegisterFrames(volume, window, isQuick);
+  }
+}
+
+void RegisterAll(const Options& options)
+{
+  std::vector<std::string> missing;
+  const std::vector<BenchmarkVolume> volumes =
+    options.Quick ? ListQuickVolumes() : ListVolumes(options.Data, missing);
+  for (const std::string& name : missing)
+  {
+    std::cerr << "skipped: no data for " << name << "\n";
+  }
+  for (const BenchmarkVolume& volume : volumes)
+  {
+    RegisterVolume(volume, options.Quick);
+  }
+}
+}
+
+int main(int argc, char** argv)
+{
+  const Options options = TakeOptions(argc, argv);
+  benchmark::Initialize(&argc, argv, PrintHelp);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv))
+  {
+    return EXIT_FAILURE;
+  }
+  if (options.Threads > 0)
+  {
+    vtkSMPTools::Initialize(options.Threads);
+  }
+  RegisterAll(options);
+  const Facts machine = DescribeMachine();
+  for (const auto& fact : machine)
+  {
+    benchmark::AddCustomContext(fact.first, fact.second);
+  }
+  SummaryReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  reporter.PrintSummary(options.IsConsole ? std::cout : std::cerr, machine);
+  benchmark::Shutdown();
+  return HasFailedBenchmark() ? EXIT_FAILURE : EXIT_SUCCESS;
+}

@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Input that cannot be rendered is refused with one sentence, does not disturb what else is in the
+// scene, and leaves the mapper able to render again.
+#include "Stage.h"
+
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkActor.h"
+#include "vtkBitArray.h"
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkExecutive.h"
+#include "vtkImageData.h"
+#include "vtkMath.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkPointData.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkProperty.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkSphereSource.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+#include <functional>
+
+namespace
+{
+constexpr int Width = 160;
+constexpr int Height = 150;
+
+struct Scene
+{
+  stage::Stage stage{ Width, Height };
+  vtkSmartPointer<vtkImageData> image;
+  vtkSmartPointer<vtkSplattingMIPVolumeMapper> mapper;
+
+  Scene()
+    : image(stage::toImageData(stage::blobsAndTubes({ 36, 36, 36 }, 12))),
+      mapper(stage::splatting(image))
+  {
+    this->stage.show(this->mapper);
+    vtkNew<vtkPiecewiseFunction> opacity;
+    opacity->AddPoint(10.0, 0.0);
+    opacity->AddPoint(20.0, 1.0);
+    this->stage.property->SetScalarOpacity(opacity);
+    this->stage.look({ 0.3, 0.4, -0.8 }, { 0.0, 1.0, 0.0 });
+    this->addSphere();
+  }
+
+  /// Green, beside the volume.
+  void addSphere()
+  {
+    vtkNew<vtkSphereSource> source;
+    source->SetCenter(-4.0, 18.0, 18.0);
+    source->SetRadius(4.0);
+    vtkNew<vtkPolyDataMapper> polyMapper;
+    polyMapper->SetInputConnection(source->GetOutputPort());
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(polyMapper);
+    actor->GetProperty()->SetColor(0.0, 1.0, 0.0);
+    actor->GetProperty()->LightingOff();
+    this->stage.renderer->AddActor(actor);
+    this->stage.renderer->ResetCameraClippingRange();
+  }
+
+  void mend()
+  {
+    this->mapper->SetInputData(this->image);
+    this->mapper->SetScalarModeToDefault();
+    this->stage.volume->SetScale(1.0, 1.0, 1.0);
+    this->stage.volume->SetUserMatrix(nullptr);
+  }
+};
+
+bool showsSphere(const stage::Pixels& pixels)
+{
+  int green = 0;
+  for (std::size_t pixel = 0; pixel < pixels.size(); pixel += 3)
+  {
+    green += pixels[pixel] == 0 && pixels[pixel + 1] == 255 && pixels[pixel + 2] == 0;
+  }
+  return green > 50;
+}
+
+vtkSmartPointer<vtkImageData> bareImage()
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(36, 36, 36);
+  return image;
+}
+
+vtkSmartPointer<vtkImageData> withArray(vtkDataArray* array, vtkIdType tuples, bool onCells)
+{
+  auto image = bareImage();
+  array->SetNumberOfTuples(tuples);
+  array->Fill(1.0);
+  if (onCells)
+  {
+    image->GetCellData()->SetScalars(array);
+  }
+  else
+  {
+    image->GetPointData()->SetScalars(array);
+  }
+  return image;
+}
+
+struct Fault
+{
+  const char* name;
+  const char* word; // which the sentence must have
+  std::function<void(Scene&)> make;
+};
+
+std::vector<Fault> inputFaults()
+{
+  return {
+    { "no input", "input", [](Scene& s) { s.mapper->SetInputDataObject(nullptr); } },
+    { "empty extent", "extent", [](Scene& s) { s.mapper->SetInputData(vtkNew<vtkImageData>()); } },
+    { "no scalars", "scalars", [](Scene& s) { s.mapper->SetInputData(bareImage()); } },
+    { "wrong array name", "array",
+      [](Scene& s)
+      {
+        s.mapper->SetScalarModeToUsePointFieldData();
+        s.mapper->SelectScalarArray("nonsense");
+      } },
+    { "cell scalars", "cells",
+      [](Scene& s)
+      { s.mapper->SetInputData(withArray(vtkNew<vtkUnsignedCharArray>(), 35 * 35 * 35, true)); } },
+    { "bit array", "bits",
+      [](Scene& s)
+      { s.mapper->SetInputData(withArray(vtkNew<vtkBitArray>(), 36 * 36 * 36, false)); } },
+    { "too few scalars", "tuples",
+      [](Scene& s)
+      { s.mapper->SetInputData(withArray(vtkNew<vtkUnsignedCharArray>(), 36 * 36, false)); } },
+    { "rectilinear grid", "vtkRectilinearGrid",
+      [](Scene& s)
+      {
+        vtkNew<vtkRectilinearGrid> grid;
+        grid->SetDimensions(3, 3, 3);
+        s.mapper->SetInputData(grid);
+      } },
+  };
+}
+
+std::vector<Fault> matrixFaults()
+{
+  return {
+    { "zero spacing", "singular",
+      [](Scene& s)
+      {
+        vtkNew<vtkImageData> flat;
+        flat->ShallowCopy(s.image);
+        flat->SetSpacing(1.0, 0.0, 1.0);
+        s.mapper->SetInputData(flat);
+      } },
+    { "singular prop matrix", "singular",
+      [](Scene& s) { s.stage.volume->SetScale(1.0, 0.0, 1.0); } },
+    { "not a number", "singular",
+      [](Scene& s)
+      {
+        vtkNew<vtkImageData> odd;
+        odd->ShallowCopy(s.image);
+        odd->SetSpacing(1.0, vtkMath::Nan(), 1.0);
+        s.mapper->SetInputData(odd);
+      } },
+  };
+}
+
+/// Ends like a sentence, before the line feeds that vtkErrorMacro adds.
+bool isSentence(std::string text)
+{
+  text.erase(text.find_last_not_of(" \n") + 1);
+  return !text.empty() && text.back() == '.';
+}
+
+/// What the mapper has to say when it is asked more than once.
+std::vector<std::string> errorsOfRendering(
+  Scene& scene, const std::string& name, stage::Checks& check)
+{
+  const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
+  // VTK's pipeline has an opinion of its own about mappers without input.
+  const stage::Messages pipelineErrors(scene.mapper->GetExecutive(), vtkCommand::ErrorEvent);
+  scene.stage.pixels();
+  check(showsSphere(scene.stage.pixels()), name + ": other props are rendered.");
+  // Volumes without input or with bounds that are no numbers do not get so far as to the mapper.
+  scene.mapper->Render(scene.stage.renderer, scene.stage.volume);
+  return errors.texts;
+}
+
+void test(Scene& scene, const Fault& fault, stage::Checks& check)
+{
+  const std::string name = fault.name;
+  const stage::Pixels before = scene.stage.pixels();
+  fault.make(scene);
+  const std::vector<std::string> texts = errorsOfRendering(scene, name, check);
+  check(texts.size() == 1, name + ": one error, not " + std::to_string(texts.size()) + ".");
+  if (!texts.empty())
+  {
+    check(isSentence(texts[0]), name + ": a sentence.");
+    check(texts[0].find(fault.word) != std::string::npos, name + ": the sentence is to the point.");
+  }
+  check(!scene.mapper->GetLastRenderUsedRayCasting(), name + ": nothing was passed on.");
+  scene.mend();
+  check(scene.stage.pixels() == before, name + ": once mended, the picture is as before.");
+}
+}
+
+//------------------------------------------------------------------------------
+int TestBadInput(int, char*[])
+{
+  stage::Checks check;
+  Scene scene;
+  check(showsSphere(scene.stage.pixels()), "The sphere is seen to begin with.");
+  for (const Fault& fault : inputFaults())
+  {
+    test(scene, fault, check);
+  }
+  for (const Fault& fault : matrixFaults())
+  {
+    test(scene, fault, check);
+  }
+  return check.exitCode();
+}

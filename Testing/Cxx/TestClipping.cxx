@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Planes through the volume, the camera's and the mapper's, against VTK's ray caster; and volumes
+// that are one voxel thick.
+#include "Stage.h"
+
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkCamera.h"
+#include "vtkFixedPointVolumeRayCastMapper.h"
+#include "vtkImageData.h"
+#include "vtkMath.h"
+#include "vtkPlane.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkVolume.h"
+
+#include <algorithm>
+#include <iostream>
+
+namespace
+{
+constexpr int Width = 210;
+constexpr int Height = 190;
+
+const stage::Vector up = { 0.1, 1.0, 0.05 };
+const stage::Vector directions[] = { { 0.3, 0.4, -0.8 }, { -0.8, 0.3, 0.4 }, { 0.2, -0.9, 0.3 } };
+
+/// Along every principal axis the picture must be that of the ray caster, and not that without
+/// planes. A plane takes away whole slices' shares of a ray, so that pictures differ along the cut.
+void compare(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
+  const std::string& what, stage::Checks& check)
+{
+  const auto rayCaster = stage::fixedPointRayCaster(image, 0.25);
+  rayCaster->SetClippingPlanes(mapper->GetClippingPlanes());
+  stage.show(rayCaster);
+  const reference::Image<double> truth = stage.gray();
+  stage.show(mapper);
+  const stage::Likeness likeness(truth, stage.gray());
+  std::cout << what << ": " << likeness.text() << std::endl;
+  check(likeness.psnr > 37.0, what + ": PSNR.");
+  check(likeness.ssim > 0.99, what + ": SSIM.");
+  check(likeness.largestShift() < 0.2, what + ": shift.");
+}
+
+/// How far the cut picture is from the whole one, as PSNR: it must be visibly another.
+void checkThatSomethingIsCut(
+  const reference::Image<double>& whole, stage::Stage& stage, stage::Checks& check)
+{
+  check(reference::psnr(whole, stage.gray(), 255.0) < 34.0, "Something is cut away.");
+}
+
+void testClippingRange(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
+  vtkImageData* image, stage::Checks& check)
+{
+  for (const stage::Vector& direction : directions)
+  {
+    stage.show(mapper);
+    stage.look(direction, up);
+    const reference::Image<double> whole = stage.gray();
+    vtkCamera* const camera = stage.renderer->GetActiveCamera();
+    const double middle = camera->GetDistance();
+    camera->SetClippingRange(middle - 2.3, middle + 1000.0);
+    compare(stage, mapper, image, "Near plane", check);
+    checkThatSomethingIsCut(whole, stage, check);
+    camera->SetClippingRange(1.0, middle + 1.7);
+    compare(stage, mapper, image, "Far plane", check);
+    checkThatSomethingIsCut(whole, stage, check);
+  }
+}
+
+/// The camera in the middle of the volume sees what is before it.
+void testCameraInside(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
+  stage::Checks& check)
+{
+  for (const stage::Vector& direction : directions)
+  {
+    stage.show(mapper);
+    stage.look(direction, up);
+    vtkCamera* const camera = stage.renderer->GetActiveCamera();
+    camera->SetPosition(image->GetCenter());
+    double focus[3];
+    vtkMath::Add(image->GetCenter(), direction.data(), focus);
+    camera->SetFocalPoint(focus);
+    camera->SetClippingRange(0.1, 1000.0);
+    compare(stage, mapper, image, "Camera inside", check);
+  }
+}
+
+void testClippingPlanes(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
+  vtkImageData* image, stage::Checks& check)
+{
+  // In the world, where the volume is turned and moved.
+  stage.volume->SetOrientation(10.0, 20.0, 30.0);
+  stage.volume->SetPosition(5.0, -8.0, 12.0);
+  for (const stage::Vector& direction : directions)
+  {
+    stage.show(mapper);
+    stage.look(direction, up);
+    const reference::Image<double> whole = stage.gray();
+    for (const stage::Vector& normal : { stage::Vector{ 0.9, 0.3, 0.2 }, { -0.2, -0.1, 0.9 } })
+    {
+      vtkNew<vtkPlane> plane;
+      plane->SetOrigin(stage.volume->GetCenter());
+      plane->SetNormal(normal.data());
+      plane->Push(-3.0);
+      mapper->AddClippingPlane(plane);
+      compare(stage, mapper, image, "Clipping planes", check);
+      checkThatSomethingIsCut(whole, stage, check);
+    }
+    mapper->RemoveAllClippingPlanes();
+    check(stage.gray().value == whole.value, "Without planes the volume is whole again.");
+  }
+  stage.volume->SetOrientation(0.0, 0.0, 0.0);
+  stage.volume->SetPosition(0.0, 0.0, 0.0);
+}
+
+/// The number of pixels that are not black.
+int litPixels(stage::Stage& stage)
+{
+  const reference::Image<double> picture = stage.gray();
+  return static_cast<int>(
+    std::count_if(picture.value.begin(), picture.value.end(), [](double v) { return v > 0.0; }));
+}
+
+/// Seen along an axis a box of voxels is a rectangle, ending at voxel centres, or as wide as a
+/// voxel.
+int expectedPixels(const std::array<int, 3>& size, int axis, double pixelsPerVoxel)
+{
+  const int width = std::max(1, size[(axis + 1) % 3] - 1);
+  const int height = std::max(1, size[(axis + 2) % 3] - 1);
+  return static_cast<int>(width * height * pixelsPerVoxel * pixelsPerVoxel);
+}
+
+void testThinVolume(stage::Stage& stage, const std::array<int, 3>& size, stage::Checks& check)
+{
+  const auto image = stage::toImageData(reference::constant<std::uint8_t>(size, 255));
+  const auto mapper = stage::splatting(image);
+  stage.show(mapper);
+  constexpr double pixelsPerVoxel = 4.0;
+  for (int side = 0; side < 7; ++side)
+  {
+    stage::Vector direction = { 0.5, -0.4, 0.6 }; // at last, obliquely
+    if (side < 6)
+    {
+      direction = { 0.0, 0.0, 0.0 };
+      direction[side / 2] = side % 2 ? 1.0 : -1.0;
+    }
+    vtkCamera* const camera = stage.renderer->GetActiveCamera();
+    camera->ParallelProjectionOn();
+    camera->SetFocalPoint(image->GetCenter());
+    double position[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      position[a] = image->GetCenter()[a] - 100.0 * direction[a];
+    }
+    camera->SetPosition(position);
+    camera->SetViewUp(side / 2 == 1 ? 1.0 : 0.0, side / 2 == 1 ? 0.0 : 1.0, 0.0);
+    camera->SetParallelScale(0.5 * Height / pixelsPerVoxel);
+    camera->SetClippingRange(1.0, 300.0);
+    for (int mode = 0; mode < 3; ++mode)
+    {
+      mapper->SetQualityMode(mode);
+      const int lit = litPixels(stage);
+      const std::string what = std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" +
+        std::to_string(size[2]) + " from side " + std::to_string(side) + ", " +
+        mapper->GetQualityModeAsString() + ": " + std::to_string(lit) + " pixels";
+      const int expected = side < 6 ? expectedPixels(size, side / 2, pixelsPerVoxel) : 16;
+      // Pixels whose centre falls on the rim may count on both sides.
+      const int rim = static_cast<int>(pixelsPerVoxel) * (size[0] + size[1] + size[2]) + 8;
+      check(lit >= expected - rim / 4 && lit > 0, what + " are seen.");
+      check(side == 6 || lit <= expected + rim, what + " are not too many.");
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+int TestClipping(int, char*[])
+{
+  stage::Checks check;
+  stage::Stage stage(Width, Height);
+  const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
+  const auto mapper = stage::splatting(image);
+  testClippingRange(stage, mapper, image, check);
+  testCameraInside(stage, mapper, image, check);
+  testClippingPlanes(stage, mapper, image, check);
+  for (const std::array<int, 3>& size : { std::array<int, 3>{ 40, 40, 1 }, { 40, 1, 40 },
+         { 1, 40, 40 }, { 1, 1, 40 }, { 1, 40, 1 }, { 40, 1, 1 }, { 1, 1, 1 }, { 2, 2, 2 } })
+  {
+    testThinVolume(stage, size, check);
+  }
+  return check.exitCode();
+}

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the class promises without rendering: factory, defaults, clamping, PrintSelf.
+#include "Stage.h"
+
+#include "vtkOpenGLSplattingMIPVolumeMapper.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkObjectFactory.h"
+
+#include <sstream>
+
+namespace
+{
+using Mapper = vtkSplattingMIPVolumeMapper;
+
+void testFactory(stage::Checks& check)
+{
+  const auto made = vtkSmartPointer<Mapper>::New();
+  check(vtkOpenGLSplattingMIPVolumeMapper::SafeDownCast(made) != nullptr,
+    "New() gives the mapper that draws with OpenGL.");
+  const auto named = vtkSmartPointer<vtkObject>::Take(
+    vtkObjectFactory::CreateInstance("vtkSplattingMIPVolumeMapper"));
+  check(vtkOpenGLSplattingMIPVolumeMapper::SafeDownCast(named) != nullptr,
+    "The object factory gives it by its name, too.");
+  check(made->IsA("vtkVolumeMapper") == 1, "It is a volume mapper.");
+}
+
+void testDefaults(Mapper* mapper, stage::Checks& check)
+{
+  check(mapper->GetQualityMode() == Mapper::HIGH, "Default mode is high.");
+  check(mapper->GetKernel() == Mapper::TRILINEAR, "Default kernel is trilinear.");
+  check(mapper->GetKernelRadius() == 1.0, "Default radius is 1.");
+  check(mapper->GetFootprintSampling() == 0, "Default weights are in closed form.");
+  check(mapper->GetBlendMode() == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND,
+    "Default blend mode is maximum intensity.");
+  check(!mapper->GetLastRenderUsedRayCasting(), "A new mapper has not cast rays.");
+  check(mapper->GetShearImage() == nullptr, "There is no shear image before the first render.");
+  check(mapper->GetPrincipalAxis() == -1, "There is no principal axis before the first render.");
+  check(mapper->GetNumberOfProjections() == 0, "A new mapper has not projected.");
+  check(mapper->GetIndexMemorySize() == 0, "A new mapper holds no copy.");
+}
+
+/// Whether setting changes the value to the expected one, and setting it again is no modification.
+template <class Set, class Get, class Value>
+bool sets(Mapper* mapper, Set set, Get get, Value value, Value expected)
+{
+  (mapper->*set)(value);
+  const vtkMTimeType time = mapper->GetMTime();
+  (mapper->*set)(value);
+  return (mapper->*get)() == expected && mapper->GetMTime() == time;
+}
+
+void testClamping(Mapper* mapper, stage::Checks& check)
+{
+  for (const auto& [value, expected] : { std::pair(0, 0), { 1, 1 }, { 2, 2 }, { -3, 0 }, { 7, 2 } })
+  {
+    check(sets(mapper, &Mapper::SetQualityMode, &Mapper::GetQualityMode, value, expected),
+      "SetQualityMode " + std::to_string(value));
+  }
+  for (const auto& [value, expected] : { std::pair(0, 0), { 1, 1 }, { -1, 0 }, { 5, 1 } })
+  {
+    check(sets(mapper, &Mapper::SetKernel, &Mapper::GetKernel, value, expected),
+      "SetKernel " + std::to_string(value));
+  }
+  for (const auto& [value, expected] :
+    { std::pair(0.5, 0.5), { 1.25, 1.25 }, { 1.5, 1.5 }, { 0.1, 0.5 }, { 9.0, 1.5 } })
+  {
+    check(sets(mapper, &Mapper::SetKernelRadius, &Mapper::GetKernelRadius, value, expected),
+      "SetKernelRadius " + std::to_string(value));
+  }
+  for (const auto& [value, expected] :
+    { std::pair(0, 0), { 16, 16 }, { 64, 64 }, { -1, 0 }, { 65, 64 } })
+  {
+    check(
+      sets(mapper, &Mapper::SetFootprintSampling, &Mapper::GetFootprintSampling, value, expected),
+      "SetFootprintSampling " + std::to_string(value));
+  }
+}
+
+void testNames(Mapper* mapper, stage::Checks& check)
+{
+  const auto modeIs = [&](int value, const char* name)
+  {
+    return mapper->GetQualityMode() == value &&
+      name == std::string(mapper->GetQualityModeAsString());
+  };
+  mapper->SetQualityModeToPreview();
+  check(modeIs(Mapper::PREVIEW, "preview"), "SetQualityModeToPreview");
+  mapper->SetQualityModeToStandard();
+  check(modeIs(Mapper::STANDARD, "standard"), "SetQualityModeToStandard");
+  mapper->SetQualityModeToHigh();
+  check(modeIs(Mapper::HIGH, "high"), "SetQualityModeToHigh");
+  mapper->SetKernelToCosineBell();
+  check(mapper->GetKernel() == Mapper::COSINE_BELL &&
+      std::string("cosine bell") == mapper->GetKernelAsString(),
+    "SetKernelToCosineBell");
+  mapper->SetKernelToTrilinear();
+  check(mapper->GetKernel() == Mapper::TRILINEAR &&
+      std::string("trilinear") == mapper->GetKernelAsString(),
+    "SetKernelToTrilinear");
+}
+
+void testPrinting(Mapper* mapper, stage::Checks& check)
+{
+  std::ostringstream stream;
+  mapper->Print(stream);
+  const std::string text = stream.str();
+  for (const char* variable :
+    { "QualityMode: high", "Kernel: trilinear", "KernelRadius: ", "FootprintSampling: ",
+      "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ", "IndexMemorySize: ",
+      "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ", "Blend", "Cropping" })
+  {
+    check(text.find(variable) != std::string::npos, std::string("PrintSelf names ") + variable);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+int TestMapperContract(int, char*[])
+{
+  stage::Checks check;
+  testFactory(check);
+  const auto mapper = vtkSmartPointer<Mapper>::New();
+  testDefaults(mapper, check);
+  testPrinting(mapper, check);
+  testClamping(mapper, check);
+  testNames(mapper, check);
+  return check.exitCode();
+}

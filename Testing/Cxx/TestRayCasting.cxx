@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What cannot be splatted goes to VTK's ray caster: one warning per reason, and the right picture.
+#include "Stage.h"
+
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkCamera.h"
+#include "vtkColorTransferFunction.h"
+#include "vtkCommand.h"
+#include "vtkFixedPointVolumeRayCastMapper.h"
+#include "vtkGPUVolumeRayCastMapper.h"
+#include "vtkImageAppendComponents.h"
+#include "vtkImageData.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <iostream>
+
+namespace
+{
+const stage::Vector oblique = { 0.45, -0.5, -0.74 };
+const stage::Vector up = { 0.1, 1.0, 0.0 };
+
+vtkSmartPointer<vtkImageData> blobs()
+{
+  return stage::toImageData(stage::blobsAndTubes({ 48, 40, 44 }, 25));
+}
+
+void look(stage::Stage& stage, bool perspective)
+{
+  stage.look(oblique, up);
+  vtkCamera* const camera = stage.renderer->GetActiveCamera();
+  camera->SetParallelProjection(!perspective);
+  camera->SetViewAngle(28.0);
+  stage.renderer->ResetCameraClippingRange();
+}
+
+bool isBlack(const stage::Pixels& pixels)
+{
+  return std::all_of(pixels.begin(), pixels.end(), [](unsigned char byte) { return byte == 0; });
+}
+
+/// Renders more than once: the warning must come once.
+stage::Pixels renderWithOneWarning(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
+  const std::string& reason, stage::Checks& check)
+{
+  stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+  stage.pixels();
+  stage.renderer->GetActiveCamera()->Roll(0.5);
+  stage.pixels();
+  stage.renderer->GetActiveCamera()->Roll(-0.5);
+  stage::Pixels pixels = stage.pixels();
+  check(mapper->GetLastRenderUsedRayCasting(), reason + ": rays were cast.");
+  check(warnings.texts.size() == 1, reason + ": one warning.");
+  check(!warnings.texts.empty() && warnings.texts[0].find(reason) != std::string::npos,
+    reason + ": the warning says why.");
+  return pixels;
+}
+
+void testPerspective(stage::Stage& stage, stage::Checks& check)
+{
+  const auto image = blobs();
+  const auto mapper = stage::splatting(image);
+  stage.show(mapper);
+  look(stage, false);
+  const stage::Pixels before = stage.pixels();
+  check(!mapper->GetLastRenderUsedRayCasting(), "A parallel view is splatted.");
+  look(stage, true);
+  renderWithOneWarning(stage, mapper, "perspective", check);
+  const auto picture = stage.gray();
+  stage.show(stage::fixedPointRayCaster(image, 1.0));
+  const stage::Likeness likeness(stage.gray(), picture);
+  std::cout << "Perspective: " << likeness.text() << std::endl;
+  check(likeness.psnr > 45.0, "A perspective view is that of the ray caster.");
+  stage.show(mapper);
+  look(stage, false);
+  check(stage.pixels() == before, "Afterwards a parallel view is as before.");
+  check(!mapper->GetLastRenderUsedRayCasting(), "And splatted.");
+}
+
+/// The ray caster ignores direction matrices, so the mapper must not leave them to it.
+void testPerspectiveWithDirection(stage::Stage& stage, stage::Checks& check)
+{
+  const auto image = blobs();
+  image->SetDirectionMatrix(0.0, -0.8, 0.6, 1.0, 0.0, 0.0, 0.0, 0.6, 0.8);
+  image->SetOrigin(10.0, 20.0, -5.0);
+  image->SetSpacing(1.0, 1.3, 0.8);
+  stage.volume->SetOrientation(20.0, 10.0, 0.0);
+  const auto mapper = stage::splatting(image);
+  stage.show(mapper);
+  look(stage, true);
+  renderWithOneWarning(stage, mapper, "perspective", check);
+  const auto picture = stage.gray();
+  const auto rayCaster = stage::gpuRayCaster(image, 0.2);
+  stage.show(rayCaster);
+  const stage::Likeness likeness(stage.gray(), picture);
+  std::cout << "Perspective, direction matrix: " << likeness.text() << std::endl;
+  check(likeness.largestShift() < 0.15, "The direction matrix counts.");
+  check(likeness.psnr > 35.0, "The picture is like that of the GPU ray caster.");
+  stage.show(mapper);
+  rayCaster->ReleaseGraphicsResources(stage.window);
+  stage.volume->SetOrientation(0.0, 0.0, 0.0);
+}
+
+/// vtkFixedPointVolumeRayCastMapper has nearest-neighbour samples half a voxel off.
+void testPerspectivePreview(stage::Stage& stage, stage::Checks& check)
+{
+  const auto image = blobs();
+  const auto mapper = stage::splatting(image);
+  mapper->SetQualityModeToPreview();
+  stage.show(mapper);
+  look(stage, true);
+  renderWithOneWarning(stage, mapper, "perspective", check);
+  const auto picture = stage.gray();
+  stage.show(stage::fixedPointRayCaster(image, 0.25));
+  const stage::Likeness likeness(stage.gray(), picture);
+  std::cout << "Perspective, preview: " << likeness.text() << std::endl;
+  check(likeness.largestShift() < 0.15, "A perspective preview lies where the other modes do.");
+}
+
+void testComponents(stage::Stage& stage, stage::Checks& check)
+{
+  vtkNew<vtkImageAppendComponents> append;
+  append->AddInputData(blobs());
+  append->AddInputData(stage::toImageData(reference::constant<std::uint8_t>({ 48, 40, 44 }, 60)));
+  append->Update();
+  const auto mapper = stage::splatting(append->GetOutput());
+  stage.show(mapper);
+  look(stage, false);
+  check(!isBlack(renderWithOneWarning(stage, mapper, "several components", check)),
+    "Several components: the picture is not black.");
+}
+
+void testCropping(stage::Stage& stage, stage::Checks& check)
+{
+  const auto image = blobs();
+  const auto mapper = stage::splatting(image);
+  const double planes[6] = { 10.0, 40.0, 5.0, 30.0, 8.0, 25.0 };
+  const auto rayCaster = stage::fixedPointRayCaster(image, 1.0);
+  for (vtkVolumeMapper* cropped : { (vtkVolumeMapper*)mapper, (vtkVolumeMapper*)rayCaster })
+  {
+    cropped->CroppingOn();
+    cropped->SetCroppingRegionPlanes(planes);
+    cropped->SetCroppingRegionFlagsToSubVolume();
+  }
+  stage.show(mapper);
+  look(stage, false);
+  const stage::Pixels picture = renderWithOneWarning(stage, mapper, "cropping", check);
+  check(!isBlack(picture), "Cropping: the picture is not black.");
+  stage.show(rayCaster);
+  check(stage.pixels() == picture, "Cropping: the picture is that of the ray caster.");
+}
+
+void testComposite(stage::Stage& stage, stage::Checks& check)
+{
+  const auto image = blobs();
+  const auto mapper = stage::splatting(image);
+  mapper->SetBlendModeToComposite();
+  stage.show(mapper);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(20.0, 0.0);
+  opacity->AddPoint(255.0, 0.4);
+  stage.property->SetScalarOpacity(opacity);
+  look(stage, false);
+  const stage::Pixels picture = renderWithOneWarning(stage, mapper, "blend mode", check);
+  check(!isBlack(picture), "Composite: the picture is not black.");
+  const auto rayCaster = stage::fixedPointRayCaster(image, 1.0);
+  rayCaster->SetBlendModeToComposite();
+  stage.show(rayCaster);
+  check(stage.pixels() == picture, "Composite: the picture is that of the ray caster.");
+  stage.setGrayRamp(0.0, 255.0);
+}
+
+/// Colours that change, and properties that are exchanged for older ones.
+void testColors(stage::Stage& stage, stage::Checks& check)
+{
+  const auto image = blobs();
+  const auto mapper = stage::splatting(image);
+  const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+  stage.show(mapper);
+  look(stage, true);
+  const stage::Pixels plain = stage.pixels();
+  stage.setGrayRamp(100.0, 150.0);
+  check(stage.pixels() != plain, "Ray cast with new colours.");
+  vtkNew<vtkVolumeProperty> other;
+  other->DeepCopy(stage.property);
+  stage.setGrayRamp(0.0, 255.0);
+  stage.pixels();
+  stage.volume->SetProperty(other);
+  check(stage.pixels() != plain, "Ray cast with another, older property.");
+  stage.volume->SetProperty(stage.property);
+  check(stage.pixels() == plain, "Ray cast with the first colours again.");
+}
+
+/// Each reason is told, but none twice.
+void testSeveralReasons(stage::Stage& stage, stage::Checks& check)
+{
+  const auto mapper = stage::splatting(blobs());
+  stage.show(mapper);
+  look(stage, true);
+  stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+  for (int turn = 0; turn < 3; ++turn)
+  {
+    mapper->SetCropping(turn % 2);
+    stage.window->Render();
+  }
+  check(warnings.texts.size() == 2, "Two reasons, two warnings.");
+}
+}
+
+//------------------------------------------------------------------------------
+int TestRayCasting(int, char*[])
+{
+  stage::Checks check;
+  stage::Stage stage(180, 170);
+  testPerspective(stage, check);
+  testPerspectiveWithDirection(stage, check);
+  testPerspectivePreview(stage, check);
+  testComponents(stage, check);
+  testCropping(stage, check);
+  testComposite(stage, check);
+  testColors(stage, check);
+  testSeveralReasons(stage, check);
+  return check.exitCode();
+}
