@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The picture must lie where VTK's ray casters put it, whatever the camera, spacing, origin,
-// extent, direction and prop matrix. Half a voxel is 0.6 to 1 pixel here, so that such a mistake is
+// extent, direction and prop matrix. Half a voxel is up to a pixel here, so that such a mistake is
 // out of the bounds by far; half a pixel is too.
 #include "Stage.h"
 
