@@ -14,5 +14,6 @@ bash "$source_dir/Module/build-on-debian.sh" "$build_dir" \
   -DSPLATTINGMIP_STRICT=ON -DSPLATTINGMIP_BUILD_BENCHMARK=ON
 # The tests compare with pictures that were rendered without multisampling.
 export VTK_TESTING=1
-exec xvfb-run -a --server-args "-screen 0 1280x1024x24" \
+# Without -noreset the server would forget its settings whenever a test closes its last window.
+exec xvfb-run -a --server-args "-screen 0 1280x1024x24 -noreset" \
   ctest --test-dir "$build_dir" --output-on-failure --timeout 600 "$@"
