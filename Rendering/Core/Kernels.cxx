@@ -367,28 +367,42 @@ void clamp(A* image, A low, A high, std::ptrdiff_t n)
 }
 
 template <class A>
-void interpolate(const A* image, std::ptrdiff_t stride, const double start[2],
-  const double step[2], A* out, std::ptrdiff_t n)
+void interpolate(const A* __restrict image, std::ptrdiff_t stride, const double start[2],
+  const double step[2], A* __restrict out, std::ptrdiff_t n)
 {
+  // In steps that each vectorise: places, then the four neighbours, then their mixture.
+  constexpr std::int32_t chunk = 64;
   const double u0 = start[0], v0 = start[1], du = step[0], dv = step[1];
   const std::int32_t rowLength = static_cast<std::int32_t>(stride);
-  for (std::int32_t x = 0; x < static_cast<std::int32_t>(n); ++x)
+  for (std::int32_t begin = 0; begin < n; begin += chunk)
   {
-    const double u = u0 + x * du, v = v0 + x * dv; // both positive: truncation is floor
-    const std::int32_t i = static_cast<std::int32_t>(u), j = static_cast<std::int32_t>(v);
-    const A fu = static_cast<A>(u - i), fv = static_cast<A>(v - j);
-    const std::int32_t at = j * rowLength + i;
-    const A a = image[at], b = image[at + 1];
-    const A c = image[at + rowLength], d = image[at + rowLength + 1];
-    const A lower = a + fu * (b - a);
-    const A upper = c + fu * (d - c);
-    out[x] = lower + fv * (upper - lower);
+    const std::int32_t count =
+      begin + chunk < n ? chunk : static_cast<std::int32_t>(n) - begin;
+    std::int32_t at[chunk];
+    A fu[chunk], fv[chunk];
+    for (std::int32_t x = 0; x < count; ++x)
+    {
+      const double u = u0 + (begin + x) * du, v = v0 + (begin + x) * dv;
+      const std::int32_t i = static_cast<std::int32_t>(u); // both positive: truncation is floor
+      const std::int32_t j = static_cast<std::int32_t>(v);
+      fu[x] = static_cast<A>(u - i);
+      fv[x] = static_cast<A>(v - j);
+      at[x] = j * rowLength + i;
+    }
+    for (std::int32_t x = 0; x < count; ++x)
+    {
+      const A a = image[at[x]], b = image[at[x] + 1];
+      const A c = image[at[x] + rowLength], d = image[at[x] + rowLength + 1];
+      const A lower = a + fu[x] * (b - a);
+      const A upper = c + fu[x] * (d - c);
+      out[begin + x] = lower + fv[x] * (upper - lower);
+    }
   }
 }
 
 template <class A>
-void lookUp(const A* values, A low, A scale, std::int32_t last, const std::uint32_t* colors,
-  std::uint32_t* out, std::ptrdiff_t n)
+void lookUp(const A* __restrict values, A low, A scale, std::int32_t last,
+  const std::uint32_t* __restrict colors, std::uint32_t* __restrict out, std::ptrdiff_t n)
 {
   const A top = static_cast<A>(last), zero = 0, half = static_cast<A>(0.5);
   for (std::ptrdiff_t x = 0; x < n; ++x)

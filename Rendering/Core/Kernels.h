@@ -70,7 +70,7 @@ struct WorksheetLoops
     A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
   /// image[x] = clamp(image[x], low, high); NaN stays.
   void (*clamp)(A* image, A low, A high, std::ptrdiff_t n);
-  /// out[x] = image interpolated bilinearly at (u + x du, v + x dv); all four pixels must exist.
+  /// out[x] = image interpolated bilinearly at start + x step, which must lie between pixels that exist.
   void (*interpolate)(const A* image, std::ptrdiff_t stride, const double start[2],
     const double step[2], A* out, std::ptrdiff_t n);
   /// out[x] = colors[nearest entry to scale (values[x] - low)], clamped to [0, last].
