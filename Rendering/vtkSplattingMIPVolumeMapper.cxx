@@ -3,6 +3,7 @@
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include "Project.h"
+#include "RayCastFallback.h"
 #include "ShearWarp.h"
 #include "View.h"
 #include "VolumeIndex.h"
@@ -13,9 +14,7 @@
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkImageData.h"
-#include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -46,6 +45,10 @@ vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
 
 namespace
 {
+const char* const DegenerateCamera =
+  "The camera flattens the volume to a line or has no extent: give it a parallel scale above 0 and "
+  "a view-up that is not its direction.";
+
 template <class T>
 splatting::ScalarType sizedType()
 {
@@ -183,8 +186,6 @@ public:
   void LookAt(vtkDataArray* scalars);
   void Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
   void UpdateColors(vtkVolumeProperty* property);
-  void PlaceRayCastVolume(vtkVolume* volume);
-  void ConfigureRayCaster(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
   void CopyShearImage(vtkImageData* output) const;
 
   vtkImageData* Input = nullptr;     // set by Problem(), valid during a render
@@ -216,14 +217,7 @@ public:
   splatting::Warper Warper;
   splatting::Picture Picture;
 
-  vtkSmartPointer<vtkFixedPointVolumeRayCastMapper> RayCaster;
-  vtkNew<vtkVolume> RayCastVolume;
-  vtkNew<vtkVolumeProperty> RayCastProperty;
-  vtkNew<vtkImageData> RayCastInput;
-  vtkImageData* RayCastFrom = nullptr; // what RayCastInput was made from
-  vtkMTimeType RayCastInputTime = 0;
-  vtkVolumeProperty* RayCastLook = nullptr; // what RayCastProperty was made from
-  vtkMTimeType RayCastLookTime = 0;
+  std::unique_ptr<RayCastFallback> RayCaster; // made when first needed: it is megabytes large
 };
 
 //------------------------------------------------------------------------------
@@ -475,103 +469,20 @@ void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* pro
 }
 
 //------------------------------------------------------------------------------
-// Shows the ray caster our volume. It ignores direction matrices, so the direction goes into the
-// matrix of the prop.
-void vtkSplattingMIPVolumeMapper::Internals::PlaceRayCastVolume(vtkVolume* volume)
-{
-  if (!this->RayCaster)
-  {
-    this->RayCaster = vtkSmartPointer<vtkFixedPointVolumeRayCastMapper>::New();
-    this->RayCaster->AutoAdjustSampleDistancesOff();
-    this->RayCaster->SetInputData(this->RayCastInput);
-    this->RayCastVolume->SetMapper(this->RayCaster);
-    this->RayCastVolume->SetProperty(this->RayCastProperty);
-  }
-  if (this->RayCastFrom != this->Input || this->RayCastInputTime != this->Input->GetMTime())
-  {
-    this->RayCastInput->ShallowCopy(this->Input);
-    this->RayCastInput->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
-    this->RayCastFrom = this->Input;
-    this->RayCastInputTime = this->Input->GetMTime();
-  }
-  vtkMatrix3x3* const direction = this->Input->GetDirectionMatrix();
-  glm::dmat4 turn(1.0);
-  for (int r = 0; r < 3; ++r)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      turn[c][r] = direction->GetElement(r, c);
-    }
-  }
-  const double* o = this->Input->GetOrigin();
-  const glm::dvec4 origin(o[0], o[1], o[2], 0.0);
-  turn[3] += origin - turn * origin;
-  const glm::dmat4 world = toGlm(volume->GetMatrix()) * turn;
-  vtkNew<vtkMatrix4x4> matrix;
-  for (int r = 0; r < 4; ++r)
-  {
-    for (int c = 0; c < 4; ++c)
-    {
-      matrix->SetElement(r, c, world[c][r]);
-    }
-  }
-  this->RayCastVolume->SetUserMatrix(matrix);
-}
-
-//------------------------------------------------------------------------------
-// Hands this mapper's settings to VTK's ray caster.
-void vtkSplattingMIPVolumeMapper::Internals::ConfigureRayCaster(
-  vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
-{
-  vtkVolumeProperty* const property = volume->GetProperty();
-  if (this->RayCastLook != property || this->RayCastLookTime != property->GetMTime())
-  {
-    this->RayCastProperty->DeepCopy(property);
-    this->RayCastLook = property;
-    this->RayCastLookTime = property->GetMTime();
-  }
-  // Its nearest interpolation truncates, which moves a MIP by half a voxel: no mode asks for that.
-  this->RayCastProperty->SetInterpolationType(self->BlendMode == MAXIMUM_INTENSITY_BLEND
-      ? VTK_LINEAR_INTERPOLATION
-      : property->GetInterpolationType());
-  const double* spacing = this->Input->GetSpacing();
-  const double step =
-    std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
-  this->RayCaster->SetSampleDistance(static_cast<float>(step));
-  this->RayCaster->SetBlendMode(self->BlendMode);
-  this->RayCaster->SetCropping(self->Cropping);
-  this->RayCaster->SetCroppingRegionPlanes(self->CroppingRegionPlanes);
-  this->RayCaster->SetCroppingRegionFlags(self->CroppingRegionFlags);
-  this->RayCaster->SetClippingPlanes(self->GetClippingPlanes());
-  this->RayCaster->SetScalarMode(self->ScalarMode);
-  if (self->ArrayAccessMode == VTK_GET_ARRAY_BY_ID)
-  {
-    this->RayCaster->SelectScalarArray(self->ArrayId);
-  }
-  else if (self->ArrayName)
-  {
-    this->RayCaster->SelectScalarArray(self->ArrayName);
-  }
-}
-
-//------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 {
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
-  const std::string problem = this->Internal->Problem(this, vol);
-  if (!problem.empty())
+  std::string problem = this->Internal->Problem(this, vol);
+  if (problem.empty())
   {
-    // Told once, not in every frame.
-    if (problem != this->Internal->Reported)
-    {
-      vtkErrorMacro(<< problem);
-    }
+    problem = this->RenderBySplatting(ren, vol);
   }
-  else
+  // Told once, not in every frame.
+  if (!problem.empty() && problem != this->Internal->Reported)
   {
-    this->RenderBySplatting(ren, vol);
+    vtkErrorMacro(<< problem);
   }
   this->Internal->Reported = problem;
   this->Timer->StopTimer();
@@ -580,20 +491,25 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 }
 
 //------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
+// Returns what is wrong, or an empty string.
+const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
   const splatting::View view = in.MakeView(this, ren, vol);
+  if (!splatting::isFinite(view))
+  {
+    return DegenerateCamera;
+  }
   if (const char* reason = in.ReasonToRayCast(this, vol, view))
   {
     this->RenderByRayCasting(ren, vol, reason);
-    return;
+    return "";
   }
   in.LookAt(in.Scalars);
   in.Project(this, view);
   if (!in.Geometry.valid())
   {
-    return; // seen edge-on by a camera that has no extent: nothing to see
+    return DegenerateCamera;
   }
   in.UpdateColors(vol->GetProperty());
   in.Warper.warp(in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet,
@@ -603,6 +519,7 @@ void vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume*
     this->DisplayImage(ren, &in.Picture.origin.x, &in.Picture.size.x,
       reinterpret_cast<const unsigned char*>(in.Picture.pixels.data()));
   }
+  return "";
 }
 
 //------------------------------------------------------------------------------
@@ -614,9 +531,11 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
   {
     vtkWarningMacro(<< "Rendering by vtkFixedPointVolumeRayCastMapper, because " << reason << ".");
   }
-  in.PlaceRayCastVolume(vol);
-  in.ConfigureRayCaster(this, vol);
-  in.RayCaster->Render(ren, in.RayCastVolume);
+  if (!in.RayCaster)
+  {
+    in.RayCaster = std::make_unique<RayCastFallback>();
+  }
+  in.RayCaster->Render(this, in.Input, ren, vol);
   this->LastRenderUsedRayCasting = true;
 }
 

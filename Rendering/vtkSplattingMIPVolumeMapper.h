@@ -197,7 +197,7 @@ protected:
   vtkSplattingMIPVolumeMapper();
   ~vtkSplattingMIPVolumeMapper() override;
 
-  void RenderBySplatting(vtkRenderer* ren, vtkVolume* vol);
+  const char* RenderBySplatting(vtkRenderer* ren, vtkVolume* vol);
   void RenderByRayCasting(vtkRenderer* ren, vtkVolume* vol, const char* reason);
 
   /**

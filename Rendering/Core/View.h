@@ -30,6 +30,24 @@ struct View
 };
 
 /**
+ * Whether the matrix holds numbers only; cameras without extent divide by zero.
+ */
+inline bool isFinite(const View& view)
+{
+  for (int c = 0; c < 4; ++c)
+  {
+    for (int r = 0; r < 4; ++r)
+    {
+      if (!std::isfinite(view.indexToClip[c][r]))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/**
  * Whether all rays of the view are parallel, told by the matrix.
  */
 inline bool isParallel(const View& view)

@@ -9,6 +9,7 @@
 
 #include "vtkActor.h"
 #include "vtkBitArray.h"
+#include "vtkCamera.h"
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkExecutive.h"
@@ -209,6 +210,23 @@ void test(Scene& scene, const Fault& fault, stage::Checks& check)
   scene.mend();
   check(scene.stage.pixels() == before, name + ": once mended, the picture is as before.");
 }
+
+/// Such a camera hides the whole scene, so other props cannot tell.
+void testCameraWithoutExtent(Scene& scene, stage::Checks& check)
+{
+  const stage::Pixels before = scene.stage.pixels();
+  vtkCamera* const camera = scene.stage.renderer->GetActiveCamera();
+  const double scale = camera->GetParallelScale();
+  const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
+  camera->SetParallelScale(0.0);
+  scene.stage.pixels();
+  scene.stage.pixels();
+  check(errors.texts.size() == 1 && isSentence(errors.texts[0]) &&
+      errors.texts[0].find("camera") != std::string::npos,
+    "A camera without extent gives one sentence.");
+  camera->SetParallelScale(scale);
+  check(scene.stage.pixels() == before, "Once the camera is mended, the picture is as before.");
+}
 }
 
 //------------------------------------------------------------------------------
@@ -225,5 +243,6 @@ int TestBadInput(int, char*[])
   {
     test(scene, fault, check);
   }
+  testCameraWithoutExtent(scene, check);
   return check.exitCode();
 }
