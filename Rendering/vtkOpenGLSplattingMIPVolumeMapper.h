@@ -11,7 +11,7 @@
 #ifndef vtkOpenGLSplattingMIPVolumeMapper_h
 #define vtkOpenGLSplattingMIPVolumeMapper_h
 
-#include "vtkNew.h" // for the texture
+#include "vtkNew.h"                         // for the texture
 #include "vtkRenderingSplattingMIPModule.h" // for the export macro
 #include "vtkSplattingMIPVolumeMapper.h"
 
@@ -34,8 +34,8 @@ protected:
   vtkOpenGLSplattingMIPVolumeMapper();
   ~vtkOpenGLSplattingMIPVolumeMapper() override;
 
-  void DisplayImage(vtkRenderer* ren, const int origin[2], const int size[2],
-    const unsigned char* rgba) override;
+  void DisplayImage(
+    vtkRenderer* ren, const int origin[2], const int size[2], const unsigned char* rgba) override;
 
 private:
   vtkOpenGLSplattingMIPVolumeMapper(const vtkOpenGLSplattingMIPVolumeMapper&) = delete;

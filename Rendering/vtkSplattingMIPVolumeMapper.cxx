@@ -188,10 +188,10 @@ public:
   void UpdateColors(vtkVolumeProperty* property);
   void CopyShearImage(vtkImageData* output) const;
 
-  vtkImageData* Input = nullptr;     // set by Problem(), valid during a render
-  vtkDataArray* Scalars = nullptr;   // likewise
-  std::string Reported;              // the last problem, so that each is told once
-  std::set<std::string> Announced;   // reasons to ray cast that were told
+  vtkImageData* Input = nullptr;   // set by Problem(), valid during a render
+  vtkDataArray* Scalars = nullptr; // likewise
+  std::string Reported;            // the last problem, so that each is told once
+  std::set<std::string> Announced; // reasons to ray cast that were told
 
   splatting::VolumeIndex Index;
   vtkSmartPointer<vtkDataArray> Contiguous; // a copy, if the scalars are stored in another way
@@ -222,12 +222,12 @@ public:
 
 //------------------------------------------------------------------------------
 vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
-  : QualityMode(HIGH)
-  , Kernel(TRILINEAR)
-  , KernelRadius(1.0)
-  , FootprintSampling(0)
-  , LastRenderUsedRayCasting(false)
-  , Internal(new Internals)
+  : QualityMode(HIGH),
+    Kernel(TRILINEAR),
+    KernelRadius(1.0),
+    FootprintSampling(0),
+    LastRenderUsedRayCasting(false),
+    Internal(new Internals)
 {
   this->BlendMode = MAXIMUM_INTENSITY_BLEND;
 }
@@ -259,11 +259,12 @@ std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
     return "The input has no voxels: its extent is empty.";
   }
   int cellFlag = 0;
-  this->Scalars = vtkAbstractMapper::GetScalars(this->Input, self->ScalarMode,
-    self->ArrayAccessMode, self->ArrayId, self->ArrayName, cellFlag);
+  this->Scalars = vtkAbstractMapper::GetScalars(
+    this->Input, self->ScalarMode, self->ArrayAccessMode, self->ArrayId, self->ArrayName, cellFlag);
   if (!this->Scalars)
   {
-    return "The input has no numeric scalars under the chosen ScalarMode and array: set them on the "
+    return "The input has no numeric scalars under the chosen ScalarMode and array: set them on "
+           "the "
            "input or choose another with SelectScalarArray.";
   }
   if (cellFlag)
@@ -423,7 +424,8 @@ void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* pro
   constexpr double largest = std::numeric_limits<float>::max();
   double low = largest, high = -largest;
   addNodes(opacity, low, high);
-  const bool clamping = opacity->GetClamping() && (gray ? grays->GetClamping() : colors->GetClamping());
+  const bool clamping =
+    opacity->GetClamping() && (gray ? grays->GetClamping() : colors->GetClamping());
   if (gray)
   {
     addNodes(grays, low, high);
@@ -512,8 +514,8 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     return DegenerateCamera;
   }
   in.UpdateColors(vol->GetProperty());
-  in.Warper.warp(in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet,
-    in.Picture);
+  in.Warper.warp(
+    in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet, in.Picture);
   if (!in.Picture.pixels.empty())
   {
     this->DisplayImage(ren, &in.Picture.origin.x, &in.Picture.size.x,
@@ -618,9 +620,8 @@ double* vtkSplattingMIPVolumeMapper::GetShear()
 vtkIdType vtkSplattingMIPVolumeMapper::GetIndexMemorySize()
 {
   const vtkDataArray* const copy = this->Internal->Contiguous;
-  const vtkIdType packed = copy
-    ? copy->GetNumberOfValues() * const_cast<vtkDataArray*>(copy)->GetDataTypeSize()
-    : 0;
+  const vtkIdType packed =
+    copy ? copy->GetNumberOfValues() * const_cast<vtkDataArray*>(copy)->GetDataTypeSize() : 0;
   return static_cast<vtkIdType>(this->Internal->Index.memorySize()) + packed;
 }
 

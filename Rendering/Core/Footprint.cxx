@@ -15,7 +15,7 @@ constexpr double Pi = 3.14159265358979323846;
 /// Gauss-Legendre rules on [-1, 1], the non-negative half.
 struct Quadrature
 {
-  int pairs;  // nodes +-x
+  int pairs;   // nodes +-x
   bool centre; // and one at 0, stored first
   std::array<double, 5> x, w;
 };
@@ -52,9 +52,7 @@ const Quadrature& ruleFor(const Kernel& kernel)
 class Breaks
 {
 public:
-  Breaks(double from, double to)
-    : From(from)
-    , To(to)
+  Breaks(double from, double to) : From(from), To(to)
   {
     this->Places.reserve(16);
     this->Places = { from, to };
@@ -233,8 +231,8 @@ WeightTable closedFormWeights(
 }
 
 GeneralTable::GeneralTable(const Kernel& kernel, const glm::dvec2& shear, int sampling)
-  : Shear(shear)
-  , Sampling(sampling)
+  : Shear(shear),
+    Sampling(sampling)
 {
   // The sheared voxel covers support * (1 + |shear|) on either side: 2 x 2 pixels for a box, 4 x 4
   // for the trilinear kernel [CS98, section 3].
@@ -281,9 +279,7 @@ double GeneralTable::entry(const Kernel& kernel, int part, const glm::dvec2& p) 
   }
   double sum = 0.0;
   const auto add = [&](double z, double share)
-  {
-    sum += share * kernel(z) * kernel(p.x - this->Shear.x * z) * kernel(p.y - this->Shear.y * z);
-  };
+  { sum += share * kernel(z) * kernel(p.x - this->Shear.x * z) * kernel(p.y - this->Shear.y * z); };
   const std::vector<double>& places = breaks.sorted();
   for (std::size_t b = 1; b < places.size(); ++b)
   {
@@ -343,8 +339,8 @@ std::vector<Tap> quantisedTaps(const WeightTable& weights, int bits)
       }
     }
   }
-  const auto largest = std::max_element(taps.begin(), taps.end(),
-    [](const Tap& a, const Tap& b) { return a.weight < b.weight; });
+  const auto largest = std::max_element(
+    taps.begin(), taps.end(), [](const Tap& a, const Tap& b) { return a.weight < b.weight; });
   largest->weight += one - sum;
   for (Tap& tap : taps)
   {

@@ -84,7 +84,7 @@ private:
 
   glm::dvec2 Shear{ 0.0 };
   int Sampling = 0;
-  int Pixels = 0;                              // the table covers Pixels x Pixels pixels
+  int Pixels = 0;                             // the table covers Pixels x Pixels pixels
   std::array<std::vector<double>, 3> Entries; // "up", "middle" and "down" footprint
 };
 

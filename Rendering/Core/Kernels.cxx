@@ -18,7 +18,8 @@ template <class T>
 struct PackOf
 {
   typedef T type __attribute__((vector_size(SPLATTING_VECTOR_BYTES)));
-  typedef T loose __attribute__((vector_size(SPLATTING_VECTOR_BYTES), aligned(sizeof(T)), may_alias));
+  typedef T loose
+    __attribute__((vector_size(SPLATTING_VECTOR_BYTES), aligned(sizeof(T)), may_alias));
 };
 template <class T>
 using Pack = typename PackOf<T>::type;
@@ -274,8 +275,7 @@ inline void splatPixel(const Splat<A>& s, std::ptrdiff_t x, int y)
     {
       for (int i = 0; i < part.columns; ++i)
       {
-        sum += part.weights[j * part.columns + i] *
-          part.source[(y + j) * s.sourceStride + x + i];
+        sum += part.weights[j * part.columns + i] * part.source[(y + j) * s.sourceStride + x + i];
       }
     }
   }
@@ -376,8 +376,7 @@ void interpolate(const A* __restrict image, std::ptrdiff_t stride, const double 
   const std::int32_t rowLength = static_cast<std::int32_t>(stride);
   for (std::int32_t begin = 0; begin < n; begin += chunk)
   {
-    const std::int32_t count =
-      begin + chunk < n ? chunk : static_cast<std::int32_t>(n) - begin;
+    const std::int32_t count = begin + chunk < n ? chunk : static_cast<std::int32_t>(n) - begin;
     std::int32_t at[chunk];
     A fu[chunk], fv[chunk];
     for (std::int32_t x = 0; x < count; ++x)
@@ -424,6 +423,6 @@ constexpr WorksheetLoops<A> worksheetLoops{ &splat<A>, &splatValid<A>, &clamp<A>
 extern const Kernels SPLATTING_KERNELS;
 const Kernels SPLATTING_KERNELS = { voxelLoops<std::int8_t>, voxelLoops<std::uint8_t>,
   voxelLoops<std::int16_t>, voxelLoops<std::uint16_t>, voxelLoops<std::int32_t>,
-  voxelLoops<std::uint32_t>, voxelLoops<std::int64_t>, voxelLoops<std::uint64_t>,
-  voxelLoops<float>, voxelLoops<double>, worksheetLoops<float>, worksheetLoops<double> };
+  voxelLoops<std::uint32_t>, voxelLoops<std::int64_t>, voxelLoops<std::uint64_t>, voxelLoops<float>,
+  voxelLoops<double>, worksheetLoops<float>, worksheetLoops<double> };
 }

@@ -66,11 +66,11 @@ struct WorksheetLoops
   void (*splat)(const Splat<A>& splat);
   /// image[x] = max(image[x], average of rows[0..count)[x], NaN left out, weighted and divided by
   /// the weights that remain). image[x] = NaN is "no sample yet". Rows may hold infinities.
-  void (*splatValid)(
-    A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
+  void (*splatValid)(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
   /// image[x] = clamp(image[x], low, high); NaN stays.
   void (*clamp)(A* image, A low, A high, std::ptrdiff_t n);
-  /// out[x] = image interpolated bilinearly at start + x step, which must lie between pixels that exist.
+  /// out[x] = image interpolated bilinearly at start + x step, which must lie between pixels that
+  /// exist.
   void (*interpolate)(const A* image, std::ptrdiff_t stride, const double start[2],
     const double step[2], A* out, std::ptrdiff_t n);
   /// out[x] = colors[nearest entry to scale (values[x] - low)], clamped to [0, last].

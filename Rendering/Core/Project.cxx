@@ -30,8 +30,8 @@ struct SliceGeometry
 template <class A>
 struct FootprintPart
 {
-  int slice;    // -1, 0 or 1
-  int di, dj;   // the first column and row
+  int slice;  // -1, 0 or 1
+  int di, dj; // the first column and row
   int columns, rows;
   std::vector<A> weights; // zero where there is no tap
 };
@@ -239,12 +239,12 @@ public:
 
   WorksheetBand(const Frame<T>& frame, const std::vector<SliceFootprint<A>>& footprints, int reach,
     RowCache& cache, int v0, int v1)
-    : Shared(frame)
-    , Footprints(footprints)
-    , Reach(reach)
-    , Cache(cache)
-    , V0(v0)
-    , V1(v1)
+    : Shared(frame),
+      Footprints(footprints),
+      Reach(reach),
+      Cache(cache),
+      V0(v0),
+      V1(v1)
   {
     cache.rowLength = frame.geometry.size().x + 2 * Pad;
     cache.rowsPerSlice = v1 - v0 + 2 * (1 + reach) + 2;
@@ -378,8 +378,7 @@ private:
   const A* voxel(
     const SliceFootprint<A>& footprint, int slice, int di, int dj, int u, int v, int k) const
   {
-    return this->Cache.template row<A>(
-             std::clamp(k + slice, 0, this->Shared.geometry.size().z - 1),
+    return this->Cache.template row<A>(std::clamp(k + slice, 0, this->Shared.geometry.size().z - 1),
              v - footprint.nearest.y + dj) +
       (u - footprint.nearest.x + di);
   }
@@ -424,7 +423,9 @@ std::vector<SliceGeometry> sliceGeometry(const ShearWarp& geometry)
 
 /// Weights are rounded so that 8-bit sums are exact, else to the accumulator's precision.
 template <class T>
-constexpr int weightBits = sizeof(T) == 1 ? 16 : std::is_same_v<Accumulator<T>, float> ? 24 : 48;
+constexpr int weightBits = sizeof(T) == 1 ? 16
+  : std::is_same_v<Accumulator<T>, float> ? 24
+                                          : 48;
 
 template <class T>
 std::vector<SliceFootprint<Accumulator<T>>> sliceFootprints(
@@ -450,10 +451,10 @@ std::vector<SliceFootprint<Accumulator<T>>> sliceFootprints(
         footprint.nearest = { static_cast<int>(std::floor(position.x + 0.5)),
           static_cast<int>(std::floor(position.y + 0.5)) };
         const glm::dvec2 fraction = position - glm::dvec2(footprint.nearest);
-        footprint.taps = quantisedTaps(settings.footprintSampling > 0
-            ? table.weights(fraction)
-            : closedFormWeights(kernel, shear, fraction),
-          weightBits<T>);
+        footprint.taps =
+          quantisedTaps(settings.footprintSampling > 0 ? table.weights(fraction)
+                                                       : closedFormWeights(kernel, shear, fraction),
+            weightBits<T>);
         for (const Tap& tap : footprint.taps)
         {
           footprint.weights.push_back(static_cast<A>(tap.weight));
@@ -499,10 +500,7 @@ struct Projector::Scratch
   vtkSMPThreadLocal<RowCache> rows;
 };
 
-Projector::Projector()
-  : Memory(new Scratch)
-{
-}
+Projector::Projector() : Memory(new Scratch) {}
 
 Projector::~Projector() = default;
 

@@ -105,7 +105,8 @@ void ShearWarp::computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY)
   // A shear pixel shows the voxel of the middle slice that lies there.
   const int i = this->Axes[0], j = this->Axes[1], k = this->Axes[2];
   const glm::dmat2 linear(rowX[i], rowY[i], rowX[j], rowY[j]);
-  const glm::dvec2 middle = glm::dvec2(rowX.w, rowY.w) + this->Middle * glm::dvec2(rowX[k], rowY[k]);
+  const glm::dvec2 middle =
+    glm::dvec2(rowX.w, rowY.w) + this->Middle * glm::dvec2(rowX[k], rowY[k]);
   const glm::dvec2 offset = middle - linear * glm::dvec2(this->Margin);
   this->ShearToScreen = glm::dmat3x2(linear[0], linear[1], offset);
   const glm::dmat2 inverse = glm::inverse(linear);

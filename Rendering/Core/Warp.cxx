@@ -22,8 +22,8 @@ public:
   /// `size` is the box's in voxels; `inset` keeps points off the rim by so many pixels along u and
   /// v.
   Silhouette(const ShearWarp& geometry, const glm::dvec3& size, double inset)
-    : Centre(0.5 * (geometry.width() - 1), 0.5 * (geometry.height() - 1))
-    , Shear(geometry.shear())
+    : Centre(0.5 * (geometry.width() - 1), 0.5 * (geometry.height() - 1)),
+      Shear(geometry.shear())
   {
     const glm::dvec2 s(std::abs(this->Shear.x), std::abs(this->Shear.y));
     this->Half = { 0.5 * (size.x + s.x * size.z) - inset, 0.5 * (size.y + s.y * size.z) - inset };
@@ -102,8 +102,8 @@ struct WarpFrame
 
   void lookUp(const A* values, std::uint32_t* out, std::ptrdiff_t n) const
   {
-    this->loops.lookUp(values, this->low, this->scale, this->last, this->table.colors.data(), out,
-      n);
+    this->loops.lookUp(
+      values, this->low, this->scale, this->last, this->table.colors.data(), out, n);
   }
 };
 

@@ -84,8 +84,8 @@ inline splatting::View randomView(const std::array<int, 3>& size, reference::Ran
       random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(0.1, 1.0));
     m = glm::rotate(m, random.uniform(0.0, 6.3), glm::normalize(axis));
   }
-  m = glm::scale(m, glm::dvec3(random.uniform(0.3, 3.0), random.uniform(0.3, 3.0),
-                      random.uniform(0.3, 3.0)));
+  m = glm::scale(
+    m, glm::dvec3(random.uniform(0.3, 3.0), random.uniform(0.3, 3.0), random.uniform(0.3, 3.0)));
   view.indexToClip = glm::translate(m, -0.5 * glm::dvec3(view.dimensions - 1));
   return view;
 }
@@ -116,8 +116,8 @@ template <class T>
 reference::Volume<T> wholeRangeNoise(const std::array<int, 3>& size, std::uint64_t seed)
 {
   using Limits = std::numeric_limits<T>;
-  return reference::uniformNoise<T>(
-    size, seed, Limits::is_integer ? Limits::lowest() : T(-1), Limits::is_integer ? Limits::max() : T(1));
+  return reference::uniformNoise<T>(size, seed, Limits::is_integer ? Limits::lowest() : T(-1),
+    Limits::is_integer ? Limits::max() : T(1));
 }
 
 inline reference::ShearView referenceView(const splatting::ShearWarp& geometry)

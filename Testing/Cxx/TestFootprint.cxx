@@ -76,7 +76,8 @@ double sumOf(const WeightTable& weights)
 double largestDifference(const WeightTable& a, const WeightTable& b)
 {
   double largest = 0.0;
-  forEachWeight(a, [&](int c, int di, int dj, double w)
+  forEachWeight(a,
+    [&](int c, int di, int dj, double w)
     { largest = std::max(largest, std::abs(w - b[c + 1][dj + 2][di + 2])); });
   return largest;
 }
@@ -90,7 +91,8 @@ void testClosedForm(Checks& check, reference::Random& random)
       const glm::dvec2 shear = anyShear(random), fraction = anyFraction(random);
       const WeightTable weights = splatting::closedFormWeights(kernel, shear, fraction);
       WeightTable direct;
-      forEachWeight(weights, [&](int c, int di, int dj, double)
+      forEachWeight(weights,
+        [&](int c, int di, int dj, double)
         {
           direct[c + 1][dj + 2][di + 2] =
             directWeight(kernel, shear, -glm::dvec2(di, dj) - fraction, c);
@@ -99,7 +101,8 @@ void testClosedForm(Checks& check, reference::Random& random)
       // The midpoint rule errs by at most 1/(2 n) of a step of height 1 for the box, per dimension;
       // by far less for continuous kernels: 1/24 n^-2 of the second derivative and kinks.
       const double bound = kernel.shape == Reconstruction::Box ? 3 * 0.5 / 40 : 2e-3;
-      forEachWeight(weights, [&](int c, int di, int dj, double w)
+      forEachWeight(weights,
+        [&](int c, int di, int dj, double w)
         {
           check(std::abs(w - direct[c + 1][dj + 2][di + 2] / sum) < bound, "weight ", w,
             " is not the integral ", direct[c + 1][dj + 2][di + 2] / sum);
@@ -124,7 +127,8 @@ void testPromises(Checks& check, reference::Random& random)
       weights = splatting::closedFormWeights(kernel, shear, fraction);
     }
     check(std::abs(sumOf(weights) - 1.0) < 1e-14, "weights sum to ", sumOf(weights));
-    forEachWeight(weights, [&](int c, int di, int dj, double w)
+    forEachWeight(weights,
+      [&](int c, int di, int dj, double w)
       {
         check(w >= 0.0, "a weight is negative: ", w);
         const bool narrow = kernel.shape == Reconstruction::Box;
@@ -180,8 +184,8 @@ void testDigitisedConverges(Checks& check)
         const glm::dvec2 fraction(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
         const splatting::GeneralTable table(kernels[k], shear, sampling);
         largest = std::max(largest,
-          largestDifference(table.weights(fraction),
-            splatting::closedFormWeights(kernels[k], shear, fraction)));
+          largestDifference(
+            table.weights(fraction), splatting::closedFormWeights(kernels[k], shear, fraction)));
       }
       std::cout << names[k] << ", " << sampling << " x " << sampling
                 << " sub-pixels: weights are off by at most " << largest << std::endl;

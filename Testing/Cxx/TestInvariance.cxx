@@ -64,7 +64,8 @@ void testThreadsAndInstructionSets(Checks& check, std::uint64_t seed)
 }
 
 /// The view of a volume whose axes were permuted and reversed, so that it looks the same.
-splatting::View transformedView(const splatting::View& view, const reference::AxisSymmetry& symmetry)
+splatting::View transformedView(
+  const splatting::View& view, const reference::AxisSymmetry& symmetry)
 {
   splatting::View result = view;
   glm::dvec4 last = view.indexToClip[3];
@@ -128,8 +129,8 @@ void testSymmetries(Checks& check, std::uint64_t seed)
         // average.
         const double difference = largestDifference(
           reference::transformed(toReference<A>(plain), from, symmetry), toReference<A>(other));
-        check(difference <= 2.0 * errorBound<T>(quality, 0.0, 100.0),
-          "a symmetry changes mode ", int(quality), " by ", difference);
+        check(difference <= 2.0 * errorBound<T>(quality, 0.0, 100.0), "a symmetry changes mode ",
+          int(quality), " by ", difference);
       }
     }
   }

@@ -64,8 +64,8 @@ void testHalfSpaces(Checks& check)
     std::vector<glm::dvec4> halfSpaces;
     for (int h = random.uniform(1, 3); h > 0; --h)
     {
-      glm::dvec4 plane(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
-        random.uniform(-1.0, 1.0), 0.0);
+      glm::dvec4 plane(
+        random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.0);
       for (int a = 0; a < 3; ++a)
       {
         plane.w -= plane[a] * random.uniform(0.0, double(volume.size[a]));
@@ -107,7 +107,8 @@ int TestPreview(int, char*[])
 {
   Checks check;
   std::uint64_t seed = 100;
-  forEachType([&](auto* null) { testViews<std::remove_pointer_t<decltype(null)>>(check, 250, ++seed); });
+  forEachType(
+    [&](auto* null) { testViews<std::remove_pointer_t<decltype(null)>>(check, 250, ++seed); });
   // A volume of several bands and blocks of registers.
   reference::Random random(5);
   for (int n = 0; n < 12; ++n)

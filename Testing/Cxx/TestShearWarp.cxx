@@ -43,13 +43,13 @@ void testShearThenWarpIsTheView(Checks& check, reference::Random& random)
     const glm::dvec2 expected = onScreen(view, point);
     // Shears are rounded by up to 2^-25 pixels per slice; a pixel may be several on the screen.
     const glm::dmat3x2& m = geometry.shearToScreen();
-    const double scale =
-      std::abs(m[0].x) + std::abs(m[0].y) + std::abs(m[1].x) + std::abs(m[1].y);
+    const double scale = std::abs(m[0].x) + std::abs(m[0].y) + std::abs(m[1].x) + std::abs(m[1].y);
     const double bound = 0x1p-25 * geometry.size().z * scale + 1e-9 * (1.0 + scale);
     check(glm::length(warped - expected) <= bound, "a voxel is ", glm::length(warped - expected),
       " pixels off");
     const glm::dvec2 back = geometry.screenToShear() * glm::dvec3(warped, 1.0);
-    check(glm::length(back - pixel) < 1e-7 * (1.0 + glm::length(pixel)), "the warp is not inverted");
+    check(
+      glm::length(back - pixel) < 1e-7 * (1.0 + glm::length(pixel)), "the warp is not inverted");
     check(std::abs(geometry.shear().x) <= 1.0 && std::abs(geometry.shear().y) <= 1.0,
       "a shear is above 1");
   }

@@ -59,8 +59,8 @@ splatting::ColorTable countingTable(double low, double high)
 
 /// Whether the ray of a screen pixel meets the box from the first voxel centres to the last, grown
 /// by `margin` voxels.
-bool meetsBox(const splatting::View& view, const splatting::ShearWarp& geometry, int x, int y,
-  double margin)
+bool meetsBox(
+  const splatting::View& view, const splatting::ShearWarp& geometry, int x, int y, double margin)
 {
   const glm::dvec2 pixel = geometry.screenToShear() * glm::dvec3(x, y, 1.0);
   double enter = -1e30, leave = 1e30;
@@ -134,8 +134,8 @@ void testLinearImages(Checks& check)
         const double bound =
           (rim ? std::abs(a) + std::abs(b) : 0.0) + 800.0 / 65535 + 800.0 * 0x1p-22;
         const double found = (double(color) - 1.0) * 800.0 / 65535 - 400.0;
-        check(std::abs(found - f(p.x, p.y)) <= bound, "a linear image is off by ",
-          found - f(p.x, p.y));
+        check(
+          std::abs(found - f(p.x, p.y)) <= bound, "a linear image is off by ", found - f(p.x, p.y));
       }
     }
   }

@@ -28,7 +28,8 @@ std::vector<Mode> modes()
     { Quality::High, { Reconstruction::Hat, 1.0 }, { reference::Kernel::Trilinear, 1.0 } },
     { Quality::High, { Reconstruction::CosineBell, 1.0 }, { reference::Kernel::CosineBell, 1.0 } },
     { Quality::High, { Reconstruction::CosineBell, 0.6 }, { reference::Kernel::CosineBell, 0.6 } },
-    { Quality::High, { Reconstruction::CosineBell, 1.5 }, { reference::Kernel::CosineBell, 1.5 } } };
+    { Quality::High, { Reconstruction::CosineBell, 1.5 },
+      { reference::Kernel::CosineBell, 1.5 } } };
 }
 
 splatting::ProjectionSettings settingsOf(const Mode& mode)
@@ -81,9 +82,9 @@ void testType(Checks& check, std::uint64_t seed)
         2e-13 * std::max(std::abs(low), std::abs(high)) + 1e-300;
       const double error = largestError(volume, geometry, mode, bound);
       worst = std::max(worst, error);
-      check(error <= 1.0, "type ", int(splatting::scalarTypeOf<T>()), ", mode ",
-        int(mode.quality), ": error of ", error, " bounds; axis ", geometry.principalAxis(),
-        ", shear ", geometry.shear().x, " ", geometry.shear().y);
+      check(error <= 1.0, "type ", int(splatting::scalarTypeOf<T>()), ", mode ", int(mode.quality),
+        ": error of ", error, " bounds; axis ", geometry.principalAxis(), ", shear ",
+        geometry.shear().x, " ", geometry.shear().y);
     }
   }
   std::cout << "type " << int(splatting::scalarTypeOf<T>()) << ": largest error " << worst
@@ -160,13 +161,13 @@ void testFigure1(Checks& check)
         volume.voxels[n] = static_cast<std::uint8_t>(n % 8 < 4 ? 250 : right);
       }
       const splatting::ShearWarp geometry(viewWithShear(volume.size, 2, 1.0, 0.0));
-      const auto image =
-        toReference<float>(project(volume, geometry, settingsOf(mode), slice0));
+      const auto image = toReference<float>(project(volume, geometry, settingsOf(mode), slice0));
       const float found = image.at(3 + geometry.margin().x, 2 + geometry.margin().y);
       const float expected = (250 + right) / 2.0f;
       // Standard weighs both voxels by exactly 1/2; the other kernels' weights are rounded.
-      const double bound =
-        mode.quality == Quality::Standard ? 0.0 : errorBound<std::uint8_t>(mode.quality, right, 250);
+      const double bound = mode.quality == Quality::Standard
+        ? 0.0
+        : errorBound<std::uint8_t>(mode.quality, right, 250);
       check(std::abs(found - expected) <= bound, "Fig. 1: 250 beside ", right, " gives ", found,
         ", not ", expected);
     }
