@@ -54,14 +54,14 @@ class Breaks
 public:
   Breaks(double from, double to) : From(from), To(to)
   {
-    this->Places.reserve(16);
-    this->Places = { from, to };
+    this->Places[0] = from;
+    this->Places[1] = to;
   }
   void add(double z)
   {
     if (z > this->From && z < this->To)
     {
-      this->Places.push_back(z);
+      this->Places[this->Count++] = z;
     }
   }
   /// z where (a - shear z) equals `kink` modulo 1: all voxels of a row are kinked together.
@@ -78,15 +78,24 @@ public:
       this->add((a - n - kink) / shear);
     }
   }
-  const std::vector<double>& sorted()
+  /// Calls f(begin, end) for each smooth piece.
+  template <class F>
+  void forEachPiece(F&& f)
   {
-    std::sort(this->Places.begin(), this->Places.end());
-    return this->Places;
+    std::sort(this->Places.begin(), this->Places.begin() + this->Count);
+    for (int p = 1; p < this->Count; ++p)
+    {
+      if (this->Places[p] > this->Places[p - 1])
+      {
+        f(this->Places[p - 1], this->Places[p]);
+      }
+    }
   }
 
 private:
   double From, To;
-  std::vector<double> Places;
+  std::array<double, 24> Places; // 2 ends, 5 of h, at most 2 for each of 4 periodic ones
+  int Count = 2;
 };
 
 void normalise(WeightTable& weights)
@@ -218,14 +227,8 @@ WeightTable closedFormWeights(
       }
     }
   };
-  const std::vector<double>& places = breaks.sorted();
-  for (std::size_t p = 1; p < places.size(); ++p)
-  {
-    if (places[p] > places[p - 1])
-    {
-      integrate(ruleFor(kernel), places[p - 1], places[p], add);
-    }
-  }
+  breaks.forEachPiece(
+    [&](double begin, double end) { integrate(ruleFor(kernel), begin, end, add); });
   normalise(weights);
   return weights;
 }
@@ -280,11 +283,8 @@ double GeneralTable::entry(const Kernel& kernel, int part, const glm::dvec2& p) 
   double sum = 0.0;
   const auto add = [&](double z, double share)
   { sum += share * kernel(z) * kernel(p.x - this->Shear.x * z) * kernel(p.y - this->Shear.y * z); };
-  const std::vector<double>& places = breaks.sorted();
-  for (std::size_t b = 1; b < places.size(); ++b)
-  {
-    integrate(ruleFor(kernel), places[b - 1], places[b], add);
-  }
+  breaks.forEachPiece(
+    [&](double begin, double end) { integrate(ruleFor(kernel), begin, end, add); });
   return sum;
 }
 
@@ -319,10 +319,10 @@ WeightTable GeneralTable::weights(const glm::dvec2& fraction) const
   return weights;
 }
 
-std::vector<Tap> quantisedTaps(const WeightTable& weights, int bits)
+Taps quantisedTaps(const WeightTable& weights, int bits)
 {
   const double one = std::ldexp(1.0, bits);
-  std::vector<Tap> taps;
+  Taps taps;
   double sum = 0.0;
   for (int c = -1; c <= 1; ++c)
   {
@@ -333,7 +333,7 @@ std::vector<Tap> quantisedTaps(const WeightTable& weights, int bits)
         const double weight = std::round(weights[c + 1][dj + 2][di + 2] * one);
         if (weight > 0.0)
         {
-          taps.push_back({ c, di, dj, weight });
+          taps.add({ c, di, dj, weight });
           sum += weight;
         }
       }

@@ -99,10 +99,30 @@ struct Tap
 };
 
 /**
+ * The taps of one footprint, in the order slice, row, column. Held in place: a frame makes one for
+ * every slice.
+ */
+class Taps
+{
+public:
+  void add(const Tap& tap) { this->Items[this->Count++] = tap; }
+  int size() const { return this->Count; }
+  Tap* begin() { return this->Items.data(); }
+  Tap* end() { return this->Items.data() + this->Count; }
+  const Tap* begin() const { return this->Items.data(); }
+  const Tap* end() const { return this->Items.data() + this->Count; }
+  const Tap& operator[](int t) const { return this->Items[t]; }
+
+private:
+  std::array<Tap, 75> Items;
+  int Count = 0;
+};
+
+/**
  * The taps with non-zero weight after rounding to multiples of 2^-bits. What rounding adds or
  * removes is given back to the largest, so that the sum is exactly 1.
  */
-std::vector<Tap> quantisedTaps(const WeightTable& weights, int bits);
+Taps quantisedTaps(const WeightTable& weights, int bits);
 }
 
 #endif

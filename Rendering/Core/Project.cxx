@@ -6,8 +6,10 @@
 #include <vtkSMPTools.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <type_traits>
 
 namespace splatting
@@ -33,7 +35,7 @@ struct FootprintPart
   int slice;  // -1, 0 or 1
   int di, dj; // the first column and row
   int columns, rows;
-  std::vector<A> weights; // zero where there is no tap
+  std::array<A, 25> weights; // row after row, zero where there is no tap
 };
 
 /// The footprint of one slice, with weights of the accumulator's type.
@@ -41,43 +43,56 @@ template <class A>
 struct SliceFootprint
 {
   glm::ivec2 nearest; // pixel minus voxel, for the voxel nearest to a pixel
-  std::vector<Tap> taps;
-  std::vector<A> weights; // of the taps
-  std::vector<FootprintPart<A>> parts;
+  Taps taps;
+  std::array<A, 75> weights; // of the taps
+  std::array<FootprintPart<A>, 3> parts;
+  int partCount = 0;
 };
 
+/// The part of slice c; without columns if no tap lies there.
 template <class A>
-void addParts(SliceFootprint<A>& footprint)
+FootprintPart<A> partOf(const Taps& taps, int c)
 {
+  int first[2] = { 3, 3 }, last[2] = { -3, -3 };
+  for (const Tap& tap : taps)
+  {
+    if (tap.slice == c)
+    {
+      first[0] = std::min(first[0], tap.di);
+      last[0] = std::max(last[0], tap.di);
+      first[1] = std::min(first[1], tap.dj);
+      last[1] = std::max(last[1], tap.dj);
+    }
+  }
+  FootprintPart<A> part{ c, first[0], first[1], std::max(last[0] - first[0] + 1, 0),
+    std::max(last[1] - first[1] + 1, 0), {} };
+  for (const Tap& tap : taps)
+  {
+    if (tap.slice == c)
+    {
+      part.weights[(tap.dj - part.dj) * part.columns + tap.di - part.di] =
+        static_cast<A>(tap.weight);
+    }
+  }
+  return part;
+}
+
+template <class A>
+void setTaps(SliceFootprint<A>& footprint, const Taps& taps)
+{
+  footprint.taps = taps;
+  for (int t = 0; t < taps.size(); ++t)
+  {
+    footprint.weights[t] = static_cast<A>(taps[t].weight);
+  }
+  footprint.partCount = 0;
   for (int c = -1; c <= 1; ++c)
   {
-    int first[2] = { 3, 3 }, last[2] = { -3, -3 };
-    for (const Tap& tap : footprint.taps)
+    const FootprintPart<A> part = partOf<A>(taps, c);
+    if (part.columns > 0)
     {
-      if (tap.slice == c)
-      {
-        first[0] = std::min(first[0], tap.di);
-        last[0] = std::max(last[0], tap.di);
-        first[1] = std::min(first[1], tap.dj);
-        last[1] = std::max(last[1], tap.dj);
-      }
+      footprint.parts[footprint.partCount++] = part;
     }
-    if (first[0] > last[0])
-    {
-      continue;
-    }
-    FootprintPart<A> part{ c, first[0], first[1], last[0] - first[0] + 1, last[1] - first[1] + 1,
-      {} };
-    part.weights.assign(std::size_t(part.columns) * part.rows, A(0));
-    for (const Tap& tap : footprint.taps)
-    {
-      if (tap.slice == c)
-      {
-        part.weights[(tap.dj - part.dj) * part.columns + tap.di - part.di] =
-          static_cast<A>(tap.weight);
-      }
-    }
-    footprint.parts.push_back(std::move(part));
   }
 }
 
@@ -348,7 +363,7 @@ private:
     splat.width = span.end - span.begin;
     splat.height = end - first;
     splat.sourceStride = this->Cache.rowLength;
-    splat.partCount = static_cast<int>(footprint.parts.size());
+    splat.partCount = footprint.partCount;
     for (int p = 0; p < splat.partCount; ++p)
     {
       const FootprintPart<A>& part = footprint.parts[p];
@@ -363,7 +378,7 @@ private:
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];
     const A* rows[75];
-    const int count = static_cast<int>(footprint.taps.size());
+    const int count = footprint.taps.size();
     for (int t = 0; t < count; ++t)
     {
       const Tap& tap = footprint.taps[t];
@@ -407,9 +422,9 @@ private:
   VolumeIndex::Range ValueRange;
 };
 
-std::vector<SliceGeometry> sliceGeometry(const ShearWarp& geometry)
+void findSlices(const ShearWarp& geometry, std::vector<SliceGeometry>& slices)
 {
-  std::vector<SliceGeometry> slices(geometry.size().z);
+  slices.resize(geometry.size().z);
   for (int k = 0; k < geometry.size().z; ++k)
   {
     SliceGeometry& slice = slices[k];
@@ -418,7 +433,6 @@ std::vector<SliceGeometry> sliceGeometry(const ShearWarp& geometry)
     slice.vBegin = -*std::max_element(slice.path.dj.begin(), end);
     slice.vEnd = geometry.size().y - *std::min_element(slice.path.dj.begin(), end);
   }
-  return slices;
 }
 
 /// Weights are rounded so that 8-bit sums are exact, else to the accumulator's precision.
@@ -428,10 +442,9 @@ constexpr int weightBits = sizeof(T) == 1 ? 16
                                           : 48;
 
 template <class T>
-std::vector<SliceFootprint<Accumulator<T>>> sliceFootprints(
-  const ShearWarp& geometry, const ProjectionSettings& settings)
+void findFootprints(const ShearWarp& geometry, const ProjectionSettings& settings,
+  std::vector<SliceFootprint<Accumulator<T>>>& footprints)
 {
-  using A = Accumulator<T>;
   const Kernel kernel =
     settings.quality == Quality::Standard ? Kernel{ Reconstruction::Box } : settings.kernel;
   const glm::dvec2 shear = geometry.shear();
@@ -440,29 +453,23 @@ std::vector<SliceFootprint<Accumulator<T>>> sliceFootprints(
   {
     table = GeneralTable(kernel, shear, settings.footprintSampling);
   }
-  std::vector<SliceFootprint<A>> footprints(geometry.size().z);
+  footprints.resize(geometry.size().z);
   vtkSMPTools::For(0, geometry.size().z, 8,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType k = first; k < last; ++k)
       {
-        SliceFootprint<A>& footprint = footprints[k];
+        auto& footprint = footprints[k];
         const glm::dvec2 position = geometry.position(static_cast<double>(k));
         footprint.nearest = { static_cast<int>(std::floor(position.x + 0.5)),
           static_cast<int>(std::floor(position.y + 0.5)) };
         const glm::dvec2 fraction = position - glm::dvec2(footprint.nearest);
-        footprint.taps =
-          quantisedTaps(settings.footprintSampling > 0 ? table.weights(fraction)
-                                                       : closedFormWeights(kernel, shear, fraction),
-            weightBits<T>);
-        for (const Tap& tap : footprint.taps)
-        {
-          footprint.weights.push_back(static_cast<A>(tap.weight));
-        }
-        addParts(footprint);
+        const WeightTable weights = settings.footprintSampling > 0
+          ? table.weights(fraction)
+          : closedFormWeights(kernel, shear, fraction);
+        setTaps(footprint, quantisedTaps(weights, weightBits<T>));
       }
     });
-  return footprints;
 }
 
 /// Sets type and size, and every pixel to "no sample".
@@ -498,6 +505,8 @@ void forBands(int height, Body&& body)
 struct Projector::Scratch
 {
   vtkSMPThreadLocal<RowCache> rows;
+  std::vector<SliceGeometry> slices;
+  std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> footprints;
 };
 
 Projector::Projector() : Memory(new Scratch) {}
@@ -508,7 +517,8 @@ void Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   const ProjectionSettings& settings, const std::vector<glm::dvec4>& halfSpaces, ShearImage& image)
 {
   const VolumeIndex::Range& range = index.range();
-  const std::vector<SliceGeometry> slices = sliceGeometry(geometry);
+  std::vector<SliceGeometry>& slices = this->Memory->slices;
+  findSlices(geometry, slices);
   std::vector<glm::dvec4> bounds;
   for (const glm::dvec4& h : halfSpaces)
   {
@@ -527,7 +537,9 @@ void Projector::project(VolumeIndex& index, const ShearWarp& geometry,
         return;
       }
       prepare<Accumulator<T>>(image, geometry, range.special, !bounds.empty());
-      const auto footprints = sliceFootprints<T>(geometry, settings);
+      auto& footprints =
+        std::get<std::vector<SliceFootprint<Accumulator<T>>>>(this->Memory->footprints);
+      findFootprints<T>(geometry, settings, footprints);
       const int reach = settings.quality == Quality::High ? 1 : 0;
       forBands(image.height,
         [&](int v0, int v1)
