@@ -68,6 +68,7 @@ void RayCastFallback::UpdateMatrix(vtkImageData* image, vtkVolume* volume)
     turn->SetElement(r, 3, moved);
   }
   vtkMatrix4x4::Multiply4x4(volume->GetMatrix(), turn, this->Matrix);
+  this->Matrix->Modified(); // the product is written behind its back
 }
 
 void RayCastFallback::UpdateProperty(int blendMode, vtkVolumeProperty* property)

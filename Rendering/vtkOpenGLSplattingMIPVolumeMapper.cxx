@@ -7,7 +7,11 @@
 #include "vtkOpenGLState.h"
 #include "vtkRenderer.h"
 #include "vtkTextureObject.h"
+#if __has_include("vtk_glad.h") // since VTK 9.4
+#include "vtk_glad.h"
+#else
 #include "vtk_glew.h"
+#endif
 
 vtkStandardNewMacro(vtkOpenGLSplattingMIPVolumeMapper);
 

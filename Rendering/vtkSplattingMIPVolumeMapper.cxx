@@ -22,6 +22,7 @@
 #include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
 #include "vtkPointData.h"
+#include "vtkRayCastImageDisplayHelper.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimerLog.h"
@@ -130,7 +131,8 @@ bool isSingular(const glm::dmat4& m)
 {
   const glm::dmat3 linear(m);
   const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
-  return !(std::abs(glm::determinant(linear)) > 1e-10 * lengths) || !std::isfinite(lengths);
+  return !(std::abs(glm::determinant(linear)) > 1e-10 * lengths) || !std::isfinite(lengths) ||
+    !std::isfinite(glm::length(m[3]));
 }
 
 /// Keeps a half-space of index space if it cuts into the volume's voxels at all.
@@ -184,7 +186,7 @@ public:
   splatting::View MakeView(
     vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
   void LookAt(vtkDataArray* scalars);
-  void Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
+  bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
   void UpdateColors(vtkVolumeProperty* property);
   void CopyShearImage(vtkImageData* output) const;
 
@@ -196,6 +198,7 @@ public:
   splatting::VolumeIndex Index;
   vtkSmartPointer<vtkDataArray> Contiguous; // a copy, if the scalars are stored in another way
   const vtkDataArray* IndexedScalars = nullptr;
+  const void* IndexedBuffer = nullptr;
   vtkMTimeType IndexedTime = 0;
   int ScalarType = VTK_VOID;
 
@@ -353,12 +356,17 @@ void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkDataArray* scalars)
 {
   const int* dimensions = this->Input->GetDimensions();
   const glm::ivec3 size(dimensions[0], dimensions[1], dimensions[2]);
-  // Who changes voxels in place may say so at the array or at the image.
-  const vtkMTimeType time = std::max(scalars->GetMTime(), this->Input->GetMTime());
-  if (this->IndexedScalars == scalars && this->IndexedTime == time)
+  // The image's time includes its arrays'. Images may share an array, and an array may be given
+  // another buffer without a word.
+  const vtkMTimeType time = this->Input->GetMTime();
+  const void* const buffer =
+    scalars->HasStandardMemoryLayout() ? scalars->GetVoidPointer(0) : nullptr;
+  if (this->IndexedScalars == scalars && this->IndexedTime == time &&
+    this->IndexedBuffer == buffer && this->Index.volume().dimensions == size)
   {
     return;
   }
+  this->IndexedBuffer = buffer;
   this->IndexedScalars = scalars;
   this->IndexedTime = time;
   this->ScalarType = scalars->GetDataType();
@@ -371,12 +379,13 @@ void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkDataArray* scalars)
   }
   this->Index.reset({ scalars->GetVoidPointer(0), scalarType(this->ScalarType), size });
   this->ImageValid = false;
+  this->ShearImageOutput = nullptr;
   this->ColorsValid = false;
 }
 
 //------------------------------------------------------------------------------
-// Projects, unless the last shear image shows the same.
-void vtkSplattingMIPVolumeMapper::Internals::Project(
+// Projects, unless the last shear image shows the same. False if the view has no meaning.
+bool vtkSplattingMIPVolumeMapper::Internals::Project(
   vtkSplattingMIPVolumeMapper* self, const splatting::View& view)
 {
   const splatting::ShearWarp geometry(view);
@@ -390,10 +399,14 @@ void vtkSplattingMIPVolumeMapper::Internals::Project(
     this->HalfSpaces == view.halfSpaces && settings.quality == this->Settings.quality &&
     settings.kernel == this->Settings.kernel &&
     settings.footprintSampling == this->Settings.footprintSampling;
-  this->Geometry = geometry;
-  if (same || !geometry.valid())
+  if (!geometry.valid())
   {
-    return;
+    return false;
+  }
+  this->Geometry = geometry;
+  if (same)
+  {
+    return true;
   }
   this->Settings = settings;
   this->HalfSpaces = view.halfSpaces;
@@ -403,6 +416,7 @@ void vtkSplattingMIPVolumeMapper::Internals::Project(
   this->ImageValid = true;
   this->ShearImageOutput = nullptr;
   ++this->Projections;
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -498,6 +512,11 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 {
   Internals& in = *this->Internal;
   const splatting::View view = in.MakeView(this, ren, vol);
+  // Nothing can be seen in a window that is not shown yet, and colours are no identifiers.
+  if (view.viewport.x < 1 || view.viewport.y < 1 || ren->GetSelector())
+  {
+    return "";
+  }
   if (!splatting::isFinite(view))
   {
     return DegenerateCamera;
@@ -508,8 +527,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     return "";
   }
   in.LookAt(in.Scalars);
-  in.Project(this, view);
-  if (!in.Geometry.valid())
+  if (!in.Project(this, view))
   {
     return DegenerateCamera;
   }
@@ -535,6 +553,16 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
   }
   if (!in.RayCaster)
   {
+    // Its constructor needs an implementation of the display and does not ask whether there is one.
+    if (!vtkSmartPointer<vtkRayCastImageDisplayHelper>::New())
+    {
+      vtkErrorMacro(<< "There is no OpenGL for vtkFixedPointVolumeRayCastMapper, which is needed "
+                       "because "
+                    << reason
+                    << ": initialise VTK::RenderingVolumeOpenGL2 with vtk_module_autoinit or "
+                       "VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2).");
+      return;
+    }
     in.RayCaster = std::make_unique<RayCastFallback>();
   }
   in.RayCaster->Render(this, in.Input, ren, vol);

@@ -142,6 +142,12 @@ struct Frame
   Span pixels(int v, int k) const
   {
     Span span = this->geometry.coverage(this->sliceGeometry[k].path, v);
+    if (!span.empty())
+    {
+      Span& all = this->image.spans[v];
+      all.begin = std::min(all.begin, span.begin);
+      all.end = std::max(all.end, span.end);
+    }
     if (!this->halfSpaces.empty())
     {
       span = ShearWarp::clipped(span, v, k, this->halfSpaces);
@@ -150,12 +156,6 @@ struct Frame
         unsigned char* mask = &this->image.mask[std::ptrdiff_t(v) * this->image.width];
         std::fill(mask + span.begin, mask + span.end, static_cast<unsigned char>(1));
       }
-    }
-    if (!span.empty())
-    {
-      Span& all = this->image.spans[v];
-      all.begin = std::min(all.begin, span.begin);
-      all.end = std::max(all.end, span.end);
     }
     return span;
   }
@@ -253,10 +253,11 @@ public:
   using A = Accumulator<T>;
 
   WorksheetBand(const Frame<T>& frame, const std::vector<SliceFootprint<A>>& footprints, int reach,
-    RowCache& cache, int v0, int v1)
+    const VolumeIndex::Range& range, RowCache& cache, int v0, int v1)
     : Shared(frame),
       Footprints(footprints),
       Reach(reach),
+      ValueRange(range),
       Cache(cache),
       V0(v0),
       V1(v1)
@@ -285,8 +286,6 @@ public:
     }
     this->clampToRange();
   }
-
-  void setRange(const VolumeIndex::Range& range) { this->ValueRange = range; }
 
 private:
   /// Widens the rows of a slice that this and the neighbouring slices' footprints read.
@@ -417,9 +416,9 @@ private:
   const Frame<T>& Shared;
   const std::vector<SliceFootprint<A>>& Footprints;
   int Reach;
+  const VolumeIndex::Range& ValueRange;
   RowCache& Cache;
   int V0, V1;
-  VolumeIndex::Range ValueRange;
 };
 
 void findSlices(const ShearWarp& geometry, std::vector<SliceGeometry>& slices)
@@ -544,8 +543,8 @@ void Projector::project(VolumeIndex& index, const ShearWarp& geometry,
       forBands(image.height,
         [&](int v0, int v1)
         {
-          WorksheetBand<T> band(frame, footprints, reach, this->Memory->rows.Local(), v0, v1);
-          band.setRange(range);
+          WorksheetBand<T> band(
+            frame, footprints, reach, range, this->Memory->rows.Local(), v0, v1);
           band.splat();
         });
     });

@@ -37,10 +37,15 @@ struct ShearImage
   {
     return const_cast<ShearImage*>(this)->row<T>(v);
   }
-  /// Whether a ray of the image has samples, NaN aside.
+  /// Whether the pixel's ray crosses the volume.
+  bool meetsVolume(int u, int v) const
+  {
+    return v >= 0 && v < this->height && u >= this->spans[v].begin && u < this->spans[v].end;
+  }
+  /// Whether it has samples there, NaN aside.
   bool covers(int u, int v) const
   {
-    return v >= 0 && v < this->height && u >= this->spans[v].begin && u < this->spans[v].end &&
+    return this->meetsVolume(u, v) &&
       (this->mask.empty() || this->mask[std::ptrdiff_t(v) * this->width + u]);
   }
 };

@@ -60,19 +60,13 @@ ShearWarp::ShearWarp(const View& view)
   {
     return;
   }
-  for (int a = 0; a < 3; ++a)
-  {
-    this->Size[a] = view.dimensions[a];
-  }
-  if (!this->chooseAxes(direction))
-  {
-    return;
-  }
+  this->Size = view.dimensions;
+  this->chooseAxes(direction);
   this->computeWarp(rowX, rowY);
   this->Valid = true;
 }
 
-bool ShearWarp::chooseAxes(const glm::dvec3& direction)
+void ShearWarp::chooseAxes(const glm::dvec3& direction)
 {
   // On ties (to rounding errors) the slowest axis wins: its slices are contiguous.
   int k = 2;
@@ -97,7 +91,6 @@ bool ShearWarp::chooseAxes(const glm::dvec3& direction)
     // Half the stack on either side of the middle, and a pixel for footprints at the rim.
     this->Margin[a] = static_cast<int>(std::ceil(std::abs(this->Shear[a]) * this->Size.z / 2)) + 1;
   }
-  return true;
 }
 
 void ShearWarp::computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY)

@@ -117,7 +117,7 @@ public:
   bool sameShear(const ShearWarp& other) const;
 
 private:
-  bool chooseAxes(const glm::dvec3& direction);
+  void chooseAxes(const glm::dvec3& direction);
   void computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY);
 
   bool Valid = false;

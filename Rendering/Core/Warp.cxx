@@ -48,6 +48,10 @@ private:
   {
     // Rims that fall on pixel centres must not flicker with rounding errors.
     bound += 1e-9 * (1.0 + std::abs(bound));
+    if (bound < 0.0)
+    {
+      return {};
+    }
     if (std::abs(step) * (row.end - row.begin) < 1e-12)
     {
       return std::abs(at) <= bound ? row : Span{};
@@ -129,21 +133,22 @@ std::uint32_t warpPoint(const WarpFrame<A>& frame, const glm::dvec2& p)
 {
   const int u = static_cast<int>(std::floor(p.x)), v = static_cast<int>(std::floor(p.y));
   const double fu = p.x - u, fv = p.y - v;
-  double sum = 0.0, weight = 0.0, largest = -1.0;
+  double sum = 0.0, weight = 0.0, lost = 0.0, largest = -1.0;
   A nearest = 0;
   for (int n = 0; n < 4; ++n)
   {
     const int i = n & 1, j = n >> 1;
-    if (!frame.image.covers(u + i, v + j))
+    if (!frame.image.meetsVolume(u + i, v + j))
     {
       continue;
     }
     const A value = frame.pixels[std::ptrdiff_t(v + j) * frame.image.width + u + i];
-    if (value != value)
+    const double w = (i ? fu : 1.0 - fu) * (j ? fv : 1.0 - fv);
+    if (value != value || !frame.image.covers(u + i, v + j))
     {
+      lost += w;
       continue;
     }
-    const double w = (i ? fu : 1.0 - fu) * (j ? fv : 1.0 - fv);
     sum += w * value;
     weight += w;
     if (w > largest)
@@ -154,8 +159,7 @@ std::uint32_t warpPoint(const WarpFrame<A>& frame, const glm::dvec2& p)
   }
   // Where samples are missing inside the volume, the picture ends half-way to the last one; at the
   // volume's rim it ends with the silhouette.
-  const bool hole = !frame.image.mask.empty() || frame.image.special;
-  if (weight <= 0.0 || (hole && weight < 0.5))
+  if (weight <= 0.0 || lost > 0.5)
   {
     return 0;
   }

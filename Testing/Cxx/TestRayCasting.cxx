@@ -124,6 +124,22 @@ void testPerspectivePreview(stage::Stage& stage, stage::Checks& check)
   check(likeness.largestShift() < 0.15, "A perspective preview lies where the other modes do.");
 }
 
+/// The volume may move between frames.
+void testMovedVolume(stage::Stage& stage, stage::Checks& check)
+{
+  const auto mapper = stage::splatting(blobs());
+  stage.show(mapper);
+  look(stage, true);
+  renderWithOneWarning(stage, mapper, "perspective", check);
+  const stage::Pixels before = stage.pixels();
+  stage.volume->SetPosition(6.0, -3.0, 2.0);
+  const stage::Pixels moved = stage.pixels();
+  stage.show(stage::splatting(blobs()));
+  const stage::Pixels expected = stage.pixels();
+  check(moved == expected && moved != before, "A moved volume is seen where it is.");
+  stage.volume->SetPosition(0.0, 0.0, 0.0);
+}
+
 void testComponents(stage::Stage& stage, stage::Checks& check)
 {
   vtkNew<vtkImageAppendComponents> append;
@@ -222,6 +238,7 @@ int TestRayCasting(int, char*[])
   testPerspective(stage, check);
   testPerspectiveWithDirection(stage, check);
   testPerspectivePreview(stage, check);
+  testMovedVolume(stage, check);
   testComponents(stage, check);
   testCropping(stage, check);
   testComposite(stage, check);

@@ -218,6 +218,13 @@ void testProjection(stage::Stage& stage, Mapper* mapper, vtkImageData* image, st
     });
   const auto other = stage::toImageData(reference::constant<std::uint8_t>({ 11, 9, 14 }, 90));
   again("the input is replaced.", [&] { mapper->SetInputData(other); });
+  // Two images that share an array must not be taken for one.
+  vtkNew<vtkImageData> reshaped;
+  reshaped->SetDimensions(9, 14, 11);
+  reshaped->GetPointData()->SetScalars(other->GetPointData()->GetScalars());
+  other->GetPointData()->GetScalars()->Modified();
+  stage.pixels();
+  again("the image has other dimensions.", [&] { mapper->SetInputData(reshaped); });
 }
 
 void testNumberOfProjections(stage::Stage& stage, stage::Checks& check)
