@@ -22,7 +22,7 @@
  *
  * A slice counts for a ray if the ray crosses it (voxels being boxes) and, where planes cut the
  * volume, if the point where the ray crosses the middle of the slice is inside. Footprints that
- * stick out of the volume repeat its outermost voxels.
+ * stick out of the volume repeat its outermost voxels; those beside a plane read beyond it.
  *
  * The picture ends where VTK's ray casters end it, at the outermost voxel centres (GetBounds());
  * an axis with one voxel is as thick as that voxel.
@@ -38,9 +38,10 @@
  * NaN voxels are no samples: they never win and, in a worksheet, the average is taken over the
  * other voxels. Infinities are ordinary values. A ray without a sample is transparent.
  *
- * Memory. The mapper holds, per data set, a transposed copy of the volume once a view along its
- * first (fastest) image axis was asked for, and the shear image; GetIndexMemorySize() counts the
- * former.
+ * Memory. The mapper holds a transposed copy of the volume once its first (fastest) image axis was
+ * the principal one, and a copy of scalars that are not stored voxel after voxel;
+ * GetIndexMemorySize() counts both. Work space comes on top: shear image, picture, footprints
+ * (about 3 kB a slice) and some rows of voxels for each thread.
  *
  * Objects are made through VTK's object factory; the class that New() returns draws with OpenGL.
  *
@@ -82,7 +83,7 @@ public:
    * What a slice contributes to a pixel of the shear image [CS98, section 2 and 3]. Default HIGH.
    *
    * PREVIEW: the largest of the voxels that the pixel's ray crosses in the slice (up to three), so
-   * that the image equals an exact voxel traversal bit for bit. Fastest.
+   * that the shear image equals an exact voxel traversal bit for bit. Fastest.
    * STANDARD: the average of the piecewise constant volume over the pixel's area and the slice's
    * thickness (3x3 weights).
    * HIGH: the average of the volume, interpolated with Kernel, over the same region (5x5 weights
@@ -156,14 +157,14 @@ public:
   ///@}
 
   /**
-   * Bytes held besides the input for the data set last rendered: the transposed copy.
+   * Bytes held for the data set last rendered, besides the input and work space: copies of it.
    */
   vtkIdType GetIndexMemorySize();
 
   /**
    * How often this mapper has projected the volume. A render that changes only colours, opacity,
    * the window, or the camera's position and zoom re-uses the last shear image and leaves the
-   * number as it is.
+   * number as it is, unless the camera's clipping range cuts the volume.
    */
   vtkIdType GetNumberOfProjections();
 

@@ -18,6 +18,20 @@
 #include <cstdlib>
 #include <iostream>
 
+namespace
+{
+/// Red in the middle, black in the corner.
+bool showsVolume(vtkRenderWindow* window)
+{
+  window->Render();
+  vtkNew<vtkUnsignedCharArray> pixels;
+  window->GetRGBACharPixelData(0, 0, 63, 63, 0, pixels);
+  const vtkIdType centre = 32 * 64 + 32;
+  return pixels->GetTypedComponent(centre, 0) > 250 && pixels->GetTypedComponent(centre, 1) == 0 &&
+    pixels->GetTypedComponent(0, 0) == 0;
+}
+}
+
 int main()
 {
   vtkNew<vtkSphere> sphere;
@@ -46,13 +60,11 @@ int main()
   window->SetOffScreenRendering(1);
   window->SetSize(64, 64);
   window->AddRenderer(renderer);
-  window->Render();
-
-  vtkNew<vtkUnsignedCharArray> pixels;
-  window->GetRGBACharPixelData(0, 0, 63, 63, 0, pixels);
-  const vtkIdType centre = 32 * 64 + 32;
-  if (pixels->GetTypedComponent(centre, 0) != 255 || pixels->GetTypedComponent(centre, 1) != 0 ||
-    pixels->GetTypedComponent(0, 0) != 0)
+  const bool splatted = showsVolume(window) && !mapper->GetLastRenderUsedRayCasting();
+  renderer->GetActiveCamera()->ParallelProjectionOff();
+  renderer->ResetCamera();
+  const bool rayCast = showsVolume(window) && mapper->GetLastRenderUsedRayCasting();
+  if (!splatted || !rayCast)
   {
     std::cerr << "The volume is not in the picture." << std::endl;
     return EXIT_FAILURE;
