@@ -5,12 +5,12 @@
 #include "Project.h"
 #include "RayCastFallback.h"
 #include "ShearWarp.h"
+#include "TransferFunctions.h"
 #include "View.h"
 #include "VolumeIndex.h"
 #include "Warp.h"
 
 #include "vtkCamera.h"
-#include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
@@ -18,7 +18,6 @@
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPiecewiseFunction.h"
 #include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
 #include "vtkPointData.h"
@@ -146,32 +145,6 @@ void addHalfSpace(splatting::View& view, const glm::dvec4& h)
   if (least < 0.0)
   {
     view.halfSpaces.push_back(h);
-  }
-}
-
-std::uint32_t premultiplied(const float rgb[3], float opacity)
-{
-  const float alpha = std::clamp(opacity, 0.0f, 1.0f);
-  unsigned char bytes[4];
-  for (int c = 0; c < 3; ++c)
-  {
-    bytes[c] = static_cast<unsigned char>(255.0f * alpha * std::clamp(rgb[c], 0.0f, 1.0f) + 0.5f);
-  }
-  bytes[3] = static_cast<unsigned char>(255.0f * alpha + 0.5f);
-  std::uint32_t color;
-  std::memcpy(&color, bytes, sizeof(color));
-  return color;
-}
-
-/// Widens [low, high] by the nodes of a function; beyond them it is constant.
-template <class Function>
-void addNodes(Function* function, double& low, double& high)
-{
-  if (function->GetSize() > 0)
-  {
-    const double* nodes = function->GetRange();
-    low = std::min(low, nodes[0]);
-    high = std::max(high, nodes[1]);
   }
 }
 }
@@ -427,58 +400,9 @@ void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* pro
   {
     return;
   }
-  const bool gray = property->GetColorChannels() == 1;
-  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity();
-  vtkPiecewiseFunction* const grays = gray ? property->GetGrayTransferFunction() : nullptr;
-  vtkColorTransferFunction* const colors = gray ? nullptr : property->GetRGBTransferFunction();
-
-  // The table spends its entries where the functions vary: between their nodes, as far as the data
-  // go. Functions that do not clamp vanish beyond their nodes, so there it covers all data.
-  const splatting::VolumeIndex::Range range = this->Index.range();
-  constexpr double largest = std::numeric_limits<float>::max();
-  double low = largest, high = -largest;
-  addNodes(opacity, low, high);
-  const bool clamping =
-    opacity->GetClamping() && (gray ? grays->GetClamping() : colors->GetClamping());
-  if (gray)
-  {
-    addNodes(grays, low, high);
-  }
-  else
-  {
-    addNodes(colors, low, high);
-  }
-  const double dataLow = std::clamp(range.low, -largest, largest);
-  const double dataHigh = std::clamp(range.high, dataLow, largest);
-  low = clamping ? std::clamp(low, dataLow, dataHigh) : dataLow;
-  high = clamping ? std::clamp(high, low, dataHigh) : dataHigh;
-
-  // Sixteen entries per grey level of integers, as far as 65536 go; floats take all of them.
+  const splatting::VolumeIndex::Range& range = this->Index.range();
   const bool integers = this->ScalarType != VTK_FLOAT && this->ScalarType != VTK_DOUBLE;
-  const double wanted = integers ? 16.0 * (high - low) + 1.0 : 65536.0;
-  const int entries = high > low ? static_cast<int>(std::clamp(wanted, 2.0, 65536.0)) : 1;
-  const double end = high > low ? high : low + 1.0; // the functions want a range
-  const int sampled = std::max(entries, 2);
-  std::vector<float> alpha(sampled), rgb(3 * static_cast<std::size_t>(sampled));
-  opacity->GetTable(low, end, sampled, alpha.data());
-  if (gray)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      grays->GetTable(low, end, sampled, rgb.data() + c, 3);
-    }
-  }
-  else
-  {
-    colors->GetTable(low, end, sampled, rgb.data());
-  }
-  this->Colors.low = low;
-  this->Colors.high = high;
-  this->Colors.colors.resize(entries);
-  for (int e = 0; e < entries; ++e)
-  {
-    this->Colors.colors[e] = premultiplied(&rgb[3 * static_cast<std::size_t>(e)], alpha[e]);
-  }
+  this->Colors = tabulateColors(property, range.low, range.high, integers);
   this->ColoredBy = property;
   this->ColorTime = property->GetMTime();
   this->ColorsValid = true;

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TransferFunctions.h"
+
+#include "vtkColorTransferFunction.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+namespace
+{
+std::uint32_t premultiplied(const float rgb[3], float opacity)
+{
+  const float alpha = std::clamp(opacity, 0.0f, 1.0f);
+  unsigned char bytes[4];
+  for (int c = 0; c < 3; ++c)
+  {
+    bytes[c] = static_cast<unsigned char>(255.0f * alpha * std::clamp(rgb[c], 0.0f, 1.0f) + 0.5f);
+  }
+  bytes[3] = static_cast<unsigned char>(255.0f * alpha + 0.5f);
+  std::uint32_t color;
+  std::memcpy(&color, bytes, sizeof(color));
+  return color;
+}
+
+/// Widens [low, high] by the nodes of a function; beyond them it is constant.
+template <class Function>
+void addNodes(Function* function, double& low, double& high)
+{
+  if (function->GetSize() > 0)
+  {
+    const double* nodes = function->GetRange();
+    low = std::min(low, nodes[0]);
+    high = std::max(high, nodes[1]);
+  }
+}
+
+/// The table spends its entries where the functions vary: between their nodes, as far as the data
+/// go. Functions that do not clamp vanish beyond their nodes, so there it covers all data.
+template <class ColorFunction>
+void chooseRange(vtkPiecewiseFunction* opacity, ColorFunction* colors, double& low, double& high)
+{
+  constexpr double largest = std::numeric_limits<float>::max();
+  const double dataLow = std::clamp(low, -largest, largest);
+  const double dataHigh = std::clamp(high, dataLow, largest);
+  low = dataLow;
+  high = dataHigh;
+  if (opacity->GetClamping() && colors->GetClamping())
+  {
+    double first = largest, last = -largest;
+    addNodes(opacity, first, last);
+    addNodes(colors, first, last);
+    low = std::clamp(first, dataLow, dataHigh);
+    high = std::clamp(last, low, dataHigh);
+  }
+}
+
+void sample(vtkColorTransferFunction* colors, double low, double high, std::vector<float>& rgb)
+{
+  colors->GetTable(low, high, static_cast<int>(rgb.size() / 3), rgb.data());
+}
+
+void sample(vtkPiecewiseFunction* grays, double low, double high, std::vector<float>& rgb)
+{
+  for (int c = 0; c < 3; ++c)
+  {
+    grays->GetTable(low, high, static_cast<int>(rgb.size() / 3), rgb.data() + c, 3);
+  }
+}
+
+template <class ColorFunction>
+splatting::ColorTable tabulate(
+  vtkPiecewiseFunction* opacity, ColorFunction* colors, double low, double high, bool integers)
+{
+  chooseRange(opacity, colors, low, high);
+  const double wanted = integers ? 16.0 * (high - low) + 1.0 : 65536.0;
+  const int entries = high > low ? static_cast<int>(std::clamp(wanted, 2.0, 65536.0)) : 1;
+  const double end = high > low ? high : low + 1.0; // the functions want a range
+  const int sampled = std::max(entries, 2);
+  std::vector<float> alpha(sampled), rgb(3 * static_cast<std::size_t>(sampled));
+  opacity->GetTable(low, end, sampled, alpha.data());
+  sample(colors, low, end, rgb);
+  splatting::ColorTable table{ low, high, std::vector<std::uint32_t>(entries) };
+  for (int e = 0; e < entries; ++e)
+  {
+    table.colors[e] = premultiplied(&rgb[3 * static_cast<std::size_t>(e)], alpha[e]);
+  }
+  return table;
+}
+}
+
+splatting::ColorTable tabulateColors(
+  vtkVolumeProperty* property, double dataLow, double dataHigh, bool integers)
+{
+  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity();
+  return property->GetColorChannels() == 1
+    ? tabulate(opacity, property->GetGrayTransferFunction(), dataLow, dataHigh, integers)
+    : tabulate(opacity, property->GetRGBTransferFunction(), dataLow, dataHigh, integers);
+}
