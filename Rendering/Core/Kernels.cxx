@@ -90,34 +90,45 @@ inline void blocks(std::ptrdiff_t n, Block&& block, Single&& single)
   }
 }
 
-template <class T, int Count>
+template <class T>
 struct MaximumBlock
 {
   T* image;
   const T* const* rows;
+  int count;
   template <int V>
   inline void run(std::ptrdiff_t x) const
   {
+    Pack<T> best[V];
+#pragma GCC unroll 4
     for (int v = 0; v < V; ++v)
     {
-      T* const p = this->image + x + v * width<T>;
-      Pack<T> best = load<T>(p);
-      for (int r = 0; r < Count; ++r)
+      best[v] = load<T>(this->image + x + v * width<T>);
+    }
+    for (int r = 0; r < this->count; ++r)
+    {
+      const T* const row = this->rows[r] + x;
+#pragma GCC unroll 4
+      for (int v = 0; v < V; ++v)
       {
-        best = larger(load<T>(this->rows[r] + x + v * width<T>), best);
+        best[v] = larger(load<T>(row + v * width<T>), best[v]);
       }
-      store<T>(p, best);
+    }
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      store<T>(this->image + x + v * width<T>, best[v]);
     }
   }
 };
 
-template <class T, int Count>
-void maximumOf(T* image, const T* const* rows, std::ptrdiff_t n)
+template <class T>
+void maximum(T* image, const T* const* rows, int count, std::ptrdiff_t n)
 {
-  blocks<T>(n, MaximumBlock<T, Count>{ image, rows },
+  blocks<T>(n, MaximumBlock<T>{ image, rows, count },
     [&](std::ptrdiff_t x)
     {
-      for (int r = 0; r < Count; ++r)
+      for (int r = 0; r < count; ++r)
       {
         image[x] = larger(rows[r][x], image[x]);
       }
@@ -125,16 +136,118 @@ void maximumOf(T* image, const T* const* rows, std::ptrdiff_t n)
 }
 
 template <class T>
-void maximum(T* image, const T* const* rows, int count, std::ptrdiff_t n)
+void largest(const T* const* rows, int count, T* out, std::ptrdiff_t n)
 {
-  switch (count)
+  for (std::ptrdiff_t x = 0; x < n; x += width<T>)
   {
-    case 1:
-      return maximumOf<T, 1>(image, rows, n);
-    case 2:
-      return maximumOf<T, 2>(image, rows, n);
-    default:
-      return maximumOf<T, 3>(image, rows, n);
+    Pack<T> best = load<T>(rows[0] + x);
+    for (int r = 1; r < count; ++r)
+    {
+      best = larger(load<T>(rows[r] + x), best);
+    }
+    store<T>(out + x, best);
+  }
+}
+
+/// The run's valid pixels, and as many beside them as fill a register.
+template <class T>
+inline void sweepRun(T* image, const T* const* rows, int count, const Span& run, const Span& valid)
+{
+  const std::ptrdiff_t begin = run.begin > valid.begin ? run.begin : valid.begin;
+  const std::ptrdiff_t end = run.end < valid.end ? run.end : valid.end;
+  const MaximumBlock<T> block{ image, rows, count };
+  std::ptrdiff_t x = begin;
+  for (; end - x >= 4 * width<T>; x += 4 * width<T>)
+  {
+    block.template run<4>(x);
+  }
+  if (end - x > width<T> && valid.end - x >= 2 * width<T>)
+  {
+    block.template run<2>(x);
+    x += 2 * width<T>;
+  }
+  for (; x < end; x += width<T>)
+  {
+    if (valid.end - x < width<T>)
+    {
+      x = valid.end - width<T>;
+    }
+    if (x < valid.begin) // fewer valid pixels than a register has
+    {
+      for (x = begin; x < end; ++x)
+      {
+        for (int r = 0; r < count; ++r)
+        {
+          image[x] = larger(rows[r][x], image[x]);
+        }
+      }
+      return;
+    }
+    block.template run<1>(x);
+  }
+}
+
+#if defined(__GNUC__)
+template <class T>
+inline void sweepRim(T* image, const T* const* rows, int count, const Rim& rim)
+{
+  Pack<T> lane;
+  for (int x = 0; x < width<T>; ++x)
+  {
+    lane[x] = static_cast<T>(x);
+  }
+  Pack<T> best = load<T>(image + rim.first);
+  for (int r = 0; r < count; ++r)
+  {
+    if (rim.begin[r] < rim.end[r])
+    {
+      const Pack<T> value = load<T>(rows[r] + rim.first);
+      const Pack<T> begin = Pack<T>{} + static_cast<T>(rim.begin[r]);
+      const Pack<T> last = Pack<T>{} + static_cast<T>(rim.end[r] - 1);
+      const auto counts = (lane >= begin) & (lane <= last) & (value > best);
+      best = counts ? value : best;
+    }
+  }
+  store<T>(image + rim.first, best);
+}
+#else
+template <class T>
+inline void sweepRim(T* image, const T* const* rows, int count, const Rim& rim)
+{
+  for (int r = 0; r < count; ++r)
+  {
+    if (rim.begin[r] < rim.end[r]) // of one element
+    {
+      image[rim.first] = larger(rows[r][rim.first], image[rim.first]);
+    }
+  }
+}
+#endif
+
+template <class T>
+void sweep(const Sweep<T>& s)
+{
+  T* image = s.image;
+  const T* rows[MostRows];
+  for (int r = 0; r < s.count; ++r)
+  {
+    rows[r] = s.rows[r];
+  }
+  for (int v = 0; v < s.height; ++v)
+  {
+    for (int n = 0; n < s.runCount; ++n)
+    {
+      sweepRun(image, rows, s.count, s.runs[n], s.valid);
+    }
+    for (int n = 0; n < s.rimCount; ++n)
+    {
+      sweepRim(image, rows, s.count, *s.rims[n]);
+    }
+    image += s.imageStride;
+    for (int r = 0; r < s.count; ++r)
+    {
+      rows[r] += s.rowStride;
+    }
   }
 }
 
@@ -152,31 +265,118 @@ void maximumValid(T* image, const T* const* rows, int count, std::ptrdiff_t n)
   }
 }
 
+/// A register of widened elements. A loop that compilers vectorise: their own conversions of
+/// vectors go element by element.
 template <class T>
-void widen(const T* row, Accumulator<T>* out, std::ptrdiff_t n)
+inline void widenBlock(const T* __restrict row, Accumulator<T>* __restrict out, Accumulator<T> base)
 {
-  for (std::ptrdiff_t x = 0; x < n; ++x)
+#pragma GCC unroll 1
+  for (std::ptrdiff_t x = 0; x < width<Accumulator<T>>; ++x)
   {
-    out[x] = static_cast<Accumulator<T>>(row[x]);
+    out[x] = static_cast<Accumulator<T>>(row[x]) - base;
   }
 }
 
 template <class T>
-void range(const T* row, std::ptrdiff_t n, T& low, T& high, bool& special)
+void widen(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
+  Accumulator<T> base, std::ptrdiff_t n, int rows)
 {
-  T l = low, h = high;
+  using A = Accumulator<T>;
+  constexpr std::ptrdiff_t w = width<A>;
+  for (int r = 0; r < rows; ++r, row += stride, out += outStride)
+  {
+    std::ptrdiff_t x = 0;
+    for (; x + w <= n; x += w)
+    {
+      widenBlock(row + x, out + x, base);
+    }
+    if (x < n && n >= w)
+    {
+      widenBlock(row + n - w, out + n - w, base);
+      x = n;
+    }
+    for (; x < n; ++x)
+    {
+      out[x] = static_cast<A>(row[x]) - base;
+    }
+  }
+}
+
+template <class T>
+void survey(
+  const T* const* rows, int count, std::ptrdiff_t n, T* __restrict maxima, T& low, bool& special)
+{
+  T least = low;
   unsigned odd = 0;
+  for (int r = 0; r < count; ++r)
+  {
+    const T* const row = rows[r];
+    for (std::ptrdiff_t x = 0; x < n; ++x)
+    {
+      const T value = row[x];
+      maxima[x] = larger(value, maxima[x]);
+      least = value < least ? value : least;
+      // Only NaN and infinities are no zero when subtracted from themselves.
+      odd |= static_cast<unsigned>(!(static_cast<T>(value - value) == static_cast<T>(0)));
+    }
+  }
+  low = least;
+  special = special || odd != 0;
+}
+
+template <class T>
+void largestOfFour(const T* __restrict row, T* __restrict out, std::ptrdiff_t n)
+{
   for (std::ptrdiff_t x = 0; x < n; ++x)
   {
-    const T value = row[x];
-    l = value < l ? value : l;
-    h = value > h ? value : h;
-    // Only NaN and infinities are no zero when subtracted from themselves.
-    odd |= static_cast<unsigned>(!(static_cast<T>(value - value) == static_cast<T>(0)));
+    out[x] = larger(larger(row[4 * x], row[4 * x + 1]), larger(row[4 * x + 2], row[4 * x + 3]));
   }
-  low = l;
-  high = h;
-  special = special || odd != 0;
+}
+
+template <class P>
+inline P smaller(P a, P b)
+{
+  return a < b ? a : b;
+}
+
+template <class P>
+void minima(
+  const P* image, std::ptrdiff_t stride, int rows, std::ptrdiff_t tiles, P* __restrict minima)
+{
+  constexpr std::ptrdiff_t chunk = 64; // tiles
+  for (std::ptrdiff_t first = 0; first < tiles; first += chunk)
+  {
+    const std::ptrdiff_t count = first + chunk < tiles ? chunk : tiles - first;
+    P columns[chunk * TileWidth];
+    const P* row = image + first * TileWidth;
+    for (std::ptrdiff_t x = 0; x < count * TileWidth; ++x)
+    {
+      columns[x] = row[x];
+    }
+    for (int r = 1; r < rows; ++r)
+    {
+      row += stride;
+      for (std::ptrdiff_t x = 0; x < count * TileWidth; ++x)
+      {
+        columns[x] = smaller(row[x], columns[x]);
+      }
+    }
+    for (std::ptrdiff_t t = 0; t < count; ++t)
+    {
+      const P* const c = columns + t * TileWidth;
+      minima[first + t] = smaller(smaller(smaller(c[0], c[1]), smaller(c[2], c[3])),
+        smaller(smaller(c[4], c[5]), smaller(c[6], c[7])));
+    }
+  }
+}
+
+template <class P>
+void exceeds(const P* bounds, const P* minima, unsigned char* __restrict flags, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t t = 0; t < n; ++t)
+  {
+    flags[t] = bounds[t] > minima[t];
+  }
 }
 
 /// Adds one part of the footprint to the worksheets of Rows x V registers. Rows of pixels share
@@ -357,12 +557,26 @@ void splatValid(A* image, const A* const* rows, const A* weights, int count, std
 }
 
 template <class A>
-void clamp(A* image, A low, A high, std::ptrdiff_t n)
+void finish(A* image, A base, A low, A high, std::ptrdiff_t n)
 {
   for (std::ptrdiff_t x = 0; x < n; ++x)
   {
-    const A value = image[x] < low ? low : image[x];
+    const A sum = image[x] + base;
+    const A value = sum < low ? low : sum;
     image[x] = value > high ? high : value;
+  }
+}
+
+template <class A>
+void bound(A* __restrict own, const A* __restrict before, const A* __restrict after, A share,
+  A slack, A magnitude, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t t = 0; t < n; ++t)
+  {
+    const A beside = larger(before[t], after[t]);
+    const A value = beside > own[t] ? own[t] + share * (beside - own[t]) : own[t];
+    const A size = value < 0 ? -value : value;
+    own[t] = value + slack * larger(size, magnitude);
   }
 }
 
@@ -414,15 +628,21 @@ void lookUp(const A* __restrict values, A low, A scale, std::int32_t last,
 }
 
 template <class T>
-constexpr VoxelLoops<T> voxelLoops{ &maximum<T>, &maximumValid<T>, &widen<T>, &range<T> };
+constexpr VoxelLoops<T> voxelLoops{ width<T>, &maximum<T>, &largest<T>, &sweep<T>, &maximumValid<T>,
+  &widen<T>, &survey<T>, &largestOfFour<T> };
+template <class P>
+constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P> };
 template <class A>
-constexpr WorksheetLoops<A> worksheetLoops{ &splat<A>, &splatValid<A>, &clamp<A>, &interpolate<A>,
-  &lookUp<A> };
+constexpr WorksheetLoops<A> worksheetLoops{ &splat<A>, &splatValid<A>, &finish<A>, &bound<A>,
+  &interpolate<A>, &lookUp<A> };
 }
 
 extern const Kernels SPLATTING_KERNELS;
 const Kernels SPLATTING_KERNELS = { voxelLoops<std::int8_t>, voxelLoops<std::uint8_t>,
   voxelLoops<std::int16_t>, voxelLoops<std::uint16_t>, voxelLoops<std::int32_t>,
   voxelLoops<std::uint32_t>, voxelLoops<std::int64_t>, voxelLoops<std::uint64_t>, voxelLoops<float>,
-  voxelLoops<double>, worksheetLoops<float>, worksheetLoops<double> };
+  voxelLoops<double>, tileLoops<std::int8_t>, tileLoops<std::uint8_t>, tileLoops<std::int16_t>,
+  tileLoops<std::uint16_t>, tileLoops<std::int32_t>, tileLoops<std::uint32_t>,
+  tileLoops<std::int64_t>, tileLoops<std::uint64_t>, tileLoops<float>, tileLoops<double>,
+  worksheetLoops<float>, worksheetLoops<double> };
 }

@@ -13,6 +13,9 @@
 
 namespace splatting
 {
+/// Pixels along a tile of the image, the unit in which parts of slices are skipped.
+constexpr int TileWidth = 8;
+
 enum class InstructionSet
 {
   Baseline,
@@ -20,18 +23,79 @@ enum class InstructionSet
   AVX512
 };
 
+/// Most rows of voxels that a row of pixels meets at a time: three in each of four slices.
+constexpr int MostRows = 12;
+
+/// Half-open range of pixels.
+struct Span
+{
+  int begin = 0;
+  int end = 0;
+  bool empty() const { return this->end <= this->begin; }
+};
+
+/// Pixels at an end of a row, a register of them from `first` on, that see some of the rows of
+/// voxels: row r those in [begin[r], end[r]), relative to `first`. All rows are read there.
+struct Rim
+{
+  int first = 0;
+  int begin[MostRows];
+  int end[MostRows];
+};
+
+/// Rows of pixels, and the rows of voxels that the first one meets, shifted so that pixel x meets
+/// rows[r][x].
+template <class T>
+struct Sweep
+{
+  T* image;
+  std::ptrdiff_t imageStride;
+  int height;
+  const T* rows[MostRows];
+  int count;
+  std::ptrdiff_t rowStride;
+  const Span* runs; ///< the pixels that count
+  int runCount;
+  Span valid; ///< the pixels that all rows have voxels for
+  const Rim* rims[2];
+  int rimCount;
+};
+
 /// Loops over voxels of type T.
 template <class T>
 struct VoxelLoops
 {
+  /// Elements of a register.
+  std::ptrdiff_t lanes;
   /// image[x] = max(image[x], rows[0..count)[x]); NaN never wins.
   void (*maximum)(T* image, const T* const* rows, int count, std::ptrdiff_t n);
-  /// The same where image[x] = NaN is "no sample yet".
+  /// out[x] = the largest of rows[0..count)[x], in whole registers: up to lanes - 1 elements beyond
+  /// n are read and written as well.
+  void (*largest)(const T* const* rows, int count, T* out, std::ptrdiff_t n);
+  /// `maximum` for all rows of pixels: for the runs, as far as they are valid and perhaps some
+  /// valid pixels beside them, and for the rims.
+  void (*sweep)(const Sweep<T>& sweep);
+  /// The same as `maximum` where image[x] = NaN is "no sample yet".
   void (*maximumValid)(T* image, const T* const* rows, int count, std::ptrdiff_t n);
-  /// out[x] = row[x].
-  void (*widen)(const T* row, Accumulator<T>* out, std::ptrdiff_t n);
-  /// Widens [low, high] by the row's values (NaN aside); sets special if there are NaN or infinity.
-  void (*range)(const T* row, std::ptrdiff_t n, T& low, T& high, bool& special);
+  /// out[x] = row[x] - base, which must be exact, for some rows of n elements.
+  void (*widen)(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
+    Accumulator<T> base, std::ptrdiff_t n, int rows);
+  /// maxima[x] = max(maxima[x], rows[0..count)[x]) and low = min(low, all of them), NaN aside; sets
+  /// special if there are NaN or infinity.
+  void (*survey)(
+    const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low, bool& special);
+  /// out[x] = the largest of row[4 x], row[4 x + 1], row[4 x + 2] and row[4 x + 3].
+  void (*largestOfFour)(const T* row, T* out, std::ptrdiff_t n);
+};
+
+/// Loops over pixels of type P that compare tiles of the image with what is still to come.
+template <class P>
+struct TileLoops
+{
+  /// minima[t] = the least of the pixels [t * TileWidth, (t + 1) * TileWidth) of all rows.
+  void (*minima)(const P* image, std::ptrdiff_t stride, int rows, std::ptrdiff_t tiles, P* minima);
+  /// flags[t] = whether bounds[t] > minima[t].
+  void (*exceeds)(const P* bounds, const P* minima, unsigned char* flags, std::ptrdiff_t n);
 };
 
 /// A rectangle of footprint weights and the voxels that it meets first.
@@ -67,8 +131,13 @@ struct WorksheetLoops
   /// image[x] = max(image[x], average of rows[0..count)[x], NaN left out, weighted and divided by
   /// the weights that remain). image[x] = NaN is "no sample yet". Rows may hold infinities.
   void (*splatValid)(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
-  /// image[x] = clamp(image[x], low, high); NaN stays.
-  void (*clamp)(A* image, A low, A high, std::ptrdiff_t n);
+  /// image[x] = clamp(image[x] + base, low, high); NaN stays.
+  void (*finish)(A* image, A base, A low, A high, std::ptrdiff_t n);
+  /// What a worksheet can reach where it weighs its own voxels by 1 - `share` and its neighbours',
+  /// on one side or the other, by `share`, enlarged by `slack` times the magnitude:
+  /// own[t] = own[t] + share * max(0, max(before[t], after[t]) - own[t]) + slack * (...).
+  void (*bound)(
+    A* own, const A* before, const A* after, A share, A slack, A magnitude, std::ptrdiff_t n);
   /// out[x] = image interpolated bilinearly at start + x step, which must lie between pixels that
   /// exist.
   void (*interpolate)(const A* image, std::ptrdiff_t stride, const double start[2],
@@ -89,6 +158,16 @@ struct Kernels
   , VoxelLoops<std::uint64_t>
   , VoxelLoops<float>
   , VoxelLoops<double>
+  , TileLoops<std::int8_t>
+  , TileLoops<std::uint8_t>
+  , TileLoops<std::int16_t>
+  , TileLoops<std::uint16_t>
+  , TileLoops<std::int32_t>
+  , TileLoops<std::uint32_t>
+  , TileLoops<std::int64_t>
+  , TileLoops<std::uint64_t>
+  , TileLoops<float>
+  , TileLoops<double>
   , WorksheetLoops<float>
   , WorksheetLoops<double>
 {

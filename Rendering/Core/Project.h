@@ -23,6 +23,18 @@ enum class Quality
   High
 };
 
+/// What is left out and in which order the rest is walked; see
+/// vtkSplattingMIPVolumeMapper::SetAcceleration.
+enum class Acceleration
+{
+  Auto,
+  Dense,
+  Bricks,
+  Lines,
+  SortedLines,
+  SortedVolume
+};
+
 struct ProjectionSettings
 {
   Quality quality = Quality::High;
@@ -31,14 +43,17 @@ struct ProjectionSettings
   /// 0: weights in closed form; N: from a general table with N x N sub-pixels.
   int footprintSampling = 0;
   InstructionSet instructionSet = bestInstructionSet();
+  Acceleration acceleration = Acceleration::Auto;
 };
+
+template <class T>
+struct Frame;
 
 /**
  * Projects volumes. Holds the threads' work space between frames.
  *
- * The image is cut into bands of rows, and each band walks all slices that reach it, in storage
- * order, so that every thread streams through the volume and owns its pixels. A worksheet lives for
- * one row of one slice, in registers.
+ * The image is cut into bands of rows, each walked by one thread, which owns its pixels: the same
+ * bits for any number of threads. See BandWalk for the order in which a band meets the slices.
  */
 class Projector
 {
@@ -54,6 +69,11 @@ public:
     const std::vector<glm::dvec4>& halfSpaces, ShearImage& image);
 
 private:
+  template <class T>
+  void projectType(VolumeIndex& index, const Frame<T>& frame, const ProjectionSettings& settings);
+  template <class T, class Layers>
+  void walk(const Frame<T>& frame, const Layers& layers, const BrickMaxima* bricks);
+
   struct Scratch;
   std::unique_ptr<Scratch> Memory;
 };

@@ -7,6 +7,7 @@
 #ifndef splattingShearWarp_h
 #define splattingShearWarp_h
 
+#include "Kernels.h"
 #include "View.h"
 
 #include <array>
@@ -25,16 +26,6 @@ struct RayPath
   int count = 0;
   std::array<int, 3> di{};
   std::array<int, 3> dj{};
-};
-
-/**
- * Half-open range of pixels.
- */
-struct Span
-{
-  int begin = 0;
-  int end = 0;
-  bool empty() const { return end <= begin; }
 };
 
 /**

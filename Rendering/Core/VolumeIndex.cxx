@@ -4,6 +4,7 @@
 
 #include "Kernels.h"
 
+#include <vtkSMPThreadLocal.h>
 #include <vtkSMPTools.h>
 
 #include <algorithm>
@@ -59,40 +60,124 @@ void transpose(const T* in, T* out, const glm::ivec3& size)
     });
 }
 
+/// Cubes of 4 voxels, of which the bricks along every axis are made: [z][y][x].
 template <class T>
-VolumeIndex::Range rangeOf(const VoxelArray& volume)
+struct Cubes
 {
-  struct Part
+  static constexpr int Edge = 4;
+  glm::ivec3 count;
+  std::vector<T> maxima;
+
+  explicit Cubes(const glm::ivec3& dimensions)
+    : count((dimensions + (Edge - 1)) / Edge),
+      maxima(std::size_t(this->count.x) * this->count.y * this->count.z)
   {
-    T low = highest<T>(), high = lowest<T>();
-    bool special = false;
-  };
-  const std::ptrdiff_t count =
-    std::ptrdiff_t(volume.dimensions.x) * volume.dimensions.y * volume.dimensions.z;
-  constexpr std::ptrdiff_t chunk = 1 << 16;
-  const std::ptrdiff_t chunks = (count + chunk - 1) / chunk;
-  std::vector<Part> parts(chunks);
+  }
+  T* row(int y, int z)
+  {
+    return this->maxima.data() + (std::ptrdiff_t(z) * this->count.y + y) * this->count.x;
+  }
+  const T* row(int y, int z) const { return const_cast<Cubes*>(this)->row(y, z); }
+};
+
+template <class T>
+struct Extremes
+{
+  T low = highest<T>(), high = lowest<T>();
+  bool special = false;
+};
+
+/// Reads the voxels of one row of cubes.
+template <class T>
+void surveyRow(const VoxelArray& volume, int y, int z, std::vector<T>& columns, Cubes<T>& cubes,
+  Extremes<T>& extremes)
+{
+  constexpr int edge = Cubes<T>::Edge;
+  const glm::ivec3& size = volume.dimensions;
   const T* const voxels = static_cast<const T*>(volume.voxels);
   const VoxelLoops<T>& loops = kernelsFor(bestInstructionSet());
-  vtkSMPTools::For(0, chunks,
+  columns.assign(std::size_t(cubes.count.x) * edge, lowest<T>());
+  for (int j = y * edge; j < std::min((y + 1) * edge, size.y); ++j)
+  {
+    const T* rows[edge]; // several streams through memory keep the processor busy
+    int count = 0;
+    for (int k = z * edge; k < std::min((z + 1) * edge, size.z); ++k)
+    {
+      rows[count++] = voxels + (std::ptrdiff_t(k) * size.y + j) * size.x;
+    }
+    loops.survey(rows, count, size.x, columns.data(), extremes.low, extremes.special);
+  }
+  T* const out = cubes.row(y, z);
+  loops.largestOfFour(columns.data(), out, cubes.count.x);
+  for (int x = 0; x < cubes.count.x; ++x)
+  {
+    extremes.high = std::max(extremes.high, out[x]);
+  }
+}
+
+/// Two cubes along i make a brick.
+template <class T>
+void bricksFromCubes(const Cubes<T>& cubes, const std::array<int, 3>& axes, BrickMaxima& bricks)
+{
+  static_assert(BrickWidth == 2 * Cubes<T>::Edge && BrickHeight == Cubes<T>::Edge &&
+    BrickDepth == Cubes<T>::Edge);
+  const glm::ivec3 n(cubes.count[axes[0]], cubes.count[axes[1]], cubes.count[axes[2]]);
+  const std::ptrdiff_t strides[3] = { 1, cubes.count.x,
+    std::ptrdiff_t(cubes.count.x) * cubes.count.y };
+  const std::ptrdiff_t si = strides[axes[0]], sj = strides[axes[1]], sk = strides[axes[2]];
+  bricks.count = { (n.x + 1) / 2, n.y, n.z };
+  bricks.bytes.resize(
+    std::size_t(bricks.count.x) * n.y * n.z * sizeof(T) + 2 * BrickMaxima::Padding);
+  vtkSMPTools::For(0, n.y,
     [&](vtkIdType first, vtkIdType last)
     {
-      for (vtkIdType c = first; c < last; ++c)
+      for (int j = static_cast<int>(first); j < last; ++j)
       {
-        const std::ptrdiff_t begin = c * chunk;
-        loops.range(voxels + begin, std::min(chunk, count - begin), parts[c].low, parts[c].high,
-          parts[c].special);
+        for (int k = 0; k < n.z; ++k)
+        {
+          const T* const from = cubes.maxima.data() + j * sj + k * sk;
+          T* const to = const_cast<T*>(bricks.row<T>(j, k));
+          for (int i = 0; i < n.x / 2; ++i)
+          {
+            to[i] = std::max(from[2 * i * si], from[(2 * i + 1) * si]);
+          }
+          if (n.x % 2)
+          {
+            to[n.x / 2] = from[(n.x - 1) * si];
+          }
+        }
       }
     });
-  Part all;
-  for (const Part& part : parts)
+}
+}
+
+template <class T>
+void VolumeIndex::survey()
+{
+  Cubes<T> cubes(this->Volume.dimensions);
+  vtkSMPThreadLocal<Extremes<T>> extremes;
+  vtkSMPThreadLocal<std::vector<T>> columns;
+  vtkSMPTools::For(0, std::ptrdiff_t(cubes.count.y) * cubes.count.z,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType row = first; row < last; ++row)
+      {
+        surveyRow(this->Volume, static_cast<int>(row % cubes.count.y),
+          static_cast<int>(row / cubes.count.y), columns.Local(), cubes, extremes.Local());
+      }
+    });
+  Extremes<T> all;
+  for (const Extremes<T>& part : extremes)
   {
     all.low = std::min(all.low, part.low);
     all.high = std::max(all.high, part.high);
     all.special = all.special || part.special;
   }
-  return { static_cast<double>(all.low), static_cast<double>(all.high), all.special };
-}
+  this->ValueRange = { static_cast<double>(all.low), static_cast<double>(all.high), all.special };
+  for (int k = 0; k < 3; ++k)
+  {
+    bricksFromCubes(cubes, { k == 0 ? 1 : 0, k == 2 ? 1 : 2, k }, this->Bricks[k]);
+  }
 }
 
 void VolumeIndex::reset(const VoxelArray& volume)
@@ -100,7 +185,8 @@ void VolumeIndex::reset(const VoxelArray& volume)
   this->Volume = volume;
   this->Copy.reset();
   this->CopySize = 0;
-  this->RangeKnown = false;
+  this->Bricks = {};
+  this->Surveyed = false;
 }
 
 Slices VolumeIndex::slices(int principalAxis)
@@ -133,12 +219,28 @@ Slices VolumeIndex::slices(int principalAxis)
 
 const VolumeIndex::Range& VolumeIndex::range()
 {
-  if (!this->RangeKnown)
+  if (!this->Surveyed)
   {
-    this->ValueRange = dispatch(this->Volume.type,
-      [this](auto* null) { return rangeOf<std::remove_pointer_t<decltype(null)>>(this->Volume); });
-    this->RangeKnown = true;
+    dispatch(this->Volume.type,
+      [this](auto* null) { this->survey<std::remove_pointer_t<decltype(null)>>(); });
+    this->Surveyed = true;
   }
   return this->ValueRange;
+}
+
+const BrickMaxima& VolumeIndex::bricks(int principalAxis)
+{
+  this->range();
+  return this->Bricks[principalAxis];
+}
+
+std::size_t VolumeIndex::memorySize() const
+{
+  std::size_t size = this->CopySize;
+  for (const BrickMaxima& bricks : this->Bricks)
+  {
+    size += bricks.bytes.size();
+  }
+  return size;
 }
 }

@@ -10,7 +10,9 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <memory>
+#include <vector>
 
 namespace splatting
 {
@@ -34,6 +36,31 @@ struct Slices
   std::ptrdiff_t sliceStride = 0;
 };
 
+/// Voxels of a brick along i, j and k.
+constexpr int BrickWidth = 8;
+constexpr int BrickHeight = 4;
+constexpr int BrickDepth = 4;
+
+/**
+ * The largest voxel (NaN aside) of each brick, with bricks laid along one principal axis.
+ */
+struct BrickMaxima
+{
+  /// Bytes that may be read before the first and behind the last brick, so that loops need not stop
+  /// at the ends of rows.
+  static constexpr std::size_t Padding = 128;
+
+  glm::ivec3 count{ 0 }; ///< bricks along i, j and k
+  std::vector<unsigned char> bytes;
+
+  template <class T>
+  const T* row(int j, int k) const
+  {
+    return reinterpret_cast<const T*>(this->bytes.data() + Padding) +
+      (std::ptrdiff_t(k) * this->count.y + j) * this->count.x;
+  }
+};
+
 class VolumeIndex
 {
 public:
@@ -54,18 +81,25 @@ public:
     double low = 0.0, high = 0.0; ///< of all voxels but NaN; low > high if there are none
     bool special = false;         ///< whether there are NaN or infinities
   };
-  /// Made on first use: one pass over the voxels.
+  /// Made on first use: one pass over the voxels, which makes the bricks as well.
   const Range& range();
 
+  /// The bricks along an axis; 3/128 of the volume for all axes together.
+  const BrickMaxima& bricks(int principalAxis);
+
   /// Bytes held besides the volume.
-  std::size_t memorySize() const { return this->CopySize; }
+  std::size_t memorySize() const;
 
 private:
+  template <class T>
+  void survey();
+
   VoxelArray Volume;
   std::unique_ptr<unsigned char[]> Copy;
   std::size_t CopySize = 0;
   Range ValueRange;
-  bool RangeKnown = false;
+  std::array<BrickMaxima, 3> Bricks;
+  bool Surveyed = false;
 };
 }
 

@@ -234,7 +234,7 @@ void Warper::warp(const ShearImage& image, const ShearWarp& geometry, const Colo
         this->Widened.resize(count * sizeof(A));
         A* const widened = reinterpret_cast<A*>(this->Widened.data());
         const VoxelLoops<T>& loops = kernels;
-        loops.widen(image.row<T>(0), widened, static_cast<std::ptrdiff_t>(count));
+        loops.widen(image.row<T>(0), 0, widened, 0, A(0), static_cast<std::ptrdiff_t>(count), 1);
         pixels = widened;
       }
       const std::int32_t last = static_cast<std::int32_t>(table.colors.size()) - 1;

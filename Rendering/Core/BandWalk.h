@@ -1,0 +1,361 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * In which order a band of image rows meets the layers of slices, and what it leaves out.
+ *
+ * Densely: all of them, in storage order. With bricks: for tiles of TileWidth x TileHeight pixels
+ * and each layer, the largest brick that the tile's rays can meet bounds what the layer can add.
+ * Layers with high bounds come first, and a tile whose bound is no more than its least pixel is
+ * left out: it could not change a pixel. What remains is walked row by row, several tiles at a
+ * time, because memory is fastest where it is read in order.
+ */
+#ifndef splattingBandWalk_h
+#define splattingBandWalk_h
+
+#include "PreviewLayers.h"
+#include "Worksheets.h"
+
+#include <cstdint>
+#include <cstring>
+#include <numeric>
+
+namespace splatting
+{
+/// Rows of a tile.
+constexpr int TileHeight = 4;
+static_assert(TileWidth == BrickWidth && TileHeight == BrickHeight);
+
+/// Tiles that a walk met, and those that it splatted.
+struct TileCount
+{
+  std::int64_t met = 0;
+  std::int64_t splatted = 0;
+};
+
+/// A thread's work space.
+struct BandScratch
+{
+  Patch patch;
+  std::vector<unsigned char> voxelBounds, bounds, minima, flags;
+  std::vector<int> order;
+  std::vector<double> scores;
+  std::vector<Span> runs;
+  TileCount count;
+};
+
+template <class Layers>
+class BandWalk
+{
+public:
+  using T = typename Layers::Voxel;
+  using P = typename Layers::Pixel;
+
+  BandWalk(const Frame<T>& frame, const Layers& layers, BandScratch& scratch, int v0, int v1)
+    : Shared(frame),
+      Stack(layers),
+      Scratch(scratch),
+      V0(v0),
+      V1(v1)
+  {
+    const Span slices = slicesOf(frame.sliceGeometry, v0, v1);
+    this->Range = { slices.begin / BrickDepth,
+      slices.empty() ? slices.begin / BrickDepth : (slices.end - 1) / BrickDepth + 1 };
+    this->Tiles = (frame.image.width + TileWidth - 1) / TileWidth;
+    this->Groups = (v1 - v0 + TileHeight - 1) / TileHeight;
+  }
+
+  void walkDensely()
+  {
+    // In the order of memory: slice after slice, or, where rows of all slices lie side by side, a
+    // few rows through all slices.
+    const bool slicesFirst = this->Shared.slices.rowStride <= this->Shared.slices.sliceStride;
+    const int height = slicesFirst ? this->V1 - this->V0 : TileHeight;
+    this->Scratch.runs.assign(1, { 0, this->Shared.image.width });
+    for (int v = this->V0; v < this->V1; v += height)
+    {
+      for (int z = this->Range.begin; z < this->Range.end; ++z)
+      {
+        this->splat(z, v, std::min(v + height, this->V1));
+      }
+    }
+  }
+
+  void walkBricks(const BrickMaxima& bricks)
+  {
+    this->findBounds(bricks);
+    this->orderLayers();
+    this->minima().assign(std::size_t(this->Groups) * this->Tiles * sizeof(P), 0);
+    std::fill_n(this->minimaOf(0), this->Groups * this->Tiles, leastValue<P>());
+    int walked = 0;
+    for (int z : this->Scratch.order)
+    {
+      for (int g = 0; g < this->Groups; ++g)
+      {
+        this->walkGroup(z, g);
+      }
+      // The first layers raise the minima most.
+      ++walked;
+      if ((walked & (walked - 1)) == 0 || walked % 16 == 0)
+      {
+        this->findMinima();
+      }
+    }
+  }
+
+private:
+  int rowsOf(int group) const
+  {
+    return std::min(TileHeight, this->V1 - this->V0 - group * TileHeight);
+  }
+  int firstRow(int group) const { return this->V0 + group * TileHeight; }
+  std::ptrdiff_t place(int z, int group) const
+  {
+    return (std::ptrdiff_t(z - this->Range.begin) * this->Groups + group) * this->Tiles;
+  }
+  std::vector<unsigned char>& minima() { return this->Scratch.minima; }
+  T* voxelBounds(int z, int group)
+  {
+    return reinterpret_cast<T*>(this->Scratch.voxelBounds.data()) + this->place(z, group);
+  }
+  P* bounds(int z, int group)
+  {
+    return reinterpret_cast<P*>(this->Scratch.bounds.data()) + this->place(z, group);
+  }
+  P* minimaOf(int group)
+  {
+    return reinterpret_cast<P*>(this->minima().data()) + std::ptrdiff_t(group) * this->Tiles;
+  }
+
+  void splat(int z, int v0, int v1)
+  {
+    this->Stack.splat(z, v0, v1, this->Scratch.runs, this->Scratch.patch);
+  }
+
+  /// What each layer can add to each tile.
+  void findBounds(const BrickMaxima& bricks)
+  {
+    const std::size_t count =
+      std::size_t(this->Range.end - this->Range.begin) * this->Groups * this->Tiles;
+    // Rows are written in whole registers, each of which the next row overwrites.
+    this->Scratch.voxelBounds.resize(count * sizeof(T) + BrickMaxima::Padding);
+    for (int z = this->Range.begin; z < this->Range.end; ++z)
+    {
+      for (int g = 0; g < this->Groups; ++g)
+      {
+        this->takeBricks(bricks, z, g, this->voxelBounds(z, g));
+      }
+    }
+    if constexpr (std::is_same_v<Layers, PreviewLayers<T>>)
+    {
+      this->Scratch.bounds.swap(this->Scratch.voxelBounds);
+    }
+    else
+    {
+      this->Scratch.bounds.resize(count * sizeof(P));
+      const VoxelLoops<T>& loops = this->Shared.kernels;
+      if (count > 0)
+      {
+        loops.widen(this->voxelBounds(this->Range.begin, 0), 0, this->bounds(this->Range.begin, 0),
+          0, this->Stack.base(), count, 1);
+      }
+      this->blendBounds();
+    }
+  }
+
+  /// The largest of the bricks in the window of each tile of a group, for the layer's own slices.
+  /// Beyond the ends of rows of bricks others are read: that makes some bounds higher, not wrong.
+  void takeBricks(const BrickMaxima& bricks, int z, int group, T* out) const
+  {
+    const Window& window = this->Stack.window(z);
+    const int height = this->Shared.geometry.size().y;
+    const int first = std::max(this->firstRow(group) + window.jMin, 0);
+    const int last =
+      std::min(this->firstRow(group) + this->rowsOf(group) - 1 + window.jMax, height - 1);
+    // Tile t meets bricks t + from to t + to.
+    const int from = floorDivided(window.iMin, BrickWidth);
+    const int to = floorDivided(TileWidth - 1 + window.iMax, BrickWidth);
+    Span tiles = common({ 0, this->Tiles }, { -to, bricks.count.x - from });
+    if (last < first || tiles.empty())
+    {
+      tiles = { this->Tiles, this->Tiles };
+    }
+    std::fill(out, out + tiles.begin, leastValue<T>());
+    const T* rows[MostBricks];
+    int count = 0;
+    for (int j = first / BrickHeight; j <= last / BrickHeight; ++j)
+    {
+      for (int b = from; b <= to && !tiles.empty(); ++b)
+      {
+        rows[count++] = bricks.row<T>(j, z) + b + tiles.begin;
+      }
+    }
+    if (count > 0)
+    {
+      const VoxelLoops<T>& loops = this->Shared.kernels;
+      loops.largest(rows, count, out + tiles.begin, tiles.end - tiles.begin);
+    }
+    std::fill(out + tiles.end, out + this->Tiles, leastValue<T>());
+  }
+
+  /// In each direction a window is at most a tile, the drift of BrickDepth + 2 slices and a
+  /// footprint wide.
+  static constexpr int MostBricks = 4 * 6;
+
+  static int floorDivided(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+
+  /// Worksheets also weigh voxels of the layers before and behind.
+  void blendBounds()
+  {
+    const WorksheetLoops<P>& loops = this->Shared.kernels;
+    const int row = this->Groups * this->Tiles; // of one layer
+    const P slack = this->Stack.slack(), magnitude = this->Stack.magnitude();
+    // In place: the layer behind is still as it was, the one before is kept.
+    this->Scratch.voxelBounds.resize(std::size_t(2) * row * sizeof(P));
+    P* before = reinterpret_cast<P*>(this->Scratch.voxelBounds.data());
+    P* kept = before + row;
+    for (int z = this->Range.begin; z < this->Range.end; ++z)
+    {
+      P* const own = this->bounds(z, 0);
+      std::copy(own, own + row, kept);
+      const bool hasBefore = z > this->Range.begin, hasAfter = z + 1 < this->Range.end;
+      loops.bound(own, hasBefore ? before : kept, hasAfter ? own + row : kept, this->Stack.share(z),
+        slack, magnitude, row);
+      std::swap(before, kept);
+    }
+  }
+
+  /// Highest first, by the mean over some of the tiles.
+  void orderLayers()
+  {
+    constexpr int step = 13;
+    std::vector<int>& order = this->Scratch.order;
+    std::vector<double>& scores = this->Scratch.scores;
+    order.resize(this->Range.end - this->Range.begin);
+    std::iota(order.begin(), order.end(), this->Range.begin);
+    scores.resize(order.size());
+    const P low = static_cast<P>(this->Shared.range.low);
+    for (int z : order)
+    {
+      const P* const b = this->bounds(z, 0);
+      double sum = 0.0;
+      for (int t = 0; t < this->Groups * this->Tiles; t += step)
+      {
+        sum += static_cast<double>(std::max(b[t], low));
+      }
+      scores[z - this->Range.begin] = sum;
+    }
+    std::sort(order.begin(), order.end(),
+      [&](int a, int b)
+      {
+        const double x = scores[a - this->Range.begin], y = scores[b - this->Range.begin];
+        return x > y || (x == y && a < b);
+      });
+  }
+
+  void findMinima()
+  {
+    const TileLoops<P>& loops = this->Shared.kernels;
+    const ShearImage& image = this->Shared.image;
+    const int whole = image.width / TileWidth;
+    for (int g = 0; g < this->Groups; ++g)
+    {
+      const P* const rows = image.row<P>(this->firstRow(g));
+      P* const out = this->minimaOf(g);
+      loops.minima(rows, image.width, this->rowsOf(g), whole, out);
+      if (whole < this->Tiles)
+      {
+        P least = greatestValue<P>();
+        for (int v = 0; v < this->rowsOf(g); ++v)
+        {
+          const P* const row = rows + std::ptrdiff_t(v) * image.width;
+          least = std::min(least, *std::min_element(row + whole * TileWidth, row + image.width));
+        }
+        out[whole] = least;
+      }
+    }
+  }
+
+  /// Splats the tiles of a group that a layer can change.
+  void walkGroup(int z, int group)
+  {
+    const TileLoops<P>& loops = this->Shared.kernels;
+    constexpr int word = 64;
+    this->Scratch.flags.resize((this->Tiles + word - 1) / word * word);
+    unsigned char* const flags = this->Scratch.flags.data();
+    loops.exceeds(this->bounds(z, group), this->minimaOf(group), flags, this->Tiles);
+    std::fill(
+      flags + this->Tiles, flags + this->Scratch.flags.size(), static_cast<unsigned char>(0));
+    this->Scratch.count.met += this->Tiles;
+    this->Scratch.runs.clear();
+    for (int first = 0; first < this->Tiles; first += word)
+    {
+      std::uint64_t tiles = packed(flags + first);
+      // Small gaps cost less than a second start.
+      tiles |= ((tiles << 1) & (tiles >> 1)) | ((tiles << 1) & (tiles >> 2)) |
+        ((tiles << 2) & (tiles >> 1));
+      this->addRuns(first, tiles);
+    }
+    if (!this->Scratch.runs.empty())
+    {
+      this->splat(z, this->firstRow(group), this->firstRow(group) + this->rowsOf(group));
+    }
+  }
+
+  void addRuns(int first, std::uint64_t tiles)
+  {
+    while (tiles)
+    {
+      const int begin = trailingZeros(tiles);
+      const std::uint64_t rest = ~(tiles >> begin);
+      const int length = rest ? trailingZeros(rest) : 64;
+      tiles = begin + length < 64 ? tiles >> (begin + length) << (begin + length) : 0;
+      this->Scratch.count.splatted += length;
+      // Registers of worksheets hold two tiles, and take no longer for both than for one.
+      constexpr int unit = std::is_same_v<T, P> ? TileWidth : 2 * TileWidth;
+      const int u = (first + begin) * TileWidth;
+      this->Scratch.runs.push_back({ u / unit * unit,
+        std::min((u + length * TileWidth + unit - 1) / unit * unit, this->Shared.image.width) });
+    }
+  }
+
+  /// Bit n is byte n, which is 0 or 1.
+  static std::uint64_t packed(const unsigned char* flags)
+  {
+    std::uint64_t bits = 0;
+    for (int n = 0; n < 8; ++n)
+    {
+      std::uint64_t eight = 0;
+      for (int byte = 0; byte < 8; ++byte) // compilers make this one load
+      {
+        eight |= std::uint64_t(flags[8 * n + byte]) << (8 * byte);
+      }
+      // The product's highest byte has bit 0 of each byte.
+      bits |= (eight * 0x0102040810204080u) >> 56 << (8 * n);
+    }
+    return bits;
+  }
+
+  static int trailingZeros(std::uint64_t word)
+  {
+#if defined(__GNUC__)
+    return __builtin_ctzll(word);
+#else
+    int n = 0;
+    for (; !(word & 1); word >>= 1)
+    {
+      ++n;
+    }
+    return n;
+#endif
+  }
+
+  const Frame<T>& Shared;
+  const Layers& Stack;
+  BandScratch& Scratch;
+  int V0, V1;
+  Span Range; // of layers
+  int Tiles, Groups;
+};
+}
+
+#endif

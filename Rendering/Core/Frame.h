@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What all parts of one projection share.
+ */
+#ifndef splattingFrame_h
+#define splattingFrame_h
+
+#include "Kernels.h"
+#include "ShearImage.h"
+#include "VolumeIndex.h"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+namespace splatting
+{
+/// One slice as seen by all pixels.
+struct SliceGeometry
+{
+  RayPath path;
+  int vBegin, vEnd;         ///< image rows whose rays cross the slice
+  int innerBegin, innerEnd; ///< those whose whole path lies in it: all but one at either end
+  Span lower, inner, upper; ///< pixels that the slice covers in the rows before, in and after these
+
+  const Span& span(int v) const
+  {
+    return v < this->innerBegin ? this->lower : v < this->innerEnd ? this->inner : this->upper;
+  }
+};
+
+std::vector<SliceGeometry>& findSlices(
+  const ShearWarp& geometry, std::vector<SliceGeometry>& slices);
+
+/// Sets size and spans of an image and, if half-spaces (in pixels) cut the volume, its mask.
+void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
+  const std::vector<glm::dvec4>& halfSpaces, ShearImage& image);
+
+template <class T>
+constexpr T leastValue()
+{
+  using Limits = std::numeric_limits<T>;
+  return Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
+}
+template <class T>
+constexpr T greatestValue()
+{
+  using Limits = std::numeric_limits<T>;
+  return Limits::has_infinity ? Limits::infinity() : Limits::max();
+}
+
+/// One projection of a volume of type T.
+template <class T>
+struct Frame
+{
+  const ShearWarp& geometry;
+  const Kernels& kernels;
+  Slices slices;
+  VolumeIndex::Range range;
+  const std::vector<SliceGeometry>& sliceGeometry;
+  const std::vector<glm::dvec4>& halfSpaces; // in pixels
+  ShearImage& image;
+
+  const T* voxelRow(int j, int k) const
+  {
+    return static_cast<const T*>(this->slices.voxels) + j * this->slices.rowStride +
+      k * this->slices.sliceStride;
+  }
+
+  /// The pixels of row v in [vBegin, vEnd) that slice k counts for.
+  Span pixels(int v, int k) const
+  {
+    const Span& span = this->sliceGeometry[k].span(v);
+    return this->halfSpaces.empty() ? span : ShearWarp::clipped(span, v, k, this->halfSpaces);
+  }
+};
+
+/// The slices that rows [v0, v1) meet: a range, because the stack only moves one way.
+inline Span slicesOf(const std::vector<SliceGeometry>& slices, int v0, int v1)
+{
+  const auto meets = [=](const SliceGeometry& s) { return s.vBegin < v1 && s.vEnd > v0; };
+  const auto first = std::find_if(slices.begin(), slices.end(), meets);
+  const auto last = std::find_if(slices.rbegin(), slices.rend(), meets).base();
+  return { static_cast<int>(first - slices.begin()),
+    static_cast<int>(std::max(first, last) - slices.begin()) };
+}
+
+inline Span common(const Span& a, const Span& b)
+{
+  return { std::max(a.begin, b.begin), std::min(a.end, b.end) };
+}
+
+/// Sets rows to "no sample": pixels that no ray's sample will reach to the greatest value, so that
+/// a tile's least value is that of the others.
+template <class P>
+void openRows(ShearImage& image, int v0, int v1)
+{
+  const P empty = image.special ? std::numeric_limits<P>::quiet_NaN() : leastValue<P>();
+  const P outside = image.special ? empty : greatestValue<P>();
+  for (int v = v0; v < v1; ++v)
+  {
+    P* const row = image.row<P>(v);
+    const Span& span = image.spans[v];
+    std::fill(row, row + image.width, outside);
+    if (image.mask.empty())
+    {
+      std::fill(row + span.begin, row + std::max(span.begin, span.end), empty);
+      continue;
+    }
+    const unsigned char* const mask = &image.mask[std::ptrdiff_t(v) * image.width];
+    for (int u = span.begin; u < span.end; ++u)
+    {
+      row[u] = mask[u] ? empty : outside;
+    }
+  }
+}
+}
+
+#endif

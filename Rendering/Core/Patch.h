@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef splattingPatch_h
+#define splattingPatch_h
+
+#include "VolumeIndex.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace splatting
+{
+/// Voxels widened to the accumulator's type: a rectangle from each of the up to three slices that a
+/// worksheet reads. What footprints read beyond the volume repeats its outermost voxels.
+struct Patch
+{
+  struct Sheet
+  {
+    int slice = -1;
+    int i = 0, j = 0; // the first voxel
+    int columns = 0, rows = 0;
+  };
+  std::vector<unsigned char> bytes;
+  std::ptrdiff_t rowLength = 0;
+  std::ptrdiff_t sheetLength = 0;
+  std::array<Sheet, 3> sheets;
+
+  /// Forgets all sheets.
+  template <class A>
+  void resize(int columns, int rows)
+  {
+    this->rowLength = columns;
+    this->sheetLength = this->rowLength * rows;
+    const std::size_t size = this->sheets.size() * this->sheetLength * sizeof(A);
+    if (this->bytes.size() < size)
+    {
+      this->bytes.resize(size);
+    }
+    this->sheets.fill(Sheet{});
+  }
+  Sheet& sheet(int slice) { return this->sheets[slice % this->sheets.size()]; }
+  template <class A>
+  A* voxel(int i, int j, int slice)
+  {
+    const Sheet& sheet = this->sheet(slice);
+    return reinterpret_cast<A*>(this->bytes.data()) +
+      slice % this->sheets.size() * this->sheetLength + (j - sheet.j) * this->rowLength +
+      (i - sheet.i);
+  }
+};
+}
+
+#endif

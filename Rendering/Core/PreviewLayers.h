@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Preview mode: the voxels that rays cross, in layers of BrickDepth slices. The rows of a layer's
+ * slices are read side by side: that keeps several streams through memory busy, and a pixel is
+ * loaded and stored once for all of them.
+ */
+#ifndef splattingPreviewLayers_h
+#define splattingPreviewLayers_h
+
+#include "Frame.h"
+#include "Patch.h"
+
+namespace splatting
+{
+/// The voxels that the pixels of a layer read, relative to the pixel.
+struct Window
+{
+  int iMin = std::numeric_limits<int>::max(), iMax = std::numeric_limits<int>::lowest();
+  int jMin = std::numeric_limits<int>::max(), jMax = std::numeric_limits<int>::lowest();
+
+  void add(int di, int dj)
+  {
+    this->iMin = std::min(this->iMin, di);
+    this->iMax = std::max(this->iMax, di);
+    this->jMin = std::min(this->jMin, dj);
+    this->jMax = std::max(this->jMax, dj);
+  }
+};
+
+inline Span slicesOfLayer(int layer, const glm::ivec3& size)
+{
+  return { layer * BrickDepth, std::min((layer + 1) * BrickDepth, size.z) };
+}
+
+/// The paths of all slices of a layer.
+struct PreviewLayer
+{
+  struct Tap
+  {
+    int k, di, dj;
+  };
+  std::array<Tap, MostRows> taps;
+  int tapCount = 0;
+  Window window;
+  Span valid; ///< the pixels that see voxels along all paths
+  Rim left, right;
+  bool rimsFit = false; ///< whether a register holds a rim
+};
+static_assert(MostRows == 3 * BrickDepth);
+
+template <class T>
+class PreviewLayers
+{
+public:
+  using Voxel = T;
+  using Pixel = T;
+
+  /// `storage` outlives this, and is kept for the next frame.
+  PreviewLayers(const Frame<T>& frame, std::vector<PreviewLayer>& storage)
+    : Shared(frame),
+      Layers(storage)
+  {
+    const glm::ivec3& size = frame.geometry.size();
+    storage.assign((size.z + BrickDepth - 1) / BrickDepth, PreviewLayer{});
+    for (int k = 0; k < size.z; ++k)
+    {
+      Layer& layer = storage[k / BrickDepth];
+      const RayPath& path = frame.sliceGeometry[k].path;
+      for (int t = 0; t < path.count; ++t)
+      {
+        layer.taps[layer.tapCount++] = { k, path.di[t], path.dj[t] };
+        layer.window.add(path.di[t], path.dj[t]);
+      }
+    }
+    for (Layer& layer : storage)
+    {
+      this->findRims(layer);
+    }
+  }
+
+  const Window& window(int layer) const { return this->Layers[layer].window; }
+
+  /// Takes a layer's voxels into the pixels of some rows and runs of columns.
+  void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch&) const
+  {
+    const Layer& layer = this->Layers[z];
+    // Rows whose voxels all exist, and beside which there are others: a rim reads a few voxels
+    // beyond its row.
+    const bool plain =
+      layer.rimsFit && this->Shared.halfSpaces.empty() && !this->Shared.image.special;
+    const int first = plain ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
+    const int last = std::clamp(this->Shared.geometry.size().y - 1 - layer.window.jMax, first, v1);
+    this->splatSlices(z, v0, first, runs);
+    if (first < last)
+    {
+      this->sweep(layer, first, last, runs);
+    }
+    this->splatSlices(z, last, v1, runs);
+  }
+
+  void finish(int, int) const {}
+
+private:
+  using Layer = PreviewLayer;
+
+  void findRims(Layer& layer) const
+  {
+    const ShearImage& image = this->Shared.image;
+    const int width = this->Shared.geometry.size().x;
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    const int lanes = static_cast<int>(loops.lanes);
+    const Span any{ -layer.window.iMax, width - layer.window.iMin };
+    layer.valid = { -layer.window.iMin, width - layer.window.iMax };
+    layer.rimsFit = width >= lanes && image.width >= lanes &&
+      layer.valid.begin - any.begin <= lanes && any.end - layer.valid.end <= lanes &&
+      !layer.valid.empty();
+    layer.left.first = std::min(any.begin, image.width - lanes);
+    layer.right.first = std::max(any.end - lanes, 0);
+    for (int t = 0; t < layer.tapCount; ++t)
+    {
+      const Span sees{ -layer.taps[t].di, width - layer.taps[t].di };
+      const Span left = common(sees, { any.begin, layer.valid.begin });
+      const Span right = common(sees, { layer.valid.end, any.end });
+      layer.left.begin[t] = left.begin - layer.left.first;
+      layer.left.end[t] = left.end - layer.left.first;
+      layer.right.begin[t] = right.begin - layer.right.first;
+      layer.right.end[t] = right.end - layer.right.first;
+    }
+  }
+
+  /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns.
+  void sweep(const Layer& layer, int v0, int v1, const std::vector<Span>& runs) const
+  {
+    Sweep<T> sweep;
+    sweep.image = this->Shared.image.template row<T>(v0);
+    sweep.imageStride = this->Shared.image.width;
+    sweep.height = v1 - v0;
+    sweep.count = layer.tapCount;
+    sweep.rowStride = this->Shared.slices.rowStride;
+    for (int t = 0; t < layer.tapCount; ++t)
+    {
+      const Layer::Tap& tap = layer.taps[t];
+      sweep.rows[t] = this->Shared.voxelRow(v0 + tap.dj, tap.k) + tap.di;
+    }
+    sweep.runs = runs.data();
+    sweep.runCount = static_cast<int>(runs.size());
+    sweep.valid = layer.valid;
+    sweep.rimCount = 0;
+    if (layer.window.iMin < layer.window.iMax)
+    {
+      if (runs.front().begin < layer.valid.begin)
+      {
+        sweep.rims[sweep.rimCount++] = &layer.left;
+      }
+      if (runs.back().end > layer.valid.end)
+      {
+        sweep.rims[sweep.rimCount++] = &layer.right;
+      }
+    }
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    loops.sweep(sweep);
+  }
+
+  /// Any rows, slice by slice.
+  void splatSlices(int z, int v0, int v1, const std::vector<Span>& runs) const
+  {
+    const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
+    for (int k = slices.begin; k < slices.end; ++k)
+    {
+      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+      for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
+      {
+        for (const Span& run : runs)
+        {
+          this->splatSlice(k, v, common(run, this->Shared.pixels(v, k)));
+        }
+      }
+    }
+  }
+
+  void splatSlice(int k, int v, const Span& span) const
+  {
+    const RayPath& path = this->Shared.sliceGeometry[k].path;
+    const glm::ivec3& size = this->Shared.geometry.size();
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    const auto maximum = this->Shared.image.special ? loops.maximumValid : loops.maximum;
+    for (int t = 0; t < path.count; ++t)
+    {
+      const int j = v + path.dj[t];
+      const Span valid = common(span, { -path.di[t], size.x - path.di[t] });
+      if (j >= 0 && j < size.y && !valid.empty())
+      {
+        const T* const row = this->Shared.voxelRow(j, k) + path.di[t] + valid.begin;
+        maximum(
+          this->Shared.image.template row<T>(v) + valid.begin, &row, 1, valid.end - valid.begin);
+      }
+    }
+  }
+
+  const Frame<T>& Shared;
+  const std::vector<Layer>& Layers;
+};
+}
+
+#endif
