@@ -36,6 +36,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <set>
 #include <string>
@@ -134,6 +135,13 @@ bool isSingular(const glm::dmat4& m)
     !std::isfinite(glm::length(m[3]));
 }
 
+const char* nameOf(int acceleration)
+{
+  static const char* const names[] = { "auto", "dense", "bricks", "lines", "sorted lines",
+    "sorted volume" };
+  return names[acceleration];
+}
+
 /// Keeps a half-space of index space if it cuts into the volume's voxels at all.
 void addHalfSpace(splatting::View& view, const glm::dvec4& h)
 {
@@ -159,6 +167,8 @@ public:
   splatting::View MakeView(
     vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
   void LookAt(vtkDataArray* scalars);
+  splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self) const;
+  double FloorOfWindow() const;
   bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
   void UpdateColors(vtkVolumeProperty* property);
   void CopyShearImage(vtkImageData* output) const;
@@ -178,6 +188,8 @@ public:
   splatting::Projector Projector;
   splatting::ShearWarp Geometry;
   splatting::ProjectionSettings Settings;
+  splatting::Acceleration Used = splatting::Acceleration::Dense;
+  bool BudgetReported = false;
   std::vector<glm::dvec4> HalfSpaces;
   splatting::ShearImage Image;
   bool ImageValid = false;
@@ -202,6 +214,11 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     Kernel(TRILINEAR),
     KernelRadius(1.0),
     FootprintSampling(0),
+    Acceleration(AUTO),
+    LineTolerance(0.0),
+    EliminateInvisible(false),
+    CullBelowWindow(false),
+    IndexMemoryBudget(vtkTypeInt64(1) << 32),
     LastRenderUsedRayCasting(false),
     Internal(new Internals)
 {
@@ -357,21 +374,44 @@ void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkDataArray* scalars)
 }
 
 //------------------------------------------------------------------------------
-// Projects, unless the last shear image shows the same. False if the view has no meaning.
-bool vtkSplattingMIPVolumeMapper::Internals::Project(
-  vtkSplattingMIPVolumeMapper* self, const splatting::View& view)
+splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::MakeSettings(
+  vtkSplattingMIPVolumeMapper* self) const
 {
-  const splatting::ShearWarp geometry(view);
   splatting::ProjectionSettings settings;
   settings.quality = static_cast<splatting::Quality>(self->QualityMode);
   settings.kernel = { self->Kernel == COSINE_BELL ? splatting::Reconstruction::CosineBell
                                                   : splatting::Reconstruction::Hat,
     self->KernelRadius };
   settings.footprintSampling = self->FootprintSampling;
+  settings.acceleration = static_cast<splatting::Acceleration>(self->Acceleration);
+  if (self->CullBelowWindow)
+  {
+    settings.floor = this->FloorOfWindow();
+  }
+  return settings;
+}
+
+//------------------------------------------------------------------------------
+// The scalar up to which all have the colour of the lowest.
+double vtkSplattingMIPVolumeMapper::Internals::FloorOfWindow() const
+{
+  const std::vector<std::uint32_t>& colors = this->Colors.colors;
+  const auto last = std::adjacent_find(colors.begin(), colors.end(), std::not_equal_to<>());
+  const double steps = std::max<double>(static_cast<double>(colors.size()) - 1.0, 1.0);
+  const double share =
+    last == colors.end() ? 1.0 : static_cast<double>(last - colors.begin()) / steps;
+  return this->Colors.low + share * (this->Colors.high - this->Colors.low);
+}
+
+//------------------------------------------------------------------------------
+// Projects, unless the last shear image shows the same. False if the view has no meaning.
+bool vtkSplattingMIPVolumeMapper::Internals::Project(
+  vtkSplattingMIPVolumeMapper* self, const splatting::View& view)
+{
+  const splatting::ShearWarp geometry(view);
+  const splatting::ProjectionSettings settings = this->MakeSettings(self);
   const bool same = this->ImageValid && geometry.sameShear(this->Geometry) &&
-    this->HalfSpaces == view.halfSpaces && settings.quality == this->Settings.quality &&
-    settings.kernel == this->Settings.kernel &&
-    settings.footprintSampling == this->Settings.footprintSampling;
+    this->HalfSpaces == view.halfSpaces && settings == this->Settings;
   if (!geometry.valid())
   {
     return false;
@@ -384,7 +424,8 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
   this->Settings = settings;
   this->HalfSpaces = view.halfSpaces;
   const double start = vtkTimerLog::GetUniversalTime();
-  this->Projector.project(this->Index, geometry, settings, view.halfSpaces, this->Image);
+  this->Used =
+    this->Projector.project(this->Index, geometry, settings, view.halfSpaces, this->Image);
   this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
   this->ImageValid = true;
   this->ShearImageOutput = nullptr;
@@ -451,11 +492,19 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     return "";
   }
   in.LookAt(in.Scalars);
+  in.Index.setBudget(static_cast<std::size_t>(this->IndexMemoryBudget));
+  in.UpdateColors(vol->GetProperty());
   if (!in.Project(this, view))
   {
     return DegenerateCamera;
   }
-  in.UpdateColors(vol->GetProperty());
+  if (in.Index.exceedsBudget() && !in.BudgetReported)
+  {
+    vtkWarningMacro(<< "An index for fast projection does not fit into IndexMemoryBudget ("
+                    << this->IndexMemoryBudget
+                    << " bytes): this volume is projected without it. Raise the budget.");
+  }
+  in.BudgetReported = in.Index.exceedsBudget();
   in.Warper.warp(
     in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet, in.Picture);
   if (!in.Picture.pixels.empty())
@@ -596,6 +645,18 @@ const char* vtkSplattingMIPVolumeMapper::GetInstructionSet()
 }
 
 //------------------------------------------------------------------------------
+int vtkSplattingMIPVolumeMapper::GetAccelerationUsed()
+{
+  return static_cast<int>(this->Internal->Used);
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSplattingMIPVolumeMapper::GetAccelerationAsString()
+{
+  return nameOf(this->Acceleration);
+}
+
+//------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetQualityModeAsString()
 {
   switch (this->QualityMode)
@@ -623,6 +684,12 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Kernel: " << this->GetKernelAsString() << "\n";
   os << indent << "KernelRadius: " << this->KernelRadius << "\n";
   os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";
+  os << indent << "Acceleration: " << this->GetAccelerationAsString() << "\n";
+  os << indent << "AccelerationUsed: " << nameOf(this->GetAccelerationUsed()) << "\n";
+  os << indent << "LineTolerance: " << this->LineTolerance << "\n";
+  os << indent << "EliminateInvisible: " << (this->EliminateInvisible ? "On" : "Off") << "\n";
+  os << indent << "CullBelowWindow: " << (this->CullBelowWindow ? "On" : "Off") << "\n";
+  os << indent << "IndexMemoryBudget: " << this->IndexMemoryBudget << "\n";
   os << indent << "LastRenderUsedRayCasting: " << (this->LastRenderUsedRayCasting ? "Yes" : "No")
      << "\n";
   os << indent << "PrincipalAxis: " << this->GetPrincipalAxis() << "\n";

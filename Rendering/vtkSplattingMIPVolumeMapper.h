@@ -78,6 +78,16 @@ public:
     COSINE_BELL = 1
   };
 
+  enum Accelerations
+  {
+    AUTO = 0,
+    DENSE = 1,
+    BRICKS = 2,
+    LINES = 3,
+    SORTED_LINES = 4,
+    SORTED_VOLUME = 5
+  };
+
   ///@{
   /**
    * What a slice contributes to a pixel of the shear image [CS98, section 2 and 3]. Default HIGH.
@@ -129,6 +139,94 @@ public:
   vtkGetMacro(FootprintSampling, int);
   ///@}
 
+  ///@{
+  /**
+   * What the projection leaves out and in which order it meets the rest. All give the same picture,
+   * bit for bit (but for LineTolerance and CullBelowWindow). Default AUTO.
+   *
+   * DENSE: every voxel, in the order of memory.
+   * BRICKS: the volume is divided into bricks of 8x4x4 voxels. Where no brick behind a tile of 8x4
+   * pixels can exceed the tile's least pixel so far, nothing is splatted; slices with high bricks
+   * come first.
+   * LINES: chains of equal voxels along rows take the place of voxels [CS98, section 4]. In modes
+   * STANDARD and HIGH the whole footprint is evaluated at the chains' ends only.
+   * SORTED_LINES: in mode PREVIEW, the chains of each slice from high to low values. The other
+   * modes use LINES. SORTED_VOLUME: in mode PREVIEW, the chains of all slices from high to low
+   * values; a pixel that has a value is done [CS98, footnote 2]. The other modes use LINES.
+   *
+   * AUTO takes BRICKS, unless the last frame that used them along this principal axis in this mode
+   * still had to splat more than 40 % (PREVIEW) or 70 % (STANDARD, HIGH) of the tiles, as is the
+   * case with noise everywhere; then DENSE, and every 16th frame tries BRICKS again. It never takes
+   * chains, which are slower on all data that we measured (splatmip-paper reports it), but need
+   * less memory than the volume.
+   *
+   * Volumes with NaN or infinity are walked densely, as are all when IndexMemoryBudget has no room
+   * for the index; GetAccelerationUsed() tells.
+   */
+  vtkSetClampMacro(Acceleration, int, AUTO, SORTED_VOLUME);
+  vtkGetMacro(Acceleration, int);
+  void SetAccelerationToAuto() { this->SetAcceleration(AUTO); }
+  void SetAccelerationToDense() { this->SetAcceleration(DENSE); }
+  void SetAccelerationToBricks() { this->SetAcceleration(BRICKS); }
+  void SetAccelerationToLines() { this->SetAcceleration(LINES); }
+  void SetAccelerationToSortedLines() { this->SetAcceleration(SORTED_LINES); }
+  void SetAccelerationToSortedVolume() { this->SetAcceleration(SORTED_VOLUME); }
+  const char* GetAccelerationAsString();
+  ///@}
+
+  /**
+   * The acceleration of the last projection: never AUTO; DENSE before the first one.
+   */
+  int GetAccelerationUsed();
+
+  ///@{
+  /**
+   * Delta encoding of the chains [CS98, section 4]: a chain may span voxels that differ from its
+   * value v by up to N (high - v) / 255, where N is LineTolerance, high the largest scalar: N grey
+   * levels of 255 at the lowest scalar, none at the largest. No pixel of the shear image differs by
+   * more than N (high - low) / 255. Fewer chains, less memory, faster. Default 0 (none), clamped to
+   * [0, 64]. Only the accelerations with chains use it; a change encodes anew.
+   */
+  vtkSetClampMacro(LineTolerance, double, 0.0, 64.0);
+  vtkGetMacro(LineTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Leave voxels out of the chains that no ray can see, because a higher voxel lies before or
+   * behind on each [Mroz, Hauser, Groeller 2000]. The picture stays the same, bit for bit. Mode
+   * PREVIEW without clipping only; the other modes, and clipped volumes, are encoded with all
+   * voxels. Default off: it pays where chains are used for a turn of a smooth volume.
+   */
+  vtkSetMacro(EliminateInvisible, bool);
+  vtkGetMacro(EliminateInvisible, bool);
+  vtkBooleanMacro(EliminateInvisible, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Do not tell values apart below the window: scalars, from the lowest one up, that all have the
+   * colour and opacity of the lowest one. What cannot rise above them is left out. The shear image
+   * is the larger of the window's lower end and what it would be otherwise; since the picture
+   * interpolates between its pixels, edges against the background become brighter by up to half a
+   * pixel. Default off.
+   */
+  vtkSetMacro(CullBelowWindow, bool);
+  vtkGetMacro(CullBelowWindow, bool);
+  vtkBooleanMacro(CullBelowWindow, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Bytes that the index may hold besides the input: bricks (3/128 of the volume), chains, and the
+   * copy (as large as the volume) for views along the first axis, in which rows of memory are rays.
+   * What would exceed them is not made, with one warning: the projection is DENSE, and without the
+   * copy 32 slices at a time are transposed in every frame. Default 4 GiB. 0: none.
+   */
+  vtkSetClampMacro(IndexMemoryBudget, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
+  vtkGetMacro(IndexMemoryBudget, vtkTypeInt64);
+  ///@}
+
   /**
    * The last shear image, one pixel per voxel, or nullptr before the first native render. Scalars:
    * the input's type in mode PREVIEW, else float (double for 32- and 64-bit integers and double).
@@ -157,7 +255,8 @@ public:
   ///@}
 
   /**
-   * Bytes held for the data set last rendered, besides the input and work space: copies of it.
+   * Bytes held for the data set last rendered, besides the input and work space: bricks, chains,
+   * copies.
    */
   vtkIdType GetIndexMemorySize();
 
@@ -212,6 +311,11 @@ protected:
   int Kernel;
   double KernelRadius;
   int FootprintSampling;
+  int Acceleration;
+  double LineTolerance;
+  bool EliminateInvisible;
+  bool CullBelowWindow;
+  vtkTypeInt64 IndexMemoryBudget;
   bool LastRenderUsedRayCasting;
 
 private:

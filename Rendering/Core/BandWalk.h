@@ -50,42 +50,33 @@ public:
   using T = typename Layers::Voxel;
   using P = typename Layers::Pixel;
 
-  BandWalk(const Frame<T>& frame, const Layers& layers, BandScratch& scratch, int v0, int v1)
+  /// @param some  the slices to walk; whole layers
+  BandWalk(const Frame<T>& frame, const Layers& layers, BandScratch& scratch, const Span& some,
+    int v0, int v1)
     : Shared(frame),
       Stack(layers),
       Scratch(scratch),
       V0(v0),
       V1(v1)
   {
-    const Span slices = slicesOf(frame.sliceGeometry, v0, v1);
+    const Span slices = common(some, slicesOf(frame.sliceGeometry, v0, v1));
     this->Range = { slices.begin / BrickDepth,
       slices.empty() ? slices.begin / BrickDepth : (slices.end - 1) / BrickDepth + 1 };
+    const int layersInAll = (frame.geometry.size().z + BrickDepth - 1) / BrickDepth;
+    this->Known = { std::max(this->Range.begin - Layers::Beyond, 0),
+      std::min(this->Range.end + Layers::Beyond, layersInAll) };
     this->Tiles = (frame.image.width + TileWidth - 1) / TileWidth;
     this->Groups = (v1 - v0 + TileHeight - 1) / TileHeight;
   }
 
-  void walkDensely()
-  {
-    // In the order of memory: slice after slice, or, where rows of all slices lie side by side, a
-    // few rows through all slices.
-    const bool slicesFirst = this->Shared.slices.rowStride <= this->Shared.slices.sliceStride;
-    const int height = slicesFirst ? this->V1 - this->V0 : TileHeight;
-    this->Scratch.runs.assign(1, { 0, this->Shared.image.width });
-    for (int v = this->V0; v < this->V1; v += height)
-    {
-      for (int z = this->Range.begin; z < this->Range.end; ++z)
-      {
-        this->splat(z, v, std::min(v + height, this->V1));
-      }
-    }
-  }
+  void walkDensely() { this->Stack.splatAll(this->Range, this->V0, this->V1, this->Scratch.patch); }
 
   void walkBricks(const BrickMaxima& bricks)
   {
     this->findBounds(bricks);
     this->orderLayers();
     this->minima().assign(std::size_t(this->Groups) * this->Tiles * sizeof(P), 0);
-    std::fill_n(this->minimaOf(0), this->Groups * this->Tiles, leastValue<P>());
+    std::fill_n(this->minimaOf(0), this->Groups * this->Tiles, this->Stack.floor());
     int walked = 0;
     for (int z : this->Scratch.order)
     {
@@ -110,7 +101,7 @@ private:
   int firstRow(int group) const { return this->V0 + group * TileHeight; }
   std::ptrdiff_t place(int z, int group) const
   {
-    return (std::ptrdiff_t(z - this->Range.begin) * this->Groups + group) * this->Tiles;
+    return (std::ptrdiff_t(z - this->Known.begin) * this->Groups + group) * this->Tiles;
   }
   std::vector<unsigned char>& minima() { return this->Scratch.minima; }
   T* voxelBounds(int z, int group)
@@ -135,10 +126,10 @@ private:
   void findBounds(const BrickMaxima& bricks)
   {
     const std::size_t count =
-      std::size_t(this->Range.end - this->Range.begin) * this->Groups * this->Tiles;
+      std::size_t(this->Known.end - this->Known.begin) * this->Groups * this->Tiles;
     // Rows are written in whole registers, each of which the next row overwrites.
     this->Scratch.voxelBounds.resize(count * sizeof(T) + BrickMaxima::Padding);
-    for (int z = this->Range.begin; z < this->Range.end; ++z)
+    for (int z = this->Known.begin; z < this->Known.end; ++z)
     {
       for (int g = 0; g < this->Groups; ++g)
       {
@@ -155,7 +146,7 @@ private:
       const VoxelLoops<T>& loops = this->Shared.kernels;
       if (count > 0)
       {
-        loops.widen(this->voxelBounds(this->Range.begin, 0), 0, this->bounds(this->Range.begin, 0),
+        loops.widen(this->voxelBounds(this->Known.begin, 0), 0, this->bounds(this->Known.begin, 0),
           0, this->Stack.base(), count, 1);
       }
       this->blendBounds();
@@ -164,7 +155,7 @@ private:
 
   /// The largest of the bricks in the window of each tile of a group, for the layer's own slices.
   /// Beyond the ends of rows of bricks others are read: that makes some bounds higher, not wrong.
-  void takeBricks(const BrickMaxima& bricks, int z, int group, T* out) const
+  void takeBricks(const BrickMaxima& bricks, int z, int group, T* out)
   {
     const Window& window = this->Stack.window(z);
     const int height = this->Shared.geometry.size().y;
@@ -179,6 +170,7 @@ private:
     {
       tiles = { this->Tiles, this->Tiles };
     }
+    this->Scratch.count.met += tiles.end - tiles.begin;
     std::fill(out, out + tiles.begin, leastValue<T>());
     const T* rows[MostBricks];
     int count = 0;
@@ -213,11 +205,11 @@ private:
     this->Scratch.voxelBounds.resize(std::size_t(2) * row * sizeof(P));
     P* before = reinterpret_cast<P*>(this->Scratch.voxelBounds.data());
     P* kept = before + row;
-    for (int z = this->Range.begin; z < this->Range.end; ++z)
+    for (int z = this->Known.begin; z < this->Known.end; ++z)
     {
       P* const own = this->bounds(z, 0);
       std::copy(own, own + row, kept);
-      const bool hasBefore = z > this->Range.begin, hasAfter = z + 1 < this->Range.end;
+      const bool hasBefore = z > this->Known.begin, hasAfter = z + 1 < this->Known.end;
       loops.bound(own, hasBefore ? before : kept, hasAfter ? own + row : kept, this->Stack.share(z),
         slack, magnitude, row);
       std::swap(before, kept);
@@ -285,7 +277,6 @@ private:
     loops.exceeds(this->bounds(z, group), this->minimaOf(group), flags, this->Tiles);
     std::fill(
       flags + this->Tiles, flags + this->Scratch.flags.size(), static_cast<unsigned char>(0));
-    this->Scratch.count.met += this->Tiles;
     this->Scratch.runs.clear();
     for (int first = 0; first < this->Tiles; first += word)
     {
@@ -353,7 +344,8 @@ private:
   const Layers& Stack;
   BandScratch& Scratch;
   int V0, V1;
-  Span Range; // of layers
+  Span Range; // of layers that are walked
+  Span Known; // and that have bounds: their neighbours, too
   int Tiles, Groups;
 };
 }

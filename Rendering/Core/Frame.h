@@ -56,10 +56,11 @@ struct Frame
 {
   const ShearWarp& geometry;
   const Kernels& kernels;
-  Slices slices;
+  mutable Slices slices; // while it is walked: those that are there
   VolumeIndex::Range range;
   const std::vector<SliceGeometry>& sliceGeometry;
   const std::vector<glm::dvec4>& halfSpaces; // in pixels
+  double floor;                              // as in ProjectionSettings
   ShearImage& image;
 
   const T* voxelRow(int j, int k) const
@@ -92,11 +93,11 @@ inline Span common(const Span& a, const Span& b)
 }
 
 /// Sets rows to "no sample": pixels that no ray's sample will reach to the greatest value, so that
-/// a tile's least value is that of the others.
+/// a tile's least value is that of the others; these to the floor, above which samples count.
 template <class P>
-void openRows(ShearImage& image, int v0, int v1)
+void openRows(ShearImage& image, P floor, int v0, int v1)
 {
-  const P empty = image.special ? std::numeric_limits<P>::quiet_NaN() : leastValue<P>();
+  const P empty = image.special ? std::numeric_limits<P>::quiet_NaN() : floor;
   const P outside = image.special ? empty : greatestValue<P>();
   for (int v = v0; v < v1; ++v)
   {
@@ -113,6 +114,20 @@ void openRows(ShearImage& image, int v0, int v1)
     {
       row[u] = mask[u] ? empty : outside;
     }
+  }
+}
+
+/// Pixels that no ray meets were marked for the walk; they are "no sample" again.
+template <class P>
+void closeRows(ShearImage& image, int v0, int v1)
+{
+  const P empty = image.special ? std::numeric_limits<P>::quiet_NaN() : leastValue<P>();
+  for (int v = v0; v < v1; ++v)
+  {
+    P* const row = image.row<P>(v);
+    const Span& span = image.spans[v];
+    std::fill(row, row + std::min(span.begin, image.width), empty);
+    std::fill(row + std::max(span.begin, span.end), row + image.width, empty);
   }
 }
 }

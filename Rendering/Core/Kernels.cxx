@@ -3,10 +3,19 @@
 //
 // Compiled once per instruction set, with SPLATTING_KERNELS the name of the table that it defines
 // and SPLATTING_VECTOR_BYTES the width of a register. It must use no inline function from outside
-// (not even std::max): the linker keeps one copy of those for the whole library, and it might be
-// the one that only the newest processors can run. For the same reason all is in an anonymous
-// namespace, but the table.
+// but intrinsics (not even std::max): the linker keeps one copy of those for the whole library, and
+// it might be the one that only the newest processors can run. For the same reason all is in an
+// anonymous namespace, but the table.
 #include "Kernels.h"
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC's own intrinsics start from registers that they leave undefined on purpose.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#endif
+#endif
 
 namespace splatting
 {
@@ -265,17 +274,62 @@ void maximumValid(T* image, const T* const* rows, int count, std::ptrdiff_t n)
   }
 }
 
-/// A register of widened elements. A loop that compilers vectorise: their own conversions of
-/// vectors go element by element.
+/// A register of elements, widened to the accumulator's type. Where that is float, compilers need
+/// to be told the instruction that widens small integers.
 template <class T>
-inline void widenBlock(const T* __restrict row, Accumulator<T>* __restrict out, Accumulator<T> base)
+inline Pack<Accumulator<T>> loadWidened(const T* p)
 {
-#pragma GCC unroll 1
+  Pack<Accumulator<T>> out;
   for (std::ptrdiff_t x = 0; x < width<Accumulator<T>>; ++x)
   {
-    out[x] = static_cast<Accumulator<T>>(row[x]) - base;
+    reinterpret_cast<Accumulator<T>*>(&out)[x] = static_cast<Accumulator<T>>(p[x]);
   }
+  return out;
 }
+
+#if defined(__AVX512F__)
+inline __m512 toFloat(__m512i integers)
+{
+  return _mm512_cvtepi32_ps(integers);
+}
+inline Pack<float> loadWidened(const std::uint8_t* p)
+{
+  return toFloat(_mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int8_t* p)
+{
+  return toFloat(_mm512_cvtepi8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::uint16_t* p)
+{
+  return toFloat(_mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int16_t* p)
+{
+  return toFloat(_mm512_cvtepi16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))));
+}
+#elif defined(__AVX2__)
+inline __m256 toFloat(__m256i integers)
+{
+  return _mm256_cvtepi32_ps(integers);
+}
+inline Pack<float> loadWidened(const std::uint8_t* p)
+{
+  return toFloat(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int8_t* p)
+{
+  return toFloat(_mm256_cvtepi8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::uint16_t* p)
+{
+  return toFloat(_mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int16_t* p)
+{
+  return toFloat(_mm256_cvtepi16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+#endif
 
 template <class T>
 void widen(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
@@ -288,11 +342,11 @@ void widen(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdif
     std::ptrdiff_t x = 0;
     for (; x + w <= n; x += w)
     {
-      widenBlock(row + x, out + x, base);
+      store<A>(out + x, loadWidened(row + x) - base);
     }
     if (x < n && n >= w)
     {
-      widenBlock(row + n - w, out + n - w, base);
+      store<A>(out + n - w, loadWidened(row + n - w) - base);
       x = n;
     }
     for (; x < n; ++x)

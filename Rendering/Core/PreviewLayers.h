@@ -11,6 +11,8 @@
 #include "Frame.h"
 #include "Patch.h"
 
+#include <cmath>
+
 namespace splatting
 {
 /// The voxels that the pixels of a layer read, relative to the pixel.
@@ -55,6 +57,8 @@ class PreviewLayers
 public:
   using Voxel = T;
   using Pixel = T;
+  /// How many slices beyond its own a layer reads.
+  static constexpr int Beyond = 0;
 
   /// `storage` outlives this, and is kept for the next frame.
   PreviewLayers(const Frame<T>& frame, std::vector<PreviewLayer>& storage)
@@ -97,6 +101,39 @@ public:
       this->sweep(layer, first, last, runs);
     }
     this->splatSlices(z, last, v1, runs);
+  }
+
+  /// The same for all pixels of some rows and all voxels of some layers, in the order of memory:
+  /// slice after slice, or, where rows of all slices lie side by side, a few rows through all of
+  /// them.
+  void splatAll(const Span& layers, int v0, int v1, Patch& patch) const
+  {
+    const std::vector<Span> all(1, { 0, this->Shared.image.width });
+    const bool slicesFirst = this->Shared.slices.rowStride <= this->Shared.slices.sliceStride;
+    const int height = slicesFirst ? v1 - v0 : BrickHeight;
+    for (int v = v0; v < v1; v += height)
+    {
+      for (int z = layers.begin; z < layers.end; ++z)
+      {
+        this->splat(z, v, std::min(v + height, v1), all, patch);
+      }
+    }
+  }
+
+  /// What pixels start from: no voxel is less. If the floor is no voxel's value, the next one
+  /// above.
+  T floor() const
+  {
+    using Limits = std::numeric_limits<T>;
+    // The range's double need not be a 64-bit integer's exact value.
+    constexpr bool exact = !Limits::is_integer || sizeof(T) < 8;
+    const T low = exact ? static_cast<T>(this->Shared.range.low) : leastValue<T>();
+    const double floor = Limits::is_integer ? std::ceil(this->Shared.floor) : this->Shared.floor;
+    if (!(floor > static_cast<double>(low)))
+    {
+      return low;
+    }
+    return floor < static_cast<double>(Limits::max()) ? static_cast<T>(floor) : Limits::max();
   }
 
   void finish(int, int) const {}

@@ -35,17 +35,35 @@ void forBands(int height, Body&& body)
     });
 }
 
-/// Pixels that no ray meets were marked for the walk; they are "no sample" again.
-template <class P>
-void closeRows(ShearImage& image, int v0, int v1)
+/// Slices that are transposed at a time where there is no memory for a copy of all.
+constexpr int ChunkDepth = 8 * BrickDepth;
+
+/// A share of tiles above which skipping the others does not pay: the plain walk reads memory in
+/// order, which is worth more where little is computed.
+double worthwhileShare(Quality quality)
 {
-  const P empty = image.special ? std::numeric_limits<P>::quiet_NaN() : leastValue<P>();
-  for (int v = v0; v < v1; ++v)
+  return quality == Quality::Preview ? 0.4 : 0.7;
+}
+
+/// The rule of Acceleration::Auto.
+Acceleration choose(const Experience& experience, Quality quality)
+{
+  constexpr int patience = 16;
+  return experience.share > worthwhileShare(quality) && experience.framesSince < patience
+    ? Acceleration::Dense
+    : Acceleration::Bricks;
+}
+
+void learn(Experience& experience, Acceleration used, const TileCount& count)
+{
+  if (used == Acceleration::Bricks)
   {
-    P* const row = image.row<P>(v);
-    const Span& span = image.spans[v];
-    std::fill(row, row + std::min(span.begin, image.width), empty);
-    std::fill(row + std::max(span.begin, span.end), row + image.width, empty);
+    experience.share = count.met > 0 ? double(count.splatted) / double(count.met) : 0.0;
+    experience.framesSince = 0;
+  }
+  else
+  {
+    ++experience.framesSince;
   }
 }
 }
@@ -58,63 +76,88 @@ struct Projector::Scratch
   std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> footprints;
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> reach;
   std::vector<glm::dvec4> halfSpaces;
+  std::vector<unsigned char> chunk;
 };
 
 Projector::Projector() : Memory(new Scratch) {}
 
 Projector::~Projector() = default;
 
+/// Walks all slices, or, where these would need a copy that there is no memory for, some at a time.
 template <class T, class Layers>
-void Projector::walk(const Frame<T>& frame, const Layers& layers, const BrickMaxima* bricks)
+void Projector::walk(VolumeIndex& index, const Frame<T>& frame, const Layers& layers,
+  Acceleration used, TileCount& count)
 {
   using P = typename Layers::Pixel;
-  forBands(frame.image.height,
-    [&](int v0, int v1)
+  const int axis = frame.geometry.principalAxis(), depth = frame.geometry.size().z;
+  const bool whole = index.hasSlices(axis);
+  const BrickMaxima* const bricks = used == Acceleration::Bricks ? &index.bricks(axis) : nullptr;
+  for (int first = 0; first < depth; first += ChunkDepth)
+  {
+    const Span slices{ first, whole ? depth : std::min(first + ChunkDepth, depth) };
+    frame.slices = whole ? index.slices(axis)
+                         : index.someSlices(std::max(slices.begin - Layers::Beyond, 0),
+                             std::min(slices.end + Layers::Beyond, depth), this->Memory->chunk);
+    forBands(frame.image.height,
+      [&](int v0, int v1)
+      {
+        if (slices.begin == 0)
+        {
+          openRows<P>(frame.image, layers.floor(), v0, v1);
+        }
+        BandWalk<Layers> band(frame, layers, this->Memory->bands.Local(), slices, v0, v1);
+        bricks ? band.walkBricks(*bricks) : band.walkDensely();
+        if (slices.end == depth)
+        {
+          layers.finish(v0, v1);
+          closeRows<P>(frame.image, v0, v1);
+        }
+      });
+    if (whole)
     {
-      openRows<P>(frame.image, v0, v1);
-      BandWalk<Layers> band(frame, layers, this->Memory->bands.Local(), v0, v1);
-      if (bricks)
-      {
-        band.walkBricks(*bricks);
-      }
-      else
-      {
-        band.walkDensely();
-      }
-      layers.finish(v0, v1);
-      closeRows<P>(frame.image, v0, v1);
-    });
+      break;
+    }
+  }
+  for (BandScratch& band : this->Memory->bands)
+  {
+    count.met += band.count.met;
+    count.splatted += band.count.splatted;
+    band.count = {};
+  }
 }
 
 template <class T>
 void Projector::projectType(
-  VolumeIndex& index, const Frame<T>& frame, const ProjectionSettings& settings)
+  VolumeIndex& index, const ProjectionSettings& settings, Acceleration used, const Frame<T>& frame)
 {
   ShearImage& image = frame.image;
   const std::size_t pixels = std::size_t(image.width) * image.height;
-  const BrickMaxima* const bricks = settings.acceleration != Acceleration::Dense && !image.special
-    ? &index.bricks(frame.geometry.principalAxis())
-    : nullptr;
+  TileCount count;
   if (settings.quality == Quality::Preview)
   {
     image.type = scalarTypeOf<T>();
     image.bytes.resize(pixels * sizeof(T));
-    this->walk(frame, PreviewLayers<T>(frame, this->Memory->previewLayers), bricks);
-    return;
+    this->walk(index, frame, PreviewLayers<T>(frame, this->Memory->previewLayers), used, count);
   }
-  using A = Accumulator<T>;
-  image.type = scalarTypeOf<A>();
-  image.bytes.resize(pixels * sizeof(A));
-  const bool standard = settings.quality == Quality::Standard;
-  auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
-  findFootprints(frame.geometry, standard ? Kernel{ Reconstruction::Box } : settings.kernel,
-    settings.footprintSampling, weightBits<T>, footprints);
-  auto& reach = std::get<WorksheetReach<A>>(this->Memory->reach);
-  findReach(frame.sliceGeometry, footprints, reach);
-  this->walk(frame, WorksheetLayers<T>(frame, footprints, reach, standard ? 0 : 1), bricks);
+  else
+  {
+    using A = Accumulator<T>;
+    image.type = scalarTypeOf<A>();
+    image.bytes.resize(pixels * sizeof(A));
+    const bool standard = settings.quality == Quality::Standard;
+    auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
+    findFootprints(frame.geometry, standard ? Kernel{ Reconstruction::Box } : settings.kernel,
+      settings.footprintSampling, weightBits<T>, footprints);
+    auto& reach = std::get<WorksheetReach<A>>(this->Memory->reach);
+    findReach(frame.sliceGeometry, footprints, reach);
+    this->walk(
+      index, frame, WorksheetLayers<T>(frame, footprints, reach, standard ? 0 : 1), used, count);
+  }
+  learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality)), used,
+    count);
 }
 
-void Projector::project(VolumeIndex& index, const ShearWarp& geometry,
+Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   const ProjectionSettings& settings, const std::vector<glm::dvec4>& halfSpaces, ShearImage& image)
 {
   Scratch& memory = *this->Memory;
@@ -127,13 +170,24 @@ void Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   outlineImage(geometry, memory.slices, memory.halfSpaces, image);
   const VolumeIndex::Range& range = index.range();
   image.special = range.special;
+  Acceleration used = settings.acceleration;
+  if (used == Acceleration::Auto)
+  {
+    used = choose(index.experience(geometry.principalAxis(), static_cast<int>(settings.quality)),
+      settings.quality);
+  }
+  if (range.special || !index.hasBricks())
+  {
+    used = Acceleration::Dense;
+  }
   dispatch(index.volume().type,
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
-      const Frame<T> frame{ geometry, kernelsFor(settings.instructionSet),
-        index.slices(geometry.principalAxis()), range, memory.slices, memory.halfSpaces, image };
-      this->projectType(index, frame, settings);
+      const Frame<T> frame{ geometry, kernelsFor(settings.instructionSet), {}, range, memory.slices,
+        memory.halfSpaces, settings.floor, image };
+      this->projectType(index, settings, used, frame);
     });
+  return used;
 }
 }

@@ -11,6 +11,7 @@
 #include "ShearImage.h"
 #include "VolumeIndex.h"
 
+#include <limits>
 #include <memory>
 
 namespace splatting
@@ -44,10 +45,22 @@ struct ProjectionSettings
   int footprintSampling = 0;
   InstructionSet instructionSet = bestInstructionSet();
   Acceleration acceleration = Acceleration::Auto;
+  /// Values at or below need not be told apart: the image is the larger of this and what it would
+  /// be otherwise.
+  double floor = -std::numeric_limits<double>::infinity();
+
+  bool operator==(const ProjectionSettings& other) const
+  {
+    return this->quality == other.quality && this->kernel == other.kernel &&
+      this->footprintSampling == other.footprintSampling &&
+      this->instructionSet == other.instructionSet && this->acceleration == other.acceleration &&
+      this->floor == other.floor;
+  }
 };
 
 template <class T>
 struct Frame;
+struct TileCount;
 
 /**
  * Projects volumes. Holds the threads' work space between frames.
@@ -64,15 +77,19 @@ public:
   /**
    * @param halfSpaces  of index space; a slice's sample counts for a pixel if the point where the
    *                    ray crosses the middle of the slice lies in all of them
+   * @return what has been used: never Auto, and Dense where there is no memory for what was asked
    */
-  void project(VolumeIndex& index, const ShearWarp& geometry, const ProjectionSettings& settings,
-    const std::vector<glm::dvec4>& halfSpaces, ShearImage& image);
+  Acceleration project(VolumeIndex& index, const ShearWarp& geometry,
+    const ProjectionSettings& settings, const std::vector<glm::dvec4>& halfSpaces,
+    ShearImage& image);
 
 private:
   template <class T>
-  void projectType(VolumeIndex& index, const Frame<T>& frame, const ProjectionSettings& settings);
+  void projectType(VolumeIndex& index, const ProjectionSettings& settings, Acceleration used,
+    const Frame<T>& frame);
   template <class T, class Layers>
-  void walk(const Frame<T>& frame, const Layers& layers, const BrickMaxima* bricks);
+  void walk(VolumeIndex& index, const Frame<T>& frame, const Layers& layers, Acceleration used,
+    TileCount& count);
 
   struct Scratch;
   std::unique_ptr<Scratch> Memory;

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace splatting
 {
@@ -92,6 +93,14 @@ decltype(auto) dispatch(ScalarType type, F&& f)
       break;
   }
   return f(static_cast<double*>(nullptr));
+}
+
+/**
+ * Bytes of a scalar.
+ */
+inline std::size_t sizeOf(ScalarType type)
+{
+  return dispatch(type, [](auto* null) { return sizeof(std::remove_pointer_t<decltype(null)>); });
 }
 }
 

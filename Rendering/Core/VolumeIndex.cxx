@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace splatting
@@ -28,9 +29,10 @@ constexpr T highest()
                                               : std::numeric_limits<T>::max();
 }
 
-/// out[i][z][y] = in[z][y][i] in blocks that fit the first-level cache on both sides.
+/// out[x - begin][z][y] = in[z][y][x] for x in [begin, end), in blocks that fit the first-level
+/// cache on both sides.
 template <class T>
-void transpose(const T* in, T* out, const glm::ivec3& size)
+void transpose(const T* in, T* out, const glm::ivec3& size, int begin, int end)
 {
   constexpr int block = 64;
   const std::ptrdiff_t nx = size.x, ny = size.y, nz = size.z;
@@ -42,13 +44,13 @@ void transpose(const T* in, T* out, const glm::ivec3& size)
         for (std::ptrdiff_t y0 = 0; y0 < ny; y0 += block)
         {
           const std::ptrdiff_t y1 = std::min(y0 + block, ny);
-          for (std::ptrdiff_t x0 = 0; x0 < nx; x0 += block)
+          for (std::ptrdiff_t x0 = begin; x0 < end; x0 += block)
           {
-            const std::ptrdiff_t x1 = std::min(x0 + block, nx);
+            const std::ptrdiff_t x1 = std::min<std::ptrdiff_t>(x0 + block, end);
             for (std::ptrdiff_t x = x0; x < x1; ++x)
             {
               const T* from = in + (z * ny + y0) * nx + x;
-              T* to = out + (x * nz + z) * ny;
+              T* to = out + ((x - begin) * nz + z) * ny;
               for (std::ptrdiff_t y = y0; y < y1; ++y, from += nx)
               {
                 to[y] = *from;
@@ -174,7 +176,8 @@ void VolumeIndex::survey()
     all.special = all.special || part.special;
   }
   this->ValueRange = { static_cast<double>(all.low), static_cast<double>(all.high), all.special };
-  for (int k = 0; k < 3; ++k)
+  this->BricksMade = this->hasBricks();
+  for (int k = 0; k < 3 && this->BricksMade; ++k)
   {
     bricksFromCubes(cubes, { k == 0 ? 1 : 0, k == 2 ? 1 : 2, k }, this->Bricks[k]);
   }
@@ -182,11 +185,60 @@ void VolumeIndex::survey()
 
 void VolumeIndex::reset(const VoxelArray& volume)
 {
-  this->Volume = volume;
-  this->Copy.reset();
-  this->CopySize = 0;
-  this->Bricks = {};
-  this->Surveyed = false;
+  VolumeIndex fresh;
+  fresh.Volume = volume;
+  fresh.Budget = this->Budget;
+  *this = std::move(fresh);
+}
+
+void VolumeIndex::setBudget(std::size_t bytes)
+{
+  if (bytes != this->Budget)
+  {
+    this->reset(this->Volume);
+    this->Budget = bytes;
+  }
+}
+
+std::size_t VolumeIndex::volumeSize() const
+{
+  const glm::ivec3& n = this->Volume.dimensions;
+  return std::size_t(n.x) * n.y * n.z * sizeOf(this->Volume.type);
+}
+
+std::size_t VolumeIndex::brickSize() const
+{
+  std::size_t bricks = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    const glm::ivec3& n = this->Volume.dimensions;
+    const int i = n[k == 0 ? 1 : 0], j = n[k == 2 ? 1 : 2];
+    bricks += std::size_t((i + BrickWidth - 1) / BrickWidth) *
+      ((j + BrickHeight - 1) / BrickHeight) * ((n[k] + BrickDepth - 1) / BrickDepth);
+  }
+  return bricks * sizeOf(this->Volume.type) + 3 * 2 * BrickMaxima::Padding;
+}
+
+bool VolumeIndex::hasBricks()
+{
+  if (this->Surveyed)
+  {
+    return this->BricksMade;
+  }
+  const bool fits = this->brickSize() <= this->Budget;
+  this->Exceeded = this->Exceeded || !fits;
+  return fits;
+}
+
+bool VolumeIndex::hasSlices(int principalAxis)
+{
+  if (principalAxis != 0 || this->Copy)
+  {
+    return true;
+  }
+  const bool fits = this->volumeSize() + this->memorySize() <= this->Budget;
+  this->Exceeded = this->Exceeded || !fits;
+  return fits;
 }
 
 Slices VolumeIndex::slices(int principalAxis)
@@ -203,18 +255,36 @@ Slices VolumeIndex::slices(int principalAxis)
   }
   if (!this->Copy)
   {
+    this->CopySize = this->volumeSize();
+    this->Copy.reset(new unsigned char[this->CopySize]);
     dispatch(this->Volume.type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
-        const std::size_t bytes = static_cast<std::size_t>(nx * ny * nz) * sizeof(T);
-        this->Copy.reset(new unsigned char[bytes]);
-        this->CopySize = bytes;
         transpose(static_cast<const T*>(this->Volume.voxels),
-          reinterpret_cast<T*>(this->Copy.get()), this->Volume.dimensions);
+          reinterpret_cast<T*>(this->Copy.get()), this->Volume.dimensions, 0,
+          this->Volume.dimensions.x);
       });
   }
   return { this->Copy.get(), ny, ny * nz };
+}
+
+Slices VolumeIndex::someSlices(int begin, int end, std::vector<unsigned char>& buffer) const
+{
+  const std::ptrdiff_t slice =
+    std::ptrdiff_t(this->Volume.dimensions.y) * this->Volume.dimensions.z;
+  buffer.resize(std::size_t(end - begin) * slice * sizeOf(this->Volume.type));
+  const void* first = nullptr; // where slice 0 would be
+  dispatch(this->Volume.type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      T* const copy = reinterpret_cast<T*>(buffer.data());
+      transpose(
+        static_cast<const T*>(this->Volume.voxels), copy, this->Volume.dimensions, begin, end);
+      first = copy - begin * slice;
+    });
+  return { first, this->Volume.dimensions.y, slice };
 }
 
 const VolumeIndex::Range& VolumeIndex::range()

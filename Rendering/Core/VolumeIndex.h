@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -27,7 +28,7 @@ struct VoxelArray
 };
 
 /**
- * The slices along one axis: voxel (i, j, k) at voxels[i + j * rowStride + k * sliceStride].
+ * Slices along one axis: voxel (i, j, k) at voxels[i + j * rowStride + k * sliceStride].
  */
 struct Slices
 {
@@ -61,6 +62,13 @@ struct BrickMaxima
   }
 };
 
+/// Which accelerations have been worth their while, for Acceleration::Auto.
+struct Experience
+{
+  double share = 0.0;  ///< of the tiles that bricks did not leave out, the last time
+  int framesSince = 0; ///< frames without bricks since then
+};
+
 class VolumeIndex
 {
 public:
@@ -69,12 +77,25 @@ public:
 
   const VoxelArray& volume() const { return this->Volume; }
 
+  /// Bytes that may be held besides the volume. What would exceed them is not made; what is there
+  /// and exceeds them is given up.
+  void setBudget(std::size_t bytes);
+  /// Whether something was not made for want of memory.
+  bool exceedsBudget() const { return this->Exceeded; }
+
+  /// Whether slices() can be called for an axis: the volume holds them as they are, or the budget
+  /// has room for a copy.
+  bool hasSlices(int principalAxis);
   /**
    * The volume seen along an axis, rows without gaps, (i, j) as in ShearWarp::axes(). Along the
    * first axis voxels of a row would lie a whole row of memory apart; there it is a copy with axes
    * (1, 2, 0), made on first use (one pass, reads and writes each byte once).
    */
   Slices slices(int principalAxis);
+  /**
+   * The same for slices [begin, end) along the first axis only, copied into `buffer`.
+   */
+  Slices someSlices(int begin, int end, std::vector<unsigned char>& buffer) const;
 
   struct Range
   {
@@ -84,8 +105,15 @@ public:
   /// Made on first use: one pass over the voxels, which makes the bricks as well.
   const Range& range();
 
+  /// Whether the budget has room for bricks.
+  bool hasBricks();
   /// The bricks along an axis; 3/128 of the volume for all axes together.
   const BrickMaxima& bricks(int principalAxis);
+
+  Experience& experience(int principalAxis, int quality)
+  {
+    return this->Experiences[principalAxis][quality];
+  }
 
   /// Bytes held besides the volume.
   std::size_t memorySize() const;
@@ -93,13 +121,19 @@ public:
 private:
   template <class T>
   void survey();
+  std::size_t volumeSize() const;
+  std::size_t brickSize() const;
 
   VoxelArray Volume;
+  std::size_t Budget = std::numeric_limits<std::size_t>::max();
   std::unique_ptr<unsigned char[]> Copy;
   std::size_t CopySize = 0;
   Range ValueRange;
   std::array<BrickMaxima, 3> Bricks;
   bool Surveyed = false;
+  bool BricksMade = false;
+  bool Exceeded = false;
+  std::array<std::array<Experience, 3>, 3> Experiences;
 };
 }
 

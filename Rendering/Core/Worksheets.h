@@ -73,6 +73,8 @@ public:
   using A = Accumulator<T>;
   using Voxel = T;
   using Pixel = A;
+  /// How many slices beyond its own a layer reads.
+  static constexpr int Beyond = 1;
 
   /// @param depth  how many slices beyond its own a footprint reads
   WorksheetLayers(const Frame<T>& frame, const std::vector<SliceFootprint<A>>& footprints,
@@ -101,19 +103,38 @@ public:
   /// Splats a layer's worksheets into the pixels of some rows and runs of columns.
   void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
   {
-    // Pieces of the image whose patch stays in the first-level cache.
-    constexpr int width = 256, height = 16;
-    for (int v = v0; v < v1; v += height)
+    const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
+    for (std::size_t n = 0; n < runs.size(); ++n)
     {
-      for (const Span& run : runs)
-      {
-        for (int u = run.begin; u < run.end; u += width)
+      this->forPieces(v0, v1, runs[n],
+        [&](int first, int last, const Span& columns)
         {
-          this->splatPiece(
-            z, v, std::min(v + height, v1), { u, std::min(u + width, run.end) }, patch);
-        }
-      }
+          this->clear(patch, first, last, columns);
+          this->splatPiece(slices, first, last, columns, patch);
+        });
     }
+  }
+
+  /// The same for all pixels of some rows and all slices of some layers, piece by piece, so that
+  /// voxels are widened once.
+  void splatAll(const Span& layers, int v0, int v1, Patch& patch) const
+  {
+    const Span slices{ layers.begin * BrickDepth,
+      std::min(layers.end * BrickDepth, this->Shared.geometry.size().z) };
+    this->forPieces(v0, v1, { 0, this->Shared.image.width },
+      [&](int first, int last, const Span& columns)
+      {
+        this->clear(patch, first, last, columns);
+        this->splatPiece(slices, first, last, columns, patch);
+      });
+  }
+
+  /// What pixels start from, before finish(): no worksheet ends below.
+  A floor() const
+  {
+    const double floor =
+      std::clamp(this->Shared.floor, this->Shared.range.low, this->Shared.range.high);
+    return static_cast<A>(floor) - this->Base;
   }
 
   /// Adds the base; rounding must not show values that the data do not have.
@@ -139,10 +160,27 @@ private:
     return std::numeric_limits<T>::is_integer && sizeof(T) < 8 ? static_cast<A>(range.low) : A(0);
   }
 
-  void splatPiece(int z, int v0, int v1, const Span& columns, Patch& patch) const
+  /// Calls f for pieces of the image whose patch stays in the second-level cache.
+  template <class F>
+  static void forPieces(int v0, int v1, const Span& columns, F&& f)
+  {
+    constexpr int width = 1024, height = 16;
+    for (int v = v0; v < v1; v += height)
+    {
+      for (int u = columns.begin; u < columns.end; u += width)
+      {
+        f(v, std::min(v + height, v1), Span{ u, std::min(u + width, columns.end) });
+      }
+    }
+  }
+
+  void clear(Patch& patch, int v0, int v1, const Span& columns) const
   {
     patch.resize<A>(columns.end - columns.begin + this->Reach.columns, v1 - v0 + this->Reach.rows);
-    const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
+  }
+
+  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, Patch& patch) const
+  {
     for (int k = slices.begin; k < slices.end; ++k)
     {
       const SliceGeometry& slice = this->Shared.sliceGeometry[k];
@@ -178,16 +216,20 @@ private:
     const int last = this->Shared.geometry.size().z - 1;
     for (int s = std::max(k - this->Depth, 0); s <= std::min(k + this->Depth, last); ++s)
     {
-      Patch::Sheet& sheet = patch.sheet(s);
-      if (sheet.slice != s)
+      if (patch.sheet(s).slice != s)
       {
-        const Window& window = this->Reach.slices[s];
-        sheet = { s, columns.begin + window.iMin, v0 + window.jMin,
-          columns.end - columns.begin + window.iMax - window.iMin,
-          v1 - v0 + window.jMax - window.jMin };
-        this->loadSheet(sheet, patch);
+        patch.sheet(s) = this->sheetOf(s, v0, v1, columns);
+        this->loadSheet(patch.sheet(s), patch);
       }
     }
+  }
+
+  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const
+  {
+    const Window& window = this->Reach.slices[s];
+    return { s, columns.begin + window.iMin, v0 + window.jMin,
+      columns.end - columns.begin + window.iMax - window.iMin,
+      v1 - v0 + window.jMax - window.jMin };
   }
 
   void loadSheet(const Patch::Sheet& sheet, Patch& patch) const
