@@ -87,6 +87,7 @@ void testProjectiveMissesVoxels(Checks& check, reference::Random& random)
 
 void testFastProjective(Checks& check, reference::Random& random)
 {
+  reference::ByteImage found;
   for (int n = 0; n < 100; ++n)
   {
     const reference::Bytes volume = randomBytes(random, 40);
@@ -97,12 +98,20 @@ void testFastProjective(Checks& check, reference::Random& random)
     const splatting::Slices slices = index.slices(view.axis);
     const auto expected =
       reference::projectiveShearWarp(reference::toDouble(volume), view, SliceSampling::Nearest);
-    std::vector<std::uint8_t> found(expected.value.size(), 77);
     reference::projectSlices(
       { static_cast<const std::uint8_t*>(slices.voxels), slices.rowStride, slices.sliceStride },
-      reference::makeShearGrid(volume.size, view), view, found.data());
-    check(std::equal(found.begin(), found.end(), expected.value.begin()),
+      reference::makeShearGrid(volume.size, view), view, found);
+    check(found.value.size() == expected.value.size() &&
+        std::equal(found.value.begin(), found.value.end(), expected.value.begin()),
       "the fast projective shear-warp differs, axis ", view.axis);
+    for (int v = 0; v < found.height; ++v)
+    {
+      for (int u = 0; u < found.width; ++u)
+      {
+        check(!expected.isHit(u, v) || (u >= found.range[v][0] && u < found.range[v][1]),
+          "a pixel with sample is out of its row's range");
+      }
+    }
   }
 }
 

@@ -199,17 +199,19 @@ float largestOnRay(const Bytes& volume, const glm::dvec3& start, const glm::dvec
 }
 
 /**
- * Slice k's part of one row of the image, moved by (di, dj) from pixel to voxel.
+ * Slice k's part of row v of the image, moved by di from pixel to voxel.
  */
-void raiseRow(const std::uint8_t* voxels, int count, int di, int width, std::uint8_t* image)
+void raiseRow(const std::uint8_t* voxels, int count, int di, int v, ByteImage& image)
 {
   const int begin = std::max(0, -di);
-  const int end = std::min(width, count - di);
+  const int end = std::min(image.width, count - di);
+  std::uint8_t* to = image.value.data() + std::ptrdiff_t(v) * image.width;
   const std::uint8_t* from = voxels + di;
   for (int u = begin; u < end; ++u)
   {
-    image[u] = std::max(image[u], from[u]);
+    to[u] = std::max(to[u], from[u]);
   }
+  image.range[v] = { std::min(image.range[v][0], begin), std::max(image.range[v][1], end) };
 }
 
 } // namespace
@@ -262,13 +264,16 @@ void castThroughVoxels(const Bytes& volume, const Rays& rays, Image<float>& pict
 
 //------------------------------------------------------------------------------
 void projectSlices(
-  const SliceStack& slices, const ShearGrid& grid, const ShearView& view, std::uint8_t* image)
+  const SliceStack& slices, const ShearGrid& grid, const ShearView& view, ByteImage& image)
 {
+  image.width = grid.width;
+  image.height = grid.height;
+  image.value.assign(static_cast<std::size_t>(grid.width) * grid.height, 0);
+  image.range.assign(grid.height, { grid.width, 0 });
   // Bands of rows stay in the cache while the slices stream by.
   vtkSMPTools::For(0, grid.height, 16,
     [&](vtkIdType first, vtkIdType last)
     {
-      std::fill(image + first * grid.width, image + last * grid.width, std::uint8_t(0));
       for (int k = 0; k < grid.size[2]; ++k)
       {
         const double z = k - grid.middle;
@@ -276,11 +281,10 @@ void projectSlices(
         const int dj = static_cast<int>(std::floor(0.5 - grid.margin[1] - view.shear[1] * z));
         const int begin = std::max(static_cast<int>(first), -dj);
         const int end = std::min(static_cast<int>(last), grid.size[1] - dj);
+        const std::uint8_t* slice = slices.voxels + k * slices.sliceStride;
         for (int v = begin; v < end; ++v)
         {
-          const std::uint8_t* row =
-            slices.voxels + k * slices.sliceStride + (v + dj) * slices.rowStride;
-          raiseRow(row, grid.size[0], di, grid.width, image + std::ptrdiff_t(v) * grid.width);
+          raiseRow(slice + (v + dj) * slices.rowStride, grid.size[0], di, v, image);
         }
       }
     });

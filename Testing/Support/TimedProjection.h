@@ -16,8 +16,10 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace reference
 {
@@ -69,11 +71,22 @@ struct SliceStack
 };
 
 /**
+ * A picture of bytes, and of each row the half-open range of pixels that have samples.
+ */
+struct ByteImage
+{
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> value;
+  std::vector<std::array<int, 2>> range;
+};
+
+/**
  * projectiveShearWarp() with nearest samples: for each slice one shift and one maximum per pixel.
- * The image has the grid's width times height pixels; those without sample become 0.
+ * Pixels without sample become 0. The image's memory is used again.
  */
 void projectSlices(
-  const SliceStack& slices, const ShearGrid& grid, const ShearView& view, std::uint8_t* image);
+  const SliceStack& slices, const ShearGrid& grid, const ShearView& view, ByteImage& image);
 
 } // namespace reference
 
