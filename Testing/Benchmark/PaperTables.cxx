@@ -244,7 +244,7 @@ std::string MakeSentence(
   return "In 1998, at " + paperCube + ", *" + GetName(ratio.A) + "* was " +
     (paper > 1.0 ? "slower" : "faster") + " than *" + GetName(ratio.B) + "* (" + Short(paper) +
     " times its time). Here, at " + cube + ", it " + Compare(*range.first, *range.second) +
-    ": this **" + Judge(paper, ours) + "** on this machine.";
+    ": on this machine that order **" + Judge(paper, ours) + "**.";
 }
 
 //------------------------------------------------------------------------------
