@@ -24,7 +24,7 @@ struct PaperSettings
   int Window = 300;  // pixels along each side
   int TurnStep = 2;  // degrees between views
   int SlowStep = 20; // the same for ray casters
-  int Passes = 3;    // through all methods; each view's median counts
+  int Passes = 3;    // through all methods; each view's fastest frame counts
   int AccuracyViews = 8;
 };
 

@@ -129,7 +129,7 @@ void ReportMethods(PaperReport& report, const PaperSettings& settings)
   report.AddText("Minimum / maximum / **mean** over a full turn about x and one about y in steps "
                  "of " +
     std::to_string(settings.TurnStep) + "° (ray casting: " + slow +
-    "°), starting from +z; of each view the median of " + std::to_string(settings.Passes) +
+    "°), starting from +z; of each view the fastest of " + std::to_string(settings.Passes) +
     " passes. The window just holds the volume in every view. "
     "All methods end at the same thing, the grey pixels of the window: splatting and projective "
     "shear-warp as projection to the shear image and the same warp, ray casting from the window's "
