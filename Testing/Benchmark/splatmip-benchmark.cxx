@@ -6,6 +6,7 @@
 #include "BenchmarkCases.h"
 #include "BenchmarkStage.h"
 #include "BenchmarkVolumes.h"
+#include "ProcessorName.h"
 #include "SummaryReporter.h"
 
 #include "vtkSMPTools.h"
@@ -14,10 +15,8 @@
 #include "vtkVersion.h"
 
 #include <benchmark/benchmark.h>
-#include <vtksys/SystemInformation.hxx>
 
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <string>
 #include <utility>
@@ -111,23 +110,6 @@ Options TakeOptions(int& argc, char** argv)
   }
   argc = kept;
   return options;
-}
-
-/// The processor's name as Linux, or else VTK's system library, has it.
-std::string GetProcessorName()
-{
-  std::ifstream file("/proc/cpuinfo");
-  std::string line, value;
-  while (std::getline(file, line))
-  {
-    if (Starts(line, "model name\t: ", value))
-    {
-      return value;
-    }
-  }
-  vtksys::SystemInformation system;
-  system.RunCPUCheck();
-  return system.GetExtendedProcessorName();
 }
 
 /// What the numbers depend on, besides the program.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <stdexcept>
 
 namespace reference
@@ -431,6 +432,25 @@ bool isInside(double x, int count)
 }
 
 /**
+ * The slice's value at a point of its middle plane; NaN outside the volume.
+ */
+double sampleSlice(
+  const ShearedVolume& source, double x, double y, int slice, SliceSampling sampling)
+{
+  const double outside = std::numeric_limits<double>::quiet_NaN();
+  const std::array<int, 3>& size = source.grid.size;
+  if (sampling == SliceSampling::Bilinear)
+  {
+    const WeightedSum field = fieldAt(source, Kernel(), x, y, slice);
+    return isInside(x, size[0]) && isInside(y, size[1]) ? field.sum / field.weight : outside;
+  }
+  const int i = static_cast<int>(std::floor(x + 0.5));
+  const int j = static_cast<int>(std::floor(y + 0.5));
+  const bool exists = i >= 0 && i < size[0] && j >= 0 && j < size[1];
+  return exists ? source.voxel(i, j, slice) : outside;
+}
+
+/**
  * The slices in which the pixel's ray crosses a voxel, ascending.
  */
 std::vector<int> crossedSlices(const Volume<double>& volume, const ShearView& view, int u, int v)
@@ -592,6 +612,27 @@ Image<double> pointSampledTrilinear(
           const WeightedSum field = fieldAt(source, hat, x, y, z);
           image.raise(u, v, field.sum / field.weight);
         }
+      }
+    }
+  }
+  return image;
+}
+
+//------------------------------------------------------------------------------
+Image<double> projectiveShearWarp(
+  const Volume<double>& volume, const ShearView& view, SliceSampling sampling)
+{
+  const ShearedVolume source = { volume, makeShearGrid(volume.size, view), view };
+  Image<double> image(source.grid.width, source.grid.height);
+  for (int v = 0; v < image.height; ++v)
+  {
+    for (int u = 0; u < image.width; ++u)
+    {
+      for (int slice = 0; slice < source.grid.size[2]; ++slice)
+      {
+        const double x = source.rayPosition(0, u, slice);
+        const double y = source.rayPosition(1, v, slice);
+        image.raise(u, v, sampleSlice(source, x, y, slice, sampling));
       }
     }
   }

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SplattingRenderer.h"
+
+#include <type_traits>
+
+namespace
+{
+// Settings of cores without encodings lack the members that are asked for here.
+template <class Settings, class = void>
+struct HasAcceleration : std::false_type
+{
+};
+template <class Settings>
+struct HasAcceleration<Settings, std::void_t<decltype(Settings::acceleration)>> : std::true_type
+{
+};
+
+template <class Settings>
+void SetEncoding(Settings& settings, PaperEncoding encoding, int tolerance)
+{
+  if constexpr (HasAcceleration<Settings>::value)
+  {
+    using Acceleration = decltype(Settings::acceleration);
+    const Acceleration accelerations[] = { Acceleration::Dense, Acceleration::Lines,
+      Acceleration::SortedLines, Acceleration::Auto };
+    settings.acceleration = accelerations[static_cast<int>(encoding)];
+    settings.lineTolerance = tolerance;
+    settings.eliminateInvisible = false;
+  }
+}
+
+template <class T>
+void CopyCovered(const splatting::ShearImage& image, reference::Image<double>& result)
+{
+  for (int v = 0; v < image.height; ++v)
+  {
+    for (int u = 0; u < image.width; ++u)
+    {
+      if (image.covers(u, v))
+      {
+        result.raise(u, v, image.row<T>(v)[u]);
+      }
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+SplattingRenderer::SplattingRenderer(
+  const PaperVolume& volume, splatting::Quality quality, PaperEncoding encoding, int tolerance)
+{
+  const std::array<int, 3>& size = volume.Voxels.size;
+  this->Index.reset(
+    { volume.Voxels.voxels.data(), splatting::ScalarType::UInt8, { size[0], size[1], size[2] } });
+  this->Settings.quality = quality;
+  SetEncoding(this->Settings, encoding, tolerance);
+}
+
+//------------------------------------------------------------------------------
+bool SplattingRenderer::KnowsEncodings()
+{
+  return HasAcceleration<splatting::ProjectionSettings>::value;
+}
+
+//------------------------------------------------------------------------------
+void SplattingRenderer::Render(const splatting::View& view)
+{
+  const splatting::ShearWarp geometry(view);
+  this->Projector.project(this->Index, geometry, this->Settings, {}, this->Image);
+  this->Warper.warp(
+    this->Image, geometry, this->Greys, view.viewport, this->Settings.instructionSet, this->Frame);
+}
+
+//------------------------------------------------------------------------------
+reference::Image<double> SplattingRenderer::Project(const splatting::ShearWarp& geometry)
+{
+  this->Projector.project(this->Index, geometry, this->Settings, {}, this->Image);
+  reference::Image<double> result(this->Image.width, this->Image.height);
+  splatting::dispatch(this->Image.type,
+    [&](auto* null) { CopyCovered<std::remove_pointer_t<decltype(null)>>(this->Image, result); });
+  return result;
+}

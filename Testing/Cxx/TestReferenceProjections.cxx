@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The projections that splatting is compared with: projective shear-warp by hand and beside the
+// exact traversal, and the fast versions beside the slow ones.
+#include "CoreTesting.h"
+
+#include "TimedProjection.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace coretesting;
+using reference::SliceSampling;
+
+namespace
+{
+reference::Bytes randomBytes(reference::Random& random, int largest)
+{
+  return wholeRangeNoise<std::uint8_t>(randomSize(random, largest), random.bits());
+}
+
+/// Shears of a view from anywhere: rays through edges are out of the question.
+reference::ShearView genericView(const reference::Bytes& volume, reference::Random& random)
+{
+  return referenceView(splatting::ShearWarp(randomView(volume.size, random)));
+}
+
+/// Row 0 of the picture of a volume with one row.
+std::vector<double> onlyRow(const reference::Image<double>& image, int margin)
+{
+  return { image.value.begin() + margin * image.width,
+    image.value.begin() + (margin + 1) * image.width };
+}
+
+void testProjectiveByHand(Checks& check)
+{
+  // Two slices of four voxels, sheared by half a pixel: kc = 1/2, margin 2, so pixel u meets
+  // x = u - 2 + 1/4 in slice 0 and x = u - 2 - 1/4 in slice 1.
+  reference::Volume<double> volume({ 4, 1, 2 });
+  volume.voxels = { 8.0, 0.0, 0.0, 4.0, 0.0, 12.0, 0.0, 0.0 };
+  const reference::ShearView view = { 2, { 0.5, 0.0 } };
+  const auto nearest =
+    onlyRow(reference::projectiveShearWarp(volume, view, SliceSampling::Nearest), 1);
+  check(nearest == std::vector<double>({ 0, 0, 8, 12, 0, 4, 0, 0 }), "nearest samples by hand");
+  // Slice 0 gives 3/4 V[u-2] + 1/4 V[u-1], slice 1 gives 1/4 V[u-3] + 3/4 V[u-2].
+  const auto bilinear =
+    onlyRow(reference::projectiveShearWarp(volume, view, SliceSampling::Bilinear), 1);
+  check(bilinear == std::vector<double>({ 0, 0, 6, 9, 3, 4, 0, 0 }), "bilinear samples by hand");
+}
+
+void testProjectiveWithoutShear(Checks& check, reference::Random& random)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const auto volume = reference::toDouble(randomBytes(random, 12));
+    const reference::ShearView view = { axis, { 0.0, 0.0 } };
+    const auto expected = reference::exactTraversal(volume, view);
+    for (SliceSampling sampling : { SliceSampling::Nearest, SliceSampling::Bilinear })
+    {
+      check(sameBits(expected, reference::projectiveShearWarp(volume, view, sampling)),
+        "without shear it is not the traversal, axis ", axis);
+    }
+  }
+}
+
+/// Nearest samples are voxels on the ray, but not all of them.
+void testProjectiveMissesVoxels(Checks& check, reference::Random& random)
+{
+  int missed = 0;
+  for (int n = 0; n < 50; ++n)
+  {
+    const reference::Bytes bytes = randomBytes(random, 12);
+    const reference::ShearView view = genericView(bytes, random);
+    const auto volume = reference::toDouble(bytes);
+    const auto all = reference::exactTraversal(volume, view);
+    const auto some = reference::projectiveShearWarp(volume, view, SliceSampling::Nearest);
+    for (std::size_t pixel = 0; pixel < all.value.size(); ++pixel)
+    {
+      check(!some.hit[pixel] || (all.hit[pixel] && some.value[pixel] <= all.value[pixel]),
+        "a sample is no voxel on the ray");
+      missed += some.value[pixel] < all.value[pixel];
+    }
+  }
+  check(missed > 500, "only ", missed, " pixels miss a voxel");
+}
+
+void testFastProjective(Checks& check, reference::Random& random)
+{
+  reference::ByteImage found;
+  for (int n = 0; n < 100; ++n)
+  {
+    const reference::Bytes volume = randomBytes(random, 40);
+    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    const reference::ShearView view = referenceView(geometry);
+    splatting::VolumeIndex index;
+    index.reset({ volume.voxels.data(), splatting::ScalarType::UInt8, toGlm(volume.size) });
+    const splatting::Slices slices = index.slices(view.axis);
+    const auto expected =
+      reference::projectiveShearWarp(reference::toDouble(volume), view, SliceSampling::Nearest);
+    reference::projectSlices(
+      { static_cast<const std::uint8_t*>(slices.voxels), slices.rowStride, slices.sliceStride },
+      reference::makeShearGrid(volume.size, view), view, found);
+    check(found.value.size() == expected.value.size() &&
+        std::equal(found.value.begin(), found.value.end(), expected.value.begin()),
+      "the fast projective shear-warp differs, axis ", view.axis);
+    for (int v = 0; v < found.height; ++v)
+    {
+      for (int u = 0; u < found.width; ++u)
+      {
+        check(!expected.isHit(u, v) || (u >= found.range[v][0] && u < found.range[v][1]),
+          "a pixel with sample is out of its row's range");
+      }
+    }
+  }
+}
+
+double largestDifference(const reference::Image<float>& a, const reference::Image<double>& b)
+{
+  double largest = 0.0;
+  for (std::size_t pixel = 0; pixel < a.value.size(); ++pixel)
+  {
+    largest = std::max(largest, std::abs(a.value[pixel] - b.value[pixel]));
+  }
+  return largest;
+}
+
+void testRayCasters(Checks& check, reference::Random& random)
+{
+  reference::Image<float> picture;
+  for (int n = 0; n < 100; ++n)
+  {
+    const reference::Bytes bytes = randomBytes(random, 14);
+    const reference::ShearView view = genericView(bytes, random);
+    const auto volume = reference::toDouble(bytes);
+    const double distance = n % 2 ? 1.0 : 0.25;
+    const reference::Rays rays = reference::shearRays(bytes.size, view, distance);
+
+    const auto linear = reference::pointSampledTrilinear(volume, view, distance);
+    reference::castTrilinear(bytes, rays, picture);
+    check(picture.hit == linear.hit, "trilinear: other rays meet the volume");
+    // Positions to 2^-20 voxel, at most three differences of 255 per voxel.
+    check(largestDifference(picture, linear) < 1e-3, "trilinear: off by ",
+      largestDifference(picture, linear));
+
+    const auto crossed = reference::exactTraversal(volume, view);
+    reference::castThroughVoxels(bytes, rays, picture);
+    check(picture.hit == crossed.hit && largestDifference(picture, crossed) == 0.0,
+      "the traversal is not the exact one");
+
+    // One sample in the middle of each slice is what projective shear-warp takes.
+    const auto nearest = reference::projectiveShearWarp(volume, view, SliceSampling::Nearest);
+    reference::castNearest(bytes, reference::shearRays(bytes.size, view, 1.0), picture);
+    check(picture.hit == nearest.hit && largestDifference(picture, nearest) == 0.0,
+      "nearest samples are not the slices' voxels");
+  }
+}
+}
+
+int TestReferenceProjections(int, char*[])
+{
+  Checks check;
+  reference::Random random(11);
+  testProjectiveByHand(check);
+  testProjectiveWithoutShear(check, random);
+  testProjectiveMissesVoxels(check, random);
+  testFastProjective(check, random);
+  testRayCasters(check, random);
+  return check.result();
+}
