@@ -158,36 +158,49 @@ private:
   void takeBricks(const BrickMaxima& bricks, int z, int group, T* out)
   {
     const Window& window = this->Stack.window(z);
-    const int height = this->Shared.geometry.size().y;
-    const int first = std::max(this->firstRow(group) + window.jMin, 0);
-    const int last =
-      std::min(this->firstRow(group) + this->rowsOf(group) - 1 + window.jMax, height - 1);
+    // Where worksheets read beyond the volume they repeat its outermost voxels.
+    const int bottom = this->firstRow(group), top = bottom + this->rowsOf(group) - 1;
+    const int last = this->Shared.geometry.size().y - 1;
+    const int low = std::clamp(bottom + window.jMin, 0, last) / BrickHeight;
+    const int high = std::clamp(top + window.jMax, 0, last) / BrickHeight;
+    const bool meets = top + window.jMax >= -Reach && bottom + window.jMin <= last + Reach;
     // Tile t meets bricks t + from to t + to.
     const int from = floorDivided(window.iMin, BrickWidth);
     const int to = floorDivided(TileWidth - 1 + window.iMax, BrickWidth);
-    Span tiles = common({ 0, this->Tiles }, { -to, bricks.count.x - from });
-    if (last < first || tiles.empty())
+    const Span tiles = meets ? common({ 0, this->Tiles }, { -to, bricks.count.x - from })
+                             : Span{ this->Tiles, this->Tiles };
+    std::fill(out, out + std::min(std::max(tiles.begin, 0), this->Tiles), leastValue<T>());
+    if (tiles.empty())
     {
-      tiles = { this->Tiles, this->Tiles };
+      std::fill(out, out + this->Tiles, leastValue<T>());
+      return;
     }
     this->Scratch.count.met += tiles.end - tiles.begin;
-    std::fill(out, out + tiles.begin, leastValue<T>());
     const T* rows[MostBricks];
     int count = 0;
-    for (int j = first / BrickHeight; j <= last / BrickHeight; ++j)
+    for (int j = low; j <= high; ++j)
     {
-      for (int b = from; b <= to && !tiles.empty(); ++b)
+      for (int b = from; b <= to; ++b)
       {
         rows[count++] = bricks.row<T>(j, z) + b + tiles.begin;
       }
     }
-    if (count > 0)
-    {
-      const VoxelLoops<T>& loops = this->Shared.kernels;
-      loops.largest(rows, count, out + tiles.begin, tiles.end - tiles.begin);
-    }
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    loops.largest(rows, count, out + tiles.begin, tiles.end - tiles.begin);
     std::fill(out + tiles.end, out + this->Tiles, leastValue<T>());
+    if (tiles.begin > 0)
+    {
+      out[tiles.begin - 1] = out[tiles.begin];
+    }
+    if (tiles.end < this->Tiles)
+    {
+      out[tiles.end] = out[tiles.end - 1];
+    }
   }
+
+  /// How far beyond the volume worksheets may read: a footprint and the drift of a slice. Less than
+  /// a tile.
+  static constexpr int Reach = 4;
 
   /// In each direction a window is at most a tile, the drift of BrickDepth + 2 slices and a
   /// footprint wide.

@@ -234,34 +234,44 @@ private:
 
   void loadSheet(const Patch::Sheet& sheet, Patch& patch) const
   {
-    const glm::ivec3& size = this->Shared.geometry.size();
+    // Rows inside the volume go together, those beyond repeat the outermost.
+    const int height = this->Shared.geometry.size().y;
+    const int end = sheet.j + sheet.rows;
+    const int low = std::clamp(0, sheet.j, end), high = std::clamp(height, low, end);
+    for (int j = sheet.j; j < low; ++j)
+    {
+      this->loadRows(sheet, j, 0, 1, patch);
+    }
+    if (low < high)
+    {
+      this->loadRows(sheet, low, low, high - low, patch);
+    }
+    for (int j = high; j < end; ++j)
+    {
+      this->loadRows(sheet, j, height - 1, 1, patch);
+    }
+  }
+
+  /// Fills rows of a sheet, from `to` on, with the volume's rows from `from` on.
+  void loadRows(const Patch::Sheet& sheet, int to, int from, int rows, Patch& patch) const
+  {
+    const int width = this->Shared.geometry.size().x;
     const VoxelLoops<T>& loops = this->Shared.kernels;
     const int begin = std::clamp(-sheet.i, 0, sheet.columns);
-    const int end = std::clamp(size.x - sheet.i, begin, sheet.columns);
-    // The rows of the volume, and the first and last of them again for those beyond.
-    const int low = std::clamp(sheet.j, 0, size.y - 1);
-    const int high = std::clamp(sheet.j + sheet.rows, low + 1, size.y);
-    A* const rows = patch.voxel<A>(sheet.i, low, sheet.slice);
-    const T* const voxels = this->Shared.voxelRow(low, sheet.slice);
+    const int end = std::clamp(width - sheet.i, begin, sheet.columns);
+    const T* voxels = this->Shared.voxelRow(from, sheet.slice);
+    A* out = patch.voxel<A>(sheet.i, to, sheet.slice);
     if (begin < end)
     {
-      loops.widen(voxels + sheet.i + begin, this->Shared.slices.rowStride, rows + begin,
-        patch.rowLength, this->Base, end - begin, high - low);
+      loops.widen(voxels + sheet.i + begin, this->Shared.slices.rowStride, out + begin,
+        patch.rowLength, this->Base, end - begin, rows);
     }
-    for (int j = low; j < high && (begin > 0 || end < sheet.columns); ++j)
+    for (int r = 0; r < rows && (begin > 0 || end < sheet.columns); ++r)
     {
-      A* const row = patch.voxel<A>(sheet.i, j, sheet.slice);
-      const T* const ends = this->Shared.voxelRow(j, sheet.slice);
-      std::fill(row, row + begin, static_cast<A>(ends[0]) - this->Base);
-      std::fill(row + end, row + sheet.columns, static_cast<A>(ends[size.x - 1]) - this->Base);
-    }
-    for (int j = sheet.j; j < sheet.j + sheet.rows; ++j)
-    {
-      if (j < low || j >= high)
-      {
-        const A* const from = patch.voxel<A>(sheet.i, j < low ? low : high - 1, sheet.slice);
-        std::copy(from, from + sheet.columns, patch.voxel<A>(sheet.i, j, sheet.slice));
-      }
+      std::fill(out, out + begin, static_cast<A>(voxels[0]) - this->Base);
+      std::fill(out + end, out + sheet.columns, static_cast<A>(voxels[width - 1]) - this->Base);
+      voxels += this->Shared.slices.rowStride;
+      out += patch.rowLength;
     }
   }
 

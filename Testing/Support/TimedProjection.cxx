@@ -201,6 +201,9 @@ float largestOnRay(const Bytes& volume, const glm::dvec3& start, const glm::dvec
 /**
  * Slice k's part of row v of the image, moved by di from pixel to voxel.
  */
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+__attribute__((target_clones("default", "avx2"))) // splatting has these, too
+#endif
 void raiseRow(const std::uint8_t* voxels, int count, int di, int v, ByteImage& image)
 {
   const int begin = std::max(0, -di);

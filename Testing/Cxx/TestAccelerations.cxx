@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Whatever is left out, and in whatever order the rest is met, the picture is that of the plain
+// walk bit for bit: every scalar type, mode, instruction set, memory budget and floor, over random
+// views.
+#include "CoreTesting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+using namespace coretesting;
+using splatting::Acceleration;
+using splatting::Quality;
+
+namespace
+{
+struct Case
+{
+  splatting::ProjectionSettings settings;
+  std::vector<glm::dvec4> halfSpaces;
+  std::size_t budget = std::numeric_limits<std::size_t>::max();
+};
+
+/// Noise on a flat background, with a few voxels that stand out wherever they like: at rims, too.
+template <class T>
+reference::Volume<T> spottedVolume(reference::Random& random)
+{
+  const std::array<int, 3> size = randomSize(random, 45);
+  reference::Volume<T> volume = wholeRangeNoise<T>(size, random.bits());
+  const T low = *std::min_element(volume.voxels.begin(), volume.voxels.end());
+  const bool flat = random.uniform(0, 3) == 0;
+  for (T& voxel : volume.voxels)
+  {
+    if (flat || random.uniform(0, 2) != 0)
+    {
+      voxel = low;
+    }
+    else if (random.uniform(0, 200) != 0)
+    {
+      voxel = static_cast<T>(voxel / 4); // leaves room above
+    }
+  }
+  const int spots = random.uniform(0, 12);
+  for (int n = 0; n < spots; ++n)
+  {
+    const int x = random.uniform(0, size[0] - 1), y = random.uniform(0, size[1] - 1);
+    const int z = random.uniform(0, 1) ? random.uniform(0, size[2] - 1) : 0;
+    volume.at(x, y, z) = std::numeric_limits<T>::is_integer ? std::numeric_limits<T>::max() : T(1);
+  }
+  return volume;
+}
+
+Case randomCase(reference::Random& random, const std::array<int, 3>& size)
+{
+  Case c;
+  c.settings.quality = static_cast<Quality>(random.uniform(0, 2));
+  c.settings.instructionSet = static_cast<splatting::InstructionSet>(random.uniform(0, 2));
+  if (random.uniform(0, 3) == 0)
+  {
+    c.settings.kernel = { splatting::Reconstruction::CosineBell, random.uniform(0.5, 1.5) };
+  }
+  if (random.uniform(0, 3) == 0)
+  {
+    glm::dvec4 plane(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 1.0, 0.0);
+    for (int a = 0; a < 3; ++a)
+    {
+      plane.w -= plane[a] * random.uniform(0.0, double(size[a]));
+    }
+    c.halfSpaces.push_back(plane);
+  }
+  return c;
+}
+
+/// The image, and what made it.
+struct Result
+{
+  splatting::ShearImage image;
+  Acceleration used = Acceleration::Auto;
+  std::size_t memory = 0;
+  double share = 0.0; ///< of tiles that bricks did not leave out
+};
+
+template <class T>
+Result projected(const reference::Volume<T>& volume, const splatting::ShearWarp& geometry,
+  const Case& c, Acceleration acceleration)
+{
+  splatting::VolumeIndex index;
+  index.setBudget(c.budget);
+  index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
+  splatting::ProjectionSettings settings = c.settings;
+  settings.acceleration = acceleration;
+  splatting::Projector projector;
+  Result result;
+  result.used = projector.project(index, geometry, settings, c.halfSpaces, result.image);
+  result.memory = index.memorySize();
+  result.share =
+    index.experience(geometry.principalAxis(), static_cast<int>(settings.quality)).share;
+  return result;
+}
+
+bool sameImages(const splatting::ShearImage& a, const splatting::ShearImage& b)
+{
+  return splatting::dispatch(a.type,
+    [&](auto* null)
+    {
+      using P = std::remove_pointer_t<decltype(null)>;
+      return a.type == b.type && sameBits(toReference<P>(a), toReference<P>(b));
+    });
+}
+
+template <class T>
+void testBricks(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  double least = 1.0;
+  for (int n = 0; n < 120; ++n)
+  {
+    const reference::Volume<T> volume = spottedVolume<T>(random);
+    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    const Case c = randomCase(random, volume.size);
+    const Result dense = projected(volume, geometry, c, Acceleration::Dense);
+    const Result bricks = projected(volume, geometry, c, Acceleration::Bricks);
+    check(bricks.used == Acceleration::Bricks, "bricks were not used");
+    check(sameImages(dense.image, bricks.image), "type ", int(splatting::scalarTypeOf<T>()),
+      ", view ", n, ", mode ", int(c.settings.quality), ": bricks change the picture");
+    least = std::min(least, bricks.share);
+  }
+  check(least < 0.5, "bricks leave nothing out: the test sees nothing");
+}
+
+/// Without memory for a copy, slices along the first axis are transposed some at a time.
+template <class T>
+void testBudget(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int n = 0; n < 40; ++n)
+  {
+    reference::Volume<T> volume = wholeRangeNoise<T>(
+      { random.uniform(1, 90), random.uniform(1, 20), random.uniform(1, 20) }, random.bits());
+    const splatting::ShearWarp geometry(
+      viewWithShear(volume.size, 0, random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)));
+    Case c = randomCase(random, volume.size);
+    const Result rich = projected(volume, geometry, c, Acceleration::Dense);
+    c.budget = 0;
+    const Result poor = projected(volume, geometry, c, Acceleration::Bricks);
+    check(poor.memory == 0, "a budget of nothing holds ", poor.memory, " bytes");
+    check(poor.used == Acceleration::Dense, "bricks without memory for them");
+    check(sameImages(rich.image, poor.image), "slices some at a time change the picture");
+    // Room for bricks, but not for the copy.
+    c.budget = volume.voxels.size() * sizeof(T) / 2 + 4096;
+    const Result middle = projected(volume, geometry, c, Acceleration::Bricks);
+    check(middle.memory <= c.budget, "the budget is exceeded");
+    check(sameImages(rich.image, middle.image), "bricks of some slices change the picture");
+  }
+}
+
+/// The floor raises what lies below, and nothing else.
+template <class T>
+void testFloor(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int n = 0; n < 30; ++n)
+  {
+    const reference::Volume<T> volume = spottedVolume<T>(random);
+    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    Case c = randomCase(random, volume.size);
+    const Result plain = projected(volume, geometry, c, Acceleration::Dense);
+    T value = volume.voxels[random.uniform(0, int(volume.voxels.size()) - 1)];
+    if (std::numeric_limits<T>::is_integer && sizeof(T) == 8)
+    {
+      value = value / 4096 * 4096; // a double holds it
+    }
+    c.settings.floor = static_cast<double>(value);
+    const Result raised = projected(volume, geometry, c, Acceleration::Bricks);
+    splatting::dispatch(plain.image.type,
+      [&](auto* null)
+      {
+        using P = std::remove_pointer_t<decltype(null)>;
+        auto expected = toReference<P>(plain.image);
+        for (std::size_t p = 0; p < expected.value.size(); ++p)
+        {
+          if (expected.hit[p])
+          {
+            expected.value[p] = std::max(expected.value[p], static_cast<P>(value));
+          }
+        }
+        check(sameBits(expected, toReference<P>(raised.image)), "the floor does more or less");
+      });
+  }
+}
+
+/// Auto takes bricks, learns that they do not pay in noise, and tries again later.
+void testAuto(Checks& check)
+{
+  reference::Random random(9);
+  const auto noise = reference::uniformNoise<std::uint8_t>({ 96, 96, 96 }, random.bits(), 0, 255);
+  const splatting::ShearWarp geometry(viewWithShear(noise.size, 2, 0.3, -0.4));
+  splatting::VolumeIndex index;
+  index.reset({ noise.voxels.data(), splatting::ScalarType::UInt8, toGlm(noise.size) });
+  splatting::Projector projector;
+  splatting::ShearImage image;
+  int bricks = 0;
+  for (int frame = 0; frame < 35; ++frame)
+  {
+    splatting::ProjectionSettings settings;
+    settings.quality = Quality::Preview;
+    const bool usesBricks =
+      projector.project(index, geometry, settings, {}, image) == Acceleration::Bricks;
+    check(usesBricks == (frame % 17 == 0), "frame ", frame, " in noise");
+    bricks += usesBricks;
+  }
+  check(bricks == 3, "Auto does not try again");
+}
+
+/// Bricks stay within 3 % of a volume.
+void testMemory(Checks& check)
+{
+  const reference::Volume<std::int16_t> volume({ 128, 120, 136 }, 7);
+  const splatting::ShearWarp geometry(viewWithShear(volume.size, 2, 0.3, -0.4));
+  const Result bricks = projected(volume, geometry, Case(), Acceleration::Bricks);
+  const double share = double(bricks.memory) / double(volume.voxels.size() * sizeof(std::int16_t));
+  check(share > 0.02 && share <= 0.03, "bricks take ", share, " of the volume");
+}
+}
+
+int TestAccelerations(int, char*[])
+{
+  Checks check;
+  std::uint64_t seed = 500;
+  forEachType(
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      testBricks<T>(check, ++seed);
+      testFloor<T>(check, ++seed);
+    });
+  testBudget<std::uint8_t>(check, 1);
+  testBudget<std::int16_t>(check, 2);
+  testBudget<float>(check, 3);
+  testBudget<double>(check, 4);
+  testAuto(check);
+  testMemory(check);
+  return check.result();
+}
