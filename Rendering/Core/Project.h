@@ -11,6 +11,7 @@
 #include "ShearImage.h"
 #include "VolumeIndex.h"
 
+#include <limits>
 #include <memory>
 
 namespace splatting
@@ -43,7 +44,17 @@ struct ProjectionSettings
   /// 0: weights in closed form; N: from a general table with N x N sub-pixels.
   int footprintSampling = 0;
   InstructionSet instructionSet = bestInstructionSet();
+  /// Lines and its sorted kin fall back to Dense for volumes with NaN or infinities; sorted orders
+  /// are for Quality::Preview, elsewhere they are Lines.
   Acceleration acceleration = Acceleration::Auto;
+  /// Delta encoding of lines: see LineEncoding. 0 gives the same bits as Dense.
+  double lineTolerance = 0.0;
+  /// Lines without voxels that cannot be seen: the same bits, fewer chains. For Quality::Preview
+  /// without half-spaces, else ignored.
+  bool eliminateInvisible = false;
+  /// Values at or below need not be told apart: previews from lines are the larger of this (rounded
+  /// down to the scalar type) and what they would be otherwise; elsewhere it is ignored.
+  double floor = -std::numeric_limits<double>::infinity();
 };
 
 template <class T>
@@ -73,6 +84,10 @@ private:
   void projectType(VolumeIndex& index, const Frame<T>& frame, const ProjectionSettings& settings);
   template <class T, class Layers>
   void walk(const Frame<T>& frame, const Layers& layers, const BrickMaxima* bricks);
+  template <class T>
+  void previewLines(const Frame<T>& frame, const LineIndex& lines, double floor);
+  template <class T>
+  void splatLines(const Frame<T>& frame, const LineIndex& lines, bool standard);
 
   struct Scratch;
   std::unique_ptr<Scratch> Memory;

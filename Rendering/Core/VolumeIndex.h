@@ -6,6 +6,7 @@
 #ifndef splattingVolumeIndex_h
 #define splattingVolumeIndex_h
 
+#include "LineIndex.h"
 #include "ScalarType.h"
 
 #include <glm/vec3.hpp>
@@ -87,6 +88,13 @@ public:
   /// The bricks along an axis; 3/128 of the volume for all axes together.
   const BrickMaxima& bricks(int principalAxis);
 
+  /**
+   * The chains along an axis, made on first use and again when the encoding changes; those of rows
+   * with all voxels are kept beside others. Not for volumes with NaN or infinities.
+   */
+  const LineIndex& lines(
+    int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress = {});
+
   /// Bytes held besides the volume.
   std::size_t memorySize() const;
 
@@ -99,6 +107,7 @@ private:
   std::size_t CopySize = 0;
   Range ValueRange;
   std::array<BrickMaxima, 3> Bricks;
+  std::array<std::array<LineIndex, 2>, 3> Lines;
   bool Surveyed = false;
 };
 }

@@ -199,7 +199,9 @@ private:
     // The rows of the volume, and the first and last of them again for those beyond.
     const int low = std::clamp(sheet.j, 0, size.y - 1);
     const int high = std::clamp(sheet.j + sheet.rows, low + 1, size.y);
-    A* const rows = patch.voxel<A>(sheet.i, low, sheet.slice);
+    // A sheet can lie beyond all of them, and then holds one all over.
+    const int shift = std::clamp(low, sheet.j, sheet.j + sheet.rows - 1) - low;
+    A* const rows = patch.voxel<A>(sheet.i, low + shift, sheet.slice);
     const T* const voxels = this->Shared.voxelRow(low, sheet.slice);
     if (begin < end)
     {
@@ -208,16 +210,17 @@ private:
     }
     for (int j = low; j < high && (begin > 0 || end < sheet.columns); ++j)
     {
-      A* const row = patch.voxel<A>(sheet.i, j, sheet.slice);
+      A* const row = patch.voxel<A>(sheet.i, j + shift, sheet.slice);
       const T* const ends = this->Shared.voxelRow(j, sheet.slice);
       std::fill(row, row + begin, static_cast<A>(ends[0]) - this->Base);
       std::fill(row + end, row + sheet.columns, static_cast<A>(ends[size.x - 1]) - this->Base);
     }
+    const int first = low + shift, last = high - 1 + shift;
     for (int j = sheet.j; j < sheet.j + sheet.rows; ++j)
     {
-      if (j < low || j >= high)
+      if (j < first || j > last)
       {
-        const A* const from = patch.voxel<A>(sheet.i, j < low ? low : high - 1, sheet.slice);
+        const A* const from = patch.voxel<A>(sheet.i, j < first ? first : last, sheet.slice);
         std::copy(from, from + sheet.columns, patch.voxel<A>(sheet.i, j, sheet.slice));
       }
     }
