@@ -11,6 +11,7 @@
 #include "VolumeIndex.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -90,6 +91,39 @@ inline Span slicesOf(const std::vector<SliceGeometry>& slices, int v0, int v1)
 inline Span common(const Span& a, const Span& b)
 {
   return { std::max(a.begin, b.begin), std::min(a.end, b.end) };
+}
+
+/// The largest value of type T that is no more than x; the least one if there is none.
+template <class T>
+T roundedDown(double x)
+{
+  if (!(x > static_cast<double>(leastValue<T>())))
+  {
+    return leastValue<T>();
+  }
+  if (x >= static_cast<double>(greatestValue<T>()))
+  {
+    return greatestValue<T>();
+  }
+  if constexpr (std::numeric_limits<T>::is_integer)
+  {
+    return static_cast<T>(std::floor(x));
+  }
+  else
+  {
+    const T value = static_cast<T>(x);
+    return value > x ? std::nextafter(value, leastValue<T>()) : value;
+  }
+}
+
+/// What pixels of a preview start from: no voxel is less.
+template <class T>
+T previewFloor(const Frame<T>& frame)
+{
+  // The range's double need not be a 64-bit integer's exact value.
+  constexpr bool exact = !std::numeric_limits<T>::is_integer || sizeof(T) < 8;
+  const T low = exact ? static_cast<T>(frame.range.low) : leastValue<T>();
+  return std::max(low, roundedDown<T>(frame.floor));
 }
 
 /// Sets rows to "no sample": pixels that no ray's sample will reach to the greatest value, so that

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace splatting
@@ -22,6 +23,7 @@ struct Patch
     int columns = 0, rows = 0;
   };
   std::vector<unsigned char> bytes;
+  std::vector<std::uint16_t> runEnds; ///< of walks along chains only
   std::ptrdiff_t rowLength = 0;
   std::ptrdiff_t sheetLength = 0;
   std::array<Sheet, 3> sheets;
@@ -43,9 +45,28 @@ struct Patch
   template <class A>
   A* voxel(int i, int j, int slice)
   {
+    return reinterpret_cast<A*>(this->bytes.data()) + this->place(i, j, slice);
+  }
+
+  /// For each voxel the next column of its sheet with another value.
+  std::uint16_t* runEnd(int i, int j, int slice)
+  {
+    return this->runEnds.data() + this->place(i, j, slice);
+  }
+  void resizeRunEnds()
+  {
+    const std::size_t size = this->sheets.size() * this->sheetLength;
+    if (this->runEnds.size() < size)
+    {
+      this->runEnds.resize(size);
+    }
+  }
+
+private:
+  std::ptrdiff_t place(int i, int j, int slice)
+  {
     const Sheet& sheet = this->sheet(slice);
-    return reinterpret_cast<A*>(this->bytes.data()) +
-      slice % this->sheets.size() * this->sheetLength + (j - sheet.j) * this->rowLength +
+    return slice % this->sheets.size() * this->sheetLength + (j - sheet.j) * this->rowLength +
       (i - sheet.i);
   }
 };

@@ -120,21 +120,7 @@ public:
     }
   }
 
-  /// What pixels start from: no voxel is less. If the floor is no voxel's value, the next one
-  /// above.
-  T floor() const
-  {
-    using Limits = std::numeric_limits<T>;
-    // The range's double need not be a 64-bit integer's exact value.
-    constexpr bool exact = !Limits::is_integer || sizeof(T) < 8;
-    const T low = exact ? static_cast<T>(this->Shared.range.low) : leastValue<T>();
-    const double floor = Limits::is_integer ? std::ceil(this->Shared.floor) : this->Shared.floor;
-    if (!(floor > static_cast<double>(low)))
-    {
-      return low;
-    }
-    return floor < static_cast<double>(Limits::max()) ? static_cast<T>(floor) : Limits::max();
-  }
+  T floor() const { return previewFloor(this->Shared); }
 
   void finish(int, int) const {}
 

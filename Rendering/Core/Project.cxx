@@ -3,6 +3,8 @@
 #include "Project.h"
 
 #include "BandWalk.h"
+#include "LineWalk.h"
+#include "LineWorksheets.h"
 
 #include <vtkSMPThreadLocal.h>
 #include <vtkSMPTools.h>
@@ -21,9 +23,8 @@ int bandHeight(int rows)
 }
 
 template <class Body>
-void forBands(int height, Body&& body)
+void forBands(int height, int rows, Body&& body)
 {
-  const int rows = bandHeight(height);
   vtkSMPTools::For(0, (height + rows - 1) / rows, 1,
     [&](vtkIdType first, vtkIdType last)
     {
@@ -33,6 +34,25 @@ void forBands(int height, Body&& body)
         body(v0, std::min(v0 + rows, height));
       }
     });
+}
+
+/// The chains that a projection needs.
+LineEncoding encodingFor(const ProjectionSettings& settings, const glm::ivec3& size, bool isCut)
+{
+  LineEncoding encoding;
+  encoding.tolerance = settings.lineTolerance;
+  // Half-spaces cut voxels away that hide others.
+  if (settings.quality == Quality::Preview && !(settings.eliminateInvisible && isCut))
+  {
+    encoding.eliminate = settings.eliminateInvisible;
+    if (std::max({ size.x, size.y, size.z }) <= LineIndex::MostSorted)
+    {
+      encoding.order = settings.acceleration == Acceleration::SortedLines ? LineOrder::SortedLines
+        : settings.acceleration == Acceleration::SortedVolume             ? LineOrder::SortedVolume
+                                                                          : LineOrder::Lines;
+    }
+  }
+  return encoding;
 }
 
 /// Slices that are transposed at a time where there is no memory for a copy of all.
@@ -77,6 +97,8 @@ struct Projector::Scratch
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> reach;
   std::vector<glm::dvec4> halfSpaces;
   std::vector<unsigned char> chunk;
+  std::vector<LineReach> lineReaches;
+  vtkSMPThreadLocal<LineScratch> lines;
 };
 
 Projector::Projector() : Memory(new Scratch) {}
@@ -98,7 +120,7 @@ void Projector::walk(VolumeIndex& index, const Frame<T>& frame, const Layers& la
     frame.slices = whole ? index.slices(axis)
                          : index.someSlices(std::max(slices.begin - Layers::Beyond, 0),
                              std::min(slices.end + Layers::Beyond, depth), this->Memory->chunk);
-    forBands(frame.image.height,
+    forBands(frame.image.height, bandHeight(frame.image.height),
       [&](int v0, int v1)
       {
         if (slices.begin == 0)
@@ -127,29 +149,71 @@ void Projector::walk(VolumeIndex& index, const Frame<T>& frame, const Layers& la
 }
 
 template <class T>
-void Projector::projectType(
-  VolumeIndex& index, const ProjectionSettings& settings, Acceleration used, const Frame<T>& frame)
+void Projector::previewLines(const Frame<T>& frame, const LineIndex& lines)
 {
+  const LinePreview<T> preview(frame, lines, this->Memory->lineReaches);
+  // All bands look through sorted chains: there must be no more bands than threads.
+  const int height = frame.image.height, threads = vtkSMPTools::GetEstimatedNumberOfThreads();
+  const int rows = lines.encoding().order == LineOrder::Lines ? bandHeight(height)
+                                                              : (height + threads - 1) / threads;
+  forBands(height, rows,
+    [&](int v0, int v1)
+    {
+      openRows<T>(frame.image, previewFloor(frame), v0, v1);
+      preview.splat(v0, v1, this->Memory->lines.Local());
+      closeRows<T>(frame.image, v0, v1);
+    });
+}
+
+template <class T>
+void Projector::splatLines(const Frame<T>& frame, const LineIndex& lines, bool standard)
+{
+  using A = Accumulator<T>;
+  const LineWorksheets<T> worksheets(frame,
+    std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints),
+    std::get<WorksheetReach<A>>(this->Memory->reach), standard ? 0 : 1, lines);
+  const Span slices{ 0, frame.geometry.size().z };
+  forBands(frame.image.height, bandHeight(frame.image.height),
+    [&](int v0, int v1)
+    {
+      openRows<A>(frame.image, worksheets.floor(), v0, v1);
+      BandWalk<LineWorksheets<T>>(frame, worksheets, this->Memory->bands.Local(), slices, v0, v1)
+        .walkDensely();
+      worksheets.finish(v0, v1);
+      closeRows<A>(frame.image, v0, v1);
+    });
+}
+
+template <class T>
+void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settings,
+  Acceleration used, const LineIndex* lines, const Frame<T>& frame)
+{
+  using A = Accumulator<T>;
   ShearImage& image = frame.image;
-  const std::size_t pixels = std::size_t(image.width) * image.height;
-  TileCount count;
-  if (settings.quality == Quality::Preview)
+  const bool preview = settings.quality == Quality::Preview;
+  const bool standard = settings.quality == Quality::Standard;
+  image.type = preview ? scalarTypeOf<T>() : scalarTypeOf<A>();
+  image.bytes.resize(std::size_t(image.width) * image.height * (preview ? sizeof(T) : sizeof(A)));
+  auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
+  auto& reach = std::get<WorksheetReach<A>>(this->Memory->reach);
+  if (!preview)
   {
-    image.type = scalarTypeOf<T>();
-    image.bytes.resize(pixels * sizeof(T));
+    findFootprints(frame.geometry, standard ? Kernel{ Reconstruction::Box } : settings.kernel,
+      settings.footprintSampling, weightBits<T>, footprints);
+    findReach(frame.sliceGeometry, footprints, reach);
+  }
+  if (lines)
+  {
+    preview ? this->previewLines(frame, *lines) : this->splatLines(frame, *lines, standard);
+    return;
+  }
+  TileCount count;
+  if (preview)
+  {
     this->walk(index, frame, PreviewLayers<T>(frame, this->Memory->previewLayers), used, count);
   }
   else
   {
-    using A = Accumulator<T>;
-    image.type = scalarTypeOf<A>();
-    image.bytes.resize(pixels * sizeof(A));
-    const bool standard = settings.quality == Quality::Standard;
-    auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
-    findFootprints(frame.geometry, standard ? Kernel{ Reconstruction::Box } : settings.kernel,
-      settings.footprintSampling, weightBits<T>, footprints);
-    auto& reach = std::get<WorksheetReach<A>>(this->Memory->reach);
-    findReach(frame.sliceGeometry, footprints, reach);
     this->walk(
       index, frame, WorksheetLayers<T>(frame, footprints, reach, standard ? 0 : 1), used, count);
   }
@@ -170,13 +234,14 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   outlineImage(geometry, memory.slices, memory.halfSpaces, image);
   const VolumeIndex::Range& range = index.range();
   image.special = range.special;
-  Acceleration used = settings.acceleration;
-  if (used == Acceleration::Auto)
-  {
-    used = choose(index.experience(geometry.principalAxis(), static_cast<int>(settings.quality)),
-      settings.quality);
-  }
-  if (range.special || !index.hasBricks())
+  const int axis = geometry.principalAxis();
+  Acceleration used = settings.acceleration == Acceleration::Auto
+    ? choose(index.experience(axis, static_cast<int>(settings.quality)), settings.quality)
+    : settings.acceleration;
+  const LineIndex* const lines = used >= Acceleration::Lines && !range.special
+    ? index.lines(axis, encodingFor(settings, geometry.size(), !halfSpaces.empty()), this->Progress)
+    : nullptr;
+  if (!lines && (used != Acceleration::Bricks || range.special || !index.hasBricks()))
   {
     used = Acceleration::Dense;
   }
@@ -186,7 +251,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
       using T = std::remove_pointer_t<decltype(null)>;
       const Frame<T> frame{ geometry, kernelsFor(settings.instructionSet), {}, range, memory.slices,
         memory.halfSpaces, settings.floor, image };
-      this->projectType(index, settings, used, frame);
+      this->projectType(index, settings, used, lines, frame);
     });
   return used;
 }

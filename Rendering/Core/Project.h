@@ -44,9 +44,16 @@ struct ProjectionSettings
   /// 0: weights in closed form; N: from a general table with N x N sub-pixels.
   int footprintSampling = 0;
   InstructionSet instructionSet = bestInstructionSet();
+  /// Lines and its sorted kin fall back to Dense for volumes with NaN or infinities; sorted orders
+  /// are for Quality::Preview, elsewhere they are Lines.
   Acceleration acceleration = Acceleration::Auto;
-  /// Values at or below need not be told apart: the image is the larger of this and what it would
-  /// be otherwise.
+  /// Delta encoding of lines: see LineEncoding. 0 gives the same bits as Dense.
+  double lineTolerance = 0.0;
+  /// Lines without voxels that cannot be seen: the same bits, fewer chains. For Quality::Preview
+  /// without half-spaces, else ignored.
+  bool eliminateInvisible = false;
+  /// Values at or below need not be told apart: the image is the larger of this (in preview rounded
+  /// down to the scalar type) and what it would be otherwise.
   double floor = -std::numeric_limits<double>::infinity();
 
   bool operator==(const ProjectionSettings& other) const
@@ -54,7 +61,8 @@ struct ProjectionSettings
     return this->quality == other.quality && this->kernel == other.kernel &&
       this->footprintSampling == other.footprintSampling &&
       this->instructionSet == other.instructionSet && this->acceleration == other.acceleration &&
-      this->floor == other.floor;
+      this->lineTolerance == other.lineTolerance &&
+      this->eliminateInvisible == other.eliminateInvisible && this->floor == other.floor;
   }
 };
 
@@ -83,16 +91,24 @@ public:
     const ProjectionSettings& settings, const std::vector<glm::dvec4>& halfSpaces,
     ShearImage& image);
 
+  /// Called with the share that is done, 0 to 1, while chains are made.
+  void setProgress(const LineIndex::Progress& progress) { this->Progress = progress; }
+
 private:
   template <class T>
   void projectType(VolumeIndex& index, const ProjectionSettings& settings, Acceleration used,
-    const Frame<T>& frame);
+    const LineIndex* lines, const Frame<T>& frame);
   template <class T, class Layers>
   void walk(VolumeIndex& index, const Frame<T>& frame, const Layers& layers, Acceleration used,
     TileCount& count);
+  template <class T>
+  void previewLines(const Frame<T>& frame, const LineIndex& lines);
+  template <class T>
+  void splatLines(const Frame<T>& frame, const LineIndex& lines, bool standard);
 
   struct Scratch;
   std::unique_ptr<Scratch> Memory;
+  LineIndex::Progress Progress;
 };
 }
 

@@ -304,12 +304,51 @@ const BrickMaxima& VolumeIndex::bricks(int principalAxis)
   return this->Bricks[principalAxis];
 }
 
+const LineIndex* VolumeIndex::lines(
+  int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress)
+{
+  const bool plain = encoding.order == LineOrder::Lines && !encoding.eliminate;
+  LineIndex& lines = this->Lines[principalAxis][plain ? 0 : 1];
+  std::optional<LineEncoding>& tooLarge = this->TooLarge[principalAxis][plain ? 0 : 1];
+  if (lines.holds(encoding))
+  {
+    return &lines;
+  }
+  lines = {};
+  if (tooLarge == encoding || !this->hasSlices(principalAxis))
+  {
+    return nullptr;
+  }
+  const bool copied = this->Copy != nullptr;
+  const glm::ivec3& d = this->Volume.dimensions;
+  const glm::ivec3 size(
+    principalAxis == 0 ? d.y : d.x, principalAxis == 2 ? d.y : d.z, d[principalAxis]);
+  lines = LineIndex(this->Volume.type, this->slices(principalAxis), size, encoding, progress);
+  if (!copied)
+  {
+    this->Copy.reset();
+    this->CopySize = 0;
+  }
+  if (this->memorySize() > this->Budget)
+  {
+    lines = {};
+    tooLarge = encoding;
+    this->Exceeded = true;
+    return nullptr;
+  }
+  return &lines;
+}
+
 std::size_t VolumeIndex::memorySize() const
 {
   std::size_t size = this->CopySize;
   for (const BrickMaxima& bricks : this->Bricks)
   {
     size += bricks.bytes.size();
+  }
+  for (const auto& lines : this->Lines)
+  {
+    size += lines[0].memorySize() + lines[1].memorySize();
   }
   return size;
 }

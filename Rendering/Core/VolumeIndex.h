@@ -6,6 +6,7 @@
 #ifndef splattingVolumeIndex_h
 #define splattingVolumeIndex_h
 
+#include "LineIndex.h"
 #include "ScalarType.h"
 
 #include <glm/vec3.hpp>
@@ -13,6 +14,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace splatting
@@ -110,6 +112,14 @@ public:
   /// The bricks along an axis; 3/128 of the volume for all axes together.
   const BrickMaxima& bricks(int principalAxis);
 
+  /**
+   * The chains along an axis, or nullptr if the budget has no room for them. Made on first use and
+   * again when the encoding changes; those of rows with all voxels are kept beside others. Not for
+   * volumes with NaN or infinities.
+   */
+  const LineIndex* lines(
+    int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress = {});
+
   Experience& experience(int principalAxis, int quality)
   {
     return this->Experiences[principalAxis][quality];
@@ -130,6 +140,8 @@ private:
   std::size_t CopySize = 0;
   Range ValueRange;
   std::array<BrickMaxima, 3> Bricks;
+  std::array<std::array<LineIndex, 2>, 3> Lines;
+  std::array<std::array<std::optional<LineEncoding>, 2>, 3> TooLarge; // encodings that had no room
   bool Surveyed = false;
   bool BricksMade = false;
   bool Exceeded = false;

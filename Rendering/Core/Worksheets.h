@@ -86,6 +86,7 @@ public:
       Base(baseOf(frame.range))
   {
   }
+  virtual ~WorksheetLayers() = default;
 
   const Window& window(int layer) const { return this->Reach.layers[layer].window; }
   A share(int layer) const { return this->Reach.layers[layer].share; }
@@ -232,7 +233,8 @@ private:
       v1 - v0 + window.jMax - window.jMin };
   }
 
-  void loadSheet(const Patch::Sheet& sheet, Patch& patch) const
+protected:
+  virtual void loadSheet(const Patch::Sheet& sheet, Patch& patch) const
   {
     // Rows inside the volume go together, those beyond repeat the outermost.
     const int height = this->Shared.geometry.size().y;
@@ -275,7 +277,7 @@ private:
     }
   }
 
-  void splatRows(int k, int first, int end, const Span& span, Patch& patch) const
+  virtual void splatRows(int k, int first, int end, const Span& span, Patch& patch) const
   {
     if (this->Shared.image.special)
     {
@@ -285,6 +287,12 @@ private:
       }
       return;
     }
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    loops.splat(this->splatOf(k, first, end, span, patch));
+  }
+
+  Splat<A> splatOf(int k, int first, int end, const Span& span, Patch& patch) const
+  {
     const SliceFootprint<A>& footprint = this->Footprints[k];
     Splat<A> splat;
     splat.image = this->Shared.image.template row<A>(first) + span.begin;
@@ -299,10 +307,10 @@ private:
       splat.parts[p] = { this->voxel(patch, k, part.slice, span.begin + part.di, first + part.dj),
         part.weights.data(), part.rows, part.columns };
     }
-    const WorksheetLoops<A>& loops = this->Shared.kernels;
-    loops.splat(splat);
+    return splat;
   }
 
+private:
   void splatValidRow(int k, int v, const Span& span, Patch& patch) const
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];
@@ -326,6 +334,7 @@ private:
       u - nearest.x, v - nearest.y, std::clamp(k + c, 0, this->Shared.geometry.size().z - 1));
   }
 
+protected:
   const Frame<T>& Shared;
   const std::vector<SliceFootprint<A>>& Footprints;
   const WorksheetReach<A>& Reach;

@@ -1,0 +1,617 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Projections along chains of voxels have the same bits as dense ones: every scalar type, mode,
+// order, with and without invisible voxels. Delta encoding stays within its bound.
+#include "CoreTesting.h"
+
+#include <vtkSMPTools.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <thread>
+
+using namespace coretesting;
+using splatting::Acceleration;
+using splatting::LineEncoding;
+using splatting::LineIndex;
+using splatting::LineOrder;
+using splatting::Quality;
+
+namespace
+{
+const Acceleration lineAccelerations[] = { Acceleration::Lines, Acceleration::SortedLines,
+  Acceleration::SortedVolume };
+const LineOrder orders[] = { LineOrder::Lines, LineOrder::SortedLines, LineOrder::SortedVolume };
+
+/// A value at a share, out of 255, of the type's range, or of [-1, 1].
+template <class T>
+T level(int share)
+{
+  using Limits = std::numeric_limits<T>;
+  if constexpr (Limits::is_integer)
+  {
+    using U = std::make_unsigned_t<T>;
+    const U step = static_cast<U>(Limits::max()) - static_cast<U>(Limits::lowest());
+    return static_cast<T>(static_cast<U>(Limits::lowest()) + U(step / 255) * U(share));
+  }
+  else
+  {
+    return static_cast<T>(share / 127.5 - 1.0);
+  }
+}
+
+/// Boxes of a few values, and perhaps some noise: long chains, short ones and ties.
+template <class T>
+reference::Volume<T> boxes(const std::array<int, 3>& size, int levels, reference::Random& random)
+{
+  const auto anyLevel = [&] { return level<T>(random.uniform(0, levels - 1) * 255 / levels); };
+  reference::Volume<T> volume(size, anyLevel());
+  for (int n = random.uniform(1, 8); n > 0; --n)
+  {
+    std::array<int, 3> first, last, p;
+    for (int a = 0; a < 3; ++a)
+    {
+      first[a] = random.uniform(0, size[a] - 1);
+      last[a] = random.uniform(first[a], size[a] - 1);
+    }
+    const T value = anyLevel();
+    for (p[2] = first[2]; p[2] <= last[2]; ++p[2])
+    {
+      for (p[1] = first[1]; p[1] <= last[1]; ++p[1])
+      {
+        for (p[0] = first[0]; p[0] <= last[0]; ++p[0])
+        {
+          volume.at(p) = value;
+        }
+      }
+    }
+  }
+  const int noise = std::max(random.uniform(-30, 20), 0);
+  for (T& voxel : volume.voxels)
+  {
+    voxel = random.uniform(0, 99) < noise ? anyLevel() : voxel;
+  }
+  return volume;
+}
+
+/// Some volumes are long enough for runs of equal worksheets.
+std::array<int, 3> anySize(reference::Random& random)
+{
+  std::array<int, 3> size = randomSize(random, 12);
+  if (random.uniform(0, 1))
+  {
+    size[random.uniform(0, 2)] = random.uniform(40, 90);
+  }
+  return size;
+}
+
+template <class T>
+reference::Volume<T> anyVolume(reference::Random& random)
+{
+  const std::array<int, 3> size = anySize(random);
+  return random.uniform(0, 4) == 0 ? wholeRangeNoise<T>(size, random.bits())
+                                   : boxes<T>(size, random.uniform(1, 9), random);
+}
+
+std::vector<glm::dvec4> anyHalfSpaces(const std::array<int, 3>& size, reference::Random& random)
+{
+  std::vector<glm::dvec4> halfSpaces(random.uniform(1, 2));
+  for (glm::dvec4& plane : halfSpaces)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      plane[a] = random.uniform(-1.0, 1.0);
+      plane.w -= plane[a] * random.uniform(0.0, double(size[a]));
+    }
+  }
+  return halfSpaces;
+}
+
+splatting::ProjectionSettings settingsOf(Quality quality, Acceleration acceleration)
+{
+  splatting::ProjectionSettings settings;
+  settings.quality = quality;
+  settings.acceleration = acceleration;
+  return settings;
+}
+
+bool sameImage(const splatting::ShearImage& a, const splatting::ShearImage& b)
+{
+  return a.type == b.type && a.width == b.width && a.height == b.height && a.bytes == b.bytes;
+}
+
+/// All modes and orders against the dense walk, whatever the other settings are.
+template <class T>
+void compareWithDense(Checks& check, const reference::Volume<T>& volume,
+  const splatting::ShearWarp& geometry, splatting::ProjectionSettings settings,
+  const std::vector<glm::dvec4>& halfSpaces, const char* what)
+{
+  for (Quality quality : { Quality::Preview, Quality::Standard, Quality::High })
+  {
+    settings.quality = quality;
+    settings.acceleration = Acceleration::Dense;
+    const auto expected = project(volume, geometry, settings, halfSpaces);
+    for (Acceleration acceleration : lineAccelerations)
+    {
+      settings.acceleration = acceleration;
+      check(sameImage(project(volume, geometry, settings, halfSpaces), expected), what, ": type ",
+        int(splatting::scalarTypeOf<T>()), ", mode ", int(quality), ", acceleration ",
+        int(acceleration), " differs from dense; axis ", geometry.principalAxis(), ", shear ",
+        geometry.shear().x, " ", geometry.shear().y, ", size ", volume.size[0], " ", volume.size[1],
+        " ", volume.size[2]);
+    }
+  }
+}
+
+template <class T>
+void testExact(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  const splatting::Kernel kernels[] = { {}, { splatting::Reconstruction::CosineBell, 0.5 },
+    { splatting::Reconstruction::CosineBell, 1.5 } };
+  for (int n = 0; n < 60; ++n)
+  {
+    const auto volume = anyVolume<T>(random);
+    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    splatting::ProjectionSettings settings;
+    settings.kernel = kernels[random.uniform(0, 2)];
+    settings.instructionSet = static_cast<splatting::InstructionSet>(random.uniform(0, 2));
+    settings.eliminateInvisible = random.uniform(0, 1);
+    std::vector<glm::dvec4> halfSpaces;
+    if (random.uniform(0, 2) == 0)
+    {
+      halfSpaces = anyHalfSpaces(volume.size, random);
+    }
+    compareWithDense(check, volume, geometry, settings, halfSpaces, "any volume");
+    const auto expected = reference::exactTraversal(volume, referenceView(geometry));
+    for (Acceleration acceleration : lineAccelerations)
+    {
+      const auto found =
+        toReference<T>(project(volume, geometry, settingsOf(Quality::Preview, acceleration)));
+      check(sameBits(expected, found), "type ", int(splatting::scalarTypeOf<T>()), ", view ", n,
+        ": the preview is not the traversal, acceleration ", int(acceleration));
+    }
+  }
+}
+
+/// Volumes of several bands, pieces and chains longer than 256 voxels.
+void testLargeVolumes(Checks& check)
+{
+  reference::Random random(3);
+  for (const auto& size : { std::array<int, 3>{ 300, 60, 20 }, { 20, 600, 30 }, { 30, 40, 550 } })
+  {
+    for (int n = 0; n < 4; ++n)
+    {
+      const auto volume = boxes<std::uint8_t>(size, 5, random);
+      const splatting::ShearWarp geometry(anyView(size, random));
+      splatting::ProjectionSettings settings;
+      settings.eliminateInvisible = n % 2;
+      compareWithDense(check, volume, geometry, settings, {}, "large volume");
+    }
+  }
+  // More voxels in a row than sorted chains can tell apart.
+  const auto row = boxes<std::int16_t>({ LineIndex::MostSorted + 3, 2, 1 }, 3, random);
+  const splatting::ShearWarp geometry(viewWithShear(row.size, 2, 0.5, -0.25));
+  compareWithDense(check, row, geometry, {}, {}, "long row");
+}
+
+/// One voxel, one value, the type's lowest value.
+template <class T>
+void testFlat(Checks& check)
+{
+  reference::Random random(8);
+  for (const auto& size : { std::array<int, 3>{ 1, 1, 1 }, { 40, 3, 5 }, { 1, 7, 50 } })
+  {
+    for (int share : { 0, 77, 255 })
+    {
+      const reference::Volume<T> volume(size, level<T>(share));
+      const splatting::ShearWarp geometry(anyView(size, random));
+      splatting::ProjectionSettings settings;
+      settings.eliminateInvisible = share == 77;
+      compareWithDense(check, volume, geometry, settings, {}, "flat volume");
+      settings.lineTolerance = 100.0;
+      compareWithDense(check, volume, geometry, settings, {}, "flat volume with tolerance");
+    }
+  }
+}
+
+/// Volumes with NaN and infinities are projected densely.
+template <class T>
+void testOddValues(Checks& check)
+{
+  reference::Random random(9);
+  for (int n = 0; n < 20; ++n)
+  {
+    auto volume = boxes<T>(randomSize(random, 8), 4, random);
+    for (T& voxel : volume.voxels)
+    {
+      const T odd[] = { std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::infinity(),
+        -std::numeric_limits<T>::infinity() };
+      voxel = random.uniform(0, 9) < 4 ? odd[random.uniform(0, 2)] : voxel;
+    }
+    volume.voxels[0] = std::numeric_limits<T>::quiet_NaN();
+    splatting::ProjectionSettings settings;
+    settings.eliminateInvisible = true;
+    settings.lineTolerance = 20.0;
+    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    compareWithDense(check, volume, geometry, settings, {}, "odd values");
+  }
+}
+
+template <class T>
+LineIndex makeLines(const reference::Volume<T>& volume, const LineEncoding& encoding)
+{
+  const auto& size = volume.size;
+  return LineIndex(splatting::scalarTypeOf<T>(),
+    { volume.voxels.data(), size[0], std::ptrdiff_t(size[0]) * size[1] }, toGlm(size), encoding);
+}
+
+/// dv(x), in more digits than voxels have.
+template <class T>
+long double toleranceAt(T x, T high, double levels)
+{
+  return static_cast<long double>(levels) *
+    (static_cast<long double>(high) - static_cast<long double>(x)) / 255;
+}
+
+/// The voxels that the rows' chains stand for.
+template <class T>
+reference::Volume<T> decoded(const LineIndex& index, const std::array<int, 3>& size)
+{
+  reference::Volume<T> volume(size);
+  auto out = volume.voxels.begin();
+  for (int k = 0; k < size[2]; ++k)
+  {
+    for (int j = 0; j < size[1]; ++j)
+    {
+      const splatting::LineRow<T> row = index.row<T>(j, k);
+      for (std::ptrdiff_t c = 0; c < row.count; ++c)
+      {
+        out = std::fill_n(out, row.last[c] + 1, row.values[c]);
+      }
+    }
+  }
+  return volume;
+}
+
+/// Every chain is within the tolerance of each of its voxels, and as long as it can be.
+template <class T>
+void testDecoded(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int n = 0; n < 20; ++n)
+  {
+    const auto volume = anyVolume<T>(random);
+    check(decoded<T>(makeLines(volume, {}), volume.size).voxels == volume.voxels,
+      "chains of equal voxels are not the volume");
+    const T high = *std::max_element(volume.voxels.begin(), volume.voxels.end());
+    for (double levels : { 1.0, 8.0, 255.0 })
+    {
+      const auto found =
+        decoded<T>(makeLines(volume, { LineOrder::Lines, levels, false }), volume.size);
+      for (std::size_t v = 0; v < volume.voxels.size(); ++v)
+      {
+        const T x = volume.voxels[v], d = found.voxels[v];
+        const long double difference =
+          std::abs(static_cast<long double>(x) - static_cast<long double>(d));
+        check(difference <= toleranceAt(x, high, levels), "type ",
+          int(splatting::scalarTypeOf<T>()), ": ", double(d), " stands for ", double(x),
+          " with tolerance ", levels);
+      }
+    }
+  }
+}
+
+/// What chains there are in rows of which that is known.
+void testChains(Checks& check)
+{
+  reference::Volume<std::uint8_t> volume({ 8, 1, 1 });
+  volume.voxels = { 7, 7, 7, 9, 9, 5, 255, 255 };
+  check(makeLines(volume, {}).chainCount() == 4, "four chains of equal voxels");
+  // 8 levels at 0 are 7.8 at 7: from 0 to 14 for 7, from 2 to 16 for 9, from -2 to 12 for 5.
+  check(makeLines(volume, { LineOrder::Lines, 8.0, false }).chainCount() == 2, "7, 9 and 5 join");
+  // Values may differ by twice the tolerance: 0 and 20 meet where 10 levels at 0 end.
+  volume.voxels = { 0, 19, 0, 20, 0, 19, 0, 255 };
+  check(makeLines(volume, { LineOrder::Lines, 10.0, false }).chainCount() == 4,
+    "0 and 19 join at 10, 0 and 20 do not: 9 levels are left at 20");
+  volume = reference::Volume<std::uint8_t>({ 600, 1, 1 }, 3);
+  check(makeLines(volume, {}).chainCount() == 3, "chains in rows are at most 256 voxels long");
+  check(makeLines(volume, { LineOrder::SortedLines, 0.0, false }).chainCount() == 1,
+    "sorted chains are as long as they can be");
+  volume = reference::Volume<std::uint8_t>({ 600, 1, 1 }, 0);
+  check(makeLines(volume, { LineOrder::SortedVolume, 0.0, false }).chainCount() == 0,
+    "sorted orders leave out the lowest value of the type");
+}
+
+/// Runs go down, and hold chains in the order of memory.
+void testSorting(Checks& check)
+{
+  reference::Random random(12);
+  const auto volume = boxes<std::int16_t>({ 30, 20, 10 }, 9, random);
+  const LineIndex slices = makeLines(volume, { LineOrder::SortedLines, 0.0, false });
+  for (int k = 0; k < volume.size[2]; ++k)
+  {
+    for (std::size_t r = slices.runsOf(k); r < slices.runsOf(k + 1); ++r)
+    {
+      const auto run = slices.run<std::int16_t, splatting::SliceChain>(r);
+      check(r == slices.runsOf(k) ||
+          run.value < slices.run<std::int16_t, splatting::SliceChain>(r - 1).value,
+        "slice ", k, " is not sorted");
+      check(std::is_sorted(run.begin, run.end,
+              [](const auto& a, const auto& b) { return a.j < b.j || (a.j == b.j && a.i < b.i); }),
+        "a run is not in the order of memory");
+      for (auto chain = run.begin; chain < run.end; ++chain)
+      {
+        check(volume.at(chain->i, chain->j, k) == run.value, "a chain lies elsewhere");
+      }
+    }
+  }
+  const LineIndex all = makeLines(volume, { LineOrder::SortedVolume, 0.0, false });
+  for (std::size_t r = 0; r < all.runsOf(1); ++r)
+  {
+    const auto run = all.run<std::int16_t, splatting::VolumeChain>(r);
+    check(r == 0 || run.value < all.run<std::int16_t, splatting::VolumeChain>(r - 1).value,
+      "the volume is not sorted");
+    for (auto chain = run.begin; chain < run.end; ++chain)
+    {
+      check(volume.at(chain->i, chain->j, chain->k) == run.value, "a chain lies elsewhere");
+    }
+  }
+}
+
+/// Pictures with delta encoding: within dv of the exact pixel; pixels at the top stay.
+template <class T>
+void testTolerance(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  int deviations = 0;
+  std::size_t exactBytes = 0, roughBytes = 0;
+  for (int n = 0; n < 25; ++n)
+  {
+    const std::array<int, 3> size = anySize(random);
+    const auto volume =
+      random.uniform(0, 1) ? wholeRangeNoise<T>(size, random.bits()) : boxes<T>(size, 200, random);
+    const T low = *std::min_element(volume.voxels.begin(), volume.voxels.end());
+    const T high = *std::max_element(volume.voxels.begin(), volume.voxels.end());
+    const splatting::ShearWarp geometry(anyView(size, random));
+    const double levels[] = { 1.0, 5.0, 10.0, 60.0, 255.0 };
+    const double tolerance = levels[random.uniform(0, 4)];
+    for (Quality quality : { Quality::Preview, Quality::Standard, Quality::High })
+    {
+      splatting::dispatch(quality == Quality::Preview
+          ? splatting::scalarTypeOf<T>()
+          : splatting::scalarTypeOf<splatting::Accumulator<T>>(),
+        [&](auto* null)
+        {
+          using P = std::remove_pointer_t<decltype(null)>;
+          const auto exact =
+            toReference<P>(project(volume, geometry, settingsOf(quality, Acceleration::Dense)));
+          splatting::ProjectionSettings settings =
+            settingsOf(quality, lineAccelerations[random.uniform(0, 2)]);
+          settings.lineTolerance = tolerance;
+          settings.eliminateInvisible = random.uniform(0, 1);
+          const auto found = toReference<P>(project(volume, geometry, settings));
+          check(exact.hit == found.hit, "a tolerance changes what is covered");
+          // Rounded sums may be wrong in both pictures.
+          const double rounding = quality == Quality::Preview
+            ? 0.0
+            : 2.0 * errorBound<T>(quality, double(low), double(high));
+          for (std::size_t p = 0; p < exact.value.size(); ++p)
+          {
+            const long double x = exact.value[p], top = high;
+            const long double difference = std::abs(x - static_cast<long double>(found.value[p]));
+            check(!exact.hit[p] || difference <= tolerance * (top - x) / 255 + rounding, "type ",
+              int(splatting::scalarTypeOf<T>()), ", mode ", int(quality), ": ", double(x),
+              " becomes ", double(found.value[p]), " with tolerance ", tolerance);
+            deviations += difference > rounding;
+          }
+        });
+    }
+    for (LineOrder order : orders)
+    {
+      const auto exact = makeLines(volume, { order, 0.0, false });
+      const auto rough = makeLines(volume, { order, 60.0, false });
+      check(rough.chainCount() <= exact.chainCount() && rough.memorySize() <= exact.memorySize(),
+        "a tolerance costs memory");
+      exactBytes += exact.memorySize();
+      roughBytes += rough.memorySize();
+    }
+  }
+  check(roughBytes < exactBytes * 9 / 10, "a tolerance saves no memory: ", roughBytes, " of ",
+    exactBytes, " bytes");
+  check(deviations > 1000, "tolerances change next to nothing: ", deviations, " pixels, type ",
+    int(splatting::scalarTypeOf<T>()));
+}
+
+/// Few values and many views: ties between voxels on both sides.
+void testElimination(Checks& check)
+{
+  reference::Random random(21);
+  std::size_t hidden = 0, voxels = 0;
+  for (int n = 0; n < 1500; ++n)
+  {
+    const auto volume = boxes<std::uint8_t>(
+      { random.uniform(3, 9), random.uniform(3, 9), random.uniform(2, 9) }, 3, random);
+    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    const auto expected =
+      project(volume, geometry, settingsOf(Quality::Preview, Acceleration::Dense));
+    for (Acceleration acceleration : lineAccelerations)
+    {
+      splatting::ProjectionSettings settings = settingsOf(Quality::Preview, acceleration);
+      settings.eliminateInvisible = true;
+      check(sameImage(project(volume, geometry, settings), expected),
+        "a voxel that can be seen is missing; axis ", geometry.principalAxis(), ", shear ",
+        geometry.shear().x, " ", geometry.shear().y, ", acceleration ", int(acceleration));
+    }
+    hidden += makeLines(volume, { LineOrder::Lines, 0.0, true }).hiddenCount();
+    voxels += volume.voxels.size();
+  }
+  check(hidden > voxels / 10, "only ", hidden, " of ", voxels, " voxels are eliminated");
+}
+
+/// Where it is known which voxels are hidden.
+void testHiddenCount(Checks& check)
+{
+  const auto countOf = [](const reference::Volume<std::int16_t>& volume) {
+    return makeLines(volume, { LineOrder::Lines, 0.0, true }).hiddenCount();
+  };
+  // Of equal voxels the highest slice hides the others, but for the outermost of each slice.
+  reference::Volume<std::int16_t> volume({ 7, 6, 5 }, 3);
+  check(countOf(volume) == 5 * 4 * 4, "equal voxels: ", countOf(volume));
+  // A higher slice hides what is before and behind, in cones.
+  for (int n = 0; n < 7 * 6; ++n)
+  {
+    volume.voxels[volume.index(0, 0, 2) + n] = 9;
+  }
+  // Slices 1 and 3 see it whole but for their rims. Slices 0 and 4 do, too, because the rims of
+  // slices 1 and 3 are not greater; but slice 0 may use equal ones.
+  check(countOf(volume) == 5 * 4 + 5 * 4 + 5 * 4 + 3 * 2, "a plane: ", countOf(volume));
+  const std::vector<glm::dvec4> away{ { 0.0, 0.0, -1.0, 1.5 } }; // all but slices 0 and 1
+  reference::Random random(22);
+  splatting::ProjectionSettings settings;
+  settings.eliminateInvisible = true;
+  for (int n = 0; n < 5; ++n)
+  {
+    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    compareWithDense(check, volume, geometry, settings, away, "half-spaces");
+  }
+}
+
+template <class T>
+void testFloor(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int n = 0; n < 20; ++n)
+  {
+    const auto volume = anyVolume<T>(random);
+    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    std::vector<glm::dvec4> halfSpaces;
+    if (random.uniform(0, 1))
+    {
+      halfSpaces = anyHalfSpaces(volume.size, random);
+    }
+    auto expected = toReference<T>(
+      project(volume, geometry, settingsOf(Quality::Preview, Acceleration::Dense), halfSpaces));
+    const T floor = random.uniform(0, 3) == 0
+      ? volume.voxels[random.uniform<std::size_t>(0, volume.voxels.size() - 1)]
+      : level<T>(random.uniform(0, 255));
+    if (double(floor) != std::floor(double(floor)) || std::abs(double(floor)) < 0x1p52)
+    {
+      for (std::size_t p = 0; p < expected.value.size(); ++p)
+      {
+        expected.value[p] = expected.hit[p] ? std::max(expected.value[p], floor) : T();
+      }
+      for (Acceleration acceleration : lineAccelerations)
+      {
+        splatting::ProjectionSettings settings = settingsOf(Quality::Preview, acceleration);
+        settings.floor = double(floor);
+        settings.eliminateInvisible = random.uniform(0, 1);
+        if (std::numeric_limits<T>::is_integer && random.uniform(0, 1))
+        {
+          settings.floor += 0.5; // rounded down
+        }
+        check(sameBits(expected, toReference<T>(project(volume, geometry, settings, halfSpaces))),
+          "type ", int(splatting::scalarTypeOf<T>()), ", acceleration ", int(acceleration),
+          ": not the larger of the picture and ", settings.floor);
+      }
+    }
+  }
+}
+
+/// Other voxels, other encodings; what is held is counted and given back.
+void testRenewal(Checks& check)
+{
+  reference::Random random(31);
+  splatting::VolumeIndex index;
+  splatting::Projector projector;
+  for (int n = 0; n < 12; ++n)
+  {
+    const auto volume = boxes<std::int16_t>({ 45, 12, 9 }, 90, random);
+    index.reset({ volume.voxels.data(), splatting::ScalarType::Int16, toGlm(volume.size) });
+    check(index.memorySize() == 0, "a reset index holds memory");
+    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    for (int turn = 0; turn < 12; ++turn)
+    {
+      splatting::ProjectionSettings settings = settingsOf(
+        static_cast<Quality>(random.uniform(0, 2)), lineAccelerations[random.uniform(0, 2)]);
+      settings.lineTolerance = random.uniform(0, 1) ? 50.0 : 0.0;
+      settings.eliminateInvisible = random.uniform(0, 1);
+      splatting::ShearImage image;
+      projector.project(index, geometry, settings, {}, image);
+      check(sameImage(image, project(volume, geometry, settings)), "an index is out of date");
+    }
+    const std::size_t held = index.memorySize();
+    for (LineOrder order : orders)
+    {
+      const LineIndex& lines = *index.lines(geometry.principalAxis(), { order, 0.0, false });
+      check(lines.memorySize() > 0 && index.memorySize() >= lines.memorySize(),
+        "chains are not counted");
+      check(&lines == index.lines(geometry.principalAxis(), { order, 0.0, false }) &&
+          lines.holds({ order, 0.0, false }),
+        "chains are not kept");
+    }
+    check(held > 0, "no memory is held");
+  }
+}
+
+/// The same bits from one thread and from five, and progress that ends at 1.
+void testThreads(Checks& check)
+{
+  reference::Random random(41);
+  const std::string usual = vtkSMPTools::GetBackend();
+  for (int n = 0; n < 4 && vtkSMPTools::SetBackend("STDThread"); ++n)
+  {
+    const auto volume = boxes<float>({ 70, 60, 50 }, 9, random);
+    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    splatting::ProjectionSettings settings;
+    settings.eliminateInvisible = true;
+    for (int threads : { 1, 5 })
+    {
+      vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
+        [&] { compareWithDense(check, volume, geometry, settings, {}, "threads"); });
+    }
+  }
+  vtkSMPTools::SetBackend(usual.c_str());
+  const auto volume = boxes<std::uint8_t>({ 5, 6, 100 }, 3, random);
+  splatting::VolumeIndex index;
+  index.reset({ volume.voxels.data(), splatting::ScalarType::UInt8, toGlm(volume.size) });
+  double done = 0.0;
+  const std::thread::id thread = std::this_thread::get_id();
+  index.lines(2, {},
+    [&](double now)
+    {
+      check(now > done && thread == std::this_thread::get_id(), "progress goes astray");
+      done = now;
+    });
+  check(done == 1.0, "progress ends at ", done);
+}
+}
+
+int TestLineIndex(int, char*[])
+{
+  Checks check;
+  std::uint64_t seed = 500;
+  forEachType(
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      testExact<T>(check, ++seed);
+      testFlat<T>(check);
+      testDecoded<T>(check, ++seed);
+      testTolerance<T>(check, ++seed);
+      testFloor<T>(check, ++seed);
+    });
+  testLargeVolumes(check);
+  testOddValues<float>(check);
+  testOddValues<double>(check);
+  testChains(check);
+  testSorting(check);
+  testElimination(check);
+  testHiddenCount(check);
+  testRenewal(check);
+  testThreads(check);
+  return check.result();
+}
