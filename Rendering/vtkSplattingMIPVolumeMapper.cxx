@@ -222,6 +222,7 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     LastRenderUsedRayCasting(false),
     Internal(new Internals)
 {
+  this->Internal->Projector.setProgress([this](double done) { this->UpdateProgress(done); });
   this->BlendMode = MAXIMUM_INTENSITY_BLEND;
 }
 
@@ -384,6 +385,8 @@ splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::MakeSettin
     self->KernelRadius };
   settings.footprintSampling = self->FootprintSampling;
   settings.acceleration = static_cast<splatting::Acceleration>(self->Acceleration);
+  settings.lineTolerance = self->LineTolerance;
+  settings.eliminateInvisible = self->EliminateInvisible;
   if (self->CullBelowWindow)
   {
     settings.floor = this->FloorOfWindow();
@@ -627,6 +630,12 @@ vtkIdType vtkSplattingMIPVolumeMapper::GetIndexMemorySize()
 }
 
 //------------------------------------------------------------------------------
+double vtkSplattingMIPVolumeMapper::GetIndexTime()
+{
+  return this->Internal->Index.time();
+}
+
+//------------------------------------------------------------------------------
 vtkIdType vtkSplattingMIPVolumeMapper::GetNumberOfProjections()
 {
   return this->Internal->Projections;
@@ -695,6 +704,7 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PrincipalAxis: " << this->GetPrincipalAxis() << "\n";
   os << indent << "Shear: " << this->GetShear()[0] << ", " << this->GetShear()[1] << "\n";
   os << indent << "IndexMemorySize: " << this->GetIndexMemorySize() << "\n";
+  os << indent << "IndexTime: " << this->GetIndexTime() << "\n";
   os << indent << "NumberOfProjections: " << this->GetNumberOfProjections() << "\n";
   os << indent << "ProjectionTime: " << this->GetProjectionTime() << "\n";
   os << indent << "InstructionSet: " << this->GetInstructionSet() << "\n";

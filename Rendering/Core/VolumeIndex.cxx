@@ -8,6 +8,7 @@
 #include <vtkSMPTools.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -28,6 +29,24 @@ constexpr T highest()
   return std::numeric_limits<T>::has_infinity ? std::numeric_limits<T>::infinity()
                                               : std::numeric_limits<T>::max();
 }
+
+/// Adds the seconds that it lives.
+class Stopwatch
+{
+public:
+  explicit Stopwatch(double& seconds) : Seconds(seconds), Start(std::chrono::steady_clock::now()) {}
+  ~Stopwatch()
+  {
+    this->Seconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  void operator=(const Stopwatch&) = delete;
+
+private:
+  double& Seconds;
+  std::chrono::steady_clock::time_point Start;
+};
 
 /// out[x - begin][z][y] = in[z][y][x] for x in [begin, end), in blocks that fit the first-level
 /// cache on both sides.
@@ -255,6 +274,7 @@ Slices VolumeIndex::slices(int principalAxis)
   }
   if (!this->Copy)
   {
+    const Stopwatch stopwatch(this->Seconds);
     this->CopySize = this->volumeSize();
     this->Copy.reset(new unsigned char[this->CopySize]);
     dispatch(this->Volume.type,
@@ -291,6 +311,7 @@ const VolumeIndex::Range& VolumeIndex::range()
 {
   if (!this->Surveyed)
   {
+    const Stopwatch stopwatch(this->Seconds);
     dispatch(this->Volume.type,
       [this](auto* null) { this->survey<std::remove_pointer_t<decltype(null)>>(); });
     this->Surveyed = true;
@@ -323,7 +344,11 @@ const LineIndex* VolumeIndex::lines(
   const glm::ivec3& d = this->Volume.dimensions;
   const glm::ivec3 size(
     principalAxis == 0 ? d.y : d.x, principalAxis == 2 ? d.y : d.z, d[principalAxis]);
-  lines = LineIndex(this->Volume.type, this->slices(principalAxis), size, encoding, progress);
+  const Slices slices = this->slices(principalAxis);
+  {
+    const Stopwatch stopwatch(this->Seconds);
+    lines = LineIndex(this->Volume.type, slices, size, encoding, progress);
+  }
   if (!copied)
   {
     this->Copy.reset();

@@ -127,6 +127,8 @@ public:
 
   /// Bytes held besides the volume.
   std::size_t memorySize() const;
+  /// Seconds that making them took.
+  double time() const { return this->Seconds; }
 
 private:
   template <class T>
@@ -145,6 +147,7 @@ private:
   bool Surveyed = false;
   bool BricksMade = false;
   bool Exceeded = false;
+  double Seconds = 0.0;
   std::array<std::array<Experience, 3>, 3> Experiences;
 };
 }

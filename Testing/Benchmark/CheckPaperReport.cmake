@@ -10,7 +10,7 @@ endif ()
 
 file(READ "${FOLDER}/report.md" report)
 foreach (section IN ITEMS
-    "Data" "Tables 1 to 4: times" "Ratios of the mean times" "Table 5: memory"
+    "Data" "Tables 1 to 4: times" "Ratios of the mean times" "Table 5: memory" "Invisible voxels"
     "Figure 10: the modes" "Figure 11: the methods" "Figure 12: line encoding"
     "Figure 13: two resolutions" "Accuracy")
   # A section is its heading and something below that is not the next heading.
@@ -18,7 +18,7 @@ foreach (section IN ITEMS
     message(SEND_ERROR "ERROR: the report lacks the section '${section}', or it is empty.")
   endif ()
 endforeach ()
-foreach (text IN ITEMS "aorta" "vessels" "projective shear-warp" "\\*\\*(holds|does not hold)")
+foreach (text IN ITEMS "aorta" "vessels" "projective shear-warp" "encoded and sorted" "\\*\\*(holds|does not hold)")
   if (NOT report MATCHES "${text}")
     message(SEND_ERROR "ERROR: the report has no '${text}'.")
   endif ()

@@ -308,7 +308,6 @@ void ReportPhantom(PaperReport& report, const PaperSettings& settings)
 void ReportEncoding(PaperReport& report, const PaperDataSet& data, const PaperTimes& times,
   const PaperSettings& settings)
 {
-  const bool encodes = SplattingRenderer::KnowsEncodings();
   const PaperVolume& volume = data.Volumes[0];
   std::vector<std::vector<PaperPicture>> panels;
   for (double zoom : { 1.0, 3.0 })
@@ -316,21 +315,15 @@ void ReportEncoding(PaperReport& report, const PaperDataSet& data, const PaperTi
     const splatting::View view =
       MakePaperView(volume, { -80.0, 20.0 }, settings.Window, zoom, glm::dvec2(0.0, 0.1));
     panels.push_back(GetPictures(RenderModes(volume, view)));
-    if (encodes)
-    {
-      panels.back().insert(
-        panels.back().begin(), MakeRenderer(PaperMethod::Encoded, volume)->MakePicture(view));
-    }
+    panels.back().insert(
+      panels.back().begin(), MakeRenderer(PaperMethod::Encoded, volume)->MakePicture(view));
   }
   report.AddHeading("Figure 12: line encoding");
   report.AddFigure("figure-12",
-    std::string("The ") + data.Name + ": " + (encodes ? "preview with delta encoding, " : "") +
-      "preview, standard and high; whole and magnified.",
+    "The " + data.Name +
+      ": preview with delta encoding, preview, standard and high; whole and magnified.",
     panels);
-  if (encodes)
-  {
-    ReportEncodingErrors(report, data, times, settings);
-  }
+  ReportEncodingErrors(report, data, times, settings);
 }
 
 //------------------------------------------------------------------------------

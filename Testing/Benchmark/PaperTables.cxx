@@ -55,11 +55,6 @@ bool IsRayCasting(PaperMethod method)
   return method <= PaperMethod::RayLinear;
 }
 
-bool IsEncoded(PaperMethod method)
-{
-  return method >= PaperMethod::Encoded;
-}
-
 //------------------------------------------------------------------------------
 // Times
 
@@ -185,10 +180,7 @@ std::vector<Ratio> ListRatios()
   {
     for (int resolution = 0; resolution < 2; ++resolution)
     {
-      if (SplattingRenderer::KnowsEncodings() || !IsEncoded(pair.first))
-      {
-        ratios.push_back({ pair.first, pair.second, resolution });
-      }
+      ratios.push_back({ pair.first, pair.second, resolution });
     }
   }
   return ratios;
@@ -275,12 +267,9 @@ Memory MeasureMemory(const PaperVolume& volume)
   Memory memory;
   memory.Volume = ToMegabytes(volume.Voxels.voxels.size());
   memory.Plain = MeasureMemory(volume, PaperEncoding::Plain, 0, true);
-  if (SplattingRenderer::KnowsEncodings())
-  {
-    memory.OneAxis = MeasureMemory(volume, PaperEncoding::Lines, 0, false);
-    memory.AllAxes = MeasureMemory(volume, PaperEncoding::Lines, 0, true);
-    memory.AllAxesDelta = MeasureMemory(volume, PaperEncoding::Lines, PaperTolerance, true);
-  }
+  memory.OneAxis = MeasureMemory(volume, PaperEncoding::Lines, 0, false);
+  memory.AllAxes = MeasureMemory(volume, PaperEncoding::Lines, 0, true);
+  memory.AllAxesDelta = MeasureMemory(volume, PaperEncoding::Lines, PaperTolerance, true);
   return memory;
 }
 
@@ -305,11 +294,7 @@ std::vector<PaperMethod> ListPaperMethods()
   std::vector<PaperMethod> methods;
   for (int n = 0; n <= static_cast<int>(PaperMethod::Automatic); ++n)
   {
-    const auto method = static_cast<PaperMethod>(n);
-    if (SplattingRenderer::KnowsEncodings() || !IsEncoded(method))
-    {
-      methods.push_back(method);
-    }
+    methods.push_back(static_cast<PaperMethod>(n));
   }
   return methods;
 }
@@ -452,11 +437,9 @@ void ReportMemory(PaperReport& report, const std::vector<PaperDataSet>& sets)
     for (int resolution = 0; resolution < 2; ++resolution)
     {
       const Memory memory = MeasureMemory(data.Volumes[resolution]);
-      const auto lines = [](double megabytes)
-      { return SplattingRenderer::KnowsEncodings() ? Fixed(megabytes, 2) : std::string("–"); };
       rows.push_back(
         { data.Name, Cube(data, resolution), Fixed(memory.Volume, 2), Fixed(memory.Plain, 2),
-          lines(memory.OneAxis), lines(memory.AllAxes), lines(memory.AllAxesDelta),
+          Fixed(memory.OneAxis, 2), Fixed(memory.AllAxes, 2), Fixed(memory.AllAxesDelta, 2),
           Fixed(paper[resolution][1], 3) + " of " + Fixed(paper[resolution][0], 1) });
       sentences.push_back(MakeMemorySentence(data.Name + ", " + Cube(data, resolution), memory,
         paper[resolution][1] / paper[resolution][0]));
@@ -466,8 +449,5 @@ void ReportMemory(PaperReport& report, const std::vector<PaperDataSet>& sets)
     { "data", "resolution", "volume, MB", "plain: copy for one axis", "lines of the z axis, N = 0",
       "lines of three axes, N = 0", "lines of three axes, " + delta, "paper" },
     rows);
-  if (SplattingRenderer::KnowsEncodings())
-  {
-    report.AddList(sentences);
-  }
+  report.AddList(sentences);
 }

@@ -2,32 +2,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SplattingRenderer.h"
 
-#include <type_traits>
-
 namespace
 {
-// Settings of cores without encodings lack the members that are asked for here.
-template <class Settings, class = void>
-struct HasAcceleration : std::false_type
+splatting::Acceleration ToAcceleration(PaperEncoding encoding)
 {
-};
-template <class Settings>
-struct HasAcceleration<Settings, std::void_t<decltype(Settings::acceleration)>> : std::true_type
-{
-};
-
-template <class Settings>
-void SetEncoding(Settings& settings, PaperEncoding encoding, int tolerance)
-{
-  if constexpr (HasAcceleration<Settings>::value)
+  using splatting::Acceleration;
+  switch (encoding)
   {
-    using Acceleration = decltype(Settings::acceleration);
-    const Acceleration accelerations[] = { Acceleration::Dense, Acceleration::Lines,
-      Acceleration::SortedLines, Acceleration::Auto };
-    settings.acceleration = accelerations[static_cast<int>(encoding)];
-    settings.lineTolerance = tolerance;
-    settings.eliminateInvisible = false;
+    case PaperEncoding::Plain:
+      return Acceleration::Dense;
+    case PaperEncoding::Lines:
+      return Acceleration::Lines;
+    case PaperEncoding::SortedLines:
+      return Acceleration::SortedLines;
+    case PaperEncoding::SortedVolume:
+      return Acceleration::SortedVolume;
+    case PaperEncoding::Automatic:
+      break;
   }
+  return Acceleration::Auto;
 }
 
 template <class T>
@@ -54,13 +47,8 @@ SplattingRenderer::SplattingRenderer(
   this->Index.reset(
     { volume.Voxels.voxels.data(), splatting::ScalarType::UInt8, { size[0], size[1], size[2] } });
   this->Settings.quality = quality;
-  SetEncoding(this->Settings, encoding, tolerance);
-}
-
-//------------------------------------------------------------------------------
-bool SplattingRenderer::KnowsEncodings()
-{
-  return HasAcceleration<splatting::ProjectionSettings>::value;
+  this->Settings.acceleration = ToAcceleration(encoding);
+  this->Settings.lineTolerance = tolerance;
 }
 
 //------------------------------------------------------------------------------

@@ -11,10 +11,11 @@
  */
 enum class PaperEncoding
 {
-  Plain,       // voxels
-  Lines,       // chains of equal voxels, slice by slice
-  SortedLines, // the same, sorted by value; preview only
-  Automatic    // what the projector thinks best
+  Plain,        // voxels
+  Lines,        // chains of equal voxels, slice by slice
+  SortedLines,  // the same, sorted by value; preview only
+  SortedVolume, // all chains sorted by value; preview only
+  Automatic     // what the projector thinks best
 };
 
 /**
@@ -29,9 +30,6 @@ public:
    */
   SplattingRenderer(const PaperVolume& volume, splatting::Quality quality,
     PaperEncoding encoding = PaperEncoding::Plain, int tolerance = 0);
-
-  /// Whether this build's core can do more than PaperEncoding::Plain.
-  static bool KnowsEncodings();
 
   void Render(const splatting::View& view) override;
 

@@ -5,6 +5,7 @@
  * Object Space", 1998, done again. See --help.
  */
 #include "PaperAccuracy.h"
+#include "PaperElimination.h"
 #include "PaperFigures.h"
 #include "PaperReport.h"
 #include "PaperScene.h"
@@ -133,8 +134,7 @@ void ReportMethods(PaperReport& report, const PaperSettings& settings)
     " passes. The window just holds the volume in every view. "
     "All methods end at the same thing, the grey pixels of the window: splatting and projective "
     "shear-warp as projection to the shear image and the same warp, ray casting from the window's "
-    "pixels. Projective shear-warp and ray casting are compiled for this processor where the "
-    "compiler can. What is made once per volume (a transposed copy, lines) is in the first frames, "
+    "pixels. What is made once per volume (a transposed copy, lines) is in the first frames, "
     "not "
     "in the times.");
   report.AddList(
@@ -147,11 +147,6 @@ void ReportMethods(PaperReport& report, const PaperSettings& settings)
       "the slice's middle. One shift and one maximum per slice; the slices come from the same "
       "transposed copy as splatting's.",
       "*Splatting, plain* reads all voxels. The paper's four tables are all of preview quality." });
-  if (!SplattingRenderer::KnowsEncodings())
-  {
-    report.AddText("**This build has no line encoding**: Table 4 and the encoded columns of Table "
-                   "5 are missing.");
-  }
 }
 
 void ReportTables(
@@ -199,6 +194,7 @@ void Run(const Options& options)
     times.push_back(MeasureTimes(data, settings));
   }
   ReportTables(report, sets, times);
+  ReportElimination(report, sets, settings);
   std::cout << "figures" << std::endl;
   ReportPhantom(report, settings);
   ReportEncoding(report, sets[0], times[0], settings);
