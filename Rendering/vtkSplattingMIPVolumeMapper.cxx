@@ -495,7 +495,10 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     return "";
   }
   in.LookAt(in.Scalars);
-  in.Index.setBudget(static_cast<std::size_t>(this->IndexMemoryBudget));
+  if (in.Index.setBudget(static_cast<std::size_t>(this->IndexMemoryBudget)))
+  {
+    in.ImageValid = false; // so that the answer to "what was used" is right
+  }
   in.UpdateColors(vol->GetProperty());
   if (!in.Project(this, view))
   {

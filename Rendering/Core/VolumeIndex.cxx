@@ -210,13 +210,15 @@ void VolumeIndex::reset(const VoxelArray& volume)
   *this = std::move(fresh);
 }
 
-void VolumeIndex::setBudget(std::size_t bytes)
+bool VolumeIndex::setBudget(std::size_t bytes)
 {
-  if (bytes != this->Budget)
+  if (bytes == this->Budget)
   {
-    this->reset(this->Volume);
-    this->Budget = bytes;
+    return false;
   }
+  this->Budget = bytes;
+  this->reset(this->Volume);
+  return true;
 }
 
 std::size_t VolumeIndex::volumeSize() const

@@ -79,9 +79,9 @@ public:
 
   const VoxelArray& volume() const { return this->Volume; }
 
-  /// Bytes that may be held besides the volume. What would exceed them is not made; what is there
-  /// and exceeds them is given up.
-  void setBudget(std::size_t bytes);
+  /// Bytes that may be held besides the volume. What would exceed them is not made; a
+  /// change gives up all that is there. Returns whether it is one.
+  bool setBudget(std::size_t bytes);
   /// Whether something was not made for want of memory.
   bool exceedsBudget() const { return this->Exceeded; }
 

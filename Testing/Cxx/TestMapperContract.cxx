@@ -35,6 +35,11 @@ void testDefaults(Mapper* mapper, stage::Checks& check)
   check(mapper->GetFootprintSampling() == 0, "Default weights are in closed form.");
   check(mapper->GetBlendMode() == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND,
     "Default blend mode is maximum intensity.");
+  check(mapper->GetAcceleration() == Mapper::AUTO, "Default acceleration is automatic.");
+  check(mapper->GetAccelerationUsed() == Mapper::DENSE, "A new mapper has used no acceleration.");
+  check(mapper->GetLineTolerance() == 0.0, "Default encoding is lossless.");
+  check(!mapper->GetEliminateInvisible() && !mapper->GetCullBelowWindow(), "Default keeps all.");
+  check(mapper->GetIndexMemoryBudget() == vtkTypeInt64(1) << 32, "Default budget is 4 GiB.");
   check(!mapper->GetLastRenderUsedRayCasting(), "A new mapper has not cast rays.");
   check(mapper->GetShearImage() == nullptr, "There is no shear image before the first render.");
   check(mapper->GetPrincipalAxis() == -1, "There is no principal axis before the first render.");
@@ -79,6 +84,23 @@ void testClamping(Mapper* mapper, stage::Checks& check)
   }
 }
 
+void testClampingOfAcceleration(Mapper* mapper, stage::Checks& check)
+{
+  for (const auto& [value, expected] : { std::pair(5, 5), { 2, 2 }, { -1, 0 }, { 6, 5 }, { 0, 0 } })
+  {
+    check(sets(mapper, &Mapper::SetAcceleration, &Mapper::GetAcceleration, value, expected),
+      "SetAcceleration " + std::to_string(value));
+  }
+  for (const auto& [value, expected] : { std::pair(8.0, 8.0), { 99.0, 64.0 }, { -1.0, 0.0 } })
+  {
+    check(sets(mapper, &Mapper::SetLineTolerance, &Mapper::GetLineTolerance, value, expected),
+      "SetLineTolerance " + std::to_string(value));
+  }
+  check(sets(mapper, &Mapper::SetIndexMemoryBudget, &Mapper::GetIndexMemoryBudget, vtkTypeInt64(-5),
+          vtkTypeInt64(0)),
+    "SetIndexMemoryBudget below zero");
+}
+
 void testNames(Mapper* mapper, stage::Checks& check)
 {
   const auto modeIs = [&](int value, const char* name)
@@ -96,6 +118,12 @@ void testNames(Mapper* mapper, stage::Checks& check)
   check(mapper->GetKernel() == Mapper::COSINE_BELL &&
       std::string("cosine bell") == mapper->GetKernelAsString(),
     "SetKernelToCosineBell");
+  mapper->SetAccelerationToSortedVolume();
+  check(mapper->GetAcceleration() == Mapper::SORTED_VOLUME &&
+      std::string("sorted volume") == mapper->GetAccelerationAsString(),
+    "SetAccelerationToSortedVolume");
+  mapper->SetAccelerationToAuto();
+  check(std::string("auto") == mapper->GetAccelerationAsString(), "SetAccelerationToAuto");
   mapper->SetKernelToTrilinear();
   check(mapper->GetKernel() == Mapper::TRILINEAR &&
       std::string("trilinear") == mapper->GetKernelAsString(),
@@ -107,10 +135,11 @@ void testPrinting(Mapper* mapper, stage::Checks& check)
   std::ostringstream stream;
   mapper->Print(stream);
   const std::string text = stream.str();
-  for (const char* variable :
-    { "QualityMode: high", "Kernel: trilinear", "KernelRadius: ", "FootprintSampling: ",
-      "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ", "IndexMemorySize: ",
-      "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ", "Blend", "Cropping" })
+  for (const char* variable : { "QualityMode: high", "Kernel: trilinear", "KernelRadius: ",
+         "FootprintSampling: ", "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ",
+         "IndexMemorySize: ", "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ",
+         "Acceleration: auto", "AccelerationUsed: dense", "LineTolerance: ", "EliminateInvisible: ",
+         "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend", "Cropping" })
   {
     check(text.find(variable) != std::string::npos, std::string("PrintSelf names ") + variable);
   }
@@ -126,6 +155,7 @@ int TestMapperContract(int, char*[])
   testDefaults(mapper, check);
   testPrinting(mapper, check);
   testClamping(mapper, check);
+  testClampingOfAcceleration(mapper, check);
   testNames(mapper, check);
   return check.exitCode();
 }

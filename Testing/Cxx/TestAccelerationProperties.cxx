@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Accelerations as a program meets them: forced and automatic, with a budget, delta encoding and
+// culling, told by progress, and made anew when the data change.
+#include "Stage.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace
+{
+using Mapper = vtkSplattingMIPVolumeMapper;
+const stage::Vector up = { 0.0, 1.0, 0.0 };
+const stage::Vector directions[] = { { -0.8, 0.3, 0.45 }, { 0.3, -0.8, 0.45 },
+  { -0.3, 0.4, -0.8 } };
+
+int largestDifference(const stage::Pixels& a, const stage::Pixels& b)
+{
+  int largest = a.size() == b.size() ? 0 : 255;
+  for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n)
+  {
+    largest = std::max(largest, std::abs(int(a[n]) - int(b[n])));
+  }
+  return largest;
+}
+
+/// Every acceleration shows the plain walk's picture along every axis, and is the one that was
+/// used.
+void testForced(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+{
+  const auto mapper = stage::splatting(image);
+  stage.show(mapper);
+  for (const stage::Vector& direction : directions)
+  {
+    stage.look(direction, up);
+    for (int mode : { Mapper::PREVIEW, Mapper::STANDARD, Mapper::HIGH })
+    {
+      mapper->SetQualityMode(mode);
+      mapper->SetAccelerationToDense();
+      const stage::Pixels dense = stage.pixels();
+      for (int acceleration = Mapper::AUTO; acceleration <= Mapper::SORTED_VOLUME; ++acceleration)
+      {
+        mapper->SetAcceleration(acceleration);
+        const std::string where = std::string(" ") + mapper->GetAccelerationAsString() + ", mode " +
+          mapper->GetQualityModeAsString() + ".";
+        check(stage.pixels() == dense, "The plain walk's picture:" + where);
+        const int used = mapper->GetAccelerationUsed();
+        check(acceleration == Mapper::AUTO ? used == Mapper::BRICKS || used == Mapper::DENSE
+                                           : used == acceleration,
+          "It was used:" + where);
+      }
+    }
+  }
+}
+
+/// What does not fit is not made, with one warning; more room brings it back.
+void testBudget(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+{
+  const auto mapper = stage::splatting(image);
+  stage.show(mapper);
+  stage.look(directions[0], up); // along the first axis
+  const stage::Pixels rich = stage.pixels();
+  check(mapper->GetIndexMemorySize() > 0, "There is an index.");
+  stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+  mapper->SetIndexMemoryBudget(0);
+  for (int acceleration : { Mapper::AUTO, Mapper::BRICKS, Mapper::LINES, Mapper::SORTED_VOLUME })
+  {
+    mapper->SetAcceleration(acceleration);
+    check(stage.pixels() == rich, "The picture is the same without memory.");
+    check(mapper->GetAccelerationUsed() == Mapper::DENSE, "Without memory the walk is dense.");
+    check(mapper->GetIndexMemorySize() == 0, "Nothing is held.");
+  }
+  check(warnings.texts.size() == 1, "The budget is told once.");
+  mapper->SetIndexMemoryBudget(vtkTypeInt64(1) << 32);
+  mapper->SetAccelerationToLines();
+  check(stage.pixels() == rich, "The picture is the same with memory again.");
+  check(mapper->GetAccelerationUsed() == Mapper::LINES, "With memory there are chains again.");
+  check(warnings.texts.size() == 1, "Nothing to warn of.");
+}
+
+/// The index belongs to the data, and is made anew with them only.
+void testRenewal(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+{
+  const auto mapper = stage::splatting(image);
+  stage.show(mapper);
+  mapper->SetQualityModeToPreview();
+  mapper->SetAccelerationToSortedLines();
+  int progress = 0;
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetClientData(&progress);
+  observer->SetCallback(
+    [](vtkObject*, unsigned long, void* count, void*) { ++*static_cast<int*>(count); });
+  mapper->AddObserver(vtkCommand::ProgressEvent, observer);
+  stage.look(directions[2], up);
+  stage.pixels();
+  check(progress > 0 && mapper->GetProgress() == 1.0, "Encoding tells its progress to the end.");
+  const double made = mapper->GetIndexTime();
+  progress = 0;
+  stage.look({ -0.2, 0.3, -0.8 }, up);
+  const stage::Pixels before = stage.pixels();
+  check(progress == 0 && mapper->GetIndexTime() == made, "Another view takes the same index.");
+  auto* scalars = image->GetPointData()->GetScalars();
+  const double old = scalars->GetComponent(scalars->GetNumberOfTuples() / 2, 0);
+  scalars->SetComponent(scalars->GetNumberOfTuples() / 2, 0, 255.0);
+  scalars->Modified();
+  check(stage.pixels() != before, "A changed voxel is seen.");
+  check(progress > 0, "Changed data are encoded anew.");
+  scalars->SetComponent(scalars->GetNumberOfTuples() / 2, 0, old);
+  scalars->Modified();
+  check(stage.pixels() == before, "Changed back.");
+}
+
+/// Delta encoding stays within its bound, and saves memory.
+void testTolerance(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+{
+  const auto mapper = stage::splatting(image);
+  stage.show(mapper);
+  stage.look(directions[2], up);
+  mapper->SetQualityModeToPreview();
+  mapper->SetAccelerationToSortedVolume();
+  const stage::Pixels exact = stage.pixels();
+  const vtkIdType memory = mapper->GetIndexMemorySize();
+  mapper->SetLineTolerance(8.0);
+  const int difference = largestDifference(exact, stage.pixels());
+  check(difference > 0 && difference <= 9, "8 grey levels, one more by rounding the colours.");
+  check(mapper->GetIndexMemorySize() < memory, "Longer chains take less memory.");
+  mapper->SetLineTolerance(0.0);
+  mapper->EliminateInvisibleOn();
+  check(stage.pixels() == exact, "Invisible voxels are not missed.");
+  check(mapper->GetIndexMemorySize() < memory, "Fewer voxels take less memory.");
+}
+
+/// Culling shows the same pixels above the window's lower end, and those below as dark as before.
+void testCulling(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+{
+  const auto mapper = stage::splatting(image);
+  stage.show(mapper);
+  stage.setGrayRamp(100.0, 200.0);
+  stage.look(directions[2], up);
+  for (int acceleration : { Mapper::DENSE, Mapper::BRICKS, Mapper::SORTED_VOLUME })
+  {
+    mapper->SetQualityModeToPreview();
+    mapper->SetAcceleration(acceleration);
+    mapper->CullBelowWindowOff();
+    const stage::Pixels all = stage.pixels();
+    mapper->CullBelowWindowOn();
+    const stage::Pixels culled = stage.pixels();
+    bool brighter = true, same = true;
+    for (std::size_t n = 0; n < all.size(); ++n)
+    {
+      brighter = brighter && culled[n] >= all[n];
+      same = same && (all[n] != 0 || culled[n] < 128);
+    }
+    check(brighter && same, "Edges become brighter, by less than half.");
+    check(all != culled, "The test sees the difference.");
+  }
+  stage.setGrayRamp(0.0, 255.0);
+}
+}
+
+int TestAccelerationProperties(int, char*[])
+{
+  stage::Checks check;
+  stage::Stage stage(160, 150);
+  const auto image = stage::toImageData(stage::blobsAndTubes({ 60, 56, 52 }, 12));
+  testForced(stage, image, check);
+  testBudget(stage, image, check);
+  testRenewal(stage, image, check);
+  testTolerance(stage, image, check);
+  testCulling(stage, image, check);
+  return check.exitCode();
+}
