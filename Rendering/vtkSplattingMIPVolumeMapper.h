@@ -156,7 +156,7 @@ public:
    * values; a pixel that has a value is done [CS98, footnote 2]. The other modes use LINES.
    *
    * AUTO takes BRICKS, unless the last frame that used them along this principal axis in this mode
-   * still had to splat more than 40 % (PREVIEW) or 70 % (STANDARD, HIGH) of the tiles, as is the
+   * still had to splat more than 40 % (PREVIEW) or 50 % (STANDARD, HIGH) of the tiles, as is the
    * case with noise everywhere; then DENSE, and every 16th frame tries BRICKS again. It never takes
    * chains, which are slower on all data that we measured (splatmip-paper reports it), but need
    * less memory than the volume.

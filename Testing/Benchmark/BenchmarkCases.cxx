@@ -219,6 +219,51 @@ void MeasureProjections(benchmark::State& state, const BenchmarkVolume& volume,
 }
 
 //------------------------------------------------------------------------------
+void MeasureIndex(benchmark::State& state, const BenchmarkVolume& volume)
+{
+  vtkImageData* image = LoadOrFail(state, volume);
+  if (!image)
+  {
+    return;
+  }
+  BenchmarkStage& stage = BenchmarkStage::GetInstance();
+  stage.SetSize(64);
+  std::vector<double> times;
+  for (auto _ : state)
+  {
+    stage.SetMapper(GetBenchmarkAccelerations()[0], image);
+    stage.LookFrom(BenchmarkStage::ViewsOfAxes[0]); // not along the axis that needs a copy
+    stage.MeasureFrame();
+    times.push_back(vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper())->GetIndexTime());
+    state.SetIterationTime(times.back());
+  }
+  state.counters["median_ms"] = 1e3 * Median(times);
+  stage.Clear();
+}
+
+//------------------------------------------------------------------------------
+void MeasureFirst(
+  benchmark::State& state, const BenchmarkVolume& volume, const BenchmarkMapper& mapper)
+{
+  vtkImageData* image = LoadOrFail(state, volume);
+  if (!image)
+  {
+    return;
+  }
+  BenchmarkStage& stage = BenchmarkStage::GetInstance();
+  WarmUp(mapper, image);
+  stage.SetSize(300);
+  std::vector<double> times;
+  for (auto _ : state)
+  {
+    times.push_back(MeasureFirstFrames(mapper, image));
+    state.SetIterationTime(times.back());
+  }
+  state.counters["median_ms"] = 1e3 * Median(times);
+  stage.Clear();
+}
+
+//------------------------------------------------------------------------------
 void MeasureFloor(benchmark::State& state, const BenchmarkVolume& volume)
 {
   vtkImageData* image = LoadOrFail(state, volume);

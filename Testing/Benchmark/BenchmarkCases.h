@@ -39,6 +39,17 @@ void MeasureProjections(benchmark::State& state, const BenchmarkVolume& volume,
   const BenchmarkMapper& mapper, const BenchmarkRotation& rotation);
 
 /**
+ * Makes the index of a volume, again and again: counter median_ms.
+ */
+void MeasureIndex(benchmark::State& state, const BenchmarkVolume& volume);
+
+/**
+ * The slowest of the first frames of a fresh mapper along the three axes: counter median_ms.
+ */
+void MeasureFirst(
+  benchmark::State& state, const BenchmarkVolume& volume, const BenchmarkMapper& mapper);
+
+/**
  * The largest byte of the volume. Counters median_ms and GB_per_s (10^9 bytes).
  */
 void MeasureFloor(benchmark::State& state, const BenchmarkVolume& volume);

@@ -32,6 +32,7 @@ struct BenchmarkMapper
   std::string Name;
   Kinds Kind;
   int QualityMode;   // of the splatting mapper
+  int Acceleration;  // likewise
   int Interpolation; // of the ray casters
   std::string Rival; // the ray caster that shows the most similar picture, or ""
 };
@@ -40,6 +41,11 @@ struct BenchmarkMapper
  * preview, standard, high; raycast-nearest, raycast-linear; gpu.
  */
 const std::vector<BenchmarkMapper>& GetBenchmarkMappers();
+
+/**
+ * The three modes by the mapper's own choice, and forced: preview-dense, preview-bricks, ...
+ */
+const std::vector<BenchmarkMapper>& GetBenchmarkAccelerations();
 
 /**
  * The window, the camera and the volume's look, the same for all mappers: off screen, no

@@ -40,6 +40,18 @@ BenchmarkVolume Vessels(int n, const std::string& type, double slope = 1.0, doub
   return volume;
 }
 
+/// Nothing but noise, in which nothing can be left out.
+vtkSmartPointer<vtkImageData> MakeNoise(int n)
+{
+  const auto noise = reference::uniformNoise<std::uint8_t>({ n, n, n }, 1, 0, 255);
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(n, n, n);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  std::copy(noise.voxels.begin(), noise.voxels.end(),
+    static_cast<unsigned char*>(image->GetScalarPointer()));
+  return image;
+}
+
 template <class Reader>
 vtkSmartPointer<vtkImageData> ReadVolume(const std::string& file)
 {
@@ -80,6 +92,11 @@ std::vector<BenchmarkVolume> ListVolumes(
     Vessels<float>(256, "float", 1.0 / 255.0), Vessels<unsigned char>(512, "uint8") };
   volumes[2].ForAllMappers = volumes[3].ForAllMappers = false;
   volumes[4].IsBig = true;
+  BenchmarkVolume noise;
+  noise.Name = "noise256-uint8";
+  noise.Load = [] { return MakeNoise(256); };
+  noise.ForAllMappers = false;
+  volumes.push_back(noise);
   AddFile<vtkXMLImageDataReader>(volumes, missing, "aorta-int16", SPLATTINGMIP_AORTA, false);
   AddFile<vtkNIFTIImageReader>(
     volumes, missing, "ch2better-uint8", "/usr/share/mricron/templates/ch2better.nii.gz", true);

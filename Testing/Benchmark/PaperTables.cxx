@@ -50,9 +50,11 @@ const MethodFacts& GetFacts(PaperMethod method)
   return facts.at(method);
 }
 
-bool IsRayCasting(PaperMethod method)
+/// Whether a full turn in small steps would take minutes.
+bool IsSlow(PaperMethod method)
 {
-  return method <= PaperMethod::RayLinear;
+  return method <= PaperMethod::RayLinear ||
+    (method >= PaperMethod::Encoded && method <= PaperMethod::EncodedHigh);
 }
 
 //------------------------------------------------------------------------------
@@ -98,8 +100,7 @@ Pass MeasurePass(PaperMethod method, const PaperVolume& volume, const PaperSetti
   {
     pass.Preparation += measure(turn);
   }
-  for (const glm::dvec2& turn :
-    ListTurns(IsRayCasting(method) ? settings.SlowStep : settings.TurnStep))
+  for (const glm::dvec2& turn : ListTurns(IsSlow(method) ? settings.SlowStep : settings.TurnStep))
   {
     pass.Frames.push_back(measure(turn));
   }

@@ -23,7 +23,7 @@ struct PaperSettings
   int Voxels = 256;  // along each side of the high resolution
   int Window = 300;  // pixels along each side
   int TurnStep = 2;  // degrees between views
-  int SlowStep = 20; // the same for ray casters
+  int SlowStep = 20; // the same for ray casters and chains
   int Passes = 3;    // through all methods; each view's fastest frame counts
   int AccuracyViews = 8;
 };

@@ -200,8 +200,8 @@ void SummaryReporter::PrintFrames(std::ostream& os) const
 //------------------------------------------------------------------------------
 void SummaryReporter::PrintProjections(std::ostream& os) const
 {
-  MarkdownTable table(
-    { "volume", "mode", "views", "median ms", "worst ms", "floor ms", "floor GB/s", "it / floor" },
+  MarkdownTable table({ "volume", "mode", "views", "median ms", "worst ms", "floor ms",
+                        "it / floor", "it / dense", "first ms", "first / dense's" },
     2);
   for (const Result& result : this->Results)
   {
@@ -211,12 +211,37 @@ void SummaryReporter::PrintProjections(std::ostream& os) const
     }
     const Result* floor = this->Find({ "floor", result.Name[1] });
     const double median = Get(&result, "median_ms"), least = Get(floor, "median_ms");
-    table.Add({ result.Name[1], result.Name[2], Format(Get(&result, "views"), 0), Format(median, 2),
-      Format(Get(&result, "worst_ms"), 2), Format(least, 2), Format(Get(floor, "GB_per_s"), 1),
-      Format(median / least, 2, "x") });
+    const std::string& mode = result.Name[2];
+    const std::string dense = mode.substr(0, mode.find('-')) + "-dense";
+    const double first = Get(this->Find({ "first", result.Name[1], mode }), "median_ms");
+    table.Add({ result.Name[1], mode, Format(Get(&result, "views"), 0), Format(median, 2),
+      Format(Get(&result, "worst_ms"), 2), Format(least, 2), Format(median / least, 2, "x"),
+      Format(
+        median / Get(this->Find({ "projection", result.Name[1], dense }), "median_ms"), 2, "x"),
+      Format(first, 1),
+      Format(first / Get(this->Find({ "first", result.Name[1], dense }), "median_ms"), 2, "x") });
   }
   os << "\nThe projection alone, volume to shear image. Floor: the largest byte of the volume, by "
-        "the same\nthreads.\n\n";
+        "the same\nthreads. First: the slowest first frame of a fresh mapper along three axes, "
+        "300^2.\n\n";
+  table.Print(os);
+}
+
+//------------------------------------------------------------------------------
+void SummaryReporter::PrintIndexes(std::ostream& os) const
+{
+  MarkdownTable table({ "volume", "bricks ms", "floor ms", "floor GB/s", "bricks / floor" }, 1);
+  for (const Result& result : this->Results)
+  {
+    if (result.Name[0] == "index")
+    {
+      const Result* floor = this->Find({ "floor", result.Name[1] });
+      const double median = Get(&result, "median_ms"), least = Get(floor, "median_ms");
+      table.Add({ result.Name[1], Format(median, 2), Format(least, 2),
+        Format(Get(floor, "GB_per_s"), 1), Format(median / least, 2, "x") });
+    }
+  }
+  os << "\nMaking the index: range and bricks in one survey.\n\n";
   table.Print(os);
 }
 
@@ -245,6 +270,10 @@ void SummaryReporter::PrintSummary(
   if (has("projection"))
   {
     this->PrintProjections(os);
+  }
+  if (has("index"))
+  {
+    this->PrintIndexes(os);
   }
   os.flush();
 }

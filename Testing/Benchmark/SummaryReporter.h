@@ -45,6 +45,7 @@ private:
   static double Get(const Result* result, const std::string& counter);
   void PrintFrames(std::ostream& os) const;
   void PrintProjections(std::ostream& os) const;
+  void PrintIndexes(std::ostream& os) const;
 
   benchmark::BenchmarkReporter* Display;
   std::vector<Result> Results; // in the order of the runs

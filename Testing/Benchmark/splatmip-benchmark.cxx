@@ -40,13 +40,16 @@ void PrintHelp()
     R"(splatmip-benchmark: maximum intensity projections by splatting beside VTK's ray casters
 
   frame/VOLUME/WINDOW/MAPPER  a whole frame, render and read-back
-  projection/VOLUME/MODE      the projection alone, volume to shear image
+  projection/VOLUME/MODE[-ACCELERATION]  the projection alone, volume to shear image
+  first/VOLUME/MODE[-ACCELERATION]       the slowest of the first frames along the three axes, 300^2
+  index/VOLUME                making the bricks: one survey of the voxels
   floor/VOLUME                the largest byte of the volume, read once by all threads
 
 VOLUME   vessels128-uint8, vessels256-uint8, -int16, -float, vessels512-uint8 (noise and vessels),
-         aorta-int16, and if they are there ch2better-uint8 (Debian: mricron-data) and
+         noise256-uint8, aorta-int16, and if they are there ch2better-uint8 (Debian: mricron-data) and
          lidc0314-int16
 WINDOW   300 or 1024 pixels along each side
+ACCELERATION  dense or bricks; without it the mapper chooses
 MAPPER   preview, standard, high: the modes of vtkSplattingMIPVolumeMapper
          raycast-nearest, raycast-linear: vtkFixedPointVolumeRayCastMapper
          gpu: vtkOpenGLGPUVolumeRayCastMapper, linear
@@ -167,14 +170,15 @@ void RegisterVolume(const BenchmarkVolume& volume, bool isQuick)
 {
   Register(
     "floor/" + volume.Name, 30, [=](benchmark::State& state) { MeasureFloor(state, volume); });
-  for (const BenchmarkMapper& mapper : GetBenchmarkMappers())
+  Register("index/" + volume.Name, isQuick ? 2 : 10,
+    [=](benchmark::State& state) { MeasureIndex(state, volume); });
+  for (const BenchmarkMapper& mapper : GetBenchmarkAccelerations())
   {
-    if (mapper.Kind == BenchmarkMapper::SPLATTING)
-    {
-      const BenchmarkRotation rotation = ChooseRotation(mapper, volume.IsBig, isQuick);
-      Register("projection/" + volume.Name + "/" + mapper.Name, rotation.Views * rotation.Passes,
-        [=](benchmark::State& state) { MeasureProjections(state, volume, mapper, rotation); });
-    }
+    const BenchmarkRotation rotation = ChooseRotation(mapper, volume.IsBig, isQuick);
+    Register("projection/" + volume.Name + "/" + mapper.Name, rotation.Views * rotation.Passes,
+      [=](benchmark::State& state) { MeasureProjections(state, volume, mapper, rotation); });
+    Register("first/" + volume.Name + "/" + mapper.Name, isQuick ? 1 : 5,
+      [=](benchmark::State& state) { MeasureFirst(state, volume, mapper); });
   }
   for (int window : isQuick ? std::vector<int>{ 100 } : std::vector<int>{ 300, 1024 })
   {

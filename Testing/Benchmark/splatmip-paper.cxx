@@ -129,7 +129,7 @@ void ReportMethods(PaperReport& report, const PaperSettings& settings)
   const std::string slow = std::to_string(settings.SlowStep);
   report.AddText("Minimum / maximum / **mean** over a full turn about x and one about y in steps "
                  "of " +
-    std::to_string(settings.TurnStep) + "° (ray casting: " + slow +
+    std::to_string(settings.TurnStep) + "° (ray casting and encoded volumes: " + slow +
     "°), starting from +z; of each view the fastest of " + std::to_string(settings.Passes) +
     " passes. The window just holds the volume in every view. "
     "All methods end at the same thing, the grey pixels of the window: splatting and projective "
