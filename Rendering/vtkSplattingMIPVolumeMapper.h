@@ -38,10 +38,15 @@
  * NaN voxels are no samples: they never win and, in a worksheet, the average is taken over the
  * other voxels. Infinities are ordinary values. A ray without a sample is transparent.
  *
- * Memory. The mapper holds a transposed copy of the volume once its first (fastest) image axis was
- * the principal one, and a copy of scalars that are not stored voxel after voxel;
- * GetIndexMemorySize() counts both. Work space comes on top: shear image, picture, footprints
- * (about 3 kB a slice) and some rows of voxels for each thread.
+ * For integers of up to 32 bits the lowest voxel is subtracted before voxels are
+ * weighed and added again in the end: a flat background of that value is exact.
+ *
+ * Memory. The mapper holds the largest voxel of every brick of 8x4x4 for each axis (3/128 of the
+ * volume), a transposed copy of the volume once its first (fastest) image axis was the principal
+ * one, chains of voxels where SetAcceleration asks for them, and a copy of scalars that are not
+ * stored voxel after voxel; GetIndexMemorySize() counts all, SetIndexMemoryBudget() limits all but
+ * the last. Work space comes on top: shear image, picture, footprints (about 3 kB a slice) and, for
+ * each thread, some rows of voxels and the bounds of a band of tiles.
  *
  * Objects are made through VTK's object factory; the class that New() returns draws with OpenGL.
  *
@@ -156,7 +161,7 @@ public:
    * values; a pixel that has a value is done [CS98, footnote 2]. The other modes use LINES.
    *
    * AUTO takes BRICKS, unless the last frame that used them along this principal axis in this mode
-   * still had to splat more than 40 % (PREVIEW) or 50 % (STANDARD, HIGH) of the tiles, as is the
+   * still had to splat more than 30 % (PREVIEW) or 50 % (STANDARD, HIGH) of the tiles, as is the
    * case with noise everywhere; then DENSE, and every 16th frame tries BRICKS again. It never takes
    * chains, which are slower on all data that we measured (splatmip-paper reports it), but need
    * less memory than the volume.

@@ -88,34 +88,27 @@ public:
   /// Takes a layer's voxels into the pixels of some rows and runs of columns.
   void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch&) const
   {
-    const Layer& layer = this->Layers[z];
-    // Rows whose voxels all exist, and beside which there are others: a rim reads a few voxels
-    // beyond its row.
-    const bool plain =
-      layer.rimsFit && this->Shared.halfSpaces.empty() && !this->Shared.image.special;
-    const int first = plain ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
-    const int last = std::clamp(this->Shared.geometry.size().y - 1 - layer.window.jMax, first, v1);
-    this->splatSlices(z, v0, first, runs);
-    if (first < last)
-    {
-      this->sweep(layer, first, last, runs);
-    }
-    this->splatSlices(z, last, v1, runs);
+    this->splatLayer(z, v0, v1, runs, BrickDepth);
   }
 
   /// The same for all pixels of some rows and all voxels of some layers, in the order of memory:
   /// slice after slice, or, where rows of all slices lie side by side, a few rows through all of
   /// them.
-  void splatAll(const Span& layers, int v0, int v1, Patch& patch) const
+  void splatAll(const Span& layers, int v0, int v1, Patch&) const
   {
     const std::vector<Span> all(1, { 0, this->Shared.image.width });
-    const bool slicesFirst = this->Shared.slices.rowStride <= this->Shared.slices.sliceStride;
+    const Slices& slices = this->Shared.slices;
+    const bool slicesFirst = slices.rowStride <= slices.sliceStride;
     const int height = slicesFirst ? v1 - v0 : BrickHeight;
+    // Long rows that lie side by side in a page of memory are read ahead if one comes after the
+    // other.
+    const bool longRows = slices.sliceStride * std::ptrdiff_t(sizeof(T)) >= 1024;
+    const int sideBySide = !slicesFirst && longRows ? 1 : BrickDepth;
     for (int v = v0; v < v1; v += height)
     {
       for (int z = layers.begin; z < layers.end; ++z)
       {
-        this->splat(z, v, std::min(v + height, v1), all, patch);
+        this->splatLayer(z, v, std::min(v + height, v1), all, sideBySide);
       }
     }
   }
@@ -126,6 +119,23 @@ public:
 
 private:
   using Layer = PreviewLayer;
+
+  void splatLayer(int z, int v0, int v1, const std::vector<Span>& runs, int sideBySide) const
+  {
+    const Layer& layer = this->Layers[z];
+    // Rows whose voxels all exist, and beside which there are others: a rim reads a few voxels
+    // beyond its row.
+    const bool plain =
+      layer.rimsFit && this->Shared.halfSpaces.empty() && !this->Shared.image.special;
+    const int first = plain ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
+    const int last = std::clamp(this->Shared.geometry.size().y - 1 - layer.window.jMax, first, v1);
+    this->splatSlices(z, v0, first, runs);
+    if (first < last)
+    {
+      this->sweep(layer, first, last, runs, sideBySide);
+    }
+    this->splatSlices(z, last, v1, runs);
+  }
 
   void findRims(Layer& layer) const
   {
@@ -152,37 +162,64 @@ private:
     }
   }
 
-  /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns.
-  void sweep(const Layer& layer, int v0, int v1, const std::vector<Span>& runs) const
+  /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns. So many slices
+  /// are read side by side.
+  void sweep(
+    const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide) const
+  {
+    for (int first = 0, end = 0; first < layer.tapCount; first = end)
+    {
+      while (end < layer.tapCount && layer.taps[end].k - layer.taps[first].k < sideBySide)
+      {
+        ++end;
+      }
+      this->sweepTaps(layer, first, end, v0, v1, runs);
+    }
+  }
+
+  void sweepTaps(const Layer& layer, int firstTap, int endTap, int v0, int v1,
+    const std::vector<Span>& runs) const
   {
     Sweep<T> sweep;
     sweep.image = this->Shared.image.template row<T>(v0);
     sweep.imageStride = this->Shared.image.width;
     sweep.height = v1 - v0;
-    sweep.count = layer.tapCount;
+    sweep.count = endTap - firstTap;
     sweep.rowStride = this->Shared.slices.rowStride;
-    for (int t = 0; t < layer.tapCount; ++t)
+    for (int t = firstTap; t < endTap; ++t)
     {
       const Layer::Tap& tap = layer.taps[t];
-      sweep.rows[t] = this->Shared.voxelRow(v0 + tap.dj, tap.k) + tap.di;
+      sweep.rows[t - firstTap] = this->Shared.voxelRow(v0 + tap.dj, tap.k) + tap.di;
     }
     sweep.runs = runs.data();
     sweep.runCount = static_cast<int>(runs.size());
     sweep.valid = layer.valid;
+    Rim left, right;
     sweep.rimCount = 0;
     if (layer.window.iMin < layer.window.iMax)
     {
       if (runs.front().begin < layer.valid.begin)
       {
-        sweep.rims[sweep.rimCount++] = &layer.left;
+        left = partOf(layer.left, firstTap, endTap);
+        sweep.rims[sweep.rimCount++] = &left;
       }
       if (runs.back().end > layer.valid.end)
       {
-        sweep.rims[sweep.rimCount++] = &layer.right;
+        right = partOf(layer.right, firstTap, endTap);
+        sweep.rims[sweep.rimCount++] = &right;
       }
     }
     const VoxelLoops<T>& loops = this->Shared.kernels;
     loops.sweep(sweep);
+  }
+
+  static Rim partOf(const Rim& rim, int firstTap, int endTap)
+  {
+    Rim part;
+    part.first = rim.first;
+    std::copy(rim.begin + firstTap, rim.begin + endTap, part.begin);
+    std::copy(rim.end + firstTap, rim.end + endTap, part.end);
+    return part;
   }
 
   /// Any rows, slice by slice.

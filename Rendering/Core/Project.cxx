@@ -62,7 +62,7 @@ constexpr int ChunkDepth = 8 * BrickDepth;
 /// order, which is worth more where little is computed.
 double worthwhileShare(Quality quality)
 {
-  return quality == Quality::Preview ? 0.4 : 0.5;
+  return quality == Quality::Preview ? 0.3 : 0.5;
 }
 
 /// The rule of Acceleration::Auto.

@@ -232,7 +232,7 @@ void MeasureIndex(benchmark::State& state, const BenchmarkVolume& volume)
   for (auto _ : state)
   {
     stage.SetMapper(GetBenchmarkAccelerations()[0], image);
-    stage.LookFrom(BenchmarkStage::ViewsOfAxes[0]); // not along the axis that needs a copy
+    stage.LookFrom(BenchmarkStage::ViewsOfAxes[2]); // not along the axis that needs a copy
     stage.MeasureFrame();
     times.push_back(vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper())->GetIndexTime());
     state.SetIterationTime(times.back());
