@@ -57,7 +57,7 @@ struct Frame
 {
   const ShearWarp& geometry;
   const Kernels& kernels;
-  mutable Slices slices; // while it is walked: those that are there
+  Slices slices; // those that are walked at present
   VolumeIndex::Range range;
   const std::vector<SliceGeometry>& sliceGeometry;
   const std::vector<glm::dvec4>& halfSpaces; // in pixels

@@ -107,8 +107,8 @@ Projector::~Projector() = default;
 
 /// Walks all slices, or, where these would need a copy that there is no memory for, some at a time.
 template <class T, class Layers>
-void Projector::walk(VolumeIndex& index, const Frame<T>& frame, const Layers& layers,
-  Acceleration used, TileCount& count)
+void Projector::walk(
+  VolumeIndex& index, Frame<T>& frame, const Layers& layers, Acceleration used, TileCount& count)
 {
   using P = typename Layers::Pixel;
   const int axis = frame.geometry.principalAxis(), depth = frame.geometry.size().z;
@@ -186,7 +186,7 @@ void Projector::splatLines(const Frame<T>& frame, const LineIndex& lines, bool s
 
 template <class T>
 void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settings,
-  Acceleration used, const LineIndex* lines, const Frame<T>& frame)
+  Acceleration used, const LineIndex* lines, Frame<T>& frame)
 {
   using A = Accumulator<T>;
   ShearImage& image = frame.image;
@@ -249,7 +249,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
-      const Frame<T> frame{ geometry, kernelsFor(settings.instructionSet), {}, range, memory.slices,
+      Frame<T> frame{ geometry, kernelsFor(settings.instructionSet), {}, range, memory.slices,
         memory.halfSpaces, settings.floor, image };
       this->projectType(index, settings, used, lines, frame);
     });

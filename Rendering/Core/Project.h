@@ -97,10 +97,10 @@ public:
 private:
   template <class T>
   void projectType(VolumeIndex& index, const ProjectionSettings& settings, Acceleration used,
-    const LineIndex* lines, const Frame<T>& frame);
+    const LineIndex* lines, Frame<T>& frame);
   template <class T, class Layers>
-  void walk(VolumeIndex& index, const Frame<T>& frame, const Layers& layers, Acceleration used,
-    TileCount& count);
+  void walk(
+    VolumeIndex& index, Frame<T>& frame, const Layers& layers, Acceleration used, TileCount& count);
   template <class T>
   void previewLines(const Frame<T>& frame, const LineIndex& lines);
   template <class T>
