@@ -69,7 +69,11 @@ public:
     this->Groups = (v1 - v0 + TileHeight - 1) / TileHeight;
   }
 
-  void walkDensely() { this->Stack.splatAll(this->Range, this->V0, this->V1, this->Scratch.patch); }
+  void walkDensely()
+  {
+    this->Scratch.runs.assign(1, { 0, this->Shared.image.width });
+    this->Stack.splatAll(this->Range, this->V0, this->V1, this->Scratch.runs, this->Scratch.patch);
+  }
 
   void walkBricks(const BrickMaxima& bricks)
   {

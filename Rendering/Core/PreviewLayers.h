@@ -91,12 +91,11 @@ public:
     this->splatLayer(z, v0, v1, runs, BrickDepth);
   }
 
-  /// The same for all pixels of some rows and all voxels of some layers, in the order of memory:
-  /// slice after slice, or, where rows of all slices lie side by side, a few rows through all of
-  /// them.
-  void splatAll(const Span& layers, int v0, int v1, Patch&) const
+  /// The same for all pixels of some rows, which are one run, and all voxels of some layers, in the
+  /// order of memory: slice after slice, or, where rows of all slices lie side by side, a few rows
+  /// through all of them.
+  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch&) const
   {
-    const std::vector<Span> all(1, { 0, this->Shared.image.width });
     const Slices& slices = this->Shared.slices;
     const bool slicesFirst = slices.rowStride <= slices.sliceStride;
     const int height = slicesFirst ? v1 - v0 : BrickHeight;

@@ -116,13 +116,14 @@ public:
     }
   }
 
-  /// The same for all pixels of some rows and all slices of some layers, piece by piece, so that
-  /// voxels are widened once.
-  void splatAll(const Span& layers, int v0, int v1, Patch& patch) const
+  /// The same for all pixels of some rows, which are one run, and all slices of some layers, piece
+  /// by piece, so that voxels are widened once.
+  void splatAll(
+    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const
   {
     const Span slices{ layers.begin * BrickDepth,
       std::min(layers.end * BrickDepth, this->Shared.geometry.size().z) };
-    this->forPieces(v0, v1, { 0, this->Shared.image.width },
+    this->forPieces(v0, v1, all.front(),
       [&](int first, int last, const Span& columns)
       {
         this->clear(patch, first, last, columns);
