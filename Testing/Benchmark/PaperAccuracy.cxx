@@ -142,7 +142,7 @@ Errors Measure(const PaperVolume& volume, int views)
 std::string Describe(const PaperErrors& errors)
 {
   return Short(errors.GetRms()) + " / " + Short(errors.GetMaximum()) + " / " +
-    (errors.GetBias() < 0.0 ? "−" : "+") + Short(std::abs(errors.GetBias()));
+    (errors.GetBias() < 0.0 ? "-" : "+") + Short(std::abs(errors.GetBias()));
 }
 
 /// Who is nearer to the truth.

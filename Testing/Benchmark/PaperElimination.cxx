@@ -86,8 +86,10 @@ void ReportElimination(
   report.AddText(
     "Not in the paper, but of the same kind: chains without the voxels that no ray along the z "
     "axis "
-    "can see (Mroz, Hauser and Gröller 2000), lossless preview, the projection alone, views within "
-    "40° of the axis. Their elimination took 94 s and gave a factor of 1.3; this one guards a "
+    "can see (Mroz, Hauser and Groeller 2000), lossless preview, the projection alone, views "
+    "within "
+    "40 degrees of the axis. Their elimination took 94 s and gave a factor of 1.3; this one guards "
+    "a "
     "voxel "
     "by the 3x3 voxels of the slice before or behind, and theirs in turn.");
   std::vector<std::vector<std::string>> rows;

@@ -289,7 +289,7 @@ void ReportPhantom(PaperReport& report, const PaperSettings& settings)
     MakePaperView(phantom, phantomTurns, settings.Window, phantomZoom, glm::dvec2(0.25, -0.2));
   report.AddHeading("Figure 10: the modes");
   report.AddFigure("figure-10",
-    "Phantom of lines one voxel thick, 64³. Preview, standard and high; whole and magnified.",
+    "Phantom of lines one voxel thick, 64^3. Preview, standard and high; whole and magnified.",
     { GetPictures(RenderModes(phantom, whole)), GetPictures(RenderModes(phantom, detail)) });
   ReportUnevenness(report, settings.Window);
 

@@ -130,7 +130,7 @@ PaperTiming Summarise(const std::vector<Pass>& passes)
 
 std::string Cube(const PaperDataSet& data, int resolution)
 {
-  return std::to_string(data.Volumes[resolution].Voxels.size[0]) + "³";
+  return std::to_string(data.Volumes[resolution].Voxels.size[0]) + "^3";
 }
 
 std::string DescribeTiming(const PaperTiming& timing)
@@ -143,7 +143,7 @@ std::string DescribePaper(const MethodFacts& facts, int resolution)
 {
   const std::array<double, 3>& seconds = facts.Paper[resolution];
   return facts.Table.empty()
-    ? "–"
+    ? "-"
     : Fixed(seconds[0], 2) + " / " + Fixed(seconds[1], 2) + " / **" + Fixed(seconds[2], 2) + "**";
 }
 
@@ -226,7 +226,7 @@ std::string MakeSentence(
 {
   const auto range = std::minmax_element(ours.begin(), ours.end());
   const double paper = ratio.GetPaper();
-  const std::string paperCube = ratio.Resolution == 0 ? "256³" : "128³";
+  const std::string paperCube = ratio.Resolution == 0 ? "256^3" : "128^3";
   return "In 1998, at " + paperCube + ", *" + GetName(ratio.A) + "* was " +
     (paper > 1.0 ? "slower" : "faster") + " than *" + GetName(ratio.B) + "* (" + Short(paper) +
     " times its time). Here, at " + cube + ", it " + Compare(*range.first, *range.second) +
@@ -238,7 +238,7 @@ std::string MakeSentence(
 
 double ToMegabytes(std::size_t bytes)
 {
-  return static_cast<double>(bytes) / (1 << 20); // the paper's 256³ voxels are 16 MB
+  return static_cast<double>(bytes) / (1 << 20); // the paper's 256^3 voxels are 16 MB
 }
 
 /// What is held besides the volume after views along the axes: z, or all three.
@@ -383,12 +383,12 @@ void ReportTimes(
       rows.push_back({ facts.Name, DescribeTiming(timing[0]), DescribeTiming(timing[1]),
         std::to_string(timing[0].Views),
         Short(timing[0].Preparation) + ", " + Short(timing[1].Preparation),
-        facts.Table.empty() ? "–" : facts.Table, DescribePaper(facts, 0),
+        facts.Table.empty() ? "-" : facts.Table, DescribePaper(facts, 0),
         DescribePaper(facts, 1) });
     }
     report.AddText("### " + sets[n].Name);
     report.AddTable({ "method", Cube(sets[n], 0) + ", ms", Cube(sets[n], 1) + ", ms", "views",
-                      "first frames, ms", "paper's table", "256³, s, 1998", "128³, s, 1998" },
+                      "first frames, ms", "paper's table", "256^3, s, 1998", "128^3, s, 1998" },
       rows);
   }
 }
@@ -410,12 +410,12 @@ void ReportRatios(
     const std::vector<double> ours = GetRatios(ratio, times);
     const double paper = ratio.GetPaper();
     const std::string cube = Cube(sets[0], ratio.Resolution);
-    Row row = { GetName(ratio.B), GetName(ratio.A), cube, paper > 0.0 ? Short(paper) : "–" };
+    Row row = { GetName(ratio.B), GetName(ratio.A), cube, paper > 0.0 ? Short(paper) : "-" };
     for (double our : ours)
     {
       row.push_back(Short(our));
     }
-    row.push_back(paper > 0.0 ? Judge(paper, ours) : "–");
+    row.push_back(paper > 0.0 ? Judge(paper, ours) : "-");
     rows.push_back(row);
     if (paper > 0.0)
     {
@@ -446,9 +446,9 @@ void ReportMemory(PaperReport& report, const std::vector<PaperDataSet>& sets)
         paper[resolution][1] / paper[resolution][0]));
     }
   }
-  report.AddTable(
-    { "data", "resolution", "volume, MB", "plain: copy for one axis", "lines of the z axis, N = 0",
-      "lines of three axes, N = 0", "lines of three axes, " + delta, "paper" },
+  report.AddTable({ "data", "resolution", "volume, MB", "plain: bricks, copy for one axis",
+                    "lines of the z axis, N = 0", "lines of three axes, N = 0",
+                    "lines of three axes, " + delta, "paper" },
     rows);
   report.AddList(sentences);
 }

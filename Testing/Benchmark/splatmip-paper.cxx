@@ -102,7 +102,7 @@ void ReportMachine(PaperReport& report, const PaperSettings& settings)
     std::string("instruction set of splatting: ") +
       splatting::nameOf(splatting::bestInstructionSet()),
     std::string("VTK ") + vtkVersion::GetVTKVersion(),
-    "window: " + std::to_string(settings.Window) + "² pixels" });
+    "window: " + std::to_string(settings.Window) + "^2 pixels" });
 }
 
 void ReportData(PaperReport& report, const std::vector<PaperDataSet>& sets,
@@ -116,7 +116,7 @@ void ReportData(PaperReport& report, const std::vector<PaperDataSet>& sets,
   }
   items.insert(items.end(), notes.begin(), notes.end());
   report.AddList(items);
-  const std::string fine = std::to_string(settings.Voxels) + "³";
+  const std::string fine = std::to_string(settings.Voxels) + "^3";
   report.AddText("All are made 8-bit (their range becomes 0 to 255) and resampled to " + fine +
     " voxels by linear interpolation, then to half of that along each axis by averaging, as the "
     "paper's. Volumes that were smaller are smoother than measured data of that size, which "
@@ -129,8 +129,8 @@ void ReportMethods(PaperReport& report, const PaperSettings& settings)
   const std::string slow = std::to_string(settings.SlowStep);
   report.AddText("Minimum / maximum / **mean** over a full turn about x and one about y in steps "
                  "of " +
-    std::to_string(settings.TurnStep) + "° (ray casting and encoded volumes: " + slow +
-    "°), starting from +z; of each view the fastest of " + std::to_string(settings.Passes) +
+    std::to_string(settings.TurnStep) + " degrees (ray casting and encoded volumes: " + slow +
+    " degrees), starting from +z; of each view the fastest of " + std::to_string(settings.Passes) +
     " passes. The window just holds the volume in every view. "
     "All methods end at the same thing, the grey pixels of the window: splatting and projective "
     "shear-warp as projection to the shear image and the same warp, ray casting from the window's "
@@ -157,7 +157,8 @@ void ReportTables(
   report.AddText("Within 5 % of each other, two methods are taken for equally fast.");
   ReportRatios(report, sets, times);
   report.AddHeading("Table 5: memory");
-  report.AddText("MB (2²⁰ bytes) held besides the volume. The paper says that chains exist for all "
+  report.AddText("MB (2^20 bytes) held besides the volume. Bricks are always among it. The paper "
+                 "says that chains exist for all "
                  "three axes, not whether its table counts one or three.");
   ReportMemory(report, sets);
 }
@@ -172,9 +173,9 @@ void ReportAccuracies(PaperReport& report, const PaperDataSet& data, const Paper
     "maximum of the trilinear volume along the ray of the pixel's centre (16 samples per slice); "
     "the same averaged over 4x4 rays per pixel (8 samples per slice); the maximum of all voxels "
     "that the ray crosses, which is preview's own definition.");
-  ReportAccuracy(report, "Phantom of lines, 64³", MakeLinePhantom(), settings.AccuracyViews);
+  ReportAccuracy(report, "Phantom of lines, 64^3", MakeLinePhantom(), settings.AccuracyViews);
   const PaperVolume& volume = data.Volumes[1];
-  ReportAccuracy(report, data.Name + ", " + std::to_string(volume.Voxels.size[0]) + "³", volume,
+  ReportAccuracy(report, data.Name + ", " + std::to_string(volume.Voxels.size[0]) + "^3", volume,
     settings.AccuracyViews);
 }
 
