@@ -7,19 +7,16 @@
 #include "ShearWarp.h"
 #include "TransferFunctions.h"
 #include "View.h"
+#include "ViewOfVolume.h"
 #include "VolumeIndex.h"
 #include "Warp.h"
 
-#include "vtkCamera.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
-#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPlane.h"
-#include "vtkPlaneCollection.h"
 #include "vtkPointData.h"
 #include "vtkRayCastImageDisplayHelper.h"
 #include "vtkRenderer.h"
@@ -28,10 +25,6 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
-
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -94,66 +87,11 @@ int vtkTypeOf(splatting::ScalarType type, int inputType)
   return type == splatting::ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
 }
 
-glm::dmat4 toGlm(const double* rowMajor)
-{
-  glm::dmat4 m;
-  for (int r = 0; r < 4; ++r)
-  {
-    for (int c = 0; c < 4; ++c)
-    {
-      m[c][r] = rowMajor[4 * r + c];
-    }
-  }
-  return m;
-}
-
-glm::dmat4 toGlm(const vtkMatrix4x4* matrix)
-{
-  return toGlm(matrix->GetData());
-}
-
-glm::dvec4 row(const glm::dmat4& m, int r)
-{
-  return { m[0][r], m[1][r], m[2][r], m[3][r] };
-}
-
-/// Index space (first voxel at 0) to world.
-glm::dmat4 indexToWorld(vtkImageData* image, vtkVolume* volume)
-{
-  glm::dmat4 physical = toGlm(image->GetIndexToPhysicalMatrix());
-  const int* extent = image->GetExtent();
-  physical[3] = physical * glm::dvec4(extent[0], extent[2], extent[4], 1.0);
-  return toGlm(volume->GetMatrix()) * physical;
-}
-
-/// Whether a matrix flattens the volume, or has no meaning (NaN).
-bool isSingular(const glm::dmat4& m)
-{
-  const glm::dmat3 linear(m);
-  const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
-  return !(std::abs(glm::determinant(linear)) > 1e-10 * lengths) || !std::isfinite(lengths) ||
-    !std::isfinite(glm::length(m[3]));
-}
-
 const char* nameOf(int acceleration)
 {
   static const char* const names[] = { "auto", "dense", "bricks", "lines", "sorted lines",
     "sorted volume" };
   return names[acceleration];
-}
-
-/// Keeps a half-space of index space if it cuts into the volume's voxels at all.
-void addHalfSpace(splatting::View& view, const glm::dvec4& h)
-{
-  double least = h.w;
-  for (int a = 0; a < 3; ++a)
-  {
-    least += std::min(-0.5 * h[a], (view.dimensions[a] - 0.5) * h[a]);
-  }
-  if (least < 0.0)
-  {
-    view.halfSpaces.push_back(h);
-  }
 }
 }
 
@@ -164,8 +102,6 @@ public:
   std::string Problem(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
   const char* ReasonToRayCast(
     vtkSplattingMIPVolumeMapper* self, vtkVolume* volume, const splatting::View& view);
-  splatting::View MakeView(
-    vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
   void LookAt(vtkDataArray* scalars);
   splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self) const;
   double FloorOfWindow() const;
@@ -279,7 +215,7 @@ std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
   {
     return "The input has more than 16384 voxels along an axis: extract a part of it.";
   }
-  if (isSingular(indexToWorld(this->Input, volume)))
+  if (isFlat(this->Input, volume))
   {
     return "Spacing, direction and prop matrix flatten the volume: none of them may be singular.";
   }
@@ -307,38 +243,6 @@ const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
     return "the camera is perspective";
   }
   return nullptr;
-}
-
-//------------------------------------------------------------------------------
-splatting::View vtkSplattingMIPVolumeMapper::Internals::MakeView(
-  vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume)
-{
-  splatting::View view;
-  const int* dimensions = this->Input->GetDimensions();
-  view.dimensions = { dimensions[0], dimensions[1], dimensions[2] };
-  int left, bottom;
-  renderer->GetTiledSizeAndOrigin(&view.viewport.x, &view.viewport.y, &left, &bottom);
-  const glm::dmat4 world = indexToWorld(this->Input, volume);
-  view.indexToClip = toGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
-                       renderer->GetTiledAspectRatio(), -1.0, 1.0)) *
-    world;
-  // Near and far plane: -w <= z <= w.
-  const glm::dvec4 z = row(view.indexToClip, 2), w = row(view.indexToClip, 3);
-  addHalfSpace(view, w + z);
-  addHalfSpace(view, w - z);
-  if (vtkPlaneCollection* planes = self->GetClippingPlanes())
-  {
-    vtkCollectionSimpleIterator it;
-    planes->InitTraversal(it);
-    while (vtkPlane* plane = planes->GetNextPlane(it))
-    {
-      const glm::dvec3 normal(plane->GetNormal()[0], plane->GetNormal()[1], plane->GetNormal()[2]);
-      const glm::dvec3 origin(plane->GetOrigin()[0], plane->GetOrigin()[1], plane->GetOrigin()[2]);
-      // A plane is a row vector: it transforms from the right.
-      addHalfSpace(view, glm::dvec4(normal, -glm::dot(normal, origin)) * world);
-    }
-  }
-  return view;
 }
 
 //------------------------------------------------------------------------------
@@ -479,7 +383,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
-  const splatting::View view = in.MakeView(this, ren, vol);
+  const splatting::View view = makeView(in.Input, vol, ren, this->GetClippingPlanes());
   // Nothing can be seen in a window that is not shown yet, and colours are no identifiers.
   if (view.viewport.x < 1 || view.viewport.y < 1 || ren->GetSelector())
   {

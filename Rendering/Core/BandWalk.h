@@ -79,7 +79,7 @@ public:
   {
     this->findBounds(bricks);
     this->orderLayers();
-    this->minima().assign(std::size_t(this->Groups) * this->Tiles * sizeof(P), 0);
+    this->Scratch.minima.resize(std::size_t(this->Groups) * this->Tiles * sizeof(P));
     std::fill_n(this->minimaOf(0), this->Groups * this->Tiles, this->Stack.floor());
     int walked = 0;
     for (int z : this->Scratch.order)
@@ -107,7 +107,6 @@ private:
   {
     return (std::ptrdiff_t(z - this->Known.begin) * this->Groups + group) * this->Tiles;
   }
-  std::vector<unsigned char>& minima() { return this->Scratch.minima; }
   T* voxelBounds(int z, int group)
   {
     return reinterpret_cast<T*>(this->Scratch.voxelBounds.data()) + this->place(z, group);
@@ -118,7 +117,7 @@ private:
   }
   P* minimaOf(int group)
   {
-    return reinterpret_cast<P*>(this->minima().data()) + std::ptrdiff_t(group) * this->Tiles;
+    return reinterpret_cast<P*>(this->Scratch.minima.data()) + std::ptrdiff_t(group) * this->Tiles;
   }
 
   void splat(int z, int v0, int v1)
@@ -171,14 +170,13 @@ private:
     // Tile t meets bricks t + from to t + to.
     const int from = floorDivided(window.iMin, BrickWidth);
     const int to = floorDivided(TileWidth - 1 + window.iMax, BrickWidth);
-    const Span tiles = meets ? common({ 0, this->Tiles }, { -to, bricks.count.x - from })
-                             : Span{ this->Tiles, this->Tiles };
-    std::fill(out, out + std::min(std::max(tiles.begin, 0), this->Tiles), leastValue<T>());
+    const Span tiles = meets ? common({ 0, this->Tiles }, { -to, bricks.count.x - from }) : Span{};
     if (tiles.empty())
     {
       std::fill(out, out + this->Tiles, leastValue<T>());
       return;
     }
+    std::fill(out, out + tiles.begin, leastValue<T>());
     this->Scratch.count.met += tiles.end - tiles.begin;
     const T* rows[MostBricks];
     int count = 0;
@@ -192,6 +190,7 @@ private:
     const VoxelLoops<T>& loops = this->Shared.kernels;
     loops.largest(rows, count, out + tiles.begin, tiles.end - tiles.begin);
     std::fill(out + tiles.end, out + this->Tiles, leastValue<T>());
+    // The next tiles can see outermost voxels, too, that are repeated for them.
     if (tiles.begin > 0)
     {
       out[tiles.begin - 1] = out[tiles.begin];
@@ -318,8 +317,7 @@ private:
       const int length = rest ? trailingZeros(rest) : 64;
       tiles = begin + length < 64 ? tiles >> (begin + length) << (begin + length) : 0;
       this->Scratch.count.splatted += length;
-      // Registers of worksheets hold two tiles, and take no longer for both than for one.
-      constexpr int unit = std::is_same_v<T, P> ? TileWidth : 2 * TileWidth;
+      constexpr int unit = Layers::RunUnit;
       const int u = (first + begin) * TileWidth;
       this->Scratch.runs.push_back({ u / unit * unit,
         std::min((u + length * TileWidth + unit - 1) / unit * unit, this->Shared.image.width) });

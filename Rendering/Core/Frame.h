@@ -78,6 +78,26 @@ struct Frame
   }
 };
 
+/// The voxels that the pixels of a layer read, relative to the pixel.
+struct Window
+{
+  int iMin = std::numeric_limits<int>::max(), iMax = std::numeric_limits<int>::lowest();
+  int jMin = std::numeric_limits<int>::max(), jMax = std::numeric_limits<int>::lowest();
+
+  void add(int di, int dj)
+  {
+    this->iMin = std::min(this->iMin, di);
+    this->iMax = std::max(this->iMax, di);
+    this->jMin = std::min(this->jMin, dj);
+    this->jMax = std::max(this->jMax, dj);
+  }
+};
+
+inline Span slicesOfLayer(int layer, const glm::ivec3& size)
+{
+  return { layer * BrickDepth, std::min((layer + 1) * BrickDepth, size.z) };
+}
+
 /// The slices that rows [v0, v1) meet: a range, because the stack only moves one way.
 inline Span slicesOf(const std::vector<SliceGeometry>& slices, int v0, int v1)
 {

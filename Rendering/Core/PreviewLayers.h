@@ -11,30 +11,8 @@
 #include "Frame.h"
 #include "Patch.h"
 
-#include <cmath>
-
 namespace splatting
 {
-/// The voxels that the pixels of a layer read, relative to the pixel.
-struct Window
-{
-  int iMin = std::numeric_limits<int>::max(), iMax = std::numeric_limits<int>::lowest();
-  int jMin = std::numeric_limits<int>::max(), jMax = std::numeric_limits<int>::lowest();
-
-  void add(int di, int dj)
-  {
-    this->iMin = std::min(this->iMin, di);
-    this->iMax = std::max(this->iMax, di);
-    this->jMin = std::min(this->jMin, dj);
-    this->jMax = std::max(this->jMax, dj);
-  }
-};
-
-inline Span slicesOfLayer(int layer, const glm::ivec3& size)
-{
-  return { layer * BrickDepth, std::min((layer + 1) * BrickDepth, size.z) };
-}
-
 /// The paths of all slices of a layer.
 struct PreviewLayer
 {
@@ -59,6 +37,8 @@ public:
   using Pixel = T;
   /// How many slices beyond its own a layer reads.
   static constexpr int Beyond = 0;
+  /// Pixels whose multiples runs had best begin and end at.
+  static constexpr int RunUnit = TileWidth;
 
   /// `storage` outlives this, and is kept for the next frame.
   PreviewLayers(const Frame<T>& frame, std::vector<PreviewLayer>& storage)

@@ -241,7 +241,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   const LineIndex* const lines = used >= Acceleration::Lines && !range.special
     ? index.lines(axis, encodingFor(settings, geometry.size(), !halfSpaces.empty()), this->Progress)
     : nullptr;
-  if (!lines && (used != Acceleration::Bricks || range.special || !index.hasBricks()))
+  if (!lines && (used != Acceleration::Bricks || !index.hasBricks()))
   {
     used = Acceleration::Dense;
   }

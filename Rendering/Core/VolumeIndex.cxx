@@ -195,7 +195,8 @@ void VolumeIndex::survey()
     all.special = all.special || part.special;
   }
   this->ValueRange = { static_cast<double>(all.low), static_cast<double>(all.high), all.special };
-  this->BricksMade = this->hasBricks();
+  // Walks of volumes with NaN or infinities leave nothing out.
+  this->BricksMade = !all.special && this->brickSize() <= this->Budget;
   for (int k = 0; k < 3 && this->BricksMade; ++k)
   {
     bricksFromCubes(cubes, { k == 0 ? 1 : 0, k == 2 ? 1 : 2, k }, this->Bricks[k]);
@@ -242,13 +243,8 @@ std::size_t VolumeIndex::brickSize() const
 
 bool VolumeIndex::hasBricks()
 {
-  if (this->Surveyed)
-  {
-    return this->BricksMade;
-  }
-  const bool fits = this->brickSize() <= this->Budget;
-  this->Exceeded = this->Exceeded || !fits;
-  return fits;
+  this->Exceeded = this->Exceeded || (!this->range().special && !this->BricksMade);
+  return this->BricksMade;
 }
 
 bool VolumeIndex::hasSlices(int principalAxis)

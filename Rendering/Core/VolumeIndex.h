@@ -107,7 +107,8 @@ public:
   /// Made on first use: one pass over the voxels, which makes the bricks as well.
   const Range& range();
 
-  /// Whether the budget has room for bricks.
+  /// Whether there are bricks: the budget has room for them, and there are neither NaN nor
+  /// infinities.
   bool hasBricks();
   /// The bricks along an axis; 3/128 of the volume for all axes together.
   const BrickMaxima& bricks(int principalAxis);

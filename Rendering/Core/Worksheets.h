@@ -10,7 +10,6 @@
 #include "Footprint.h"
 #include "Frame.h"
 #include "Patch.h"
-#include "PreviewLayers.h"
 
 #include <cmath>
 
@@ -75,6 +74,9 @@ public:
   using Pixel = A;
   /// How many slices beyond its own a layer reads.
   static constexpr int Beyond = 1;
+  /// Pixels whose multiples runs had best begin and end at: the widest registers hold two tiles,
+  /// and take no longer for both than for one.
+  static constexpr int RunUnit = 2 * TileWidth;
 
   /// @param depth  how many slices beyond its own a footprint reads
   WorksheetLayers(const Frame<T>& frame, const std::vector<SliceFootprint<A>>& footprints,

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * A register full of elements. For Kernels.cxx only, which is compiled for several instruction sets
+ * and says why all of this is in an anonymous namespace.
+ */
+#ifndef splattingRegisters_h
+#define splattingRegisters_h
+
+#include "ScalarType.h"
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC's own intrinsics start from registers that they leave undefined on purpose.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#endif
+#endif
+
+namespace splatting
+{
+namespace
+{
+#if defined(__GNUC__)
+/// A register full of T. Vector extensions of GCC and Clang; elsewhere one element.
+template <class T>
+struct PackOf
+{
+  typedef T type __attribute__((vector_size(SPLATTING_VECTOR_BYTES)));
+  typedef T loose
+    __attribute__((vector_size(SPLATTING_VECTOR_BYTES), aligned(sizeof(T)), may_alias));
+};
+template <class T>
+using Pack = typename PackOf<T>::type;
+template <class T>
+inline Pack<T> load(const T* p)
+{
+  return *reinterpret_cast<const typename PackOf<T>::loose*>(p);
+}
+template <class T>
+inline void store(T* p, Pack<T> value)
+{
+  *reinterpret_cast<typename PackOf<T>::loose*>(p) = value;
+}
+#else
+template <class T>
+using Pack = T;
+template <class T>
+inline Pack<T> load(const T* p)
+{
+  return *p;
+}
+template <class T>
+inline void store(T* p, Pack<T> value)
+{
+  *p = value;
+}
+#endif
+
+template <class T>
+constexpr std::ptrdiff_t width = sizeof(Pack<T>) / sizeof(T);
+
+/// A register of elements, widened to the accumulator's type. Where that is float, compilers need
+/// to be told the instruction that widens small integers.
+template <class T>
+inline Pack<Accumulator<T>> loadWidened(const T* p)
+{
+  Pack<Accumulator<T>> out;
+  for (std::ptrdiff_t x = 0; x < width<Accumulator<T>>; ++x)
+  {
+    reinterpret_cast<Accumulator<T>*>(&out)[x] = static_cast<Accumulator<T>>(p[x]);
+  }
+  return out;
+}
+
+#if defined(__AVX512F__)
+inline __m512 toFloat(__m512i integers)
+{
+  return _mm512_cvtepi32_ps(integers);
+}
+inline Pack<float> loadWidened(const std::uint8_t* p)
+{
+  return toFloat(_mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int8_t* p)
+{
+  return toFloat(_mm512_cvtepi8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::uint16_t* p)
+{
+  return toFloat(_mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int16_t* p)
+{
+  return toFloat(_mm512_cvtepi16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))));
+}
+#elif defined(__AVX2__)
+inline __m256 toFloat(__m256i integers)
+{
+  return _mm256_cvtepi32_ps(integers);
+}
+inline Pack<float> loadWidened(const std::uint8_t* p)
+{
+  return toFloat(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int8_t* p)
+{
+  return toFloat(_mm256_cvtepi8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::uint16_t* p)
+{
+  return toFloat(_mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int16_t* p)
+{
+  return toFloat(_mm256_cvtepi16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+#endif
+
+}
+}
+
+#endif

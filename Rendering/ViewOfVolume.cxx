@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ViewOfVolume.h"
+
+#include "vtkCamera.h"
+#include "vtkImageData.h"
+#include "vtkMatrix4x4.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
+#include "vtkRenderer.h"
+#include "vtkVolume.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+glm::dmat4 toGlm(const double* rowMajor)
+{
+  glm::dmat4 m;
+  for (int r = 0; r < 4; ++r)
+  {
+    for (int c = 0; c < 4; ++c)
+    {
+      m[c][r] = rowMajor[4 * r + c];
+    }
+  }
+  return m;
+}
+
+glm::dmat4 toGlm(const vtkMatrix4x4* matrix)
+{
+  return toGlm(matrix->GetData());
+}
+
+glm::dvec4 row(const glm::dmat4& m, int r)
+{
+  return { m[0][r], m[1][r], m[2][r], m[3][r] };
+}
+
+/// Index space (first voxel at 0) to world.
+glm::dmat4 indexToWorld(vtkImageData* image, vtkVolume* volume)
+{
+  glm::dmat4 physical = toGlm(image->GetIndexToPhysicalMatrix());
+  const int* extent = image->GetExtent();
+  physical[3] = physical * glm::dvec4(extent[0], extent[2], extent[4], 1.0);
+  return toGlm(volume->GetMatrix()) * physical;
+}
+
+/// Whether a matrix flattens the volume, or has no meaning (NaN).
+bool isSingular(const glm::dmat4& m)
+{
+  const glm::dmat3 linear(m);
+  const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+  return !(std::abs(glm::determinant(linear)) > 1e-10 * lengths) || !std::isfinite(lengths) ||
+    !std::isfinite(glm::length(m[3]));
+}
+
+/// Keeps a half-space of index space if it cuts into the volume's voxels at all.
+void addHalfSpace(splatting::View& view, const glm::dvec4& h)
+{
+  double least = h.w;
+  for (int a = 0; a < 3; ++a)
+  {
+    least += std::min(-0.5 * h[a], (view.dimensions[a] - 0.5) * h[a]);
+  }
+  if (least < 0.0)
+  {
+    view.halfSpaces.push_back(h);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+bool isFlat(vtkImageData* image, vtkVolume* volume)
+{
+  return isSingular(indexToWorld(image, volume));
+}
+
+//------------------------------------------------------------------------------
+splatting::View makeView(
+  vtkImageData* image, vtkVolume* volume, vtkRenderer* renderer, vtkPlaneCollection* planes)
+{
+  splatting::View view;
+  const int* dimensions = image->GetDimensions();
+  view.dimensions = { dimensions[0], dimensions[1], dimensions[2] };
+  int left, bottom;
+  renderer->GetTiledSizeAndOrigin(&view.viewport.x, &view.viewport.y, &left, &bottom);
+  const glm::dmat4 world = indexToWorld(image, volume);
+  view.indexToClip = toGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
+                       renderer->GetTiledAspectRatio(), -1.0, 1.0)) *
+    world;
+  // Near and far plane: -w <= z <= w.
+  const glm::dvec4 z = row(view.indexToClip, 2), w = row(view.indexToClip, 3);
+  addHalfSpace(view, w + z);
+  addHalfSpace(view, w - z);
+  if (planes)
+  {
+    vtkCollectionSimpleIterator it;
+    planes->InitTraversal(it);
+    while (vtkPlane* plane = planes->GetNextPlane(it))
+    {
+      const glm::dvec3 normal(plane->GetNormal()[0], plane->GetNormal()[1], plane->GetNormal()[2]);
+      const glm::dvec3 origin(plane->GetOrigin()[0], plane->GetOrigin()[1], plane->GetOrigin()[2]);
+      // A plane is a row vector: it transforms from the right.
+      addHalfSpace(view, glm::dvec4(normal, -glm::dot(normal, origin)) * world);
+    }
+  }
+  return view;
+}

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * How a renderer sees a volume, from VTK's objects to numbers.
+ */
+#ifndef ViewOfVolume_h
+#define ViewOfVolume_h
+
+#include "View.h"
+
+class vtkImageData;
+class vtkPlaneCollection;
+class vtkRenderer;
+class vtkVolume;
+
+/**
+ * Whether spacing, direction and prop matrix flatten the volume, or have no meaning (NaN).
+ */
+bool isFlat(vtkImageData* image, vtkVolume* volume);
+
+/**
+ * The view of the renderer's active camera. Half-spaces: those of the clipping planes (world space,
+ * may be nullptr) and of the near and far plane that cut into the volume.
+ */
+splatting::View makeView(
+  vtkImageData* image, vtkVolume* volume, vtkRenderer* renderer, vtkPlaneCollection* planes);
+
+#endif
