@@ -95,13 +95,4 @@ void RayCastFallback::UpdateSettings(vtkVolumeMapper* settings, vtkImageData* im
   this->Mapper->SetCroppingRegionPlanes(settings->GetCroppingRegionPlanes());
   this->Mapper->SetCroppingRegionFlags(settings->GetCroppingRegionFlags());
   this->Mapper->SetClippingPlanes(settings->GetClippingPlanes());
-  this->Mapper->SetScalarMode(settings->GetScalarMode());
-  if (settings->GetArrayAccessMode() == VTK_GET_ARRAY_BY_ID)
-  {
-    this->Mapper->SelectScalarArray(settings->GetArrayId());
-  }
-  else if (settings->GetArrayName())
-  {
-    this->Mapper->SelectScalarArray(settings->GetArrayName());
-  }
 }

@@ -25,7 +25,7 @@ public:
   RayCastFallback();
   ~RayCastFallback();
 
-  /// Render the image as the mapper, the volume's property and its matrix ask.
+  /// Render the image's point scalars as the mapper, the volume's property and its matrix ask.
   void Render(
     vtkVolumeMapper* settings, vtkImageData* image, vtkRenderer* renderer, vtkVolume* volume);
   void ReleaseGraphicsResources(vtkWindow* window);

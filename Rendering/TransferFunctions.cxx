@@ -14,9 +14,9 @@
 
 namespace
 {
-std::uint32_t premultiplied(const float rgb[3], float opacity)
+std::uint32_t premultiplied(const float rgb[3], float opacity, float weight)
 {
-  const float alpha = std::clamp(opacity, 0.0f, 1.0f);
+  const float alpha = weight * std::clamp(opacity, 0.0f, 1.0f);
   unsigned char bytes[4];
   for (int c = 0; c < 3; ++c)
   {
@@ -74,8 +74,8 @@ void sample(vtkPiecewiseFunction* grays, double low, double high, std::vector<fl
 }
 
 template <class ColorFunction>
-splatting::ColorTable tabulate(
-  vtkPiecewiseFunction* opacity, ColorFunction* colors, double low, double high, bool integers)
+splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* colors, float weight,
+  double low, double high, bool integers)
 {
   chooseRange(opacity, colors, low, high);
   const double wanted = integers ? 16.0 * (high - low) + 1.0 : 65536.0;
@@ -88,17 +88,20 @@ splatting::ColorTable tabulate(
   splatting::ColorTable table{ low, high, std::vector<std::uint32_t>(entries) };
   for (int e = 0; e < entries; ++e)
   {
-    table.colors[e] = premultiplied(&rgb[3 * static_cast<std::size_t>(e)], alpha[e]);
+    table.colors[e] = premultiplied(&rgb[3 * static_cast<std::size_t>(e)], alpha[e], weight);
   }
   return table;
 }
 }
 
-splatting::ColorTable tabulateColors(
-  vtkVolumeProperty* property, double dataLow, double dataHigh, bool integers)
+splatting::ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
+  double dataLow, double dataHigh, bool integers)
 {
-  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity();
-  return property->GetColorChannels() == 1
-    ? tabulate(opacity, property->GetGrayTransferFunction(), dataLow, dataHigh, integers)
-    : tabulate(opacity, property->GetRGBTransferFunction(), dataLow, dataHigh, integers);
+  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(component);
+  const float share = static_cast<float>(weight);
+  return property->GetColorChannels(component) == 1
+    ? tabulate(
+        opacity, property->GetGrayTransferFunction(component), share, dataLow, dataHigh, integers)
+    : tabulate(
+        opacity, property->GetRGBTransferFunction(component), share, dataLow, dataHigh, integers);
 }

@@ -3,7 +3,6 @@
 #include "ViewOfVolume.h"
 
 #include "vtkCamera.h"
-#include "vtkImageData.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
@@ -43,12 +42,9 @@ glm::dvec4 row(const glm::dmat4& m, int r)
 }
 
 /// Index space (first voxel at 0) to world.
-glm::dmat4 indexToWorld(vtkImageData* image, vtkVolume* volume)
+glm::dmat4 indexToWorld(const VolumeGrid& grid, vtkVolume* volume)
 {
-  glm::dmat4 physical = toGlm(image->GetIndexToPhysicalMatrix());
-  const int* extent = image->GetExtent();
-  physical[3] = physical * glm::dvec4(extent[0], extent[2], extent[4], 1.0);
-  return toGlm(volume->GetMatrix()) * physical;
+  return toGlm(volume->GetMatrix()) * grid.indexToPhysical;
 }
 
 /// Whether a matrix flattens the volume, or has no meaning (NaN).
@@ -76,21 +72,21 @@ void addHalfSpace(splatting::View& view, const glm::dvec4& h)
 }
 
 //------------------------------------------------------------------------------
-bool isFlat(vtkImageData* image, vtkVolume* volume)
+bool isFlat(const VolumeGrid& grid, vtkVolume* volume)
 {
-  return isSingular(indexToWorld(image, volume));
+  return isSingular(indexToWorld(grid, volume));
 }
 
 //------------------------------------------------------------------------------
 splatting::View makeView(
-  vtkImageData* image, vtkVolume* volume, vtkRenderer* renderer, vtkPlaneCollection* planes)
+  const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkPlaneCollection* planes)
 {
   splatting::View view;
-  const int* dimensions = image->GetDimensions();
-  view.dimensions = { dimensions[0], dimensions[1], dimensions[2] };
+  view.dimensions = grid.dimensions;
+  view.showsBoxes = grid.cells;
   int left, bottom;
   renderer->GetTiledSizeAndOrigin(&view.viewport.x, &view.viewport.y, &left, &bottom);
-  const glm::dmat4 world = indexToWorld(image, volume);
+  const glm::dmat4 world = indexToWorld(grid, volume);
   view.indexToClip = toGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
                        renderer->GetTiledAspectRatio(), -1.0, 1.0)) *
     world;

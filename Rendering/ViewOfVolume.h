@@ -7,8 +7,8 @@
 #define ViewOfVolume_h
 
 #include "View.h"
+#include "VolumeGrid.h"
 
-class vtkImageData;
 class vtkPlaneCollection;
 class vtkRenderer;
 class vtkVolume;
@@ -16,13 +16,13 @@ class vtkVolume;
 /**
  * Whether spacing, direction and prop matrix flatten the volume, or have no meaning (NaN).
  */
-bool isFlat(vtkImageData* image, vtkVolume* volume);
+bool isFlat(const VolumeGrid& grid, vtkVolume* volume);
 
 /**
  * The view of the renderer's active camera. Half-spaces: those of the clipping planes (world space,
  * may be nullptr) and of the near and far plane that cut into the volume.
  */
 splatting::View makeView(
-  vtkImageData* image, vtkVolume* volume, vtkRenderer* renderer, vtkPlaneCollection* planes);
+  const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkPlaneCollection* planes);
 
 #endif

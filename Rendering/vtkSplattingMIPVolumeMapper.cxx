@@ -4,6 +4,7 @@
 
 #include "Project.h"
 #include "RayCastFallback.h"
+#include "ScalarSource.h"
 #include "ShearWarp.h"
 #include "TransferFunctions.h"
 #include "View.h"
@@ -12,7 +13,7 @@
 #include "Warp.h"
 
 #include "vtkCommand.h"
-#include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
@@ -30,62 +31,18 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <set>
 #include <string>
 #include <vector>
 
 vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
+vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
 
 namespace
 {
 const char* const DegenerateCamera =
   "The camera flattens the volume to a line or has no extent: give it a parallel scale above 0 and "
   "a view-up that is not its direction.";
-
-template <class T>
-splatting::ScalarType sizedType()
-{
-  constexpr bool isSigned = std::numeric_limits<T>::is_signed;
-  switch (sizeof(T))
-  {
-    case 1:
-      return isSigned ? splatting::ScalarType::Int8 : splatting::ScalarType::UInt8;
-    case 2:
-      return isSigned ? splatting::ScalarType::Int16 : splatting::ScalarType::UInt16;
-    case 4:
-      return isSigned ? splatting::ScalarType::Int32 : splatting::ScalarType::UInt32;
-    default:
-      return isSigned ? splatting::ScalarType::Int64 : splatting::ScalarType::UInt64;
-  }
-}
-
-/// Float for the types that vtkTemplateMacro does not know, too; they are refused before.
-splatting::ScalarType scalarType(int vtkType)
-{
-  if (vtkType == VTK_DOUBLE)
-  {
-    return splatting::ScalarType::Float64;
-  }
-  if (vtkType == VTK_FLOAT)
-  {
-    return splatting::ScalarType::Float32;
-  }
-  switch (vtkType)
-  {
-    vtkTemplateMacro(return sizedType<VTK_TT>());
-  }
-  return splatting::ScalarType::Float32;
-}
-
-int vtkTypeOf(splatting::ScalarType type, int inputType)
-{
-  if (type == scalarType(inputType))
-  {
-    return inputType; // keeps char apart from signed char, long from long long
-  }
-  return type == splatting::ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
-}
 
 const char* nameOf(int acceleration)
 {
@@ -102,51 +59,60 @@ public:
   std::string Problem(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
   const char* ReasonToRayCast(
     vtkSplattingMIPVolumeMapper* self, vtkVolume* volume, const splatting::View& view);
-  void LookAt(vtkDataArray* scalars);
-  splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self) const;
-  double FloorOfWindow() const;
+  void LookAtVolumes();
+  bool SetBudget(std::size_t bytes);
+  bool ExceedsBudget() const;
   bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
   void UpdateColors(vtkVolumeProperty* property);
+  void Warp(const splatting::View& view);
   void CopyShearImage(vtkImageData* output) const;
 
-  vtkImageData* Input = nullptr;   // set by Problem(), valid during a render
-  vtkDataArray* Scalars = nullptr; // likewise
   std::string Reported;            // the last problem, so that each is told once
   std::set<std::string> Announced; // reasons to ray cast that were told
 
-  splatting::VolumeIndex Index;
-  vtkSmartPointer<vtkDataArray> Contiguous; // a copy, if the scalars are stored in another way
-  const vtkDataArray* IndexedScalars = nullptr;
-  const void* IndexedBuffer = nullptr;
-  vtkMTimeType IndexedTime = 0;
-  int ScalarType = VTK_VOID;
+  ScalarSource Source;
+  vtkIdType IndexedVersion = 0; // of the source
+
+  /// One for each component that is projected.
+  struct Channel
+  {
+    splatting::VolumeIndex Index;
+    splatting::ColorTable Colors;
+    splatting::ProjectionSettings Settings;
+    splatting::ShearImage Image;
+    splatting::Acceleration Used = splatting::Acceleration::Dense;
+
+    splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self) const;
+    double FloorOfWindow() const;
+  };
+  std::vector<Channel> Channels = std::vector<Channel>(1);
 
   splatting::Projector Projector;
   splatting::ShearWarp Geometry;
-  splatting::ProjectionSettings Settings;
-  splatting::Acceleration Used = splatting::Acceleration::Dense;
   bool BudgetReported = false;
   std::vector<glm::dvec4> HalfSpaces;
-  splatting::ShearImage Image;
   bool ImageValid = false;
   vtkIdType Projections = 0;
   double ProjectionTime = 0.0;
   double Shear[2] = { 0.0, 0.0 };
   vtkSmartPointer<vtkImageData> ShearImageOutput;
 
-  splatting::ColorTable Colors;
   vtkVolumeProperty* ColoredBy = nullptr;
   vtkMTimeType ColorTime = 0;
   bool ColorsValid = false;
   splatting::Warper Warper;
   splatting::Picture Picture;
+  splatting::Picture Layer; // of one component
 
   std::unique_ptr<RayCastFallback> RayCaster; // made when first needed: it is megabytes large
 };
 
 //------------------------------------------------------------------------------
 vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
-  : QualityMode(HIGH),
+  : VectorMode(DISABLED),
+    VectorComponent(0),
+    MaskInput(nullptr),
+    QualityMode(HIGH),
     Kernel(TRILINEAR),
     KernelRadius(1.0),
     FootprintSampling(0),
@@ -163,63 +129,36 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
 }
 
 //------------------------------------------------------------------------------
-vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper() = default;
+vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper()
+{
+  this->SetMaskInput(nullptr);
+}
 
 //------------------------------------------------------------------------------
 // The gate: a sentence that says why this input cannot be rendered and what to do, or nothing.
 std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
   vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
 {
-  vtkDataSet* const input = self->GetInput();
-  this->Input = vtkImageData::SafeDownCast(input);
-  this->Scalars = nullptr;
-  if (!input)
+  if (volume->IsA("vtkMultiVolume"))
   {
-    return "There is no input: connect a vtkImageData with SetInputData or SetInputConnection.";
+    return "A vtkMultiVolume cannot be splatted: give each of its volumes a mapper of its own.";
   }
-  if (!this->Input)
+  ScalarChoice choice;
+  choice.scalarMode = self->ScalarMode;
+  choice.arrayAccessMode = self->ArrayAccessMode;
+  choice.arrayId = self->ArrayId;
+  choice.arrayName = self->ArrayName;
+  choice.vectorMode = self->VectorMode;
+  choice.vectorComponent = self->VectorComponent;
+  choice.independentComponents = volume->GetProperty()->GetIndependentComponents() != 0;
+  choice.mask = self->MaskInput;
+  std::string problem = this->Source.Examine(self->GetInput(), choice);
+  if (problem.empty() && isFlat(this->Source.Grid(), volume))
   {
-    return std::string("The input is a ") + input->GetClassName() +
-      ", only vtkImageData can be splatted: resample it with vtkResampleToImage.";
+    problem =
+      "Spacing, direction and prop matrix flatten the volume: none of them may be singular.";
   }
-  const int* dimensions = this->Input->GetDimensions();
-  const vtkIdType points = this->Input->GetNumberOfPoints();
-  if (points < 1)
-  {
-    return "The input has no voxels: its extent is empty.";
-  }
-  int cellFlag = 0;
-  this->Scalars = vtkAbstractMapper::GetScalars(
-    this->Input, self->ScalarMode, self->ArrayAccessMode, self->ArrayId, self->ArrayName, cellFlag);
-  if (!this->Scalars)
-  {
-    return "The input has no numeric scalars under the chosen ScalarMode and array: set them on "
-           "the "
-           "input or choose another with SelectScalarArray.";
-  }
-  if (cellFlag)
-  {
-    return "The chosen scalars belong to cells: convert them with vtkCellDataToPointData.";
-  }
-  if (this->Scalars->GetDataType() == VTK_BIT)
-  {
-    return "The scalars are bits: convert them with vtkImageCast.";
-  }
-  if (this->Scalars->GetNumberOfTuples() != points)
-  {
-    return "The scalars have " + std::to_string(this->Scalars->GetNumberOfTuples()) +
-      " tuples for " + std::to_string(points) + " voxels: the two must agree.";
-  }
-  // Positions in rows, slices and the shear image are counted in int and must be exact in double.
-  if (*std::max_element(dimensions, dimensions + 3) > 16384)
-  {
-    return "The input has more than 16384 voxels along an axis: extract a part of it.";
-  }
-  if (isFlat(this->Input, volume))
-  {
-    return "Spacing, direction and prop matrix flatten the volume: none of them may be singular.";
-  }
-  return {};
+  return problem;
 }
 
 //------------------------------------------------------------------------------
@@ -234,9 +173,9 @@ const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
   {
     return "cropping is on";
   }
-  if (this->Scalars->GetNumberOfComponents() != 1)
+  if (this->Source.AreDependent())
   {
-    return "the scalars have several components";
+    return "the scalars have several components that are dependent";
   }
   if (!splatting::isParallel(view))
   {
@@ -246,40 +185,46 @@ const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
 }
 
 //------------------------------------------------------------------------------
-// Points the index at the scalars, anew if they changed.
-void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkDataArray* scalars)
+// Points the indices at the volumes, anew if these changed.
+void vtkSplattingMIPVolumeMapper::Internals::LookAtVolumes()
 {
-  const int* dimensions = this->Input->GetDimensions();
-  const glm::ivec3 size(dimensions[0], dimensions[1], dimensions[2]);
-  // The image's time includes its arrays'. Images may share an array, and an array may be given
-  // another buffer without a word.
-  const vtkMTimeType time = this->Input->GetMTime();
-  const void* const buffer =
-    scalars->HasStandardMemoryLayout() ? scalars->GetVoidPointer(0) : nullptr;
-  if (this->IndexedScalars == scalars && this->IndexedTime == time &&
-    this->IndexedBuffer == buffer && this->Index.volume().dimensions == size)
+  this->Source.Update();
+  if (this->IndexedVersion == this->Source.Version())
   {
     return;
   }
-  this->IndexedBuffer = buffer;
-  this->IndexedScalars = scalars;
-  this->IndexedTime = time;
-  this->ScalarType = scalars->GetDataType();
-  this->Contiguous = nullptr;
-  if (!scalars->HasStandardMemoryLayout())
+  this->IndexedVersion = this->Source.Version();
+  this->Channels.resize(this->Source.Components());
+  for (std::size_t c = 0; c < this->Channels.size(); ++c)
   {
-    this->Contiguous.TakeReference(vtkDataArray::CreateDataArray(this->ScalarType));
-    this->Contiguous->DeepCopy(scalars);
-    scalars = this->Contiguous;
+    this->Channels[c].Index.reset(this->Source.Volume(static_cast<int>(c)));
   }
-  this->Index.reset({ scalars->GetVoidPointer(0), scalarType(this->ScalarType), size });
   this->ImageValid = false;
   this->ShearImageOutput = nullptr;
   this->ColorsValid = false;
 }
 
 //------------------------------------------------------------------------------
-splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::MakeSettings(
+// Every component gets the same share. Returns whether the budget changed.
+bool vtkSplattingMIPVolumeMapper::Internals::SetBudget(std::size_t bytes)
+{
+  bool changed = false;
+  for (Channel& channel : this->Channels)
+  {
+    changed = channel.Index.setBudget(bytes / this->Channels.size()) || changed;
+  }
+  return changed;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPVolumeMapper::Internals::ExceedsBudget() const
+{
+  return std::any_of(this->Channels.begin(), this->Channels.end(),
+    [](const Channel& channel) { return channel.Index.exceedsBudget(); });
+}
+
+//------------------------------------------------------------------------------
+splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::Channel::MakeSettings(
   vtkSplattingMIPVolumeMapper* self) const
 {
   splatting::ProjectionSettings settings;
@@ -300,7 +245,7 @@ splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::MakeSettin
 
 //------------------------------------------------------------------------------
 // The scalar up to which all have the colour of the lowest.
-double vtkSplattingMIPVolumeMapper::Internals::FloorOfWindow() const
+double vtkSplattingMIPVolumeMapper::Internals::Channel::FloorOfWindow() const
 {
   const std::vector<std::uint32_t>& colors = this->Colors.colors;
   const auto last = std::adjacent_find(colors.begin(), colors.end(), std::not_equal_to<>());
@@ -316,23 +261,30 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
   vtkSplattingMIPVolumeMapper* self, const splatting::View& view)
 {
   const splatting::ShearWarp geometry(view);
-  const splatting::ProjectionSettings settings = this->MakeSettings(self);
-  const bool same = this->ImageValid && geometry.sameShear(this->Geometry) &&
-    this->HalfSpaces == view.halfSpaces && settings == this->Settings;
   if (!geometry.valid())
   {
     return false;
   }
+  bool same =
+    this->ImageValid && geometry.sameShear(this->Geometry) && this->HalfSpaces == view.halfSpaces;
   this->Geometry = geometry;
+  for (Channel& channel : this->Channels)
+  {
+    const splatting::ProjectionSettings settings = channel.MakeSettings(self);
+    same = same && settings == channel.Settings;
+    channel.Settings = settings;
+  }
   if (same)
   {
     return true;
   }
-  this->Settings = settings;
   this->HalfSpaces = view.halfSpaces;
   const double start = vtkTimerLog::GetUniversalTime();
-  this->Used =
-    this->Projector.project(this->Index, geometry, settings, view.halfSpaces, this->Image);
+  for (Channel& channel : this->Channels)
+  {
+    channel.Used = this->Projector.project(
+      channel.Index, geometry, channel.Settings, view.halfSpaces, channel.Image);
+  }
   this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
   this->ImageValid = true;
   this->ShearImageOutput = nullptr;
@@ -341,19 +293,41 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
 }
 
 //------------------------------------------------------------------------------
-// Transfer functions to a table of colours.
+// Transfer functions to tables of colours.
 void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* property)
 {
   if (this->ColorsValid && this->ColoredBy == property && this->ColorTime == property->GetMTime())
   {
     return;
   }
-  const splatting::VolumeIndex::Range& range = this->Index.range();
-  const bool integers = this->ScalarType != VTK_FLOAT && this->ScalarType != VTK_DOUBLE;
-  this->Colors = tabulateColors(property, range.low, range.high, integers);
+  const int components = static_cast<int>(this->Channels.size());
+  for (int c = 0; c < components; ++c)
+  {
+    Channel& channel = this->Channels[c];
+    const splatting::VolumeIndex::Range& range = channel.Index.range();
+    const double weight = components > 1 ? property->GetComponentWeight(c) : 1.0;
+    channel.Colors = tabulateColors(property, c, weight, range.low, range.high,
+      channel.Index.volume().type < splatting::ScalarType::Float32);
+  }
   this->ColoredBy = property;
   this->ColorTime = property->GetMTime();
   this->ColorsValid = true;
+}
+
+//------------------------------------------------------------------------------
+// Every component by itself; their colours add up.
+void vtkSplattingMIPVolumeMapper::Internals::Warp(const splatting::View& view)
+{
+  for (Channel& channel : this->Channels)
+  {
+    const bool first = &channel == &this->Channels.front();
+    this->Warper.warp(channel.Image, this->Geometry, channel.Colors, view.viewport,
+      channel.Settings.instructionSet, first ? this->Picture : this->Layer);
+    if (!first)
+    {
+      splatting::addSaturated(this->Layer, this->Picture);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -383,7 +357,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
-  const splatting::View view = makeView(in.Input, vol, ren, this->GetClippingPlanes());
+  const splatting::View view = makeView(in.Source.Grid(), vol, ren, this->GetClippingPlanes());
   // Nothing can be seen in a window that is not shown yet, and colours are no identifiers.
   if (view.viewport.x < 1 || view.viewport.y < 1 || ren->GetSelector())
   {
@@ -398,8 +372,8 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     this->RenderByRayCasting(ren, vol, reason);
     return "";
   }
-  in.LookAt(in.Scalars);
-  if (in.Index.setBudget(static_cast<std::size_t>(this->IndexMemoryBudget)))
+  in.LookAtVolumes();
+  if (in.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget)))
   {
     in.ImageValid = false; // so that the answer to "what was used" is right
   }
@@ -408,15 +382,14 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return DegenerateCamera;
   }
-  if (in.Index.exceedsBudget() && !in.BudgetReported)
+  if (in.ExceedsBudget() && !in.BudgetReported)
   {
     vtkWarningMacro(<< "An index for fast projection does not fit into IndexMemoryBudget ("
                     << this->IndexMemoryBudget
                     << " bytes): this volume is projected without it. Raise the budget.");
   }
-  in.BudgetReported = in.Index.exceedsBudget();
-  in.Warper.warp(
-    in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet, in.Picture);
+  in.BudgetReported = in.ExceedsBudget();
+  in.Warp(view);
   if (!in.Picture.pixels.empty())
   {
     this->DisplayImage(ren, &in.Picture.origin.x, &in.Picture.size.x,
@@ -448,7 +421,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
     }
     in.RayCaster = std::make_unique<RayCastFallback>();
   }
-  in.RayCaster->Render(this, in.Input, ren, vol);
+  in.RayCaster->Render(this, in.Source.Image(), ren, vol);
   this->LastRenderUsedRayCasting = true;
 }
 
@@ -473,23 +446,32 @@ void vtkSplattingMIPVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Internals::CopyShearImage(vtkImageData* output) const
 {
-  const int type = vtkTypeOf(this->Image.type, this->ScalarType);
-  output->SetDimensions(this->Image.width, this->Image.height, 1);
+  const splatting::ShearImage& first = this->Channels.front().Image;
+  const std::size_t components = this->Channels.size(), size = splatting::sizeOf(first.type);
+  output->SetDimensions(first.width, first.height, 1);
   output->SetOrigin(-this->Geometry.margin().x, -this->Geometry.margin().y, 0.0);
-  output->AllocateScalars(type, 1);
-  std::memcpy(output->GetScalarPointer(), this->Image.bytes.data(), this->Image.bytes.size());
+  output->AllocateScalars(this->Source.VtkTypeOf(first.type), static_cast<int>(components));
+  const std::size_t pixels = static_cast<std::size_t>(output->GetNumberOfPoints());
+  auto* const scalars = static_cast<unsigned char*>(output->GetScalarPointer());
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
   ghosts->SetNumberOfValues(output->GetNumberOfPoints());
-  for (int v = 0; v < this->Image.height; ++v)
+  ghosts->Fill(vtkDataSetAttributes::HIDDENPOINT);
+  for (std::size_t c = 0; c < components; ++c)
   {
-    for (int u = 0; u < this->Image.width; ++u)
+    const splatting::ShearImage& image = this->Channels[c].Image;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     {
-      const vtkIdType pixel = static_cast<vtkIdType>(v) * this->Image.width + u;
-      const bool sample = this->Image.covers(u, v) &&
-        !std::isnan(output->GetPointData()->GetScalars()->GetComponent(pixel, 0));
-      ghosts->SetValue(
-        pixel, sample ? 0 : static_cast<unsigned char>(vtkDataSetAttributes::HIDDENPOINT));
+      std::memcpy(
+        scalars + (pixel * components + c) * size, image.bytes.data() + pixel * size, size);
+      const int u = static_cast<int>(pixel % image.width),
+                v = static_cast<int>(pixel / image.width);
+      const vtkIdType id = static_cast<vtkIdType>(pixel);
+      if (image.covers(u, v) &&
+        !std::isnan(output->GetPointData()->GetScalars()->GetComponent(id, static_cast<int>(c))))
+      {
+        ghosts->SetValue(id, 0);
+      }
     }
   }
   output->GetPointData()->AddArray(ghosts);
@@ -530,16 +512,23 @@ double* vtkSplattingMIPVolumeMapper::GetShear()
 //------------------------------------------------------------------------------
 vtkIdType vtkSplattingMIPVolumeMapper::GetIndexMemorySize()
 {
-  const vtkDataArray* const copy = this->Internal->Contiguous;
-  const vtkIdType packed =
-    copy ? copy->GetNumberOfValues() * const_cast<vtkDataArray*>(copy)->GetDataTypeSize() : 0;
-  return static_cast<vtkIdType>(this->Internal->Index.memorySize()) + packed;
+  std::size_t size = this->Internal->Source.MemorySize();
+  for (const Internals::Channel& channel : this->Internal->Channels)
+  {
+    size += channel.Index.memorySize();
+  }
+  return static_cast<vtkIdType>(size);
 }
 
 //------------------------------------------------------------------------------
 double vtkSplattingMIPVolumeMapper::GetIndexTime()
 {
-  return this->Internal->Index.time();
+  double seconds = 0.0;
+  for (const Internals::Channel& channel : this->Internal->Channels)
+  {
+    seconds += channel.Index.time();
+  }
+  return seconds;
 }
 
 //------------------------------------------------------------------------------
@@ -557,19 +546,33 @@ double vtkSplattingMIPVolumeMapper::GetProjectionTime()
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetInstructionSet()
 {
-  return splatting::nameOf(this->Internal->Settings.instructionSet);
+  return splatting::nameOf(this->Internal->Channels.front().Settings.instructionSet);
 }
 
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetAccelerationUsed()
 {
-  return static_cast<int>(this->Internal->Used);
+  return static_cast<int>(this->Internal->Channels.front().Used);
 }
 
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetAccelerationAsString()
 {
   return nameOf(this->Acceleration);
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSplattingMIPVolumeMapper::GetVectorModeAsString()
+{
+  switch (this->VectorMode)
+  {
+    case MAGNITUDE:
+      return "magnitude";
+    case COMPONENT:
+      return "component";
+    default:
+      return "disabled";
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -596,6 +599,10 @@ const char* vtkSplattingMIPVolumeMapper::GetKernelAsString()
 void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "VectorMode: " << this->GetVectorModeAsString() << "\n";
+  os << indent << "VectorComponent: " << this->VectorComponent << "\n";
+  os << indent << "MaskInput: ";
+  this->MaskInput ? os << this->MaskInput << "\n" : os << "(none)\n";
   os << indent << "QualityMode: " << this->GetQualityModeAsString() << "\n";
   os << indent << "Kernel: " << this->GetKernelAsString() << "\n";
   os << indent << "KernelRadius: " << this->KernelRadius << "\n";

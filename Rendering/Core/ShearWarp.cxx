@@ -61,6 +61,7 @@ ShearWarp::ShearWarp(const View& view)
     return;
   }
   this->Size = view.dimensions;
+  this->ShowsBoxes = view.showsBoxes;
   this->chooseAxes(direction);
   this->computeWarp(rowX, rowY);
   this->Valid = true;

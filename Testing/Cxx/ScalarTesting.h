@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What the tests of scalars share: data sets made by hand, and whether two mappers show the same.
+ */
+#ifndef ScalarTesting_h
+#define ScalarTesting_h
+
+#include "Stage.h"
+
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+#include "vtkRenderWindow.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <array>
+#include <cstring>
+#include <string>
+
+namespace scalartesting
+{
+using Mapper = vtkSplattingMIPVolumeMapper;
+using Size = std::array<int, 3>;
+
+/// One view along each principal axis.
+inline const std::array<stage::Vector, 3>& directions()
+{
+  static const std::array<stage::Vector, 3> all{ { { -0.8, 0.3, 0.45 }, { 0.5, 0.7, -0.1 },
+    { 0.3, -0.45, 0.8 } } };
+  return all;
+}
+
+/// Integers from 0 to 100 in an array of any type, for any number of components.
+inline vtkSmartPointer<vtkDataArray> noiseArray(
+  int type, vtkIdType tuples, int components, std::uint64_t seed)
+{
+  auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(tuples);
+  reference::Random random(seed);
+  for (vtkIdType n = 0; n < tuples * components; ++n)
+  {
+    array->SetComponent(n / components, static_cast<int>(n % components), random.uniform(0, 100));
+  }
+  return array;
+}
+
+/// The component as an array by itself, of another type if wanted.
+inline vtkSmartPointer<vtkDataArray> componentOf(vtkDataArray* array, int c, int type = VTK_VOID)
+{
+  auto result = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(type == VTK_VOID ? array->GetDataType() : type));
+  result->SetNumberOfTuples(array->GetNumberOfTuples());
+  for (vtkIdType n = 0; n < array->GetNumberOfTuples(); ++n)
+  {
+    result->SetComponent(n, 0, array->GetComponent(n, c));
+  }
+  return result;
+}
+
+inline vtkSmartPointer<vtkImageData> bareImage(const Size& size)
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(size[0], size[1], size[2]);
+  image->SetSpacing(1.0, 1.25, 0.75);
+  image->SetOrigin(-3.0, 2.0, 5.5);
+  return image;
+}
+
+/// What all else is compared with: plain point scalars.
+inline vtkSmartPointer<vtkImageData> plainImage(const Size& size, vtkDataArray* scalars)
+{
+  auto image = bareImage(size);
+  image->GetPointData()->SetScalars(scalars);
+  return image;
+}
+
+/// Whether type, size, scalars and ghosts are equal, bit for bit.
+inline bool sameShearImages(vtkImageData* a, vtkImageData* b)
+{
+  if (!a || !b || a->GetScalarType() != b->GetScalarType() ||
+    a->GetNumberOfPoints() != b->GetNumberOfPoints() ||
+    a->GetNumberOfScalarComponents() != b->GetNumberOfScalarComponents())
+  {
+    return false;
+  }
+  bool same = true;
+  for (vtkIdType n = 0; n < a->GetNumberOfPoints() && same; ++n)
+  {
+    same = a->GetPointGhostArray()->GetValue(n) == b->GetPointGhostArray()->GetValue(n);
+    for (int c = 0; c < a->GetNumberOfScalarComponents() && same; ++c)
+    {
+      // Hidden pixels have no value.
+      same = a->GetPointGhostArray()->GetValue(n) != 0 ||
+        a->GetPointData()->GetScalars()->GetComponent(n, c) ==
+          b->GetPointData()->GetScalars()->GetComponent(n, c);
+    }
+  }
+  return same;
+}
+
+inline bool isBlack(const stage::Pixels& pixels)
+{
+  for (unsigned char byte : pixels)
+  {
+    if (byte != 0)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Whether both give the same shear images (and, unless voxels are of another kind, pictures).
+inline void expectSame(stage::Stage& stage, vtkVolumeMapper* expected, vtkVolumeMapper* actual,
+  const std::string& name, stage::Checks& check, bool pictures = true)
+{
+  auto* const left = Mapper::SafeDownCast(expected);
+  auto* const right = Mapper::SafeDownCast(actual);
+  for (const stage::Vector& direction : directions())
+  {
+    for (int mode : { Mapper::PREVIEW, Mapper::STANDARD, Mapper::HIGH })
+    {
+      left->SetQualityMode(mode);
+      right->SetQualityMode(mode);
+      const std::string where = name + ", axis " + std::to_string(left->GetPrincipalAxis()) + ", " +
+        left->GetQualityModeAsString();
+      stage.show(left);
+      stage.look(direction, { 0.0, 1.0, 0.1 });
+      const stage::Pixels truth = stage.pixels();
+      stage.show(right);
+      const stage::Pixels picture = stage.pixels();
+      check(!right->GetLastRenderUsedRayCasting(), where + ": splatted.");
+      check(!isBlack(truth), where + ": there is something to see.");
+      check(!pictures || truth == picture, where + ": the same picture.");
+      check(sameShearImages(left->GetShearImage(), right->GetShearImage()),
+        where + ": the same shear image.");
+    }
+  }
+}
+}
+
+#endif
