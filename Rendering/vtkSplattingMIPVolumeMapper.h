@@ -32,7 +32,7 @@
  *
  * Hidden voxels are no samples, like NaN: points with HIDDENPOINT and points all of whose cells
  * have HIDDENCELL, cells with HIDDENCELL and cells with a point that has HIDDENPOINT (the ghost
- * arrays of vtkImageData::BlankPoint and BlankCell; call Modified() after these), and what
+ * arrays of vtkUniformGrid::BlankPoint and BlankCell; call Modified() after these), and what
  * MaskInput hides. Duplicates are not hidden. This costs a copy in float (double for 32- and 64-bit
  * integers and double, so that integers beyond 2^53 are rounded) and projections without
  * acceleration.
