@@ -11,6 +11,7 @@
 #include "vtkPointData.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkSOADataArrayTemplate.h"
+#include "vtkTimerLog.h"
 
 #include <algorithm>
 #include <cmath>
@@ -321,6 +322,7 @@ void ScalarSource::Update()
   {
     return;
   }
+  const double start = vtkTimerLog::GetUniversalTime();
   this->Volumes.clear();
   this->Copies.clear();
   this->Packed = nullptr;
@@ -345,6 +347,7 @@ void ScalarSource::Update()
   }
   this->Volumed = this->Examined;
   ++this->NumberOfUpdates;
+  this->Seconds = vtkTimerLog::GetUniversalTime() - start;
 }
 
 //------------------------------------------------------------------------------

@@ -73,6 +73,8 @@ public:
 
   /// Bytes of all copies.
   std::size_t MemorySize() const;
+  /// Seconds that the last Update() that changed the volumes took.
+  double Time() const { return this->Seconds; }
 
 private:
   /// What the volumes depend on.
@@ -116,6 +118,7 @@ private:
   bool Dependent = false;
   int VtkType = VTK_VOID;
   vtkIdType NumberOfUpdates = 0;
+  double Seconds = 0.0;
   std::vector<splatting::VoxelArray> Volumes;
   std::vector<Copy> Copies;
   vtkSmartPointer<vtkDataArray> Packed; // the scalars, if they are stored in an unusual way

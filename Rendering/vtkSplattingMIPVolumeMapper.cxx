@@ -523,7 +523,7 @@ vtkIdType vtkSplattingMIPVolumeMapper::GetIndexMemorySize()
 //------------------------------------------------------------------------------
 double vtkSplattingMIPVolumeMapper::GetIndexTime()
 {
-  double seconds = 0.0;
+  double seconds = this->Internal->Source.Time();
   for (const Internals::Channel& channel : this->Internal->Channels)
   {
     seconds += channel.Index.time();

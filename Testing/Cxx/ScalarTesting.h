@@ -120,16 +120,16 @@ inline void expectSame(stage::Stage& stage, vtkVolumeMapper* expected, vtkVolume
 {
   auto* const left = Mapper::SafeDownCast(expected);
   auto* const right = Mapper::SafeDownCast(actual);
-  for (const stage::Vector& direction : directions())
+  for (std::size_t view = 0; view < directions().size(); ++view)
   {
     for (int mode : { Mapper::PREVIEW, Mapper::STANDARD, Mapper::HIGH })
     {
       left->SetQualityMode(mode);
       right->SetQualityMode(mode);
-      const std::string where = name + ", axis " + std::to_string(left->GetPrincipalAxis()) + ", " +
-        left->GetQualityModeAsString();
+      const std::string where =
+        name + ", axis " + std::to_string(view) + ", " + left->GetQualityModeAsString();
       stage.show(left);
-      stage.look(direction, { 0.0, 1.0, 0.1 });
+      stage.look(directions()[view], { 0.0, 1.0, 0.1 });
       const stage::Pixels truth = stage.pixels();
       stage.show(right);
       const stage::Pixels picture = stage.pixels();

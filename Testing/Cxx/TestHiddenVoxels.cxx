@@ -187,12 +187,15 @@ void testMask(stage::Stage& stage, stage::Checks& check)
   const auto plain = plainImage(size, withoutHidden(scalars, VTK_FLOAT, isOutside));
   expectSame(stage, stage::splatting(plain), mapper, "Mask", check);
 
-  // Another mask without a word from the mapper, values above 1, and hidden points besides.
+  // Another mask without a word from the mapper, values above 1.
   for (vtkIdType n = 0; n < Voxels; n += 2)
   {
     inside->SetValue(n, n % 4 ? 0 : 255);
   }
   inside->Modified();
+  const auto changed = plainImage(size, withoutHidden(scalars, VTK_FLOAT, isOutside));
+  expectSame(stage, stage::splatting(changed), mapper, "Changed mask", check);
+
   const auto ghosts = flags(Voxels, HiddenPoint, 0.2, 11);
   image->GetPointData()->AddArray(ghosts);
   const auto both = plainImage(size,
@@ -245,7 +248,7 @@ void testHolesOfGrids(stage::Stage& stage, stage::Checks& check)
 {
   vtkNew<vtkRectilinearGrid> grid;
   grid->SetDimensions(5, 3, 2);
-  const double places[] = { 0.0, 1.0, 3.0, 4.0, 5.0 };
+  const double places[] = { 0.0, 1.0, 4.0, 5.0, 6.0 };
   vtkSmartPointer<vtkDataArray> axes[3];
   for (int a = 0; a < 3; ++a)
   {
@@ -261,24 +264,25 @@ void testHolesOfGrids(stage::Stage& stage, stage::Checks& check)
   const auto scalars = noiseArray(VTK_FLOAT, 5 * 3 * 2, 1, 4);
   grid->GetPointData()->SetScalars(scalars);
   const auto ghosts = flags(5 * 3 * 2, 0, 0.0, 1);
-  const auto resampled = noiseArray(VTK_FLOAT, 6 * 3 * 2, 1, 1);
+  const auto resampled = noiseArray(VTK_FLOAT, 7 * 3 * 2, 1, 1);
   for (int row = 0; row < 6; ++row)
   {
-    // The third point is at 3; between it and the second there is one more, at 2, as far from both:
-    // the one before wins.
-    ghosts->SetValue(row * 5 + 2, row == 3 ? HiddenPoint : 0);
-    const double before = scalars->GetComponent(row * 5 + 1, 0);
-    const double hole = scalars->GetComponent(row * 5 + 2, 0);
-    const double values[6] = { scalars->GetComponent(row * 5, 0), before,
-      row == 3 ? before : 0.5 * before + 0.5 * hole, row == 3 ? vtkMath::Nan() : hole,
-      scalars->GetComponent(row * 5 + 3, 0), scalars->GetComponent(row * 5 + 4, 0) };
-    for (int n = 0; n < 6; ++n)
+    // The third point is at 4; two more lie between it and the second one. The hole reaches to the
+    // nearer one, and the other has no share of it.
+    const bool hole = row == 3;
+    ghosts->SetValue(row * 5 + 2, hole ? HiddenPoint : 0);
+    const auto point = [&](int n) { return scalars->GetComponent(row * 5 + n, 0); };
+    const double values[7] = { point(0), point(1),
+      hole ? point(1) : (2.0 * point(1) + point(2)) / 3.0,
+      hole ? vtkMath::Nan() : (point(1) + 2.0 * point(2)) / 3.0, hole ? vtkMath::Nan() : point(2),
+      point(3), point(4) };
+    for (int n = 0; n < 7; ++n)
     {
-      resampled->SetComponent(row * 6 + n, 0, values[n]);
+      resampled->SetComponent(row * 7 + n, 0, values[n]);
     }
   }
   grid->GetPointData()->AddArray(ghosts);
-  const auto image = plainImage({ 6, 3, 2 }, resampled);
+  const auto image = plainImage({ 7, 3, 2 }, resampled);
   image->SetSpacing(1.0, 1.0, 1.0);
   image->SetOrigin(0.0, 0.0, 0.0);
   auto mapper = vtkSmartPointer<Mapper>::New();

@@ -49,23 +49,25 @@ void testCellsAsPoints(stage::Stage& stage, stage::Checks& check)
 
 /// Where both show something it is the same, and that is where points end: their outermost centres
 /// are half a voxel within.
-void testPictureOfCells(stage::Stage& stage, stage::Checks& check)
+void testPictureOfCells(const Size& cells, stage::Stage& stage, stage::Checks& check)
 {
-  const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
-  scalars->SetComponent(0, 0, 0.0);
-  for (vtkIdType n = 0; n < Voxels; ++n)
+  const auto scalars = noiseArray(VTK_SHORT, vtkIdType(cells[0]) * cells[1] * cells[2], 1, 4);
+  for (vtkIdType n = 0; n < scalars->GetNumberOfTuples(); ++n)
   {
     scalars->SetComponent(n, 0, scalars->GetComponent(n, 0) / 2 + 50.0); // none is black
   }
-  const auto cells = cellImage(size, scalars);
-  cells->SetDirectionMatrix(0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1);
-  const auto points = plainImage(size, scalars);
-  points->SetDirectionMatrix(cells->GetDirectionMatrix());
+  // A layer of cells lies on its points.
+  const Size points = { cells[0] + 1, cells[1] + 1, cells[2] > 1 ? cells[2] + 1 : 1 };
+  const auto cellImage = bareImage(points);
+  cellImage->GetCellData()->SetScalars(scalars);
+  cellImage->SetDirectionMatrix(0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1);
+  const auto pointImage = plainImage(cells, scalars);
+  pointImage->SetDirectionMatrix(cellImage->GetDirectionMatrix());
   double middle[3];
-  cells->TransformContinuousIndexToPhysicalPoint(0.5, 0.5, 0.5, middle);
-  points->SetOrigin(middle);
-  const auto cellMapper = stage::splatting(cells);
-  const auto pointMapper = stage::splatting(points);
+  cellImage->TransformContinuousIndexToPhysicalPoint(0.5, 0.5, cells[2] > 1 ? 0.5 : 0.0, middle);
+  pointImage->SetOrigin(middle);
+  const auto cellMapper = stage::splatting(cellImage);
+  const auto pointMapper = stage::splatting(pointImage);
   for (const stage::Vector& direction : directions())
   {
     stage.show(cellMapper);
@@ -423,7 +425,8 @@ int TestScalarGrids(int, char*[])
     stage::Stage stage(120, 110);
     stage.setGrayRamp(0.0, 110.0);
     testCellsAsPoints(stage, check);
-    testPictureOfCells(stage, check);
+    testPictureOfCells(size, stage, check);
+    testPictureOfCells({ 15, 12, 1 }, stage, check);
     testFlatCells(stage, check);
     testEqualSteps(stage, check);
     testDescending(stage, check);
