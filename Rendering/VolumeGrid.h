@@ -51,7 +51,8 @@ struct GridOfDataSet
  * Coordinates of a rectilinear grid whose points lie within a thousandth of a step of equal
  * distances are taken as they are. Others are resampled at distances of the least step of their
  * axis (a little less, so as to end with the grid): points are then interpolated, every cell has a
- * voxel. If that were more than MostResampled voxels, all distances are enlarged by one factor.
+ * voxel. If that were more than MostResampled voxels, all distances are enlarged by one factor. No
+ * axis gets more than 16384.
  */
 std::string describeGrid(vtkDataSet* data, bool cells, GridOfDataSet& result);
 

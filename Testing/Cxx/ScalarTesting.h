@@ -10,6 +10,7 @@
 
 #include "vtkSplattingMIPVolumeMapper.h"
 
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
@@ -75,6 +76,14 @@ inline vtkSmartPointer<vtkImageData> plainImage(const Size& size, vtkDataArray* 
 {
   auto image = bareImage(size);
   image->GetPointData()->SetScalars(scalars);
+  return image;
+}
+
+/// Plain cell scalars, for so many cells.
+inline vtkSmartPointer<vtkImageData> cellImage(const Size& cells, vtkDataArray* scalars)
+{
+  auto image = bareImage({ cells[0] + 1, cells[1] + 1, cells[2] + 1 });
+  image->GetCellData()->SetScalars(scalars);
   return image;
 }
 

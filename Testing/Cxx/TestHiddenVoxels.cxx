@@ -31,13 +31,6 @@ constexpr vtkIdType Voxels = 11 * 9 * 14;
 constexpr unsigned char HiddenPoint = vtkDataSetAttributes::HIDDENPOINT;
 constexpr unsigned char HiddenCell = vtkDataSetAttributes::HIDDENCELL;
 
-vtkSmartPointer<vtkImageData> cellImage(vtkDataArray* scalars)
-{
-  auto image = bareImage({ size[0] + 1, size[1] + 1, size[2] + 1 });
-  image->GetCellData()->SetScalars(scalars);
-  return image;
-}
-
 /// About a share of the flags have the value, in lumps.
 vtkSmartPointer<vtkUnsignedCharArray> flags(
   vtkIdType count, unsigned char value, double share, std::uint64_t seed)
@@ -121,11 +114,11 @@ void testCellsThatHidePoints(stage::Stage& stage, stage::Checks& check)
 void testHiddenCells(stage::Stage& stage, stage::Checks& check)
 {
   const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
-  const auto image = cellImage(scalars);
+  const auto image = cellImage(size, scalars);
   image->GetCellData()->AddArray(flags(Voxels, HiddenCell, 0.3, 7));
   image->GetPointData()->AddArray(flags(image->GetNumberOfPoints(), HiddenPoint, 0.05, 8));
   const auto plain = cellImage(
-    withoutHidden(scalars, VTK_FLOAT, [&](vtkIdType n) { return !image->IsCellVisible(n); }));
+    size, withoutHidden(scalars, VTK_FLOAT, [&](vtkIdType n) { return !image->IsCellVisible(n); }));
   expectSame(stage, stage::splatting(plain), stage::splatting(image), "Hidden cells", check);
 }
 
@@ -214,11 +207,11 @@ void testMaskOfCells(stage::Stage& stage, stage::Checks& check)
   const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
   const auto inside = flags(Voxels, 255, 0.6, 12);
   inside->SetName("mask");
-  const auto plain = stage::splatting(cellImage(
+  const auto plain = stage::splatting(cellImage(size,
     withoutHidden(scalars, VTK_FLOAT, [&](vtkIdType n) { return inside->GetValue(n) == 0; })));
-  for (const auto& mask : { plainImage(size, inside), cellImage(inside) })
+  for (const auto& mask : { plainImage(size, inside), cellImage(size, inside) })
   {
-    const auto mapper = stage::splatting(cellImage(scalars));
+    const auto mapper = stage::splatting(cellImage(size, scalars));
     mapper->SetMaskInput(mask);
     expectSame(stage, plain, mapper, "Mask of cells", check);
   }
