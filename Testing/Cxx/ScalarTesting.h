@@ -12,7 +12,9 @@
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
+#include "vtkMath.h"
 #include "vtkPointData.h"
 #include "vtkRenderWindow.h"
 #include "vtkUnsignedCharArray.h"
@@ -85,6 +87,38 @@ inline vtkSmartPointer<vtkImageData> cellImage(const Size& cells, vtkDataArray* 
   auto image = bareImage({ cells[0] + 1, cells[1] + 1, cells[2] + 1 });
   image->GetCellData()->SetScalars(scalars);
   return image;
+}
+
+/// About a share of the flags have the value, in lumps.
+inline vtkSmartPointer<vtkUnsignedCharArray> flags(
+  vtkIdType count, unsigned char value, double share, std::uint64_t seed)
+{
+  auto array = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  array->SetNumberOfValues(count);
+  array->SetName(vtkDataSetAttributes::GhostArrayName());
+  reference::Random random(seed);
+  unsigned char current = 0;
+  for (vtkIdType n = 0; n < count; ++n)
+  {
+    current = n % 3 == 0 ? (random.uniform(0.0, 1.0) < share ? value : 0) : current;
+    array->SetValue(n, current);
+  }
+  return array;
+}
+
+/// What hidden voxels are compared with: NaN in their place.
+template <class IsHidden>
+vtkSmartPointer<vtkDataArray> withoutHidden(vtkDataArray* scalars, int type, IsHidden&& isHidden)
+{
+  const auto result = componentOf(scalars, 0, type);
+  for (vtkIdType n = 0; n < result->GetNumberOfTuples(); ++n)
+  {
+    if (isHidden(n))
+    {
+      result->SetComponent(n, 0, vtkMath::Nan());
+    }
+  }
+  return result;
 }
 
 /// Whether type, size, scalars and ghosts are equal, bit for bit.

@@ -78,7 +78,7 @@ void testArrays(stage::Stage& stage, stage::Checks& check)
 }
 
 //------------------------------------------------------------------------------
-/// Each type, so that strides and types are told apart; wide numbers keep all their bits.
+/// Types of each size, so that strides are told apart.
 void testComponentsOfTypes(stage::Stage& stage, stage::Checks& check)
 {
   for (int type : { VTK_SIGNED_CHAR, VTK_UNSIGNED_SHORT, VTK_INT, VTK_LONG_LONG, VTK_DOUBLE })
