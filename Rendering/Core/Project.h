@@ -36,9 +36,31 @@ enum class Acceleration
   SortedVolume
 };
 
+/// What becomes of the samples along a ray: the worksheets' values of the slices that it crosses,
+/// in preview the voxels; see vtkSplattingMIPVolumeMapper::SetMaximumType.
+enum class Reduction
+{
+  Maximum,
+  Minimum,
+  Mean,
+  DepthShaded, ///< the maximum of samples, each shaded by its depth along the ray
+  Local        ///< the first local maximum, from the viewer, at or above a threshold
+};
+
 struct ProjectionSettings
 {
   Quality quality = Quality::High;
+  Reduction reduction = Reduction::Maximum;
+  /// Of Reduction::DepthShaded: the n-th of N slices along a ray, n = 0 the nearest to the viewer,
+  /// is multiplied by ambient + (1 - n / N) changeRate, relative to the volume's lowest voxel
+  /// [Bruckner, Program 4.3].
+  double ambient = 0.3;
+  double changeRate = 0.7;
+  /// Of Reduction::Local.
+  double threshold = -std::numeric_limits<double>::infinity();
+  /// Of Reduction::Mean: the samples that count.
+  double meanLow = -std::numeric_limits<double>::infinity();
+  double meanHigh = std::numeric_limits<double>::infinity();
   /// Reconstruction kernel of Quality::High.
   Kernel kernel;
   /// 0: weights in closed form; N: from a general table with N x N sub-pixels.
@@ -58,7 +80,10 @@ struct ProjectionSettings
 
   bool operator==(const ProjectionSettings& other) const
   {
-    return this->quality == other.quality && this->kernel == other.kernel &&
+    return this->quality == other.quality && this->reduction == other.reduction &&
+      this->ambient == other.ambient && this->changeRate == other.changeRate &&
+      this->threshold == other.threshold && this->meanLow == other.meanLow &&
+      this->meanHigh == other.meanHigh && this->kernel == other.kernel &&
       this->footprintSampling == other.footprintSampling &&
       this->instructionSet == other.instructionSet && this->acceleration == other.acceleration &&
       this->lineTolerance == other.lineTolerance &&

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * VTK's cropping: two planes across each axis cut the volume into 27 regions.
+ */
+#ifndef splattingCropping_h
+#define splattingCropping_h
+
+#include "Kernels.h"
+#include "ShearWarp.h"
+
+#include <glm/vec2.hpp>
+
+#include <array>
+#include <cstdint>
+
+namespace splatting
+{
+struct Cropping
+{
+  static constexpr std::uint32_t All = (1u << 27) - 1;
+
+  /// Along each axis of index space, where the middle region begins and ends; it has both planes.
+  std::array<glm::dvec2, 3> planes{};
+  /// Bit i + 3 j + 9 k: whether region (i, j, k) is shown, 0 being the lowest along its axis.
+  std::uint32_t flags = All;
+
+  bool cuts() const { return this->flags != All; }
+  bool operator==(const Cropping& other) const
+  {
+    return this->flags == other.flags && (!this->cuts() || this->planes == other.planes);
+  }
+};
+
+/// The regions of one slice, in pixels of the shear image.
+struct SliceRegions
+{
+  std::array<int, 2> u, v;      ///< where the middle region begins, and the highest one
+  std::array<unsigned, 3> rows; ///< for each region along v: bit i is region i along u
+
+  unsigned regionsOfRow(int row) const
+  {
+    return this->rows[row < this->v[0] ? 0 : row < this->v[1] ? 1 : 2];
+  }
+};
+
+/**
+ * A sample of slice k counts if the point where the ray crosses the middle of the slice lies in a
+ * region that is shown. Where the middle region is thinner than a slice and has the middle of none,
+ * the nearest slice is in it.
+ */
+SliceRegions regionsOf(const Cropping& cropping, const ShearWarp& geometry, int k);
+}
+
+#endif
