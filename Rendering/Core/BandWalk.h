@@ -8,21 +8,22 @@
  * Layers with high bounds come first, and a tile whose bound is no more than its least pixel is
  * left out: it could not change a pixel. What remains is walked row by row, several tiles at a
  * time, because memory is fastest where it is read in order.
+ *
+ * Where rays are cut, tiles of which a layer has all samples take the same loops, and those of
+ * which it has some go sample by sample.
  */
 #ifndef splattingBandWalk_h
 #define splattingBandWalk_h
 
+#include "Cuts.h"
 #include "PreviewLayers.h"
 #include "Worksheets.h"
 
 #include <cstdint>
-#include <cstring>
 #include <numeric>
 
 namespace splatting
 {
-/// Rows of a tile.
-constexpr int TileHeight = 4;
 static_assert(TileWidth == BrickWidth && TileHeight == BrickHeight);
 
 /// Tiles that a walk met, and those that it splatted.
@@ -40,6 +41,9 @@ struct BandScratch
   std::vector<int> order;
   std::vector<double> scores;
   std::vector<Span> runs;
+  BandCuts cuts;
+  std::vector<CutShare> shares;
+  std::vector<unsigned char> mask;
   TileCount count;
 };
 
@@ -71,6 +75,19 @@ public:
 
   void walkDensely()
   {
+    if (!this->Shared.cuts.none())
+    {
+      this->openCuts();
+      for (int z = this->Range.begin; z < this->Range.end; ++z)
+      {
+        for (int g = 0; g < this->Groups; ++g)
+        {
+          std::fill_n(this->openFlags(), this->Tiles, static_cast<unsigned char>(1));
+          this->splatFlagged(z, g);
+        }
+      }
+      return;
+    }
     this->Scratch.runs.assign(1, { 0, this->Shared.image.width });
     this->Stack.splatAll(this->Range, this->V0, this->V1, this->Scratch.runs, this->Scratch.patch);
   }
@@ -81,6 +98,7 @@ public:
     this->orderLayers();
     this->Scratch.minima.resize(std::size_t(this->Groups) * this->Tiles * sizeof(P));
     std::fill_n(this->minimaOf(0), this->Groups * this->Tiles, this->Stack.floor());
+    this->openCuts();
     int walked = 0;
     for (int z : this->Scratch.order)
     {
@@ -287,28 +305,112 @@ private:
   void walkGroup(int z, int group)
   {
     const TileLoops<P>& loops = this->Shared.kernels;
-    constexpr int word = 64;
-    this->Scratch.flags.resize((this->Tiles + word - 1) / word * word);
-    unsigned char* const flags = this->Scratch.flags.data();
-    loops.exceeds(this->bounds(z, group), this->minimaOf(group), flags, this->Tiles);
-    std::fill(
-      flags + this->Tiles, flags + this->Scratch.flags.size(), static_cast<unsigned char>(0));
-    this->Scratch.runs.clear();
-    for (int first = 0; first < this->Tiles; first += word)
+    loops.exceeds(this->bounds(z, group), this->minimaOf(group), this->openFlags(), this->Tiles);
+    this->splatFlagged(z, group);
+  }
+
+  static constexpr int Word = 64;
+
+  /// One flag for each tile of a group, and zeros up to the next word.
+  unsigned char* openFlags()
+  {
+    this->Scratch.flags.resize((this->Tiles + Word - 1) / Word * Word);
+    std::fill(this->Scratch.flags.begin() + this->Tiles, this->Scratch.flags.end(),
+      static_cast<unsigned char>(0));
+    return this->Scratch.flags.data();
+  }
+
+  /// Splats the tiles of a group that have flags.
+  void splatFlagged(int z, int group)
+  {
+    const int v0 = this->firstRow(group), v1 = v0 + this->rowsOf(group);
+    if (!this->Shared.cuts.none())
     {
-      std::uint64_t tiles = packed(flags + first);
-      // Small gaps cost less than a second start.
-      tiles |= ((tiles << 1) & (tiles >> 1)) | ((tiles << 1) & (tiles >> 2)) |
-        ((tiles << 2) & (tiles >> 1));
-      this->addRuns(first, tiles);
+      this->splatCut(z, group, v0, v1);
+      return;
     }
+    // Small gaps cost less than a second start.
+    this->findRuns(Layers::RunUnit,
+      [](std::uint64_t tiles)
+      {
+        return tiles | ((tiles << 1) & (tiles >> 1)) | ((tiles << 1) & (tiles >> 2)) |
+          ((tiles << 2) & (tiles >> 1));
+      });
     if (!this->Scratch.runs.empty())
     {
-      this->splat(z, this->firstRow(group), this->firstRow(group) + this->rowsOf(group));
+      this->splat(z, v0, v1);
     }
   }
 
-  void addRuns(int first, std::uint64_t tiles)
+  void openCuts()
+  {
+    if (!this->Shared.cuts.none())
+    {
+      this->Scratch.cuts.reset(this->Shared.cuts, this->V0, this->V1, this->Shared.image.width);
+      this->Scratch.shares.resize(this->Tiles);
+    }
+  }
+
+  /// Plainly where all samples of the layer count, then sample by sample where some do.
+  void splatCut(int z, int group, int v0, int v1)
+  {
+    const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
+    std::vector<unsigned char>& flags = this->Scratch.flags;
+    std::vector<CutShare>& shares = this->Scratch.shares;
+    this->Scratch.cuts.findShares(slices, group, shares.data());
+    const auto same = [](std::uint64_t tiles) { return tiles; };
+    bool some = false;
+    for (int t = 0; t < this->Tiles; ++t)
+    {
+      some = some || (flags[t] && shares[t] == CutShare::Some);
+      shares[t] = flags[t] ? shares[t] : CutShare::None;
+      flags[t] = shares[t] == CutShare::All;
+    }
+    this->findRuns(TileWidth, same);
+    if (!this->Scratch.runs.empty())
+    {
+      this->Stack.splatExactly(z, v0, v1, this->Scratch.runs, this->Scratch.patch);
+    }
+    if (some)
+    {
+      std::transform(shares.begin(), shares.end(), flags.begin(),
+        [](CutShare share) { return static_cast<unsigned char>(share == CutShare::Some); });
+      this->findRuns(TileWidth, same);
+      for (const Span& run : this->Scratch.runs)
+      {
+        this->splatSamples(slices, v0, v1, run);
+      }
+    }
+  }
+
+  void splatSamples(const Span& slices, int v0, int v1, const Span& run)
+  {
+    const RayLoops<P>& loops = this->Shared.kernels;
+    this->Scratch.mask.resize(this->Shared.image.width);
+    this->Stack.forSamples(slices, false, v0, v1, run, this->Scratch.patch,
+      [&](int k, int v, const Span& pixels, const P* samples)
+      {
+        unsigned char* const mask = this->Scratch.mask.data();
+        if (this->Shared.cuts.findMask(k, v, pixels, mask))
+        {
+          loops.raise(this->Shared.image.template row<P>(v) + pixels.begin, samples, mask,
+            pixels.end - pixels.begin);
+        }
+      });
+  }
+
+  /// The runs of tiles with flags, which `join` may add some to.
+  template <class Join>
+  void findRuns(int unit, Join&& join)
+  {
+    this->Scratch.runs.clear();
+    for (int first = 0; first < this->Tiles; first += Word)
+    {
+      this->addRuns(first, join(packed(this->Scratch.flags.data() + first)), unit);
+    }
+  }
+
+  void addRuns(int first, std::uint64_t tiles, int unit)
   {
     while (tiles)
     {
@@ -317,7 +419,6 @@ private:
       const int length = rest ? trailingZeros(rest) : 64;
       tiles = begin + length < 64 ? tiles >> (begin + length) << (begin + length) : 0;
       this->Scratch.count.splatted += length;
-      constexpr int unit = Layers::RunUnit;
       const int u = (first + begin) * TileWidth;
       this->Scratch.runs.push_back({ u / unit * unit,
         std::min((u + length * TileWidth + unit - 1) / unit * unit, this->Shared.image.width) });

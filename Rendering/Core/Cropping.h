@@ -9,29 +9,10 @@
 #include "Kernels.h"
 #include "ShearWarp.h"
 
-#include <glm/vec2.hpp>
-
 #include <array>
-#include <cstdint>
 
 namespace splatting
 {
-struct Cropping
-{
-  static constexpr std::uint32_t All = (1u << 27) - 1;
-
-  /// Along each axis of index space, where the middle region begins and ends; it has both planes.
-  std::array<glm::dvec2, 3> planes{};
-  /// Bit i + 3 j + 9 k: whether region (i, j, k) is shown, 0 being the lowest along its axis.
-  std::uint32_t flags = All;
-
-  bool cuts() const { return this->flags != All; }
-  bool operator==(const Cropping& other) const
-  {
-    return this->flags == other.flags && (!this->cuts() || this->planes == other.planes);
-  }
-};
-
 /// The regions of one slice, in pixels of the shear image.
 struct SliceRegions
 {

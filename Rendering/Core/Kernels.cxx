@@ -214,20 +214,6 @@ void sweep(const Sweep<T>& s)
 }
 
 template <class T>
-void maximumValid(T* image, const T* const* rows, int count, std::ptrdiff_t n)
-{
-  for (int r = 0; r < count; ++r)
-  {
-    const T* const row = rows[r];
-    for (std::ptrdiff_t x = 0; x < n; ++x)
-    {
-      const bool empty = image[x] != image[x];
-      image[x] = empty || row[x] > image[x] ? row[x] : image[x];
-    }
-  }
-}
-
-template <class T>
 void widen(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
   Accumulator<T> base, std::ptrdiff_t n, int rows)
 {
@@ -530,6 +516,103 @@ void bound(A* __restrict own, const A* __restrict before, const A* __restrict af
   }
 }
 
+/// Calls take(x, sample) for the samples that count: `take` says what the pixel becomes.
+template <bool Masked, class P, class Take>
+inline void takeSamples(P* __restrict image, const P* __restrict samples,
+  const unsigned char* __restrict mask, std::ptrdiff_t n, Take&& take)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const bool counts = (!Masked || mask[x] != 0) & (samples[x] == samples[x]);
+    image[x] = counts & take(x) ? samples[x] : image[x];
+  }
+}
+
+template <class P, class Take>
+inline void takeSamples(
+  P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n, Take&& take)
+{
+  mask ? takeSamples<true>(image, samples, mask, n, take)
+       : takeSamples<false>(image, samples, mask, n, take);
+}
+
+template <class P>
+void raise(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n)
+{
+  takeSamples(image, samples, mask, n, [=](std::ptrdiff_t x) { return !(samples[x] <= image[x]); });
+}
+
+template <class P>
+void lower(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n)
+{
+  takeSamples(image, samples, mask, n, [=](std::ptrdiff_t x) { return !(samples[x] >= image[x]); });
+}
+
+template <bool Masked, class P>
+void climb(P* __restrict image, unsigned char* __restrict ended, P threshold,
+  const P* __restrict samples, const unsigned char* __restrict mask, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const bool counts = (!Masked || mask[x] != 0) & (samples[x] == samples[x]);
+    const bool ends = counts & (image[x] >= threshold) & (samples[x] < image[x]);
+    ended[x] = static_cast<unsigned char>(ended[x] | static_cast<unsigned char>(ends));
+    image[x] = counts & (ended[x] == 0) & !(samples[x] <= image[x]) ? samples[x] : image[x];
+  }
+}
+
+template <class P>
+void climb(P* image, unsigned char* ended, P threshold, const P* samples, const unsigned char* mask,
+  std::ptrdiff_t n)
+{
+  mask ? climb<true>(image, ended, threshold, samples, mask, n)
+       : climb<false>(image, ended, threshold, samples, mask, n);
+}
+
+template <bool Masked, class A>
+void shade(A* __restrict image, const Shade<A>& s, const A* __restrict samples,
+  const unsigned char* __restrict mask, std::ptrdiff_t n)
+{
+  const std::int16_t* __restrict const first = s.first;
+  const std::int16_t* __restrict const last = s.last;
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const std::int32_t begin = first[x], end = last[x];
+    const A place = static_cast<A>(s.reversed ? end - s.k : s.k - begin);
+    const A factor = s.ambient + (A(1) - place / static_cast<A>(end - begin + 1)) * s.changeRate;
+    const A sample = s.low + (samples[x] - s.low) * factor;
+    const bool counts = (!Masked || mask[x] != 0) & (sample == sample);
+    image[x] = counts & !(sample <= image[x]) ? sample : image[x];
+  }
+}
+
+template <class A>
+void shade(
+  A* image, const Shade<A>& s, const A* samples, const unsigned char* mask, std::ptrdiff_t n)
+{
+  mask ? shade<true>(image, s, samples, mask, n) : shade<false>(image, s, samples, mask, n);
+}
+
+template <bool Masked, class A>
+void add(double* __restrict sums, std::int32_t* __restrict counts, A low, A high,
+  const A* __restrict samples, const unsigned char* __restrict mask, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const bool counted = (!Masked || mask[x] != 0) & (samples[x] >= low) & (samples[x] <= high);
+    sums[x] += counted ? static_cast<double>(samples[x]) : 0.0;
+    counts[x] += counted ? 1 : 0;
+  }
+}
+
+template <class A>
+void add(double* sums, std::int32_t* counts, A low, A high, const A* samples,
+  const unsigned char* mask, std::ptrdiff_t n)
+{
+  mask ? add<true>(sums, counts, low, high, samples, mask, n)
+       : add<false>(sums, counts, low, high, samples, mask, n);
+}
+
 template <class A>
 void interpolate(const A* __restrict image, std::ptrdiff_t stride, const double start[2],
   const double step[2], A* __restrict out, std::ptrdiff_t n)
@@ -578,13 +661,18 @@ void lookUp(const A* __restrict values, A low, A scale, std::int32_t last,
 }
 
 template <class T>
-constexpr VoxelLoops<T> voxelLoops{ width<T>, &maximum<T>, &largest<T>, &sweep<T>, &maximumValid<T>,
-  &widen<T>, &survey<T>, &largestOfFour<T> };
+constexpr VoxelLoops<T> voxelLoops{ width<T>, &maximum<T>, &largest<T>, &sweep<T>, &widen<T>,
+  &survey<T>, &largestOfFour<T> };
 template <class P>
 constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P> };
+template <class P>
+constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
+  static_cast<decltype(RayLoops<P>::climb)>(&climb<P>) };
 template <class A>
-constexpr WorksheetLoops<A> worksheetLoops{ &splat<A>, &splatValid<A>, &finish<A>, &bound<A>,
-  &interpolate<A>, &lookUp<A> };
+constexpr WorksheetLoops<A> worksheetLoops{ &splat<A>, &splatValid<A>,
+  static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
+  static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
+  &lookUp<A> };
 }
 
 extern const Kernels SPLATTING_KERNELS;
@@ -594,5 +682,7 @@ const Kernels SPLATTING_KERNELS = { voxelLoops<std::int8_t>, voxelLoops<std::uin
   voxelLoops<double>, tileLoops<std::int8_t>, tileLoops<std::uint8_t>, tileLoops<std::int16_t>,
   tileLoops<std::uint16_t>, tileLoops<std::int32_t>, tileLoops<std::uint32_t>,
   tileLoops<std::int64_t>, tileLoops<std::uint64_t>, tileLoops<float>, tileLoops<double>,
-  worksheetLoops<float>, worksheetLoops<double> };
+  rayLoops<std::int8_t>, rayLoops<std::uint8_t>, rayLoops<std::int16_t>, rayLoops<std::uint16_t>,
+  rayLoops<std::int32_t>, rayLoops<std::uint32_t>, rayLoops<std::int64_t>, rayLoops<std::uint64_t>,
+  rayLoops<float>, rayLoops<double>, worksheetLoops<float>, worksheetLoops<double> };
 }

@@ -65,10 +65,45 @@ public:
 
   const Window& window(int layer) const { return this->Layers[layer].window; }
 
-  /// Takes a layer's voxels into the pixels of some rows and runs of columns.
+  /// Takes a layer's voxels into the pixels of some rows and runs of columns, and perhaps into some
+  /// beside them.
   void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch&) const
   {
     this->splatLayer(z, v0, v1, runs, BrickDepth);
+  }
+
+  /// The same for no other pixels.
+  void splatExactly(int z, int v0, int v1, const std::vector<Span>& runs, Patch&) const
+  {
+    const Layer& layer = this->Layers[z];
+    const Span rows = this->image().special ? Span{ v1, v1 } : this->wholeRows(layer, v0, v1);
+    this->splatSlices(z, v0, rows.begin, runs);
+    for (int v = rows.begin; v < rows.end; ++v)
+    {
+      for (const Span& run : runs)
+      {
+        this->splatRun(z, v, run);
+      }
+    }
+    this->splatSlices(z, rows.end, v1, runs);
+  }
+
+  /// Calls f(k, v, pixels, samples) for all samples of some slices and of pixels in some rows and
+  /// columns, in the order of the rays if they come from the first slice, or else reversed.
+  template <class F>
+  void forSamples(
+    const Span& slices, bool reversed, int v0, int v1, const Span& columns, Patch&, F&& f) const
+  {
+    for (int n = 0; n < slices.end - slices.begin; ++n)
+    {
+      const int k = reversed ? slices.end - 1 - n : slices.begin + n;
+      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+      for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
+      {
+        this->forVoxels(k, v, common(columns, this->Shared.pixels(v, k)), reversed,
+          [&](const Span& pixels, const T* voxels) { f(k, v, pixels, voxels); });
+      }
+    }
   }
 
   /// The same for all pixels of some rows, which are one run, and all voxels of some layers, in the
@@ -92,6 +127,9 @@ public:
     }
   }
 
+  /// Voxels are taken as they are.
+  Accumulator<T> base() const { return 0; }
+
   T floor() const { return previewFloor(this->Shared); }
 
   void finish(int, int) const {}
@@ -99,13 +137,21 @@ public:
 private:
   using Layer = PreviewLayer;
 
+  const ShearImage& image() const { return this->Shared.image; }
+
+  /// The rows whose rays cross rows of voxels only that exist.
+  Span wholeRows(const Layer& layer, int v0, int v1) const
+  {
+    const int begin = std::clamp(-layer.window.jMin, v0, v1);
+    return { begin, std::clamp(this->Shared.geometry.size().y - layer.window.jMax, begin, v1) };
+  }
+
   void splatLayer(int z, int v0, int v1, const std::vector<Span>& runs, int sideBySide) const
   {
     const Layer& layer = this->Layers[z];
     // Rows whose voxels all exist, and beside which there are others: a rim reads a few voxels
     // beyond its row.
-    const bool plain =
-      layer.rimsFit && this->Shared.halfSpaces.empty() && !this->Shared.image.special;
+    const bool plain = layer.rimsFit && !this->image().special;
     const int first = plain ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
     const int last = std::clamp(this->Shared.geometry.size().y - 1 - layer.window.jMax, first, v1);
     this->splatSlices(z, v0, first, runs);
@@ -204,37 +250,83 @@ private:
   /// Any rows, slice by slice.
   void splatSlices(int z, int v0, int v1, const std::vector<Span>& runs) const
   {
+    for (const Span& run : runs)
+    {
+      this->splatSlices(z, v0, v1, run);
+    }
+  }
+  void splatSlices(int z, int v0, int v1, const Span& run) const
+  {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
     for (int k = slices.begin; k < slices.end; ++k)
     {
       const SliceGeometry& slice = this->Shared.sliceGeometry[k];
       for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
       {
-        for (const Span& run : runs)
-        {
-          this->splatSlice(k, v, common(run, this->Shared.pixels(v, k)));
-        }
+        this->splatSlice(k, v, common(run, this->Shared.pixels(v, k)));
       }
     }
   }
 
   void splatSlice(int k, int v, const Span& span) const
   {
+    this->forVoxels(k, v, span, false,
+      [&](const Span& pixels, const T* voxels)
+      {
+        T* const image = this->Shared.image.template row<T>(v) + pixels.begin;
+        const std::ptrdiff_t n = pixels.end - pixels.begin;
+        if (this->image().special)
+        {
+          const RayLoops<T>& loops = this->Shared.kernels;
+          loops.raise(image, voxels, nullptr, n);
+        }
+        else
+        {
+          const VoxelLoops<T>& loops = this->Shared.kernels;
+          loops.maximum(image, &voxels, 1, n);
+        }
+      });
+  }
+
+  /// Calls f(pixels, voxels) for each step of the rays' path in slice k.
+  template <class F>
+  void forVoxels(int k, int v, const Span& span, bool reversed, F&& f) const
+  {
     const RayPath& path = this->Shared.sliceGeometry[k].path;
     const glm::ivec3& size = this->Shared.geometry.size();
-    const VoxelLoops<T>& loops = this->Shared.kernels;
-    const auto maximum = this->Shared.image.special ? loops.maximumValid : loops.maximum;
-    for (int t = 0; t < path.count; ++t)
+    for (int n = 0; n < path.count; ++n)
     {
+      const int t = reversed ? path.count - 1 - n : n;
       const int j = v + path.dj[t];
-      const Span valid = common(span, { -path.di[t], size.x - path.di[t] });
-      if (j >= 0 && j < size.y && !valid.empty())
+      const Span pixels = common(span, { -path.di[t], size.x - path.di[t] });
+      if (j >= 0 && j < size.y && !pixels.empty())
       {
-        const T* const row = this->Shared.voxelRow(j, k) + path.di[t] + valid.begin;
-        maximum(
-          this->Shared.image.template row<T>(v) + valid.begin, &row, 1, valid.end - valid.begin);
+        f(pixels, this->Shared.voxelRow(j, k) + path.di[t] + pixels.begin);
       }
     }
+  }
+
+  /// One run of a row whose rows of voxels all exist: together where all columns do as well.
+  void splatRun(int z, int v, const Span& run) const
+  {
+    const Layer& layer = this->Layers[z];
+    const Span valid = common(run, layer.valid);
+    if (valid.empty())
+    {
+      this->splatSlices(z, v, v + 1, run);
+      return;
+    }
+    const T* rows[MostRows];
+    for (int t = 0; t < layer.tapCount; ++t)
+    {
+      const typename Layer::Tap& tap = layer.taps[t];
+      rows[t] = this->Shared.voxelRow(v + tap.dj, tap.k) + tap.di + valid.begin;
+    }
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    loops.maximum(this->Shared.image.template row<T>(v) + valid.begin, rows, layer.tapCount,
+      valid.end - valid.begin);
+    this->splatSlices(z, v, v + 1, { run.begin, valid.begin });
+    this->splatSlices(z, v, v + 1, { valid.end, run.end });
   }
 
   const Frame<T>& Shared;

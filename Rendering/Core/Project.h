@@ -6,6 +6,7 @@
 #ifndef splattingProject_h
 #define splattingProject_h
 
+#include "Cuts.h"
 #include "Footprint.h"
 #include "Kernels.h"
 #include "ShearImage.h"
@@ -66,13 +67,14 @@ struct ProjectionSettings
   /// 0: weights in closed form; N: from a general table with N x N sub-pixels.
   int footprintSampling = 0;
   InstructionSet instructionSet = bestInstructionSet();
-  /// Lines and its sorted kin fall back to Dense for volumes with NaN or infinities; sorted orders
-  /// are for Quality::Preview, elsewhere they are Lines.
+  /// Reductions other than Maximum are walked densely, as are volumes with NaN or infinities. Lines
+  /// and its sorted kin are Bricks where rays are cut; sorted orders are for Quality::Preview,
+  /// elsewhere they are Lines.
   Acceleration acceleration = Acceleration::Auto;
   /// Delta encoding of lines: see LineEncoding. 0 gives the same bits as Dense.
   double lineTolerance = 0.0;
-  /// Lines without voxels that cannot be seen: the same bits, fewer chains. For Quality::Preview
-  /// without half-spaces, else ignored.
+  /// Lines without voxels that cannot be seen: the same bits, fewer chains. For Quality::Preview,
+  /// else ignored.
   bool eliminateInvisible = false;
   /// Values at or below need not be told apart: the image is the larger of this (in preview rounded
   /// down to the scalar type) and what it would be otherwise.
@@ -108,24 +110,28 @@ public:
   ~Projector();
 
   /**
-   * @param halfSpaces  of index space; a slice's sample counts for a pixel if the point where the
-   *                    ray crosses the middle of the slice lies in all of them
    * @return what has been used: never Auto, and Dense where there is no memory for what was asked
    */
   Acceleration project(VolumeIndex& index, const ShearWarp& geometry,
-    const ProjectionSettings& settings, const std::vector<glm::dvec4>& halfSpaces,
-    ShearImage& image);
+    const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image);
 
   /// Called with the share that is done, 0 to 1, while chains are made.
   void setProgress(const LineIndex::Progress& progress) { this->Progress = progress; }
 
 private:
+  Acceleration possible(Acceleration wanted, VolumeIndex& index, const ProjectionSettings& settings,
+    const ShearWarp& geometry, const Cuts& cuts, const LineIndex*& lines);
   template <class T>
   void projectType(VolumeIndex& index, const ProjectionSettings& settings, Acceleration used,
     const LineIndex* lines, Frame<T>& frame);
   template <class T, class Layers>
   void walk(
     VolumeIndex& index, Frame<T>& frame, const Layers& layers, Acceleration used, TileCount& count);
+  template <class T, class Body>
+  void forSlices(VolumeIndex& index, Frame<T>& frame, int beyond, bool reversed, Body&& body);
+  template <class T, class Layers>
+  void walkRays(
+    VolumeIndex& index, Frame<T>& frame, const Layers& layers, const ProjectionSettings& settings);
   template <class T>
   void previewLines(const Frame<T>& frame, const LineIndex& lines);
   template <class T>

@@ -96,6 +96,29 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
     });
 }
 
+void RayIntervals::findCrossed(
+  const std::vector<SliceGeometry>& slices, int width, int height, const RayIntervals& within)
+{
+  this->Width = width;
+  this->First.resize(std::size_t(width) * height);
+  this->Last.resize(this->First.size());
+  vtkSMPTools::For(0, height, 16,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (int v = static_cast<int>(begin); v < end; ++v)
+      {
+        std::int16_t* const first = &this->First[std::size_t(v) * width];
+        std::int16_t* const last = &this->Last[std::size_t(v) * width];
+        findCrossedSlices(slices, v, width, first, last);
+        for (int u = 0; u < width && !within.empty(); ++u)
+        {
+          first[u] = std::max(first[u], within.first(v)[u]);
+          last[u] = std::min(last[u], within.last(v)[u]);
+        }
+      }
+    });
+}
+
 void findCrossedSlices(const std::vector<SliceGeometry>& slices, int v, int width,
   std::int16_t* first, std::int16_t* last)
 {

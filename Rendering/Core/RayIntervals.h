@@ -33,6 +33,10 @@ public:
   /// @param halfSpaces  in pixels, as ShearWarp::inPixels() gives them
   void find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces);
 
+  /// The slices that each pixel's ray crosses, of those in other intervals, if these are not empty.
+  void findCrossed(
+    const std::vector<SliceGeometry>& slices, int width, int height, const RayIntervals& within);
+
   /// For each pixel of a row the first slice and the last one; first > last: none.
   const std::int16_t* first(int v) const { return &this->First[std::size_t(v) * this->Width]; }
   const std::int16_t* last(int v) const { return &this->Last[std::size_t(v) * this->Width]; }

@@ -103,7 +103,12 @@ public:
   A slack() const { return sizeof(T) == 1 ? A(0) : 90 * std::numeric_limits<A>::epsilon() / 2; }
   A magnitude() const { return std::abs(static_cast<A>(this->Shared.range.low) - this->Base); }
 
-  /// Splats a layer's worksheets into the pixels of some rows and runs of columns.
+  /// Splats a layer's worksheets into the pixels of some rows and runs of columns, and of no
+  /// others.
+  void splatExactly(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
+  {
+    this->splat(z, v0, v1, runs, patch);
+  }
   void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
@@ -116,6 +121,27 @@ public:
           this->splatPiece(slices, first, last, columns, patch);
         });
     }
+  }
+
+  /// Calls f(k, v, pixels, worksheet) for all worksheets of some slices and of pixels in some rows
+  /// and columns, before finish(), from the first slice on or else reversed. A pixel without a
+  /// sample is NaN.
+  template <class F>
+  void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
+    Patch& patch, F&& f) const
+  {
+    this->forPieces(v0, v1, columns,
+      [&](int first, int last, const Span& piece)
+      {
+        this->clear(patch, first, last, piece);
+        const Target worksheet = this->worksheetFor(first, last, piece, patch);
+        for (int n = 0; n < slices.end - slices.begin; ++n)
+        {
+          const int k = reversed ? slices.end - 1 - n : slices.begin + n;
+          this->splatSlice(k, first, last, piece, worksheet, patch,
+            [&](int v, const Span& pixels) { f(k, v, pixels, worksheet.at(pixels.begin, v)); });
+        }
+      });
   }
 
   /// The same for all pixels of some rows, which are one run, and all slices of some layers, piece
@@ -157,7 +183,31 @@ public:
     }
   }
 
+protected:
+  /// Where worksheets go.
+  struct Target
+  {
+    A* origin; ///< of pixel (0, 0), which need not exist
+    std::ptrdiff_t stride;
+
+    A* at(int u, int v) const { return this->origin + v * this->stride + u; }
+  };
+
+  Target image() const
+  {
+    return { this->Shared.image.template row<A>(0), this->Shared.image.width };
+  }
+
 private:
+  /// Room for one worksheet.
+  Target worksheetFor(int v0, int v1, const Span& columns, Patch& patch) const
+  {
+    const std::ptrdiff_t stride = columns.end - columns.begin;
+    patch.worksheet.resize((v1 - v0) * stride * sizeof(A));
+    A* const first = reinterpret_cast<A*>(patch.worksheet.data());
+    return { first - v0 * stride - columns.begin, stride };
+  }
+
   static A baseOf(const VolumeIndex::Range& range)
   {
     // Only where the difference is exact: 64-bit integers have more bits than double.
@@ -187,25 +237,59 @@ private:
   {
     for (int k = slices.begin; k < slices.end; ++k)
     {
-      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
-      const int end = std::min(v1, slice.vEnd);
-      int first = std::max(v0, slice.vBegin);
-      while (first < end)
-      {
-        // Runs of rows that cover the same columns go together: nearly always all of them.
-        const Span span = common(columns, this->Shared.pixels(first, k));
-        int v = first + 1;
-        while (v < end && same(span, common(columns, this->Shared.pixels(v, k))))
-        {
-          ++v;
-        }
-        if (!span.empty())
+      this->forRows(k, v0, v1, columns,
+        [&](int first, int end, const Span& span)
         {
           this->load(k, v0, v1, columns, patch);
-          this->splatRows(k, first, v, span, patch);
+          this->splatRows(k, first, end, span, this->image(), patch);
+        });
+    }
+  }
+
+  /// The worksheet of slice k alone, then f(v, pixels) for its rows.
+  template <class F>
+  void splatSlice(
+    int k, int v0, int v1, const Span& columns, const Target& worksheet, Patch& patch, F&& f) const
+  {
+    const A none =
+      this->Shared.image.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
+    this->forRows(k, v0, v1, columns,
+      [&](int first, int end, const Span& span)
+      {
+        this->load(k, v0, v1, columns, patch);
+        for (int v = first; v < end; ++v)
+        {
+          std::fill(worksheet.at(span.begin, v), worksheet.at(span.end, v), none);
         }
-        first = v;
+        this->splatRows(k, first, end, span, worksheet, patch);
+        for (int v = first; v < end; ++v)
+        {
+          f(v, span);
+        }
+      });
+  }
+
+  /// Calls f(first, end, span) for rows that slice k covers in the same columns: nearly always all
+  /// of them at once.
+  template <class F>
+  void forRows(int k, int v0, int v1, const Span& columns, F&& f) const
+  {
+    const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+    const int end = std::min(v1, slice.vEnd);
+    int first = std::max(v0, slice.vBegin);
+    while (first < end)
+    {
+      const Span span = common(columns, this->Shared.pixels(first, k));
+      int v = first + 1;
+      while (v < end && same(span, common(columns, this->Shared.pixels(v, k))))
+      {
+        ++v;
       }
+      if (!span.empty())
+      {
+        f(first, v, span);
+      }
+      first = v;
     }
   }
 
@@ -280,26 +364,28 @@ protected:
     }
   }
 
-  virtual void splatRows(int k, int first, int end, const Span& span, Patch& patch) const
+  virtual void splatRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const
   {
     if (this->Shared.image.special)
     {
       for (int v = first; v < end; ++v)
       {
-        this->splatValidRow(k, v, span, patch);
+        this->splatValidRow(k, v, span, target, patch);
       }
       return;
     }
     const WorksheetLoops<A>& loops = this->Shared.kernels;
-    loops.splat(this->splatOf(k, first, end, span, patch));
+    loops.splat(this->splatOf(k, first, end, span, target, patch));
   }
 
-  Splat<A> splatOf(int k, int first, int end, const Span& span, Patch& patch) const
+  Splat<A> splatOf(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];
     Splat<A> splat;
-    splat.image = this->Shared.image.template row<A>(first) + span.begin;
-    splat.imageStride = this->Shared.image.width;
+    splat.image = target.at(span.begin, first);
+    splat.imageStride = target.stride;
     splat.width = span.end - span.begin;
     splat.height = end - first;
     splat.sourceStride = patch.rowLength;
@@ -314,7 +400,7 @@ protected:
   }
 
 private:
-  void splatValidRow(int k, int v, const Span& span, Patch& patch) const
+  void splatValidRow(int k, int v, const Span& span, const Target& target, Patch& patch) const
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];
     const A* rows[75];
@@ -325,8 +411,8 @@ private:
       rows[t] = this->voxel(patch, k, tap.slice, span.begin + tap.di, v + tap.dj);
     }
     const WorksheetLoops<A>& loops = this->Shared.kernels;
-    loops.splatValid(this->Shared.image.template row<A>(v) + span.begin, rows,
-      footprint.weights.data(), count, span.end - span.begin);
+    loops.splatValid(
+      target.at(span.begin, v), rows, footprint.weights.data(), count, span.end - span.begin);
   }
 
   /// The voxel of slice k + c that is nearest to pixel (u, v) of slice k, in the patch.
