@@ -388,10 +388,10 @@ private:
     const RayLoops<P>& loops = this->Shared.kernels;
     this->Scratch.mask.resize(this->Shared.image.width);
     this->Stack.forSamples(slices, false, v0, v1, run, this->Scratch.patch,
-      [&](int k, int v, const Span& pixels, const P* samples)
+      [&](int step, int v, const Span& pixels, const P* samples)
       {
         unsigned char* const mask = this->Scratch.mask.data();
-        if (this->Shared.cuts.findMask(k, v, pixels, mask))
+        if (this->Shared.cuts.findMask(step / StepsPerSlice, v, pixels, mask))
         {
           loops.raise(this->Shared.image.template row<P>(v) + pixels.begin, samples, mask,
             pixels.end - pixels.begin);

@@ -569,6 +569,27 @@ void climb(P* image, unsigned char* ended, P threshold, const P* samples, const 
        : climb<false>(image, ended, threshold, samples, mask, n);
 }
 
+template <bool Masked, class P>
+void note(std::int32_t* __restrict winners, std::int32_t place, const P* __restrict before,
+  const P* __restrict image, const P* __restrict samples, const unsigned char* __restrict mask,
+  std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const bool counts = (!Masked || mask[x] != 0) & (samples[x] == samples[x]);
+    const bool changed = (image[x] != before[x]) & (image[x] == image[x]);
+    winners[x] = changed | (counts & (winners[x] < 0)) ? place : winners[x];
+  }
+}
+
+template <class P>
+void note(std::int32_t* winners, std::int32_t place, const P* before, const P* image,
+  const P* samples, const unsigned char* mask, std::ptrdiff_t n)
+{
+  mask ? note<true>(winners, place, before, image, samples, mask, n)
+       : note<false>(winners, place, before, image, samples, mask, n);
+}
+
 template <bool Masked, class A>
 void shade(A* __restrict image, const Shade<A>& s, const A* __restrict samples,
   const unsigned char* __restrict mask, std::ptrdiff_t n)
@@ -667,7 +688,8 @@ template <class P>
 constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P> };
 template <class P>
 constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
-  static_cast<decltype(RayLoops<P>::climb)>(&climb<P>) };
+  static_cast<decltype(RayLoops<P>::climb)>(&climb<P>),
+  static_cast<decltype(RayLoops<P>::note)>(&note<P>) };
 template <class A>
 constexpr WorksheetLoops<A> worksheetLoops{ &splat<A>, &splatValid<A>,
   static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),

@@ -109,6 +109,10 @@ struct RayLoops
   /// The same as `raise` until ended[x]: from the threshold on, the first lower sample ends it.
   void (*climb)(P* image, unsigned char* ended, P threshold, const P* samples,
     const unsigned char* mask, std::ptrdiff_t n);
+  /// winners[x] = place for the first sample of a ray (winners[x] < 0 before) and where the image
+  /// is not what it was `before` the samples were taken.
+  void (*note)(std::int32_t* winners, std::int32_t place, const P* before, const P* image,
+    const P* samples, const unsigned char* mask, std::ptrdiff_t n);
 };
 
 /// How depth shading dims the samples of slice k in a row of pixels whose rays have slices first[x]

@@ -88,8 +88,9 @@ public:
     this->splatSlices(z, rows.end, v1, runs);
   }
 
-  /// Calls f(k, v, pixels, samples) for all samples of some slices and of pixels in some rows and
-  /// columns, in the order of the rays if they come from the first slice, or else reversed.
+  /// Calls f(step, v, pixels, samples) for all samples of some slices and of pixels in some rows
+  /// and columns, in the order of the rays if they come from the first slice, or else reversed.
+  /// Steps as in ShearImage::winners.
   template <class F>
   void forSamples(
     const Span& slices, bool reversed, int v0, int v1, const Span& columns, Patch&, F&& f) const
@@ -101,7 +102,8 @@ public:
       for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
       {
         this->forVoxels(k, v, common(columns, this->Shared.pixels(v, k)), reversed,
-          [&](const Span& pixels, const T* voxels) { f(k, v, pixels, voxels); });
+          [&](int t, const Span& pixels, const T* voxels)
+          { f(StepsPerSlice * k + t, v, pixels, voxels); });
       }
     }
   }
@@ -271,7 +273,7 @@ private:
   void splatSlice(int k, int v, const Span& span) const
   {
     this->forVoxels(k, v, span, false,
-      [&](const Span& pixels, const T* voxels)
+      [&](int, const Span& pixels, const T* voxels)
       {
         T* const image = this->Shared.image.template row<T>(v) + pixels.begin;
         const std::ptrdiff_t n = pixels.end - pixels.begin;
@@ -288,7 +290,7 @@ private:
       });
   }
 
-  /// Calls f(pixels, voxels) for each step of the rays' path in slice k.
+  /// Calls f(t, pixels, voxels) for each step of the rays' path in slice k.
   template <class F>
   void forVoxels(int k, int v, const Span& span, bool reversed, F&& f) const
   {
@@ -301,7 +303,7 @@ private:
       const Span pixels = common(span, { -path.di[t], size.x - path.di[t] });
       if (j >= 0 && j < size.y && !pixels.empty())
       {
-        f(pixels, this->Shared.voxelRow(j, k) + path.di[t] + pixels.begin);
+        f(t, pixels, this->Shared.voxelRow(j, k) + path.di[t] + pixels.begin);
       }
     }
   }

@@ -3,6 +3,7 @@
 #include "Project.h"
 
 #include "BandWalk.h"
+#include "Carry.h"
 #include "LineWalk.h"
 #include "LineWorksheets.h"
 #include "RayWalk.h"
@@ -72,6 +73,12 @@ Acceleration choose(const Experience& experience, Quality quality)
   return experience.share > worthwhileShare(quality) && experience.framesSince < patience
     ? Acceleration::Dense
     : Acceleration::Bricks;
+}
+
+/// Whether each sample has to be looked at by itself.
+bool looksAtAll(const ProjectionSettings& settings)
+{
+  return settings.reduction != Reduction::Maximum || settings.keepWinners;
 }
 
 /// Room for what a reduction keeps of each pixel.
@@ -188,6 +195,8 @@ void Projector::walkRays(
   const bool computes = Walk::computes(settings.reduction);
   RayState& state = this->Memory->rays;
   openState(frame.image, settings.reduction, state);
+  frame.image.winners.resize(
+    settings.keepWinners ? std::size_t(frame.image.width) * frame.image.height : 0);
   if (settings.reduction == Reduction::DepthShaded)
   {
     state.crossed.findCrossed(
@@ -277,7 +286,7 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   }
   const auto splat = [&](const auto& layers)
   {
-    if (settings.reduction != Reduction::Maximum)
+    if (looksAtAll(settings))
     {
       this->walkRays(index, frame, layers, settings);
       return;
@@ -297,12 +306,62 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   }
 }
 
+template <class T>
+void Projector::carryType(const VoxelArray& other, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image)
+{
+  using A = Accumulator<T>;
+  const bool preview = settings.quality == Quality::Preview;
+  const std::vector<SliceGeometry>& slices = this->Memory->slices;
+  const auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
+  const PermutedVoxels<T> voxels(other, geometry);
+  image.type = preview ? scalarTypeOf<T>() : scalarTypeOf<A>();
+  image.bytes.resize(std::size_t(image.width) * image.height * (preview ? sizeof(T) : sizeof(A)));
+  image.special = std::numeric_limits<T>::has_quiet_NaN;
+  vtkSMPTools::For(0, image.height, TileHeight,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (int v = static_cast<int>(begin); v < end; ++v)
+      {
+        const std::int32_t* const winners = &projected.winners[std::size_t(v) * projected.width];
+        for (int u = 0; u < image.width; ++u)
+        {
+          const int step = winners[u], k = std::max(step, 0) / StepsPerSlice;
+          if (preview)
+          {
+            image.row<T>(v)[u] = step < 0 ? T(0) : carriedVoxel(voxels, slices[k].path, u, v, step);
+          }
+          else
+          {
+            image.row<A>(v)[u] =
+              step < 0 ? A(0) : carriedAverage<T>(voxels, footprints[k], u, v, k);
+          }
+        }
+      }
+    });
+}
+
+void Projector::carry(const VoxelArray& other, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image)
+{
+  image.width = projected.width;
+  image.height = projected.height;
+  image.spans = projected.spans;
+  image.mask = projected.mask;
+  dispatch(other.type,
+    [&](auto* null)
+    {
+      this->carryType<std::remove_pointer_t<decltype(null)>>(
+        other, geometry, settings, projected, image);
+    });
+}
+
 /// What can be used at all of what was asked for.
 Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   const ProjectionSettings& settings, const ShearWarp& geometry, const Cuts& cuts,
   const LineIndex*& lines)
 {
-  if (settings.reduction != Reduction::Maximum || index.range().special)
+  if (looksAtAll(settings) || index.range().special)
   {
     return Acceleration::Dense;
   }
@@ -320,6 +379,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image)
 {
   Scratch& memory = *this->Memory;
+  image.winners.clear();
   memory.cuts.reset(cuts, geometry);
   findSlices(geometry, memory.slices);
   outlineImage(geometry, memory.slices, memory.cuts, image);

@@ -76,6 +76,8 @@ struct ProjectionSettings
   /// Lines without voxels that cannot be seen: the same bits, fewer chains. For Quality::Preview,
   /// else ignored.
   bool eliminateInvisible = false;
+  /// Whether the image tells its winners. Walks all samples. Not for Reduction::Mean.
+  bool keepWinners = false;
   /// Values at or below need not be told apart: the image is the larger of this (in preview rounded
   /// down to the scalar type) and what it would be otherwise.
   double floor = -std::numeric_limits<double>::infinity();
@@ -89,7 +91,8 @@ struct ProjectionSettings
       this->footprintSampling == other.footprintSampling &&
       this->instructionSet == other.instructionSet && this->acceleration == other.acceleration &&
       this->lineTolerance == other.lineTolerance &&
-      this->eliminateInvisible == other.eliminateInvisible && this->floor == other.floor;
+      this->eliminateInvisible == other.eliminateInvisible &&
+      this->keepWinners == other.keepWinners && this->floor == other.floor;
   }
 };
 
@@ -115,6 +118,15 @@ public:
   Acceleration project(VolumeIndex& index, const ShearWarp& geometry,
     const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image);
 
+  /**
+   * What another volume has where the last projected image found its winners: in preview the
+   * voxels, else the averages by the same footprints.
+   *
+   * @param other  of the same type and size as the projected volume
+   */
+  void carry(const VoxelArray& other, const ShearWarp& geometry, const ProjectionSettings& settings,
+    const ShearImage& projected, ShearImage& image);
+
   /// Called with the share that is done, 0 to 1, while chains are made.
   void setProgress(const LineIndex::Progress& progress) { this->Progress = progress; }
 
@@ -129,6 +141,9 @@ private:
     VolumeIndex& index, Frame<T>& frame, const Layers& layers, Acceleration used, TileCount& count);
   template <class T, class Body>
   void forSlices(VolumeIndex& index, Frame<T>& frame, int beyond, bool reversed, Body&& body);
+  template <class T>
+  void carryType(const VoxelArray& other, const ShearWarp& geometry,
+    const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image);
   template <class T, class Layers>
   void walkRays(
     VolumeIndex& index, Frame<T>& frame, const Layers& layers, const ProjectionSettings& settings);

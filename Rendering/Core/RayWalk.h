@@ -29,7 +29,7 @@ struct RayState
 struct RayScratch
 {
   Patch patch;
-  std::vector<unsigned char> mask, widened;
+  std::vector<unsigned char> mask, widened, before;
 };
 
 template <class Layers>
@@ -60,6 +60,10 @@ public:
   {
     ShearImage& image = this->Shared.image;
     const std::size_t begin = std::size_t(v0) * image.width, end = std::size_t(v1) * image.width;
+    if (this->Settings.keepWinners)
+    {
+      std::fill(image.winners.begin() + begin, image.winners.begin() + end, -1);
+    }
     switch (this->Settings.reduction)
     {
       case Reduction::Mean:
@@ -72,6 +76,9 @@ public:
       case Reduction::DepthShaded:
         this->fill(v0, v1, leastValue<A>());
         break;
+      case Reduction::Maximum:
+        this->fill(v0, v1, leastValue<P>());
+        break;
       default:
         std::fill(this->State.ended.begin() + begin, this->State.ended.begin() + end,
           static_cast<unsigned char>(0));
@@ -83,16 +90,20 @@ public:
   {
     const Span some = common(slices, slicesOf(this->Shared.sliceGeometry, v0, v1));
     const bool reversed =
-      this->Settings.reduction == Reduction::Local && this->Shared.geometry.reversed();
+      (this->Settings.reduction == Reduction::Local || this->Settings.keepWinners) &&
+      this->Shared.geometry.reversed();
     scratch.mask.resize(this->Shared.image.width);
     scratch.widened.resize(this->Shared.image.width * sizeof(A));
     this->Stack.forSamples(some, reversed, v0, v1, { 0, this->Shared.image.width }, scratch.patch,
-      [&](int k, int v, const Span& pixels, const P* samples)
+      [&](int step, int v, const Span& pixels, const P* samples)
       {
         const bool isCut = !this->Shared.cuts.none();
+        const int k = step / StepsPerSlice;
         if (!isCut || this->Shared.cuts.findMask(k, v, pixels, scratch.mask.data()))
         {
-          this->take(k, v, pixels, samples, isCut ? scratch.mask.data() : nullptr, scratch);
+          const Row row{ step, v, pixels, isCut ? scratch.mask.data() : nullptr };
+          this->Settings.keepWinners ? this->takeAndNote(row, samples, scratch)
+                                     : this->take(row, samples, scratch);
         }
       });
   }
@@ -122,10 +133,51 @@ private:
     std::fill(image.row<Q>(v0), image.row<Q>(v1 - 1) + image.width, empty);
   }
 
-  /// One row of one slice.
-  void take(int k, int v, const Span& pixels, const P* samples, const unsigned char* mask,
-    RayScratch& scratch) const
+  /// Samples of one step in one row.
+  struct Row
   {
+    int step, v;
+    Span pixels;
+    const unsigned char* mask;
+
+    int k() const { return this->step / StepsPerSlice; }
+    std::ptrdiff_t size() const { return this->pixels.end - this->pixels.begin; }
+  };
+
+  /// Takes samples and remembers where they have won.
+  void takeAndNote(const Row& row, const P* samples, RayScratch& scratch) const
+  {
+    computes(this->Settings.reduction) ? this->noteBeside<A>(row, samples, scratch)
+                                       : this->noteBeside<P>(row, samples, scratch);
+  }
+  template <class Q>
+  void noteBeside(const Row& row, const P* samples, RayScratch& scratch) const
+  {
+    const RayLoops<Q>& loops = this->Shared.kernels;
+    ShearImage& image = this->Shared.image;
+    Q* const pixels = image.row<Q>(row.v) + row.pixels.begin;
+    scratch.before.resize(image.width * sizeof(Q));
+    Q* const before = reinterpret_cast<Q*>(scratch.before.data());
+    std::copy(pixels, pixels + row.size(), before);
+    this->take(row, samples, scratch);
+    const Q* compared = nullptr;
+    if constexpr (std::is_same_v<P, Q>)
+    {
+      compared = samples;
+    }
+    else
+    {
+      compared = this->widened(samples, row.size(), scratch);
+    }
+    loops.note(&image.winners[std::size_t(row.v) * image.width + row.pixels.begin], row.step,
+      before, pixels, compared, row.mask, row.size());
+  }
+
+  void take(const Row& row, const P* samples, RayScratch& scratch) const
+  {
+    const int v = row.v;
+    const Span& pixels = row.pixels;
+    const unsigned char* const mask = row.mask;
     const RayLoops<P>& loops = this->Shared.kernels;
     const WorksheetLoops<A>& computing = this->Shared.kernels;
     ShearImage& image = this->Shared.image;
@@ -139,8 +191,11 @@ private:
           this->highest(s.meanHigh), this->widened(samples, n, scratch), mask, n);
         break;
       case Reduction::DepthShaded:
-        computing.shade(image.row<A>(v) + pixels.begin, this->shadeOf(k, v, pixels),
+        computing.shade(image.row<A>(v) + pixels.begin, this->shadeOf(row.k(), v, pixels),
           this->widened(samples, n, scratch), mask, n);
+        break;
+      case Reduction::Maximum:
+        loops.raise(image.row<P>(v) + pixels.begin, samples, mask, n);
         break;
       case Reduction::Minimum:
         loops.lower(image.row<P>(v) + pixels.begin, samples, mask, n);

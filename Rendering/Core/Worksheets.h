@@ -123,9 +123,9 @@ public:
     }
   }
 
-  /// Calls f(k, v, pixels, worksheet) for all worksheets of some slices and of pixels in some rows
-  /// and columns, before finish(), from the first slice on or else reversed. A pixel without a
-  /// sample is NaN.
+  /// Calls f(step, v, pixels, worksheet) for all worksheets of some slices and of pixels in some
+  /// rows and columns, before finish(), from the first slice on or else reversed. A pixel without a
+  /// sample is NaN. Steps as in ShearImage::winners.
   template <class F>
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
     Patch& patch, F&& f) const
@@ -139,7 +139,8 @@ public:
         {
           const int k = reversed ? slices.end - 1 - n : slices.begin + n;
           this->splatSlice(k, first, last, piece, worksheet, patch,
-            [&](int v, const Span& pixels) { f(k, v, pixels, worksheet.at(pixels.begin, v)); });
+            [&](int v, const Span& pixels)
+            { f(StepsPerSlice * k, v, pixels, worksheet.at(pixels.begin, v)); });
         }
       });
   }
