@@ -9,8 +9,8 @@
  * left out: it could not change a pixel. What remains is walked row by row, several tiles at a
  * time, because memory is fastest where it is read in order.
  *
- * Where rays are cut, tiles of which a layer has all samples take the same loops, and those of
- * which it has some go sample by sample.
+ * Where rays are cut, bits say which slices of a layer count for a pixel, and tiles that have none
+ * are left out.
  */
 #ifndef splattingBandWalk_h
 #define splattingBandWalk_h
@@ -42,7 +42,6 @@ struct BandScratch
   std::vector<double> scores;
   std::vector<Span> runs;
   BandCuts cuts;
-  std::vector<CutShare> shares;
   std::vector<unsigned char> mask;
   TileCount count;
 };
@@ -77,15 +76,7 @@ public:
   {
     if (!this->Shared.cuts.none())
     {
-      this->openCuts();
-      for (int z = this->Range.begin; z < this->Range.end; ++z)
-      {
-        for (int g = 0; g < this->Groups; ++g)
-        {
-          std::fill_n(this->openFlags(), this->Tiles, static_cast<unsigned char>(1));
-          this->splatFlagged(z, g);
-        }
-      }
+      this->Shared.range.special ? this->walkSamples() : this->walkHulls();
       return;
     }
     this->Scratch.runs.assign(1, { 0, this->Shared.image.width });
@@ -138,9 +129,67 @@ private:
     return reinterpret_cast<P*>(this->Scratch.minima.data()) + std::ptrdiff_t(group) * this->Tiles;
   }
 
-  void splat(int z, int v0, int v1)
+  /// Cut rays, layer by layer: groups of rows from the first to the last tile that counts. Some
+  /// groups together, for which worksheets widen the same voxels.
+  void walkHulls()
   {
-    this->Stack.splat(z, v0, v1, this->Scratch.runs, this->Scratch.patch);
+    constexpr int together = 4;
+    this->openCuts();
+    for (int first = 0; first < this->Groups; first += together)
+    {
+      const int end = std::min(first + together, this->Groups);
+      this->Stack.open(this->firstRow(first), this->firstRow(end - 1) + this->rowsOf(end - 1),
+        { 0, this->Shared.image.width }, this->Scratch.patch);
+      for (int z = this->Range.begin; z < this->Range.end; ++z)
+      {
+        for (int g = first; g < end; ++g)
+        {
+          std::fill_n(this->openFlags(), this->Tiles, static_cast<unsigned char>(1));
+          this->Scratch.runs.assign(1, this->findBits(z, g));
+          if (!this->Scratch.runs.front().empty())
+          {
+            const SliceBits bits = this->Scratch.cuts.bits();
+            this->Stack.splatOpened(z, this->firstRow(g), this->firstRow(g) + this->rowsOf(g),
+              this->Scratch.runs, bits, this->Scratch.patch);
+          }
+        }
+      }
+    }
+  }
+
+  /// The same sample by sample, for voxels that compare with nothing.
+  void walkSamples()
+  {
+    const RayLoops<P>& loops = this->Shared.kernels;
+    const Span slices{ this->Range.begin * BrickDepth,
+      std::min(this->Range.end * BrickDepth, this->Shared.geometry.size().z) };
+    this->Scratch.mask.resize(this->Shared.image.width);
+    this->Stack.forSamples(slices, false, this->V0, this->V1, { 0, this->Shared.image.width },
+      this->Scratch.patch,
+      [&](int step, int v, const Span& pixels, const P* samples)
+      {
+        unsigned char* const mask = this->Scratch.mask.data();
+        if (this->Shared.cuts.findMask(step / StepsPerSlice, v, pixels, mask))
+        {
+          loops.raise(this->Shared.image.template row<P>(v) + pixels.begin, samples, mask,
+            pixels.end - pixels.begin);
+        }
+      });
+  }
+
+  void openCuts()
+  {
+    if (!this->Shared.cuts.none())
+    {
+      this->Scratch.cuts.reset(
+        this->Shared.cuts, this->Shared.kernels, this->V0, this->V1, this->Shared.image.width);
+    }
+  }
+
+  Span findBits(int z, int group)
+  {
+    return this->Scratch.cuts.findBits(
+      slicesOfLayer(z, this->Shared.geometry.size()), group, this->Scratch.flags.data());
   }
 
   /// What each layer can add to each tile.
@@ -323,94 +372,30 @@ private:
   /// Splats the tiles of a group that have flags.
   void splatFlagged(int z, int group)
   {
-    const int v0 = this->firstRow(group), v1 = v0 + this->rowsOf(group);
+    SliceBits bits;
     if (!this->Shared.cuts.none())
     {
-      this->splatCut(z, group, v0, v1);
-      return;
+      this->findBits(z, group);
+      bits = this->Scratch.cuts.bits();
     }
-    // Small gaps cost less than a second start.
-    this->findRuns(Layers::RunUnit,
-      [](std::uint64_t tiles)
-      {
-        return tiles | ((tiles << 1) & (tiles >> 1)) | ((tiles << 1) & (tiles >> 2)) |
-          ((tiles << 2) & (tiles >> 1));
-      });
-    if (!this->Scratch.runs.empty())
-    {
-      this->splat(z, v0, v1);
-    }
-  }
-
-  void openCuts()
-  {
-    if (!this->Shared.cuts.none())
-    {
-      this->Scratch.cuts.reset(this->Shared.cuts, this->V0, this->V1, this->Shared.image.width);
-      this->Scratch.shares.resize(this->Tiles);
-    }
-  }
-
-  /// Plainly where all samples of the layer count, then sample by sample where some do.
-  void splatCut(int z, int group, int v0, int v1)
-  {
-    const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
-    std::vector<unsigned char>& flags = this->Scratch.flags;
-    std::vector<CutShare>& shares = this->Scratch.shares;
-    this->Scratch.cuts.findShares(slices, group, shares.data());
-    const auto same = [](std::uint64_t tiles) { return tiles; };
-    bool some = false;
-    for (int t = 0; t < this->Tiles; ++t)
-    {
-      some = some || (flags[t] && shares[t] == CutShare::Some);
-      shares[t] = flags[t] ? shares[t] : CutShare::None;
-      flags[t] = shares[t] == CutShare::All;
-    }
-    this->findRuns(TileWidth, same);
-    if (!this->Scratch.runs.empty())
-    {
-      this->Stack.splatExactly(z, v0, v1, this->Scratch.runs, this->Scratch.patch);
-    }
-    if (some)
-    {
-      std::transform(shares.begin(), shares.end(), flags.begin(),
-        [](CutShare share) { return static_cast<unsigned char>(share == CutShare::Some); });
-      this->findRuns(TileWidth, same);
-      for (const Span& run : this->Scratch.runs)
-      {
-        this->splatSamples(slices, v0, v1, run);
-      }
-    }
-  }
-
-  void splatSamples(const Span& slices, int v0, int v1, const Span& run)
-  {
-    const RayLoops<P>& loops = this->Shared.kernels;
-    this->Scratch.mask.resize(this->Shared.image.width);
-    this->Stack.forSamples(slices, false, v0, v1, run, this->Scratch.patch,
-      [&](int step, int v, const Span& pixels, const P* samples)
-      {
-        unsigned char* const mask = this->Scratch.mask.data();
-        if (this->Shared.cuts.findMask(step / StepsPerSlice, v, pixels, mask))
-        {
-          loops.raise(this->Shared.image.template row<P>(v) + pixels.begin, samples, mask,
-            pixels.end - pixels.begin);
-        }
-      });
-  }
-
-  /// The runs of tiles with flags, which `join` may add some to.
-  template <class Join>
-  void findRuns(int unit, Join&& join)
-  {
     this->Scratch.runs.clear();
     for (int first = 0; first < this->Tiles; first += Word)
     {
-      this->addRuns(first, join(packed(this->Scratch.flags.data() + first)), unit);
+      std::uint64_t tiles = packed(this->Scratch.flags.data() + first);
+      // Small gaps cost less than a second start.
+      tiles |= ((tiles << 1) & (tiles >> 1)) | ((tiles << 1) & (tiles >> 2)) |
+        ((tiles << 2) & (tiles >> 1));
+      this->addRuns(first, tiles);
+    }
+    if (!this->Scratch.runs.empty())
+    {
+      const int v0 = this->firstRow(group);
+      this->Stack.splat(
+        z, v0, v0 + this->rowsOf(group), this->Scratch.runs, bits, this->Scratch.patch);
     }
   }
 
-  void addRuns(int first, std::uint64_t tiles, int unit)
+  void addRuns(int first, std::uint64_t tiles)
   {
     while (tiles)
     {
@@ -419,6 +404,7 @@ private:
       const int length = rest ? trailingZeros(rest) : 64;
       tiles = begin + length < 64 ? tiles >> (begin + length) << (begin + length) : 0;
       this->Scratch.count.splatted += length;
+      constexpr int unit = Layers::RunUnit;
       const int u = (first + begin) * TileWidth;
       this->Scratch.runs.push_back({ u / unit * unit,
         std::min((u + length * TileWidth + unit - 1) / unit * unit, this->Shared.image.width) });

@@ -19,6 +19,12 @@ struct SliceRegions
   std::array<int, 2> u, v;      ///< where the middle region begins, and the highest one
   std::array<unsigned, 3> rows; ///< for each region along v: bit i is region i along u
 
+  /// Those of region i along u.
+  Span pixels(int i) const
+  {
+    constexpr int far = 1 << 30;
+    return { i == 0 ? -far : this->u[i - 1], i == 2 ? far : this->u[i] };
+  }
   unsigned regionsOfRow(int row) const
   {
     return this->rows[row < this->v[0] ? 0 : row < this->v[1] ? 1 : 2];

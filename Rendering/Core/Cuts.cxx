@@ -4,17 +4,6 @@
 
 namespace splatting
 {
-namespace
-{
-/// The regions along u that pixels [begin, end) meet, as bits.
-unsigned regionsMet(const SliceRegions& regions, int begin, int end)
-{
-  return (begin < regions.u[0] ? 1u : 0u) |
-    (begin < regions.u[1] && end > regions.u[0] && regions.u[0] < regions.u[1] ? 2u : 0u) |
-    (end > regions.u[1] ? 4u : 0u);
-}
-}
-
 void CutMap::reset(const Cuts& cuts, const ShearWarp& geometry)
 {
   this->Source = &cuts;
@@ -64,81 +53,153 @@ bool CutMap::findMask(int k, int v, const Span& pixels, unsigned char* mask) con
   return any != 0 && shown != 0;
 }
 
-void BandCuts::reset(const CutMap& map, int v0, int v1, int width)
+void BandCuts::reset(const CutMap& map, const CutLoops& loops, int v0, int v1, int width)
 {
   this->Map = &map;
+  this->Loops = &loops;
   this->V0 = v0;
   this->V1 = v1;
   this->Width = width;
   this->Tiles = (width + TileWidth - 1) / TileWidth;
-  this->Intervals.clear();
-  const RayIntervals& intervals = map.Source->intervals;
-  if (intervals.empty())
-  {
-    return;
-  }
+  this->Stride = std::ptrdiff_t(this->Tiles) * TileWidth;
+  this->Shares.resize(this->Tiles);
+  this->Any.resize(this->Tiles);
+  this->Bits.resize(this->Stride * (v1 - v0));
+  const RayIntervals& intervals = map.source().intervals;
   const int groups = (v1 - v0 + TileHeight - 1) / TileHeight;
-  constexpr std::int16_t low = std::numeric_limits<std::int16_t>::lowest();
-  constexpr std::int16_t high = std::numeric_limits<std::int16_t>::max();
-  this->Intervals.assign(std::size_t(groups) * this->Tiles, Extremes{ high, low, high, low });
-  for (int v = v0; v < v1; ++v)
+  this->Extremes.resize(intervals.empty() ? 0 : std::size_t(groups) * this->Tiles);
+  for (int g = 0; g < groups && !intervals.empty(); ++g)
   {
-    const std::int16_t* const first = intervals.first(v);
-    const std::int16_t* const last = intervals.last(v);
-    Extremes* const row = &this->Intervals[std::size_t((v - v0) / TileHeight) * this->Tiles];
-    for (int u = 0; u < width; ++u)
-    {
-      Extremes& tile = row[u / TileWidth];
-      tile.leastFirst = std::min(tile.leastFirst, first[u]);
-      tile.greatestFirst = std::max(tile.greatestFirst, first[u]);
-      tile.leastLast = std::min(tile.leastLast, last[u]);
-      tile.greatestLast = std::max(tile.greatestLast, last[u]);
-    }
+    const int v = v0 + g * TileHeight;
+    loops.tileExtremes(intervals.first(v), intervals.last(v), width, std::min(TileHeight, v1 - v),
+      width, &this->Extremes[std::size_t(g) * this->Tiles]);
   }
 }
 
-void BandCuts::findShares(const Span& slices, int group, CutShare* shares) const
+Span BandCuts::findBits(const Span& slices, int group, unsigned char* flags)
 {
-  if (this->Intervals.empty())
+  this->findShares(slices, group);
+  const int v0 = this->V0 + group * TileHeight, v1 = std::min(v0 + TileHeight, this->V1);
+  Span hull;
+  unsigned char* const rows = this->Bits.data() + (v0 - this->V0) * this->Stride;
+  for (int t = 0, end = 0; t < this->Tiles; t = end)
   {
-    std::fill_n(shares, this->Tiles, CutShare::All);
+    // Tiles of the same kind side by side.
+    const unsigned char share = flags[t] ? this->Shares[t] : static_cast<unsigned char>(None);
+    for (end = t + 1; end < this->Tiles &&
+         (flags[end] ? this->Shares[end] : static_cast<unsigned char>(None)) == share;
+         ++end)
+    {
+    }
+    const Span pixels{ t * TileWidth, std::min(end * TileWidth, this->Width) };
+    std::fill(flags + t, flags + end, static_cast<unsigned char>(share != None));
+    hull = share == None ? hull : Span{ hull.empty() ? pixels.begin : hull.begin, pixels.end };
+    for (int v = v0; v < v1; ++v)
+    {
+      unsigned char* const bits = rows + (v - v0) * this->Stride + pixels.begin;
+      if (share == Some)
+      {
+        this->findSome(slices, v, pixels, bits);
+      }
+      else
+      {
+        std::fill_n(
+          bits, pixels.end - pixels.begin, static_cast<unsigned char>(share == None ? 0 : 0xff));
+      }
+    }
+  }
+  return hull;
+}
+
+void BandCuts::findSome(const Span& slices, int v, const Span& pixels, unsigned char* bits) const
+{
+  const RayIntervals& intervals = this->Map->source().intervals;
+  const std::ptrdiff_t n = pixels.end - pixels.begin;
+  if (intervals.empty())
+  {
+    std::fill_n(bits, n, static_cast<unsigned char>(0xff));
   }
   else
   {
-    const Extremes* const tiles = &this->Intervals[std::size_t(group) * this->Tiles];
-    for (int t = 0; t < this->Tiles; ++t)
-    {
-      const Extremes& e = tiles[t];
-      shares[t] = slices.end <= e.leastFirst || slices.begin > e.greatestLast ? CutShare::None
-        : slices.begin >= e.greatestFirst && slices.end - 1 <= e.leastLast    ? CutShare::All
-                                                                              : CutShare::Some;
-    }
+    this->Loops->sliceBits(intervals.first(v) + pixels.begin, intervals.last(v) + pixels.begin,
+      slices.begin, slices.end - slices.begin, bits, n);
   }
-  if (!this->Map->Regions.empty())
+  for (int k = slices.begin; k < slices.end && this->Map->crops(); ++k)
   {
-    this->cropShares(slices, group, shares);
+    const SliceRegions& regions = this->Map->regions(k);
+    const unsigned shown = regions.regionsOfRow(v);
+    for (int i = 0; i < 3; ++i)
+    {
+      if (!(shown >> i & 1u))
+      {
+        const Span region = common(regions.pixels(i), pixels);
+        for (int u = region.begin; u < region.end; ++u)
+        {
+          bits[u - pixels.begin] &= static_cast<unsigned char>(~(1u << (k - slices.begin)));
+        }
+      }
+    }
   }
 }
 
-void BandCuts::cropShares(const Span& slices, int group, CutShare* shares) const
+void BandCuts::findShares(const Span& slices, int group)
 {
-  const int v0 = this->V0 + group * TileHeight, v1 = std::min(v0 + TileHeight, this->V1);
-  for (int t = 0; t < this->Tiles; ++t)
+  if (this->Extremes.empty())
   {
-    const int u0 = t * TileWidth, u1 = std::min(u0 + TileWidth, this->Width);
-    bool any = false, all = true;
-    for (int k = slices.begin; k < slices.end; ++k)
+    std::fill(this->Shares.begin(), this->Shares.end(), static_cast<unsigned char>(All));
+  }
+  else
+  {
+    const TileExtremes* const tiles = &this->Extremes[std::size_t(group) * this->Tiles];
+    for (int t = 0; t < this->Tiles; ++t)
     {
-      const SliceRegions& regions = this->Map->Regions[k];
-      const unsigned met = regionsMet(regions, u0, u1);
-      for (int v = v0; v < v1; ++v)
+      const TileExtremes& e = tiles[t];
+      const bool any = slices.end > e.leastFirst && slices.begin <= e.greatestLast;
+      const bool all = slices.begin >= e.greatestFirst && slices.end - 1 <= e.leastLast;
+      this->Shares[t] = static_cast<unsigned char>(all ? All : any ? Some : None);
+    }
+  }
+  if (this->Map->crops())
+  {
+    const int v0 = this->V0 + group * TileHeight;
+    this->cropShares(slices, v0, std::min(v0 + TileHeight, this->V1));
+  }
+}
+
+void BandCuts::cropShares(const Span& slices, int v0, int v1)
+{
+  std::fill(this->Any.begin(), this->Any.end(), static_cast<unsigned char>(0));
+  for (int k = slices.begin; k < slices.end; ++k)
+  {
+    const SliceRegions& regions = this->Map->regions(k);
+    unsigned any = 0, all = 7;
+    for (int v = v0; v < v1; ++v)
+    {
+      any |= regions.regionsOfRow(v);
+      all &= regions.regionsOfRow(v);
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      const Span pixels = common(regions.pixels(i), { 0, this->Width });
+      if (pixels.empty())
       {
-        const unsigned shown = regions.regionsOfRow(v) & met;
-        any = any || shown != 0;
-        all = all && shown == met;
+        continue;
+      }
+      const int begin = pixels.begin / TileWidth, end = (pixels.end - 1) / TileWidth + 1;
+      if (any >> i & 1u)
+      {
+        std::fill(
+          this->Any.begin() + begin, this->Any.begin() + end, static_cast<unsigned char>(1));
+      }
+      for (int t = begin; t < end && !(all >> i & 1u); ++t)
+      {
+        this->Shares[t] = std::min<unsigned char>(this->Shares[t], Some);
       }
     }
-    shares[t] = !any ? CutShare::None : all ? shares[t] : std::min(shares[t], CutShare::Some);
+  }
+  for (int t = 0; t < this->Tiles; ++t)
+  {
+    this->Shares[t] = this->Any[t] ? this->Shares[t] : static_cast<unsigned char>(None);
   }
 }
 }

@@ -34,44 +34,61 @@ public:
   void reset(const Cuts& cuts, const ShearWarp& geometry);
   bool none() const { return this->Source->none(); }
   const Cuts& source() const { return *this->Source; }
+  bool crops() const { return !this->Regions.empty(); }
+  const SliceRegions& regions(int k) const { return this->Regions[k]; }
 
   /// mask[x] = whether the sample of slice k counts for pixel pixels.begin + x of row v. False if
   /// there is none.
   bool findMask(int k, int v, const Span& pixels, unsigned char* mask) const;
 
 private:
-  friend class BandCuts;
   const Cuts* Source = nullptr;
   std::vector<SliceRegions> Regions; // of all slices, if cropping cuts
 };
 
-/// How much of a tile and some slices counts.
-enum class CutShare : unsigned char
+/// For each pixel of some rows, which of a few slices count: bit s of a byte is the s-th slice.
+struct SliceBits
 {
-  None,
-  Some,
-  All
+  const unsigned char* origin = nullptr; ///< of pixel (0, 0), which need not exist
+  std::ptrdiff_t stride = 0;
+
+  const unsigned char* at(int u, int v) const { return this->origin + v * this->stride + u; }
 };
 
-/// The same for the tiles of a band of rows: groups of TileHeight rows, TileWidth pixels each.
+/// The cuts of a band of rows, tile by tile, in groups of TileHeight rows. A thread's work space.
 class BandCuts
 {
 public:
-  void reset(const CutMap& map, int v0, int v1, int width);
-  /// The shares of all tiles of a group.
-  void findShares(const Span& slices, int group, CutShare* shares) const;
+  void reset(const CutMap& map, const CutLoops& loops, int v0, int v1, int width);
+
+  /**
+   * Finds the bits of a group's rows for the slices of a layer. Tiles without a flag, and those of
+   * which nothing counts, which lose theirs, get no bits.
+   *
+   * @return the pixels from the first to the last tile with a flag
+   */
+  Span findBits(const Span& slices, int group, unsigned char* flags);
+  /// Of all groups whose bits have been found.
+  SliceBits bits() const { return { this->Bits.data() - this->V0 * this->Stride, this->Stride }; }
 
 private:
-  /// The least and greatest first and last slices of a tile's pixels.
-  struct Extremes
+  /// How much of a tile's samples counts.
+  enum Share : unsigned char
   {
-    std::int16_t leastFirst, greatestFirst, leastLast, greatestLast;
+    None,
+    Some,
+    All
   };
-  void cropShares(const Span& slices, int group, CutShare* shares) const;
+  void findShares(const Span& slices, int group);
+  void cropShares(const Span& slices, int v0, int v1);
+  void findSome(const Span& slices, int v, const Span& pixels, unsigned char* bits) const;
 
   const CutMap* Map = nullptr;
+  const CutLoops* Loops = nullptr;
   int V0 = 0, V1 = 0, Width = 0, Tiles = 0;
-  std::vector<Extremes> Intervals;
+  std::ptrdiff_t Stride = 0;
+  std::vector<TileExtremes> Extremes;
+  std::vector<unsigned char> Shares, Any, Bits;
 };
 }
 

@@ -60,6 +60,10 @@ struct Sweep
   Span valid; ///< the pixels that all rows have voxels for
   const Rim* rims[2];
   int rimCount;
+  /// Where rays are cut, pixel x takes voxels of row r if bits[x] & bit[r]; else nullptr.
+  const unsigned char* bits;
+  std::ptrdiff_t bitsStride;
+  unsigned char bit[MostRows];
 };
 
 /// Loops over voxels of type T.
@@ -148,6 +152,27 @@ struct Splat
   std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
   SplatPart<A> parts[3];
   int partCount;
+  /// Where rays are cut, pixel x changes if bits[x] & bit; else nullptr.
+  const unsigned char* bits;
+  std::ptrdiff_t bitsStride;
+  unsigned char bit;
+};
+
+/// The least and greatest first and last slices that the rays of a tile are cut to.
+struct TileExtremes
+{
+  std::int16_t leastFirst, greatestFirst, leastLast, greatestLast;
+};
+
+/// Loops over the slices that rays are cut to.
+struct CutLoops
+{
+  /// Bit s of bits[x] = whether first[x] <= k + s <= last[x], for s from 0 to `count` - 1.
+  void (*sliceBits)(const std::int16_t* first, const std::int16_t* last, int k, int count,
+    unsigned char* bits, std::ptrdiff_t n);
+  /// The extremes of all tiles of some rows of n pixels.
+  void (*tileExtremes)(const std::int16_t* first, const std::int16_t* last, std::ptrdiff_t stride,
+    int rows, std::ptrdiff_t n, TileExtremes* tiles);
 };
 
 /// Loops over worksheets and images of type A (float or double).
@@ -184,7 +209,8 @@ struct WorksheetLoops
 };
 
 struct Kernels
-  : VoxelLoops<std::int8_t>
+  : CutLoops
+  , VoxelLoops<std::int8_t>
   , VoxelLoops<std::uint8_t>
   , VoxelLoops<std::int16_t>
   , VoxelLoops<std::uint16_t>

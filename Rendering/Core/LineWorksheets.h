@@ -179,7 +179,7 @@ private:
     A worksheet[StripHeight];
     std::fill_n(worksheet, StripHeight, leastValue<A>());
     const Splat<A> splat = this->splatOf(
-      k, v0, v1, { run.begin, run.begin + 1 }, { worksheet - v0 - run.begin, 1 }, patch);
+      k, v0, v1, { run.begin, run.begin + 1 }, { worksheet - v0 - run.begin, 1, {}, 0 }, patch);
     const WorksheetLoops<A>& loops = this->Shared.kernels;
     loops.splat(splat);
     for (int v = v0; v < v1; ++v)

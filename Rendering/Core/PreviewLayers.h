@@ -8,6 +8,7 @@
 #ifndef splattingPreviewLayers_h
 #define splattingPreviewLayers_h
 
+#include "Cuts.h"
 #include "Frame.h"
 #include "Patch.h"
 
@@ -65,27 +66,20 @@ public:
 
   const Window& window(int layer) const { return this->Layers[layer].window; }
 
-  /// Takes a layer's voxels into the pixels of some rows and runs of columns, and perhaps into some
-  /// beside them.
-  void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch&) const
+  /// Takes a layer's voxels into the pixels of some rows and runs of columns, as far as the bits
+  /// (if there are any) say.
+  void splat(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
-    this->splatLayer(z, v0, v1, runs, BrickDepth);
+    this->splatLayer(z, v0, v1, runs, BrickDepth, bits, patch);
   }
 
-  /// The same for no other pixels.
-  void splatExactly(int z, int v0, int v1, const std::vector<Span>& runs, Patch&) const
+  /// The same for all layers of some rows; to be opened once.
+  void open(int, int, const Span&, Patch&) const {}
+  void splatOpened(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
-    const Layer& layer = this->Layers[z];
-    const Span rows = this->image().special ? Span{ v1, v1 } : this->wholeRows(layer, v0, v1);
-    this->splatSlices(z, v0, rows.begin, runs);
-    for (int v = rows.begin; v < rows.end; ++v)
-    {
-      for (const Span& run : runs)
-      {
-        this->splatRun(z, v, run);
-      }
-    }
-    this->splatSlices(z, rows.end, v1, runs);
+    this->splat(z, v0, v1, runs, bits, patch);
   }
 
   /// Calls f(step, v, pixels, samples) for all samples of some slices and of pixels in some rows
@@ -111,7 +105,8 @@ public:
   /// The same for all pixels of some rows, which are one run, and all voxels of some layers, in the
   /// order of memory: slice after slice, or, where rows of all slices lie side by side, a few rows
   /// through all of them.
-  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch&) const
+  void splatAll(
+    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const
   {
     const Slices& slices = this->Shared.slices;
     const bool slicesFirst = slices.rowStride <= slices.sliceStride;
@@ -124,7 +119,7 @@ public:
     {
       for (int z = layers.begin; z < layers.end; ++z)
       {
-        this->splatLayer(z, v, std::min(v + height, v1), all, sideBySide);
+        this->splatLayer(z, v, std::min(v + height, v1), all, sideBySide, {}, patch);
       }
     }
   }
@@ -141,27 +136,21 @@ private:
 
   const ShearImage& image() const { return this->Shared.image; }
 
-  /// The rows whose rays cross rows of voxels only that exist.
-  Span wholeRows(const Layer& layer, int v0, int v1) const
-  {
-    const int begin = std::clamp(-layer.window.jMin, v0, v1);
-    return { begin, std::clamp(this->Shared.geometry.size().y - layer.window.jMax, begin, v1) };
-  }
-
-  void splatLayer(int z, int v0, int v1, const std::vector<Span>& runs, int sideBySide) const
+  void splatLayer(int z, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
+    const SliceBits& bits, Patch& patch) const
   {
     const Layer& layer = this->Layers[z];
     // Rows whose voxels all exist, and beside which there are others: a rim reads a few voxels
     // beyond its row.
-    const bool plain = layer.rimsFit && !this->image().special;
+    const bool plain = layer.rimsFit && !this->Shared.range.special;
     const int first = plain ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
     const int last = std::clamp(this->Shared.geometry.size().y - 1 - layer.window.jMax, first, v1);
-    this->splatSlices(z, v0, first, runs);
+    this->splatSlices(z, v0, first, runs, bits, patch);
     if (first < last)
     {
-      this->sweep(layer, first, last, runs, sideBySide);
+      this->sweep(layer, first, last, runs, sideBySide, bits);
     }
-    this->splatSlices(z, last, v1, runs);
+    this->splatSlices(z, last, v1, runs, bits, patch);
   }
 
   void findRims(Layer& layer) const
@@ -191,8 +180,8 @@ private:
 
   /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns. So many slices
   /// are read side by side.
-  void sweep(
-    const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide) const
+  void sweep(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
+    const SliceBits& bits) const
   {
     for (int first = 0, end = 0; first < layer.tapCount; first = end)
     {
@@ -200,14 +189,16 @@ private:
       {
         ++end;
       }
-      this->sweepTaps(layer, first, end, v0, v1, runs);
+      this->sweepTaps(layer, first, end, v0, v1, runs, bits);
     }
   }
 
   void sweepTaps(const Layer& layer, int firstTap, int endTap, int v0, int v1,
-    const std::vector<Span>& runs) const
+    const std::vector<Span>& runs, const SliceBits& bits) const
   {
     Sweep<T> sweep;
+    sweep.bits = bits.origin ? bits.at(0, v0) : nullptr;
+    sweep.bitsStride = bits.stride;
     sweep.image = this->Shared.image.template row<T>(v0);
     sweep.imageStride = this->Shared.image.width;
     sweep.height = v1 - v0;
@@ -216,6 +207,7 @@ private:
     for (int t = firstTap; t < endTap; ++t)
     {
       const Layer::Tap& tap = layer.taps[t];
+      sweep.bit[t - firstTap] = static_cast<unsigned char>(1u << tap.k % BrickDepth);
       sweep.rows[t - firstTap] = this->Shared.voxelRow(v0 + tap.dj, tap.k) + tap.di;
     }
     sweep.runs = runs.data();
@@ -250,14 +242,8 @@ private:
   }
 
   /// Any rows, slice by slice.
-  void splatSlices(int z, int v0, int v1, const std::vector<Span>& runs) const
-  {
-    for (const Span& run : runs)
-    {
-      this->splatSlices(z, v0, v1, run);
-    }
-  }
-  void splatSlices(int z, int v0, int v1, const Span& run) const
+  void splatSlices(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
     for (int k = slices.begin; k < slices.end; ++k)
@@ -265,22 +251,35 @@ private:
       const SliceGeometry& slice = this->Shared.sliceGeometry[k];
       for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
       {
-        this->splatSlice(k, v, common(run, this->Shared.pixels(v, k)));
+        for (const Span& run : runs)
+        {
+          this->splatSlice(k, v, common(run, this->Shared.pixels(v, k)), bits, patch);
+        }
       }
     }
   }
 
-  void splatSlice(int k, int v, const Span& span) const
+  void splatSlice(int k, int v, const Span& span, const SliceBits& bits, Patch& patch) const
   {
+    const unsigned char* mask = nullptr;
+    if (bits.origin && !span.empty())
+    {
+      patch.worksheet.resize(this->image().width);
+      const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
+      std::transform(bits.at(span.begin, v), bits.at(span.end, v),
+        patch.worksheet.data() + span.begin,
+        [bit](unsigned char b) { return static_cast<unsigned char>(b & bit); });
+      mask = patch.worksheet.data();
+    }
     this->forVoxels(k, v, span, false,
       [&](int, const Span& pixels, const T* voxels)
       {
         T* const image = this->Shared.image.template row<T>(v) + pixels.begin;
         const std::ptrdiff_t n = pixels.end - pixels.begin;
-        if (this->image().special)
+        if (mask || this->Shared.range.special)
         {
           const RayLoops<T>& loops = this->Shared.kernels;
-          loops.raise(image, voxels, nullptr, n);
+          loops.raise(image, voxels, mask ? mask + pixels.begin : nullptr, n);
         }
         else
         {
@@ -306,29 +305,6 @@ private:
         f(t, pixels, this->Shared.voxelRow(j, k) + path.di[t] + pixels.begin);
       }
     }
-  }
-
-  /// One run of a row whose rows of voxels all exist: together where all columns do as well.
-  void splatRun(int z, int v, const Span& run) const
-  {
-    const Layer& layer = this->Layers[z];
-    const Span valid = common(run, layer.valid);
-    if (valid.empty())
-    {
-      this->splatSlices(z, v, v + 1, run);
-      return;
-    }
-    const T* rows[MostRows];
-    for (int t = 0; t < layer.tapCount; ++t)
-    {
-      const typename Layer::Tap& tap = layer.taps[t];
-      rows[t] = this->Shared.voxelRow(v + tap.dj, tap.k) + tap.di + valid.begin;
-    }
-    const VoxelLoops<T>& loops = this->Shared.kernels;
-    loops.maximum(this->Shared.image.template row<T>(v) + valid.begin, rows, layer.tapCount,
-      valid.end - valid.begin);
-    this->splatSlices(z, v, v + 1, { run.begin, valid.begin });
-    this->splatSlices(z, v, v + 1, { valid.end, run.end });
   }
 
   const Frame<T>& Shared;

@@ -7,6 +7,7 @@
 #ifndef splattingWorksheets_h
 #define splattingWorksheets_h
 
+#include "Cuts.h"
 #include "Footprint.h"
 #include "Frame.h"
 #include "Patch.h"
@@ -103,13 +104,10 @@ public:
   A slack() const { return sizeof(T) == 1 ? A(0) : 90 * std::numeric_limits<A>::epsilon() / 2; }
   A magnitude() const { return std::abs(static_cast<A>(this->Shared.range.low) - this->Base); }
 
-  /// Splats a layer's worksheets into the pixels of some rows and runs of columns, and of no
-  /// others.
-  void splatExactly(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
-  {
-    this->splat(z, v0, v1, runs, patch);
-  }
-  void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
+  /// Splats a layer's worksheets into the pixels of some rows and runs of columns, as far as the
+  /// bits (if there are any) say.
+  void splat(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
     for (std::size_t n = 0; n < runs.size(); ++n)
@@ -117,9 +115,27 @@ public:
       this->forPieces(v0, v1, runs[n],
         [&](int first, int last, const Span& columns)
         {
-          this->clear(patch, first, last, columns);
-          this->splatPiece(slices, first, last, columns, patch);
+          this->open(first, last, columns, patch);
+          this->splatPiece(slices, first, last, columns, bits, patch);
         });
+    }
+  }
+
+  /// The same for some of the rows and columns that have been opened together: layer by layer, so
+  /// that voxels are widened once.
+  void open(int v0, int v1, const Span& columns, Patch& patch) const
+  {
+    this->clear(patch, v0, v1, columns);
+    patch.rows = { v0, v1 };
+    patch.pixels = columns;
+  }
+  void splatOpened(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  {
+    const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
+    for (const Span& run : runs)
+    {
+      this->splatPiece(slices, v0, v1, run, bits, patch);
     }
   }
 
@@ -133,7 +149,7 @@ public:
     this->forPieces(v0, v1, columns,
       [&](int first, int last, const Span& piece)
       {
-        this->clear(patch, first, last, piece);
+        this->open(first, last, piece, patch);
         const Target worksheet = this->worksheetFor(first, last, piece, patch);
         for (int n = 0; n < slices.end - slices.begin; ++n)
         {
@@ -155,8 +171,8 @@ public:
     this->forPieces(v0, v1, all.front(),
       [&](int first, int last, const Span& columns)
       {
-        this->clear(patch, first, last, columns);
-        this->splatPiece(slices, first, last, columns, patch);
+        this->open(first, last, columns, patch);
+        this->splatPiece(slices, first, last, columns, {}, patch);
       });
   }
 
@@ -190,13 +206,15 @@ protected:
   {
     A* origin; ///< of pixel (0, 0), which need not exist
     std::ptrdiff_t stride;
+    SliceBits bits = {}; ///< which pixels change, by one of them; if there are any
+    unsigned char bit = 0;
 
     A* at(int u, int v) const { return this->origin + v * this->stride + u; }
   };
 
   Target image() const
   {
-    return { this->Shared.image.template row<A>(0), this->Shared.image.width };
+    return { this->Shared.image.template row<A>(0), this->Shared.image.width, {}, 0 };
   }
 
 private:
@@ -206,7 +224,7 @@ private:
     const std::ptrdiff_t stride = columns.end - columns.begin;
     patch.worksheet.resize((v1 - v0) * stride * sizeof(A));
     A* const first = reinterpret_cast<A*>(patch.worksheet.data());
-    return { first - v0 * stride - columns.begin, stride };
+    return { first - v0 * stride - columns.begin, stride, {}, 0 };
   }
 
   static A baseOf(const VolumeIndex::Range& range)
@@ -234,15 +252,19 @@ private:
     patch.resize<A>(columns.end - columns.begin + this->Reach.columns, v1 - v0 + this->Reach.rows);
   }
 
-  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, Patch& patch) const
+  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const SliceBits& bits,
+    Patch& patch) const
   {
     for (int k = slices.begin; k < slices.end; ++k)
     {
       this->forRows(k, v0, v1, columns,
         [&](int first, int end, const Span& span)
         {
-          this->load(k, v0, v1, columns, patch);
-          this->splatRows(k, first, end, span, this->image(), patch);
+          this->load(k, patch);
+          Target target = this->image();
+          target.bits = bits;
+          target.bit = static_cast<unsigned char>(1u << k % BrickDepth);
+          this->splatRows(k, first, end, span, target, patch);
         });
     }
   }
@@ -253,11 +275,11 @@ private:
     int k, int v0, int v1, const Span& columns, const Target& worksheet, Patch& patch, F&& f) const
   {
     const A none =
-      this->Shared.image.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
+      this->Shared.range.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
     this->forRows(k, v0, v1, columns,
       [&](int first, int end, const Span& span)
       {
-        this->load(k, v0, v1, columns, patch);
+        this->load(k, patch);
         for (int v = first; v < end; ++v)
         {
           std::fill(worksheet.at(span.begin, v), worksheet.at(span.end, v), none);
@@ -300,14 +322,14 @@ private:
   }
 
   /// Widens the voxels that worksheet k reads, as far as the patch does not have them.
-  void load(int k, int v0, int v1, const Span& columns, Patch& patch) const
+  void load(int k, Patch& patch) const
   {
     const int last = this->Shared.geometry.size().z - 1;
     for (int s = std::max(k - this->Depth, 0); s <= std::min(k + this->Depth, last); ++s)
     {
       if (patch.sheet(s).slice != s)
       {
-        patch.sheet(s) = this->sheetOf(s, v0, v1, columns);
+        patch.sheet(s) = this->sheetOf(s, patch.rows.begin, patch.rows.end, patch.pixels);
         this->loadSheet(patch.sheet(s), patch);
       }
     }
@@ -368,7 +390,7 @@ protected:
   virtual void splatRows(
     int k, int first, int end, const Span& span, const Target& target, Patch& patch) const
   {
-    if (this->Shared.image.special)
+    if (this->Shared.range.special)
     {
       for (int v = first; v < end; ++v)
       {
@@ -387,6 +409,9 @@ protected:
     Splat<A> splat;
     splat.image = target.at(span.begin, first);
     splat.imageStride = target.stride;
+    splat.bits = target.bits.origin ? target.bits.at(span.begin, first) : nullptr;
+    splat.bitsStride = target.bits.stride;
+    splat.bit = target.bit;
     splat.width = span.end - span.begin;
     splat.height = end - first;
     splat.sourceStride = patch.rowLength;
