@@ -397,17 +397,22 @@ vtkImageData* ScalarSource::Image()
   {
     return this->StandIn;
   }
-  const glm::dmat4& m = this->Place.grid.indexToPhysical;
-  const glm::ivec3& size = this->Place.grid.dimensions;
+  const VolumeGrid& grid = this->Place.grid;
+  const glm::ivec3 last = grid.dimensions - 1;
+  glm::ivec3 first(0);
   this->StandIn = vtkSmartPointer<vtkImageData>::New();
-  this->StandIn->SetDimensions(size.x, size.y, size.z);
-  this->StandIn->SetOrigin(m[3][0], m[3][1], m[3][2]);
-  this->StandIn->SetSpacing(m[0][0], m[1][1], m[2][2]);
   if (auto* const image = vtkImageData::SafeDownCast(this->Examined.input))
   {
-    this->StandIn->SetSpacing(image->GetSpacing());
+    // Cropping is about the image's own axes: extent and direction stay what they are.
+    const int* const extent = image->GetExtent();
+    first = { extent[0], extent[2], extent[4] };
     this->StandIn->SetDirectionMatrix(image->GetDirectionMatrix());
   }
+  const glm::dvec4 origin = grid.indexToPhysical * glm::dvec4(-glm::dvec3(first), 1.0);
+  this->StandIn->SetExtent(
+    first.x, first.x + last.x, first.y, first.y + last.y, first.z, first.z + last.z);
+  this->StandIn->SetOrigin(origin.x, origin.y, origin.z);
+  this->StandIn->SetSpacing(grid.spacing.x, grid.spacing.y, grid.spacing.z);
   this->StandInCopy = nullptr;
   vtkDataArray* scalars = this->Examined.scalars;
   if (!this->IsInputArray())

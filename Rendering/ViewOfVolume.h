@@ -9,9 +9,9 @@
 #include "View.h"
 #include "VolumeGrid.h"
 
-class vtkPlaneCollection;
 class vtkRenderer;
 class vtkVolume;
+class vtkVolumeMapper;
 
 /**
  * Whether spacing, direction and prop matrix flatten the volume, or have no meaning (NaN).
@@ -19,10 +19,10 @@ class vtkVolume;
 bool isFlat(const VolumeGrid& grid, vtkVolume* volume);
 
 /**
- * The view of the renderer's active camera. Half-spaces: those of the clipping planes (world space,
- * may be nullptr) and of the near and far plane that cut into the volume.
+ * The view of the renderer's active camera. Half-spaces: those of the mapper's clipping planes and
+ * of the near and far plane that cut into the volume. Cropping: the mapper's.
  */
 splatting::View makeView(
-  const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkPlaneCollection* planes);
+  const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper);
 
 #endif

@@ -149,6 +149,8 @@ void describeImage(vtkImageData* image, GridOfDataSet& result)
   {
     // A layer of cells on a single point has no thickness of its own.
     first[a] += result.grid.cells && extent[2 * a] < extent[2 * a + 1] ? 0.5 : 0.0;
+    result.grid.spacing[a] = image->GetSpacing()[a];
+    result.grid.first[a] = image->GetOrigin()[a] + first[a] * image->GetSpacing()[a];
   }
   m[3] = m * first;
   result.grid.dimensions = result.dimensions;
@@ -182,8 +184,8 @@ void describeAxes(const Axis (&axes)[3], GridOfDataSet& result)
     const double steps = cells ? count : count - 1.0;
     const double step = axis.step != 0.0 ? axis.length() / steps : stepOfOthers(axes);
     const double first = axis.points[0] + (cells && axis.step != 0.0 ? 0.5 * step : 0.0);
-    result.grid.indexToPhysical[a][a] = step;
-    result.grid.indexToPhysical[3][a] = first;
+    result.grid.indexToPhysical[a][a] = result.grid.spacing[a] = step;
+    result.grid.indexToPhysical[3][a] = result.grid.first[a] = first;
     result.axes[a] =
       result.resampled ? locate(axis, first, step, count, cells) : splatting::ResampledAxis{};
   }

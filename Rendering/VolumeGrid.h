@@ -24,6 +24,10 @@ struct VolumeGrid
   glm::ivec3 dimensions{ 0 };
   /// Voxel centres (the first one at 0) to the data set's coordinates.
   glm::dmat4 indexToPhysical{ 1.0 };
+  /// Where the first voxel lies along each axis, and the step, before a direction matrix turns
+  /// them.
+  glm::dvec3 first{ 0.0 };
+  glm::dvec3 spacing{ 1.0 };
   /// Whether voxels are cells: the picture then ends at their boxes, not at the outermost centres.
   bool cells = false;
 };

@@ -44,6 +44,28 @@ const char* const DegenerateCamera =
   "The camera flattens the volume to a line or has no extent: give it a parallel scale above 0 and "
   "a view-up that is not its direction.";
 
+splatting::Reduction reductionOf(int blendMode, int maximumType)
+{
+  switch (blendMode)
+  {
+    case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
+      return splatting::Reduction::Minimum;
+    case vtkVolumeMapper::AVERAGE_INTENSITY_BLEND:
+      return splatting::Reduction::Mean;
+    default:
+      return maximumType == vtkSplattingMIPVolumeMapper::DEPTH_SHADED
+        ? splatting::Reduction::DepthShaded
+        : maximumType == vtkSplattingMIPVolumeMapper::LOCAL ? splatting::Reduction::Local
+                                                            : splatting::Reduction::Maximum;
+  }
+}
+
+/// Whether it matters which end of a ray is nearest to the viewer.
+bool isOrdered(splatting::Reduction reduction)
+{
+  return reduction == splatting::Reduction::DepthShaded || reduction == splatting::Reduction::Local;
+}
+
 const char* nameOf(int acceleration)
 {
   static const char* const names[] = { "auto", "dense", "bricks", "lines", "sorted lines",
@@ -62,6 +84,7 @@ public:
   void LookAtVolumes();
   bool SetBudget(std::size_t bytes);
   bool ExceedsBudget() const;
+  void FindCuts(const splatting::View& view, const splatting::ShearWarp& geometry);
   bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
   void UpdateColors(vtkVolumeProperty* property);
   void Warp(const splatting::View& view);
@@ -90,7 +113,8 @@ public:
   splatting::Projector Projector;
   splatting::ShearWarp Geometry;
   bool BudgetReported = false;
-  std::vector<glm::dvec4> HalfSpaces;
+  splatting::Cuts Cuts, LastCuts;
+  std::vector<glm::dvec4> HalfSpaces; // in pixels
   bool ImageValid = false;
   vtkIdType Projections = 0;
   double ProjectionTime = 0.0;
@@ -115,6 +139,10 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     QualityMode(HIGH),
     Kernel(TRILINEAR),
     KernelRadius(1.0),
+    MaximumType(GLOBAL),
+    DepthShadingAmbient(0.3),
+    DepthShadingChangeRate(0.7),
+    LocalMaximumThreshold(0.0),
     FootprintSampling(0),
     Acceleration(AUTO),
     LineTolerance(0.0),
@@ -165,13 +193,10 @@ std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
 const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
   vtkSplattingMIPVolumeMapper* self, vtkVolume*, const splatting::View& view)
 {
-  if (self->BlendMode != MAXIMUM_INTENSITY_BLEND)
+  if (self->BlendMode != MAXIMUM_INTENSITY_BLEND && self->BlendMode != MINIMUM_INTENSITY_BLEND &&
+    self->BlendMode != AVERAGE_INTENSITY_BLEND)
   {
-    return "the blend mode is not maximum intensity";
-  }
-  if (self->Cropping)
-  {
-    return "cropping is on";
+    return "the blend mode is no intensity projection";
   }
   if (this->Source.AreDependent())
   {
@@ -229,6 +254,12 @@ splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::Channel::M
 {
   splatting::ProjectionSettings settings;
   settings.quality = static_cast<splatting::Quality>(self->QualityMode);
+  settings.reduction = reductionOf(self->BlendMode, self->MaximumType);
+  settings.ambient = self->DepthShadingAmbient;
+  settings.changeRate = self->DepthShadingChangeRate;
+  settings.threshold = self->LocalMaximumThreshold;
+  settings.meanLow = self->AverageIPScalarRange[0];
+  settings.meanHigh = self->AverageIPScalarRange[1];
   settings.kernel = { self->Kernel == COSINE_BELL ? splatting::Reconstruction::CosineBell
                                                   : splatting::Reconstruction::Hat,
     self->KernelRadius };
@@ -256,6 +287,23 @@ double vtkSplattingMIPVolumeMapper::Internals::Channel::FloorOfWindow() const
 }
 
 //------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::Internals::FindCuts(
+  const splatting::View& view, const splatting::ShearWarp& geometry)
+{
+  this->Cuts.cropping = view.cropping;
+  this->Cuts.intervals.clear();
+  this->HalfSpaces.clear();
+  for (const glm::dvec4& h : view.halfSpaces)
+  {
+    this->HalfSpaces.push_back(geometry.inPixels(h));
+  }
+  if (!this->HalfSpaces.empty())
+  {
+    this->Cuts.intervals.find(geometry, this->HalfSpaces);
+  }
+}
+
+//------------------------------------------------------------------------------
 // Projects, unless the last shear image shows the same. False if the view has no meaning.
 bool vtkSplattingMIPVolumeMapper::Internals::Project(
   vtkSplattingMIPVolumeMapper* self, const splatting::View& view)
@@ -265,26 +313,28 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
   {
     return false;
   }
+  this->FindCuts(view, geometry);
+  const bool turned = geometry.reversed() != this->Geometry.reversed();
   bool same =
-    this->ImageValid && geometry.sameShear(this->Geometry) && this->HalfSpaces == view.halfSpaces;
+    this->ImageValid && geometry.sameShear(this->Geometry) && this->Cuts == this->LastCuts;
   this->Geometry = geometry;
   for (Channel& channel : this->Channels)
   {
     const splatting::ProjectionSettings settings = channel.MakeSettings(self);
-    same = same && settings == channel.Settings;
+    same = same && settings == channel.Settings && !(turned && isOrdered(settings.reduction));
     channel.Settings = settings;
   }
   if (same)
   {
     return true;
   }
-  this->HalfSpaces = view.halfSpaces;
   const double start = vtkTimerLog::GetUniversalTime();
   for (Channel& channel : this->Channels)
   {
-    channel.Used = this->Projector.project(
-      channel.Index, geometry, channel.Settings, view.halfSpaces, channel.Image);
+    channel.Used =
+      this->Projector.project(channel.Index, geometry, channel.Settings, this->Cuts, channel.Image);
   }
+  std::swap(this->Cuts, this->LastCuts);
   this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
   this->ImageValid = true;
   this->ShearImageOutput = nullptr;
@@ -357,7 +407,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
-  const splatting::View view = makeView(in.Source.Grid(), vol, ren, this->GetClippingPlanes());
+  const splatting::View view = makeView(in.Source.Grid(), vol, ren, this);
   // Nothing can be seen in a window that is not shown yet, and colours are no identifiers.
   if (view.viewport.x < 1 || view.viewport.y < 1 || ren->GetSelector())
   {
@@ -590,6 +640,20 @@ const char* vtkSplattingMIPVolumeMapper::GetQualityModeAsString()
 }
 
 //------------------------------------------------------------------------------
+const char* vtkSplattingMIPVolumeMapper::GetMaximumTypeAsString()
+{
+  switch (this->MaximumType)
+  {
+    case DEPTH_SHADED:
+      return "depth shaded";
+    case LOCAL:
+      return "local";
+    default:
+      return "global";
+  }
+}
+
+//------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetKernelAsString()
 {
   return this->Kernel == COSINE_BELL ? "cosine bell" : "trilinear";
@@ -606,6 +670,10 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "QualityMode: " << this->GetQualityModeAsString() << "\n";
   os << indent << "Kernel: " << this->GetKernelAsString() << "\n";
   os << indent << "KernelRadius: " << this->KernelRadius << "\n";
+  os << indent << "MaximumType: " << this->GetMaximumTypeAsString() << "\n";
+  os << indent << "DepthShadingAmbient: " << this->DepthShadingAmbient << "\n";
+  os << indent << "DepthShadingChangeRate: " << this->DepthShadingChangeRate << "\n";
+  os << indent << "LocalMaximumThreshold: " << this->LocalMaximumThreshold << "\n";
   os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";
   os << indent << "Acceleration: " << this->GetAccelerationAsString() << "\n";
   os << indent << "AccelerationUsed: " << nameOf(this->GetAccelerationUsed()) << "\n";
