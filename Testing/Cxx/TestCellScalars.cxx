@@ -32,6 +32,14 @@ void testCellsAsPoints(stage::Stage& stage, stage::Checks& check)
   const auto plain = stage::splatting(points);
   expectSame(stage, plain, mapper, "Cells", check, false);
   check(mapper->GetIndexMemorySize() == plain->GetIndexMemorySize(), "Cells: no copy.");
+
+  // Cropping lies where it is told to, whatever voxels are.
+  for (vtkVolumeMapper* cropped : { plain.Get(), mapper.Get() })
+  {
+    cropped->CroppingOn();
+    cropped->SetCroppingRegionPlanes(-1.2, 4.1, 4.3, 11.9, 7.0, 12.6);
+  }
+  expectSame(stage, plain, mapper, "Cropped cells", check, false);
 }
 
 /// Where both show something it is the same, and that is where points end: their outermost centres

@@ -101,7 +101,14 @@ void testDescending(stage::Stage& stage, stage::Checks& check)
   image->SetSpacing(1.0, -1.25, 0.75);
   auto mapper = vtkSmartPointer<Mapper>::New();
   mapper->SetInputData(grid);
-  expectSame(stage, stage::splatting(image), mapper, "Descending coordinates", check);
+  const auto plain = stage::splatting(image);
+  expectSame(stage, plain, mapper, "Descending coordinates", check);
+  for (vtkVolumeMapper* cropped : { plain.Get(), mapper.Get() })
+  {
+    cropped->CroppingOn();
+    cropped->SetCroppingRegionPlanes(-1.2, 4.1, -6.0, 0.3, 7.0, 12.6);
+  }
+  expectSame(stage, plain, mapper, "Cropped grid", check);
 }
 
 /// Steps of 1, 2 and 3: the least one divides all, so that points are where they were and others
