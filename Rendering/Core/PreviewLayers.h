@@ -76,10 +76,15 @@ public:
 
   /// The same for all layers of some rows; to be opened once.
   void open(int, int, const Span&, Patch&) const {}
-  void splatOpened(
-    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  void splatOpened(int z, const std::vector<RowRuns>& rows, int count, Patch& patch) const
   {
-    this->splat(z, v0, v1, runs, bits, patch);
+    for (int r = 0; r < count; ++r)
+    {
+      if (!rows[r].runs.empty())
+      {
+        this->splat(z, rows[r].v0, rows[r].v1, rows[r].runs, rows[r].bits, patch);
+      }
+    }
   }
 
   /// Calls f(step, v, pixels, samples) for all samples of some slices and of pixels in some rows

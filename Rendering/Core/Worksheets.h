@@ -129,13 +129,18 @@ public:
     patch.rows = { v0, v1 };
     patch.pixels = columns;
   }
-  void splatOpened(
-    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  void splatOpened(int z, const std::vector<RowRuns>& rows, int count, Patch& patch) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
-    for (const Span& run : runs)
+    for (int k = slices.begin; k < slices.end; ++k)
     {
-      this->splatPiece(slices, v0, v1, run, bits, patch);
+      for (int r = 0; r < count; ++r)
+      {
+        for (const Span& run : rows[r].runs)
+        {
+          this->splatPiece({ k, k + 1 }, rows[r].v0, rows[r].v1, run, rows[r].bits, patch);
+        }
+      }
     }
   }
 
