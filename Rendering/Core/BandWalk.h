@@ -134,7 +134,7 @@ private:
   /// voxels.
   void walkCut()
   {
-    constexpr int together = 4;
+    constexpr int together = Layers::RowsTogether / TileHeight;
     this->Scratch.rows.resize(together);
     this->openCuts();
     for (int first = 0; first < this->Groups; first += together)

@@ -87,38 +87,39 @@ TileExtremes BandCuts::extremesOf(int group)
 SliceBits BandCuts::findBits(const Span& slices, int group, unsigned char* flags)
 {
   this->findShares(slices, group);
-  const int v0 = this->V0 + group * TileHeight, v1 = std::min(v0 + TileHeight, this->V1);
-  unsigned char* const rows = this->Bits.data() + (v0 - this->V0) * this->Stride;
-  unsigned any = 0, mixed = 0, none = 0;
+  unsigned char least = All, greatest = None;
   for (int t = 0; t < this->Tiles; ++t)
   {
-    const unsigned char share = flags[t] ? this->Shares[t] : static_cast<unsigned char>(None);
-    this->Shares[t] = share;
-    flags[t] = share != None;
-    any |= share;
-    mixed |= share == Some;
-    none |= share == None;
-    const std::uint64_t bits = share == None ? 0 : ~std::uint64_t(0);
+    this->Shares[t] = flags[t] ? this->Shares[t] : static_cast<unsigned char>(None);
+    flags[t] = this->Shares[t] != None;
+    least = std::min(least, this->Shares[t]);
+    greatest = std::max(greatest, this->Shares[t]);
+  }
+  if (least == All || greatest == None)
+  {
+    return {};
+  }
+  const int v0 = this->V0 + group * TileHeight, v1 = std::min(v0 + TileHeight, this->V1);
+  unsigned char* const rows = this->Bits.data() + (v0 - this->V0) * this->Stride;
+  for (int t = 0; t < this->Tiles; ++t)
+  {
+    const std::uint64_t bits = this->Shares[t] == None ? 0 : ~std::uint64_t(0);
     static_assert(sizeof(bits) == TileWidth);
     std::memcpy(rows + t * TileWidth, &bits, sizeof(bits));
   }
-  for (int v = v0 + 1; v < v1 && any; ++v)
+  for (int v = v0 + 1; v < v1; ++v)
   {
     std::memcpy(rows + (v - v0) * this->Stride, rows, this->Stride);
   }
-  for (int t = 0; t < this->Tiles && mixed; ++t)
+  for (int t = 0; t < this->Tiles; ++t)
   {
-    if (this->Shares[t] == Some)
+    const Span pixels{ t * TileWidth, std::min((t + 1) * TileWidth, this->Width) };
+    for (int v = v0; v < v1 && this->Shares[t] == Some; ++v)
     {
-      const Span pixels{ t * TileWidth, std::min((t + 1) * TileWidth, this->Width) };
-      for (int v = v0; v < v1; ++v)
-      {
-        this->findSome(slices, v, pixels, rows + (v - v0) * this->Stride + pixels.begin);
-      }
+      this->findSome(slices, v, pixels, rows + (v - v0) * this->Stride + pixels.begin);
     }
   }
-  return mixed || none ? SliceBits{ this->Bits.data() - this->V0 * this->Stride, this->Stride }
-                       : SliceBits{};
+  return { this->Bits.data() - this->V0 * this->Stride, this->Stride };
 }
 
 void BandCuts::findSome(const Span& slices, int v, const Span& pixels, unsigned char* bits) const

@@ -75,6 +75,8 @@ public:
   using Pixel = A;
   /// How many slices beyond its own a layer reads.
   static constexpr int Beyond = 1;
+  /// Rows that cut layers are walked for at a time: those of a piece.
+  static constexpr int RowsTogether = 16;
   /// Pixels whose multiples runs had best begin and end at: the widest registers hold two tiles,
   /// and take no longer for both than for one.
   static constexpr int RunUnit = 2 * TileWidth;
@@ -242,7 +244,7 @@ private:
   template <class F>
   static void forPieces(int v0, int v1, const Span& columns, F&& f)
   {
-    constexpr int width = 1024, height = 16;
+    constexpr int width = 1024, height = RowsTogether;
     for (int v = v0; v < v1; v += height)
     {
       for (int u = columns.begin; u < columns.end; u += width)
