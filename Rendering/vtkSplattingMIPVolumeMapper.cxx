@@ -4,6 +4,8 @@
 
 #include "Project.h"
 #include "RayCastFallback.h"
+#include "RenderTimes.h"
+#include "Selection.h"
 #include "ShearWarp.h"
 #include "TransferFunctions.h"
 #include "View.h"
@@ -19,6 +21,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkRayCastImageDisplayHelper.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimerLog.h"
@@ -42,6 +45,8 @@ namespace
 const char* const DegenerateCamera =
   "The camera flattens the volume to a line or has no extent: give it a parallel scale above 0 and "
   "a view-up that is not its direction.";
+const char* const NoColors =
+  "FinalColorWindow and FinalColorLevel give no colours: both must be finite and the window not 0.";
 
 template <class T>
 splatting::ScalarType sizedType()
@@ -87,6 +92,12 @@ int vtkTypeOf(splatting::ScalarType type, int inputType)
   return type == splatting::ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
 }
 
+const char* nameOfMode(int mode)
+{
+  static const char* const names[] = { "preview", "standard", "high" };
+  return names[mode];
+}
+
 const char* nameOf(int acceleration)
 {
   static const char* const names[] = { "auto", "dense", "bricks", "lines", "sorted lines",
@@ -104,15 +115,19 @@ public:
     vtkSplattingMIPVolumeMapper* self, vtkVolume* volume, const splatting::View& view);
   void LookAt(vtkDataArray* scalars);
   splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self) const;
+  bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
+  bool Shows(const splatting::ShearWarp& geometry, const splatting::View& view,
+    const splatting::ProjectionSettings& settings) const;
   double FloorOfWindow() const;
-  bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
-  void UpdateColors(vtkVolumeProperty* property);
+  bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode);
+  void UpdateColors(vtkVolumeProperty* property, const FinalColor& final);
   void CopyShearImage(vtkImageData* output) const;
 
-  vtkImageData* Input = nullptr;   // set by Problem(), valid during a render
-  vtkDataArray* Scalars = nullptr; // likewise
-  std::string Reported;            // the last problem, so that each is told once
-  std::set<std::string> Announced; // reasons to ray cast that were told
+  vtkImageData* Input = nullptr;     // set by Problem(), valid during a render
+  vtkDataArray* Scalars = nullptr;   // likewise
+  std::string Reported;              // the last problem, so that each is told once
+  std::set<std::string> Announced;   // reasons to ray cast that were told
+  vtkRenderWindow* Window = nullptr; // which may abort, during a render
 
   splatting::VolumeIndex Index;
   vtkSmartPointer<vtkDataArray> Contiguous; // a copy, if the scalars are stored in another way
@@ -131,12 +146,14 @@ public:
   bool ImageValid = false;
   vtkIdType Projections = 0;
   double ProjectionTime = 0.0;
+  splatting::RenderTimes Times;
   double Shear[2] = { 0.0, 0.0 };
   vtkSmartPointer<vtkImageData> ShearImageOutput;
 
   splatting::ColorTable Colors;
   vtkVolumeProperty* ColoredBy = nullptr;
   vtkMTimeType ColorTime = 0;
+  FinalColor ColoredFor;
   bool ColorsValid = false;
   splatting::Warper Warper;
   splatting::Picture Picture;
@@ -155,10 +172,15 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     EliminateInvisible(false),
     CullBelowWindow(false),
     IndexMemoryBudget(vtkTypeInt64(1) << 32),
+    AutoAdjustSampleDistances(1),
+    FinalColorWindow(1.0f),
+    FinalColorLevel(0.5f),
     LastRenderUsedRayCasting(false),
     Internal(new Internals)
 {
   this->Internal->Projector.setProgress([this](double done) { this->UpdateProgress(done); });
+  this->Internal->Projector.setWatch(
+    [this](double done) { return this->Internal->GoOn(this, done); });
   this->BlendMode = MAXIMUM_INTENSITY_BLEND;
 }
 
@@ -276,6 +298,7 @@ void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkDataArray* scalars)
   this->ImageValid = false;
   this->ShearImageOutput = nullptr;
   this->ColorsValid = false;
+  this->Times.clear();
 }
 
 //------------------------------------------------------------------------------
@@ -311,14 +334,32 @@ double vtkSplattingMIPVolumeMapper::Internals::FloorOfWindow() const
 }
 
 //------------------------------------------------------------------------------
-// Projects, unless the last shear image shows the same. False if the view has no meaning.
+// Tells how much of the projection is done and whether the window wants the rest.
+bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* self, double done)
+{
+  self->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &done);
+  return !this->Window || !this->Window->CheckAbortStatus();
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPVolumeMapper::Internals::Shows(const splatting::ShearWarp& geometry,
+  const splatting::View& view, const splatting::ProjectionSettings& settings) const
+{
+  return this->ImageValid && geometry.sameShear(this->Geometry) &&
+    this->HalfSpaces == view.halfSpaces && settings == this->Settings;
+}
+
+//------------------------------------------------------------------------------
+// Projects in this mode, unless the last shear image shows the same, or better within what is
+// wanted. False if the view has no meaning. There is no valid image after an abort.
 bool vtkSplattingMIPVolumeMapper::Internals::Project(
-  vtkSplattingMIPVolumeMapper* self, const splatting::View& view)
+  vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode)
 {
   const splatting::ShearWarp geometry(view);
-  const splatting::ProjectionSettings settings = this->MakeSettings(self);
-  const bool same = this->ImageValid && geometry.sameShear(this->Geometry) &&
-    this->HalfSpaces == view.halfSpaces && settings == this->Settings;
+  splatting::ProjectionSettings settings = this->MakeSettings(self);
+  settings.quality = std::clamp(this->Settings.quality, static_cast<splatting::Quality>(mode),
+    static_cast<splatting::Quality>(self->QualityMode));
+  const bool same = this->Shows(geometry, view, settings);
   if (!geometry.valid())
   {
     return false;
@@ -328,29 +369,39 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
   {
     return true;
   }
+  settings.quality = static_cast<splatting::Quality>(mode);
+  this->ImageValid = false;
+  this->ShearImageOutput = nullptr;
   this->Settings = settings;
   this->HalfSpaces = view.halfSpaces;
   const double start = vtkTimerLog::GetUniversalTime();
-  this->Used =
+  const splatting::Acceleration used =
     this->Projector.project(this->Index, geometry, settings, view.halfSpaces, this->Image);
+  if (this->Projector.stopped())
+  {
+    return true;
+  }
+  this->Used = used;
   this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
   this->ImageValid = true;
-  this->ShearImageOutput = nullptr;
   ++this->Projections;
   return true;
 }
 
 //------------------------------------------------------------------------------
 // Transfer functions to a table of colours.
-void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* property)
+void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(
+  vtkVolumeProperty* property, const FinalColor& final)
 {
-  if (this->ColorsValid && this->ColoredBy == property && this->ColorTime == property->GetMTime())
+  if (this->ColorsValid && this->ColoredBy == property && this->ColorTime == property->GetMTime() &&
+    this->ColoredFor == final)
   {
     return;
   }
   const splatting::VolumeIndex::Range& range = this->Index.range();
   const bool integers = this->ScalarType != VTK_FLOAT && this->ScalarType != VTK_DOUBLE;
-  this->Colors = tabulateColors(property, range.low, range.high, integers);
+  this->Colors = tabulateColors(property, range.low, range.high, integers, final);
+  this->ColoredFor = final;
   this->ColoredBy = property;
   this->ColorTime = property->GetMTime();
   this->ColorsValid = true;
@@ -359,23 +410,38 @@ void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* pro
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 {
+  Internals& in = *this->Internal;
+  if (in.Window)
+  {
+    vtkErrorMacro(<< "An observer of this mapper's render events must not render with it.");
+    return;
+  }
+  in.Window = ren->GetRenderWindow();
+  const vtkIdType projections = in.Projections;
+  const double indexTime = in.Index.time();
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
-  std::string problem = this->Internal->Problem(this, vol);
+  std::string problem = in.Problem(this, vol);
   if (problem.empty())
   {
     problem = this->RenderBySplatting(ren, vol);
   }
   // Told once, not in every frame.
-  if (!problem.empty() && problem != this->Internal->Reported)
+  if (!problem.empty() && problem != in.Reported)
   {
     vtkErrorMacro(<< problem);
   }
-  this->Internal->Reported = problem;
+  in.Reported = problem;
   this->Timer->StopTimer();
   this->TimeToDraw = this->Timer->GetElapsedTime();
+  // Frames that re-used an image or made what is made once say nothing about the next ones.
+  if (in.Projections != projections && in.Index.time() == indexTime)
+  {
+    in.Times.add({ ren, vol }, this->GetQualityModeUsed(), this->TimeToDraw);
+  }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent);
+  in.Window = nullptr;
 }
 
 //------------------------------------------------------------------------------
@@ -384,10 +450,15 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 {
   Internals& in = *this->Internal;
   const splatting::View view = makeView(in.Input, vol, ren, this->GetClippingPlanes());
-  // Nothing can be seen in a window that is not shown yet, and colours are no identifiers.
-  if (view.viewport.x < 1 || view.viewport.y < 1 || ren->GetSelector())
+  // Nothing can be seen in a window that is not shown yet.
+  if (view.viewport.x < 1 || view.viewport.y < 1)
   {
     return "";
+  }
+  const FinalColor final = { this->FinalColorWindow, this->FinalColorLevel };
+  if (!final.isValid())
+  {
+    return NoColors;
   }
   if (!splatting::isFinite(view))
   {
@@ -403,8 +474,11 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     in.ImageValid = false; // so that the answer to "what was used" is right
   }
-  in.UpdateColors(vol->GetProperty());
-  if (!in.Project(this, view))
+  in.UpdateColors(vol->GetProperty(), final);
+  const int mode = this->AutoAdjustSampleDistances
+    ? in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime())
+    : this->QualityMode;
+  if (!in.Project(this, view, mode))
   {
     return DegenerateCamera;
   }
@@ -415,14 +489,29 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
                     << " bytes): this volume is projected without it. Raise the budget.");
   }
   in.BudgetReported = in.Index.exceedsBudget();
-  in.Warper.warp(
-    in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet, in.Picture);
-  if (!in.Picture.pixels.empty())
+  if (in.ImageValid)
   {
-    this->DisplayImage(ren, &in.Picture.origin.x, &in.Picture.size.x,
-      reinterpret_cast<const unsigned char*>(in.Picture.pixels.data()));
+    in.Warper.warp(
+      in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet, in.Picture);
+    this->DisplayPicture(ren);
   }
   return "";
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::DisplayPicture(vtkRenderer* ren)
+{
+  splatting::Picture& picture = this->Internal->Picture;
+  if (picture.pixels.empty())
+  {
+    return;
+  }
+  if (vtkHardwareSelector* const selector = ren->GetSelector())
+  {
+    drawIdentifiers(selector, picture);
+  }
+  this->DisplayImage(ren, &picture.origin.x, &picture.size.x,
+    reinterpret_cast<const unsigned char*>(picture.pixels.data()));
 }
 
 //------------------------------------------------------------------------------
@@ -448,7 +537,15 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
     }
     in.RayCaster = std::make_unique<RayCastFallback>();
   }
-  in.RayCaster->Render(this, in.Input, ren, vol);
+  if (ren->GetSelector())
+  {
+    in.RayCaster->FindMask(this, in.Input, ren, vol, in.Picture);
+    this->DisplayPicture(ren);
+  }
+  else
+  {
+    in.RayCaster->Render(this, in.Input, ren, vol);
+  }
   this->LastRenderUsedRayCasting = true;
 }
 
@@ -575,15 +672,13 @@ const char* vtkSplattingMIPVolumeMapper::GetAccelerationAsString()
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetQualityModeAsString()
 {
-  switch (this->QualityMode)
-  {
-    case PREVIEW:
-      return "preview";
-    case STANDARD:
-      return "standard";
-    default:
-      return "high";
-  }
+  return nameOfMode(this->QualityMode);
+}
+
+//------------------------------------------------------------------------------
+int vtkSplattingMIPVolumeMapper::GetQualityModeUsed()
+{
+  return static_cast<int>(this->Internal->Settings.quality);
 }
 
 //------------------------------------------------------------------------------
@@ -597,6 +692,11 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "QualityMode: " << this->GetQualityModeAsString() << "\n";
+  os << indent << "QualityModeUsed: " << nameOfMode(this->GetQualityModeUsed()) << "\n";
+  os << indent << "AutoAdjustSampleDistances: " << (this->AutoAdjustSampleDistances ? "On" : "Off")
+     << "\n";
+  os << indent << "FinalColorWindow: " << this->FinalColorWindow << "\n";
+  os << indent << "FinalColorLevel: " << this->FinalColorLevel << "\n";
   os << indent << "Kernel: " << this->GetKernelAsString() << "\n";
   os << indent << "KernelRadius: " << this->KernelRadius << "\n";
   os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";

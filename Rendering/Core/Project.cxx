@@ -22,18 +22,23 @@ int bandHeight(int rows)
   return std::clamp(share / TileHeight * TileHeight, 2 * TileHeight, 8 * TileHeight);
 }
 
+/// The bands are the part `share` of the work.
 template <class Body>
-void forBands(int height, int rows, Body&& body)
+void forBands(int height, int rows, Watch& watch, const glm::dvec2& share, Body&& body)
 {
-  vtkSMPTools::For(0, (height + rows - 1) / rows, 1,
+  const int bands = (height + rows - 1) / rows;
+  watch.begin(bands, share[0], share[1]);
+  vtkSMPTools::For(0, bands, 1,
     [&](vtkIdType first, vtkIdType last)
     {
-      for (vtkIdType b = first; b < last; ++b)
+      for (vtkIdType b = first; b < last && !watch.stopped(); ++b)
       {
         const int v0 = static_cast<int>(b) * rows;
         body(v0, std::min(v0 + rows, height));
+        watch.bandDone();
       }
     });
+  watch.ask();
 }
 
 /// The chains that a projection needs.
@@ -120,7 +125,8 @@ void Projector::walk(
     frame.slices = whole ? index.slices(axis)
                          : index.someSlices(std::max(slices.begin - Layers::Beyond, 0),
                              std::min(slices.end + Layers::Beyond, depth), this->Memory->chunk);
-    forBands(frame.image.height, bandHeight(frame.image.height),
+    forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
+      glm::dvec2(slices.begin, slices.end) / double(depth),
       [&](int v0, int v1)
       {
         if (slices.begin == 0)
@@ -135,7 +141,7 @@ void Projector::walk(
           closeRows<P>(frame.image, v0, v1);
         }
       });
-    if (whole)
+    if (whole || this->stopped())
     {
       break;
     }
@@ -156,7 +162,7 @@ void Projector::previewLines(const Frame<T>& frame, const LineIndex& lines)
   const int height = frame.image.height, threads = vtkSMPTools::GetEstimatedNumberOfThreads();
   const int rows = lines.encoding().order == LineOrder::Lines ? bandHeight(height)
                                                               : (height + threads - 1) / threads;
-  forBands(height, rows,
+  forBands(height, rows, this->Observer, { 0.0, 1.0 },
     [&](int v0, int v1)
     {
       openRows<T>(frame.image, previewFloor(frame), v0, v1);
@@ -173,7 +179,7 @@ void Projector::splatLines(const Frame<T>& frame, const LineIndex& lines, bool s
     std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints),
     std::get<WorksheetReach<A>>(this->Memory->reach), standard ? 0 : 1, lines);
   const Span slices{ 0, frame.geometry.size().z };
-  forBands(frame.image.height, bandHeight(frame.image.height),
+  forBands(frame.image.height, bandHeight(frame.image.height), this->Observer, { 0.0, 1.0 },
     [&](int v0, int v1)
     {
       openRows<A>(frame.image, worksheets.floor(), v0, v1);
@@ -217,14 +223,18 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
     this->walk(
       index, frame, WorksheetLayers<T>(frame, footprints, reach, standard ? 0 : 1), used, count);
   }
-  learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality)), used,
-    count);
+  if (!this->stopped())
+  {
+    learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality)),
+      used, count);
+  }
 }
 
 Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   const ProjectionSettings& settings, const std::vector<glm::dvec4>& halfSpaces, ShearImage& image)
 {
   Scratch& memory = *this->Memory;
+  this->Observer.start();
   memory.halfSpaces.clear();
   for (const glm::dvec4& h : halfSpaces)
   {
@@ -238,8 +248,16 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   Acceleration used = settings.acceleration == Acceleration::Auto
     ? choose(index.experience(axis, static_cast<int>(settings.quality)), settings.quality)
     : settings.acceleration;
-  const LineIndex* const lines = used >= Acceleration::Lines && !range.special
-    ? index.lines(axis, encodingFor(settings, geometry.size(), !halfSpaces.empty()), this->Progress)
+  const auto chainsMade = [this](double share)
+  {
+    if (this->Progress)
+    {
+      this->Progress(share);
+    }
+    return this->Observer.ask();
+  };
+  const LineIndex* const lines = used >= Acceleration::Lines && !range.special && !this->stopped()
+    ? index.lines(axis, encodingFor(settings, geometry.size(), !halfSpaces.empty()), chainsMade)
     : nullptr;
   if (!lines && (used != Acceleration::Bricks || !index.hasBricks()))
   {
