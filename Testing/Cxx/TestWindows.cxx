@@ -137,6 +137,17 @@ void testStereo(Mapper* mapper, vtkImageData* image, stage::Checks& check)
     check(other.psnr < same.psnr - 2.0, "It does not see the other's: " + other.text());
   }
 
+  // Anaglyph: red from the left eye, the rest from the right one.
+  stage.window->SetAnaglyphColorSaturation(1.0f);
+  stage.window->SetAnaglyphColorMask(4, 3);
+  const stage::Pixels anaglyph = eye(stage, VTK_STEREO_ANAGLYPH);
+  int wrong = 0;
+  for (std::size_t n = 0; n < anaglyph.size(); ++n)
+  {
+    wrong += std::abs(anaglyph[n] - (n % 3 == 0 ? left : right)[n]) > 1; // VTK rounds in between
+  }
+  check(wrong == 0, "An anaglyph has the pixels of both eyes.");
+
   // Interlaced: the rows of both eyes in turn.
   const stage::Pixels rows = eye(stage, VTK_STEREO_INTERLACED);
   int leftRows = 0, rightRows = 0;
