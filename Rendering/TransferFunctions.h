@@ -31,6 +31,6 @@ struct FinalColor
  * values all of those.
  */
 splatting::ColorTable tabulateColors(vtkVolumeProperty* property, double dataLow, double dataHigh,
-  bool integers, const FinalColor& final);
+  bool integers, const FinalColor& finalColor);
 
 #endif

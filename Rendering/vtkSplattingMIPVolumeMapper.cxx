@@ -120,7 +120,7 @@ public:
     const splatting::ProjectionSettings& settings) const;
   double FloorOfWindow() const;
   bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode);
-  void UpdateColors(vtkVolumeProperty* property, const FinalColor& final);
+  void UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor);
   void CopyShearImage(vtkImageData* output) const;
 
   vtkImageData* Input = nullptr;     // set by Problem(), valid during a render
@@ -147,6 +147,7 @@ public:
   vtkIdType Projections = 0;
   double ProjectionTime = 0.0;
   splatting::RenderTimes Times;
+  double IndexTimeBefore = 0.0; // before what the present frame makes of the index
   double Shear[2] = { 0.0, 0.0 };
   vtkSmartPointer<vtkImageData> ShearImageOutput;
 
@@ -283,6 +284,10 @@ void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkDataArray* scalars)
   {
     return;
   }
+  if (this->Index.volume().dimensions != size || this->ScalarType != scalars->GetDataType())
+  {
+    this->Times.clear(); // those of other sizes; changed data take what the last ones took
+  }
   this->IndexedBuffer = buffer;
   this->IndexedScalars = scalars;
   this->IndexedTime = time;
@@ -298,7 +303,6 @@ void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkDataArray* scalars)
   this->ImageValid = false;
   this->ShearImageOutput = nullptr;
   this->ColorsValid = false;
-  this->Times.clear();
 }
 
 //------------------------------------------------------------------------------
@@ -391,17 +395,17 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
 //------------------------------------------------------------------------------
 // Transfer functions to a table of colours.
 void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(
-  vtkVolumeProperty* property, const FinalColor& final)
+  vtkVolumeProperty* property, const FinalColor& finalColor)
 {
   if (this->ColorsValid && this->ColoredBy == property && this->ColorTime == property->GetMTime() &&
-    this->ColoredFor == final)
+    this->ColoredFor == finalColor)
   {
     return;
   }
   const splatting::VolumeIndex::Range& range = this->Index.range();
   const bool integers = this->ScalarType != VTK_FLOAT && this->ScalarType != VTK_DOUBLE;
-  this->Colors = tabulateColors(property, range.low, range.high, integers, final);
-  this->ColoredFor = final;
+  this->Colors = tabulateColors(property, range.low, range.high, integers, finalColor);
+  this->ColoredFor = finalColor;
   this->ColoredBy = property;
   this->ColorTime = property->GetMTime();
   this->ColorsValid = true;
@@ -418,7 +422,6 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   }
   in.Window = ren->GetRenderWindow();
   const vtkIdType projections = in.Projections;
-  const double indexTime = in.Index.time();
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
@@ -435,10 +438,11 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   in.Reported = problem;
   this->Timer->StopTimer();
   this->TimeToDraw = this->Timer->GetElapsedTime();
-  // Frames that re-used an image or made what is made once say nothing about the next ones.
-  if (in.Projections != projections && in.Index.time() == indexTime)
+  // Frames that re-use an image say nothing about the next ones, nor does what is made once.
+  if (in.Projections != projections)
   {
-    in.Times.add({ ren, vol }, this->GetQualityModeUsed(), this->TimeToDraw);
+    in.Times.add({ ren, vol }, this->GetQualityModeUsed(),
+      this->TimeToDraw - (in.Index.time() - in.IndexTimeBefore));
   }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent);
   in.Window = nullptr;
@@ -455,8 +459,8 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return "";
   }
-  const FinalColor final = { this->FinalColorWindow, this->FinalColorLevel };
-  if (!final.isValid())
+  const FinalColor finalColor = { this->FinalColorWindow, this->FinalColorLevel };
+  if (!finalColor.isValid())
   {
     return NoColors;
   }
@@ -470,14 +474,17 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     return "";
   }
   in.LookAt(in.Scalars);
+  in.IndexTimeBefore = in.Index.time();
   if (in.Index.setBudget(static_cast<std::size_t>(this->IndexMemoryBudget)))
   {
     in.ImageValid = false; // so that the answer to "what was used" is right
   }
-  in.UpdateColors(vol->GetProperty(), final);
-  const int mode = this->AutoAdjustSampleDistances
-    ? in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime())
-    : this->QualityMode;
+  in.UpdateColors(vol->GetProperty(), finalColor);
+  // Selection is by what is seen.
+  const int mode = !this->AutoAdjustSampleDistances ? this->QualityMode
+    : ren->GetSelector()
+    ? std::min(this->GetQualityModeUsed(), this->QualityMode)
+    : in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime());
   if (!in.Project(this, view, mode))
   {
     return DegenerateCamera;

@@ -134,8 +134,8 @@ public:
    * Whether a faster quality mode takes the place of QualityMode where frames were measured to take
    * longer than the volume's allocated render time, which follows from the render window's desired
    * update rate; interactor styles change that during interaction. Each mode is timed, for each
-   * renderer and volume, by frames that project (not by the first ones, in which something is made
-   * once per data set): HIGH gives way to STANDARD, STANDARD to PREVIEW, and back once a better
+   * renderer and volume, by frames that project (but the first one, and less what is made once per
+   * data set): HIGH gives way to STANDARD, STANDARD to PREVIEW, and back once a better
    * mode is expected to take no more than 80 % of the time. A mode that was not measured yet is
    * taken to fit. So the first frame, and a still one with its hours to spare, is in QualityMode. A
    * shear image in a better mode (up to QualityMode) that shows the view already is kept. The

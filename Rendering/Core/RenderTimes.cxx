@@ -42,6 +42,11 @@ void RenderTimes::add(const View& view, int mode, double seconds)
     return;
   }
   Entry& entry = this->find(view);
+  if (!entry.begun)
+  {
+    entry.begun = true;
+    return;
+  }
   const double before = entry.seconds[mode];
   if (before > 0.0)
   {

@@ -39,13 +39,14 @@ public:
   int choose(const View& view, int wanted, double allocated);
 
   /**
-   * A frame with a projection took so many seconds. What made it slower or faster than the last one
-   * in this mode is expected to do the same to the other modes; so modes that are not in use keep
-   * up when the volume's share of the window or the load of the machine changes.
+   * A frame with a projection took so many seconds. The first frame of a view is not counted: that
+   * is when memory, textures and shaders come into being. What made another slower or faster than
+   * the last one in this mode is expected to do the same to the other modes; so modes that are not
+   * in use keep up when the volume's share of the window or the load of the machine changes.
    */
   void add(const View& view, int mode, double seconds);
 
-  /// Other data, other times.
+  /// Volumes of another size, other times.
   void clear() { this->Entries.clear(); }
 
 private:
@@ -54,6 +55,7 @@ private:
     View view;
     std::array<double, Modes> seconds{}; // 0: not known
     int last = Modes - 1;                // what was chosen last
+    bool begun = false;                  // whether there was a first frame
   };
   Entry& find(const View& view);
 

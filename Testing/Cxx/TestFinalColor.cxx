@@ -50,26 +50,26 @@ void setColors(stage::Stage& stage, double opacity)
 }
 
 /// What the class says, without any rounding, from 0 to 255.
-double expected(int component, double opacity, const FinalColor& final)
+double expected(int component, double opacity, const FinalColor& finalColor)
 {
-  const double straight = (Color[component] - final.level) / final.window + 0.5;
+  const double straight = (Color[component] - finalColor.level) / finalColor.window + 0.5;
   const double premultiplied = std::clamp(opacity * straight, 0.0, 1.0);
   return 255.0 * std::min(premultiplied + (1.0 - opacity) * Background[component], 1.0);
 }
 
 /// The largest difference to what is expected in the middle of the window.
 template <class Mapper>
-double difference(stage::Stage& stage, Mapper* mapper, double opacity, const FinalColor& final)
+double difference(stage::Stage& stage, Mapper* mapper, double opacity, const FinalColor& finalColor)
 {
-  mapper->SetFinalColorWindow(final.window);
-  mapper->SetFinalColorLevel(final.level);
+  mapper->SetFinalColorWindow(finalColor.window);
+  mapper->SetFinalColorLevel(finalColor.level);
   stage.show(mapper);
   const stage::Pixels pixels = stage.pixels();
   double largest = 0.0;
   for (int c = 0; c < 3; ++c)
   {
     const int value = pixels[3 * (Size / 2 * Size + Size / 2) + c];
-    largest = std::max(largest, std::abs(value - expected(c, opacity, final)));
+    largest = std::max(largest, std::abs(value - expected(c, opacity, finalColor)));
   }
   return largest;
 }
@@ -85,16 +85,16 @@ void testMeaning(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
   for (double opacity : { 1.0, 0.5, 0.1 })
   {
     setColors(stage, opacity);
-    for (const FinalColor& final : FinalColors)
+    for (const FinalColor& finalColor : FinalColors)
     {
-      const std::string what = "window " + std::to_string(final.window) + ", level " +
-        std::to_string(final.level) + ", opacity " + std::to_string(opacity);
+      const std::string what = "window " + std::to_string(finalColor.window) + ", level " +
+        std::to_string(finalColor.level) + ", opacity " + std::to_string(opacity);
       const auto isNear = [&](const char* who, double error, double most)
       { check(error <= most, what + ": " + who + " is wrong by " + std::to_string(error)); };
-      isNear("splatting", difference(stage, mapper.Get(), opacity, final), 1.5);
-      isNear(
-        "the fixed-point ray caster", difference(stage, fixedPoint.Get(), opacity, final), 2.0);
-      isNear("the GPU ray caster", difference(stage, gpu.Get(), opacity, final), 2.0);
+      isNear("splatting", difference(stage, mapper.Get(), opacity, finalColor), 1.5);
+      isNear("the fixed-point ray caster", difference(stage, fixedPoint.Get(), opacity, finalColor),
+        2.0);
+      isNear("the GPU ray caster", difference(stage, gpu.Get(), opacity, finalColor), 2.0);
     }
   }
   const stage::Messages warnings(mapper, vtkCommand::WarningEvent);

@@ -71,7 +71,7 @@ struct Scene
 void testStepsDown(Scene& scene, stage::Checks& check)
 {
   check(scene.turn(Hasty) == Mapper::HIGH, "The first frame is in the wanted mode.");
-  check(scene.turn(Hasty) == Mapper::HIGH, "What was made once does not count.");
+  check(scene.turn(Hasty) == Mapper::HIGH, "First frames do not count.");
   check(scene.turn(Hasty) == Mapper::STANDARD, "High gives way to standard.");
   check(scene.isTrue(), "It is standard.");
   check(scene.turn(Hasty) == Mapper::PREVIEW, "Standard gives way to preview.");
@@ -129,7 +129,10 @@ void testOthers(Scene& scene, stage::Checks& check)
   check(scene.mapper->GetQualityModeUsed() == Mapper::HIGH, "Another view has its own times.");
   check(scene.turn(Hasty) == Mapper::PREVIEW, "The first view keeps its own.");
   scene.image->Modified();
-  check(scene.turn(Hasty) == Mapper::HIGH, "Other data have other times.");
+  check(scene.turn(Hasty) == Mapper::PREVIEW, "Changed data take what the last ones took.");
+  scene.image = stage::toImageData(stage::blobsAndTubes({ 50, 54, 60 }, 9));
+  scene.mapper->SetInputData(scene.image);
+  check(scene.turn(Hasty) == Mapper::HIGH, "Data of another size have other times.");
 }
 }
 
