@@ -233,6 +233,11 @@ void testTwoProps(Mapper* mapper, stage::Checks& check)
   stage.volume->VisibilityOff();
   const stage::Pixels other = stage.pixels();
   check(!isBlack(first) && !isBlack(other) && first != other, "Both props are seen.");
+  const auto fresh = stage::splatting(vtkImageData::SafeDownCast(mapper->GetInput()));
+  fresh->SetQualityMode(mapper->GetQualityMode());
+  second->SetMapper(fresh);
+  check(stage.pixels() == other, "The second prop has its own colours and place.");
+  second->SetMapper(mapper);
   stage::Pixels expected(both.size());
   std::transform(first.begin(), first.end(), other.begin(), expected.begin(),
     [](unsigned char a, unsigned char b) { return std::max(a, b); });
