@@ -9,6 +9,7 @@
 #include "vtkPlaneCollection.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
+#include "vtkVolumeMapper.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace
 {
@@ -60,6 +62,40 @@ bool isSingular(const glm::dmat4& m)
     !std::isfinite(glm::length(m[3]));
 }
 
+/// Flags of cropping regions with the lowest and the highest along an axis exchanged.
+unsigned mirrored(unsigned flags, int stride)
+{
+  unsigned result = 0;
+  for (int bit = 0; bit < 27; ++bit)
+  {
+    const int region = bit / stride % 3;
+    result |= (flags >> bit & 1u) << (bit + (2 - 2 * region) * stride);
+  }
+  return result;
+}
+
+/// VTK's planes lie across the axes of the image, wherever its direction matrix turns these.
+splatting::Cropping croppingOf(vtkImageData* image, vtkVolumeMapper* mapper)
+{
+  splatting::Cropping cropping;
+  const double* const planes = mapper->GetCroppingRegionPlanes();
+  unsigned flags = static_cast<unsigned>(mapper->GetCroppingRegionFlags());
+  for (int a = 0, stride = 1; a < 3; ++a, stride *= 3)
+  {
+    const double spacing = image->GetSpacing()[a];
+    const double first = image->GetOrigin()[a] + image->GetExtent()[2 * a] * spacing;
+    cropping.planes[a] = { (planes[2 * a] - first) / spacing,
+      (planes[2 * a + 1] - first) / spacing };
+    if (spacing < 0.0)
+    {
+      std::swap(cropping.planes[a][0], cropping.planes[a][1]);
+      flags = mirrored(flags, stride);
+    }
+  }
+  cropping.flags = flags & splatting::Cropping::All;
+  return cropping;
+}
+
 /// Keeps a half-space of index space if it cuts into the volume's voxels at all.
 void addHalfSpace(splatting::View& view, const glm::dvec4& h)
 {
@@ -83,7 +119,7 @@ bool isFlat(vtkImageData* image, vtkVolume* volume)
 
 //------------------------------------------------------------------------------
 splatting::View makeView(
-  vtkImageData* image, vtkVolume* volume, vtkRenderer* renderer, vtkPlaneCollection* planes)
+  vtkImageData* image, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper)
 {
   splatting::View view;
   const int* dimensions = image->GetDimensions();
@@ -100,7 +136,7 @@ splatting::View makeView(
   const glm::dvec4 z = row(view.indexToClip, 2), w = row(view.indexToClip, 3);
   addHalfSpace(view, w + z);
   addHalfSpace(view, w - z);
-  if (planes)
+  if (vtkPlaneCollection* const planes = mapper->GetClippingPlanes())
   {
     vtkCollectionSimpleIterator it;
     planes->InitTraversal(it);
@@ -111,6 +147,10 @@ splatting::View makeView(
       // A plane is a row vector: it transforms from the right.
       addHalfSpace(view, glm::dvec4(normal, -glm::dot(normal, origin)) * world);
     }
+  }
+  if (mapper->GetCropping())
+  {
+    view.cropping = croppingOf(image, mapper);
   }
   return view;
 }

@@ -9,9 +9,9 @@
 #include "View.h"
 
 class vtkImageData;
-class vtkPlaneCollection;
 class vtkRenderer;
 class vtkVolume;
+class vtkVolumeMapper;
 
 /**
  * Whether spacing, direction and prop matrix flatten the volume, or have no meaning (NaN).
@@ -19,10 +19,10 @@ class vtkVolume;
 bool isFlat(vtkImageData* image, vtkVolume* volume);
 
 /**
- * The view of the renderer's active camera. Half-spaces: those of the clipping planes (world space,
- * may be nullptr) and of the near and far plane that cut into the volume.
+ * The view of the renderer's active camera. Half-spaces: those of the mapper's clipping planes and
+ * of the near and far plane that cut into the volume. Cropping: the mapper's.
  */
 splatting::View makeView(
-  vtkImageData* image, vtkVolume* volume, vtkRenderer* renderer, vtkPlaneCollection* planes);
+  vtkImageData* image, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper);
 
 #endif

@@ -98,6 +98,28 @@ const char* nameOfMode(int mode)
   return names[mode];
 }
 
+splatting::Reduction reductionOf(int blendMode, int maximumType)
+{
+  switch (blendMode)
+  {
+    case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
+      return splatting::Reduction::Minimum;
+    case vtkVolumeMapper::AVERAGE_INTENSITY_BLEND:
+      return splatting::Reduction::Mean;
+    default:
+      return maximumType == vtkSplattingMIPVolumeMapper::DEPTH_SHADED
+        ? splatting::Reduction::DepthShaded
+        : maximumType == vtkSplattingMIPVolumeMapper::LOCAL ? splatting::Reduction::Local
+                                                            : splatting::Reduction::Maximum;
+  }
+}
+
+/// Whether it matters which end of a ray is nearest to the viewer.
+bool isOrdered(splatting::Reduction reduction)
+{
+  return reduction == splatting::Reduction::DepthShaded || reduction == splatting::Reduction::Local;
+}
+
 const char* nameOf(int acceleration)
 {
   static const char* const names[] = { "auto", "dense", "bricks", "lines", "sorted lines",
@@ -116,9 +138,10 @@ public:
   void LookAt(vtkDataArray* scalars);
   splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self) const;
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
-  bool Shows(const splatting::ShearWarp& geometry, const splatting::View& view,
-    const splatting::ProjectionSettings& settings) const;
+  bool Shows(
+    const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings) const;
   double FloorOfWindow() const;
+  void FindCuts(const splatting::View& view, const splatting::ShearWarp& geometry);
   bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode);
   void UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor);
   void CopyShearImage(vtkImageData* output) const;
@@ -141,7 +164,8 @@ public:
   splatting::ProjectionSettings Settings;
   splatting::Acceleration Used = splatting::Acceleration::Dense;
   bool BudgetReported = false;
-  std::vector<glm::dvec4> HalfSpaces;
+  splatting::Cuts Cuts, LastCuts;
+  std::vector<glm::dvec4> HalfSpaces; // in pixels
   splatting::ShearImage Image;
   bool ImageValid = false;
   vtkIdType Projections = 0;
@@ -167,6 +191,10 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
   : QualityMode(HIGH),
     Kernel(TRILINEAR),
     KernelRadius(1.0),
+    MaximumType(GLOBAL),
+    DepthShadingAmbient(0.3),
+    DepthShadingChangeRate(0.7),
+    LocalMaximumThreshold(0.0),
     FootprintSampling(0),
     Acceleration(AUTO),
     LineTolerance(0.0),
@@ -249,13 +277,10 @@ std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
 const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
   vtkSplattingMIPVolumeMapper* self, vtkVolume*, const splatting::View& view)
 {
-  if (self->BlendMode != MAXIMUM_INTENSITY_BLEND)
+  if (self->BlendMode != MAXIMUM_INTENSITY_BLEND && self->BlendMode != MINIMUM_INTENSITY_BLEND &&
+    self->BlendMode != AVERAGE_INTENSITY_BLEND)
   {
-    return "the blend mode is not maximum intensity";
-  }
-  if (self->Cropping)
-  {
-    return "cropping is on";
+    return "the blend mode is no intensity projection";
   }
   if (this->Scalars->GetNumberOfComponents() != 1)
   {
@@ -311,6 +336,12 @@ splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::MakeSettin
 {
   splatting::ProjectionSettings settings;
   settings.quality = static_cast<splatting::Quality>(self->QualityMode);
+  settings.reduction = reductionOf(self->BlendMode, self->MaximumType);
+  settings.ambient = self->DepthShadingAmbient;
+  settings.changeRate = self->DepthShadingChangeRate;
+  settings.threshold = self->LocalMaximumThreshold;
+  settings.meanLow = self->AverageIPScalarRange[0];
+  settings.meanHigh = self->AverageIPScalarRange[1];
   settings.kernel = { self->Kernel == COSINE_BELL ? splatting::Reconstruction::CosineBell
                                                   : splatting::Reconstruction::Hat,
     self->KernelRadius };
@@ -346,11 +377,30 @@ bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* s
 }
 
 //------------------------------------------------------------------------------
-bool vtkSplattingMIPVolumeMapper::Internals::Shows(const splatting::ShearWarp& geometry,
-  const splatting::View& view, const splatting::ProjectionSettings& settings) const
+void vtkSplattingMIPVolumeMapper::Internals::FindCuts(
+  const splatting::View& view, const splatting::ShearWarp& geometry)
+{
+  this->Cuts.cropping = view.cropping;
+  this->Cuts.intervals.clear();
+  this->HalfSpaces.clear();
+  for (const glm::dvec4& h : view.halfSpaces)
+  {
+    this->HalfSpaces.push_back(geometry.inPixels(h));
+  }
+  if (!this->HalfSpaces.empty())
+  {
+    this->Cuts.intervals.find(geometry, this->HalfSpaces);
+  }
+}
+
+//------------------------------------------------------------------------------
+// Whether the last shear image is what this asks for; the cuts are found already.
+bool vtkSplattingMIPVolumeMapper::Internals::Shows(
+  const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings) const
 {
   return this->ImageValid && geometry.sameShear(this->Geometry) &&
-    this->HalfSpaces == view.halfSpaces && settings == this->Settings;
+    (geometry.reversed() == this->Geometry.reversed() || !isOrdered(settings.reduction)) &&
+    this->Cuts == this->LastCuts && settings == this->Settings;
 }
 
 //------------------------------------------------------------------------------
@@ -361,13 +411,14 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
 {
   const splatting::ShearWarp geometry(view);
   splatting::ProjectionSettings settings = this->MakeSettings(self);
-  settings.quality = std::clamp(this->Settings.quality, static_cast<splatting::Quality>(mode),
-    static_cast<splatting::Quality>(self->QualityMode));
-  const bool same = this->Shows(geometry, view, settings);
   if (!geometry.valid())
   {
     return false;
   }
+  this->FindCuts(view, geometry);
+  settings.quality = std::clamp(this->Settings.quality, static_cast<splatting::Quality>(mode),
+    static_cast<splatting::Quality>(self->QualityMode));
+  const bool same = this->Shows(geometry, settings);
   this->Geometry = geometry;
   if (same)
   {
@@ -377,14 +428,14 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
   this->ImageValid = false;
   this->ShearImageOutput = nullptr;
   this->Settings = settings;
-  this->HalfSpaces = view.halfSpaces;
   const double start = vtkTimerLog::GetUniversalTime();
   const splatting::Acceleration used =
-    this->Projector.project(this->Index, geometry, settings, view.halfSpaces, this->Image);
+    this->Projector.project(this->Index, geometry, settings, this->Cuts, this->Image);
   if (this->Projector.stopped())
   {
     return true;
   }
+  std::swap(this->Cuts, this->LastCuts);
   this->Used = used;
   this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
   this->ImageValid = true;
@@ -453,7 +504,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
-  const splatting::View view = makeView(in.Input, vol, ren, this->GetClippingPlanes());
+  const splatting::View view = makeView(in.Input, vol, ren, this);
   // Nothing can be seen in a window that is not shown yet.
   if (view.viewport.x < 1 || view.viewport.y < 1)
   {
@@ -689,6 +740,20 @@ int vtkSplattingMIPVolumeMapper::GetQualityModeUsed()
 }
 
 //------------------------------------------------------------------------------
+const char* vtkSplattingMIPVolumeMapper::GetMaximumTypeAsString()
+{
+  switch (this->MaximumType)
+  {
+    case DEPTH_SHADED:
+      return "depth shaded";
+    case LOCAL:
+      return "local";
+    default:
+      return "global";
+  }
+}
+
+//------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetKernelAsString()
 {
   return this->Kernel == COSINE_BELL ? "cosine bell" : "trilinear";
@@ -706,6 +771,10 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FinalColorLevel: " << this->FinalColorLevel << "\n";
   os << indent << "Kernel: " << this->GetKernelAsString() << "\n";
   os << indent << "KernelRadius: " << this->KernelRadius << "\n";
+  os << indent << "MaximumType: " << this->GetMaximumTypeAsString() << "\n";
+  os << indent << "DepthShadingAmbient: " << this->DepthShadingAmbient << "\n";
+  os << indent << "DepthShadingChangeRate: " << this->DepthShadingChangeRate << "\n";
+  os << indent << "LocalMaximumThreshold: " << this->LocalMaximumThreshold << "\n";
   os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";
   os << indent << "Acceleration: " << this->GetAccelerationAsString() << "\n";
   os << indent << "AccelerationUsed: " << nameOf(this->GetAccelerationUsed()) << "\n";

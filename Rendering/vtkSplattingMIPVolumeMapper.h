@@ -100,6 +100,13 @@ public:
     COSINE_BELL = 1
   };
 
+  enum MaximumTypes
+  {
+    GLOBAL = 0,
+    DEPTH_SHADED = 1,
+    LOCAL = 2
+  };
+
   enum Accelerations
   {
     AUTO = 0,
@@ -189,6 +196,53 @@ public:
    */
   vtkSetClampMacro(KernelRadius, double, 0.5, 1.5);
   vtkGetMacro(KernelRadius, double);
+  ///@}
+
+  ///@{
+  /**
+   * Which maximum along a ray is shown in blend mode MAXIMUM_INTENSITY. Default GLOBAL. A ray's
+   * samples are, in mode PREVIEW, the voxels that it crosses, and in the other modes the averages
+   * of its slices.
+   *
+   * GLOBAL: the largest of all.
+   * DEPTH_SHADED: each sample is dimmed by its depth before the maximum is taken (DMIP) [Bruckner,
+   * "Performing Maximum Intensity Projection with the Visualization Toolkit", Program 4.3]: the
+   * n-th slice of the N that the ray crosses inside planes and slab, n = 0 being the nearest to the
+   * viewer, by ambient + (1 - n / N) changeRate. Samples count from the lowest scalar of the volume
+   * here, so that Hounsfield units are dimmed like bytes. The shear image is float (double for 32-
+   * and 64-bit integers and double) in all modes.
+   * LOCAL: the first local maximum, seen from the viewer, that is no less than
+   * LocalMaximumThreshold, and where there is none the largest of all [Sato et al. 1998].
+   *
+   * DEPTH_SHADED and LOCAL depend on the side that the viewer is on. They, and the blend modes
+   * MINIMUM_INTENSITY and AVERAGE_INTENSITY, look at every sample: Acceleration has no effect.
+   */
+  vtkSetClampMacro(MaximumType, int, GLOBAL, LOCAL);
+  vtkGetMacro(MaximumType, int);
+  void SetMaximumTypeToGlobal() { this->SetMaximumType(GLOBAL); }
+  void SetMaximumTypeToDepthShaded() { this->SetMaximumType(DEPTH_SHADED); }
+  void SetMaximumTypeToLocal() { this->SetMaximumType(LOCAL); }
+  const char* GetMaximumTypeAsString();
+  ///@}
+
+  ///@{
+  /**
+   * Of depth shading: what is left of a sample at the far end of the ray, and what is added to that
+   * at the near end. Defaults 0.3 and 0.7: from everything to 30 %. Ambient 1 and change rate 0
+   * give the plain maximum. Any finite numbers.
+   */
+  vtkSetMacro(DepthShadingAmbient, double);
+  vtkGetMacro(DepthShadingAmbient, double);
+  vtkSetMacro(DepthShadingChangeRate, double);
+  vtkGetMacro(DepthShadingChangeRate, double);
+  ///@}
+
+  ///@{
+  /**
+   * Of local maxima: the scalar from which on they count. Default 0.
+   */
+  vtkSetMacro(LocalMaximumThreshold, double);
+  vtkGetMacro(LocalMaximumThreshold, double);
   ///@}
 
   ///@{
@@ -381,6 +435,10 @@ protected:
   int QualityMode;
   int Kernel;
   double KernelRadius;
+  int MaximumType;
+  double DepthShadingAmbient;
+  double DepthShadingChangeRate;
+  double LocalMaximumThreshold;
   int FootprintSampling;
   int Acceleration;
   double LineTolerance;

@@ -8,21 +8,22 @@
  * Layers with high bounds come first, and a tile whose bound is no more than its least pixel is
  * left out: it could not change a pixel. What remains is walked row by row, several tiles at a
  * time, because memory is fastest where it is read in order.
+ *
+ * Where rays are cut, bits say which slices of a layer count for a pixel, and tiles that have none
+ * are left out.
  */
 #ifndef splattingBandWalk_h
 #define splattingBandWalk_h
 
+#include "Cuts.h"
 #include "PreviewLayers.h"
 #include "Worksheets.h"
 
 #include <cstdint>
-#include <cstring>
 #include <numeric>
 
 namespace splatting
 {
-/// Rows of a tile.
-constexpr int TileHeight = 4;
 static_assert(TileWidth == BrickWidth && TileHeight == BrickHeight);
 
 /// Tiles that a walk met, and those that it splatted.
@@ -40,6 +41,8 @@ struct BandScratch
   std::vector<int> order;
   std::vector<double> scores;
   std::vector<Span> runs;
+  BandCuts cuts;
+  std::vector<unsigned char> mask;
   TileCount count;
 };
 
@@ -71,6 +74,11 @@ public:
 
   void walkDensely()
   {
+    if (!this->Shared.cuts.none())
+    {
+      this->Shared.range.special ? this->walkSamples() : this->walkHulls();
+      return;
+    }
     this->Scratch.runs.assign(1, { 0, this->Shared.image.width });
     this->Stack.splatAll(this->Range, this->V0, this->V1, this->Scratch.runs, this->Scratch.patch);
   }
@@ -81,6 +89,7 @@ public:
     this->orderLayers();
     this->Scratch.minima.resize(std::size_t(this->Groups) * this->Tiles * sizeof(P));
     std::fill_n(this->minimaOf(0), this->Groups * this->Tiles, this->Stack.floor());
+    this->openCuts();
     int walked = 0;
     for (int z : this->Scratch.order)
     {
@@ -120,9 +129,67 @@ private:
     return reinterpret_cast<P*>(this->Scratch.minima.data()) + std::ptrdiff_t(group) * this->Tiles;
   }
 
-  void splat(int z, int v0, int v1)
+  /// Cut rays, layer by layer: groups of rows from the first to the last tile that counts. Some
+  /// groups together, for which worksheets widen the same voxels.
+  void walkHulls()
   {
-    this->Stack.splat(z, v0, v1, this->Scratch.runs, this->Scratch.patch);
+    constexpr int together = 4;
+    this->openCuts();
+    for (int first = 0; first < this->Groups; first += together)
+    {
+      const int end = std::min(first + together, this->Groups);
+      this->Stack.open(this->firstRow(first), this->firstRow(end - 1) + this->rowsOf(end - 1),
+        { 0, this->Shared.image.width }, this->Scratch.patch);
+      for (int z = this->Range.begin; z < this->Range.end; ++z)
+      {
+        for (int g = first; g < end; ++g)
+        {
+          std::fill_n(this->openFlags(), this->Tiles, static_cast<unsigned char>(1));
+          this->Scratch.runs.assign(1, this->findBits(z, g));
+          if (!this->Scratch.runs.front().empty())
+          {
+            const SliceBits bits = this->Scratch.cuts.bits();
+            this->Stack.splatOpened(z, this->firstRow(g), this->firstRow(g) + this->rowsOf(g),
+              this->Scratch.runs, bits, this->Scratch.patch);
+          }
+        }
+      }
+    }
+  }
+
+  /// The same sample by sample, for voxels that compare with nothing.
+  void walkSamples()
+  {
+    const RayLoops<P>& loops = this->Shared.kernels;
+    const Span slices{ this->Range.begin * BrickDepth,
+      std::min(this->Range.end * BrickDepth, this->Shared.geometry.size().z) };
+    this->Scratch.mask.resize(this->Shared.image.width);
+    this->Stack.forSamples(slices, false, this->V0, this->V1, { 0, this->Shared.image.width },
+      this->Scratch.patch,
+      [&](int step, int v, const Span& pixels, const P* samples)
+      {
+        unsigned char* const mask = this->Scratch.mask.data();
+        if (this->Shared.cuts.findMask(step / StepsPerSlice, v, pixels, mask))
+        {
+          loops.raise(this->Shared.image.template row<P>(v) + pixels.begin, samples, mask,
+            pixels.end - pixels.begin);
+        }
+      });
+  }
+
+  void openCuts()
+  {
+    if (!this->Shared.cuts.none())
+    {
+      this->Scratch.cuts.reset(
+        this->Shared.cuts, this->Shared.kernels, this->V0, this->V1, this->Shared.image.width);
+    }
+  }
+
+  Span findBits(int z, int group)
+  {
+    return this->Scratch.cuts.findBits(
+      slicesOfLayer(z, this->Shared.geometry.size()), group, this->Scratch.flags.data());
   }
 
   /// What each layer can add to each tile.
@@ -287,16 +354,34 @@ private:
   void walkGroup(int z, int group)
   {
     const TileLoops<P>& loops = this->Shared.kernels;
-    constexpr int word = 64;
-    this->Scratch.flags.resize((this->Tiles + word - 1) / word * word);
-    unsigned char* const flags = this->Scratch.flags.data();
-    loops.exceeds(this->bounds(z, group), this->minimaOf(group), flags, this->Tiles);
-    std::fill(
-      flags + this->Tiles, flags + this->Scratch.flags.size(), static_cast<unsigned char>(0));
-    this->Scratch.runs.clear();
-    for (int first = 0; first < this->Tiles; first += word)
+    loops.exceeds(this->bounds(z, group), this->minimaOf(group), this->openFlags(), this->Tiles);
+    this->splatFlagged(z, group);
+  }
+
+  static constexpr int Word = 64;
+
+  /// One flag for each tile of a group, and zeros up to the next word.
+  unsigned char* openFlags()
+  {
+    this->Scratch.flags.resize((this->Tiles + Word - 1) / Word * Word);
+    std::fill(this->Scratch.flags.begin() + this->Tiles, this->Scratch.flags.end(),
+      static_cast<unsigned char>(0));
+    return this->Scratch.flags.data();
+  }
+
+  /// Splats the tiles of a group that have flags.
+  void splatFlagged(int z, int group)
+  {
+    SliceBits bits;
+    if (!this->Shared.cuts.none())
     {
-      std::uint64_t tiles = packed(flags + first);
+      this->findBits(z, group);
+      bits = this->Scratch.cuts.bits();
+    }
+    this->Scratch.runs.clear();
+    for (int first = 0; first < this->Tiles; first += Word)
+    {
+      std::uint64_t tiles = packed(this->Scratch.flags.data() + first);
       // Small gaps cost less than a second start.
       tiles |= ((tiles << 1) & (tiles >> 1)) | ((tiles << 1) & (tiles >> 2)) |
         ((tiles << 2) & (tiles >> 1));
@@ -304,7 +389,9 @@ private:
     }
     if (!this->Scratch.runs.empty())
     {
-      this->splat(z, this->firstRow(group), this->firstRow(group) + this->rowsOf(group));
+      const int v0 = this->firstRow(group);
+      this->Stack.splat(
+        z, v0, v0 + this->rowsOf(group), this->Scratch.runs, bits, this->Scratch.patch);
     }
   }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Frame.h"
 
+#include "Cuts.h"
+
 #include <vtkSMPTools.h>
 
 namespace splatting
@@ -63,25 +65,60 @@ void findSpans(const std::vector<SliceGeometry>& slices, std::vector<Span>& span
   extendRows(slices.back().innerBegin, slices.back().innerEnd, slices.back().inner);
 }
 
-void findMask(const std::vector<SliceGeometry>& slices, const std::vector<glm::dvec4>& halfSpaces,
-  ShearImage& image)
+/// Whether a sample is left in any slice, for a row of pixels.
+class SamplesLeft
 {
-  vtkSMPTools::For(0, image.height, 16,
-    [&](vtkIdType first, vtkIdType last)
+public:
+  SamplesLeft(const std::vector<SliceGeometry>& slices, const Cuts& cuts, const CutMap& map)
+    : Crossed(slices),
+      Source(cuts),
+      Map(map)
+  {
+  }
+
+  void find(int v, int width, unsigned char* mask)
+  {
+    this->Source.cropping.cuts() ? this->fromSlices(v, width, mask)
+                                 : this->fromIntervals(v, width, mask);
+  }
+
+private:
+  void fromIntervals(int v, int width, unsigned char* mask)
+  {
+    this->First.resize(width);
+    this->Last.resize(width);
+    findCrossedSlices(this->Crossed, v, width, this->First.data(), this->Last.data());
+    const std::int16_t* const first = this->Source.intervals.first(v);
+    const std::int16_t* const last = this->Source.intervals.last(v);
+    for (int u = 0; u < width; ++u)
     {
-      for (int v = static_cast<int>(first); v < last; ++v)
+      mask[u] = std::max(first[u], this->First[u]) <= std::min(last[u], this->Last[u]);
+    }
+  }
+
+  void fromSlices(int v, int width, unsigned char* mask)
+  {
+    this->Slice.resize(width);
+    const Span range = slicesOf(this->Crossed, v, v + 1);
+    for (int k = range.begin; k < range.end; ++k)
+    {
+      const Span& span = this->Crossed[k].span(v);
+      if (this->Map.findMask(k, v, span, this->Slice.data()))
       {
-        unsigned char* const mask = &image.mask[std::ptrdiff_t(v) * image.width];
-        const Span range = slicesOf(slices, v, v + 1);
-        for (int k = range.begin; k < range.end; ++k)
+        for (int u = span.begin; u < span.end; ++u)
         {
-          const Span span = ShearWarp::clipped(slices[k].span(v), v, k, halfSpaces);
-          std::fill(mask + span.begin, mask + std::max(span.begin, span.end),
-            static_cast<unsigned char>(1));
+          mask[u] |= this->Slice[u - span.begin];
         }
       }
-    });
-}
+    }
+  }
+
+  const std::vector<SliceGeometry>& Crossed;
+  const Cuts& Source;
+  const CutMap& Map;
+  std::vector<std::int16_t> First, Last;
+  std::vector<unsigned char> Slice;
+};
 }
 
 std::vector<SliceGeometry>& findSlices(
@@ -96,16 +133,25 @@ std::vector<SliceGeometry>& findSlices(
 }
 
 void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
-  const std::vector<glm::dvec4>& halfSpaces, ShearImage& image)
+  const CutMap& cuts, ShearImage& image)
 {
   image.width = geometry.width();
   image.height = geometry.height();
   image.spans.assign(image.height, Span{ image.width, 0 });
   findSpans(slices, image.spans);
-  image.mask.assign(halfSpaces.empty() ? 0 : std::size_t(image.width) * image.height, 0);
-  if (!halfSpaces.empty())
+  image.mask.assign(cuts.none() ? 0 : std::size_t(image.width) * image.height, 0);
+  if (cuts.none())
   {
-    findMask(slices, halfSpaces, image);
+    return;
   }
+  vtkSMPTools::For(0, image.height, 16,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      SamplesLeft samples(slices, cuts.source(), cuts);
+      for (int v = static_cast<int>(begin); v < end; ++v)
+      {
+        samples.find(v, image.width, &image.mask[std::ptrdiff_t(v) * image.width]);
+      }
+    });
 }
 }

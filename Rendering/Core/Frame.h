@@ -34,9 +34,11 @@ struct SliceGeometry
 std::vector<SliceGeometry>& findSlices(
   const ShearWarp& geometry, std::vector<SliceGeometry>& slices);
 
-/// Sets size and spans of an image and, if half-spaces (in pixels) cut the volume, its mask.
+class CutMap;
+
+/// Sets size and spans of an image and, if samples are left out, its mask.
 void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
-  const std::vector<glm::dvec4>& halfSpaces, ShearImage& image);
+  const CutMap& cuts, ShearImage& image);
 
 template <class T>
 constexpr T leastValue()
@@ -60,8 +62,8 @@ struct Frame
   Slices slices; // those that are walked at present
   VolumeIndex::Range range;
   const std::vector<SliceGeometry>& sliceGeometry;
-  const std::vector<glm::dvec4>& halfSpaces; // in pixels
-  double floor;                              // as in ProjectionSettings
+  const CutMap& cuts;
+  double floor; // as in ProjectionSettings
   ShearImage& image;
 
   const T* voxelRow(int j, int k) const
@@ -70,12 +72,8 @@ struct Frame
       k * this->slices.sliceStride;
   }
 
-  /// The pixels of row v in [vBegin, vEnd) that slice k counts for.
-  Span pixels(int v, int k) const
-  {
-    const Span& span = this->sliceGeometry[k].span(v);
-    return this->halfSpaces.empty() ? span : ShearWarp::clipped(span, v, k, this->halfSpaces);
-  }
+  /// The pixels of row v in [vBegin, vEnd) whose rays cross slice k.
+  const Span& pixels(int v, int k) const { return this->sliceGeometry[k].span(v); }
 };
 
 /// The voxels that the pixels of a layer read, relative to the pixel.

@@ -58,6 +58,13 @@ struct MaximumBlock
   T* image;
   const T* const* rows;
   int count;
+  inline void single(std::ptrdiff_t x) const
+  {
+    for (int r = 0; r < this->count; ++r)
+    {
+      this->image[x] = larger(this->rows[r][x], this->image[x]);
+    }
+  }
   template <int V>
   inline void run(std::ptrdiff_t x) const
   {
@@ -84,17 +91,58 @@ struct MaximumBlock
   }
 };
 
+/// The same where bits say which rows count.
+template <class T>
+struct CutBlock
+{
+  T* image;
+  const T* const* rows;
+  int count;
+  const unsigned char* bits;
+  const unsigned char* bit;
+  template <int V>
+  inline void run(std::ptrdiff_t x) const
+  {
+    Pack<T> best[V];
+    Pack<Integer<T>> counts[V];
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      best[v] = load<T>(this->image + x + v * width<T>);
+      counts[v] = loadBits<T>(this->bits + x + v * width<T>);
+    }
+    for (int r = 0; r < this->count; ++r)
+    {
+      const T* const row = this->rows[r] + x;
+      const Pack<Integer<T>> mine = Pack<Integer<T>>{} + static_cast<Integer<T>>(this->bit[r]);
+#pragma GCC unroll 4
+      for (int v = 0; v < V; ++v)
+      {
+        const Pack<T> value = (counts[v] & mine) != 0 ? load<T>(row + v * width<T>) : best[v];
+        best[v] = larger(value, best[v]);
+      }
+    }
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      store<T>(this->image + x + v * width<T>, best[v]);
+    }
+  }
+  inline void single(std::ptrdiff_t x) const
+  {
+    for (int r = 0; r < this->count; ++r)
+    {
+      this->image[x] =
+        this->bits[x] & this->bit[r] ? larger(this->rows[r][x], this->image[x]) : this->image[x];
+    }
+  }
+};
+
 template <class T>
 void maximum(T* image, const T* const* rows, int count, std::ptrdiff_t n)
 {
-  blocks<T>(n, MaximumBlock<T>{ image, rows, count },
-    [&](std::ptrdiff_t x)
-    {
-      for (int r = 0; r < count; ++r)
-      {
-        image[x] = larger(rows[r][x], image[x]);
-      }
-    });
+  const MaximumBlock<T> block{ image, rows, count };
+  blocks<T>(n, block, [&](std::ptrdiff_t x) { block.single(x); });
 }
 
 template <class T>
@@ -112,12 +160,11 @@ void largest(const T* const* rows, int count, T* out, std::ptrdiff_t n)
 }
 
 /// The run's valid pixels, and as many beside them as fill a register.
-template <class T>
-inline void sweepRun(T* image, const T* const* rows, int count, const Span& run, const Span& valid)
+template <class T, class Block>
+inline void sweepRun(const Block& block, const Span& run, const Span& valid)
 {
   const std::ptrdiff_t begin = run.begin > valid.begin ? run.begin : valid.begin;
   const std::ptrdiff_t end = run.end < valid.end ? run.end : valid.end;
-  const MaximumBlock<T> block{ image, rows, count };
   std::ptrdiff_t x = begin;
   for (; end - x >= 4 * width<T>; x += 4 * width<T>)
   {
@@ -138,10 +185,7 @@ inline void sweepRun(T* image, const T* const* rows, int count, const Span& run,
     {
       for (x = begin; x < end; ++x)
       {
-        for (int r = 0; r < count; ++r)
-        {
-          image[x] = larger(rows[r][x], image[x]);
-        }
+        block.single(x);
       }
       return;
     }
@@ -151,8 +195,11 @@ inline void sweepRun(T* image, const T* const* rows, int count, const Span& run,
 
 #if defined(__GNUC__)
 template <class T>
-inline void sweepRim(T* image, const T* const* rows, int count, const Rim& rim)
+inline void sweepRim(T* image, const T* const* rows, int count, const Rim& rim,
+  const unsigned char* bits, const unsigned char* bit)
 {
+  const Pack<Integer<T>> shown =
+    bits ? loadBits<T>(bits + rim.first) : Pack<Integer<T>>{} - static_cast<Integer<T>>(1);
   Pack<T> lane;
   for (int x = 0; x < width<T>; ++x)
   {
@@ -166,7 +213,8 @@ inline void sweepRim(T* image, const T* const* rows, int count, const Rim& rim)
       const Pack<T> value = load<T>(rows[r] + rim.first);
       const Pack<T> begin = Pack<T>{} + static_cast<T>(rim.begin[r]);
       const Pack<T> last = Pack<T>{} + static_cast<T>(rim.end[r] - 1);
-      const auto counts = (lane >= begin) & (lane <= last) & (value > best);
+      const Integer<T> mine = static_cast<Integer<T>>(bits ? bit[r] : 1);
+      const auto counts = (lane >= begin) & (lane <= last) & (value > best) & ((shown & mine) != 0);
       best = counts ? value : best;
     }
   }
@@ -174,11 +222,12 @@ inline void sweepRim(T* image, const T* const* rows, int count, const Rim& rim)
 }
 #else
 template <class T>
-inline void sweepRim(T* image, const T* const* rows, int count, const Rim& rim)
+inline void sweepRim(T* image, const T* const* rows, int count, const Rim& rim,
+  const unsigned char* bits, const unsigned char* bit)
 {
   for (int r = 0; r < count; ++r)
   {
-    if (rim.begin[r] < rim.end[r]) // of one element
+    if (rim.begin[r] < rim.end[r] && (!bits || bits[rim.first] & bit[r])) // of one element
     {
       image[rim.first] = larger(rows[r][rim.first], image[rim.first]);
     }
@@ -190,6 +239,7 @@ template <class T>
 void sweep(const Sweep<T>& s)
 {
   T* image = s.image;
+  const unsigned char* bits = s.bits;
   const T* rows[MostRows];
   for (int r = 0; r < s.count; ++r)
   {
@@ -199,30 +249,24 @@ void sweep(const Sweep<T>& s)
   {
     for (int n = 0; n < s.runCount; ++n)
     {
-      sweepRun(image, rows, s.count, s.runs[n], s.valid);
+      if (bits)
+      {
+        sweepRun<T>(CutBlock<T>{ image, rows, s.count, bits, s.bit }, s.runs[n], s.valid);
+      }
+      else
+      {
+        sweepRun<T>(MaximumBlock<T>{ image, rows, s.count }, s.runs[n], s.valid);
+      }
     }
     for (int n = 0; n < s.rimCount; ++n)
     {
-      sweepRim(image, rows, s.count, *s.rims[n]);
+      sweepRim(image, rows, s.count, *s.rims[n], bits, s.bit);
     }
     image += s.imageStride;
+    bits = bits ? bits + s.bitsStride : nullptr;
     for (int r = 0; r < s.count; ++r)
     {
       rows[r] += s.rowStride;
-    }
-  }
-}
-
-template <class T>
-void maximumValid(T* image, const T* const* rows, int count, std::ptrdiff_t n)
-{
-  for (int r = 0; r < count; ++r)
-  {
-    const T* const row = rows[r];
-    for (std::ptrdiff_t x = 0; x < n; ++x)
-    {
-      const bool empty = image[x] != image[x];
-      image[x] = empty || row[x] > image[x] ? row[x] : image[x];
     }
   }
 }
@@ -409,7 +453,14 @@ inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
     for (int v = 0; v < V; ++v)
     {
       A* const pixels = s.image + (y + o) * s.imageStride + x + v * width<A>;
-      store<A>(pixels, larger(sum[o][v], load<A>(pixels)));
+      const Pack<A> before = load<A>(pixels);
+      if (s.bits)
+      {
+        const Pack<Integer<A>> bits =
+          loadBits<A>(s.bits + (y + o) * s.bitsStride + x + v * width<A>);
+        sum[o][v] = (bits & static_cast<Integer<A>>(s.bit)) != 0 ? sum[o][v] : before;
+      }
+      store<A>(pixels, larger(sum[o][v], before));
     }
   }
 }
@@ -417,6 +468,10 @@ inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
 template <class A>
 inline void splatPixel(const Splat<A>& s, std::ptrdiff_t x, int y)
 {
+  if (s.bits && !(s.bits[y * s.bitsStride + x] & s.bit))
+  {
+    return;
+  }
   A sum = 0;
   for (int p = 0; p < s.partCount; ++p)
   {
@@ -530,6 +585,178 @@ void bound(A* __restrict own, const A* __restrict before, const A* __restrict af
   }
 }
 
+void sliceBits(const std::int16_t* __restrict first, const std::int16_t* __restrict last, int k,
+  int count, unsigned char* __restrict bits, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    // Slices from `low` on and up to `high`, relative to k.
+    const int low = first[x] - k, high = last[x] - k;
+    const unsigned from = 0xffu << (low < 0 ? 0 : low > 8 ? 8 : low);
+    const unsigned to = 0xffu >> (high < 0 ? 8 : high > 7 ? 0 : 7 - high);
+    bits[x] = static_cast<unsigned char>(from & to & ((1u << count) - 1u));
+  }
+}
+
+void tileExtremes(const std::int16_t* first, const std::int16_t* last, std::ptrdiff_t stride,
+  int rows, std::ptrdiff_t n, TileExtremes* __restrict tiles)
+{
+  constexpr std::ptrdiff_t chunk = 64 * TileWidth;
+  for (std::ptrdiff_t begin = 0; begin < n; begin += chunk)
+  {
+    const std::ptrdiff_t count = begin + chunk < n ? chunk : n - begin;
+    std::int16_t low0[chunk], high0[chunk], low1[chunk], high1[chunk];
+    for (std::ptrdiff_t x = 0; x < count; ++x)
+    {
+      low0[x] = high0[x] = first[begin + x];
+      low1[x] = high1[x] = last[begin + x];
+    }
+    for (int r = 1; r < rows; ++r)
+    {
+      const std::int16_t* const f = first + r * stride + begin;
+      const std::int16_t* const l = last + r * stride + begin;
+      for (std::ptrdiff_t x = 0; x < count; ++x)
+      {
+        low0[x] = smaller(f[x], low0[x]);
+        high0[x] = larger(f[x], high0[x]);
+        low1[x] = smaller(l[x], low1[x]);
+        high1[x] = larger(l[x], high1[x]);
+      }
+    }
+    for (std::ptrdiff_t x = 0; x < count; x += TileWidth)
+    {
+      const std::ptrdiff_t end = x + TileWidth < count ? x + TileWidth : count;
+      TileExtremes tile{ low0[x], high0[x], low1[x], high1[x] };
+      for (std::ptrdiff_t y = x + 1; y < end; ++y)
+      {
+        tile.leastFirst = smaller(low0[y], tile.leastFirst);
+        tile.greatestFirst = larger(high0[y], tile.greatestFirst);
+        tile.leastLast = smaller(low1[y], tile.leastLast);
+        tile.greatestLast = larger(high1[y], tile.greatestLast);
+      }
+      tiles[(begin + x) / TileWidth] = tile;
+    }
+  }
+}
+
+/// The samples that count, and that `take(x)` wants.
+template <bool Masked, class P, class Take>
+inline void takeSamples(P* __restrict image, const P* __restrict samples,
+  const unsigned char* __restrict mask, std::ptrdiff_t n, Take&& take)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const bool counts = (!Masked || mask[x] != 0) & (samples[x] == samples[x]);
+    image[x] = counts & take(x) ? samples[x] : image[x];
+  }
+}
+
+template <class P, class Take>
+inline void takeSamples(
+  P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n, Take&& take)
+{
+  mask ? takeSamples<true>(image, samples, mask, n, take)
+       : takeSamples<false>(image, samples, mask, n, take);
+}
+
+template <class P>
+void raise(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n)
+{
+  takeSamples(image, samples, mask, n, [=](std::ptrdiff_t x) { return !(samples[x] <= image[x]); });
+}
+
+template <class P>
+void lower(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n)
+{
+  takeSamples(image, samples, mask, n, [=](std::ptrdiff_t x) { return !(samples[x] >= image[x]); });
+}
+
+template <bool Masked, class P>
+void climb(P* __restrict image, unsigned char* __restrict ended, P threshold,
+  const P* __restrict samples, const unsigned char* __restrict mask, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const bool counts = (!Masked || mask[x] != 0) & (samples[x] == samples[x]);
+    const bool ends = counts & (image[x] >= threshold) & (samples[x] < image[x]);
+    ended[x] = static_cast<unsigned char>(ended[x] | static_cast<unsigned char>(ends));
+    image[x] = counts & (ended[x] == 0) & !(samples[x] <= image[x]) ? samples[x] : image[x];
+  }
+}
+
+template <class P>
+void climb(P* image, unsigned char* ended, P threshold, const P* samples, const unsigned char* mask,
+  std::ptrdiff_t n)
+{
+  mask ? climb<true>(image, ended, threshold, samples, mask, n)
+       : climb<false>(image, ended, threshold, samples, mask, n);
+}
+
+template <bool Masked, class P>
+void note(std::int32_t* __restrict winners, std::int32_t place, const P* __restrict before,
+  const P* __restrict image, const P* __restrict samples, const unsigned char* __restrict mask,
+  std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const bool counts = (!Masked || mask[x] != 0) & (samples[x] == samples[x]);
+    const bool changed = (image[x] != before[x]) & (image[x] == image[x]);
+    winners[x] = changed | (counts & (winners[x] < 0)) ? place : winners[x];
+  }
+}
+
+template <class P>
+void note(std::int32_t* winners, std::int32_t place, const P* before, const P* image,
+  const P* samples, const unsigned char* mask, std::ptrdiff_t n)
+{
+  mask ? note<true>(winners, place, before, image, samples, mask, n)
+       : note<false>(winners, place, before, image, samples, mask, n);
+}
+
+template <bool Masked, class A>
+void shade(A* __restrict image, const Shade<A>& s, const A* __restrict samples,
+  const unsigned char* __restrict mask, std::ptrdiff_t n)
+{
+  const std::int16_t* __restrict const first = s.first;
+  const std::int16_t* __restrict const last = s.last;
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const std::int32_t begin = first[x], end = last[x];
+    const A place = static_cast<A>(s.reversed ? end - s.k : s.k - begin);
+    const A factor = s.ambient + (A(1) - place / static_cast<A>(end - begin + 1)) * s.changeRate;
+    const A sample = s.low + (samples[x] - s.low) * factor;
+    const bool counts = (!Masked || mask[x] != 0) & (sample == sample);
+    image[x] = counts & !(sample <= image[x]) ? sample : image[x];
+  }
+}
+
+template <class A>
+void shade(
+  A* image, const Shade<A>& s, const A* samples, const unsigned char* mask, std::ptrdiff_t n)
+{
+  mask ? shade<true>(image, s, samples, mask, n) : shade<false>(image, s, samples, mask, n);
+}
+
+template <bool Masked, class A>
+void add(double* __restrict sums, std::int32_t* __restrict counts, A low, A high,
+  const A* __restrict samples, const unsigned char* __restrict mask, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const bool counted = (!Masked || mask[x] != 0) & (samples[x] >= low) & (samples[x] <= high);
+    sums[x] += counted ? static_cast<double>(samples[x]) : 0.0;
+    counts[x] += counted ? 1 : 0;
+  }
+}
+
+template <class A>
+void add(double* sums, std::int32_t* counts, A low, A high, const A* samples,
+  const unsigned char* mask, std::ptrdiff_t n)
+{
+  mask ? add<true>(sums, counts, low, high, samples, mask, n)
+       : add<false>(sums, counts, low, high, samples, mask, n);
+}
+
 template <class A>
 void interpolate(const A* __restrict image, std::ptrdiff_t stride, const double start[2],
   const double step[2], A* __restrict out, std::ptrdiff_t n)
@@ -578,21 +805,30 @@ void lookUp(const A* __restrict values, A low, A scale, std::int32_t last,
 }
 
 template <class T>
-constexpr VoxelLoops<T> voxelLoops{ width<T>, &maximum<T>, &largest<T>, &sweep<T>, &maximumValid<T>,
-  &widen<T>, &survey<T>, &largestOfFour<T> };
+constexpr VoxelLoops<T> voxelLoops{ width<T>, &maximum<T>, &largest<T>, &sweep<T>, &widen<T>,
+  &survey<T>, &largestOfFour<T> };
 template <class P>
 constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P> };
+template <class P>
+constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
+  static_cast<decltype(RayLoops<P>::climb)>(&climb<P>),
+  static_cast<decltype(RayLoops<P>::note)>(&note<P>) };
 template <class A>
-constexpr WorksheetLoops<A> worksheetLoops{ &splat<A>, &splatValid<A>, &finish<A>, &bound<A>,
-  &interpolate<A>, &lookUp<A> };
+constexpr WorksheetLoops<A> worksheetLoops{ &splat<A>, &splatValid<A>,
+  static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
+  static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
+  &lookUp<A> };
 }
 
 extern const Kernels SPLATTING_KERNELS;
-const Kernels SPLATTING_KERNELS = { voxelLoops<std::int8_t>, voxelLoops<std::uint8_t>,
-  voxelLoops<std::int16_t>, voxelLoops<std::uint16_t>, voxelLoops<std::int32_t>,
-  voxelLoops<std::uint32_t>, voxelLoops<std::int64_t>, voxelLoops<std::uint64_t>, voxelLoops<float>,
-  voxelLoops<double>, tileLoops<std::int8_t>, tileLoops<std::uint8_t>, tileLoops<std::int16_t>,
-  tileLoops<std::uint16_t>, tileLoops<std::int32_t>, tileLoops<std::uint32_t>,
-  tileLoops<std::int64_t>, tileLoops<std::uint64_t>, tileLoops<float>, tileLoops<double>,
-  worksheetLoops<float>, worksheetLoops<double> };
+const Kernels SPLATTING_KERNELS = { { &sliceBits, &tileExtremes }, voxelLoops<std::int8_t>,
+  voxelLoops<std::uint8_t>, voxelLoops<std::int16_t>, voxelLoops<std::uint16_t>,
+  voxelLoops<std::int32_t>, voxelLoops<std::uint32_t>, voxelLoops<std::int64_t>,
+  voxelLoops<std::uint64_t>, voxelLoops<float>, voxelLoops<double>, tileLoops<std::int8_t>,
+  tileLoops<std::uint8_t>, tileLoops<std::int16_t>, tileLoops<std::uint16_t>,
+  tileLoops<std::int32_t>, tileLoops<std::uint32_t>, tileLoops<std::int64_t>,
+  tileLoops<std::uint64_t>, tileLoops<float>, tileLoops<double>, rayLoops<std::int8_t>,
+  rayLoops<std::uint8_t>, rayLoops<std::int16_t>, rayLoops<std::uint16_t>, rayLoops<std::int32_t>,
+  rayLoops<std::uint32_t>, rayLoops<std::int64_t>, rayLoops<std::uint64_t>, rayLoops<float>,
+  rayLoops<double>, worksheetLoops<float>, worksheetLoops<double> };
 }

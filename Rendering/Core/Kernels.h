@@ -13,8 +13,9 @@
 
 namespace splatting
 {
-/// Pixels along a tile of the image, the unit in which parts of slices are skipped.
+/// Pixels along a tile of the image, the unit in which parts of slices are skipped, and its rows.
 constexpr int TileWidth = 8;
+constexpr int TileHeight = 4;
 
 enum class InstructionSet
 {
@@ -59,6 +60,10 @@ struct Sweep
   Span valid; ///< the pixels that all rows have voxels for
   const Rim* rims[2];
   int rimCount;
+  /// Where rays are cut, pixel x takes voxels of row r if bits[x] & bit[r]; else nullptr.
+  const unsigned char* bits;
+  std::ptrdiff_t bitsStride;
+  unsigned char bit[MostRows];
 };
 
 /// Loops over voxels of type T.
@@ -75,8 +80,6 @@ struct VoxelLoops
   /// `maximum` for all rows of pixels: for the runs, as far as they are valid and perhaps some
   /// valid pixels beside them, and for the rims.
   void (*sweep)(const Sweep<T>& sweep);
-  /// The same as `maximum` where image[x] = NaN is "no sample yet".
-  void (*maximumValid)(T* image, const T* const* rows, int count, std::ptrdiff_t n);
   /// out[x] = row[x] - base, which must be exact, for some rows of n elements.
   void (*widen)(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
     Accumulator<T> base, std::ptrdiff_t n, int rows);
@@ -96,6 +99,36 @@ struct TileLoops
   void (*minima)(const P* image, std::ptrdiff_t stride, int rows, std::ptrdiff_t tiles, P* minima);
   /// flags[t] = whether bounds[t] > minima[t].
   void (*exceeds)(const P* bounds, const P* minima, unsigned char* flags, std::ptrdiff_t n);
+};
+
+/// Loops over the samples that a row of pixels has in one slice. A NaN sample is none, a NaN pixel
+/// has had none yet. Only pixels with mask[x] != 0 change; without a mask all do.
+template <class P>
+struct RayLoops
+{
+  /// image[x] = max(image[x], samples[x]).
+  void (*raise)(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n);
+  /// image[x] = min(image[x], samples[x]).
+  void (*lower)(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n);
+  /// The same as `raise` until ended[x]: from the threshold on, the first lower sample ends it.
+  void (*climb)(P* image, unsigned char* ended, P threshold, const P* samples,
+    const unsigned char* mask, std::ptrdiff_t n);
+  /// winners[x] = place for the first sample of a ray (winners[x] < 0 before) and where the image
+  /// is not what it was `before` the samples were taken.
+  void (*note)(std::int32_t* winners, std::int32_t place, const P* before, const P* image,
+    const P* samples, const unsigned char* mask, std::ptrdiff_t n);
+};
+
+/// How depth shading dims the samples of slice k in a row of pixels whose rays have slices first[x]
+/// to last[x].
+template <class A>
+struct Shade
+{
+  A low, ambient, changeRate;
+  std::int32_t k;
+  bool reversed; ///< whether the ray comes from the last slice
+  const std::int16_t* first;
+  const std::int16_t* last;
 };
 
 /// A rectangle of footprint weights and the voxels that it meets first.
@@ -119,6 +152,27 @@ struct Splat
   std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
   SplatPart<A> parts[3];
   int partCount;
+  /// Where rays are cut, pixel x changes if bits[x] & bit; else nullptr.
+  const unsigned char* bits;
+  std::ptrdiff_t bitsStride;
+  unsigned char bit;
+};
+
+/// The least and greatest first and last slices that the rays of a tile are cut to.
+struct TileExtremes
+{
+  std::int16_t leastFirst, greatestFirst, leastLast, greatestLast;
+};
+
+/// Loops over the slices that rays are cut to.
+struct CutLoops
+{
+  /// Bit s of bits[x] = whether first[x] <= k + s <= last[x], for s from 0 to `count` - 1.
+  void (*sliceBits)(const std::int16_t* first, const std::int16_t* last, int k, int count,
+    unsigned char* bits, std::ptrdiff_t n);
+  /// The extremes of all tiles of some rows of n pixels.
+  void (*tileExtremes)(const std::int16_t* first, const std::int16_t* last, std::ptrdiff_t stride,
+    int rows, std::ptrdiff_t n, TileExtremes* tiles);
 };
 
 /// Loops over worksheets and images of type A (float or double).
@@ -131,6 +185,13 @@ struct WorksheetLoops
   /// image[x] = max(image[x], average of rows[0..count)[x], NaN left out, weighted and divided by
   /// the weights that remain). image[x] = NaN is "no sample yet". Rows may hold infinities.
   void (*splatValid)(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
+  /// `raise` by low + (samples[x] - low) * (ambient + (1 - n / N) changeRate), the sample being the
+  /// n-th of N from 0 on.
+  void (*shade)(
+    A* image, const Shade<A>& shade, const A* samples, const unsigned char* mask, std::ptrdiff_t n);
+  /// Adds the samples in [low, high].
+  void (*add)(double* sums, std::int32_t* counts, A low, A high, const A* samples,
+    const unsigned char* mask, std::ptrdiff_t n);
   /// image[x] = clamp(image[x] + base, low, high); NaN stays.
   void (*finish)(A* image, A base, A low, A high, std::ptrdiff_t n);
   /// What a worksheet can reach where it weighs its own voxels by 1 - `share` and its neighbours',
@@ -148,7 +209,8 @@ struct WorksheetLoops
 };
 
 struct Kernels
-  : VoxelLoops<std::int8_t>
+  : CutLoops
+  , VoxelLoops<std::int8_t>
   , VoxelLoops<std::uint8_t>
   , VoxelLoops<std::int16_t>
   , VoxelLoops<std::uint16_t>
@@ -168,6 +230,16 @@ struct Kernels
   , TileLoops<std::uint64_t>
   , TileLoops<float>
   , TileLoops<double>
+  , RayLoops<std::int8_t>
+  , RayLoops<std::uint8_t>
+  , RayLoops<std::int16_t>
+  , RayLoops<std::uint16_t>
+  , RayLoops<std::int32_t>
+  , RayLoops<std::uint32_t>
+  , RayLoops<std::int64_t>
+  , RayLoops<std::uint64_t>
+  , RayLoops<float>
+  , RayLoops<double>
   , WorksheetLoops<float>
   , WorksheetLoops<double>
 {

@@ -19,6 +19,7 @@ class LineWorksheets : public WorksheetLayers<T>
 {
 public:
   using typename WorksheetLayers<T>::A;
+  using typename WorksheetLayers<T>::Target;
 
   /// @param index  in rows, of all voxels
   LineWorksheets(const Frame<T>& frame, const std::vector<SliceFootprint<A>>& footprints,
@@ -51,11 +52,12 @@ protected:
     }
   }
 
-  void splatRows(int k, int first, int end, const Span& span, Patch& patch) const override
+  void splatRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
   {
     for (int v = first; v < end; v += StripHeight)
     {
-      this->splatStrip(k, v, std::min(v + StripHeight, end), span, patch);
+      this->splatStrip(k, v, std::min(v + StripHeight, end), span, target, patch);
     }
   }
 
@@ -110,7 +112,7 @@ private:
     write();
   }
 
-  void splatStrip(int k, int v0, int v1, const Span& span, Patch& patch) const
+  void splatStrip(int k, int v0, int v1, const Span& span, const Target& target, Patch& patch) const
   {
     const ReadRows rows = this->readRows(k, v0, v1, span.begin, patch);
     int done = span.begin;
@@ -132,11 +134,11 @@ private:
         continue;
       }
       const int end = std::min(u + length, span.end);
-      this->splatMixed(k, v0, v1, { done, u }, span, patch);
-      this->splatRun(k, v0, v1, { u, end }, patch);
+      this->splatMixed(k, v0, v1, { done, u }, span, target, patch);
+      this->splatRun(k, v0, v1, { u, end }, target, patch);
       done = u = end;
     }
-    this->splatMixed(k, v0, v1, { done, span.end }, span, patch);
+    this->splatMixed(k, v0, v1, { done, span.end }, span, target, patch);
   }
 
   ReadRows readRows(int k, int v0, int v1, int u, Patch& patch) const
@@ -160,29 +162,29 @@ private:
   }
 
   /// Pixels with worksheets of their own: a whole register of them if the span has as many.
-  void splatMixed(int k, int v0, int v1, Span pixels, const Span& span, Patch& patch) const
+  void splatMixed(
+    int k, int v0, int v1, Span pixels, const Span& span, const Target& target, Patch& patch) const
   {
     if (!pixels.empty())
     {
       pixels.end = std::min(std::max(pixels.end, pixels.begin + Register), span.end);
       pixels.begin = std::max(std::min(pixels.begin, pixels.end - Register), span.begin);
-      WorksheetLayers<T>::splatRows(k, v0, v1, pixels, patch);
+      WorksheetLayers<T>::splatRows(k, v0, v1, pixels, target, patch);
     }
   }
 
   /// Pixels with the same worksheet in each row.
-  void splatRun(int k, int v0, int v1, const Span& run, Patch& patch) const
+  void splatRun(int k, int v0, int v1, const Span& run, const Target& target, Patch& patch) const
   {
     A worksheet[StripHeight];
     std::fill_n(worksheet, StripHeight, leastValue<A>());
-    Splat<A> splat = this->splatOf(k, v0, v1, { run.begin, run.begin + 1 }, patch);
-    splat.image = worksheet;
-    splat.imageStride = 1;
+    const Splat<A> splat = this->splatOf(
+      k, v0, v1, { run.begin, run.begin + 1 }, { worksheet - v0 - run.begin, 1, {}, 0 }, patch);
     const WorksheetLoops<A>& loops = this->Shared.kernels;
     loops.splat(splat);
     for (int v = v0; v < v1; ++v)
     {
-      A* const row = this->Shared.image.template row<A>(v);
+      A* const row = target.at(0, v);
       const A value = worksheet[v - v0];
       for (int u = run.begin; u < run.end; ++u)
       {

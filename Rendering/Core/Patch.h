@@ -23,7 +23,9 @@ struct Patch
     int columns = 0, rows = 0;
   };
   std::vector<unsigned char> bytes;
-  std::vector<std::uint16_t> runEnds; ///< of walks along chains only
+  std::vector<std::uint16_t> runEnds;   ///< of walks along chains only
+  std::vector<unsigned char> worksheet; ///< of walks that look at each sample only
+  Span rows, pixels;                    ///< of the image, that it has the voxels for
   std::ptrdiff_t rowLength = 0;
   std::ptrdiff_t sheetLength = 0;
   std::array<Sheet, 3> sheets;

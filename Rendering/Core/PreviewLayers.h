@@ -8,6 +8,7 @@
 #ifndef splattingPreviewLayers_h
 #define splattingPreviewLayers_h
 
+#include "Cuts.h"
 #include "Frame.h"
 #include "Patch.h"
 
@@ -65,16 +66,47 @@ public:
 
   const Window& window(int layer) const { return this->Layers[layer].window; }
 
-  /// Takes a layer's voxels into the pixels of some rows and runs of columns.
-  void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch&) const
+  /// Takes a layer's voxels into the pixels of some rows and runs of columns, as far as the bits
+  /// (if there are any) say.
+  void splat(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
-    this->splatLayer(z, v0, v1, runs, BrickDepth);
+    this->splatLayer(z, v0, v1, runs, BrickDepth, bits, patch);
+  }
+
+  /// The same for all layers of some rows; to be opened once.
+  void open(int, int, const Span&, Patch&) const {}
+  void splatOpened(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  {
+    this->splat(z, v0, v1, runs, bits, patch);
+  }
+
+  /// Calls f(step, v, pixels, samples) for all samples of some slices and of pixels in some rows
+  /// and columns, in the order of the rays if they come from the first slice, or else reversed.
+  /// Steps as in ShearImage::winners.
+  template <class F>
+  void forSamples(
+    const Span& slices, bool reversed, int v0, int v1, const Span& columns, Patch&, F&& f) const
+  {
+    for (int n = 0; n < slices.end - slices.begin; ++n)
+    {
+      const int k = reversed ? slices.end - 1 - n : slices.begin + n;
+      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+      for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
+      {
+        this->forVoxels(k, v, common(columns, this->Shared.pixels(v, k)), reversed,
+          [&](int t, const Span& pixels, const T* voxels)
+          { f(StepsPerSlice * k + t, v, pixels, voxels); });
+      }
+    }
   }
 
   /// The same for all pixels of some rows, which are one run, and all voxels of some layers, in the
   /// order of memory: slice after slice, or, where rows of all slices lie side by side, a few rows
   /// through all of them.
-  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch&) const
+  void splatAll(
+    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const
   {
     const Slices& slices = this->Shared.slices;
     const bool slicesFirst = slices.rowStride <= slices.sliceStride;
@@ -87,10 +119,13 @@ public:
     {
       for (int z = layers.begin; z < layers.end; ++z)
       {
-        this->splatLayer(z, v, std::min(v + height, v1), all, sideBySide);
+        this->splatLayer(z, v, std::min(v + height, v1), all, sideBySide, {}, patch);
       }
     }
   }
+
+  /// Voxels are taken as they are.
+  Accumulator<T> base() const { return 0; }
 
   T floor() const { return previewFloor(this->Shared); }
 
@@ -99,21 +134,23 @@ public:
 private:
   using Layer = PreviewLayer;
 
-  void splatLayer(int z, int v0, int v1, const std::vector<Span>& runs, int sideBySide) const
+  const ShearImage& image() const { return this->Shared.image; }
+
+  void splatLayer(int z, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
+    const SliceBits& bits, Patch& patch) const
   {
     const Layer& layer = this->Layers[z];
     // Rows whose voxels all exist, and beside which there are others: a rim reads a few voxels
     // beyond its row.
-    const bool plain =
-      layer.rimsFit && this->Shared.halfSpaces.empty() && !this->Shared.image.special;
+    const bool plain = layer.rimsFit && !this->Shared.range.special;
     const int first = plain ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
     const int last = std::clamp(this->Shared.geometry.size().y - 1 - layer.window.jMax, first, v1);
-    this->splatSlices(z, v0, first, runs);
+    this->splatSlices(z, v0, first, runs, bits, patch);
     if (first < last)
     {
-      this->sweep(layer, first, last, runs, sideBySide);
+      this->sweep(layer, first, last, runs, sideBySide, bits);
     }
-    this->splatSlices(z, last, v1, runs);
+    this->splatSlices(z, last, v1, runs, bits, patch);
   }
 
   void findRims(Layer& layer) const
@@ -143,8 +180,8 @@ private:
 
   /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns. So many slices
   /// are read side by side.
-  void sweep(
-    const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide) const
+  void sweep(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
+    const SliceBits& bits) const
   {
     for (int first = 0, end = 0; first < layer.tapCount; first = end)
     {
@@ -152,14 +189,16 @@ private:
       {
         ++end;
       }
-      this->sweepTaps(layer, first, end, v0, v1, runs);
+      this->sweepTaps(layer, first, end, v0, v1, runs, bits);
     }
   }
 
   void sweepTaps(const Layer& layer, int firstTap, int endTap, int v0, int v1,
-    const std::vector<Span>& runs) const
+    const std::vector<Span>& runs, const SliceBits& bits) const
   {
     Sweep<T> sweep;
+    sweep.bits = bits.origin ? bits.at(0, v0) : nullptr;
+    sweep.bitsStride = bits.stride;
     sweep.image = this->Shared.image.template row<T>(v0);
     sweep.imageStride = this->Shared.image.width;
     sweep.height = v1 - v0;
@@ -168,6 +207,7 @@ private:
     for (int t = firstTap; t < endTap; ++t)
     {
       const Layer::Tap& tap = layer.taps[t];
+      sweep.bit[t - firstTap] = static_cast<unsigned char>(1u << tap.k % BrickDepth);
       sweep.rows[t - firstTap] = this->Shared.voxelRow(v0 + tap.dj, tap.k) + tap.di;
     }
     sweep.runs = runs.data();
@@ -202,7 +242,8 @@ private:
   }
 
   /// Any rows, slice by slice.
-  void splatSlices(int z, int v0, int v1, const std::vector<Span>& runs) const
+  void splatSlices(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
     for (int k = slices.begin; k < slices.end; ++k)
@@ -212,27 +253,56 @@ private:
       {
         for (const Span& run : runs)
         {
-          this->splatSlice(k, v, common(run, this->Shared.pixels(v, k)));
+          this->splatSlice(k, v, common(run, this->Shared.pixels(v, k)), bits, patch);
         }
       }
     }
   }
 
-  void splatSlice(int k, int v, const Span& span) const
+  void splatSlice(int k, int v, const Span& span, const SliceBits& bits, Patch& patch) const
+  {
+    const unsigned char* mask = nullptr;
+    if (bits.origin && !span.empty())
+    {
+      patch.worksheet.resize(this->image().width);
+      const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
+      std::transform(bits.at(span.begin, v), bits.at(span.end, v),
+        patch.worksheet.data() + span.begin,
+        [bit](unsigned char b) { return static_cast<unsigned char>(b & bit); });
+      mask = patch.worksheet.data();
+    }
+    this->forVoxels(k, v, span, false,
+      [&](int, const Span& pixels, const T* voxels)
+      {
+        T* const image = this->Shared.image.template row<T>(v) + pixels.begin;
+        const std::ptrdiff_t n = pixels.end - pixels.begin;
+        if (mask || this->Shared.range.special)
+        {
+          const RayLoops<T>& loops = this->Shared.kernels;
+          loops.raise(image, voxels, mask ? mask + pixels.begin : nullptr, n);
+        }
+        else
+        {
+          const VoxelLoops<T>& loops = this->Shared.kernels;
+          loops.maximum(image, &voxels, 1, n);
+        }
+      });
+  }
+
+  /// Calls f(t, pixels, voxels) for each step of the rays' path in slice k.
+  template <class F>
+  void forVoxels(int k, int v, const Span& span, bool reversed, F&& f) const
   {
     const RayPath& path = this->Shared.sliceGeometry[k].path;
     const glm::ivec3& size = this->Shared.geometry.size();
-    const VoxelLoops<T>& loops = this->Shared.kernels;
-    const auto maximum = this->Shared.image.special ? loops.maximumValid : loops.maximum;
-    for (int t = 0; t < path.count; ++t)
+    for (int n = 0; n < path.count; ++n)
     {
+      const int t = reversed ? path.count - 1 - n : n;
       const int j = v + path.dj[t];
-      const Span valid = common(span, { -path.di[t], size.x - path.di[t] });
-      if (j >= 0 && j < size.y && !valid.empty())
+      const Span pixels = common(span, { -path.di[t], size.x - path.di[t] });
+      if (j >= 0 && j < size.y && !pixels.empty())
       {
-        const T* const row = this->Shared.voxelRow(j, k) + path.di[t] + valid.begin;
-        maximum(
-          this->Shared.image.template row<T>(v) + valid.begin, &row, 1, valid.end - valid.begin);
+        f(t, pixels, this->Shared.voxelRow(j, k) + path.di[t] + pixels.begin);
       }
     }
   }

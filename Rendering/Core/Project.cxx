@@ -3,8 +3,10 @@
 #include "Project.h"
 
 #include "BandWalk.h"
+#include "Carry.h"
 #include "LineWalk.h"
 #include "LineWorksheets.h"
+#include "RayWalk.h"
 
 #include <vtkSMPThreadLocal.h>
 #include <vtkSMPTools.h>
@@ -22,12 +24,11 @@ int bandHeight(int rows)
   return std::clamp(share / TileHeight * TileHeight, 2 * TileHeight, 8 * TileHeight);
 }
 
-/// The bands are the part `share` of the work.
 template <class Body>
-void forBands(int height, int rows, Watch& watch, const glm::dvec2& share, Body&& body)
+void forBands(int height, int rows, Watch& watch, Body&& body)
 {
   const int bands = (height + rows - 1) / rows;
-  watch.begin(bands, share[0], share[1]);
+  watch.begin(bands);
   vtkSMPTools::For(0, bands, 1,
     [&](vtkIdType first, vtkIdType last)
     {
@@ -42,12 +43,11 @@ void forBands(int height, int rows, Watch& watch, const glm::dvec2& share, Body&
 }
 
 /// The chains that a projection needs.
-LineEncoding encodingFor(const ProjectionSettings& settings, const glm::ivec3& size, bool isCut)
+LineEncoding encodingFor(const ProjectionSettings& settings, const glm::ivec3& size)
 {
   LineEncoding encoding;
   encoding.tolerance = settings.lineTolerance;
-  // Half-spaces cut voxels away that hide others.
-  if (settings.quality == Quality::Preview && !(settings.eliminateInvisible && isCut))
+  if (settings.quality == Quality::Preview)
   {
     encoding.eliminate = settings.eliminateInvisible;
     if (std::max({ size.x, size.y, size.z }) <= LineIndex::MostSorted)
@@ -79,6 +79,27 @@ Acceleration choose(const Experience& experience, Quality quality)
     : Acceleration::Bricks;
 }
 
+/// Whether each sample has to be looked at by itself.
+bool looksAtAll(const ProjectionSettings& settings)
+{
+  return settings.reduction != Reduction::Maximum || settings.keepWinners;
+}
+
+/// Room for what a reduction keeps of each pixel.
+void openState(const ShearImage& image, Reduction reduction, RayState& state)
+{
+  const std::size_t pixels = std::size_t(image.width) * image.height;
+  if (reduction == Reduction::Mean)
+  {
+    state.sums.resize(pixels);
+    state.counts.resize(pixels);
+  }
+  if (reduction == Reduction::Local)
+  {
+    state.ended.resize(pixels);
+  }
+}
+
 void learn(Experience& experience, Acceleration used, const TileCount& count)
 {
   if (used == Acceleration::Bricks)
@@ -100,7 +121,9 @@ struct Projector::Scratch
   std::vector<PreviewLayer> previewLayers;
   std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> footprints;
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> reach;
-  std::vector<glm::dvec4> halfSpaces;
+  CutMap cuts;
+  RayState rays;
+  vtkSMPThreadLocal<RayScratch> rayBands;
   std::vector<unsigned char> chunk;
   std::vector<LineReach> lineReaches;
   vtkSMPThreadLocal<LineScratch> lines;
@@ -110,48 +133,100 @@ Projector::Projector() : Memory(new Scratch) {}
 
 Projector::~Projector() = default;
 
-/// Walks all slices, or, where these would need a copy that there is no memory for, some at a time.
+/// Calls body(slices, isFirst, isLast) with frame.slices set: for all slices, or, where these would
+/// need a copy that there is no memory for, for some at a time, from the last on if reversed.
+template <class T, class Body>
+void Projector::forSlices(
+  VolumeIndex& index, Frame<T>& frame, int beyond, bool reversed, Body&& body)
+{
+  const int axis = frame.geometry.principalAxis(), depth = frame.geometry.size().z;
+  if (index.hasSlices(axis))
+  {
+    frame.slices = index.slices(axis);
+    body(Span{ 0, depth }, true, true);
+    return;
+  }
+  const int chunks = (depth + ChunkDepth - 1) / ChunkDepth;
+  for (int c = 0; c < chunks && !this->stopped(); ++c)
+  {
+    const int first = (reversed ? chunks - 1 - c : c) * ChunkDepth;
+    const Span slices{ first, std::min(first + ChunkDepth, depth) };
+    this->Observer.setPart(double(c) / chunks, double(c + 1) / chunks);
+    frame.slices = index.someSlices(std::max(slices.begin - beyond, 0),
+      std::min(slices.end + beyond, depth), this->Memory->chunk);
+    body(slices, c == 0, c == chunks - 1);
+  }
+}
+
 template <class T, class Layers>
 void Projector::walk(
   VolumeIndex& index, Frame<T>& frame, const Layers& layers, Acceleration used, TileCount& count)
 {
   using P = typename Layers::Pixel;
-  const int axis = frame.geometry.principalAxis(), depth = frame.geometry.size().z;
-  const bool whole = index.hasSlices(axis);
-  const BrickMaxima* const bricks = used == Acceleration::Bricks ? &index.bricks(axis) : nullptr;
-  for (int first = 0; first < depth; first += ChunkDepth)
-  {
-    const Span slices{ first, whole ? depth : std::min(first + ChunkDepth, depth) };
-    frame.slices = whole ? index.slices(axis)
-                         : index.someSlices(std::max(slices.begin - Layers::Beyond, 0),
-                             std::min(slices.end + Layers::Beyond, depth), this->Memory->chunk);
-    forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
-      glm::dvec2(slices.begin, slices.end) / double(depth),
-      [&](int v0, int v1)
-      {
-        if (slices.begin == 0)
-        {
-          openRows<P>(frame.image, layers.floor(), v0, v1);
-        }
-        BandWalk<Layers> band(frame, layers, this->Memory->bands.Local(), slices, v0, v1);
-        bricks ? band.walkBricks(*bricks) : band.walkDensely();
-        if (slices.end == depth)
-        {
-          layers.finish(v0, v1);
-          closeRows<P>(frame.image, v0, v1);
-        }
-      });
-    if (whole || this->stopped())
+  const BrickMaxima* const bricks =
+    used == Acceleration::Bricks ? &index.bricks(frame.geometry.principalAxis()) : nullptr;
+  this->forSlices(index, frame, Layers::Beyond, false,
+    [&](const Span& slices, bool isFirst, bool isLast)
     {
-      break;
-    }
-  }
+      forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
+        [&](int v0, int v1)
+        {
+          if (isFirst)
+          {
+            openRows<P>(frame.image, layers.floor(), v0, v1);
+          }
+          BandWalk<Layers> band(frame, layers, this->Memory->bands.Local(), slices, v0, v1);
+          bricks ? band.walkBricks(*bricks) : band.walkDensely();
+          if (isLast)
+          {
+            layers.finish(v0, v1);
+            closeRows<P>(frame.image, v0, v1);
+          }
+        });
+    });
   for (BandScratch& band : this->Memory->bands)
   {
     count.met += band.count.met;
     count.splatted += band.count.splatted;
     band.count = {};
   }
+}
+
+template <class T, class Layers>
+void Projector::walkRays(
+  VolumeIndex& index, Frame<T>& frame, const Layers& layers, const ProjectionSettings& settings)
+{
+  using Walk = RayWalk<Layers>;
+  const bool computes = Walk::computes(settings.reduction);
+  RayState& state = this->Memory->rays;
+  openState(frame.image, settings.reduction, state);
+  frame.image.winners.resize(
+    settings.keepWinners ? std::size_t(frame.image.width) * frame.image.height : 0);
+  if (settings.reduction == Reduction::DepthShaded)
+  {
+    state.crossed.findCrossed(
+      frame.sliceGeometry, frame.image.width, frame.image.height, frame.cuts.source().intervals);
+  }
+  const Walk walk(frame, layers, settings, state);
+  this->forSlices(index, frame, Layers::Beyond, frame.geometry.reversed(),
+    [&](const Span& slices, bool isFirst, bool isLast)
+    {
+      forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
+        [&](int v0, int v1)
+        {
+          if (isFirst)
+          {
+            walk.open(v0, v1);
+          }
+          walk.walk(slices, v0, v1, this->Memory->rayBands.Local());
+          if (isLast)
+          {
+            walk.close(v0, v1);
+            computes ? closeRows<typename Walk::A>(frame.image, v0, v1)
+                     : closeRows<typename Walk::P>(frame.image, v0, v1);
+          }
+        });
+    });
 }
 
 template <class T>
@@ -162,7 +237,7 @@ void Projector::previewLines(const Frame<T>& frame, const LineIndex& lines)
   const int height = frame.image.height, threads = vtkSMPTools::GetEstimatedNumberOfThreads();
   const int rows = lines.encoding().order == LineOrder::Lines ? bandHeight(height)
                                                               : (height + threads - 1) / threads;
-  forBands(height, rows, this->Observer, { 0.0, 1.0 },
+  forBands(height, rows, this->Observer,
     [&](int v0, int v1)
     {
       openRows<T>(frame.image, previewFloor(frame), v0, v1);
@@ -179,7 +254,7 @@ void Projector::splatLines(const Frame<T>& frame, const LineIndex& lines, bool s
     std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints),
     std::get<WorksheetReach<A>>(this->Memory->reach), standard ? 0 : 1, lines);
   const Span slices{ 0, frame.geometry.size().z };
-  forBands(frame.image.height, bandHeight(frame.image.height), this->Observer, { 0.0, 1.0 },
+  forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
     [&](int v0, int v1)
     {
       openRows<A>(frame.image, worksheets.floor(), v0, v1);
@@ -198,8 +273,9 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   ShearImage& image = frame.image;
   const bool preview = settings.quality == Quality::Preview;
   const bool standard = settings.quality == Quality::Standard;
-  image.type = preview ? scalarTypeOf<T>() : scalarTypeOf<A>();
-  image.bytes.resize(std::size_t(image.width) * image.height * (preview ? sizeof(T) : sizeof(A)));
+  const bool samples = preview && !RayWalk<PreviewLayers<T>>::computes(settings.reduction);
+  image.type = samples ? scalarTypeOf<T>() : scalarTypeOf<A>();
+  image.bytes.resize(std::size_t(image.width) * image.height * (samples ? sizeof(T) : sizeof(A)));
   auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
   auto& reach = std::get<WorksheetReach<A>>(this->Memory->reach);
   if (!preview)
@@ -213,62 +289,131 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
     preview ? this->previewLines(frame, *lines) : this->splatLines(frame, *lines, standard);
     return;
   }
-  TileCount count;
+  const auto splat = [&](const auto& layers)
+  {
+    if (looksAtAll(settings))
+    {
+      this->walkRays(index, frame, layers, settings);
+      return;
+    }
+    TileCount count;
+    this->walk(index, frame, layers, used, count);
+    if (!this->stopped())
+    {
+      learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality)),
+        used, count);
+    }
+  };
   if (preview)
   {
-    this->walk(index, frame, PreviewLayers<T>(frame, this->Memory->previewLayers), used, count);
+    splat(PreviewLayers<T>(frame, this->Memory->previewLayers));
   }
   else
   {
-    this->walk(
-      index, frame, WorksheetLayers<T>(frame, footprints, reach, standard ? 0 : 1), used, count);
-  }
-  if (!this->stopped())
-  {
-    learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality)),
-      used, count);
+    splat(WorksheetLayers<T>(frame, footprints, reach, standard ? 0 : 1));
   }
 }
 
+template <class T>
+void Projector::carryType(const VoxelArray& other, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image)
+{
+  using A = Accumulator<T>;
+  const bool preview = settings.quality == Quality::Preview;
+  const std::vector<SliceGeometry>& slices = this->Memory->slices;
+  const auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
+  const PermutedVoxels<T> voxels(other, geometry);
+  image.type = preview ? scalarTypeOf<T>() : scalarTypeOf<A>();
+  image.bytes.resize(std::size_t(image.width) * image.height * (preview ? sizeof(T) : sizeof(A)));
+  image.special = std::numeric_limits<T>::has_quiet_NaN;
+  vtkSMPTools::For(0, image.height, TileHeight,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (int v = static_cast<int>(begin); v < end; ++v)
+      {
+        const std::int32_t* const winners = &projected.winners[std::size_t(v) * projected.width];
+        for (int u = 0; u < image.width; ++u)
+        {
+          const int step = winners[u], k = std::max(step, 0) / StepsPerSlice;
+          if (preview)
+          {
+            image.row<T>(v)[u] = step < 0 ? T(0) : carriedVoxel(voxels, slices[k].path, u, v, step);
+          }
+          else
+          {
+            image.row<A>(v)[u] =
+              step < 0 ? A(0) : carriedAverage<T>(voxels, footprints[k], u, v, k);
+          }
+        }
+      }
+    });
+}
+
+void Projector::carry(const VoxelArray& other, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image)
+{
+  image.width = projected.width;
+  image.height = projected.height;
+  image.spans = projected.spans;
+  image.mask = projected.mask;
+  dispatch(other.type,
+    [&](auto* null)
+    {
+      this->carryType<std::remove_pointer_t<decltype(null)>>(
+        other, geometry, settings, projected, image);
+    });
+}
+
+/// What can be used at all of what was asked for.
+Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
+  const ProjectionSettings& settings, const ShearWarp& geometry, const Cuts& cuts,
+  const LineIndex*& lines)
+{
+  if (looksAtAll(settings) || index.range().special)
+  {
+    return Acceleration::Dense;
+  }
+  if (wanted >= Acceleration::Lines && cuts.none() && !this->stopped())
+  {
+    lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),
+      [this](double share)
+      {
+        if (this->Progress)
+        {
+          this->Progress(share);
+        }
+        return this->Observer.ask();
+      });
+    return lines ? wanted : Acceleration::Dense;
+  }
+  return wanted != Acceleration::Dense && index.hasBricks() ? Acceleration::Bricks
+                                                            : Acceleration::Dense;
+}
+
 Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
-  const ProjectionSettings& settings, const std::vector<glm::dvec4>& halfSpaces, ShearImage& image)
+  const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image)
 {
   Scratch& memory = *this->Memory;
   this->Observer.start();
-  memory.halfSpaces.clear();
-  for (const glm::dvec4& h : halfSpaces)
-  {
-    memory.halfSpaces.push_back(geometry.inPixels(h));
-  }
+  image.winners.clear();
+  memory.cuts.reset(cuts, geometry);
   findSlices(geometry, memory.slices);
-  outlineImage(geometry, memory.slices, memory.halfSpaces, image);
+  outlineImage(geometry, memory.slices, memory.cuts, image);
   const VolumeIndex::Range& range = index.range();
-  image.special = range.special;
+  // The mean of no sample is none.
+  image.special = range.special || settings.reduction == Reduction::Mean;
   const int axis = geometry.principalAxis();
-  Acceleration used = settings.acceleration == Acceleration::Auto
-    ? choose(index.experience(axis, static_cast<int>(settings.quality)), settings.quality)
-    : settings.acceleration;
-  const auto chainsMade = [this](double share)
-  {
-    if (this->Progress)
-    {
-      this->Progress(share);
-    }
-    return this->Observer.ask();
-  };
-  const LineIndex* const lines = used >= Acceleration::Lines && !range.special && !this->stopped()
-    ? index.lines(axis, encodingFor(settings, geometry.size(), !halfSpaces.empty()), chainsMade)
-    : nullptr;
-  if (!lines && (used != Acceleration::Bricks || !index.hasBricks()))
-  {
-    used = Acceleration::Dense;
-  }
+  const LineIndex* lines = nullptr;
+  const Acceleration used = this->possible(settings.acceleration == Acceleration::Auto
+      ? choose(index.experience(axis, static_cast<int>(settings.quality)), settings.quality)
+      : settings.acceleration,
+    index, settings, geometry, cuts, lines);
   dispatch(index.volume().type,
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
       Frame<T> frame{ geometry, kernelsFor(settings.instructionSet), {}, range, memory.slices,
-        memory.halfSpaces, settings.floor, image };
+        memory.cuts, settings.floor, image };
       this->projectType(index, settings, used, lines, frame);
     });
   return used;

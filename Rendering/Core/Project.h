@@ -6,6 +6,7 @@
 #ifndef splattingProject_h
 #define splattingProject_h
 
+#include "Cuts.h"
 #include "Footprint.h"
 #include "Kernels.h"
 #include "ShearImage.h"
@@ -37,33 +38,62 @@ enum class Acceleration
   SortedVolume
 };
 
+/// What becomes of the samples along a ray: the worksheets' values of the slices that it crosses,
+/// in preview the voxels; see vtkSplattingMIPVolumeMapper::SetMaximumType.
+enum class Reduction
+{
+  Maximum,
+  Minimum,
+  Mean,
+  DepthShaded, ///< the maximum of samples, each shaded by its depth along the ray
+  Local        ///< the first local maximum, from the viewer, at or above a threshold
+};
+
 struct ProjectionSettings
 {
   Quality quality = Quality::High;
+  Reduction reduction = Reduction::Maximum;
+  /// Of Reduction::DepthShaded: the n-th of N slices along a ray, n = 0 the nearest to the viewer,
+  /// is multiplied by ambient + (1 - n / N) changeRate, relative to the volume's lowest voxel
+  /// [Bruckner, Program 4.3].
+  double ambient = 0.3;
+  double changeRate = 0.7;
+  /// Of Reduction::Local.
+  double threshold = -std::numeric_limits<double>::infinity();
+  /// Of Reduction::Mean: the samples that count.
+  double meanLow = -std::numeric_limits<double>::infinity();
+  double meanHigh = std::numeric_limits<double>::infinity();
   /// Reconstruction kernel of Quality::High.
   Kernel kernel;
   /// 0: weights in closed form; N: from a general table with N x N sub-pixels.
   int footprintSampling = 0;
   InstructionSet instructionSet = bestInstructionSet();
-  /// Lines and its sorted kin fall back to Dense for volumes with NaN or infinities; sorted orders
-  /// are for Quality::Preview, elsewhere they are Lines.
+  /// Reductions other than Maximum are walked densely, as are volumes with NaN or infinities. Lines
+  /// and its sorted kin are Bricks where rays are cut; sorted orders are for Quality::Preview,
+  /// elsewhere they are Lines.
   Acceleration acceleration = Acceleration::Auto;
   /// Delta encoding of lines: see LineEncoding. 0 gives the same bits as Dense.
   double lineTolerance = 0.0;
-  /// Lines without voxels that cannot be seen: the same bits, fewer chains. For Quality::Preview
-  /// without half-spaces, else ignored.
+  /// Lines without voxels that cannot be seen: the same bits, fewer chains. For Quality::Preview,
+  /// else ignored.
   bool eliminateInvisible = false;
+  /// Whether the image tells its winners. Walks all samples. Not for Reduction::Mean.
+  bool keepWinners = false;
   /// Values at or below need not be told apart: the image is the larger of this (in preview rounded
   /// down to the scalar type) and what it would be otherwise.
   double floor = -std::numeric_limits<double>::infinity();
 
   bool operator==(const ProjectionSettings& other) const
   {
-    return this->quality == other.quality && this->kernel == other.kernel &&
+    return this->quality == other.quality && this->reduction == other.reduction &&
+      this->ambient == other.ambient && this->changeRate == other.changeRate &&
+      this->threshold == other.threshold && this->meanLow == other.meanLow &&
+      this->meanHigh == other.meanHigh && this->kernel == other.kernel &&
       this->footprintSampling == other.footprintSampling &&
       this->instructionSet == other.instructionSet && this->acceleration == other.acceleration &&
       this->lineTolerance == other.lineTolerance &&
-      this->eliminateInvisible == other.eliminateInvisible && this->floor == other.floor;
+      this->eliminateInvisible == other.eliminateInvisible &&
+      this->keepWinners == other.keepWinners && this->floor == other.floor;
   }
 };
 
@@ -84,14 +114,20 @@ public:
   ~Projector();
 
   /**
-   * @param halfSpaces  of index space; a slice's sample counts for a pixel if the point where the
-   *                    ray crosses the middle of the slice lies in all of them
    * @return what has been used: never Auto, and Dense where there is no memory for what was asked.
    *         If stopped() the image is none.
    */
   Acceleration project(VolumeIndex& index, const ShearWarp& geometry,
-    const ProjectionSettings& settings, const std::vector<glm::dvec4>& halfSpaces,
-    ShearImage& image);
+    const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image);
+
+  /**
+   * What another volume has where the last projected image found its winners: in preview the
+   * voxels, else the averages by the same footprints.
+   *
+   * @param other  of the same type and size as the projected volume
+   */
+  void carry(const VoxelArray& other, const ShearWarp& geometry, const ProjectionSettings& settings,
+    const ShearImage& projected, ShearImage& image);
 
   /// Called with the share that is done, 0 to 1, while chains are made.
   void setProgress(const std::function<void(double)>& progress) { this->Progress = progress; }
@@ -101,12 +137,22 @@ public:
   bool stopped() const { return this->Observer.stopped(); }
 
 private:
+  Acceleration possible(Acceleration wanted, VolumeIndex& index, const ProjectionSettings& settings,
+    const ShearWarp& geometry, const Cuts& cuts, const LineIndex*& lines);
   template <class T>
   void projectType(VolumeIndex& index, const ProjectionSettings& settings, Acceleration used,
     const LineIndex* lines, Frame<T>& frame);
   template <class T, class Layers>
   void walk(
     VolumeIndex& index, Frame<T>& frame, const Layers& layers, Acceleration used, TileCount& count);
+  template <class T, class Body>
+  void forSlices(VolumeIndex& index, Frame<T>& frame, int beyond, bool reversed, Body&& body);
+  template <class T>
+  void carryType(const VoxelArray& other, const ShearWarp& geometry,
+    const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image);
+  template <class T, class Layers>
+  void walkRays(
+    VolumeIndex& index, Frame<T>& frame, const Layers& layers, const ProjectionSettings& settings);
   template <class T>
   void previewLines(const Frame<T>& frame, const LineIndex& lines);
   template <class T>

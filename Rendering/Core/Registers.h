@@ -61,6 +61,46 @@ inline void store(T* p, Pack<T> value)
 template <class T>
 constexpr std::ptrdiff_t width = sizeof(Pack<T>) / sizeof(T);
 
+/// Integers as wide as elements of type T.
+template <int Size>
+struct IntegerOf;
+template <>
+struct IntegerOf<1>
+{
+  using type = std::int8_t;
+};
+template <>
+struct IntegerOf<2>
+{
+  using type = std::int16_t;
+};
+template <>
+struct IntegerOf<4>
+{
+  using type = std::int32_t;
+};
+template <>
+struct IntegerOf<8>
+{
+  using type = std::int64_t;
+};
+template <class T>
+using Integer = typename IntegerOf<sizeof(T)>::type;
+
+/// A byte for each element of a register of T, widened to its size.
+template <class T>
+inline Pack<Integer<T>> loadBits(const unsigned char* p)
+{
+#if defined(__GNUC__)
+  typedef unsigned char bytes __attribute__((vector_size(width<T>)));
+  typedef unsigned char loose __attribute__((vector_size(width<T>), aligned(1), may_alias));
+  const bytes packed = *reinterpret_cast<const loose*>(p);
+  return __builtin_convertvector(packed, Pack<Integer<T>>);
+#else
+  return static_cast<Integer<T>>(*p);
+#endif
+}
+
 /// A register of elements, widened to the accumulator's type. Where that is float, compilers need
 /// to be told the instruction that widens small integers.
 template <class T>

@@ -10,6 +10,9 @@
 
 namespace splatting
 {
+/// Voxels of one slice that a ray can cross.
+constexpr int StepsPerSlice = 3;
+
 /**
  * The projection before the warp, one pixel per voxel.
  */
@@ -24,6 +27,9 @@ struct ShearImage
   std::vector<Span> spans;
   /// If half-spaces cut the volume: per pixel, whether a sample is left. Else empty.
   std::vector<unsigned char> mask;
+  /// If asked for: per pixel the step of the ray that its value comes from, StepsPerSlice * slice,
+  /// in preview plus the voxel's number in RayPath; -1 without a sample. Else empty.
+  std::vector<std::int32_t> winners;
   /// NaN pixels have no sample, infinities occur.
   bool special = false;
 

@@ -62,6 +62,9 @@ ShearWarp::ShearWarp(const View& view)
   }
   this->Size = view.dimensions;
   this->chooseAxes(direction);
+  // Clip space is deeper away from the viewer; along the ray, with the principal axis growing:
+  const double deeper = glm::dot(glm::dvec3(row(m, 2)) / w, direction);
+  this->Reversed = deeper * direction[this->Axes[2]] < 0.0;
   this->computeWarp(rowX, rowY);
   this->Valid = true;
 }
@@ -165,32 +168,6 @@ glm::dvec4 ShearWarp::inPixels(const glm::dvec4& halfSpace) const
   const glm::dvec2 origin = this->position(0.0);
   return { a, b, c - a * this->Shear.x - b * this->Shear.y,
     halfSpace.w - a * origin.x - b * origin.y };
-}
-
-Span ShearWarp::clipped(Span span, int v, int k, const std::vector<glm::dvec4>& halfSpaces)
-{
-  for (const glm::dvec4& h : halfSpaces)
-  {
-    const double rest = h.y * v + h.z * k + h.w; // h.x u + rest >= 0
-    if (h.x == 0.0)
-    {
-      if (rest < 0.0)
-      {
-        return {};
-      }
-      continue;
-    }
-    const double bound = std::clamp(-rest / h.x, -1.0, 1e6);
-    if (h.x > 0.0)
-    {
-      span.begin = std::max(span.begin, static_cast<int>(std::ceil(bound)));
-    }
-    else
-    {
-      span.end = std::min(span.end, static_cast<int>(std::floor(bound)) + 1);
-    }
-  }
-  return span;
 }
 
 bool ShearWarp::sameShear(const ShearWarp& other) const

@@ -87,15 +87,9 @@ public:
   Span coverage(const RayPath& path, int v) const;
 
   /**
-   * A half-space of index space as bounds of pixels, for clipped(): dot(result, (u, v, k, 1)) >= 0.
+   * A half-space of index space in pixels: dot(result, (u, v, k, 1)) >= 0.
    */
   glm::dvec4 inPixels(const glm::dvec4& halfSpace) const;
-
-  /**
-   * `span` of row v, cut to the pixels whose ray crosses the middle of slice k inside all of the
-   * half-spaces (as inPixels() gave them).
-   */
-  static Span clipped(Span span, int v, int k, const std::vector<glm::dvec4>& halfSpaces);
 
   /**
    * From viewport pixels (centres at integers) to shear pixels: u = m[0] x + m[1] y + m[2].
@@ -104,7 +98,10 @@ public:
   /// The inverse.
   const glm::dmat3x2& shearToScreen() const { return this->ShearToScreen; }
 
-  /// Whether the shear image is the same (the warp may differ).
+  /// Whether the viewer is nearest to the last slice.
+  bool reversed() const { return this->Reversed; }
+
+  /// Whether the shear image is the same (the warp may differ, and the viewer's side).
   bool sameShear(const ShearWarp& other) const;
 
 private:
@@ -112,6 +109,7 @@ private:
   void computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY);
 
   bool Valid = false;
+  bool Reversed = false;
   std::array<int, 3> Axes{ 0, 1, 2 };
   glm::ivec3 Size{ 0 };
   glm::dvec2 Shear{ 0.0 };

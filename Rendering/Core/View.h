@@ -8,11 +8,32 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace splatting
 {
+/**
+ * VTK's cropping: two planes across each axis cut the volume into 27 regions.
+ */
+struct Cropping
+{
+  static constexpr std::uint32_t All = (1u << 27) - 1;
+
+  /// Along each axis of index space, where the middle region begins and ends; it has both planes.
+  std::array<glm::dvec2, 3> planes{};
+  /// Bit i + 3 j + 9 k: whether region (i, j, k) is shown, 0 being the lowest along its axis.
+  std::uint32_t flags = All;
+
+  bool cuts() const { return this->flags != All; }
+  bool operator==(const Cropping& other) const
+  {
+    return this->flags == other.flags && (!this->cuts() || this->planes == other.planes);
+  }
+};
+
 /**
  * One volume seen in one viewport, as plain numbers. Index space: voxel centres lie at integers,
  * the volume's first voxel at (0, 0, 0).
@@ -27,6 +48,8 @@ struct View
   glm::ivec2 viewport{ 0 };
   /// Half-spaces of index space that samples must lie in: dot(h, (x, y, z, 1)) >= 0.
   std::vector<glm::dvec4> halfSpaces;
+  /// In index space.
+  Cropping cropping;
 };
 
 /**

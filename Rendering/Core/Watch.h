@@ -27,16 +27,23 @@ public:
   {
     this->Owner = std::this_thread::get_id();
     this->Stopped = false;
-    this->begin(1, 0.0, 1.0);
+    this->setPart(0.0, 1.0);
+    this->begin(1);
     this->ask();
   }
 
-  /// So many bands follow, which are the part of the work from one share to another.
-  void begin(int bands, double from, double to)
+  /// What follows is the part of the work from one share to another; all, if there is one part.
+  void setPart(double from, double to)
+  {
+    this->From = from;
+    this->To = to;
+  }
+
+  /// So many bands follow, which are this part.
+  void begin(int bands)
   {
     this->Done = 0;
-    this->From = from;
-    this->Step = (to - from) / bands;
+    this->Step = (this->To - this->From) / bands;
   }
 
   /// A band is done, by any thread.
@@ -71,6 +78,7 @@ private:
   bool Asking = false; // by the owner, who alone looks at it
   std::atomic<int> Done{ 0 };
   double From = 0.0;
+  double To = 1.0;
   double Step = 1.0;
 };
 }

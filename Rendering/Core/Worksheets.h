@@ -7,6 +7,7 @@
 #ifndef splattingWorksheets_h
 #define splattingWorksheets_h
 
+#include "Cuts.h"
 #include "Footprint.h"
 #include "Frame.h"
 #include "Patch.h"
@@ -103,8 +104,10 @@ public:
   A slack() const { return sizeof(T) == 1 ? A(0) : 90 * std::numeric_limits<A>::epsilon() / 2; }
   A magnitude() const { return std::abs(static_cast<A>(this->Shared.range.low) - this->Base); }
 
-  /// Splats a layer's worksheets into the pixels of some rows and runs of columns.
-  void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
+  /// Splats a layer's worksheets into the pixels of some rows and runs of columns, as far as the
+  /// bits (if there are any) say.
+  void splat(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
     for (std::size_t n = 0; n < runs.size(); ++n)
@@ -112,10 +115,50 @@ public:
       this->forPieces(v0, v1, runs[n],
         [&](int first, int last, const Span& columns)
         {
-          this->clear(patch, first, last, columns);
-          this->splatPiece(slices, first, last, columns, patch);
+          this->open(first, last, columns, patch);
+          this->splatPiece(slices, first, last, columns, bits, patch);
         });
     }
+  }
+
+  /// The same for some of the rows and columns that have been opened together: layer by layer, so
+  /// that voxels are widened once.
+  void open(int v0, int v1, const Span& columns, Patch& patch) const
+  {
+    this->clear(patch, v0, v1, columns);
+    patch.rows = { v0, v1 };
+    patch.pixels = columns;
+  }
+  void splatOpened(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  {
+    const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
+    for (const Span& run : runs)
+    {
+      this->splatPiece(slices, v0, v1, run, bits, patch);
+    }
+  }
+
+  /// Calls f(step, v, pixels, worksheet) for all worksheets of some slices and of pixels in some
+  /// rows and columns, before finish(), from the first slice on or else reversed. A pixel without a
+  /// sample is NaN. Steps as in ShearImage::winners.
+  template <class F>
+  void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
+    Patch& patch, F&& f) const
+  {
+    this->forPieces(v0, v1, columns,
+      [&](int first, int last, const Span& piece)
+      {
+        this->open(first, last, piece, patch);
+        const Target worksheet = this->worksheetFor(first, last, piece, patch);
+        for (int n = 0; n < slices.end - slices.begin; ++n)
+        {
+          const int k = reversed ? slices.end - 1 - n : slices.begin + n;
+          this->splatSlice(k, first, last, piece, worksheet, patch,
+            [&](int v, const Span& pixels)
+            { f(StepsPerSlice * k, v, pixels, worksheet.at(pixels.begin, v)); });
+        }
+      });
   }
 
   /// The same for all pixels of some rows, which are one run, and all slices of some layers, piece
@@ -128,8 +171,8 @@ public:
     this->forPieces(v0, v1, all.front(),
       [&](int first, int last, const Span& columns)
       {
-        this->clear(patch, first, last, columns);
-        this->splatPiece(slices, first, last, columns, patch);
+        this->open(first, last, columns, patch);
+        this->splatPiece(slices, first, last, columns, {}, patch);
       });
   }
 
@@ -157,7 +200,33 @@ public:
     }
   }
 
+protected:
+  /// Where worksheets go.
+  struct Target
+  {
+    A* origin; ///< of pixel (0, 0), which need not exist
+    std::ptrdiff_t stride;
+    SliceBits bits = {}; ///< which pixels change, by one of them; if there are any
+    unsigned char bit = 0;
+
+    A* at(int u, int v) const { return this->origin + v * this->stride + u; }
+  };
+
+  Target image() const
+  {
+    return { this->Shared.image.template row<A>(0), this->Shared.image.width, {}, 0 };
+  }
+
 private:
+  /// Room for one worksheet.
+  Target worksheetFor(int v0, int v1, const Span& columns, Patch& patch) const
+  {
+    const std::ptrdiff_t stride = columns.end - columns.begin;
+    patch.worksheet.resize((v1 - v0) * stride * sizeof(A));
+    A* const first = reinterpret_cast<A*>(patch.worksheet.data());
+    return { first - v0 * stride - columns.begin, stride, {}, 0 };
+  }
+
   static A baseOf(const VolumeIndex::Range& range)
   {
     // Only where the difference is exact: 64-bit integers have more bits than double.
@@ -183,29 +252,67 @@ private:
     patch.resize<A>(columns.end - columns.begin + this->Reach.columns, v1 - v0 + this->Reach.rows);
   }
 
-  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, Patch& patch) const
+  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const SliceBits& bits,
+    Patch& patch) const
   {
     for (int k = slices.begin; k < slices.end; ++k)
     {
-      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
-      const int end = std::min(v1, slice.vEnd);
-      int first = std::max(v0, slice.vBegin);
-      while (first < end)
+      this->forRows(k, v0, v1, columns,
+        [&](int first, int end, const Span& span)
+        {
+          this->load(k, patch);
+          Target target = this->image();
+          target.bits = bits;
+          target.bit = static_cast<unsigned char>(1u << k % BrickDepth);
+          this->splatRows(k, first, end, span, target, patch);
+        });
+    }
+  }
+
+  /// The worksheet of slice k alone, then f(v, pixels) for its rows.
+  template <class F>
+  void splatSlice(
+    int k, int v0, int v1, const Span& columns, const Target& worksheet, Patch& patch, F&& f) const
+  {
+    const A none =
+      this->Shared.range.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
+    this->forRows(k, v0, v1, columns,
+      [&](int first, int end, const Span& span)
       {
-        // Runs of rows that cover the same columns go together: nearly always all of them.
-        const Span span = common(columns, this->Shared.pixels(first, k));
-        int v = first + 1;
-        while (v < end && same(span, common(columns, this->Shared.pixels(v, k))))
+        this->load(k, patch);
+        for (int v = first; v < end; ++v)
         {
-          ++v;
+          std::fill(worksheet.at(span.begin, v), worksheet.at(span.end, v), none);
         }
-        if (!span.empty())
+        this->splatRows(k, first, end, span, worksheet, patch);
+        for (int v = first; v < end; ++v)
         {
-          this->load(k, v0, v1, columns, patch);
-          this->splatRows(k, first, v, span, patch);
+          f(v, span);
         }
-        first = v;
+      });
+  }
+
+  /// Calls f(first, end, span) for rows that slice k covers in the same columns: nearly always all
+  /// of them at once.
+  template <class F>
+  void forRows(int k, int v0, int v1, const Span& columns, F&& f) const
+  {
+    const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+    const int end = std::min(v1, slice.vEnd);
+    int first = std::max(v0, slice.vBegin);
+    while (first < end)
+    {
+      const Span span = common(columns, this->Shared.pixels(first, k));
+      int v = first + 1;
+      while (v < end && same(span, common(columns, this->Shared.pixels(v, k))))
+      {
+        ++v;
       }
+      if (!span.empty())
+      {
+        f(first, v, span);
+      }
+      first = v;
     }
   }
 
@@ -215,14 +322,14 @@ private:
   }
 
   /// Widens the voxels that worksheet k reads, as far as the patch does not have them.
-  void load(int k, int v0, int v1, const Span& columns, Patch& patch) const
+  void load(int k, Patch& patch) const
   {
     const int last = this->Shared.geometry.size().z - 1;
     for (int s = std::max(k - this->Depth, 0); s <= std::min(k + this->Depth, last); ++s)
     {
       if (patch.sheet(s).slice != s)
       {
-        patch.sheet(s) = this->sheetOf(s, v0, v1, columns);
+        patch.sheet(s) = this->sheetOf(s, patch.rows.begin, patch.rows.end, patch.pixels);
         this->loadSheet(patch.sheet(s), patch);
       }
     }
@@ -280,26 +387,31 @@ protected:
     }
   }
 
-  virtual void splatRows(int k, int first, int end, const Span& span, Patch& patch) const
+  virtual void splatRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const
   {
-    if (this->Shared.image.special)
+    if (this->Shared.range.special)
     {
       for (int v = first; v < end; ++v)
       {
-        this->splatValidRow(k, v, span, patch);
+        this->splatValidRow(k, v, span, target, patch);
       }
       return;
     }
     const WorksheetLoops<A>& loops = this->Shared.kernels;
-    loops.splat(this->splatOf(k, first, end, span, patch));
+    loops.splat(this->splatOf(k, first, end, span, target, patch));
   }
 
-  Splat<A> splatOf(int k, int first, int end, const Span& span, Patch& patch) const
+  Splat<A> splatOf(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];
     Splat<A> splat;
-    splat.image = this->Shared.image.template row<A>(first) + span.begin;
-    splat.imageStride = this->Shared.image.width;
+    splat.image = target.at(span.begin, first);
+    splat.imageStride = target.stride;
+    splat.bits = target.bits.origin ? target.bits.at(span.begin, first) : nullptr;
+    splat.bitsStride = target.bits.stride;
+    splat.bit = target.bit;
     splat.width = span.end - span.begin;
     splat.height = end - first;
     splat.sourceStride = patch.rowLength;
@@ -314,7 +426,7 @@ protected:
   }
 
 private:
-  void splatValidRow(int k, int v, const Span& span, Patch& patch) const
+  void splatValidRow(int k, int v, const Span& span, const Target& target, Patch& patch) const
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];
     const A* rows[75];
@@ -325,8 +437,8 @@ private:
       rows[t] = this->voxel(patch, k, tap.slice, span.begin + tap.di, v + tap.dj);
     }
     const WorksheetLoops<A>& loops = this->Shared.kernels;
-    loops.splatValid(this->Shared.image.template row<A>(v) + span.begin, rows,
-      footprint.weights.data(), count, span.end - span.begin);
+    loops.splatValid(
+      target.at(span.begin, v), rows, footprint.weights.data(), count, span.end - span.begin);
   }
 
   /// The voxel of slice k + c that is nearest to pixel (u, v) of slice k, in the patch.

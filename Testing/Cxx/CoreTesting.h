@@ -125,16 +125,34 @@ inline reference::ShearView referenceView(const splatting::ShearWarp& geometry)
   return { geometry.principalAxis(), { geometry.shear().x, geometry.shear().y } };
 }
 
+/// Half-spaces of index space and cropping, as a projection takes them.
+inline splatting::Cuts cutsBy(const splatting::ShearWarp& geometry,
+  const std::vector<glm::dvec4>& halfSpaces, const splatting::Cropping& cropping = {})
+{
+  splatting::Cuts cuts;
+  cuts.cropping = cropping;
+  if (!halfSpaces.empty())
+  {
+    std::vector<glm::dvec4> inPixels;
+    for (const glm::dvec4& h : halfSpaces)
+    {
+      inPixels.push_back(geometry.inPixels(h));
+    }
+    cuts.intervals.find(geometry, inPixels);
+  }
+  return cuts;
+}
+
 template <class T>
 splatting::ShearImage project(const reference::Volume<T>& volume,
   const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
-  const std::vector<glm::dvec4>& halfSpaces = {})
+  const std::vector<glm::dvec4>& halfSpaces = {}, const splatting::Cropping& cropping = {})
 {
   splatting::VolumeIndex index;
   index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
   splatting::Projector projector;
   splatting::ShearImage image;
-  projector.project(index, geometry, settings, halfSpaces, image);
+  projector.project(index, geometry, settings, cutsBy(geometry, halfSpaces, cropping), image);
   return image;
 }
 

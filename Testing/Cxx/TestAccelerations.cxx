@@ -94,7 +94,8 @@ Result projected(const reference::Volume<T>& volume, const splatting::ShearWarp&
   settings.acceleration = acceleration;
   splatting::Projector projector;
   Result result;
-  result.used = projector.project(index, geometry, settings, c.halfSpaces, result.image);
+  result.used = projector.project(
+    index, geometry, settings, coretesting::cutsBy(geometry, c.halfSpaces), result.image);
   result.memory = index.memorySize();
   result.share =
     index.experience(geometry.principalAxis(), static_cast<int>(settings.quality)).share;

@@ -5,7 +5,6 @@
 // 2500 views, half of them through edges and corners of voxels.
 #include "CoreTesting.h"
 
-#include <algorithm>
 #include <limits>
 
 using namespace coretesting;
@@ -52,55 +51,6 @@ void testViews(Checks& check, int views, std::uint64_t seed)
       " ", volume.size[2]);
   }
 }
-
-/// Half-spaces leave the slices whose middle the ray crosses inside them.
-void testHalfSpaces(Checks& check)
-{
-  reference::Random random(77);
-  for (int n = 0; n < 200; ++n)
-  {
-    const auto volume = wholeRangeNoise<std::int16_t>(randomSize(random, 12), random.bits());
-    const splatting::ShearWarp geometry(anyView(volume.size, random));
-    std::vector<glm::dvec4> halfSpaces;
-    for (int h = random.uniform(1, 3); h > 0; --h)
-    {
-      glm::dvec4 plane(
-        random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.0);
-      for (int a = 0; a < 3; ++a)
-      {
-        plane.w -= plane[a] * random.uniform(0.0, double(volume.size[a]));
-      }
-      halfSpaces.push_back(plane);
-    }
-    const reference::ShearView view = referenceView(geometry);
-    const auto grid = reference::makeShearGrid(volume.size, view);
-    reference::Image<std::int16_t> expected(grid.width, grid.height);
-    for (int v = 0; v < grid.height; ++v)
-    {
-      for (int u = 0; u < grid.width; ++u)
-      {
-        for (const auto& voxel : reference::crossedVoxels(volume.size, view, u, v))
-        {
-          const int k = voxel[grid.axes[2]];
-          glm::dvec4 middle(0.0, 0.0, 0.0, 1.0);
-          middle[grid.axes[0]] = u - grid.margin[0] - view.shear[0] * (k - grid.middle);
-          middle[grid.axes[1]] = v - grid.margin[1] - view.shear[1] * (k - grid.middle);
-          middle[grid.axes[2]] = k;
-          const bool inside = std::all_of(halfSpaces.begin(), halfSpaces.end(),
-            [&](const glm::dvec4& h) { return glm::dot(h, middle) >= 0.0; });
-          if (inside)
-          {
-            expected.raise(u, v, volume.at(voxel));
-          }
-        }
-      }
-    }
-    splatting::ProjectionSettings settings;
-    settings.quality = splatting::Quality::Preview;
-    const auto found = toReference<std::int16_t>(project(volume, geometry, settings, halfSpaces));
-    check(sameBits(expected, found), "half-spaces cut other samples away, view ", n);
-  }
-}
 }
 
 int TestPreview(int, char*[])
@@ -121,6 +71,5 @@ int TestPreview(int, char*[])
             toReference<std::uint8_t>(project(volume, geometry, settings))),
       "large volume, view ", n, ": the preview is not the traversal");
   }
-  testHalfSpaces(check);
   return check.result();
 }

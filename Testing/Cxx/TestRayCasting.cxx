@@ -153,26 +153,6 @@ void testComponents(stage::Stage& stage, stage::Checks& check)
     "Several components: the picture is not black.");
 }
 
-void testCropping(stage::Stage& stage, stage::Checks& check)
-{
-  const auto image = blobs();
-  const auto mapper = stage::splatting(image);
-  const double planes[6] = { 10.0, 40.0, 5.0, 30.0, 8.0, 25.0 };
-  const auto rayCaster = stage::fixedPointRayCaster(image, 1.0);
-  for (vtkVolumeMapper* cropped : { (vtkVolumeMapper*)mapper, (vtkVolumeMapper*)rayCaster })
-  {
-    cropped->CroppingOn();
-    cropped->SetCroppingRegionPlanes(planes);
-    cropped->SetCroppingRegionFlagsToSubVolume();
-  }
-  stage.show(mapper);
-  look(stage, false);
-  const stage::Pixels picture = renderWithOneWarning(stage, mapper, "cropping", check);
-  check(!isBlack(picture), "Cropping: the picture is not black.");
-  stage.show(rayCaster);
-  check(stage.pixels() == picture, "Cropping: the picture is that of the ray caster.");
-}
-
 void testComposite(stage::Stage& stage, stage::Checks& check)
 {
   const auto image = blobs();
@@ -223,7 +203,7 @@ void testSeveralReasons(stage::Stage& stage, stage::Checks& check)
   stage::Messages warnings(mapper, vtkCommand::WarningEvent);
   for (int turn = 0; turn < 3; ++turn)
   {
-    mapper->SetCropping(turn % 2);
+    turn % 2 ? mapper->SetBlendModeToComposite() : mapper->SetBlendModeToMaximumIntensity();
     stage.window->Render();
   }
   check(warnings.texts.size() == 2, "Two reasons, two warnings.");
@@ -240,7 +220,6 @@ int TestRayCasting(int, char*[])
   testPerspectivePreview(stage, check);
   testMovedVolume(stage, check);
   testComponents(stage, check);
-  testCropping(stage, check);
   testComposite(stage, check);
   testColors(stage, check);
   testSeveralReasons(stage, check);

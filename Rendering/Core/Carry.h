@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What a volume has where the projection of another one found its winners. For dependent
+ * components: colours go with the opacity that won.
+ */
+#ifndef splattingCarry_h
+#define splattingCarry_h
+
+#include "Worksheets.h"
+
+namespace splatting
+{
+/// Voxel (i, j, k) of a volume whose axes are permuted as in the shear image, wherever it is
+/// stored.
+template <class T>
+class PermutedVoxels
+{
+public:
+  PermutedVoxels(const VoxelArray& volume, const ShearWarp& geometry)
+    : Voxels(static_cast<const T*>(volume.voxels)),
+      Size(geometry.size())
+  {
+    const std::ptrdiff_t strides[3] = { 1, volume.dimensions.x,
+      std::ptrdiff_t(volume.dimensions.x) * volume.dimensions.y };
+    for (int a = 0; a < 3; ++a)
+    {
+      this->Strides[a] = strides[geometry.axes()[a]];
+    }
+  }
+  /// Beyond the volume its outermost voxels are repeated.
+  T at(int i, int j, int k) const
+  {
+    return this->Voxels[std::clamp(i, 0, this->Size.x - 1) * this->Strides[0] +
+      std::clamp(j, 0, this->Size.y - 1) * this->Strides[1] +
+      std::clamp(k, 0, this->Size.z - 1) * this->Strides[2]];
+  }
+
+private:
+  const T* Voxels;
+  glm::ivec3 Size;
+  std::array<std::ptrdiff_t, 3> Strides;
+};
+
+template <class T>
+T carriedVoxel(const PermutedVoxels<T>& voxels, const RayPath& path, int u, int v, int step)
+{
+  const int t = step % StepsPerSlice;
+  return voxels.at(u + path.di[t], v + path.dj[t], step / StepsPerSlice);
+}
+
+/// NaN aside, as in worksheets; NaN if there is nothing else.
+template <class T>
+Accumulator<T> carriedAverage(const PermutedVoxels<T>& voxels,
+  const SliceFootprint<Accumulator<T>>& footprint, int u, int v, int k)
+{
+  double sum = 0.0, weight = 0.0;
+  int t = 0;
+  for (const Tap& tap : footprint.taps)
+  {
+    const T value =
+      voxels.at(u - footprint.nearest.x + tap.di, v - footprint.nearest.y + tap.dj, k + tap.slice);
+    const double w = footprint.weights[t++];
+    if (value == value)
+    {
+      sum += w * static_cast<double>(value);
+      weight += w;
+    }
+  }
+  return static_cast<Accumulator<T>>(sum / weight);
+}
+}
+
+#endif

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Cuts.h"
+
+namespace splatting
+{
+void CutMap::reset(const Cuts& cuts, const ShearWarp& geometry)
+{
+  this->Source = &cuts;
+  this->Regions.clear();
+  for (int k = 0; cuts.cropping.cuts() && k < geometry.size().z; ++k)
+  {
+    this->Regions.push_back(regionsOf(cuts.cropping, geometry, k));
+  }
+}
+
+bool CutMap::findMask(int k, int v, const Span& pixels, unsigned char* mask) const
+{
+  const int count = pixels.end - pixels.begin;
+  unsigned any = 0;
+  if (this->Source->intervals.empty())
+  {
+    std::fill_n(mask, std::max(count, 0), static_cast<unsigned char>(1));
+    any = count > 0;
+  }
+  else
+  {
+    const std::int16_t* const first = this->Source->intervals.first(v) + pixels.begin;
+    const std::int16_t* const last = this->Source->intervals.last(v) + pixels.begin;
+    const std::int16_t slice = static_cast<std::int16_t>(k);
+    for (int x = 0; x < count; ++x)
+    {
+      mask[x] = static_cast<unsigned char>((first[x] <= slice) & (slice <= last[x]));
+      any |= mask[x];
+    }
+  }
+  if (this->Regions.empty())
+  {
+    return any != 0;
+  }
+  const SliceRegions& regions = this->Regions[k];
+  const unsigned shown = regions.regionsOfRow(v);
+  const int ends[4] = { pixels.begin, std::clamp(regions.u[0], pixels.begin, pixels.end),
+    std::clamp(regions.u[1], pixels.begin, pixels.end), pixels.end };
+  for (int i = 0; i < 3; ++i)
+  {
+    if (!(shown >> i & 1u))
+    {
+      std::fill(mask + (ends[i] - pixels.begin), mask + (ends[i + 1] - pixels.begin),
+        static_cast<unsigned char>(0));
+    }
+  }
+  return any != 0 && shown != 0;
+}
+
+void BandCuts::reset(const CutMap& map, const CutLoops& loops, int v0, int v1, int width)
+{
+  this->Map = &map;
+  this->Loops = &loops;
+  this->V0 = v0;
+  this->V1 = v1;
+  this->Width = width;
+  this->Tiles = (width + TileWidth - 1) / TileWidth;
+  this->Stride = std::ptrdiff_t(this->Tiles) * TileWidth;
+  this->Shares.resize(this->Tiles);
+  this->Any.resize(this->Tiles);
+  this->Bits.resize(this->Stride * (v1 - v0));
+  const RayIntervals& intervals = map.source().intervals;
+  const int groups = (v1 - v0 + TileHeight - 1) / TileHeight;
+  this->Extremes.resize(intervals.empty() ? 0 : std::size_t(groups) * this->Tiles);
+  for (int g = 0; g < groups && !intervals.empty(); ++g)
+  {
+    const int v = v0 + g * TileHeight;
+    loops.tileExtremes(intervals.first(v), intervals.last(v), width, std::min(TileHeight, v1 - v),
+      width, &this->Extremes[std::size_t(g) * this->Tiles]);
+  }
+}
+
+Span BandCuts::findBits(const Span& slices, int group, unsigned char* flags)
+{
+  this->findShares(slices, group);
+  const int v0 = this->V0 + group * TileHeight, v1 = std::min(v0 + TileHeight, this->V1);
+  Span hull;
+  unsigned char* const rows = this->Bits.data() + (v0 - this->V0) * this->Stride;
+  for (int t = 0, end = 0; t < this->Tiles; t = end)
+  {
+    // Tiles of the same kind side by side.
+    const unsigned char share = flags[t] ? this->Shares[t] : static_cast<unsigned char>(None);
+    for (end = t + 1; end < this->Tiles &&
+         (flags[end] ? this->Shares[end] : static_cast<unsigned char>(None)) == share;
+         ++end)
+    {
+    }
+    const Span pixels{ t * TileWidth, std::min(end * TileWidth, this->Width) };
+    std::fill(flags + t, flags + end, static_cast<unsigned char>(share != None));
+    hull = share == None ? hull : Span{ hull.empty() ? pixels.begin : hull.begin, pixels.end };
+    for (int v = v0; v < v1; ++v)
+    {
+      unsigned char* const bits = rows + (v - v0) * this->Stride + pixels.begin;
+      if (share == Some)
+      {
+        this->findSome(slices, v, pixels, bits);
+      }
+      else
+      {
+        std::fill_n(
+          bits, pixels.end - pixels.begin, static_cast<unsigned char>(share == None ? 0 : 0xff));
+      }
+    }
+  }
+  return hull;
+}
+
+void BandCuts::findSome(const Span& slices, int v, const Span& pixels, unsigned char* bits) const
+{
+  const RayIntervals& intervals = this->Map->source().intervals;
+  const std::ptrdiff_t n = pixels.end - pixels.begin;
+  if (intervals.empty())
+  {
+    std::fill_n(bits, n, static_cast<unsigned char>(0xff));
+  }
+  else
+  {
+    this->Loops->sliceBits(intervals.first(v) + pixels.begin, intervals.last(v) + pixels.begin,
+      slices.begin, slices.end - slices.begin, bits, n);
+  }
+  for (int k = slices.begin; k < slices.end && this->Map->crops(); ++k)
+  {
+    const SliceRegions& regions = this->Map->regions(k);
+    const unsigned shown = regions.regionsOfRow(v);
+    for (int i = 0; i < 3; ++i)
+    {
+      if (!(shown >> i & 1u))
+      {
+        const Span region = common(regions.pixels(i), pixels);
+        for (int u = region.begin; u < region.end; ++u)
+        {
+          bits[u - pixels.begin] &= static_cast<unsigned char>(~(1u << (k - slices.begin)));
+        }
+      }
+    }
+  }
+}
+
+void BandCuts::findShares(const Span& slices, int group)
+{
+  if (this->Extremes.empty())
+  {
+    std::fill(this->Shares.begin(), this->Shares.end(), static_cast<unsigned char>(All));
+  }
+  else
+  {
+    const TileExtremes* const tiles = &this->Extremes[std::size_t(group) * this->Tiles];
+    for (int t = 0; t < this->Tiles; ++t)
+    {
+      const TileExtremes& e = tiles[t];
+      const bool any = slices.end > e.leastFirst && slices.begin <= e.greatestLast;
+      const bool all = slices.begin >= e.greatestFirst && slices.end - 1 <= e.leastLast;
+      this->Shares[t] = static_cast<unsigned char>(all ? All : any ? Some : None);
+    }
+  }
+  if (this->Map->crops())
+  {
+    const int v0 = this->V0 + group * TileHeight;
+    this->cropShares(slices, v0, std::min(v0 + TileHeight, this->V1));
+  }
+}
+
+void BandCuts::cropShares(const Span& slices, int v0, int v1)
+{
+  std::fill(this->Any.begin(), this->Any.end(), static_cast<unsigned char>(0));
+  for (int k = slices.begin; k < slices.end; ++k)
+  {
+    const SliceRegions& regions = this->Map->regions(k);
+    unsigned any = 0, all = 7;
+    for (int v = v0; v < v1; ++v)
+    {
+      any |= regions.regionsOfRow(v);
+      all &= regions.regionsOfRow(v);
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      const Span pixels = common(regions.pixels(i), { 0, this->Width });
+      if (pixels.empty())
+      {
+        continue;
+      }
+      const int begin = pixels.begin / TileWidth, end = (pixels.end - 1) / TileWidth + 1;
+      if (any >> i & 1u)
+      {
+        std::fill(
+          this->Any.begin() + begin, this->Any.begin() + end, static_cast<unsigned char>(1));
+      }
+      for (int t = begin; t < end && !(all >> i & 1u); ++t)
+      {
+        this->Shares[t] = std::min<unsigned char>(this->Shares[t], Some);
+      }
+    }
+  }
+  for (int t = 0; t < this->Tiles; ++t)
+  {
+    this->Shares[t] = this->Any[t] ? this->Shares[t] : static_cast<unsigned char>(None);
+  }
+}
+}

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Which samples count, a sample being a pixel of the shear image and a slice.
+ */
+#ifndef splattingCuts_h
+#define splattingCuts_h
+
+#include "Cropping.h"
+#include "RayIntervals.h"
+
+#include <vector>
+
+namespace splatting
+{
+/// All that leaves samples out.
+struct Cuts
+{
+  RayIntervals intervals;
+  Cropping cropping;
+
+  bool none() const { return this->intervals.empty() && !this->cropping.cuts(); }
+  bool operator==(const Cuts& other) const
+  {
+    return this->intervals == other.intervals && this->cropping == other.cropping;
+  }
+};
+
+/// The cuts of one projection, as its walks ask for them.
+class CutMap
+{
+public:
+  /// The cuts must outlive their use.
+  void reset(const Cuts& cuts, const ShearWarp& geometry);
+  bool none() const { return this->Source->none(); }
+  const Cuts& source() const { return *this->Source; }
+  bool crops() const { return !this->Regions.empty(); }
+  const SliceRegions& regions(int k) const { return this->Regions[k]; }
+
+  /// mask[x] = whether the sample of slice k counts for pixel pixels.begin + x of row v. False if
+  /// there is none.
+  bool findMask(int k, int v, const Span& pixels, unsigned char* mask) const;
+
+private:
+  const Cuts* Source = nullptr;
+  std::vector<SliceRegions> Regions; // of all slices, if cropping cuts
+};
+
+/// For each pixel of some rows, which of a few slices count: bit s of a byte is the s-th slice.
+struct SliceBits
+{
+  const unsigned char* origin = nullptr; ///< of pixel (0, 0), which need not exist
+  std::ptrdiff_t stride = 0;
+
+  const unsigned char* at(int u, int v) const { return this->origin + v * this->stride + u; }
+};
+
+/// The cuts of a band of rows, tile by tile, in groups of TileHeight rows. A thread's work space.
+class BandCuts
+{
+public:
+  void reset(const CutMap& map, const CutLoops& loops, int v0, int v1, int width);
+
+  /**
+   * Finds the bits of a group's rows for the slices of a layer. Tiles without a flag, and those of
+   * which nothing counts, which lose theirs, get no bits.
+   *
+   * @return the pixels from the first to the last tile with a flag
+   */
+  Span findBits(const Span& slices, int group, unsigned char* flags);
+  /// Of all groups whose bits have been found.
+  SliceBits bits() const { return { this->Bits.data() - this->V0 * this->Stride, this->Stride }; }
+
+private:
+  /// How much of a tile's samples counts.
+  enum Share : unsigned char
+  {
+    None,
+    Some,
+    All
+  };
+  void findShares(const Span& slices, int group);
+  void cropShares(const Span& slices, int v0, int v1);
+  void findSome(const Span& slices, int v, const Span& pixels, unsigned char* bits) const;
+
+  const CutMap* Map = nullptr;
+  const CutLoops* Loops = nullptr;
+  int V0 = 0, V1 = 0, Width = 0, Tiles = 0;
+  std::ptrdiff_t Stride = 0;
+  std::vector<TileExtremes> Extremes;
+  std::vector<unsigned char> Shares, Any, Bits;
+};
+}
+
+#endif

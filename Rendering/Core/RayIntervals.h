@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Where rays begin and end: one mechanism for everything that cuts a ray at either end.
+ */
+#ifndef splattingRayIntervals_h
+#define splattingRayIntervals_h
+
+#include "Frame.h"
+
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace splatting
+{
+/**
+ * For each pixel of a shear image the slices whose samples count, as far as the ray crosses them.
+ *
+ * A slice's sample counts if the point where the ray crosses the slice's middle is between the
+ * ray's near and far depth. Where that leaves none although the ray has a positive length, the
+ * slice nearest to the middle of the interval counts: what is thinner than a slice shows one.
+ * Points within 1e-9 slices of a plane (relative to their depth) are inside.
+ */
+class RayIntervals
+{
+public:
+  /// Nothing cuts.
+  void clear();
+  bool empty() const { return this->First.empty(); }
+
+  /// @param halfSpaces  in pixels, as ShearWarp::inPixels() gives them
+  void find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces);
+
+  /// The slices that each pixel's ray crosses, of those in other intervals, if these are not empty.
+  void findCrossed(
+    const std::vector<SliceGeometry>& slices, int width, int height, const RayIntervals& within);
+
+  /// For each pixel of a row the first slice and the last one; first > last: none.
+  const std::int16_t* first(int v) const { return &this->First[std::size_t(v) * this->Width]; }
+  const std::int16_t* last(int v) const { return &this->Last[std::size_t(v) * this->Width]; }
+
+  bool operator==(const RayIntervals& other) const
+  {
+    return this->Width == other.Width && this->First == other.First && this->Last == other.Last;
+  }
+  bool operator!=(const RayIntervals& other) const { return !(*this == other); }
+
+private:
+  int Width = 0;
+  std::vector<std::int16_t> First, Last;
+};
+
+/// The slices that each pixel of row v crosses, first > last where there are none.
+void findCrossedSlices(const std::vector<SliceGeometry>& slices, int v, int width,
+  std::int16_t* first, std::int16_t* last);
+}
+
+#endif
