@@ -253,6 +253,10 @@ int TestAbort(int, char*[])
     testProgress(scene, what, check);
     testAborts(scene, what, check);
   }
+  scene.mapper->SetBlendModeToAverageIntensity();
+  testProgress(scene, "mean", check);
+  testAborts(scene, "mean", check);
+  scene.mapper->SetBlendModeToMaximumIntensity();
   scene.mapper->SetAccelerationToLines();
   scene.mapper->SetQualityModeToStandard();
   testProgress(scene, "lines", check);

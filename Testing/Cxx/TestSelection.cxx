@@ -302,6 +302,10 @@ int TestSelection(int, char*[])
     "Cropping takes picks away.");
   testRayPicker<vtkCellPicker>(scene, "vtkCellPicker", false, check);
 
+  scene.mapper->CroppingOn();
+  scene.mapper->SetCroppingRegionPlanes(12.0, 48.0, 5.0, 44.0, 0.0, 32.0);
+  testPixels(scene, "cropped", false, check);
+  scene.mapper->CroppingOff();
   const stage::Messages warnings(scene.mapper, vtkCommand::WarningEvent);
   scene.mapper->SetBlendModeToComposite();
   testPixels(scene, "composite", true, check);
