@@ -7,6 +7,7 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -14,13 +15,16 @@
 
 namespace
 {
-std::uint32_t premultiplied(const float rgb[3], float opacity)
+std::uint32_t premultiplied(const float rgb[3], float opacity, const FinalColor& finalColor)
 {
   const float alpha = std::clamp(opacity, 0.0f, 1.0f);
+  const float scale = 1.0f / finalColor.window, bias = 0.5f - finalColor.level / finalColor.window;
   unsigned char bytes[4];
   for (int c = 0; c < 3; ++c)
   {
-    bytes[c] = static_cast<unsigned char>(255.0f * alpha * std::clamp(rgb[c], 0.0f, 1.0f) + 0.5f);
+    const float straight = std::clamp(rgb[c], 0.0f, 1.0f) * scale + bias;
+    bytes[c] =
+      static_cast<unsigned char>(std::clamp(255.0f * alpha * straight, 0.0f, 255.0f) + 0.5f);
   }
   bytes[3] = static_cast<unsigned char>(255.0f * alpha + 0.5f);
   std::uint32_t color;
@@ -74,8 +78,8 @@ void sample(vtkPiecewiseFunction* grays, double low, double high, std::vector<fl
 }
 
 template <class ColorFunction>
-splatting::ColorTable tabulate(
-  vtkPiecewiseFunction* opacity, ColorFunction* colors, double low, double high, bool integers)
+splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* colors, double low,
+  double high, bool integers, const FinalColor& finalColor)
 {
   chooseRange(opacity, colors, low, high);
   const double wanted = integers ? 16.0 * (high - low) + 1.0 : 65536.0;
@@ -88,17 +92,24 @@ splatting::ColorTable tabulate(
   splatting::ColorTable table{ low, high, std::vector<std::uint32_t>(entries) };
   for (int e = 0; e < entries; ++e)
   {
-    table.colors[e] = premultiplied(&rgb[3 * static_cast<std::size_t>(e)], alpha[e]);
+    table.colors[e] = premultiplied(&rgb[3 * static_cast<std::size_t>(e)], alpha[e], finalColor);
   }
   return table;
 }
 }
 
-splatting::ColorTable tabulateColors(
-  vtkVolumeProperty* property, double dataLow, double dataHigh, bool integers)
+bool FinalColor::isValid() const
+{
+  return std::isfinite(this->level) && std::isfinite(this->window) &&
+    std::isfinite(1.0f / this->window) && std::isfinite(this->level / this->window);
+}
+
+splatting::ColorTable tabulateColors(vtkVolumeProperty* property, double dataLow, double dataHigh,
+  bool integers, const FinalColor& finalColor)
 {
   vtkPiecewiseFunction* const opacity = property->GetScalarOpacity();
-  return property->GetColorChannels() == 1
-    ? tabulate(opacity, property->GetGrayTransferFunction(), dataLow, dataHigh, integers)
-    : tabulate(opacity, property->GetRGBTransferFunction(), dataLow, dataHigh, integers);
+  return property->GetColorChannels() == 1 ? tabulate(opacity, property->GetGrayTransferFunction(),
+                                               dataLow, dataHigh, integers, finalColor)
+                                           : tabulate(opacity, property->GetRGBTransferFunction(),
+                                               dataLow, dataHigh, integers, finalColor);
 }

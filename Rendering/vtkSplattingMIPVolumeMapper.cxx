@@ -4,6 +4,8 @@
 
 #include "Project.h"
 #include "RayCastFallback.h"
+#include "RenderTimes.h"
+#include "Selection.h"
 #include "ShearWarp.h"
 #include "TransferFunctions.h"
 #include "View.h"
@@ -19,6 +21,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkRayCastImageDisplayHelper.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimerLog.h"
@@ -42,6 +45,8 @@ namespace
 const char* const DegenerateCamera =
   "The camera flattens the volume to a line or has no extent: give it a parallel scale above 0 and "
   "a view-up that is not its direction.";
+const char* const NoColors =
+  "FinalColorWindow and FinalColorLevel give no colours: both must be finite and the window not 0.";
 
 template <class T>
 splatting::ScalarType sizedType()
@@ -87,6 +92,12 @@ int vtkTypeOf(splatting::ScalarType type, int inputType)
   return type == splatting::ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
 }
 
+const char* nameOfMode(int mode)
+{
+  static const char* const names[] = { "preview", "standard", "high" };
+  return names[mode];
+}
+
 splatting::Reduction reductionOf(int blendMode, int maximumType)
 {
   switch (blendMode)
@@ -126,16 +137,20 @@ public:
     vtkSplattingMIPVolumeMapper* self, vtkVolume* volume, const splatting::View& view);
   void LookAt(vtkDataArray* scalars);
   splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self) const;
+  bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
+  bool Shows(
+    const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings) const;
   double FloorOfWindow() const;
   void FindCuts(const splatting::View& view, const splatting::ShearWarp& geometry);
-  bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
-  void UpdateColors(vtkVolumeProperty* property);
+  bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode);
+  void UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor);
   void CopyShearImage(vtkImageData* output) const;
 
-  vtkImageData* Input = nullptr;   // set by Problem(), valid during a render
-  vtkDataArray* Scalars = nullptr; // likewise
-  std::string Reported;            // the last problem, so that each is told once
-  std::set<std::string> Announced; // reasons to ray cast that were told
+  vtkImageData* Input = nullptr;     // set by Problem(), valid during a render
+  vtkDataArray* Scalars = nullptr;   // likewise
+  std::string Reported;              // the last problem, so that each is told once
+  std::set<std::string> Announced;   // reasons to ray cast that were told
+  vtkRenderWindow* Window = nullptr; // which may abort, during a render
 
   splatting::VolumeIndex Index;
   vtkSmartPointer<vtkDataArray> Contiguous; // a copy, if the scalars are stored in another way
@@ -155,12 +170,15 @@ public:
   bool ImageValid = false;
   vtkIdType Projections = 0;
   double ProjectionTime = 0.0;
+  splatting::RenderTimes Times;
+  double IndexTimeBefore = 0.0; // before what the present frame makes of the index
   double Shear[2] = { 0.0, 0.0 };
   vtkSmartPointer<vtkImageData> ShearImageOutput;
 
   splatting::ColorTable Colors;
   vtkVolumeProperty* ColoredBy = nullptr;
   vtkMTimeType ColorTime = 0;
+  FinalColor ColoredFor;
   bool ColorsValid = false;
   splatting::Warper Warper;
   splatting::Picture Picture;
@@ -183,10 +201,15 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     EliminateInvisible(false),
     CullBelowWindow(false),
     IndexMemoryBudget(vtkTypeInt64(1) << 32),
+    AutoAdjustSampleDistances(1),
+    FinalColorWindow(1.0f),
+    FinalColorLevel(0.5f),
     LastRenderUsedRayCasting(false),
     Internal(new Internals)
 {
   this->Internal->Projector.setProgress([this](double done) { this->UpdateProgress(done); });
+  this->Internal->Projector.setWatch(
+    [this](double done) { return this->Internal->GoOn(this, done); });
   this->BlendMode = MAXIMUM_INTENSITY_BLEND;
 }
 
@@ -286,6 +309,10 @@ void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkDataArray* scalars)
   {
     return;
   }
+  if (this->Index.volume().dimensions != size || this->ScalarType != scalars->GetDataType())
+  {
+    this->Times.clear(); // those of other sizes; changed data take what the last ones took
+  }
   this->IndexedBuffer = buffer;
   this->IndexedScalars = scalars;
   this->IndexedTime = time;
@@ -342,6 +369,14 @@ double vtkSplattingMIPVolumeMapper::Internals::FloorOfWindow() const
 }
 
 //------------------------------------------------------------------------------
+// Tells how much of the projection is done and whether the window wants the rest.
+bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* self, double done)
+{
+  self->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &done);
+  return !this->Window || !this->Window->CheckAbortStatus();
+}
+
+//------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Internals::FindCuts(
   const splatting::View& view, const splatting::ShearWarp& geometry)
 {
@@ -359,47 +394,69 @@ void vtkSplattingMIPVolumeMapper::Internals::FindCuts(
 }
 
 //------------------------------------------------------------------------------
-// Projects, unless the last shear image shows the same. False if the view has no meaning.
+// Whether the last shear image is what this asks for; the cuts are found already.
+bool vtkSplattingMIPVolumeMapper::Internals::Shows(
+  const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings) const
+{
+  return this->ImageValid && geometry.sameShear(this->Geometry) &&
+    (geometry.reversed() == this->Geometry.reversed() || !isOrdered(settings.reduction)) &&
+    this->Cuts == this->LastCuts && settings == this->Settings;
+}
+
+//------------------------------------------------------------------------------
+// Projects in this mode, unless the last shear image shows the same, or better within what is
+// wanted. False if the view has no meaning. There is no valid image after an abort.
 bool vtkSplattingMIPVolumeMapper::Internals::Project(
-  vtkSplattingMIPVolumeMapper* self, const splatting::View& view)
+  vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode)
 {
   const splatting::ShearWarp geometry(view);
-  const splatting::ProjectionSettings settings = this->MakeSettings(self);
+  splatting::ProjectionSettings settings = this->MakeSettings(self);
   if (!geometry.valid())
   {
     return false;
   }
   this->FindCuts(view, geometry);
-  const bool same = this->ImageValid && geometry.sameShear(this->Geometry) &&
-    (geometry.reversed() == this->Geometry.reversed() || !isOrdered(settings.reduction)) &&
-    this->Cuts == this->LastCuts && settings == this->Settings;
+  settings.quality = std::clamp(this->Settings.quality, static_cast<splatting::Quality>(mode),
+    static_cast<splatting::Quality>(self->QualityMode));
+  const bool same = this->Shows(geometry, settings);
   this->Geometry = geometry;
   if (same)
   {
     return true;
   }
+  settings.quality = static_cast<splatting::Quality>(mode);
+  this->ImageValid = false;
+  this->ShearImageOutput = nullptr;
   this->Settings = settings;
   const double start = vtkTimerLog::GetUniversalTime();
-  this->Used = this->Projector.project(this->Index, geometry, settings, this->Cuts, this->Image);
+  const splatting::Acceleration used =
+    this->Projector.project(this->Index, geometry, settings, this->Cuts, this->Image);
+  if (this->Projector.stopped())
+  {
+    return true;
+  }
   std::swap(this->Cuts, this->LastCuts);
+  this->Used = used;
   this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
   this->ImageValid = true;
-  this->ShearImageOutput = nullptr;
   ++this->Projections;
   return true;
 }
 
 //------------------------------------------------------------------------------
 // Transfer functions to a table of colours.
-void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* property)
+void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(
+  vtkVolumeProperty* property, const FinalColor& finalColor)
 {
-  if (this->ColorsValid && this->ColoredBy == property && this->ColorTime == property->GetMTime())
+  if (this->ColorsValid && this->ColoredBy == property && this->ColorTime == property->GetMTime() &&
+    this->ColoredFor == finalColor)
   {
     return;
   }
   const splatting::VolumeIndex::Range& range = this->Index.range();
   const bool integers = this->ScalarType != VTK_FLOAT && this->ScalarType != VTK_DOUBLE;
-  this->Colors = tabulateColors(property, range.low, range.high, integers);
+  this->Colors = tabulateColors(property, range.low, range.high, integers, finalColor);
+  this->ColoredFor = finalColor;
   this->ColoredBy = property;
   this->ColorTime = property->GetMTime();
   this->ColorsValid = true;
@@ -408,23 +465,38 @@ void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* pro
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 {
+  Internals& in = *this->Internal;
+  if (in.Window)
+  {
+    vtkErrorMacro(<< "An observer of this mapper's render events must not render with it.");
+    return;
+  }
+  in.Window = ren->GetRenderWindow();
+  const vtkIdType projections = in.Projections;
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
-  std::string problem = this->Internal->Problem(this, vol);
+  std::string problem = in.Problem(this, vol);
   if (problem.empty())
   {
     problem = this->RenderBySplatting(ren, vol);
   }
   // Told once, not in every frame.
-  if (!problem.empty() && problem != this->Internal->Reported)
+  if (!problem.empty() && problem != in.Reported)
   {
     vtkErrorMacro(<< problem);
   }
-  this->Internal->Reported = problem;
+  in.Reported = problem;
   this->Timer->StopTimer();
   this->TimeToDraw = this->Timer->GetElapsedTime();
+  // Frames that re-use an image say nothing about the next ones, nor does what is made once.
+  if (in.Projections != projections)
+  {
+    in.Times.add({ ren, vol }, this->GetQualityModeUsed(),
+      this->TimeToDraw - (in.Index.time() - in.IndexTimeBefore));
+  }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent);
+  in.Window = nullptr;
 }
 
 //------------------------------------------------------------------------------
@@ -433,10 +505,15 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 {
   Internals& in = *this->Internal;
   const splatting::View view = makeView(in.Input, vol, ren, this);
-  // Nothing can be seen in a window that is not shown yet, and colours are no identifiers.
-  if (view.viewport.x < 1 || view.viewport.y < 1 || ren->GetSelector())
+  // Nothing can be seen in a window that is not shown yet.
+  if (view.viewport.x < 1 || view.viewport.y < 1)
   {
     return "";
+  }
+  const FinalColor finalColor = { this->FinalColorWindow, this->FinalColorLevel };
+  if (!finalColor.isValid())
+  {
+    return NoColors;
   }
   if (!splatting::isFinite(view))
   {
@@ -448,12 +525,18 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     return "";
   }
   in.LookAt(in.Scalars);
+  in.IndexTimeBefore = in.Index.time();
   if (in.Index.setBudget(static_cast<std::size_t>(this->IndexMemoryBudget)))
   {
     in.ImageValid = false; // so that the answer to "what was used" is right
   }
-  in.UpdateColors(vol->GetProperty());
-  if (!in.Project(this, view))
+  in.UpdateColors(vol->GetProperty(), finalColor);
+  // Selection is by what is seen.
+  const int mode = !this->AutoAdjustSampleDistances ? this->QualityMode
+    : ren->GetSelector()
+    ? std::min(this->GetQualityModeUsed(), this->QualityMode)
+    : in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime());
+  if (!in.Project(this, view, mode))
   {
     return DegenerateCamera;
   }
@@ -464,14 +547,29 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
                     << " bytes): this volume is projected without it. Raise the budget.");
   }
   in.BudgetReported = in.Index.exceedsBudget();
-  in.Warper.warp(
-    in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet, in.Picture);
-  if (!in.Picture.pixels.empty())
+  if (in.ImageValid)
   {
-    this->DisplayImage(ren, &in.Picture.origin.x, &in.Picture.size.x,
-      reinterpret_cast<const unsigned char*>(in.Picture.pixels.data()));
+    in.Warper.warp(
+      in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet, in.Picture);
+    this->DisplayPicture(ren);
   }
   return "";
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::DisplayPicture(vtkRenderer* ren)
+{
+  splatting::Picture& picture = this->Internal->Picture;
+  if (picture.pixels.empty())
+  {
+    return;
+  }
+  if (vtkHardwareSelector* const selector = ren->GetSelector())
+  {
+    drawIdentifiers(selector, picture);
+  }
+  this->DisplayImage(ren, &picture.origin.x, &picture.size.x,
+    reinterpret_cast<const unsigned char*>(picture.pixels.data()));
 }
 
 //------------------------------------------------------------------------------
@@ -497,7 +595,15 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
     }
     in.RayCaster = std::make_unique<RayCastFallback>();
   }
-  in.RayCaster->Render(this, in.Input, ren, vol);
+  if (ren->GetSelector())
+  {
+    in.RayCaster->FindMask(this, in.Input, ren, vol, in.Picture);
+    this->DisplayPicture(ren);
+  }
+  else
+  {
+    in.RayCaster->Render(this, in.Input, ren, vol);
+  }
   this->LastRenderUsedRayCasting = true;
 }
 
@@ -624,15 +730,13 @@ const char* vtkSplattingMIPVolumeMapper::GetAccelerationAsString()
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetQualityModeAsString()
 {
-  switch (this->QualityMode)
-  {
-    case PREVIEW:
-      return "preview";
-    case STANDARD:
-      return "standard";
-    default:
-      return "high";
-  }
+  return nameOfMode(this->QualityMode);
+}
+
+//------------------------------------------------------------------------------
+int vtkSplattingMIPVolumeMapper::GetQualityModeUsed()
+{
+  return static_cast<int>(this->Internal->Settings.quality);
 }
 
 //------------------------------------------------------------------------------
@@ -660,6 +764,11 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "QualityMode: " << this->GetQualityModeAsString() << "\n";
+  os << indent << "QualityModeUsed: " << nameOfMode(this->GetQualityModeUsed()) << "\n";
+  os << indent << "AutoAdjustSampleDistances: " << (this->AutoAdjustSampleDistances ? "On" : "Off")
+     << "\n";
+  os << indent << "FinalColorWindow: " << this->FinalColorWindow << "\n";
+  os << indent << "FinalColorLevel: " << this->FinalColorLevel << "\n";
   os << indent << "Kernel: " << this->GetKernelAsString() << "\n";
   os << indent << "KernelRadius: " << this->KernelRadius << "\n";
   os << indent << "MaximumType: " << this->GetMaximumTypeAsString() << "\n";

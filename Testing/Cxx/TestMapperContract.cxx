@@ -40,6 +40,10 @@ void testDefaults(Mapper* mapper, stage::Checks& check)
   check(mapper->GetLineTolerance() == 0.0, "Default encoding is lossless.");
   check(!mapper->GetEliminateInvisible() && !mapper->GetCullBelowWindow(), "Default keeps all.");
   check(mapper->GetIndexMemoryBudget() == vtkTypeInt64(1) << 32, "Default budget is 4 GiB.");
+  check(mapper->GetAutoAdjustSampleDistances() == 1, "Default adjusts to the time, as VTK does.");
+  check(mapper->GetQualityModeUsed() == Mapper::HIGH, "A new mapper has used no other mode.");
+  check(mapper->GetFinalColorWindow() == 1.0f && mapper->GetFinalColorLevel() == 0.5f,
+    "Default colours are those of the transfer functions.");
   check(!mapper->GetLastRenderUsedRayCasting(), "A new mapper has not cast rays.");
   check(mapper->GetShearImage() == nullptr, "There is no shear image before the first render.");
   check(mapper->GetPrincipalAxis() == -1, "There is no principal axis before the first render.");
@@ -135,11 +139,13 @@ void testPrinting(Mapper* mapper, stage::Checks& check)
   std::ostringstream stream;
   mapper->Print(stream);
   const std::string text = stream.str();
-  for (const char* variable : { "QualityMode: high", "Kernel: trilinear", "KernelRadius: ",
-         "FootprintSampling: ", "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ",
-         "IndexMemorySize: ", "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ",
-         "Acceleration: auto", "AccelerationUsed: dense", "LineTolerance: ", "EliminateInvisible: ",
-         "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend", "Cropping" })
+  for (const char* variable :
+    { "QualityMode: high", "Kernel: trilinear", "KernelRadius: ", "FootprintSampling: ",
+      "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ", "IndexMemorySize: ",
+      "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ", "Acceleration: auto",
+      "AccelerationUsed: dense", "LineTolerance: ", "EliminateInvisible: ", "QualityModeUsed: high",
+      "AutoAdjustSampleDistances: On", "FinalColorWindow: 1", "FinalColorLevel: 0.5",
+      "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend", "Cropping" })
   {
     check(text.find(variable) != std::string::npos, std::string("PrintSelf names ") + variable);
   }
