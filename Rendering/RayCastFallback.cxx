@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RayCastFallback.h"
 
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkFixedPointRayCastImage.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 #include "vtkVolume.h"
-#include "vtkVolumeMapper.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
@@ -24,14 +26,44 @@ RayCastFallback::RayCastFallback()
 
 RayCastFallback::~RayCastFallback() = default;
 
-void RayCastFallback::Render(
-  vtkVolumeMapper* settings, vtkImageData* image, vtkRenderer* renderer, vtkVolume* volume)
+void RayCastFallback::Render(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image,
+  vtkRenderer* renderer, vtkVolume* volume)
+{
+  this->Update(settings, image, volume);
+  this->Mapper->Render(renderer, this->Volume);
+}
+
+void RayCastFallback::FindMask(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image,
+  vtkRenderer* renderer, vtkVolume* volume, splatting::Picture& mask)
+{
+  this->Update(settings, image, volume);
+  this->Mapper->PerImageInitialization(renderer, this->Volume, 0, nullptr, nullptr, nullptr);
+  this->Mapper->PerVolumeInitialization(renderer, this->Volume);
+  this->Mapper->PerSubVolumeInitialization(renderer, this->Volume, 0);
+  this->Mapper->RenderSubVolume();
+  vtkFixedPointRayCastImage* const rays = this->Mapper->GetRayCastImage();
+  rays->GetImageOrigin(&mask.origin.x);
+  rays->GetImageInUseSize(&mask.size.x);
+  mask.pixels.resize(std::size_t(mask.size.x) * mask.size.y);
+  constexpr int visible = 32767 / 510 + 1; // of 32767, what is shown as 1 of 255 or more
+  const int rowLength = rays->GetImageMemorySize()[0];
+  for (int y = 0; y < mask.size.y; ++y)
+  {
+    const unsigned short* const row = rays->GetImage() + 4 * std::size_t(y) * rowLength;
+    for (int x = 0; x < mask.size.x; ++x)
+    {
+      mask.pixels[std::size_t(y) * mask.size.x + x] = row[4 * x + 3] < visible ? 0u : ~0u;
+    }
+  }
+}
+
+void RayCastFallback::Update(
+  vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, vtkVolume* volume)
 {
   this->UpdateImage(image);
   this->UpdateMatrix(image, volume);
   this->UpdateProperty(settings->GetBlendMode(), volume->GetProperty());
   this->UpdateSettings(settings, image);
-  this->Mapper->Render(renderer, this->Volume);
 }
 
 void RayCastFallback::ReleaseGraphicsResources(vtkWindow* window)
@@ -85,7 +117,7 @@ void RayCastFallback::UpdateProperty(int blendMode, vtkVolumeProperty* property)
       : property->GetInterpolationType());
 }
 
-void RayCastFallback::UpdateSettings(vtkVolumeMapper* settings, vtkImageData* image)
+void RayCastFallback::UpdateSettings(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image)
 {
   const double* const spacing = image->GetSpacing();
   this->Mapper->SetSampleDistance(static_cast<float>(
@@ -95,4 +127,6 @@ void RayCastFallback::UpdateSettings(vtkVolumeMapper* settings, vtkImageData* im
   this->Mapper->SetCroppingRegionPlanes(settings->GetCroppingRegionPlanes());
   this->Mapper->SetCroppingRegionFlags(settings->GetCroppingRegionFlags());
   this->Mapper->SetClippingPlanes(settings->GetClippingPlanes());
+  this->Mapper->SetFinalColorWindow(settings->GetFinalColorWindow());
+  this->Mapper->SetFinalColorLevel(settings->GetFinalColorLevel());
 }

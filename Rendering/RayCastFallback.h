@@ -3,6 +3,8 @@
 #ifndef RayCastFallback_h
 #define RayCastFallback_h
 
+#include "Warp.h"
+
 #include "vtkNew.h"
 #include "vtkType.h"
 
@@ -10,8 +12,8 @@ class vtkFixedPointVolumeRayCastMapper;
 class vtkImageData;
 class vtkMatrix4x4;
 class vtkRenderer;
+class vtkSplattingMIPVolumeMapper;
 class vtkVolume;
-class vtkVolumeMapper;
 class vtkVolumeProperty;
 class vtkWindow;
 
@@ -26,15 +28,19 @@ public:
   ~RayCastFallback();
 
   /// Render the image's point scalars as the mapper, the volume's property and its matrix ask.
-  void Render(
-    vtkVolumeMapper* settings, vtkImageData* image, vtkRenderer* renderer, vtkVolume* volume);
+  void Render(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, vtkRenderer* renderer,
+    vtkVolume* volume);
+  /// The picture that Render() would draw: white where it is not transparent. Takes as long.
+  void FindMask(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, vtkRenderer* renderer,
+    vtkVolume* volume, splatting::Picture& mask);
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
+  void Update(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, vtkVolume* volume);
   void UpdateImage(vtkImageData* image);
   void UpdateMatrix(vtkImageData* image, vtkVolume* volume);
   void UpdateProperty(int blendMode, vtkVolumeProperty* property);
-  void UpdateSettings(vtkVolumeMapper* settings, vtkImageData* image);
+  void UpdateSettings(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image);
 
   vtkNew<vtkFixedPointVolumeRayCastMapper> Mapper;
   vtkNew<vtkImageData> Image;

@@ -7,6 +7,7 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -14,13 +15,17 @@
 
 namespace
 {
-std::uint32_t premultiplied(const float rgb[3], float opacity, float weight)
+std::uint32_t premultiplied(
+  const float rgb[3], float opacity, float weight, const FinalColor& finalColor)
 {
   const float alpha = weight * std::clamp(opacity, 0.0f, 1.0f);
+  const float scale = 1.0f / finalColor.window, bias = 0.5f - finalColor.level / finalColor.window;
   unsigned char bytes[4];
   for (int c = 0; c < 3; ++c)
   {
-    bytes[c] = static_cast<unsigned char>(255.0f * alpha * std::clamp(rgb[c], 0.0f, 1.0f) + 0.5f);
+    const float straight = std::clamp(rgb[c], 0.0f, 1.0f) * scale + bias;
+    bytes[c] =
+      static_cast<unsigned char>(std::clamp(255.0f * alpha * straight, 0.0f, 255.0f) + 0.5f);
   }
   bytes[3] = static_cast<unsigned char>(255.0f * alpha + 0.5f);
   std::uint32_t color;
@@ -75,7 +80,7 @@ void sample(vtkPiecewiseFunction* grays, double low, double high, std::vector<fl
 
 template <class ColorFunction>
 splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* colors, float weight,
-  double low, double high, bool integers)
+  double low, double high, bool integers, const FinalColor& finalColor)
 {
   chooseRange(opacity, colors, low, high);
   const double wanted = integers ? 16.0 * (high - low) + 1.0 : 65536.0;
@@ -88,20 +93,27 @@ splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* col
   splatting::ColorTable table{ low, high, std::vector<std::uint32_t>(entries) };
   for (int e = 0; e < entries; ++e)
   {
-    table.colors[e] = premultiplied(&rgb[3 * static_cast<std::size_t>(e)], alpha[e], weight);
+    table.colors[e] =
+      premultiplied(&rgb[3 * static_cast<std::size_t>(e)], alpha[e], weight, finalColor);
   }
   return table;
 }
 }
 
+bool FinalColor::isValid() const
+{
+  return std::isfinite(this->level) && std::isfinite(this->window) &&
+    std::isfinite(1.0f / this->window) && std::isfinite(this->level / this->window);
+}
+
 splatting::ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
-  double dataLow, double dataHigh, bool integers)
+  double dataLow, double dataHigh, bool integers, const FinalColor& finalColor)
 {
   vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(component);
   const float share = static_cast<float>(weight);
   return property->GetColorChannels(component) == 1
-    ? tabulate(
-        opacity, property->GetGrayTransferFunction(component), share, dataLow, dataHigh, integers)
-    : tabulate(
-        opacity, property->GetRGBTransferFunction(component), share, dataLow, dataHigh, integers);
+    ? tabulate(opacity, property->GetGrayTransferFunction(component), share, dataLow, dataHigh,
+        integers, finalColor)
+    : tabulate(opacity, property->GetRGBTransferFunction(component), share, dataLow, dataHigh,
+        integers, finalColor);
 }

@@ -122,9 +122,11 @@ splatting::View makeView(
   int left, bottom;
   renderer->GetTiledSizeAndOrigin(&view.viewport.x, &view.viewport.y, &left, &bottom);
   const glm::dmat4 world = indexToWorld(grid, volume);
-  view.indexToClip = toGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
-                       renderer->GetTiledAspectRatio(), -1.0, 1.0)) *
-    world;
+  // The camera's composite matrix leaves stereo out.
+  vtkCamera* const camera = renderer->GetActiveCamera();
+  view.indexToClip =
+    toGlm(camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0)) *
+    toGlm(camera->GetViewTransformMatrix()) * world;
   // Near and far plane: -w <= z <= w.
   const glm::dvec4 z = row(view.indexToClip, 2), w = row(view.indexToClip, 3);
   addHalfSpace(view, w + z);

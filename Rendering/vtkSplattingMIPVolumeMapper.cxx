@@ -4,7 +4,9 @@
 
 #include "Project.h"
 #include "RayCastFallback.h"
+#include "RenderTimes.h"
 #include "ScalarSource.h"
+#include "Selection.h"
 #include "ShearWarp.h"
 #include "TransferFunctions.h"
 #include "View.h"
@@ -20,6 +22,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkRayCastImageDisplayHelper.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimerLog.h"
@@ -43,6 +46,14 @@ namespace
 const char* const DegenerateCamera =
   "The camera flattens the volume to a line or has no extent: give it a parallel scale above 0 and "
   "a view-up that is not its direction.";
+const char* const NoColors =
+  "FinalColorWindow and FinalColorLevel give no colours: both must be finite and the window not 0.";
+
+const char* nameOfMode(int mode)
+{
+  static const char* const names[] = { "preview", "standard", "high" };
+  return names[mode];
+}
 
 splatting::Reduction reductionOf(int blendMode, int maximumType)
 {
@@ -84,14 +95,19 @@ public:
   void LookAtVolumes();
   bool SetBudget(std::size_t bytes);
   bool ExceedsBudget() const;
+  double IndexTime() const;
+  bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
+  bool Shows(vtkSplattingMIPVolumeMapper* self, const splatting::ShearWarp& geometry,
+    splatting::Quality quality) const;
   void FindCuts(const splatting::View& view, const splatting::ShearWarp& geometry);
-  bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
-  void UpdateColors(vtkVolumeProperty* property);
+  bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode);
+  void UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor);
   void Warp(const splatting::View& view);
   void CopyShearImage(vtkImageData* output) const;
 
-  std::string Reported;            // the last problem, so that each is told once
-  std::set<std::string> Announced; // reasons to ray cast that were told
+  std::string Reported;              // the last problem, so that each is told once
+  std::set<std::string> Announced;   // reasons to ray cast that were told
+  vtkRenderWindow* Window = nullptr; // which may abort, during a render
 
   ScalarSource Source;
   vtkIdType IndexedVersion = 0; // of the source
@@ -109,6 +125,7 @@ public:
     double FloorOfWindow() const;
   };
   std::vector<Channel> Channels = std::vector<Channel>(1);
+  std::size_t Projected = 0; // of these in the present frame
 
   splatting::Projector Projector;
   splatting::ShearWarp Geometry;
@@ -118,11 +135,14 @@ public:
   bool ImageValid = false;
   vtkIdType Projections = 0;
   double ProjectionTime = 0.0;
+  splatting::RenderTimes Times;
+  double IndexTimeBefore = 0.0; // before what the present frame makes of the index
   double Shear[2] = { 0.0, 0.0 };
   vtkSmartPointer<vtkImageData> ShearImageOutput;
 
   vtkVolumeProperty* ColoredBy = nullptr;
   vtkMTimeType ColorTime = 0;
+  FinalColor ColoredFor;
   bool ColorsValid = false;
   splatting::Warper Warper;
   splatting::Picture Picture;
@@ -149,10 +169,15 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     EliminateInvisible(false),
     CullBelowWindow(false),
     IndexMemoryBudget(vtkTypeInt64(1) << 32),
+    AutoAdjustSampleDistances(1),
+    FinalColorWindow(1.0f),
+    FinalColorLevel(0.5f),
     LastRenderUsedRayCasting(false),
     Internal(new Internals)
 {
   this->Internal->Projector.setProgress([this](double done) { this->UpdateProgress(done); });
+  this->Internal->Projector.setWatch(
+    [this](double done) { return this->Internal->GoOn(this, done); });
   this->BlendMode = MAXIMUM_INTENSITY_BLEND;
 }
 
@@ -218,9 +243,17 @@ void vtkSplattingMIPVolumeMapper::Internals::LookAtVolumes()
   {
     return;
   }
+  const splatting::VoxelArray before = this->Channels.front().Index.volume();
+  const splatting::VoxelArray now = this->Source.Volume(0);
+  const std::size_t components = this->Source.Components();
+  if (before.dimensions != now.dimensions || before.type != now.type ||
+    this->Channels.size() != components)
+  {
+    this->Times.clear(); // those of other sizes; changed data take what the last ones took
+  }
   this->IndexedVersion = this->Source.Version();
-  this->Channels.resize(this->Source.Components());
-  for (std::size_t c = 0; c < this->Channels.size(); ++c)
+  this->Channels.resize(components);
+  for (std::size_t c = 0; c < components; ++c)
   {
     this->Channels[c].Index.reset(this->Source.Volume(static_cast<int>(c)));
   }
@@ -246,6 +279,17 @@ bool vtkSplattingMIPVolumeMapper::Internals::ExceedsBudget() const
 {
   return std::any_of(this->Channels.begin(), this->Channels.end(),
     [](const Channel& channel) { return channel.Index.exceedsBudget(); });
+}
+
+//------------------------------------------------------------------------------
+double vtkSplattingMIPVolumeMapper::Internals::IndexTime() const
+{
+  double seconds = this->Source.Time();
+  for (const Channel& channel : this->Channels)
+  {
+    seconds += channel.Index.time();
+  }
+  return seconds;
 }
 
 //------------------------------------------------------------------------------
@@ -287,6 +331,16 @@ double vtkSplattingMIPVolumeMapper::Internals::Channel::FloorOfWindow() const
 }
 
 //------------------------------------------------------------------------------
+// Tells how much of the projection is done and whether the window wants the rest.
+bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* self, double done)
+{
+  const double projected = static_cast<double>(this->Projected);
+  done = (projected + done) / static_cast<double>(this->Channels.size());
+  self->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &done);
+  return !this->Window || !this->Window->CheckAbortStatus();
+}
+
+//------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Internals::FindCuts(
   const splatting::View& view, const splatting::ShearWarp& geometry)
 {
@@ -304,9 +358,26 @@ void vtkSplattingMIPVolumeMapper::Internals::FindCuts(
 }
 
 //------------------------------------------------------------------------------
-// Projects, unless the last shear image shows the same. False if the view has no meaning.
+// Whether the last shear image is what this asks for; the cuts are found already.
+bool vtkSplattingMIPVolumeMapper::Internals::Shows(vtkSplattingMIPVolumeMapper* self,
+  const splatting::ShearWarp& geometry, splatting::Quality quality) const
+{
+  const bool turned = geometry.reversed() != this->Geometry.reversed();
+  return this->ImageValid && geometry.sameShear(this->Geometry) && this->Cuts == this->LastCuts &&
+    std::all_of(this->Channels.begin(), this->Channels.end(),
+      [=](const Channel& channel)
+      {
+        splatting::ProjectionSettings settings = channel.MakeSettings(self);
+        settings.quality = quality;
+        return settings == channel.Settings && !(turned && isOrdered(settings.reduction));
+      });
+}
+
+//------------------------------------------------------------------------------
+// Projects in this mode, unless the last shear image shows the same, or better within what is
+// wanted. False if the view has no meaning. There is no valid image after an abort.
 bool vtkSplattingMIPVolumeMapper::Internals::Project(
-  vtkSplattingMIPVolumeMapper* self, const splatting::View& view)
+  vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode)
 {
   const splatting::ShearWarp geometry(view);
   if (!geometry.valid())
@@ -314,39 +385,44 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
     return false;
   }
   this->FindCuts(view, geometry);
-  const bool turned = geometry.reversed() != this->Geometry.reversed();
-  bool same =
-    this->ImageValid && geometry.sameShear(this->Geometry) && this->Cuts == this->LastCuts;
+  const bool same = this->Shows(self, geometry,
+    std::clamp(this->Channels.front().Settings.quality, static_cast<splatting::Quality>(mode),
+      static_cast<splatting::Quality>(self->QualityMode)));
   this->Geometry = geometry;
-  for (Channel& channel : this->Channels)
-  {
-    const splatting::ProjectionSettings settings = channel.MakeSettings(self);
-    same = same && settings == channel.Settings && !(turned && isOrdered(settings.reduction));
-    channel.Settings = settings;
-  }
   if (same)
   {
     return true;
   }
+  this->ImageValid = false;
+  this->ShearImageOutput = nullptr;
   const double start = vtkTimerLog::GetUniversalTime();
-  for (Channel& channel : this->Channels)
+  for (this->Projected = 0; this->Projected < this->Channels.size(); ++this->Projected)
   {
-    channel.Used =
+    Channel& channel = this->Channels[this->Projected];
+    channel.Settings = channel.MakeSettings(self);
+    channel.Settings.quality = static_cast<splatting::Quality>(mode);
+    const splatting::Acceleration used =
       this->Projector.project(channel.Index, geometry, channel.Settings, this->Cuts, channel.Image);
+    if (this->Projector.stopped())
+    {
+      return true;
+    }
+    channel.Used = used;
   }
   std::swap(this->Cuts, this->LastCuts);
   this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
   this->ImageValid = true;
-  this->ShearImageOutput = nullptr;
   ++this->Projections;
   return true;
 }
 
 //------------------------------------------------------------------------------
 // Transfer functions to tables of colours.
-void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* property)
+void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(
+  vtkVolumeProperty* property, const FinalColor& finalColor)
 {
-  if (this->ColorsValid && this->ColoredBy == property && this->ColorTime == property->GetMTime())
+  if (this->ColorsValid && this->ColoredBy == property && this->ColorTime == property->GetMTime() &&
+    this->ColoredFor == finalColor)
   {
     return;
   }
@@ -357,8 +433,9 @@ void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(vtkVolumeProperty* pro
     const splatting::VolumeIndex::Range& range = channel.Index.range();
     const double weight = components > 1 ? property->GetComponentWeight(c) : 1.0;
     channel.Colors = tabulateColors(property, c, weight, range.low, range.high,
-      channel.Index.volume().type < splatting::ScalarType::Float32);
+      channel.Index.volume().type < splatting::ScalarType::Float32, finalColor);
   }
+  this->ColoredFor = finalColor;
   this->ColoredBy = property;
   this->ColorTime = property->GetMTime();
   this->ColorsValid = true;
@@ -383,23 +460,38 @@ void vtkSplattingMIPVolumeMapper::Internals::Warp(const splatting::View& view)
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 {
+  Internals& in = *this->Internal;
+  if (in.Window)
+  {
+    vtkErrorMacro(<< "An observer of this mapper's render events must not render with it.");
+    return;
+  }
+  in.Window = ren->GetRenderWindow();
+  const vtkIdType projections = in.Projections;
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
-  std::string problem = this->Internal->Problem(this, vol);
+  std::string problem = in.Problem(this, vol);
   if (problem.empty())
   {
     problem = this->RenderBySplatting(ren, vol);
   }
   // Told once, not in every frame.
-  if (!problem.empty() && problem != this->Internal->Reported)
+  if (!problem.empty() && problem != in.Reported)
   {
     vtkErrorMacro(<< problem);
   }
-  this->Internal->Reported = problem;
+  in.Reported = problem;
   this->Timer->StopTimer();
   this->TimeToDraw = this->Timer->GetElapsedTime();
+  // Frames that re-use an image say nothing about the next ones, nor does what is made once.
+  if (in.Projections != projections)
+  {
+    in.Times.add({ ren, vol }, this->GetQualityModeUsed(),
+      this->TimeToDraw - (in.IndexTime() - in.IndexTimeBefore));
+  }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent);
+  in.Window = nullptr;
 }
 
 //------------------------------------------------------------------------------
@@ -408,10 +500,15 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 {
   Internals& in = *this->Internal;
   const splatting::View view = makeView(in.Source.Grid(), vol, ren, this);
-  // Nothing can be seen in a window that is not shown yet, and colours are no identifiers.
-  if (view.viewport.x < 1 || view.viewport.y < 1 || ren->GetSelector())
+  // Nothing can be seen in a window that is not shown yet.
+  if (view.viewport.x < 1 || view.viewport.y < 1)
   {
     return "";
+  }
+  const FinalColor finalColor = { this->FinalColorWindow, this->FinalColorLevel };
+  if (!finalColor.isValid())
+  {
+    return NoColors;
   }
   if (!splatting::isFinite(view))
   {
@@ -422,13 +519,20 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     this->RenderByRayCasting(ren, vol, reason);
     return "";
   }
+  const vtkIdType version = in.IndexedVersion;
   in.LookAtVolumes();
   if (in.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget)))
   {
     in.ImageValid = false; // so that the answer to "what was used" is right
   }
-  in.UpdateColors(vol->GetProperty());
-  if (!in.Project(this, view))
+  in.IndexTimeBefore = in.IndexedVersion == version ? in.IndexTime() : 0.0;
+  in.UpdateColors(vol->GetProperty(), finalColor);
+  // Selection is by what is seen.
+  const int mode = !this->AutoAdjustSampleDistances ? this->QualityMode
+    : ren->GetSelector()
+    ? std::min(this->GetQualityModeUsed(), this->QualityMode)
+    : in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime());
+  if (!in.Project(this, view, mode))
   {
     return DegenerateCamera;
   }
@@ -439,13 +543,28 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
                     << " bytes): this volume is projected without it. Raise the budget.");
   }
   in.BudgetReported = in.ExceedsBudget();
-  in.Warp(view);
-  if (!in.Picture.pixels.empty())
+  if (in.ImageValid)
   {
-    this->DisplayImage(ren, &in.Picture.origin.x, &in.Picture.size.x,
-      reinterpret_cast<const unsigned char*>(in.Picture.pixels.data()));
+    in.Warp(view);
+    this->DisplayPicture(ren);
   }
   return "";
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::DisplayPicture(vtkRenderer* ren)
+{
+  splatting::Picture& picture = this->Internal->Picture;
+  if (picture.pixels.empty())
+  {
+    return;
+  }
+  if (vtkHardwareSelector* const selector = ren->GetSelector())
+  {
+    drawIdentifiers(selector, picture);
+  }
+  this->DisplayImage(ren, &picture.origin.x, &picture.size.x,
+    reinterpret_cast<const unsigned char*>(picture.pixels.data()));
 }
 
 //------------------------------------------------------------------------------
@@ -471,7 +590,15 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
     }
     in.RayCaster = std::make_unique<RayCastFallback>();
   }
-  in.RayCaster->Render(this, in.Source.Image(), ren, vol);
+  if (ren->GetSelector())
+  {
+    in.RayCaster->FindMask(this, in.Source.Image(), ren, vol, in.Picture);
+    this->DisplayPicture(ren);
+  }
+  else
+  {
+    in.RayCaster->Render(this, in.Source.Image(), ren, vol);
+  }
   this->LastRenderUsedRayCasting = true;
 }
 
@@ -573,12 +700,7 @@ vtkIdType vtkSplattingMIPVolumeMapper::GetIndexMemorySize()
 //------------------------------------------------------------------------------
 double vtkSplattingMIPVolumeMapper::GetIndexTime()
 {
-  double seconds = this->Internal->Source.Time();
-  for (const Internals::Channel& channel : this->Internal->Channels)
-  {
-    seconds += channel.Index.time();
-  }
-  return seconds;
+  return this->Internal->IndexTime();
 }
 
 //------------------------------------------------------------------------------
@@ -628,15 +750,13 @@ const char* vtkSplattingMIPVolumeMapper::GetVectorModeAsString()
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetQualityModeAsString()
 {
-  switch (this->QualityMode)
-  {
-    case PREVIEW:
-      return "preview";
-    case STANDARD:
-      return "standard";
-    default:
-      return "high";
-  }
+  return nameOfMode(this->QualityMode);
+}
+
+//------------------------------------------------------------------------------
+int vtkSplattingMIPVolumeMapper::GetQualityModeUsed()
+{
+  return static_cast<int>(this->Internal->Channels.front().Settings.quality);
 }
 
 //------------------------------------------------------------------------------
@@ -668,6 +788,11 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaskInput: ";
   this->MaskInput ? os << this->MaskInput << "\n" : os << "(none)\n";
   os << indent << "QualityMode: " << this->GetQualityModeAsString() << "\n";
+  os << indent << "QualityModeUsed: " << nameOfMode(this->GetQualityModeUsed()) << "\n";
+  os << indent << "AutoAdjustSampleDistances: " << (this->AutoAdjustSampleDistances ? "On" : "Off")
+     << "\n";
+  os << indent << "FinalColorWindow: " << this->FinalColorWindow << "\n";
+  os << indent << "FinalColorLevel: " << this->FinalColorLevel << "\n";
   os << indent << "Kernel: " << this->GetKernelAsString() << "\n";
   os << indent << "KernelRadius: " << this->KernelRadius << "\n";
   os << indent << "MaximumType: " << this->GetMaximumTypeAsString() << "\n";

@@ -51,6 +51,23 @@
  * centres for point scalars, the sides of voxels for cell scalars. An axis with one voxel is as
  * thick as that voxel.
  *
+ * The interpolation type of the vtkVolumeProperty has no meaning here, and a change costs nothing:
+ * the quality mode says how voxels are reconstructed, and the shear image is always interpolated
+ * between its pixels. (The default of the property is nearest, so that all volumes would look like
+ * the preview if it had a meaning.)
+ *
+ * Selection by vtkHardwareSelector, and all that uses it (vtkRenderer::PickProp, vtkPropPicker),
+ * finds the volume where its picture is not transparent. A volume is one thing there: composite
+ * index 1, point and cell 0. A pass costs a frame with the last shear image, or a ray cast frame
+ * where rays are cast. For the voxel behind a pixel use vtkVolumePicker.
+ *
+ * Aborting. While it projects, and while it makes chains, the mapper asks the render window's
+ * CheckAbortStatus() between bands of image rows, on the thread that renders. An aborted render
+ * draws nothing and leaves no shear image; the next one projects anew. Events:
+ * VolumeMapperRenderStartEvent, VolumeMapperRenderProgressEvent (only when projecting; call data:
+ * pointer to double, from 0 to 1), VolumeMapperRenderEndEvent; ProgressEvent while chains are made.
+ * Observers must not render with this mapper.
+ *
  * Arithmetic. The preview compares voxels in their own type. Standard and high add weight times
  * voxel in float for 8- and 16-bit voxels and for float, in double for the other types; weights
  * are rounded to multiples of 2^-16 for 8-bit voxels (all sums are then exact), 2^-24 and 2^-48
@@ -189,6 +206,46 @@ public:
   void SetQualityModeToStandard() { this->SetQualityMode(STANDARD); }
   void SetQualityModeToHigh() { this->SetQualityMode(HIGH); }
   const char* GetQualityModeAsString();
+  ///@}
+
+  ///@{
+  /**
+   * Whether a faster quality mode takes the place of QualityMode where frames were measured to take
+   * longer than the volume's allocated render time, which follows from the render window's desired
+   * update rate; interactor styles change that during interaction. Each mode is timed, for each
+   * renderer and volume, by frames that project (but the first one, and less what is made once per
+   * data set): HIGH gives way to STANDARD, STANDARD to PREVIEW, and back once a better
+   * mode is expected to take no more than 80 % of the time. A mode that was not measured yet is
+   * taken to fit. So the first frame, and a still one with its hours to spare, is in QualityMode. A
+   * shear image in a better mode (up to QualityMode) that shows the view already is kept. The
+   * picture's resolution is never reduced. GetQualityModeUsed() tells. Off: always QualityMode.
+   * Views that are ray cast ignore it. Default on.
+   */
+  vtkSetClampMacro(AutoAdjustSampleDistances, vtkTypeBool, 0, 1);
+  vtkGetMacro(AutoAdjustSampleDistances, vtkTypeBool);
+  vtkBooleanMacro(AutoAdjustSampleDistances, vtkTypeBool);
+  ///@}
+
+  /**
+   * The quality mode of the last projection: QualityMode, or a faster one, see
+   * AutoAdjustSampleDistances. HIGH before the first one.
+   */
+  int GetQualityModeUsed();
+
+  ///@{
+  /**
+   * Window and level applied to the picture's colours, for brightness and contrast: a colour c,
+   * from 0 to 1, becomes (c - FinalColorLevel) / FinalColorWindow + 1/2. The opacity A stays, so
+   * that premultiplied colours C become C / FinalColorWindow + A (1/2 - FinalColorLevel /
+   * FinalColorWindow), cut off at 0 and 1, as in VTK's ray casters: bright colours of translucent
+   * pixels may exceed their opacity. Both must be finite; the window may be negative (the picture
+   * is then inverted), but not 0. Default 1 and 0.5, which change nothing. A change costs a new
+   * table of colours; the shear image is used again.
+   */
+  vtkSetMacro(FinalColorWindow, float);
+  vtkGetMacro(FinalColorWindow, float);
+  vtkSetMacro(FinalColorLevel, float);
+  vtkGetMacro(FinalColorLevel, float);
   ///@}
 
   ///@{
@@ -439,6 +496,7 @@ protected:
 
   const char* RenderBySplatting(vtkRenderer* ren, vtkVolume* vol);
   void RenderByRayCasting(vtkRenderer* ren, vtkVolume* vol, const char* reason);
+  void DisplayPicture(vtkRenderer* ren);
 
   /**
    * Draw a premultiplied RGBA picture of size[0] x size[1] pixels, bottom row first, with its lower
@@ -463,6 +521,9 @@ protected:
   bool EliminateInvisible;
   bool CullBelowWindow;
   vtkTypeInt64 IndexMemoryBudget;
+  vtkTypeBool AutoAdjustSampleDistances;
+  float FinalColorWindow;
+  float FinalColorLevel;
   bool LastRenderUsedRayCasting;
 
 private:

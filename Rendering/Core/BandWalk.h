@@ -41,6 +41,7 @@ struct BandScratch
   std::vector<int> order;
   std::vector<double> scores;
   std::vector<Span> runs;
+  std::vector<RowRuns> rows;
   BandCuts cuts;
   std::vector<unsigned char> mask;
   TileCount count;
@@ -76,7 +77,7 @@ public:
   {
     if (!this->Shared.cuts.none())
     {
-      this->Shared.range.special ? this->walkSamples() : this->walkHulls();
+      this->Shared.range.special ? this->walkSamples() : this->walkCut();
       return;
     }
     this->Scratch.runs.assign(1, { 0, this->Shared.image.width });
@@ -129,11 +130,12 @@ private:
     return reinterpret_cast<P*>(this->Scratch.minima.data()) + std::ptrdiff_t(group) * this->Tiles;
   }
 
-  /// Cut rays, layer by layer: groups of rows from the first to the last tile that counts. Some
-  /// groups together, for which worksheets widen the same voxels.
-  void walkHulls()
+  /// Cut rays, layer by layer. Some groups of rows together, for which worksheets widen the same
+  /// voxels.
+  void walkCut()
   {
-    constexpr int together = 4;
+    constexpr int together = Layers::RowsTogether / TileHeight;
+    this->Scratch.rows.resize(together);
     this->openCuts();
     for (int first = 0; first < this->Groups; first += together)
     {
@@ -144,15 +146,14 @@ private:
       {
         for (int g = first; g < end; ++g)
         {
+          RowRuns& rows = this->Scratch.rows[g - first];
+          rows.v0 = this->firstRow(g);
+          rows.v1 = rows.v0 + this->rowsOf(g);
           std::fill_n(this->openFlags(), this->Tiles, static_cast<unsigned char>(1));
-          this->Scratch.runs.assign(1, this->findBits(z, g));
-          if (!this->Scratch.runs.front().empty())
-          {
-            const SliceBits bits = this->Scratch.cuts.bits();
-            this->Stack.splatOpened(z, this->firstRow(g), this->firstRow(g) + this->rowsOf(g),
-              this->Scratch.runs, bits, this->Scratch.patch);
-          }
+          rows.bits = this->findBits(z, g);
+          this->findRuns(rows.runs);
         }
+        this->Stack.splatOpened(z, this->Scratch.rows, end - first, this->Scratch.patch);
       }
     }
   }
@@ -186,7 +187,7 @@ private:
     }
   }
 
-  Span findBits(int z, int group)
+  SliceBits findBits(int z, int group)
   {
     return this->Scratch.cuts.findBits(
       slicesOfLayer(z, this->Shared.geometry.size()), group, this->Scratch.flags.data());
@@ -375,18 +376,9 @@ private:
     SliceBits bits;
     if (!this->Shared.cuts.none())
     {
-      this->findBits(z, group);
-      bits = this->Scratch.cuts.bits();
+      bits = this->findBits(z, group);
     }
-    this->Scratch.runs.clear();
-    for (int first = 0; first < this->Tiles; first += Word)
-    {
-      std::uint64_t tiles = packed(this->Scratch.flags.data() + first);
-      // Small gaps cost less than a second start.
-      tiles |= ((tiles << 1) & (tiles >> 1)) | ((tiles << 1) & (tiles >> 2)) |
-        ((tiles << 2) & (tiles >> 1));
-      this->addRuns(first, tiles);
-    }
+    this->findRuns(this->Scratch.runs);
     if (!this->Scratch.runs.empty())
     {
       const int v0 = this->firstRow(group);
@@ -395,7 +387,21 @@ private:
     }
   }
 
-  void addRuns(int first, std::uint64_t tiles)
+  /// The runs of tiles with flags.
+  void findRuns(std::vector<Span>& runs)
+  {
+    runs.clear();
+    for (int first = 0; first < this->Tiles; first += Word)
+    {
+      std::uint64_t tiles = packed(this->Scratch.flags.data() + first);
+      // Small gaps cost less than a second start.
+      tiles |= ((tiles << 1) & (tiles >> 1)) | ((tiles << 1) & (tiles >> 2)) |
+        ((tiles << 2) & (tiles >> 1));
+      addRuns(first, tiles, runs);
+    }
+  }
+
+  void addRuns(int first, std::uint64_t tiles, std::vector<Span>& runs)
   {
     while (tiles)
     {
@@ -406,7 +412,7 @@ private:
       this->Scratch.count.splatted += length;
       constexpr int unit = Layers::RunUnit;
       const int u = (first + begin) * TileWidth;
-      this->Scratch.runs.push_back({ u / unit * unit,
+      runs.push_back({ u / unit * unit,
         std::min((u + length * TileWidth + unit - 1) / unit * unit, this->Shared.image.width) });
     }
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Cuts.h"
 
+#include <cstring>
+
 namespace splatting
 {
 void CutMap::reset(const Cuts& cuts, const ShearWarp& geometry)
@@ -67,48 +69,57 @@ void BandCuts::reset(const CutMap& map, const CutLoops& loops, int v0, int v1, i
   this->Bits.resize(this->Stride * (v1 - v0));
   const RayIntervals& intervals = map.source().intervals;
   const int groups = (v1 - v0 + TileHeight - 1) / TileHeight;
-  this->Extremes.resize(intervals.empty() ? 0 : std::size_t(groups) * this->Tiles);
+  this->Extremes.resize(intervals.empty() ? 0 : std::size_t(groups) * 4 * this->Tiles);
   for (int g = 0; g < groups && !intervals.empty(); ++g)
   {
     const int v = v0 + g * TileHeight;
     loops.tileExtremes(intervals.first(v), intervals.last(v), width, std::min(TileHeight, v1 - v),
-      width, &this->Extremes[std::size_t(g) * this->Tiles]);
+      width, this->extremesOf(g));
   }
 }
 
-Span BandCuts::findBits(const Span& slices, int group, unsigned char* flags)
+TileExtremes BandCuts::extremesOf(int group)
+{
+  std::int16_t* const first = &this->Extremes[std::size_t(group) * 4 * this->Tiles];
+  return { first, first + this->Tiles, first + 2 * this->Tiles, first + 3 * this->Tiles };
+}
+
+SliceBits BandCuts::findBits(const Span& slices, int group, unsigned char* flags)
 {
   this->findShares(slices, group);
-  const int v0 = this->V0 + group * TileHeight, v1 = std::min(v0 + TileHeight, this->V1);
-  Span hull;
-  unsigned char* const rows = this->Bits.data() + (v0 - this->V0) * this->Stride;
-  for (int t = 0, end = 0; t < this->Tiles; t = end)
+  unsigned char least = All, greatest = None;
+  for (int t = 0; t < this->Tiles; ++t)
   {
-    // Tiles of the same kind side by side.
-    const unsigned char share = flags[t] ? this->Shares[t] : static_cast<unsigned char>(None);
-    for (end = t + 1; end < this->Tiles &&
-         (flags[end] ? this->Shares[end] : static_cast<unsigned char>(None)) == share;
-         ++end)
+    this->Shares[t] = flags[t] ? this->Shares[t] : static_cast<unsigned char>(None);
+    flags[t] = this->Shares[t] != None;
+    least = std::min(least, this->Shares[t]);
+    greatest = std::max(greatest, this->Shares[t]);
+  }
+  if (least == All || greatest == None)
+  {
+    return {};
+  }
+  const int v0 = this->V0 + group * TileHeight, v1 = std::min(v0 + TileHeight, this->V1);
+  unsigned char* const rows = this->Bits.data() + (v0 - this->V0) * this->Stride;
+  for (int t = 0; t < this->Tiles; ++t)
+  {
+    const std::uint64_t bits = this->Shares[t] == None ? 0 : ~std::uint64_t(0);
+    static_assert(sizeof(bits) == TileWidth);
+    std::memcpy(rows + t * TileWidth, &bits, sizeof(bits));
+  }
+  for (int v = v0 + 1; v < v1; ++v)
+  {
+    std::memcpy(rows + (v - v0) * this->Stride, rows, this->Stride);
+  }
+  for (int t = 0; t < this->Tiles; ++t)
+  {
+    const Span pixels{ t * TileWidth, std::min((t + 1) * TileWidth, this->Width) };
+    for (int v = v0; v < v1 && this->Shares[t] == Some; ++v)
     {
-    }
-    const Span pixels{ t * TileWidth, std::min(end * TileWidth, this->Width) };
-    std::fill(flags + t, flags + end, static_cast<unsigned char>(share != None));
-    hull = share == None ? hull : Span{ hull.empty() ? pixels.begin : hull.begin, pixels.end };
-    for (int v = v0; v < v1; ++v)
-    {
-      unsigned char* const bits = rows + (v - v0) * this->Stride + pixels.begin;
-      if (share == Some)
-      {
-        this->findSome(slices, v, pixels, bits);
-      }
-      else
-      {
-        std::fill_n(
-          bits, pixels.end - pixels.begin, static_cast<unsigned char>(share == None ? 0 : 0xff));
-      }
+      this->findSome(slices, v, pixels, rows + (v - v0) * this->Stride + pixels.begin);
     }
   }
-  return hull;
+  return { this->Bits.data() - this->V0 * this->Stride, this->Stride };
 }
 
 void BandCuts::findSome(const Span& slices, int v, const Span& pixels, unsigned char* bits) const
@@ -150,14 +161,8 @@ void BandCuts::findShares(const Span& slices, int group)
   }
   else
   {
-    const TileExtremes* const tiles = &this->Extremes[std::size_t(group) * this->Tiles];
-    for (int t = 0; t < this->Tiles; ++t)
-    {
-      const TileExtremes& e = tiles[t];
-      const bool any = slices.end > e.leastFirst && slices.begin <= e.greatestLast;
-      const bool all = slices.begin >= e.greatestFirst && slices.end - 1 <= e.leastLast;
-      this->Shares[t] = static_cast<unsigned char>(all ? All : any ? Some : None);
-    }
+    this->Loops->tileShares(
+      this->extremesOf(group), slices.begin, slices.end, this->Shares.data(), this->Tiles);
   }
   if (this->Map->crops())
   {

@@ -55,6 +55,14 @@ struct SliceBits
   const unsigned char* at(int u, int v) const { return this->origin + v * this->stride + u; }
 };
 
+/// Some rows of pixels, the runs of pixels in them, and their bits if not all samples count.
+struct RowRuns
+{
+  int v0 = 0, v1 = 0;
+  std::vector<Span> runs;
+  SliceBits bits;
+};
+
 /// The cuts of a band of rows, tile by tile, in groups of TileHeight rows. A thread's work space.
 class BandCuts
 {
@@ -63,13 +71,9 @@ public:
 
   /**
    * Finds the bits of a group's rows for the slices of a layer. Tiles without a flag, and those of
-   * which nothing counts, which lose theirs, get no bits.
-   *
-   * @return the pixels from the first to the last tile with a flag
+   * which nothing counts, which lose theirs, get no bits. If everything counts there are none.
    */
-  Span findBits(const Span& slices, int group, unsigned char* flags);
-  /// Of all groups whose bits have been found.
-  SliceBits bits() const { return { this->Bits.data() - this->V0 * this->Stride, this->Stride }; }
+  SliceBits findBits(const Span& slices, int group, unsigned char* flags);
 
 private:
   /// How much of a tile's samples counts.
@@ -79,6 +83,7 @@ private:
     Some,
     All
   };
+  TileExtremes extremesOf(int group);
   void findShares(const Span& slices, int group);
   void cropShares(const Span& slices, int v0, int v1);
   void findSome(const Span& slices, int v, const Span& pixels, unsigned char* bits) const;
@@ -87,7 +92,7 @@ private:
   const CutLoops* Loops = nullptr;
   int V0 = 0, V1 = 0, Width = 0, Tiles = 0;
   std::ptrdiff_t Stride = 0;
-  std::vector<TileExtremes> Extremes;
+  std::vector<std::int16_t> Extremes; // four arrays of them for each group
   std::vector<unsigned char> Shares, Any, Bits;
 };
 }

@@ -78,8 +78,18 @@ public:
 
   void find(int v, int width, unsigned char* mask)
   {
-    this->Source.cropping.cuts() ? this->fromSlices(v, width, mask)
-                                 : this->fromIntervals(v, width, mask);
+    if (!this->Source.cropping.cuts())
+    {
+      this->fromIntervals(v, width, mask);
+    }
+    else if (this->Source.intervals.empty())
+    {
+      this->fromRegions(v, mask);
+    }
+    else
+    {
+      this->fromSlices(v, width, mask);
+    }
   }
 
 private:
@@ -93,6 +103,38 @@ private:
     for (int u = 0; u < width; ++u)
     {
       mask[u] = std::max(first[u], this->First[u]) <= std::min(last[u], this->Last[u]);
+    }
+  }
+
+  /// The pixels of a region move by a pixel or two from slice to slice, so that those of
+  /// consecutive slices make one span.
+  void fromRegions(int v, unsigned char* mask)
+  {
+    const Span range = slicesOf(this->Crossed, v, v + 1);
+    const auto mark = [&](const Span& pixels)
+    {
+      std::fill(mask + pixels.begin, mask + std::max(pixels.begin, pixels.end),
+        static_cast<unsigned char>(1));
+    };
+    for (int i = 0; i < 3; ++i)
+    {
+      Span all;
+      for (int k = range.begin; k < range.end; ++k)
+      {
+        const SliceRegions& regions = this->Map.regions(k);
+        const bool shown = regions.regionsOfRow(v) >> i & 1u;
+        const Span own = shown ? common(regions.pixels(i), this->Crossed[k].span(v)) : Span{};
+        if (all.empty() || own.empty() || common(all, own).empty())
+        {
+          mark(all);
+          all = own;
+        }
+        else
+        {
+          extend(all, own);
+        }
+      }
+      mark(all);
     }
   }
 

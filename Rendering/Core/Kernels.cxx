@@ -410,7 +410,7 @@ inline void addPart(
 }
 
 /// Rows x V registers of pixels, from (x, y) of the rectangle.
-template <class A, int Rows, int V>
+template <class A, int Rows, int V, bool Cut>
 inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
 {
   Pack<A> sum[Rows][V];
@@ -454,7 +454,7 @@ inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
     {
       A* const pixels = s.image + (y + o) * s.imageStride + x + v * width<A>;
       const Pack<A> before = load<A>(pixels);
-      if (s.bits)
+      if constexpr (Cut)
       {
         const Pack<Integer<A>> bits =
           loadBits<A>(s.bits + (y + o) * s.bitsStride + x + v * width<A>);
@@ -465,10 +465,10 @@ inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
   }
 }
 
-template <class A>
+template <class A, bool Cut>
 inline void splatPixel(const Splat<A>& s, std::ptrdiff_t x, int y)
 {
-  if (s.bits && !(s.bits[y * s.bitsStride + x] & s.bit))
+  if (Cut && !(s.bits[y * s.bitsStride + x] & s.bit))
   {
     return;
   }
@@ -488,7 +488,7 @@ inline void splatPixel(const Splat<A>& s, std::ptrdiff_t x, int y)
   pixel = larger(sum, pixel);
 }
 
-template <class A, int Rows>
+template <class A, int Rows, bool Cut>
 struct SplatBlock
 {
   const Splat<A>& splat;
@@ -504,20 +504,20 @@ struct SplatBlock
     }
     else
     {
-      splatTile<A, Rows, V>(this->splat, x, this->y);
+      splatTile<A, Rows, V, Cut>(this->splat, x, this->y);
     }
   }
 };
 
-template <class A, int Rows>
+template <class A, int Rows, bool Cut>
 inline void splatStrip(const Splat<A>& s, int y)
 {
-  blocks<A>(s.width, SplatBlock<A, Rows>{ s, y },
+  blocks<A>(s.width, SplatBlock<A, Rows, Cut>{ s, y },
     [&](std::ptrdiff_t x)
     {
       for (int o = 0; o < Rows; ++o)
       {
-        splatPixel(s, x, y + o);
+        splatPixel<A, Cut>(s, x, y + o);
       }
     });
 }
@@ -528,11 +528,11 @@ void splat(const Splat<A>& s)
   int y = 0;
   for (; y + 4 <= s.height; y += 4)
   {
-    splatStrip<A, 4>(s, y);
+    s.bits ? splatStrip<A, 4, true>(s, y) : splatStrip<A, 4, false>(s, y);
   }
   for (; y < s.height; ++y)
   {
-    splatStrip<A, 1>(s, y);
+    s.bits ? splatStrip<A, 1, true>(s, y) : splatStrip<A, 1, false>(s, y);
   }
 }
 
@@ -599,7 +599,7 @@ void sliceBits(const std::int16_t* __restrict first, const std::int16_t* __restr
 }
 
 void tileExtremes(const std::int16_t* first, const std::int16_t* last, std::ptrdiff_t stride,
-  int rows, std::ptrdiff_t n, TileExtremes* __restrict tiles)
+  int rows, std::ptrdiff_t n, const TileExtremes& out)
 {
   constexpr std::ptrdiff_t chunk = 64 * TileWidth;
   for (std::ptrdiff_t begin = 0; begin < n; begin += chunk)
@@ -625,17 +625,39 @@ void tileExtremes(const std::int16_t* first, const std::int16_t* last, std::ptrd
     }
     for (std::ptrdiff_t x = 0; x < count; x += TileWidth)
     {
+      const std::ptrdiff_t t = (begin + x) / TileWidth;
       const std::ptrdiff_t end = x + TileWidth < count ? x + TileWidth : count;
-      TileExtremes tile{ low0[x], high0[x], low1[x], high1[x] };
+      std::int16_t a = low0[x], b = high0[x], c = low1[x], d = high1[x];
       for (std::ptrdiff_t y = x + 1; y < end; ++y)
       {
-        tile.leastFirst = smaller(low0[y], tile.leastFirst);
-        tile.greatestFirst = larger(high0[y], tile.greatestFirst);
-        tile.leastLast = smaller(low1[y], tile.leastLast);
-        tile.greatestLast = larger(high1[y], tile.greatestLast);
+        a = smaller(low0[y], a);
+        b = larger(high0[y], b);
+        c = smaller(low1[y], c);
+        d = larger(high1[y], d);
       }
-      tiles[(begin + x) / TileWidth] = tile;
+      out.leastFirst[t] = a;
+      out.greatestFirst[t] = b;
+      out.leastLast[t] = c;
+      out.greatestLast[t] = d;
     }
+  }
+}
+
+void tileShares(
+  const TileExtremes& tiles, int begin, int end, unsigned char* __restrict shares, std::ptrdiff_t n)
+{
+  const std::int16_t* __restrict const leastFirst = tiles.leastFirst;
+  const std::int16_t* __restrict const greatestFirst = tiles.greatestFirst;
+  const std::int16_t* __restrict const leastLast = tiles.leastLast;
+  const std::int16_t* __restrict const greatestLast = tiles.greatestLast;
+  const std::int16_t first = static_cast<std::int16_t>(begin);
+  const std::int16_t last = static_cast<std::int16_t>(end - 1);
+  for (std::ptrdiff_t t = 0; t < n; ++t)
+  {
+    const bool any = (last >= leastFirst[t]) & (first <= greatestLast[t]);
+    const bool all = (first >= greatestFirst[t]) & (last <= leastLast[t]);
+    shares[t] = static_cast<unsigned char>(
+      static_cast<unsigned char>(any) + static_cast<unsigned char>(any & all));
   }
 }
 
@@ -821,14 +843,14 @@ constexpr WorksheetLoops<A> worksheetLoops{ &splat<A>, &splatValid<A>,
 }
 
 extern const Kernels SPLATTING_KERNELS;
-const Kernels SPLATTING_KERNELS = { { &sliceBits, &tileExtremes }, voxelLoops<std::int8_t>,
-  voxelLoops<std::uint8_t>, voxelLoops<std::int16_t>, voxelLoops<std::uint16_t>,
-  voxelLoops<std::int32_t>, voxelLoops<std::uint32_t>, voxelLoops<std::int64_t>,
-  voxelLoops<std::uint64_t>, voxelLoops<float>, voxelLoops<double>, tileLoops<std::int8_t>,
-  tileLoops<std::uint8_t>, tileLoops<std::int16_t>, tileLoops<std::uint16_t>,
-  tileLoops<std::int32_t>, tileLoops<std::uint32_t>, tileLoops<std::int64_t>,
-  tileLoops<std::uint64_t>, tileLoops<float>, tileLoops<double>, rayLoops<std::int8_t>,
-  rayLoops<std::uint8_t>, rayLoops<std::int16_t>, rayLoops<std::uint16_t>, rayLoops<std::int32_t>,
-  rayLoops<std::uint32_t>, rayLoops<std::int64_t>, rayLoops<std::uint64_t>, rayLoops<float>,
-  rayLoops<double>, worksheetLoops<float>, worksheetLoops<double> };
+const Kernels SPLATTING_KERNELS = { { &sliceBits, &tileExtremes, &tileShares },
+  voxelLoops<std::int8_t>, voxelLoops<std::uint8_t>, voxelLoops<std::int16_t>,
+  voxelLoops<std::uint16_t>, voxelLoops<std::int32_t>, voxelLoops<std::uint32_t>,
+  voxelLoops<std::int64_t>, voxelLoops<std::uint64_t>, voxelLoops<float>, voxelLoops<double>,
+  tileLoops<std::int8_t>, tileLoops<std::uint8_t>, tileLoops<std::int16_t>,
+  tileLoops<std::uint16_t>, tileLoops<std::int32_t>, tileLoops<std::uint32_t>,
+  tileLoops<std::int64_t>, tileLoops<std::uint64_t>, tileLoops<float>, tileLoops<double>,
+  rayLoops<std::int8_t>, rayLoops<std::uint8_t>, rayLoops<std::int16_t>, rayLoops<std::uint16_t>,
+  rayLoops<std::int32_t>, rayLoops<std::uint32_t>, rayLoops<std::int64_t>, rayLoops<std::uint64_t>,
+  rayLoops<float>, rayLoops<double>, worksheetLoops<float>, worksheetLoops<double> };
 }

@@ -158,10 +158,10 @@ struct Splat
   unsigned char bit;
 };
 
-/// The least and greatest first and last slices that the rays of a tile are cut to.
+/// The least and greatest first and last slices that the rays of tiles are cut to.
 struct TileExtremes
 {
-  std::int16_t leastFirst, greatestFirst, leastLast, greatestLast;
+  std::int16_t *leastFirst, *greatestFirst, *leastLast, *greatestLast; ///< arrays
 };
 
 /// Loops over the slices that rays are cut to.
@@ -172,7 +172,10 @@ struct CutLoops
     unsigned char* bits, std::ptrdiff_t n);
   /// The extremes of all tiles of some rows of n pixels.
   void (*tileExtremes)(const std::int16_t* first, const std::int16_t* last, std::ptrdiff_t stride,
-    int rows, std::ptrdiff_t n, TileExtremes* tiles);
+    int rows, std::ptrdiff_t n, const TileExtremes& tiles);
+  /// How much of tiles counts in slices [begin, end): 0 none, 1 some, 2 all.
+  void (*tileShares)(
+    const TileExtremes& tiles, int begin, int end, unsigned char* shares, std::ptrdiff_t n);
 };
 
 /// Loops over worksheets and images of type A (float or double).

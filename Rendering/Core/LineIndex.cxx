@@ -199,9 +199,10 @@ private:
       {
         append(slice);
       }
-      if (progress)
+      if (progress && !progress(double(std::min(k + chunk, this->Size.z)) / this->Size.z))
       {
-        progress(double(std::min(k + chunk, this->Size.z)) / this->Size.z);
+        this->Index.Made = false;
+        return;
       }
     }
   }

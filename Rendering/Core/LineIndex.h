@@ -113,8 +113,9 @@ public:
   /// Voxels along each axis of a volume that sorted orders can hold.
   static constexpr int MostSorted = 1 << 16;
 
-  /// Told how much is done, from 0 to 1, by the thread that builds.
-  using Progress = std::function<void(double)>;
+  /// Told how much is done, from 0 to 1, by the thread that builds; returns whether to go on. An
+  /// index that was given up holds no encoding.
+  using Progress = std::function<bool(double)>;
 
   LineIndex() = default;
   LineIndex(ScalarType type, const Slices& slices, const glm::ivec3& size,

@@ -38,6 +38,8 @@ public:
   using Pixel = T;
   /// How many slices beyond its own a layer reads.
   static constexpr int Beyond = 0;
+  /// Rows that cut layers are walked for at a time.
+  static constexpr int RowsTogether = 32;
   /// Pixels whose multiples runs had best begin and end at.
   static constexpr int RunUnit = TileWidth;
 
@@ -76,10 +78,21 @@ public:
 
   /// The same for all layers of some rows; to be opened once.
   void open(int, int, const Span&, Patch&) const {}
-  void splatOpened(
-    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  void splatOpened(int z, const std::vector<RowRuns>& rows, int count, Patch& patch) const
   {
-    this->splat(z, v0, v1, runs, bits, patch);
+    for (int r = 0, end = 0; r < count; r = end)
+    {
+      // Rows without cuts go together.
+      for (end = r + 1; end < count && !rows[r].bits.origin && !rows[end].bits.origin &&
+           rows[r].runs.empty() == rows[end].runs.empty();
+           ++end)
+      {
+      }
+      if (!rows[r].runs.empty())
+      {
+        this->splat(z, rows[r].v0, rows[end - 1].v1, rows[r].runs, rows[r].bits, patch);
+      }
+    }
   }
 
   /// Calls f(step, v, pixels, samples) for all samples of some slices and of pixels in some rows

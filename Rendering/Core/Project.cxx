@@ -25,17 +25,21 @@ int bandHeight(int rows)
 }
 
 template <class Body>
-void forBands(int height, int rows, Body&& body)
+void forBands(int height, int rows, Watch& watch, Body&& body)
 {
-  vtkSMPTools::For(0, (height + rows - 1) / rows, 1,
+  const int bands = (height + rows - 1) / rows;
+  watch.begin(bands);
+  vtkSMPTools::For(0, bands, 1,
     [&](vtkIdType first, vtkIdType last)
     {
-      for (vtkIdType b = first; b < last; ++b)
+      for (vtkIdType b = first; b < last && !watch.stopped(); ++b)
       {
         const int v0 = static_cast<int>(b) * rows;
         body(v0, std::min(v0 + rows, height));
+        watch.bandDone();
       }
     });
+  watch.ask();
 }
 
 /// The chains that a projection needs.
@@ -143,10 +147,11 @@ void Projector::forSlices(
     return;
   }
   const int chunks = (depth + ChunkDepth - 1) / ChunkDepth;
-  for (int c = 0; c < chunks; ++c)
+  for (int c = 0; c < chunks && !this->stopped(); ++c)
   {
     const int first = (reversed ? chunks - 1 - c : c) * ChunkDepth;
     const Span slices{ first, std::min(first + ChunkDepth, depth) };
+    this->Observer.setPart(double(c) / chunks, double(c + 1) / chunks);
     frame.slices = index.someSlices(std::max(slices.begin - beyond, 0),
       std::min(slices.end + beyond, depth), this->Memory->chunk);
     body(slices, c == 0, c == chunks - 1);
@@ -163,7 +168,7 @@ void Projector::walk(
   this->forSlices(index, frame, Layers::Beyond, false,
     [&](const Span& slices, bool isFirst, bool isLast)
     {
-      forBands(frame.image.height, bandHeight(frame.image.height),
+      forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
         [&](int v0, int v1)
         {
           if (isFirst)
@@ -206,7 +211,7 @@ void Projector::walkRays(
   this->forSlices(index, frame, Layers::Beyond, frame.geometry.reversed(),
     [&](const Span& slices, bool isFirst, bool isLast)
     {
-      forBands(frame.image.height, bandHeight(frame.image.height),
+      forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
         [&](int v0, int v1)
         {
           if (isFirst)
@@ -232,7 +237,7 @@ void Projector::previewLines(const Frame<T>& frame, const LineIndex& lines)
   const int height = frame.image.height, threads = vtkSMPTools::GetEstimatedNumberOfThreads();
   const int rows = lines.encoding().order == LineOrder::Lines ? bandHeight(height)
                                                               : (height + threads - 1) / threads;
-  forBands(height, rows,
+  forBands(height, rows, this->Observer,
     [&](int v0, int v1)
     {
       openRows<T>(frame.image, previewFloor(frame), v0, v1);
@@ -249,7 +254,7 @@ void Projector::splatLines(const Frame<T>& frame, const LineIndex& lines, bool s
     std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints),
     std::get<WorksheetReach<A>>(this->Memory->reach), standard ? 0 : 1, lines);
   const Span slices{ 0, frame.geometry.size().z };
-  forBands(frame.image.height, bandHeight(frame.image.height),
+  forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
     [&](int v0, int v1)
     {
       openRows<A>(frame.image, worksheets.floor(), v0, v1);
@@ -293,8 +298,11 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
     }
     TileCount count;
     this->walk(index, frame, layers, used, count);
-    learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality)),
-      used, count);
+    if (!this->stopped())
+    {
+      learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality)),
+        used, count);
+    }
   };
   if (preview)
   {
@@ -365,10 +373,17 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   {
     return Acceleration::Dense;
   }
-  if (wanted >= Acceleration::Lines && cuts.none())
+  if (wanted >= Acceleration::Lines && cuts.none() && !this->stopped())
   {
-    lines =
-      index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()), this->Progress);
+    lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),
+      [this](double share)
+      {
+        if (this->Progress)
+        {
+          this->Progress(share);
+        }
+        return this->Observer.ask();
+      });
     return lines ? wanted : Acceleration::Dense;
   }
   return wanted != Acceleration::Dense && index.hasBricks() ? Acceleration::Bricks
@@ -379,6 +394,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image)
 {
   Scratch& memory = *this->Memory;
+  this->Observer.start();
   image.winners.clear();
   memory.cuts.reset(cuts, geometry);
   findSlices(geometry, memory.slices);

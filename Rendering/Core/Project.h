@@ -11,6 +11,7 @@
 #include "Kernels.h"
 #include "ShearImage.h"
 #include "VolumeIndex.h"
+#include "Watch.h"
 
 #include <limits>
 #include <memory>
@@ -113,7 +114,8 @@ public:
   ~Projector();
 
   /**
-   * @return what has been used: never Auto, and Dense where there is no memory for what was asked
+   * @return what has been used: never Auto, and Dense where there is no memory for what was asked.
+   *         If stopped() the image is none.
    */
   Acceleration project(VolumeIndex& index, const ShearWarp& geometry,
     const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image);
@@ -128,7 +130,11 @@ public:
     const ShearImage& projected, ShearImage& image);
 
   /// Called with the share that is done, 0 to 1, while chains are made.
-  void setProgress(const LineIndex::Progress& progress) { this->Progress = progress; }
+  void setProgress(const std::function<void(double)>& progress) { this->Progress = progress; }
+  /// Asked by the thread that called project() whether to go on; while chains are made, with 0.
+  void setWatch(const Watch::Callback& callback) { this->Observer.setCallback(callback); }
+  /// Whether the last projection was given up.
+  bool stopped() const { return this->Observer.stopped(); }
 
 private:
   Acceleration possible(Acceleration wanted, VolumeIndex& index, const ProjectionSettings& settings,
@@ -154,7 +160,8 @@ private:
 
   struct Scratch;
   std::unique_ptr<Scratch> Memory;
-  LineIndex::Progress Progress;
+  std::function<void(double)> Progress;
+  Watch Observer;
 };
 }
 

@@ -352,6 +352,11 @@ const LineIndex* VolumeIndex::lines(
     this->Copy.reset();
     this->CopySize = 0;
   }
+  if (!lines.holds(encoding))
+  {
+    lines = {};
+    return nullptr;
+  }
   if (this->memorySize() > this->Budget)
   {
     lines = {};

@@ -114,9 +114,9 @@ public:
   const BrickMaxima& bricks(int principalAxis);
 
   /**
-   * The chains along an axis, or nullptr if the budget has no room for them. Made on first use and
-   * again when the encoding changes; those of rows with all voxels are kept beside others. Not for
-   * volumes with NaN or infinities.
+   * The chains along an axis, or nullptr if the budget has no room for them or if `progress` gave
+   * them up. Made on first use and again when the encoding changes; those of rows with all voxels
+   * are kept beside others. Not for volumes with NaN or infinities.
    */
   const LineIndex* lines(
     int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress = {});

@@ -75,6 +75,8 @@ public:
   using Pixel = A;
   /// How many slices beyond its own a layer reads.
   static constexpr int Beyond = 1;
+  /// Rows that cut layers are walked for at a time: those of a piece.
+  static constexpr int RowsTogether = 16;
   /// Pixels whose multiples runs had best begin and end at: the widest registers hold two tiles,
   /// and take no longer for both than for one.
   static constexpr int RunUnit = 2 * TileWidth;
@@ -129,13 +131,18 @@ public:
     patch.rows = { v0, v1 };
     patch.pixels = columns;
   }
-  void splatOpened(
-    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  void splatOpened(int z, const std::vector<RowRuns>& rows, int count, Patch& patch) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
-    for (const Span& run : runs)
+    for (int k = slices.begin; k < slices.end; ++k)
     {
-      this->splatPiece(slices, v0, v1, run, bits, patch);
+      for (int r = 0; r < count; ++r)
+      {
+        for (const Span& run : rows[r].runs)
+        {
+          this->splatPiece({ k, k + 1 }, rows[r].v0, rows[r].v1, run, rows[r].bits, patch);
+        }
+      }
     }
   }
 
@@ -237,7 +244,7 @@ private:
   template <class F>
   static void forPieces(int v0, int v1, const Span& columns, F&& f)
   {
-    constexpr int width = 1024, height = 16;
+    constexpr int width = 1024, height = RowsTogether;
     for (int v = v0; v < v1; v += height)
     {
       for (int u = columns.begin; u < columns.end; u += width)

@@ -201,6 +201,42 @@ void MeasureFrames(benchmark::State& state, const BenchmarkVolume& volume, int w
 }
 
 //------------------------------------------------------------------------------
+void MeasureRecoloring(benchmark::State& state, const BenchmarkVolume& volume, int window,
+  const BenchmarkMapper& mapper, const BenchmarkRotation& rotation)
+{
+  vtkImageData* image = LoadOrFail(state, volume);
+  if (!image)
+  {
+    return;
+  }
+  BenchmarkStage& stage = BenchmarkStage::GetInstance();
+  stage.SetSize(window);
+  stage.SetMapper(mapper, image);
+  auto* splatting = vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper());
+  ShowEachAxis();
+  const vtkIdType before = splatting->GetNumberOfProjections();
+  ViewTimes times(rotation.Views);
+  std::vector<double> turns;
+  vtkIdType frame = 0;
+  for (auto _ : state)
+  {
+    stage.LookFrom(times.GetView(frame));
+    turns.push_back(1e3 * stage.MeasureFrame());
+    stage.SetWhite(frame % 2 ? 1.0 : 0.8);
+    const double seconds = stage.MeasureFrame();
+    state.SetIterationTime(seconds);
+    times.Add(frame++, seconds);
+  }
+  times.Report(state);
+  state.counters["share"] = state.counters["median_ms"] / Median(turns);
+  if (const char* fault = FindFault(splatting, before + frame))
+  {
+    Fail(state, fault);
+  }
+  stage.Clear();
+}
+
+//------------------------------------------------------------------------------
 void MeasureProjections(benchmark::State& state, const BenchmarkVolume& volume,
   const BenchmarkMapper& mapper, const BenchmarkRotation& rotation)
 {

@@ -32,6 +32,14 @@ void MeasureFrames(benchmark::State& state, const BenchmarkVolume& volume, int w
   const BenchmarkMapper& mapper, const BenchmarkRotation& rotation);
 
 /**
+ * Frames of a view that is shown already, after a change of window and level, for the splatting
+ * mapper: no voxel is projected. Counters median_ms, worst_ms and views as above; share, the median
+ * divided by that of the frames that showed the views first, in the same run.
+ */
+void MeasureRecoloring(benchmark::State& state, const BenchmarkVolume& volume, int window,
+  const BenchmarkMapper& mapper, const BenchmarkRotation& rotation);
+
+/**
  * GetProjectionTime() of the splatting mapper. Counters median_ms, worst_ms and views as above;
  * what is made once per volume is made before.
  */

@@ -177,14 +177,10 @@ void BenchmarkStage::SetSize(int pixels)
 void BenchmarkStage::SetMapper(const BenchmarkMapper& kind, vtkImageData* image)
 {
   this->Clear();
-  double range[2];
-  image->GetScalarRange(range);
-  vtkNew<vtkColorTransferFunction> gray;
-  gray->AddRGBPoint(range[0], 0.0, 0.0, 0.0);
-  gray->AddRGBPoint(range[1], 1.0, 1.0, 1.0);
+  image->GetScalarRange(this->Range);
+  this->SetWhite(1.0);
   vtkNew<vtkPiecewiseFunction> opaque;
-  opaque->AddPoint(range[0], 1.0);
-  this->Property->SetColor(gray);
+  opaque->AddPoint(this->Range[0], 1.0);
   this->Property->SetScalarOpacity(opaque);
   this->Property->SetInterpolationType(kind.Interpolation);
   image->GetPointData()->GetScalars()->Modified();
@@ -229,6 +225,15 @@ void BenchmarkStage::LookFrom(int view)
   camera->SetViewUp(turn->TransformDoubleVector(0.0, 1.0, 0.0));
   this->Renderer->ResetCamera(bounds); // a sphere around the volume fits ...
   camera->Zoom(1.5);                   // ... and now the volume fills the window
+}
+
+//------------------------------------------------------------------------------
+void BenchmarkStage::SetWhite(double share)
+{
+  vtkNew<vtkColorTransferFunction> gray;
+  gray->AddRGBPoint(this->Range[0], 0.0, 0.0, 0.0);
+  gray->AddRGBPoint(this->Range[0] + share * (this->Range[1] - this->Range[0]), 1.0, 1.0, 1.0);
+  this->Property->SetColor(gray);
 }
 
 //------------------------------------------------------------------------------

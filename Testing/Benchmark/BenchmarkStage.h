@@ -98,6 +98,12 @@ public:
   void LookFrom(int view);
 
   /**
+   * Another window and level: white from this share of the range of scalars on. A fresh mapper has
+   * 1.
+   */
+  void SetWhite(double share);
+
+  /**
    * Draws, and reads the picture back. Seconds.
    */
   double MeasureFrame();
@@ -115,6 +121,7 @@ public:
 private:
   BenchmarkStage();
 
+  double Range[2] = { 0.0, 1.0 }; // of the image's scalars
   vtkNew<vtkVolumeProperty> Property;
   vtkNew<vtkVolume> Prop;
   vtkNew<vtkRenderer> Renderer;

@@ -198,6 +198,25 @@ void SummaryReporter::PrintFrames(std::ostream& os) const
 }
 
 //------------------------------------------------------------------------------
+void SummaryReporter::PrintRecolorings(std::ostream& os) const
+{
+  MarkdownTable table(
+    { "volume", "window", "mode", "views", "median ms", "worst ms", "it / turned" }, 3);
+  for (const Result& result : this->Results)
+  {
+    if (result.Name[0] == "recolor")
+    {
+      table.Add({ result.Name[1], result.Name[2], result.Name[3], Format(Get(&result, "views"), 0),
+        Format(Get(&result, "median_ms"), 2), Format(Get(&result, "worst_ms"), 2),
+        Format(Get(&result, "share"), 2, "x") });
+    }
+  }
+  os << "\nWhole frames after a change of window and level: the shear image is used again. Turned: "
+        "frames that\nshow another view.\n\n";
+  table.Print(os);
+}
+
+//------------------------------------------------------------------------------
 void SummaryReporter::PrintProjections(std::ostream& os) const
 {
   MarkdownTable table({ "volume", "mode", "views", "median ms", "worst ms", "floor ms",
@@ -266,6 +285,10 @@ void SummaryReporter::PrintSummary(
   if (has("frame"))
   {
     this->PrintFrames(os);
+  }
+  if (has("recolor"))
+  {
+    this->PrintRecolorings(os);
   }
   if (has("projection"))
   {

@@ -44,6 +44,7 @@ private:
   const Result* Find(const std::vector<std::string>& name) const;
   static double Get(const Result* result, const std::string& counter);
   void PrintFrames(std::ostream& os) const;
+  void PrintRecolorings(std::ostream& os) const;
   void PrintProjections(std::ostream& os) const;
   void PrintIndexes(std::ostream& os) const;
 

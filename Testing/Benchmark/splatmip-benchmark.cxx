@@ -40,6 +40,7 @@ void PrintHelp()
     R"(splatmip-benchmark: maximum intensity projections by splatting beside VTK's ray casters
 
   frame/VOLUME/WINDOW/MAPPER  a whole frame, render and read-back
+  recolor/VOLUME/WINDOW/MODE  a whole frame of a view that is shown already, in another window/level
   projection/VOLUME/MODE[-ACCELERATION]  the projection alone, volume to shear image
   first/VOLUME/MODE[-ACCELERATION]       the slowest of the first frames along the three axes, 300^2
   index/VOLUME                making the bricks: one survey of the voxels
@@ -162,6 +163,14 @@ void RegisterFrames(const BenchmarkVolume& volume, int window, bool isQuick)
       Register("frame/" + volume.Name + "/" + std::to_string(window) + "/" + mapper.Name,
         rotation.Views * rotation.Passes,
         [=](benchmark::State& state) { MeasureFrames(state, volume, window, mapper, rotation); });
+    }
+    if (mapper.Kind == BenchmarkMapper::SPLATTING)
+    {
+      const BenchmarkRotation rotation = { isQuick ? 4 : 9, 1 };
+      Register("recolor/" + volume.Name + "/" + std::to_string(window) + "/" + mapper.Name,
+        rotation.Views * rotation.Passes,
+        [=](benchmark::State& state)
+        { MeasureRecoloring(state, volume, window, mapper, rotation); });
     }
   }
 }

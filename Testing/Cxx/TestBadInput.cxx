@@ -11,13 +11,16 @@
 #include "vtkBitArray.h"
 #include "vtkCamera.h"
 #include "vtkCellData.h"
+#include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
+#include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkImageData.h"
 #include "vtkMath.h"
+#include "vtkMatrix4x4.h"
 #include "vtkMultiVolume.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
@@ -33,7 +36,9 @@
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
+#include <cmath>
 #include <functional>
+#include <limits>
 
 namespace
 {
@@ -84,6 +89,9 @@ struct Scene
     this->stage.property->IndependentComponentsOn();
     this->stage.volume->SetScale(1.0, 1.0, 1.0);
     this->stage.volume->SetUserMatrix(nullptr);
+    this->stage.volume->SetPosition(0.0, 0.0, 0.0);
+    this->mapper->SetFinalColorWindow(1.0f);
+    this->mapper->SetFinalColorLevel(0.5f);
   }
 };
 
@@ -350,21 +358,123 @@ void test(Scene& scene, const Fault& fault, stage::Checks& check)
   check(scene.stage.pixels() == before, name + ": once mended, the picture is as before.");
 }
 
-/// Such a camera hides the whole scene, so other props cannot tell.
-void testCameraWithoutExtent(Scene& scene, stage::Checks& check)
+std::vector<Fault> settingFaults()
+{
+  std::vector<Fault> faults;
+  const float infinity = std::numeric_limits<float>::infinity(), nan = std::nanf("");
+  for (float window : { 0.0f, -0.0f, 1e-45f, nan, infinity, -infinity })
+  {
+    faults.push_back({ "no window", "FinalColorWindow",
+      [window](Scene& s) { s.mapper->SetFinalColorWindow(window); } });
+  }
+  for (float level : { nan, infinity, -infinity })
+  {
+    faults.push_back({ "no level", "FinalColorLevel",
+      [level](Scene& s) { s.mapper->SetFinalColorLevel(level); } });
+  }
+  for (double element : { 0.0, vtkMath::Nan(), vtkMath::Inf() })
+  {
+    faults.push_back({ "user matrix", "singular",
+      [element](Scene& s)
+      {
+        vtkNew<vtkMatrix4x4> matrix;
+        matrix->SetElement(1, 1, element);
+        s.stage.volume->SetUserMatrix(matrix);
+      } });
+  }
+  faults.push_back({ "position that is not a number", "singular",
+    [](Scene& s) { s.stage.volume->SetPosition(0.0, vtkMath::Nan(), 0.0); } });
+  return faults;
+}
+
+/// Such cameras hide the whole scene, so other props cannot tell.
+void testCameras(Scene& scene, stage::Checks& check)
+{
+  const std::pair<const char*, std::function<void(vtkCamera*)>> faults[] = {
+    { "without extent", [](vtkCamera* camera) { camera->SetParallelScale(0.0); } },
+    { "with an extent that is not a number",
+      [](vtkCamera* camera) { camera->SetParallelScale(vtkMath::Nan()); } },
+    { "at no place", [](vtkCamera* camera) { camera->SetPosition(0.0, vtkMath::Nan(), 0.0); } },
+    { "at an infinite place",
+      [](vtkCamera* camera) { camera->SetPosition(0.0, vtkMath::Inf(), 0.0); } },
+    { "that looks at nothing",
+      [](vtkCamera* camera) { camera->SetFocalPoint(vtkMath::Nan(), 0.0, 0.0); } },
+    { "with a matrix of its own that is none",
+      [](vtkCamera* camera)
+      {
+        vtkNew<vtkMatrix4x4> matrix;
+        matrix->Zero();
+        camera->SetExplicitProjectionTransformMatrix(matrix);
+        camera->UseExplicitProjectionTransformMatrixOn();
+      } },
+  };
+  vtkCamera* const camera = scene.stage.renderer->GetActiveCamera();
+  vtkNew<vtkCamera> good;
+  good->DeepCopy(camera);
+  const stage::Pixels before = scene.stage.pixels();
+  for (const auto& [name, make] : faults)
+  {
+    const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
+    make(camera);
+    scene.stage.pixels();
+    scene.stage.pixels();
+    // Renderers leave props out whose bounds such cameras do not see.
+    scene.mapper->Render(scene.stage.renderer, scene.stage.volume);
+    check(errors.texts.size() == 1 && isSentence(errors.texts[0]) &&
+        errors.texts[0].find("camera") != std::string::npos,
+      std::string("A camera ") + name + " gives one sentence, not " +
+        std::to_string(errors.texts.size()) + ".");
+    camera->UseExplicitProjectionTransformMatrixOff();
+    camera->DeepCopy(good);
+    check(scene.stage.pixels() == before,
+      std::string("After a camera ") + name + " the picture is as before.");
+  }
+}
+
+/// The sphere has none.
+double meanRed(const stage::Pixels& pixels)
+{
+  double sum = 0.0;
+  for (std::size_t pixel = 0; pixel < pixels.size(); pixel += 3)
+  {
+    sum += pixels[pixel];
+  }
+  return 3.0 * sum / static_cast<double>(pixels.size());
+}
+
+/// What has no colours is not seen, as with VTK's ray casters; what has no property has VTK's.
+void testProperties(Scene& scene, stage::Checks& check)
 {
   const stage::Pixels before = scene.stage.pixels();
-  vtkCamera* const camera = scene.stage.renderer->GetActiveCamera();
-  const double scale = camera->GetParallelScale();
   const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
-  camera->SetParallelScale(0.0);
-  scene.stage.pixels();
-  scene.stage.pixels();
-  check(errors.texts.size() == 1 && isSentence(errors.texts[0]) &&
-      errors.texts[0].find("camera") != std::string::npos,
-    "A camera without extent gives one sentence.");
-  camera->SetParallelScale(scale);
-  check(scene.stage.pixels() == before, "Once the camera is mended, the picture is as before.");
+  const stage::Messages warnings(scene.mapper, vtkCommand::WarningEvent);
+  const auto caster = stage::fixedPointRayCaster(scene.image, 1.0);
+  const auto seenAsByRayCaster = [&](const std::string& name)
+  {
+    const stage::Pixels pixels = scene.stage.pixels();
+    scene.stage.volume->SetMapper(caster);
+    const stage::Pixels cast = scene.stage.pixels();
+    scene.stage.volume->SetMapper(scene.mapper);
+    const double ours = meanRed(pixels), theirs = meanRed(cast);
+    check(std::abs(ours - theirs) <= 0.5,
+      name + ": as bright as with VTK's ray caster, " + std::to_string(ours) + " and " +
+        std::to_string(theirs) + ".");
+  };
+  vtkNew<vtkVolumeProperty> property;
+  property->DeepCopy(scene.stage.property);
+  scene.stage.volume->SetProperty(property);
+  property->SetColor(vtkNew<vtkColorTransferFunction>());
+  seenAsByRayCaster("colours without points");
+  property->SetColor(vtkNew<vtkPiecewiseFunction>());
+  seenAsByRayCaster("greys without points");
+  property->SetScalarOpacity(vtkNew<vtkPiecewiseFunction>());
+  seenAsByRayCaster("opacity without points");
+  scene.stage.volume->SetProperty(nullptr);
+  seenAsByRayCaster("no property");
+  check(meanRed(scene.stage.pixels()) > 1.0, "What has no property has VTK's grey ramp.");
+  scene.stage.volume->SetProperty(scene.stage.property);
+  check(scene.stage.pixels() == before, "With the property the picture is as before.");
+  check(errors.texts.empty() && warnings.texts.empty(), "The mapper has nothing to say.");
 }
 
 /// VTK's class for several volumes in one mapper, which only the GPU ray caster knows.
@@ -396,6 +506,11 @@ int TestBadInput(int, char*[])
     }
   }
   testMultiVolume(scene, check);
-  testCameraWithoutExtent(scene, check);
+  for (const Fault& fault : settingFaults())
+  {
+    test(scene, fault, check);
+  }
+  testCameras(scene, check);
+  testProperties(scene, check);
   return check.exitCode();
 }

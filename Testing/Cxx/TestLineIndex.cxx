@@ -585,6 +585,7 @@ void testThreads(Checks& check)
     {
       check(now > done && thread == std::this_thread::get_id(), "progress goes astray");
       done = now;
+      return true;
     });
   check(done == 1.0, "progress ends at ", done);
 }

@@ -44,6 +44,10 @@ void testDefaults(Mapper* mapper, stage::Checks& check)
   check(mapper->GetVectorMode() == Mapper::DISABLED && mapper->GetVectorComponent() == 0,
     "Default is all components.");
   check(mapper->GetMaskInput() == nullptr, "Default is no mask.");
+  check(mapper->GetAutoAdjustSampleDistances() == 1, "Default adjusts to the time, as VTK does.");
+  check(mapper->GetQualityModeUsed() == Mapper::HIGH, "A new mapper has used no other mode.");
+  check(mapper->GetFinalColorWindow() == 1.0f && mapper->GetFinalColorLevel() == 0.5f,
+    "Default colours are those of the transfer functions.");
   check(!mapper->GetLastRenderUsedRayCasting(), "A new mapper has not cast rays.");
   check(mapper->GetShearImage() == nullptr, "There is no shear image before the first render.");
   check(mapper->GetPrincipalAxis() == -1, "There is no principal axis before the first render.");
@@ -163,12 +167,14 @@ void testPrinting(Mapper* mapper, stage::Checks& check)
   std::ostringstream stream;
   mapper->Print(stream);
   const std::string text = stream.str();
-  for (const char* variable : { "QualityMode: high", "Kernel: trilinear", "KernelRadius: ",
-         "FootprintSampling: ", "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ",
-         "IndexMemorySize: ", "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ",
-         "Acceleration: auto", "AccelerationUsed: dense", "LineTolerance: ", "EliminateInvisible: ",
-         "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "VectorMode: disabled",
-         "VectorComponent: ", "MaskInput: ", "Blend", "Cropping" })
+  for (const char* variable :
+    { "QualityMode: high", "Kernel: trilinear", "KernelRadius: ", "FootprintSampling: ",
+      "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ", "IndexMemorySize: ",
+      "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ", "Acceleration: auto",
+      "AccelerationUsed: dense", "LineTolerance: ", "EliminateInvisible: ", "QualityModeUsed: high",
+      "AutoAdjustSampleDistances: On", "FinalColorWindow: 1", "FinalColorLevel: 0.5",
+      "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend", "VectorMode: disabled",
+      "VectorComponent: ", "MaskInput: ", "Cropping" })
   {
     check(text.find(variable) != std::string::npos, std::string("PrintSelf names ") + variable);
   }
