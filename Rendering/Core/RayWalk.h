@@ -285,8 +285,8 @@ private:
   {
     const WorksheetLoops<A>& loops = this->Shared.kernels;
     ShearImage& image = this->Shared.image;
-    loops.finish(image.row<A>(v0), this->Base, std::numeric_limits<A>::lowest(),
-      std::numeric_limits<A>::max(), std::ptrdiff_t(v1 - v0) * image.width);
+    loops.finish(image.row<A>(v0), this->Base, leastValue<A>(), greatestValue<A>(),
+      std::ptrdiff_t(v1 - v0) * image.width);
   }
 
   const Frame<T>& Shared;

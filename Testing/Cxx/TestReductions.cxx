@@ -382,9 +382,10 @@ double randomLevel(reference::Random& random, const reference::RaySamples<S>& ra
   for (int trial = 0; trial < 20; ++trial)
   {
     const auto& ray = rays[random.uniform(0, int(rays.size()) - 1)];
-    if (!ray.empty() && std::isfinite(double(ray[0].value)))
+    const double level =
+      ray.empty() ? Infinity : double(ray[random.uniform(0, int(ray.size()) - 1)].value);
+    if (std::isfinite(level))
     {
-      const double level = double(ray[random.uniform(0, int(ray.size()) - 1)].value);
       return !isFloat<S> && sizeof(S) == 8 ? std::nextafter(level, Infinity) : level;
     }
   }
