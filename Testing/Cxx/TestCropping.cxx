@@ -133,7 +133,7 @@ template <class T>
 void testPreview(Checks& check, std::uint64_t seed)
 {
   reference::Random random(seed);
-  for (int n = 0; n < 8; ++n)
+  for (int n = 0; n < 16; ++n)
   {
     const auto volume = spots<T>(random, randomSize(random, 14));
     Scene scene;
@@ -170,7 +170,7 @@ void testAverages(Checks& check, std::uint64_t seed)
 {
   using A = splatting::Accumulator<T>;
   reference::Random random(seed);
-  for (int n = 0; n < 4; ++n)
+  for (int n = 0; n < 6; ++n)
   {
     const auto volume = wholeRangeNoise<T>(randomSize(random, 6), random.bits());
     const auto bounds = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
@@ -222,6 +222,14 @@ void testLarge(Checks& check)
     scene.settings.quality = static_cast<Quality>(n % 3);
     placePlanes(random, volume.size, scene.cuts);
     scene.cuts.regions = n % 2 ? named[n % 5] : static_cast<unsigned>(random.bits()) & 0x7ffffff;
+    if (random.uniform(0, 2) == 0)
+    {
+      // A slab, which may be thinner than a slice.
+      const double normal[] = { random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 1.0 };
+      const double offset = normal[0] * 35.0 + normal[1] * 29.0 + normal[2] * 22.0;
+      scene.cuts.halfSpaces = { { normal[0], normal[1], normal[2], -offset },
+        { -normal[0], -normal[1], -normal[2], offset + random.uniform(0.1, 20.0) } };
+    }
     scene.settings.acceleration = Acceleration::Dense;
     const splatting::ShearImage dense = projected(volume, scene);
     if (n % 3 == 0)

@@ -101,16 +101,26 @@ std::array<double, 4> randomHalfSpace(reference::Random& random, const std::arra
   return h;
 }
 
-/// None, some anywhere, or two that leave a slab which may be thinner than a slice.
+/// None, some anywhere, one across an axis, or two that leave a slab which may be thinner than a
+/// slice.
 std::vector<std::array<double, 4>> randomHalfSpaces(
   reference::Random& random, const std::array<int, 3>& size)
 {
   std::vector<std::array<double, 4>> halfSpaces;
-  switch (random.uniform(0, 3))
+  switch (random.uniform(0, 4))
   {
     case 0:
       break;
-    case 1:
+    case 1: // through voxel centres or between them
+    {
+      const int a = random.uniform(0, 2);
+      std::array<double, 4> h{};
+      h[a] = random.uniform(0, 1) ? 1.0 : -1.0;
+      h[3] = -h[a] * 0.5 * random.uniform(0, 2 * size[a] - 2);
+      halfSpaces.push_back(h);
+      break;
+    }
+    case 2:
       halfSpaces.push_back(randomHalfSpace(random, size));
       halfSpaces.push_back(halfSpaces[0]);
       for (double& h : halfSpaces[1])
@@ -482,12 +492,12 @@ void testType(Checks& check, std::uint64_t seed)
 {
   reference::Random random(seed);
   Count preview[5], averages[5];
-  for (int n = 0; n < 30; ++n)
+  for (int n = 0; n < 80; ++n)
   {
     const auto volume = randomVolume<T>(random, 12, Quality::Preview);
     testReductions(check, volume, volume, Quality::Preview, random, preview);
   }
-  for (int n = 0; n < 12; ++n)
+  for (int n = 0; n < 24; ++n)
   {
     const Quality quality = n % 2 ? Quality::Standard : Quality::High;
     const auto volume = randomVolume<T>(random, 6, quality);
@@ -501,8 +511,7 @@ void testType(Checks& check, std::uint64_t seed)
               << " skipped)";
     check(preview[int(reduction)].open + preview[int(reduction)].skipped == 0,
       "the preview is not exact");
-    // Plateaus hang on rounding errors.
-    check(count.open + count.skipped < 0.2 * count.all, "nearly all pixels are compared");
+    check(count.open + count.skipped < 0.02 * count.all, "nearly all pixels are compared");
   }
   std::cout << std::endl;
 }
