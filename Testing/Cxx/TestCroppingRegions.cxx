@@ -5,6 +5,7 @@
 // caster and against the definition, and planes that change at run time.
 #include "MapperOracle.h"
 
+#include "vtkCommand.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkMatrix3x3.h"
@@ -200,6 +201,30 @@ void testDefinition(stage::Stage& stage, stage::Checks& check)
   }
 }
 
+/// What is ray cast is cropped at the same place, wherever the extent begins.
+void testPerspective(stage::Stage& stage, stage::Checks& check)
+{
+  reference::Random random(44);
+  const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
+  const auto moved = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
+  // Whole numbers: both images lie at the same place, bit for bit.
+  moved->SetExtent(10, 73, -20, 35, 7, 66);
+  moved->SetOrigin(-10.0, 20.0, -7.0);
+  const auto mapper = stage::splatting(image);
+  placePlanes(mapper, image, random, 0.15);
+  mapper->SetCroppingRegionFlagsToSubVolume();
+  stage.show(mapper);
+  stage.look(directions[0], up);
+  stage.renderer->GetActiveCamera()->ParallelProjectionOff();
+  stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+  const stage::Pixels cropped = stage.pixels();
+  check(mapper->GetLastRenderUsedRayCasting(), "Perspectives are ray cast.");
+  mapper->SetInputData(moved);
+  check(stage.pixels() == cropped, "Ray casting crops where splatting does, whatever the extent.");
+  mapper->CroppingOff();
+  check(stage.pixels() != cropped, "Ray casting crops.");
+}
+
 /// What changes the samples projects anew, and nothing else does.
 void testChanges(stage::Stage& stage, stage::Checks& check)
 {
@@ -263,6 +288,7 @@ int TestCroppingRegions(int, char*[])
   stage::Stage stage(Width, Height);
   testAgainstRayCasters(stage, check);
   testDefinition(stage, check);
+  testPerspective(stage, check);
   testChanges(stage, check);
   return check.exitCode();
 }

@@ -552,7 +552,7 @@ void testLarge(Checks& check, std::uint64_t seed)
         c.settings.quality = quality;
         const splatting::ShearImage expected = projected(volume, c);
         testVariants(check, volume, c, expected, random);
-        for (int threads : { 1, 5 })
+        for (int threads : { 1, 2 })
         {
           vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
             [&]
