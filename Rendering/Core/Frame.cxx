@@ -65,41 +65,46 @@ void findSpans(const std::vector<SliceGeometry>& slices, std::vector<Span>& span
   extendRows(slices.back().innerBegin, slices.back().innerEnd, slices.back().inner);
 }
 
+constexpr std::int16_t NoFirst = std::numeric_limits<std::int16_t>::max(), NoLast = -1;
+
 /// Whether a sample is left in any slice, for a row of pixels.
 class SamplesLeft
 {
 public:
-  SamplesLeft(const std::vector<SliceGeometry>& slices, const Cuts& cuts, const CutMap& map)
-    : Crossed(slices),
-      Source(cuts),
-      Map(map)
+  SamplesLeft(const std::vector<SliceGeometry>& slices, const CrossedSlices& crossed,
+    const CutMap& map, int width)
+    : Slices(slices),
+      Crossed(crossed),
+      Map(map),
+      First(width),
+      Last(width),
+      Slice(width)
   {
   }
 
-  void find(int v, int width, unsigned char* mask)
+  void find(int v, unsigned char* mask)
   {
-    if (!this->Source.cropping.cuts())
+    if (!this->Map.crops())
     {
-      this->fromIntervals(v, width, mask);
+      this->fromIntervals(v, mask);
     }
-    else if (this->Source.intervals.empty())
+    else if (this->Map.source().intervals.empty())
     {
       this->fromRegions(v, mask);
     }
     else
     {
-      this->fromSlices(v, width, mask);
+      this->fromSlices(v, mask);
     }
   }
 
 private:
-  void fromIntervals(int v, int width, unsigned char* mask)
+  void fromIntervals(int v, unsigned char* mask)
   {
-    this->First.resize(width);
-    this->Last.resize(width);
-    findCrossedSlices(this->Crossed, v, width, this->First.data(), this->Last.data());
-    const std::int16_t* const first = this->Source.intervals.first(v);
-    const std::int16_t* const last = this->Source.intervals.last(v);
+    this->Crossed.find(v, this->First.data(), this->Last.data());
+    const std::int16_t* const first = this->Map.source().intervals.first(v);
+    const std::int16_t* const last = this->Map.source().intervals.last(v);
+    const int width = static_cast<int>(this->First.size());
     for (int u = 0; u < width; ++u)
     {
       mask[u] = std::max(first[u], this->First[u]) <= std::min(last[u], this->Last[u]);
@@ -110,7 +115,7 @@ private:
   /// consecutive slices make one span.
   void fromRegions(int v, unsigned char* mask)
   {
-    const Span range = slicesOf(this->Crossed, v, v + 1);
+    const Span range = slicesOf(this->Slices, v, v + 1);
     const auto mark = [&](const Span& pixels)
     {
       std::fill(mask + pixels.begin, mask + std::max(pixels.begin, pixels.end),
@@ -123,7 +128,7 @@ private:
       {
         const SliceRegions& regions = this->Map.regions(k);
         const bool shown = regions.regionsOfRow(v) >> i & 1u;
-        const Span own = shown ? common(regions.pixels(i), this->Crossed[k].span(v)) : Span{};
+        const Span own = shown ? common(regions.pixels(i), this->Slices[k].span(v)) : Span{};
         if (all.empty() || own.empty() || common(all, own).empty())
         {
           mark(all);
@@ -138,13 +143,12 @@ private:
     }
   }
 
-  void fromSlices(int v, int width, unsigned char* mask)
+  void fromSlices(int v, unsigned char* mask)
   {
-    this->Slice.resize(width);
-    const Span range = slicesOf(this->Crossed, v, v + 1);
+    const Span range = slicesOf(this->Slices, v, v + 1);
     for (int k = range.begin; k < range.end; ++k)
     {
-      const Span& span = this->Crossed[k].span(v);
+      const Span& span = this->Slices[k].span(v);
       if (this->Map.findMask(k, v, span, this->Slice.data()))
       {
         for (int u = span.begin; u < span.end; ++u)
@@ -155,8 +159,8 @@ private:
     }
   }
 
-  const std::vector<SliceGeometry>& Crossed;
-  const Cuts& Source;
+  const std::vector<SliceGeometry>& Slices;
+  const CrossedSlices& Crossed;
   const CutMap& Map;
   std::vector<std::int16_t> First, Last;
   std::vector<unsigned char> Slice;
@@ -174,8 +178,82 @@ std::vector<SliceGeometry>& findSlices(
   return slices;
 }
 
+void CrossedSlices::reset(const std::vector<SliceGeometry>& slices, int width)
+{
+  this->Slices = &slices;
+  this->First.assign(width, NoFirst);
+  this->Last.assign(width, NoLast);
+  // A ray crosses consecutive slices, and spans move by a pixel or two from one to the next: only
+  // where they differ a ray begins or ends.
+  const int count = static_cast<int>(slices.size());
+  const auto markDifference = [](const Span& own, const Span& other, int k, std::int16_t* out)
+  {
+    const Span both = common(own, other);
+    const Span before{ own.begin, both.empty() ? own.end : both.begin };
+    const Span after{ both.empty() ? own.end : both.end, own.end };
+    for (const Span& pixels : { before, after })
+    {
+      std::fill(
+        out + pixels.begin, out + std::max(pixels.begin, pixels.end), static_cast<std::int16_t>(k));
+    }
+  };
+  Span before;
+  int kBefore = 0;
+  for (int k = 0; k < count; ++k)
+  {
+    if (slices[k].innerBegin < slices[k].innerEnd)
+    {
+      markDifference(slices[k].inner, before, k, this->First.data());
+      markDifference(before, slices[k].inner, kBefore, this->Last.data());
+      before = slices[k].inner;
+      kBefore = k;
+    }
+  }
+  markDifference(before, {}, kBefore, this->Last.data());
+}
+
+void CrossedSlices::find(int v, std::int16_t* first, std::int16_t* last) const
+{
+  const std::vector<SliceGeometry>& slices = *this->Slices;
+  const Span range = slicesOf(slices, v, v + 1);
+  // Those that hold the row's paths follow each other, too.
+  const auto isInner = [&](int k) { return slices[k].innerBegin <= v && v < slices[k].innerEnd; };
+  int begin = range.begin, end = range.end;
+  for (; begin < end && !isInner(begin); ++begin)
+  {
+  }
+  for (; end > begin && !isInner(end - 1); --end)
+  {
+  }
+  const int width = static_cast<int>(this->First.size());
+  for (int u = 0; u < width; ++u)
+  {
+    const int low = std::max<int>(this->First[u], begin);
+    const int high = std::min<int>(this->Last[u], end - 1);
+    first[u] = low <= high ? static_cast<std::int16_t>(low) : NoFirst;
+    last[u] = low <= high ? static_cast<std::int16_t>(high) : NoLast;
+  }
+  const auto add = [&](int k)
+  {
+    const Span& span = slices[k].span(v);
+    for (int u = span.begin; u < span.end; ++u)
+    {
+      first[u] = std::min(first[u], static_cast<std::int16_t>(k));
+      last[u] = std::max(last[u], static_cast<std::int16_t>(k));
+    }
+  };
+  for (int k = range.begin; k < begin; ++k)
+  {
+    add(k);
+  }
+  for (int k = end; k < range.end; ++k)
+  {
+    add(k);
+  }
+}
+
 void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
-  const CutMap& cuts, ShearImage& image)
+  const CutMap& cuts, CrossedSlices& crossed, ShearImage& image)
 {
   image.width = geometry.width();
   image.height = geometry.height();
@@ -186,13 +264,14 @@ void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& s
   {
     return;
   }
+  crossed.reset(slices, image.width);
   vtkSMPTools::For(0, image.height, 16,
     [&](vtkIdType begin, vtkIdType end)
     {
-      SamplesLeft samples(slices, cuts.source(), cuts);
+      SamplesLeft samples(slices, crossed, cuts, image.width);
       for (int v = static_cast<int>(begin); v < end; ++v)
       {
-        samples.find(v, image.width, &image.mask[std::ptrdiff_t(v) * image.width]);
+        samples.find(v, &image.mask[std::ptrdiff_t(v) * image.width]);
       }
     });
 }

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -34,11 +35,26 @@ struct SliceGeometry
 std::vector<SliceGeometry>& findSlices(
   const ShearWarp& geometry, std::vector<SliceGeometry>& slices);
 
+/// The slices that the rays of a row of pixels cross.
+class CrossedSlices
+{
+public:
+  /// The slices must outlive their use.
+  void reset(const std::vector<SliceGeometry>& slices, int width);
+  /// The first and the last one for each pixel; first > last where there are none.
+  void find(int v, std::int16_t* first, std::int16_t* last) const;
+
+private:
+  const std::vector<SliceGeometry>* Slices = nullptr;
+  std::vector<std::int16_t> First, Last; // for rows whose paths lie in all slices
+};
+
 class CutMap;
 
 /// Sets size and spans of an image and, if samples are left out, its mask.
+/// @param crossed  work space
 void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
-  const CutMap& cuts, ShearImage& image);
+  const CutMap& cuts, CrossedSlices& crossed, ShearImage& image);
 
 template <class T>
 constexpr T leastValue()

@@ -122,6 +122,7 @@ struct Projector::Scratch
   std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> footprints;
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> reach;
   CutMap cuts;
+  CrossedSlices crossed;
   RayState rays;
   vtkSMPThreadLocal<RayScratch> rayBands;
   std::vector<unsigned char> chunk;
@@ -204,8 +205,9 @@ void Projector::walkRays(
     settings.keepWinners ? std::size_t(frame.image.width) * frame.image.height : 0);
   if (settings.reduction == Reduction::DepthShaded)
   {
+    this->Memory->crossed.reset(frame.sliceGeometry, frame.image.width);
     state.crossed.findCrossed(
-      frame.sliceGeometry, frame.image.width, frame.image.height, frame.cuts.source().intervals);
+      this->Memory->crossed, frame.image.width, frame.image.height, frame.cuts.source().intervals);
   }
   const Walk walk(frame, layers, settings, state);
   this->forSlices(index, frame, Layers::Beyond, walk.isReversed(),
@@ -398,7 +400,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   image.winners.clear();
   memory.cuts.reset(cuts, geometry);
   findSlices(geometry, memory.slices);
-  outlineImage(geometry, memory.slices, memory.cuts, image);
+  outlineImage(geometry, memory.slices, memory.cuts, memory.crossed, image);
   const VolumeIndex::Range& range = index.range();
   // The mean of no sample is none.
   image.special = range.special || settings.reduction == Reduction::Mean;

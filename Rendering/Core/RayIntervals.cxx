@@ -97,7 +97,7 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
 }
 
 void RayIntervals::findCrossed(
-  const std::vector<SliceGeometry>& slices, int width, int height, const RayIntervals& within)
+  const CrossedSlices& crossed, int width, int height, const RayIntervals& within)
 {
   this->Width = width;
   this->First.resize(std::size_t(width) * height);
@@ -109,7 +109,7 @@ void RayIntervals::findCrossed(
       {
         std::int16_t* const first = &this->First[std::size_t(v) * width];
         std::int16_t* const last = &this->Last[std::size_t(v) * width];
-        findCrossedSlices(slices, v, width, first, last);
+        crossed.find(v, first, last);
         for (int u = 0; u < width && !within.empty(); ++u)
         {
           first[u] = std::max(first[u], within.first(v)[u]);
@@ -117,37 +117,5 @@ void RayIntervals::findCrossed(
         }
       }
     });
-}
-
-void findCrossedSlices(const std::vector<SliceGeometry>& slices, int v, int width,
-  std::int16_t* first, std::int16_t* last)
-{
-  std::fill(first, first + width, std::numeric_limits<std::int16_t>::max());
-  std::fill(last, last + width, std::int16_t(-1));
-  // Rays cross consecutive slices, and spans move by a pixel or two from one to the next: only
-  // where they differ a ray begins or ends.
-  const Span range = slicesOf(slices, v, v + 1);
-  const auto spanOf = [&](int k)
-  { return range.begin <= k && k < range.end ? slices[k].span(v) : Span{}; };
-  const auto mark = [](const Span& pixels, int k, std::int16_t* out)
-  {
-    std::fill(
-      out + pixels.begin, out + std::max(pixels.begin, pixels.end), static_cast<std::int16_t>(k));
-  };
-  const auto markDifference = [&](const Span& own, const Span& other, int k, std::int16_t* out)
-  {
-    if (common(own, other).empty())
-    {
-      mark(own, k, out);
-      return;
-    }
-    mark({ own.begin, other.begin }, k, out);
-    mark({ other.end, own.end }, k, out);
-  };
-  for (int k = range.begin; k < range.end; ++k)
-  {
-    markDifference(spanOf(k), spanOf(k - 1), k, first);
-    markDifference(spanOf(k), spanOf(k + 1), k, last);
-  }
 }
 }

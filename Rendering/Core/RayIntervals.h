@@ -34,8 +34,7 @@ public:
   void find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces);
 
   /// The slices that each pixel's ray crosses, of those in other intervals, if these are not empty.
-  void findCrossed(
-    const std::vector<SliceGeometry>& slices, int width, int height, const RayIntervals& within);
+  void findCrossed(const CrossedSlices& crossed, int width, int height, const RayIntervals& within);
 
   /// For each pixel of a row the first slice and the last one; first > last: none.
   const std::int16_t* first(int v) const { return &this->First[std::size_t(v) * this->Width]; }
@@ -51,10 +50,6 @@ private:
   int Width = 0;
   std::vector<std::int16_t> First, Last;
 };
-
-/// The slices that each pixel of row v crosses, first > last where there are none.
-void findCrossedSlices(const std::vector<SliceGeometry>& slices, int v, int width,
-  std::int16_t* first, std::int16_t* last);
 }
 
 #endif
