@@ -129,6 +129,7 @@ void RayCastFallback::UpdateSettings(vtkSplattingMIPVolumeMapper* settings, vtkI
   this->Mapper->SetClippingPlanes(settings->GetClippingPlanes());
   this->Mapper->SetFinalColorWindow(settings->GetFinalColorWindow());
   this->Mapper->SetFinalColorLevel(settings->GetFinalColorLevel());
+  this->Mapper->SetIntermixIntersectingGeometry(settings->GetIntermixIntersectingGeometry());
   this->Mapper->SetScalarMode(settings->GetScalarMode());
   if (settings->GetArrayAccessMode() == VTK_GET_ARRAY_BY_ID)
   {

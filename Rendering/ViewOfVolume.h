@@ -25,4 +25,16 @@ bool isFlat(vtkImageData* image, vtkVolume* volume);
 splatting::View makeView(
   vtkImageData* image, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper);
 
+/**
+ * World space to index space, of a volume that is not flat.
+ */
+glm::dmat4 worldToIndex(vtkImageData* image, vtkVolume* volume);
+
+/**
+ * Adds the two half-spaces of a slab across the rays of a parallel view. Centre and thickness are
+ * in the world.
+ */
+void addSlab(splatting::View& view, vtkImageData* image, vtkVolume* volume, const double centre[3],
+  double thickness);
+
 #endif

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSplattingMIPVolumeMapper.h"
 
+#include "BoundingSurface.h"
 #include "Project.h"
 #include "RayCastFallback.h"
 #include "RenderTimes.h"
+#include "SceneDepth.h"
 #include "Selection.h"
 #include "ShearWarp.h"
 #include "TransferFunctions.h"
@@ -20,6 +22,7 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkRayCastImageDisplayHelper.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -141,8 +144,13 @@ public:
   bool Shows(
     const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings) const;
   double FloorOfWindow() const;
-  void FindCuts(const splatting::View& view, const splatting::ShearWarp& geometry);
-  bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode);
+  std::string ProblemOfCuts(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
+  void CaptureDepth(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren,
+    const splatting::View& view, const splatting::ShearWarp& geometry);
+  void FindCuts(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view,
+    const splatting::ShearWarp& geometry);
+  bool Project(
+    vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode);
   void UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor);
   void CopyShearImage(vtkImageData* output) const;
 
@@ -166,6 +174,9 @@ public:
   bool BudgetReported = false;
   splatting::Cuts Cuts, LastCuts;
   std::vector<glm::dvec4> HalfSpaces; // in pixels
+  ::BoundingSurface Surface;
+  bool OpenSurfaceReported = false;
+  splatting::SceneDepth Depth;
   splatting::ShearImage Image;
   bool ImageValid = false;
   vtkIdType Projections = 0;
@@ -195,6 +206,11 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     DepthShadingAmbient(0.3),
     DepthShadingChangeRate(0.7),
     LocalMaximumThreshold(0.0),
+    Slab(false),
+    SlabThickness(10.0),
+    SlabCenter{ 0.0, 0.0, 0.0 },
+    BoundingSurface(nullptr),
+    IntermixIntersectingGeometry(1),
     FootprintSampling(0),
     Acceleration(AUTO),
     LineTolerance(0.0),
@@ -214,7 +230,13 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
 }
 
 //------------------------------------------------------------------------------
-vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper() = default;
+vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper()
+{
+  this->SetBoundingSurface(nullptr);
+}
+
+//------------------------------------------------------------------------------
+vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, BoundingSurface, vtkPolyData);
 
 //------------------------------------------------------------------------------
 // The gate: a sentence that says why this input cannot be rendered and what to do, or nothing.
@@ -377,20 +399,73 @@ bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* s
 }
 
 //------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::Internals::FindCuts(
-  const splatting::View& view, const splatting::ShearWarp& geometry)
+// As Problem(): of slab and bounding surface, once the input is known to be good.
+std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfCuts(
+  vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
+{
+  const double* const centre = self->SlabCenter;
+  if (self->Slab && !(self->SlabThickness > 0.0))
+  {
+    return "The slab is not thicker than 0: give it a SlabThickness in world units.";
+  }
+  if (self->Slab && !std::all_of(centre, centre + 3, [](double x) { return std::isfinite(x); }))
+  {
+    return "The slab's centre is not finite: set SlabCenter to a point of the world.";
+  }
+  const glm::dmat4 toIndex =
+    self->BoundingSurface ? worldToIndex(this->Input, volume) : glm::dmat4(1.0);
+  const char* const fault = this->Surface.Update(self->BoundingSurface, toIndex);
+  return fault ? fault : "";
+}
+
+//------------------------------------------------------------------------------
+// The depths of what has been rendered where the volume will be seen, if there is anything.
+void vtkSplattingMIPVolumeMapper::Internals::CaptureDepth(vtkSplattingMIPVolumeMapper* self,
+  vtkRenderer* ren, const splatting::View& view, const splatting::ShearWarp& geometry)
+{
+  this->Depth.clear();
+  // Renderers that keep the depths of a lower layer have something to intermix with, too.
+  if (!self->IntermixIntersectingGeometry ||
+    (ren->GetNumberOfPropsRendered() < 1 && !ren->GetPreserveDepthBuffer()))
+  {
+    return;
+  }
+  splatting::placePicture(geometry, view.viewport, this->Picture);
+  const glm::ivec2& origin = this->Picture.origin;
+  const glm::ivec2& size = this->Picture.size;
+  if (size.x < 1 || size.y < 1)
+  {
+    return;
+  }
+  float* const depths = this->Depth.allocate(origin, size);
+  const float* const end = depths + std::size_t(size.x) * size.y;
+  if (!self->ReadDepth(ren, &origin.x, &size.x, depths) ||
+    std::all_of<const float*>(depths, end, [](float depth) { return depth >= 1.0f; }))
+  {
+    this->Depth.clear();
+    return;
+  }
+  this->Depth.place(view, geometry, this->HalfSpaces);
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::Internals::FindCuts(vtkSplattingMIPVolumeMapper* self,
+  vtkRenderer* ren, const splatting::View& view, const splatting::ShearWarp& geometry)
 {
   this->Cuts.cropping = view.cropping;
-  this->Cuts.intervals.clear();
   this->HalfSpaces.clear();
   for (const glm::dvec4& h : view.halfSpaces)
   {
     this->HalfSpaces.push_back(geometry.inPixels(h));
   }
-  if (!this->HalfSpaces.empty())
+  splatting::ClosedSurface* const surface = this->Surface.Get();
+  if (surface)
   {
-    this->Cuts.intervals.find(geometry, this->HalfSpaces);
+    surface->project(geometry);
   }
+  this->CaptureDepth(self, ren, view, geometry);
+  this->Cuts.intervals.find(
+    geometry, this->HalfSpaces, surface, this->Depth.empty() ? nullptr : &this->Depth);
 }
 
 //------------------------------------------------------------------------------
@@ -407,7 +482,7 @@ bool vtkSplattingMIPVolumeMapper::Internals::Shows(
 // Projects in this mode, unless the last shear image shows the same, or better within what is
 // wanted. False if the view has no meaning. There is no valid image after an abort.
 bool vtkSplattingMIPVolumeMapper::Internals::Project(
-  vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode)
+  vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode)
 {
   const splatting::ShearWarp geometry(view);
   splatting::ProjectionSettings settings = this->MakeSettings(self);
@@ -415,7 +490,7 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
   {
     return false;
   }
-  this->FindCuts(view, geometry);
+  this->FindCuts(self, ren, view, geometry);
   settings.quality = std::clamp(this->Settings.quality, static_cast<splatting::Quality>(mode),
     static_cast<splatting::Quality>(self->QualityMode));
   const bool same = this->Shows(geometry, settings);
@@ -479,6 +554,10 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   std::string problem = in.Problem(this, vol);
   if (problem.empty())
   {
+    problem = in.ProblemOfCuts(this, vol);
+  }
+  if (problem.empty())
+  {
     problem = this->RenderBySplatting(ren, vol);
   }
   // Told once, not in every frame.
@@ -504,7 +583,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
-  const splatting::View view = makeView(in.Input, vol, ren, this);
+  splatting::View view = makeView(in.Input, vol, ren, this);
   // Nothing can be seen in a window that is not shown yet.
   if (view.viewport.x < 1 || view.viewport.y < 1)
   {
@@ -524,6 +603,16 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     this->RenderByRayCasting(ren, vol, reason);
     return "";
   }
+  if (this->Slab)
+  {
+    addSlab(view, in.Input, vol, this->SlabCenter, this->SlabThickness);
+  }
+  if (in.Surface.IsOpen() && !in.OpenSurfaceReported)
+  {
+    vtkWarningMacro(<< "The bounding surface is not closed: rays that cross it once show nothing. "
+                       "Close it, for instance with vtkFillHolesFilter.");
+  }
+  in.OpenSurfaceReported = in.Surface.IsOpen();
   in.LookAt(in.Scalars);
   in.IndexTimeBefore = in.Index.time();
   if (in.Index.setBudget(static_cast<std::size_t>(this->IndexMemoryBudget)))
@@ -536,7 +625,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     : ren->GetSelector()
     ? std::min(this->GetQualityModeUsed(), this->QualityMode)
     : in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime());
-  if (!in.Project(this, view, mode))
+  if (!in.Project(this, ren, view, mode))
   {
     return DegenerateCamera;
   }
@@ -551,6 +640,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     in.Warper.warp(
       in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet, in.Picture);
+    in.Depth.hide(in.Picture);
     this->DisplayPicture(ren);
   }
   return "";
@@ -595,6 +685,11 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
     }
     in.RayCaster = std::make_unique<RayCastFallback>();
   }
+  if ((this->Slab || this->BoundingSurface) && in.Announced.insert("slab").second)
+  {
+    vtkWarningMacro(<< "Slab and BoundingSurface cut nothing where a volume is ray cast: use a "
+                       "parallel projection.");
+  }
   if (ren->GetSelector())
   {
     in.RayCaster->FindMask(this, in.Input, ren, vol, in.Picture);
@@ -613,6 +708,17 @@ void vtkSplattingMIPVolumeMapper::DisplayImage(
 {
   vtkErrorMacro(<< "There is no OpenGL to draw with: initialise the module with "
                    "vtk_module_autoinit or VTK_MODULE_INIT(vtkRenderingSplattingMIP).");
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPVolumeMapper::ReadDepth(
+  vtkRenderer* ren, const int origin[2], const int size[2], float* depths)
+{
+  int width, height, left, bottom;
+  ren->GetTiledSizeAndOrigin(&width, &height, &left, &bottom);
+  const int x = left + origin[0], y = bottom + origin[1];
+  return ren->GetRenderWindow()->GetZbufferData(x, y, x + size[0] - 1, y + size[1] - 1, depths) ==
+    VTK_OK;
 }
 
 //------------------------------------------------------------------------------
@@ -775,6 +881,14 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DepthShadingAmbient: " << this->DepthShadingAmbient << "\n";
   os << indent << "DepthShadingChangeRate: " << this->DepthShadingChangeRate << "\n";
   os << indent << "LocalMaximumThreshold: " << this->LocalMaximumThreshold << "\n";
+  os << indent << "Slab: " << (this->Slab ? "On" : "Off") << "\n";
+  os << indent << "SlabThickness: " << this->SlabThickness << "\n";
+  os << indent << "SlabCenter: " << this->SlabCenter[0] << ", " << this->SlabCenter[1] << ", "
+     << this->SlabCenter[2] << "\n";
+  os << indent << "BoundingSurface: " << this->BoundingSurface << "\n";
+  os << indent
+     << "IntermixIntersectingGeometry: " << (this->IntermixIntersectingGeometry ? "On" : "Off")
+     << "\n";
   os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";
   os << indent << "Acceleration: " << this->GetAccelerationAsString() << "\n";
   os << indent << "AccelerationUsed: " << nameOf(this->GetAccelerationUsed()) << "\n";
