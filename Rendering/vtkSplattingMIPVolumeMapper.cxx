@@ -490,6 +490,7 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
   {
     return false;
   }
+  const double start = vtkTimerLog::GetUniversalTime();
   this->FindCuts(self, ren, view, geometry);
   settings.quality = std::clamp(this->Settings.quality, static_cast<splatting::Quality>(mode),
     static_cast<splatting::Quality>(self->QualityMode));
@@ -503,7 +504,6 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
   this->ImageValid = false;
   this->ShearImageOutput = nullptr;
   this->Settings = settings;
-  const double start = vtkTimerLog::GetUniversalTime();
   const splatting::Acceleration used =
     this->Projector.project(this->Index, geometry, settings, this->Cuts, this->Image);
   if (this->Projector.stopped())
