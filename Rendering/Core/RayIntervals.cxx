@@ -22,23 +22,18 @@ constexpr double Rounding = 1e-9;
 /// Less than the first slice, and more than the last one.
 constexpr double Before = -1.0, Beyond = std::numeric_limits<std::int16_t>::max();
 
-/// Also for the baseline of x86-64, which rounds by calling functions. For x in [Before, Beyond].
-inline int roundedDown(double x)
+/// Without a function call on the baseline of x86-64. For doubles far below 2^51; of two that are
+/// as near, the even one.
+inline double nearestInteger(double x)
 {
-  const int i = static_cast<int>(x);
-  return i - (x < i);
-}
-inline int roundedUp(double x)
-{
-  const int i = static_cast<int>(x);
-  return i + (x > i);
+  constexpr double unit = 0x1.8p52;
+  return (x + unit) - unit;
 }
 
 /// Near and far depths of some pixels in a row, in slices.
 struct Depths
 {
   static constexpr int Most = 256;
-  double near[Most], far[Most];
 
   void reset(double low, double high, int count)
   {
@@ -46,7 +41,7 @@ struct Depths
     std::fill_n(this->far, count, high);
   }
 
-  void cut(const glm::dvec4& h, int u0, int v, int count)
+  void cut(const glm::dvec4 h, int u0, int v, int count)
   {
     // h.x u + rest + h.z z >= 0
     const double rest = h.y * v + h.w;
@@ -84,22 +79,42 @@ struct Depths
     }
   }
 
-  /// The slices of one pixel, first > last if there are none.
-  Span slices(int x) const
+  /// The first and last slice of each pixel, first > last if there are none, instead of depths.
+  void round(int slices, int count)
   {
-    // Also keeps infinities out of the arithmetic.
-    const double low = std::clamp(this->near[x], Before, Beyond);
-    const double high = std::clamp(this->far[x], Before, Beyond);
-    const double margin = Rounding * (1.0 + std::max(low, high));
-    const int first = roundedUp(std::max(low - margin, Before));
-    const int last = roundedDown(std::min(high + margin, Beyond));
-    if (first > last && high - low > margin)
+    const double end = slices - 1;
+    for (int x = 0; x < count; ++x)
     {
-      const int middle = roundedDown(std::min(0.5 * (low + high) + 0.5, Beyond));
-      return { middle, middle };
+      // Also keeps infinities out of the arithmetic.
+      const double low = std::min(std::max(this->near[x], Before), Beyond);
+      const double high = std::min(std::max(this->far[x], Before), Beyond);
+      const double margin = Rounding * (1.0 + std::max(low, high));
+      // Up and down: with the margin these are no integers.
+      const double first = nearestInteger(low - margin + 0.5);
+      const double last = nearestInteger(high + margin - 0.5);
+      const bool isThin = first > last && high - low > margin;
+      const double middle = nearestInteger(0.5 * (low + high));
+      this->near[x] = std::max(isThin ? middle : first, 0.0);
+      this->far[x] = std::min(isThin ? middle : last, end);
     }
-    return { first, last };
   }
+
+  /// Whether any slices are lost.
+  bool write(
+    int slices, int count, std::int16_t* __restrict first, std::int16_t* __restrict last) const
+  {
+    int lost = 0;
+    for (int x = 0; x < count; ++x)
+    {
+      const int begin = static_cast<int>(this->near[x]), end = static_cast<int>(this->far[x]);
+      first[x] = static_cast<std::int16_t>(begin);
+      last[x] = static_cast<std::int16_t>(end);
+      lost |= begin | (slices - 1 - end);
+    }
+    return lost != 0;
+  }
+
+  double near[Most], far[Most];
 };
 
 /// Where rays enter and leave the voxels' boxes.
@@ -120,6 +135,22 @@ public:
     }
   }
 
+  /// Opens the rays that lose no sample, or have none.
+  void openWhole(int u0, int v, int count, Depths& depths) const
+  {
+    Depths reach;
+    this->find(u0, v, count, reach);
+    for (int x = 0; x < count; ++x)
+    {
+      // Voxels that a ray crosses are centred up to half a slice outside its reach.
+      const bool whole = (reach.near[x] >= reach.far[x]) |
+        ((depths.near[x] <= reach.near[x] - 0.5) & (depths.far[x] >= reach.far[x] + 0.5));
+      depths.near[x] = whole ? Before : depths.near[x];
+      depths.far[x] = whole ? Beyond : depths.far[x];
+    }
+  }
+
+private:
   void find(int u0, int v, int count, Depths& depths) const
   {
     depths.reset(-0.5, this->Slices - 0.5, count);
@@ -129,25 +160,6 @@ public:
     }
   }
 
-  /// Rounds depths to slices, all of them where no sample is lost. Whether one may be.
-  bool round(const Depths& depths, const Depths& reach, int count, std::int16_t* first,
-    std::int16_t* last) const
-  {
-    bool isCut = false;
-    for (int x = 0; x < count; ++x)
-    {
-      // Voxels that a ray crosses are centred up to half a slice outside its reach.
-      const bool whole = reach.near[x] >= reach.far[x] ||
-        (depths.near[x] <= reach.near[x] - 0.5 && depths.far[x] >= reach.far[x] + 0.5);
-      const Span slices = whole ? Span{ 0, this->Slices - 1 } : depths.slices(x);
-      first[x] = static_cast<std::int16_t>(std::max(slices.begin, 0));
-      last[x] = static_cast<std::int16_t>(std::min(slices.end, this->Slices - 1));
-      isCut = isCut || !whole;
-    }
-    return isCut;
-  }
-
-private:
   int Slices;
   glm::dvec4 Planes[4];
 };
@@ -173,17 +185,19 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
   this->First.resize(pixels);
   this->Last.resize(pixels);
   const Reach reach(geometry);
+  const int slices = geometry.size().z;
   std::atomic<bool> isCut(false);
   vtkSMPTools::For(0, geometry.height(), 16,
     [&](vtkIdType begin, vtkIdType end)
     {
-      Depths depths, reached;
+      Depths depths;
+      bool lost = false;
       for (int v = static_cast<int>(begin); v < end; ++v)
       {
         for (int u = 0; u < this->Width; u += Depths::Most)
         {
           const int count = std::min(Depths::Most, this->Width - u);
-          depths.reset(-Infinity, Infinity, count);
+          depths.reset(Before, Beyond, count);
           for (const glm::dvec4& h : halfSpaces)
           {
             depths.cut(h, u, v, count);
@@ -196,13 +210,19 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
           {
             depth->endRays(u, v, count, depths.near, depths.far);
           }
-          reach.find(u, v, count, reached);
-          const std::size_t first = std::size_t(v) * this->Width + u;
-          if (reach.round(depths, reached, count, &this->First[first], &this->Last[first]))
+          if (surface || depth)
           {
-            isCut = true;
+            // Half-spaces that cut nothing are not there in the first place.
+            reach.openWhole(u, v, count, depths);
           }
+          const std::size_t first = std::size_t(v) * this->Width + u;
+          depths.round(slices, count);
+          lost |= depths.write(slices, count, &this->First[first], &this->Last[first]);
         }
+      }
+      if (lost)
+      {
+        isCut = true;
       }
     });
   if (!isCut)

@@ -25,7 +25,7 @@ class SceneDepth;
  * ray's near and far depth. Where that leaves none although the ray has a positive length, the
  * slice nearest to the middle of the interval counts: what is thinner than a slice shows one.
  * Points within 1e-9 voxels of what cuts (relative to their coordinates) are inside. Rays that lose
- * nothing have all slices, whatever cuts them outside the volume.
+ * nothing to a surface or a depth buffer have all slices, whatever cuts them outside the volume.
  */
 class RayIntervals
 {
