@@ -151,6 +151,23 @@ void testThinSlab(stage::Stage& stage, stage::Checks& check)
     "A slab beside the volume shows nothing.");
 }
 
+/// Where the volume is ray cast nothing is cut, and that is said.
+void testRayCasting(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+{
+  const auto mapper = stage::splatting(image);
+  stage.show(mapper);
+  stage.look(directions[0], up);
+  stage.renderer->GetActiveCamera()->ParallelProjectionOff();
+  const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+  mapper->SlabOn();
+  stage.pixels();
+  stage.pixels();
+  const auto about = std::count_if(warnings.texts.begin(), warnings.texts.end(),
+    [](const std::string& text) { return text.find("Slab") != std::string::npos; });
+  check(!mapper->GetLastRenderUsedRayCasting() || about == 1,
+    "One warning that a ray cast volume has no slab.");
+}
+
 struct Fault
 {
   const char* word;
@@ -207,5 +224,6 @@ int TestSlab(int, char*[])
   testSliding(stage, mapper, check);
   testBadInput(stage, mapper, check);
   testThinSlab(stage, check);
+  testRayCasting(stage, image, check);
   return check.exitCode();
 }
