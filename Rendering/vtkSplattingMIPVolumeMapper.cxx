@@ -177,6 +177,7 @@ public:
   ::BoundingSurface Surface;
   bool OpenSurfaceReported = false;
   splatting::SceneDepth Depth;
+  const vtkRenderer* DepthOf = nullptr; // only compared
   splatting::ShearImage Image;
   bool ImageValid = false;
   vtkIdType Projections = 0;
@@ -423,17 +424,21 @@ std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfCuts(
 void vtkSplattingMIPVolumeMapper::Internals::CaptureDepth(vtkSplattingMIPVolumeMapper* self,
   vtkRenderer* ren, const splatting::View& view, const splatting::ShearWarp& geometry)
 {
-  this->Depth.clear();
-  // Renderers that keep the depths of a lower layer have something to intermix with, too.
-  if (!self->IntermixIntersectingGeometry ||
-    (ren->GetNumberOfPropsRendered() < 1 && !ren->GetPreserveDepthBuffer()))
-  {
-    return;
-  }
   splatting::placePicture(geometry, view.viewport, this->Picture);
   const glm::ivec2& origin = this->Picture.origin;
   const glm::ivec2& size = this->Picture.size;
-  if (size.x < 1 || size.y < 1)
+  // Selection is by what is seen: its passes draw other depths than frames.
+  if (ren->GetSelector() && this->DepthOf == ren && this->Depth.isOf(origin, size))
+  {
+    this->Depth.place(view, geometry, this->HalfSpaces);
+    return;
+  }
+  this->Depth.clear();
+  this->DepthOf = ren;
+  // Renderers that keep the depths of a lower layer have something to intermix with, too.
+  if (!self->IntermixIntersectingGeometry ||
+    (ren->GetNumberOfPropsRendered() < 1 && !ren->GetPreserveDepthBuffer()) || ren->GetSelector() ||
+    size.x < 1 || size.y < 1)
   {
     return;
   }

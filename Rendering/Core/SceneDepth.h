@@ -33,6 +33,12 @@ public:
   void clear() { this->Size = {}; }
   bool empty() const { return this->Size.x < 1 || this->Size.y < 1; }
 
+  /// Whether depths of this rectangle are known.
+  bool isOf(const glm::ivec2& origin, const glm::ivec2& size) const
+  {
+    return !this->empty() && this->Origin == origin && this->Size == size;
+  }
+
   /// The depths of a rectangle of viewport pixels, 0 at the near and 1 at the far plane, row by row
   /// from the bottom, to be filled by the caller.
   float* allocate(const glm::ivec2& origin, const glm::ivec2& size);
