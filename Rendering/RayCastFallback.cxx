@@ -124,19 +124,18 @@ void RayCastFallback::UpdateSettings(vtkSplattingMIPVolumeMapper* settings, vtkI
     std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) })));
   this->Mapper->SetBlendMode(settings->GetBlendMode());
   this->Mapper->SetCropping(settings->GetCropping());
-  this->Mapper->SetCroppingRegionPlanes(settings->GetCroppingRegionPlanes());
+  // Where it crops, it takes the first voxel to lie at the origin, whatever the extent (VTK 9.1).
+  double planes[6];
+  for (int plane = 0; plane < 6; ++plane)
+  {
+    const int axis = plane / 2;
+    planes[plane] =
+      settings->GetCroppingRegionPlanes()[plane] - image->GetExtent()[2 * axis] * spacing[axis];
+  }
+  this->Mapper->SetCroppingRegionPlanes(planes);
   this->Mapper->SetCroppingRegionFlags(settings->GetCroppingRegionFlags());
   this->Mapper->SetClippingPlanes(settings->GetClippingPlanes());
   this->Mapper->SetFinalColorWindow(settings->GetFinalColorWindow());
   this->Mapper->SetFinalColorLevel(settings->GetFinalColorLevel());
   this->Mapper->SetIntermixIntersectingGeometry(settings->GetIntermixIntersectingGeometry());
-  this->Mapper->SetScalarMode(settings->GetScalarMode());
-  if (settings->GetArrayAccessMode() == VTK_GET_ARRAY_BY_ID)
-  {
-    this->Mapper->SelectScalarArray(settings->GetArrayId());
-  }
-  else if (settings->GetArrayName())
-  {
-    this->Mapper->SelectScalarArray(settings->GetArrayName());
-  }
 }

@@ -27,7 +27,7 @@ public:
   RayCastFallback();
   ~RayCastFallback();
 
-  /// Render the image as the mapper, the volume's property and its matrix ask.
+  /// Render the image's point scalars as the mapper, the volume's property and its matrix ask.
   void Render(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, vtkRenderer* renderer,
     vtkVolume* volume);
   /// The picture that Render() would draw: white where it is not transparent. Takes as long.

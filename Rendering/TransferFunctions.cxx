@@ -15,9 +15,10 @@
 
 namespace
 {
-std::uint32_t premultiplied(const float rgb[3], float opacity, const FinalColor& finalColor)
+std::uint32_t premultiplied(
+  const float rgb[3], float opacity, float weight, const FinalColor& finalColor)
 {
-  const float alpha = std::clamp(opacity, 0.0f, 1.0f);
+  const float alpha = weight * std::clamp(opacity, 0.0f, 1.0f);
   const float scale = 1.0f / finalColor.window, bias = 0.5f - finalColor.level / finalColor.window;
   unsigned char bytes[4];
   for (int c = 0; c < 3; ++c)
@@ -78,8 +79,8 @@ void sample(vtkPiecewiseFunction* grays, double low, double high, std::vector<fl
 }
 
 template <class ColorFunction>
-splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* colors, double low,
-  double high, bool integers, const FinalColor& finalColor)
+splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* colors, float weight,
+  double low, double high, bool integers, const FinalColor& finalColor)
 {
   chooseRange(opacity, colors, low, high);
   const double wanted = integers ? 16.0 * (high - low) + 1.0 : 65536.0;
@@ -92,7 +93,8 @@ splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* col
   splatting::ColorTable table{ low, high, std::vector<std::uint32_t>(entries) };
   for (int e = 0; e < entries; ++e)
   {
-    table.colors[e] = premultiplied(&rgb[3 * static_cast<std::size_t>(e)], alpha[e], finalColor);
+    table.colors[e] =
+      premultiplied(&rgb[3 * static_cast<std::size_t>(e)], alpha[e], weight, finalColor);
   }
   return table;
 }
@@ -104,12 +106,14 @@ bool FinalColor::isValid() const
     std::isfinite(1.0f / this->window) && std::isfinite(this->level / this->window);
 }
 
-splatting::ColorTable tabulateColors(vtkVolumeProperty* property, double dataLow, double dataHigh,
-  bool integers, const FinalColor& finalColor)
+splatting::ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
+  double dataLow, double dataHigh, bool integers, const FinalColor& finalColor)
 {
-  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity();
-  return property->GetColorChannels() == 1 ? tabulate(opacity, property->GetGrayTransferFunction(),
-                                               dataLow, dataHigh, integers, finalColor)
-                                           : tabulate(opacity, property->GetRGBTransferFunction(),
-                                               dataLow, dataHigh, integers, finalColor);
+  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(component);
+  const float share = static_cast<float>(weight);
+  return property->GetColorChannels(component) == 1
+    ? tabulate(opacity, property->GetGrayTransferFunction(component), share, dataLow, dataHigh,
+        integers, finalColor)
+    : tabulate(opacity, property->GetRGBTransferFunction(component), share, dataLow, dataHigh,
+        integers, finalColor);
 }

@@ -26,11 +26,11 @@ struct FinalColor
 };
 
 /**
- * The colour and opacity functions of a property's first component, as a table for values from
- * dataLow to dataHigh. Integers get sixteen entries per grey level, as far as 65536 go, other
- * values all of those.
+ * The colour and opacity functions of one of a property's components, as a table for values from
+ * dataLow to dataHigh; opacities are multiplied by the weight. Integers get sixteen entries per
+ * grey level, as far as 65536 go, other values all of those.
  */
-splatting::ColorTable tabulateColors(vtkVolumeProperty* property, double dataLow, double dataHigh,
-  bool integers, const FinalColor& finalColor);
+splatting::ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
+  double dataLow, double dataHigh, bool integers, const FinalColor& finalColor);
 
 #endif

@@ -3,7 +3,6 @@
 #include "ViewOfVolume.h"
 
 #include "vtkCamera.h"
-#include "vtkImageData.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
@@ -45,12 +44,9 @@ glm::dvec4 row(const glm::dmat4& m, int r)
 }
 
 /// Index space (first voxel at 0) to world.
-glm::dmat4 indexToWorld(vtkImageData* image, vtkVolume* volume)
+glm::dmat4 indexToWorld(const VolumeGrid& grid, vtkVolume* volume)
 {
-  glm::dmat4 physical = toGlm(image->GetIndexToPhysicalMatrix());
-  const int* extent = image->GetExtent();
-  physical[3] = physical * glm::dvec4(extent[0], extent[2], extent[4], 1.0);
-  return toGlm(volume->GetMatrix()) * physical;
+  return toGlm(volume->GetMatrix()) * grid.indexToPhysical;
 }
 
 /// Whether a matrix flattens the volume, or has no meaning (NaN).
@@ -75,15 +71,14 @@ unsigned mirrored(unsigned flags, int stride)
 }
 
 /// VTK's planes lie across the axes of the image, wherever its direction matrix turns these.
-splatting::Cropping croppingOf(vtkImageData* image, vtkVolumeMapper* mapper)
+splatting::Cropping croppingOf(const VolumeGrid& grid, vtkVolumeMapper* mapper)
 {
   splatting::Cropping cropping;
   const double* const planes = mapper->GetCroppingRegionPlanes();
   unsigned flags = static_cast<unsigned>(mapper->GetCroppingRegionFlags());
   for (int a = 0, stride = 1; a < 3; ++a, stride *= 3)
   {
-    const double spacing = image->GetSpacing()[a];
-    const double first = image->GetOrigin()[a] + image->GetExtent()[2 * a] * spacing;
+    const double spacing = grid.spacing[a], first = grid.first[a];
     cropping.planes[a] = { (planes[2 * a] - first) / spacing,
       (planes[2 * a + 1] - first) / spacing };
     if (spacing < 0.0)
@@ -112,21 +107,21 @@ void addHalfSpace(splatting::View& view, const glm::dvec4& h)
 }
 
 //------------------------------------------------------------------------------
-bool isFlat(vtkImageData* image, vtkVolume* volume)
+bool isFlat(const VolumeGrid& grid, vtkVolume* volume)
 {
-  return isSingular(indexToWorld(image, volume));
+  return isSingular(indexToWorld(grid, volume));
 }
 
 //------------------------------------------------------------------------------
 splatting::View makeView(
-  vtkImageData* image, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper)
+  const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper)
 {
   splatting::View view;
-  const int* dimensions = image->GetDimensions();
-  view.dimensions = { dimensions[0], dimensions[1], dimensions[2] };
+  view.dimensions = grid.dimensions;
+  view.showsBoxes = grid.cells;
   int left, bottom;
   renderer->GetTiledSizeAndOrigin(&view.viewport.x, &view.viewport.y, &left, &bottom);
-  const glm::dmat4 world = indexToWorld(image, volume);
+  const glm::dmat4 world = indexToWorld(grid, volume);
   // The camera's composite matrix leaves stereo out.
   vtkCamera* const camera = renderer->GetActiveCamera();
   view.indexToClip =
@@ -150,22 +145,22 @@ splatting::View makeView(
   }
   if (mapper->GetCropping())
   {
-    view.cropping = croppingOf(image, mapper);
+    view.cropping = croppingOf(grid, mapper);
   }
   return view;
 }
 
 //------------------------------------------------------------------------------
-glm::dmat4 worldToIndex(vtkImageData* image, vtkVolume* volume)
+glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume)
 {
-  return glm::inverse(indexToWorld(image, volume));
+  return glm::inverse(indexToWorld(grid, volume));
 }
 
 //------------------------------------------------------------------------------
-void addSlab(splatting::View& view, vtkImageData* image, vtkVolume* volume, const double centre[3],
-  double thickness)
+void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
+  const double centre[3], double thickness)
 {
-  const glm::dmat4 world = indexToWorld(image, volume);
+  const glm::dmat4 world = indexToWorld(grid, volume);
   // Rays run where neither coordinate on the screen changes.
   const glm::dvec3 ray =
     glm::cross(glm::dvec3(row(view.indexToClip, 0)), glm::dvec3(row(view.indexToClip, 1)));

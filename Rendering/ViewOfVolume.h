@@ -7,8 +7,8 @@
 #define ViewOfVolume_h
 
 #include "View.h"
+#include "VolumeGrid.h"
 
-class vtkImageData;
 class vtkRenderer;
 class vtkVolume;
 class vtkVolumeMapper;
@@ -16,25 +16,25 @@ class vtkVolumeMapper;
 /**
  * Whether spacing, direction and prop matrix flatten the volume, or have no meaning (NaN).
  */
-bool isFlat(vtkImageData* image, vtkVolume* volume);
+bool isFlat(const VolumeGrid& grid, vtkVolume* volume);
 
 /**
  * The view of the renderer's active camera. Half-spaces: those of the mapper's clipping planes and
  * of the near and far plane that cut into the volume. Cropping: the mapper's.
  */
 splatting::View makeView(
-  vtkImageData* image, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper);
+  const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper);
 
 /**
  * World space to index space, of a volume that is not flat.
  */
-glm::dmat4 worldToIndex(vtkImageData* image, vtkVolume* volume);
+glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume);
 
 /**
  * Adds the two half-spaces of a slab across the rays of a parallel view. Centre and thickness are
  * in the world.
  */
-void addSlab(splatting::View& view, vtkImageData* image, vtkVolume* volume, const double centre[3],
-  double thickness);
+void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
+  const double centre[3], double thickness);
 
 #endif

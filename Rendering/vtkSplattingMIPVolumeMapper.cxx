@@ -6,6 +6,7 @@
 #include "Project.h"
 #include "RayCastFallback.h"
 #include "RenderTimes.h"
+#include "ScalarSource.h"
 #include "SceneDepth.h"
 #include "Selection.h"
 #include "ShearWarp.h"
@@ -16,7 +17,7 @@
 #include "Warp.h"
 
 #include "vtkCommand.h"
-#include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
@@ -36,12 +37,12 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <set>
 #include <string>
 #include <vector>
 
 vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
+vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
 
 namespace
 {
@@ -50,50 +51,6 @@ const char* const DegenerateCamera =
   "a view-up that is not its direction.";
 const char* const NoColors =
   "FinalColorWindow and FinalColorLevel give no colours: both must be finite and the window not 0.";
-
-template <class T>
-splatting::ScalarType sizedType()
-{
-  constexpr bool isSigned = std::numeric_limits<T>::is_signed;
-  switch (sizeof(T))
-  {
-    case 1:
-      return isSigned ? splatting::ScalarType::Int8 : splatting::ScalarType::UInt8;
-    case 2:
-      return isSigned ? splatting::ScalarType::Int16 : splatting::ScalarType::UInt16;
-    case 4:
-      return isSigned ? splatting::ScalarType::Int32 : splatting::ScalarType::UInt32;
-    default:
-      return isSigned ? splatting::ScalarType::Int64 : splatting::ScalarType::UInt64;
-  }
-}
-
-/// Float for the types that vtkTemplateMacro does not know, too; they are refused before.
-splatting::ScalarType scalarType(int vtkType)
-{
-  if (vtkType == VTK_DOUBLE)
-  {
-    return splatting::ScalarType::Float64;
-  }
-  if (vtkType == VTK_FLOAT)
-  {
-    return splatting::ScalarType::Float32;
-  }
-  switch (vtkType)
-  {
-    vtkTemplateMacro(return sizedType<VTK_TT>());
-  }
-  return splatting::ScalarType::Float32;
-}
-
-int vtkTypeOf(splatting::ScalarType type, int inputType)
-{
-  if (type == scalarType(inputType))
-  {
-    return inputType; // keeps char apart from signed char, long from long long
-  }
-  return type == splatting::ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
-}
 
 const char* nameOfMode(int mode)
 {
@@ -138,12 +95,13 @@ public:
   std::string Problem(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
   const char* ReasonToRayCast(
     vtkSplattingMIPVolumeMapper* self, vtkVolume* volume, const splatting::View& view);
-  void LookAt(vtkDataArray* scalars);
-  splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self) const;
+  void LookAtVolumes();
+  bool SetBudget(std::size_t bytes);
+  bool ExceedsBudget() const;
+  double IndexTime() const;
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
-  bool Shows(
-    const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings) const;
-  double FloorOfWindow() const;
+  bool Shows(vtkSplattingMIPVolumeMapper* self, const splatting::ShearWarp& geometry,
+    splatting::Quality quality) const;
   std::string ProblemOfCuts(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
   void CaptureDepth(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren,
     const splatting::View& view, const splatting::ShearWarp& geometry);
@@ -152,25 +110,33 @@ public:
   bool Project(
     vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode);
   void UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor);
+  void Warp(const splatting::View& view);
   void CopyShearImage(vtkImageData* output) const;
 
-  vtkImageData* Input = nullptr;     // set by Problem(), valid during a render
-  vtkDataArray* Scalars = nullptr;   // likewise
   std::string Reported;              // the last problem, so that each is told once
   std::set<std::string> Announced;   // reasons to ray cast that were told
   vtkRenderWindow* Window = nullptr; // which may abort, during a render
 
-  splatting::VolumeIndex Index;
-  vtkSmartPointer<vtkDataArray> Contiguous; // a copy, if the scalars are stored in another way
-  const vtkDataArray* IndexedScalars = nullptr;
-  const void* IndexedBuffer = nullptr;
-  vtkMTimeType IndexedTime = 0;
-  int ScalarType = VTK_VOID;
+  ScalarSource Source;
+  vtkIdType IndexedVersion = 0; // of the source
+
+  /// One for each component that is projected.
+  struct Channel
+  {
+    splatting::VolumeIndex Index;
+    splatting::ColorTable Colors;
+    splatting::ProjectionSettings Settings;
+    splatting::ShearImage Image;
+    splatting::Acceleration Used = splatting::Acceleration::Dense;
+
+    splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self) const;
+    double FloorOfWindow() const;
+  };
+  std::vector<Channel> Channels = std::vector<Channel>(1);
+  std::size_t Projected = 0; // of these in the present frame
 
   splatting::Projector Projector;
   splatting::ShearWarp Geometry;
-  splatting::ProjectionSettings Settings;
-  splatting::Acceleration Used = splatting::Acceleration::Dense;
   bool BudgetReported = false;
   splatting::Cuts Cuts, LastCuts;
   std::vector<glm::dvec4> HalfSpaces; // in pixels
@@ -178,7 +144,6 @@ public:
   bool OpenSurfaceReported = false;
   splatting::SceneDepth Depth;
   const vtkRenderer* DepthOf = nullptr; // only compared
-  splatting::ShearImage Image;
   bool ImageValid = false;
   vtkIdType Projections = 0;
   double ProjectionTime = 0.0;
@@ -187,20 +152,23 @@ public:
   double Shear[2] = { 0.0, 0.0 };
   vtkSmartPointer<vtkImageData> ShearImageOutput;
 
-  splatting::ColorTable Colors;
   vtkVolumeProperty* ColoredBy = nullptr;
   vtkMTimeType ColorTime = 0;
   FinalColor ColoredFor;
   bool ColorsValid = false;
   splatting::Warper Warper;
   splatting::Picture Picture;
+  splatting::Picture Layer; // of one component
 
   std::unique_ptr<RayCastFallback> RayCaster; // made when first needed: it is megabytes large
 };
 
 //------------------------------------------------------------------------------
 vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
-  : QualityMode(HIGH),
+  : VectorMode(DISABLED),
+    VectorComponent(0),
+    MaskInput(nullptr),
+    QualityMode(HIGH),
     Kernel(TRILINEAR),
     KernelRadius(1.0),
     MaximumType(GLOBAL),
@@ -234,6 +202,7 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
 vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper()
 {
   this->SetBoundingSurface(nullptr);
+  this->SetMaskInput(nullptr);
 }
 
 //------------------------------------------------------------------------------
@@ -244,56 +213,26 @@ vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, BoundingSurface, vtkPolyData);
 std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
   vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
 {
-  vtkDataSet* const input = self->GetInput();
-  this->Input = vtkImageData::SafeDownCast(input);
-  this->Scalars = nullptr;
-  if (!input)
+  if (volume->IsA("vtkMultiVolume"))
   {
-    return "There is no input: connect a vtkImageData with SetInputData or SetInputConnection.";
+    return "A vtkMultiVolume cannot be splatted: give each of its volumes a mapper of its own.";
   }
-  if (!this->Input)
+  ScalarChoice choice;
+  choice.scalarMode = self->ScalarMode;
+  choice.arrayAccessMode = self->ArrayAccessMode;
+  choice.arrayId = self->ArrayId;
+  choice.arrayName = self->ArrayName;
+  choice.vectorMode = self->VectorMode;
+  choice.vectorComponent = self->VectorComponent;
+  choice.independentComponents = volume->GetProperty()->GetIndependentComponents() != 0;
+  choice.mask = self->MaskInput;
+  std::string problem = this->Source.Examine(self->GetInput(), choice);
+  if (problem.empty() && isFlat(this->Source.Grid(), volume))
   {
-    return std::string("The input is a ") + input->GetClassName() +
-      ", only vtkImageData can be splatted: resample it with vtkResampleToImage.";
+    problem =
+      "Spacing, direction and prop matrix flatten the volume: none of them may be singular.";
   }
-  const int* dimensions = this->Input->GetDimensions();
-  const vtkIdType points = this->Input->GetNumberOfPoints();
-  if (points < 1)
-  {
-    return "The input has no voxels: its extent is empty.";
-  }
-  int cellFlag = 0;
-  this->Scalars = vtkAbstractMapper::GetScalars(
-    this->Input, self->ScalarMode, self->ArrayAccessMode, self->ArrayId, self->ArrayName, cellFlag);
-  if (!this->Scalars)
-  {
-    return "The input has no numeric scalars under the chosen ScalarMode and array: set them on "
-           "the "
-           "input or choose another with SelectScalarArray.";
-  }
-  if (cellFlag)
-  {
-    return "The chosen scalars belong to cells: convert them with vtkCellDataToPointData.";
-  }
-  if (this->Scalars->GetDataType() == VTK_BIT)
-  {
-    return "The scalars are bits: convert them with vtkImageCast.";
-  }
-  if (this->Scalars->GetNumberOfTuples() != points)
-  {
-    return "The scalars have " + std::to_string(this->Scalars->GetNumberOfTuples()) +
-      " tuples for " + std::to_string(points) + " voxels: the two must agree.";
-  }
-  // Positions in rows, slices and the shear image are counted in int and must be exact in double.
-  if (*std::max_element(dimensions, dimensions + 3) > 16384)
-  {
-    return "The input has more than 16384 voxels along an axis: extract a part of it.";
-  }
-  if (isFlat(this->Input, volume))
-  {
-    return "Spacing, direction and prop matrix flatten the volume: none of them may be singular.";
-  }
-  return {};
+  return problem;
 }
 
 //------------------------------------------------------------------------------
@@ -305,9 +244,9 @@ const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
   {
     return "the blend mode is no intensity projection";
   }
-  if (this->Scalars->GetNumberOfComponents() != 1)
+  if (this->Source.AreDependent())
   {
-    return "the scalars have several components";
+    return "the scalars have several components that are dependent";
   }
   if (!splatting::isParallel(view))
   {
@@ -317,44 +256,65 @@ const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
 }
 
 //------------------------------------------------------------------------------
-// Points the index at the scalars, anew if they changed.
-void vtkSplattingMIPVolumeMapper::Internals::LookAt(vtkDataArray* scalars)
+// Points the indices at the volumes, anew if these changed.
+void vtkSplattingMIPVolumeMapper::Internals::LookAtVolumes()
 {
-  const int* dimensions = this->Input->GetDimensions();
-  const glm::ivec3 size(dimensions[0], dimensions[1], dimensions[2]);
-  // The image's time includes its arrays'. Images may share an array, and an array may be given
-  // another buffer without a word.
-  const vtkMTimeType time = this->Input->GetMTime();
-  const void* const buffer =
-    scalars->HasStandardMemoryLayout() ? scalars->GetVoidPointer(0) : nullptr;
-  if (this->IndexedScalars == scalars && this->IndexedTime == time &&
-    this->IndexedBuffer == buffer && this->Index.volume().dimensions == size)
+  this->Source.Update();
+  if (this->IndexedVersion == this->Source.Version())
   {
     return;
   }
-  if (this->Index.volume().dimensions != size || this->ScalarType != scalars->GetDataType())
+  const splatting::VoxelArray before = this->Channels.front().Index.volume();
+  const splatting::VoxelArray now = this->Source.Volume(0);
+  const std::size_t components = this->Source.Components();
+  if (before.dimensions != now.dimensions || before.type != now.type ||
+    this->Channels.size() != components)
   {
     this->Times.clear(); // those of other sizes; changed data take what the last ones took
   }
-  this->IndexedBuffer = buffer;
-  this->IndexedScalars = scalars;
-  this->IndexedTime = time;
-  this->ScalarType = scalars->GetDataType();
-  this->Contiguous = nullptr;
-  if (!scalars->HasStandardMemoryLayout())
+  this->IndexedVersion = this->Source.Version();
+  this->Channels.resize(components);
+  for (std::size_t c = 0; c < components; ++c)
   {
-    this->Contiguous.TakeReference(vtkDataArray::CreateDataArray(this->ScalarType));
-    this->Contiguous->DeepCopy(scalars);
-    scalars = this->Contiguous;
+    this->Channels[c].Index.reset(this->Source.Volume(static_cast<int>(c)));
   }
-  this->Index.reset({ scalars->GetVoidPointer(0), scalarType(this->ScalarType), size });
   this->ImageValid = false;
   this->ShearImageOutput = nullptr;
   this->ColorsValid = false;
 }
 
 //------------------------------------------------------------------------------
-splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::MakeSettings(
+// Every component gets the same share. Returns whether the budget changed.
+bool vtkSplattingMIPVolumeMapper::Internals::SetBudget(std::size_t bytes)
+{
+  bool changed = false;
+  for (Channel& channel : this->Channels)
+  {
+    changed = channel.Index.setBudget(bytes / this->Channels.size()) || changed;
+  }
+  return changed;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPVolumeMapper::Internals::ExceedsBudget() const
+{
+  return std::any_of(this->Channels.begin(), this->Channels.end(),
+    [](const Channel& channel) { return channel.Index.exceedsBudget(); });
+}
+
+//------------------------------------------------------------------------------
+double vtkSplattingMIPVolumeMapper::Internals::IndexTime() const
+{
+  double seconds = this->Source.Time();
+  for (const Channel& channel : this->Channels)
+  {
+    seconds += channel.Index.time();
+  }
+  return seconds;
+}
+
+//------------------------------------------------------------------------------
+splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::Channel::MakeSettings(
   vtkSplattingMIPVolumeMapper* self) const
 {
   splatting::ProjectionSettings settings;
@@ -381,7 +341,7 @@ splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::MakeSettin
 
 //------------------------------------------------------------------------------
 // The scalar up to which all have the colour of the lowest.
-double vtkSplattingMIPVolumeMapper::Internals::FloorOfWindow() const
+double vtkSplattingMIPVolumeMapper::Internals::Channel::FloorOfWindow() const
 {
   const std::vector<std::uint32_t>& colors = this->Colors.colors;
   const auto last = std::adjacent_find(colors.begin(), colors.end(), std::not_equal_to<>());
@@ -395,6 +355,8 @@ double vtkSplattingMIPVolumeMapper::Internals::FloorOfWindow() const
 // Tells how much of the projection is done and whether the window wants the rest.
 bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* self, double done)
 {
+  const double projected = static_cast<double>(this->Projected);
+  done = (projected + done) / static_cast<double>(this->Channels.size());
   self->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &done);
   return !this->Window || !this->Window->CheckAbortStatus();
 }
@@ -414,7 +376,7 @@ std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfCuts(
     return "The slab's centre is not finite: set SlabCenter to a point of the world.";
   }
   const glm::dmat4 toIndex =
-    self->BoundingSurface ? worldToIndex(this->Input, volume) : glm::dmat4(1.0);
+    self->BoundingSurface ? worldToIndex(this->Source.Grid(), volume) : glm::dmat4(1.0);
   const char* const fault = this->Surface.Update(self->BoundingSurface, toIndex);
   return fault ? fault : "";
 }
@@ -475,12 +437,18 @@ void vtkSplattingMIPVolumeMapper::Internals::FindCuts(vtkSplattingMIPVolumeMappe
 
 //------------------------------------------------------------------------------
 // Whether the last shear image is what this asks for; the cuts are found already.
-bool vtkSplattingMIPVolumeMapper::Internals::Shows(
-  const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings) const
+bool vtkSplattingMIPVolumeMapper::Internals::Shows(vtkSplattingMIPVolumeMapper* self,
+  const splatting::ShearWarp& geometry, splatting::Quality quality) const
 {
-  return this->ImageValid && geometry.sameShear(this->Geometry) &&
-    (geometry.reversed() == this->Geometry.reversed() || !isOrdered(settings.reduction)) &&
-    this->Cuts == this->LastCuts && settings == this->Settings;
+  const bool turned = geometry.reversed() != this->Geometry.reversed();
+  return this->ImageValid && geometry.sameShear(this->Geometry) && this->Cuts == this->LastCuts &&
+    std::all_of(this->Channels.begin(), this->Channels.end(),
+      [=](const Channel& channel)
+      {
+        splatting::ProjectionSettings settings = channel.MakeSettings(self);
+        settings.quality = quality;
+        return settings == channel.Settings && !(turned && isOrdered(settings.reduction));
+      });
 }
 
 //------------------------------------------------------------------------------
@@ -490,33 +458,36 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
   vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode)
 {
   const splatting::ShearWarp geometry(view);
-  splatting::ProjectionSettings settings = this->MakeSettings(self);
   if (!geometry.valid())
   {
     return false;
   }
   const double start = vtkTimerLog::GetUniversalTime();
   this->FindCuts(self, ren, view, geometry);
-  settings.quality = std::clamp(this->Settings.quality, static_cast<splatting::Quality>(mode),
-    static_cast<splatting::Quality>(self->QualityMode));
-  const bool same = this->Shows(geometry, settings);
+  const bool same = this->Shows(self, geometry,
+    std::clamp(this->Channels.front().Settings.quality, static_cast<splatting::Quality>(mode),
+      static_cast<splatting::Quality>(self->QualityMode)));
   this->Geometry = geometry;
   if (same)
   {
     return true;
   }
-  settings.quality = static_cast<splatting::Quality>(mode);
   this->ImageValid = false;
   this->ShearImageOutput = nullptr;
-  this->Settings = settings;
-  const splatting::Acceleration used =
-    this->Projector.project(this->Index, geometry, settings, this->Cuts, this->Image);
-  if (this->Projector.stopped())
+  for (this->Projected = 0; this->Projected < this->Channels.size(); ++this->Projected)
   {
-    return true;
+    Channel& channel = this->Channels[this->Projected];
+    channel.Settings = channel.MakeSettings(self);
+    channel.Settings.quality = static_cast<splatting::Quality>(mode);
+    const splatting::Acceleration used =
+      this->Projector.project(channel.Index, geometry, channel.Settings, this->Cuts, channel.Image);
+    if (this->Projector.stopped())
+    {
+      return true;
+    }
+    channel.Used = used;
   }
   std::swap(this->Cuts, this->LastCuts);
-  this->Used = used;
   this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
   this->ImageValid = true;
   ++this->Projections;
@@ -524,7 +495,7 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
 }
 
 //------------------------------------------------------------------------------
-// Transfer functions to a table of colours.
+// Transfer functions to tables of colours.
 void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(
   vtkVolumeProperty* property, const FinalColor& finalColor)
 {
@@ -533,13 +504,35 @@ void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(
   {
     return;
   }
-  const splatting::VolumeIndex::Range& range = this->Index.range();
-  const bool integers = this->ScalarType != VTK_FLOAT && this->ScalarType != VTK_DOUBLE;
-  this->Colors = tabulateColors(property, range.low, range.high, integers, finalColor);
+  const int components = static_cast<int>(this->Channels.size());
+  for (int c = 0; c < components; ++c)
+  {
+    Channel& channel = this->Channels[c];
+    const splatting::VolumeIndex::Range& range = channel.Index.range();
+    const double weight = components > 1 ? property->GetComponentWeight(c) : 1.0;
+    channel.Colors = tabulateColors(property, c, weight, range.low, range.high,
+      channel.Index.volume().type < splatting::ScalarType::Float32, finalColor);
+  }
   this->ColoredFor = finalColor;
   this->ColoredBy = property;
   this->ColorTime = property->GetMTime();
   this->ColorsValid = true;
+}
+
+//------------------------------------------------------------------------------
+// Every component by itself; their colours add up.
+void vtkSplattingMIPVolumeMapper::Internals::Warp(const splatting::View& view)
+{
+  for (Channel& channel : this->Channels)
+  {
+    const bool first = &channel == &this->Channels.front();
+    this->Warper.warp(channel.Image, this->Geometry, channel.Colors, view.viewport,
+      channel.Settings.instructionSet, first ? this->Picture : this->Layer);
+    if (!first)
+    {
+      splatting::addSaturated(this->Layer, this->Picture);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -577,7 +570,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   if (in.Projections != projections)
   {
     in.Times.add({ ren, vol }, this->GetQualityModeUsed(),
-      this->TimeToDraw - (in.Index.time() - in.IndexTimeBefore));
+      this->TimeToDraw - (in.IndexTime() - in.IndexTimeBefore));
   }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent);
   in.Window = nullptr;
@@ -588,7 +581,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
-  splatting::View view = makeView(in.Input, vol, ren, this);
+  splatting::View view = makeView(in.Source.Grid(), vol, ren, this);
   // Nothing can be seen in a window that is not shown yet.
   if (view.viewport.x < 1 || view.viewport.y < 1)
   {
@@ -610,7 +603,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   }
   if (this->Slab)
   {
-    addSlab(view, in.Input, vol, this->SlabCenter, this->SlabThickness);
+    addSlab(view, in.Source.Grid(), vol, this->SlabCenter, this->SlabThickness);
   }
   if (in.Surface.IsOpen() && !in.OpenSurfaceReported)
   {
@@ -618,12 +611,13 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
                        "Close it, for instance with vtkFillHolesFilter.");
   }
   in.OpenSurfaceReported = in.Surface.IsOpen();
-  in.LookAt(in.Scalars);
-  in.IndexTimeBefore = in.Index.time();
-  if (in.Index.setBudget(static_cast<std::size_t>(this->IndexMemoryBudget)))
+  const vtkIdType version = in.IndexedVersion;
+  in.LookAtVolumes();
+  if (in.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget)))
   {
     in.ImageValid = false; // so that the answer to "what was used" is right
   }
+  in.IndexTimeBefore = in.IndexedVersion == version ? in.IndexTime() : 0.0;
   in.UpdateColors(vol->GetProperty(), finalColor);
   // Selection is by what is seen.
   const int mode = !this->AutoAdjustSampleDistances ? this->QualityMode
@@ -634,17 +628,16 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return DegenerateCamera;
   }
-  if (in.Index.exceedsBudget() && !in.BudgetReported)
+  if (in.ExceedsBudget() && !in.BudgetReported)
   {
     vtkWarningMacro(<< "An index for fast projection does not fit into IndexMemoryBudget ("
                     << this->IndexMemoryBudget
                     << " bytes): this volume is projected without it. Raise the budget.");
   }
-  in.BudgetReported = in.Index.exceedsBudget();
+  in.BudgetReported = in.ExceedsBudget();
   if (in.ImageValid)
   {
-    in.Warper.warp(
-      in.Image, in.Geometry, in.Colors, view.viewport, in.Settings.instructionSet, in.Picture);
+    in.Warp(view);
     in.Depth.hide(in.Picture);
     this->DisplayPicture(ren);
   }
@@ -697,12 +690,12 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
   }
   if (ren->GetSelector())
   {
-    in.RayCaster->FindMask(this, in.Input, ren, vol, in.Picture);
+    in.RayCaster->FindMask(this, in.Source.Image(), ren, vol, in.Picture);
     this->DisplayPicture(ren);
   }
   else
   {
-    in.RayCaster->Render(this, in.Input, ren, vol);
+    in.RayCaster->Render(this, in.Source.Image(), ren, vol);
   }
   this->LastRenderUsedRayCasting = true;
 }
@@ -739,23 +732,32 @@ void vtkSplattingMIPVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Internals::CopyShearImage(vtkImageData* output) const
 {
-  const int type = vtkTypeOf(this->Image.type, this->ScalarType);
-  output->SetDimensions(this->Image.width, this->Image.height, 1);
+  const splatting::ShearImage& first = this->Channels.front().Image;
+  const std::size_t components = this->Channels.size(), size = splatting::sizeOf(first.type);
+  output->SetDimensions(first.width, first.height, 1);
   output->SetOrigin(-this->Geometry.margin().x, -this->Geometry.margin().y, 0.0);
-  output->AllocateScalars(type, 1);
-  std::memcpy(output->GetScalarPointer(), this->Image.bytes.data(), this->Image.bytes.size());
+  output->AllocateScalars(this->Source.VtkTypeOf(first.type), static_cast<int>(components));
+  const std::size_t pixels = static_cast<std::size_t>(output->GetNumberOfPoints());
+  auto* const scalars = static_cast<unsigned char*>(output->GetScalarPointer());
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
   ghosts->SetNumberOfValues(output->GetNumberOfPoints());
-  for (int v = 0; v < this->Image.height; ++v)
+  ghosts->Fill(vtkDataSetAttributes::HIDDENPOINT);
+  for (std::size_t c = 0; c < components; ++c)
   {
-    for (int u = 0; u < this->Image.width; ++u)
+    const splatting::ShearImage& image = this->Channels[c].Image;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     {
-      const vtkIdType pixel = static_cast<vtkIdType>(v) * this->Image.width + u;
-      const bool sample = this->Image.covers(u, v) &&
-        !std::isnan(output->GetPointData()->GetScalars()->GetComponent(pixel, 0));
-      ghosts->SetValue(
-        pixel, sample ? 0 : static_cast<unsigned char>(vtkDataSetAttributes::HIDDENPOINT));
+      std::memcpy(
+        scalars + (pixel * components + c) * size, image.bytes.data() + pixel * size, size);
+      const int u = static_cast<int>(pixel % image.width),
+                v = static_cast<int>(pixel / image.width);
+      const vtkIdType id = static_cast<vtkIdType>(pixel);
+      if (image.covers(u, v) &&
+        !std::isnan(output->GetPointData()->GetScalars()->GetComponent(id, static_cast<int>(c))))
+      {
+        ghosts->SetValue(id, 0);
+      }
     }
   }
   output->GetPointData()->AddArray(ghosts);
@@ -796,16 +798,18 @@ double* vtkSplattingMIPVolumeMapper::GetShear()
 //------------------------------------------------------------------------------
 vtkIdType vtkSplattingMIPVolumeMapper::GetIndexMemorySize()
 {
-  const vtkDataArray* const copy = this->Internal->Contiguous;
-  const vtkIdType packed =
-    copy ? copy->GetNumberOfValues() * const_cast<vtkDataArray*>(copy)->GetDataTypeSize() : 0;
-  return static_cast<vtkIdType>(this->Internal->Index.memorySize()) + packed;
+  std::size_t size = this->Internal->Source.MemorySize();
+  for (const Internals::Channel& channel : this->Internal->Channels)
+  {
+    size += channel.Index.memorySize();
+  }
+  return static_cast<vtkIdType>(size);
 }
 
 //------------------------------------------------------------------------------
 double vtkSplattingMIPVolumeMapper::GetIndexTime()
 {
-  return this->Internal->Index.time();
+  return this->Internal->IndexTime();
 }
 
 //------------------------------------------------------------------------------
@@ -823,19 +827,33 @@ double vtkSplattingMIPVolumeMapper::GetProjectionTime()
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetInstructionSet()
 {
-  return splatting::nameOf(this->Internal->Settings.instructionSet);
+  return splatting::nameOf(this->Internal->Channels.front().Settings.instructionSet);
 }
 
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetAccelerationUsed()
 {
-  return static_cast<int>(this->Internal->Used);
+  return static_cast<int>(this->Internal->Channels.front().Used);
 }
 
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetAccelerationAsString()
 {
   return nameOf(this->Acceleration);
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSplattingMIPVolumeMapper::GetVectorModeAsString()
+{
+  switch (this->VectorMode)
+  {
+    case MAGNITUDE:
+      return "magnitude";
+    case COMPONENT:
+      return "component";
+    default:
+      return "disabled";
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -847,7 +865,7 @@ const char* vtkSplattingMIPVolumeMapper::GetQualityModeAsString()
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetQualityModeUsed()
 {
-  return static_cast<int>(this->Internal->Settings.quality);
+  return static_cast<int>(this->Internal->Channels.front().Settings.quality);
 }
 
 //------------------------------------------------------------------------------
@@ -874,6 +892,10 @@ const char* vtkSplattingMIPVolumeMapper::GetKernelAsString()
 void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "VectorMode: " << this->GetVectorModeAsString() << "\n";
+  os << indent << "VectorComponent: " << this->VectorComponent << "\n";
+  os << indent << "MaskInput: ";
+  this->MaskInput ? os << this->MaskInput << "\n" : os << "(none)\n";
   os << indent << "QualityMode: " << this->GetQualityModeAsString() << "\n";
   os << indent << "QualityModeUsed: " << nameOfMode(this->GetQualityModeUsed()) << "\n";
   os << indent << "AutoAdjustSampleDistances: " << (this->AutoAdjustSampleDistances ? "On" : "Off")

@@ -13,19 +13,43 @@
  * the shear image to the viewport, where the interpolated scalar is looked up in the transfer
  * functions of the vtkVolumeProperty. Averages are taken within a slice, maxima between slices.
  *
- * What is splatted: vtkImageData with point scalars of any numeric type and one component, any
- * extent, spacing, origin and direction matrix, any invertible prop matrix, any orthographic view,
- * cut by the camera's clipping range and by this mapper's ClippingPlanes. Perspective cameras,
- * blend modes other than maximum intensity, cropping and several components are passed, with the
- * same settings, to an internal vtkFixedPointVolumeRayCastMapper, and a warning says so once. The
- * blend mode of a new mapper is maximum intensity.
+ * What is splatted: vtkImageData and vtkRectilinearGrid with point or cell scalars of any numeric
+ * type, any extent, spacing, origin and direction matrix, any invertible prop matrix, any
+ * orthographic view, cut by the camera's clipping range and by this mapper's ClippingPlanes.
+ * Perspective cameras, blend modes other than maximum intensity, cropping and dependent components
+ * are passed, with the same settings, to an internal vtkFixedPointVolumeRayCastMapper, and a
+ * warning says so once. The blend mode of a new mapper is maximum intensity.
+ *
+ * Which scalars: those that ScalarMode, SelectScalarArray and VectorMode choose. Of 1 to 4
+ * independent components (vtkVolumeProperty::IndependentComponents) each has a maximum of its own;
+ * a pixel is the sum of weight * opacity * colour over components, each with its own transfer
+ * functions and ComponentWeight, clamped. Each component's colour is rounded to 1/255 before the
+ * sum. Components that are interleaved in memory are copied, those of vtkSOADataArrayTemplate are
+ * not.
+ *
+ * Cells are voxels about the cells' centres, one less than points along each axis; an axis with one
+ * point has one layer of cells about that point.
+ *
+ * Hidden voxels are no samples, like NaN: points with HIDDENPOINT and points all of whose cells
+ * have HIDDENCELL, cells with HIDDENCELL and cells with a point that has HIDDENPOINT (the ghost
+ * arrays of vtkUniformGrid::BlankPoint and BlankCell; call Modified() after these), and what
+ * MaskInput hides. Duplicates are not hidden. This costs a copy in float (double for 32- and 64-bit
+ * integers and double, so that integers beyond 2^53 are rounded) and projections without
+ * acceleration.
+ *
+ * Rectilinear grids whose points lie within 1/1000 of a step of equal distances are splatted as
+ * they are. Others are resampled once to the least step of each axis: points trilinearly, in float
+ * (double for the wide types), cells piecewise constant. The copy has up to 2^26 voxels (or as many
+ * as the grid, if these are more); beyond that, steps are enlarged by one factor. Peaks between the
+ * points of the copy are lowered by the interpolation.
  *
  * A slice counts for a ray if the ray crosses it (voxels being boxes) and, where planes cut the
  * volume, if the point where the ray crosses the middle of the slice is inside. Footprints that
  * stick out of the volume repeat its outermost voxels; those beside a plane read beyond it.
  *
- * The picture ends where VTK's ray casters end it, at the outermost voxel centres (GetBounds());
- * an axis with one voxel is as thick as that voxel.
+ * The picture ends where VTK's ray casters end it, at the outermost points (GetBounds()): voxel
+ * centres for point scalars, the sides of voxels for cell scalars. An axis with one voxel is as
+ * thick as that voxel.
  *
  * The interpolation type of the vtkVolumeProperty has no meaning here, and a change costs nothing:
  * the quality mode says how voxels are reconstructed, and the shear image is always interpolated
@@ -60,10 +84,11 @@
  *
  * Memory. The mapper holds the largest voxel of every brick of 8x4x4 for each axis (3/128 of the
  * volume), a transposed copy of the volume once its first (fastest) image axis was the principal
- * one, chains of voxels where SetAcceleration asks for them, and a copy of scalars that are not
- * stored voxel after voxel; GetIndexMemorySize() counts all, SetIndexMemoryBudget() limits all but
- * the last. Work space comes on top: shear image, picture, footprints (about 3 kB a slice) and, for
- * each thread, some rows of voxels and the bounds of a band of tiles.
+ * one, chains of voxels where SetAcceleration asks for them, all of this for each component, and a
+ * copy of scalars that are not stored voxel after voxel, hidden or resampled; GetIndexMemorySize()
+ * counts all, SetIndexMemoryBudget() limits all but the last (components have equal shares). Work
+ * space comes on top: shear image, picture, footprints (about 3 kB a slice) and, for each thread,
+ * some rows of voxels and the bounds of a band of tiles.
  *
  * Objects are made through VTK's object factory; the class that New() returns draws with OpenGL.
  *
@@ -87,6 +112,16 @@ public:
   static vtkSplattingMIPVolumeMapper* New();
   vtkTypeMacro(vtkSplattingMIPVolumeMapper, vtkVolumeMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The values of vtkSmartVolumeMapper's VectorMode.
+   */
+  enum VectorModes
+  {
+    DISABLED = -1,
+    MAGNITUDE = 0,
+    COMPONENT = 1
+  };
 
   enum QualityModes
   {
@@ -117,6 +152,43 @@ public:
     SORTED_LINES = 4,
     SORTED_VOLUME = 5
   };
+
+  ///@{
+  /**
+   * What is projected of scalars with several components, as in vtkSmartVolumeMapper. Default
+   * DISABLED: all of them (see above). MAGNITUDE: the Euclidean length, in float (double for 32-
+   * and 64-bit integers and double), so that it neither overflows nor is rounded to an integer; one
+   * component is taken as it is. COMPONENT: the one that VectorComponent names. Both take the first
+   * transfer functions of the property, which they leave alone; they cost a copy, unless the
+   * component is stored by itself.
+   */
+  vtkSetClampMacro(VectorMode, int, DISABLED, COMPONENT);
+  vtkGetMacro(VectorMode, int);
+  void SetVectorModeToDisabled() { this->SetVectorMode(DISABLED); }
+  void SetVectorModeToMagnitude() { this->SetVectorMode(MAGNITUDE); }
+  void SetVectorModeToComponent() { this->SetVectorMode(COMPONENT); }
+  const char* GetVectorModeAsString();
+  ///@}
+
+  ///@{
+  /**
+   * The component that VectorMode COMPONENT projects. Default 0, clamped to [0, 3]; scalars with
+   * fewer components give an error.
+   */
+  vtkSetClampMacro(VectorComponent, int, 0, 3);
+  vtkGetMacro(VectorComponent, int);
+  ///@}
+
+  ///@{
+  /**
+   * A binary mask, as vtkGPUVolumeRayCastMapper's: voxels where it is 0 are hidden, all others are
+   * shown. Scalars of type unsigned char with one component (of the mask's points, or of its cells
+   * if its points have none), one for each voxel of the input; spacing and origin do not matter.
+   * Default none. Costs the copy that hidden voxels cost.
+   */
+  virtual void SetMaskInput(vtkImageData* mask);
+  vtkGetObjectMacro(MaskInput, vtkImageData);
+  ///@}
 
   ///@{
   /**
@@ -409,13 +481,14 @@ public:
 
   /**
    * The last shear image, one pixel per voxel, or nullptr before the first native render. Scalars:
-   * the input's type in mode PREVIEW, else float (double for 32- and 64-bit integers and double).
+   * as many components as are projected, in the input's type in mode PREVIEW (that of the copy, if
+   * voxels are hidden or resampled), else float (double for 32- and 64-bit integers and double).
    * The image's physical coordinates are voxel indices, relative to the volume's first voxel, on
    * the volume's middle slice along the principal axis: the ray of pixel (u, v) at origin + (u, v)
    * crosses slice k there at that point minus GetShear() * (k - (slices-1)/2). Pixels whose ray
-   * meets no sample are marked hidden in the ghost array. Axes: for principal axis 2 the image's x
-   * and y are the volume's first and second axis, for 1 first and third, for 0 second and third.
-   * Costs a copy of the shear image; the caller must not change it.
+   * meets no sample of any component are marked hidden in the ghost array. Axes: for principal axis
+   * 2 the image's x and y are the volume's first and second axis, for 1 first and third, for 0
+   * second and third. Costs a copy of the shear image; the caller must not change it.
    */
   vtkImageData* GetShearImage();
 
@@ -499,6 +572,9 @@ protected:
    */
   virtual bool ReadDepth(vtkRenderer* ren, const int origin[2], const int size[2], float* depths);
 
+  int VectorMode;
+  int VectorComponent;
+  vtkImageData* MaskInput;
   int QualityMode;
   int Kernel;
   double KernelRadius;

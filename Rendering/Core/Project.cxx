@@ -208,7 +208,7 @@ void Projector::walkRays(
       frame.sliceGeometry, frame.image.width, frame.image.height, frame.cuts.source().intervals);
   }
   const Walk walk(frame, layers, settings, state);
-  this->forSlices(index, frame, Layers::Beyond, frame.geometry.reversed(),
+  this->forSlices(index, frame, Layers::Beyond, walk.isReversed(),
     [&](const Span& slices, bool isFirst, bool isLast)
     {
       forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,

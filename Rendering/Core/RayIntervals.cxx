@@ -22,8 +22,7 @@ constexpr double Rounding = 1e-9;
 /// Less than the first slice, and more than the last one.
 constexpr double Before = -1.0, Beyond = std::numeric_limits<std::int16_t>::max();
 
-/// Without a function call on the baseline of x86-64. For doubles far below 2^51; of two that are
-/// as near, the even one.
+/// Without a function call on the baseline of x86-64. For doubles far below 2^51.
 inline double nearestInteger(double x)
 {
   constexpr double unit = 0x1.8p52;
@@ -88,12 +87,13 @@ struct Depths
       // Also keeps infinities out of the arithmetic.
       const double low = std::min(std::max(this->near[x], Before), Beyond);
       const double high = std::min(std::max(this->far[x], Before), Beyond);
-      const double margin = Rounding * (1.0 + std::max(low, high));
-      // Up and down: with the margin these are no integers.
+      const double margin = Rounding * (1.0 + std::abs(low));
+      // Up and down: with the margins these are no integers.
       const double first = nearestInteger(low - margin + 0.5);
-      const double last = nearestInteger(high + margin - 0.5);
+      const double last = nearestInteger(high + Rounding * (1.0 + std::abs(high)) - 0.5);
       const bool isThin = first > last && high - low > margin;
-      const double middle = nearestInteger(0.5 * (low + high));
+      // Of two slices that are as near, the higher one.
+      const double middle = nearestInteger(0.5 * (low + high) + Rounding);
       this->near[x] = std::max(isThin ? middle : first, 0.0);
       this->far[x] = std::min(isThin ? middle : last, end);
     }

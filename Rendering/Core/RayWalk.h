@@ -86,15 +86,21 @@ public:
     }
   }
 
+  /// Whether slices come from the last one on: only where their order along the ray matters. Sums
+  /// must not depend on the side that they are seen from.
+  bool isReversed() const
+  {
+    return (this->Settings.reduction == Reduction::Local || this->Settings.keepWinners) &&
+      this->Shared.geometry.reversed();
+  }
+
   void walk(const Span& slices, int v0, int v1, RayScratch& scratch) const
   {
     const Span some = common(slices, slicesOf(this->Shared.sliceGeometry, v0, v1));
-    const bool reversed =
-      (this->Settings.reduction == Reduction::Local || this->Settings.keepWinners) &&
-      this->Shared.geometry.reversed();
     scratch.mask.resize(this->Shared.image.width);
     scratch.widened.resize(this->Shared.image.width * sizeof(A));
-    this->Stack.forSamples(some, reversed, v0, v1, { 0, this->Shared.image.width }, scratch.patch,
+    this->Stack.forSamples(some, this->isReversed(), v0, v1, { 0, this->Shared.image.width },
+      scratch.patch,
       [&](int step, int v, const Span& pixels, const P* samples)
       {
         const bool isCut = !this->Shared.cuts.none();
@@ -285,8 +291,8 @@ private:
   {
     const WorksheetLoops<A>& loops = this->Shared.kernels;
     ShearImage& image = this->Shared.image;
-    loops.finish(image.row<A>(v0), this->Base, std::numeric_limits<A>::lowest(),
-      std::numeric_limits<A>::max(), std::ptrdiff_t(v1 - v0) * image.width);
+    loops.finish(image.row<A>(v0), this->Base, leastValue<A>(), greatestValue<A>(),
+      std::ptrdiff_t(v1 - v0) * image.width);
   }
 
   const Frame<T>& Shared;

@@ -46,7 +46,8 @@ void SceneDepth::place(
   }
   this->addBox(-half, last + half, this->Voxels);
   // An axis with one voxel is as thick as that voxel.
-  const glm::dvec3 thin(glm::equal(last, glm::dvec3(0.0)));
+  const glm::dvec3 thin =
+    view.showsBoxes ? glm::dvec3(1.0) : glm::dvec3(glm::equal(last, glm::dvec3(0.0)));
   this->addBox(-half * thin, last + half * thin, this->Shown);
 }
 

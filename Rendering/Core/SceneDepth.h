@@ -17,7 +17,7 @@ namespace splatting
 /**
  * Depths of other things in the scene, one per screen pixel, and where the volume lies among them.
  *
- * A volume is its shown box, voxel centre to voxel centre, in the half-spaces. What lies before it
+ * A volume is the box that its picture shows (see Warper), in the half-spaces. What lies before it
  * hides it, pixel by pixel of the screen (hide()); what lies inside ends the rays of the shear
  * image (endRays()), each at the depth of the screen pixel nearest to it. A pixel that is hidden
  * does not end its ray: its neighbours on the screen interpolate with the whole one.

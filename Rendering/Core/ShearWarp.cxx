@@ -61,6 +61,7 @@ ShearWarp::ShearWarp(const View& view)
     return;
   }
   this->Size = view.dimensions;
+  this->ShowsBoxes = view.showsBoxes;
   this->chooseAxes(direction);
   // Clip space is deeper away from the viewer; along the ray, with the principal axis growing:
   const double deeper = glm::dot(glm::dvec3(row(m, 2)) / w, direction);

@@ -65,6 +65,8 @@ public:
   const glm::dvec2& shear() const { return this->Shear; }
   /// Voxel (0, 0) of the middle slice lies at this pixel.
   const glm::ivec2& margin() const { return this->Margin; }
+  /// See View.
+  bool showsBoxes() const { return this->ShowsBoxes; }
   int width() const { return this->Size.x + 2 * this->Margin.x; }
   int height() const { return this->Size.y + 2 * this->Margin.y; }
 
@@ -109,6 +111,7 @@ private:
   void computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY);
 
   bool Valid = false;
+  bool ShowsBoxes = false;
   bool Reversed = false;
   std::array<int, 3> Axes{ 0, 1, 2 };
   glm::ivec3 Size{ 0 };

@@ -46,6 +46,8 @@ struct View
   glm::dmat4 indexToClip{ 1.0 };
   /// Size of the viewport in pixels; the clip cube [-1, 1]^2 covers it.
   glm::ivec2 viewport{ 0 };
+  /// Whether the picture ends at the outermost voxels' boxes, not at their centres.
+  bool showsBoxes = false;
   /// Half-spaces of index space that samples must lie in: dot(h, (x, y, z, 1)) >= 0.
   std::vector<glm::dvec4> halfSpaces;
   /// In index space.

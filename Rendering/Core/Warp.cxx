@@ -68,10 +68,12 @@ private:
   double HalfAcross;
 };
 
-/// The box that the picture shows: voxel centre to voxel centre, a single voxel's whole thickness.
+/// The box that the picture shows: all of the voxels' boxes, or voxel centre to voxel centre and a
+/// single voxel's whole thickness.
 glm::dvec3 shownSize(const ShearWarp& geometry)
 {
-  return glm::dvec3(glm::max(geometry.size() - 1, glm::ivec3(1)));
+  return glm::dvec3(
+    geometry.showsBoxes() ? geometry.size() : glm::max(geometry.size() - 1, glm::ivec3(1)));
 }
 
 /// Everything that the rows of one picture share.
@@ -206,6 +208,20 @@ void placePicture(const ShearWarp& geometry, const glm::ivec2& viewport, Picture
     picture.origin[a] = low;
     picture.size[a] = std::max(high - low, 0);
   }
+}
+
+void addSaturated(const Picture& layer, Picture& sum)
+{
+  const auto* const from = reinterpret_cast<const unsigned char*>(layer.pixels.data());
+  auto* const to = reinterpret_cast<unsigned char*>(sum.pixels.data());
+  vtkSMPTools::For(0, static_cast<vtkIdType>(4 * sum.pixels.size()), 1 << 16,
+    [=](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType n = first; n < last; ++n)
+      {
+        to[n] = static_cast<unsigned char>(std::min(to[n] + from[n], 255));
+      }
+    });
 }
 
 void Warper::warp(const ShearImage& image, const ShearWarp& geometry, const ColorTable& table,

@@ -40,6 +40,11 @@ struct Picture
 void placePicture(const ShearWarp& geometry, const glm::ivec2& viewport, Picture& picture);
 
 /**
+ * Adds a picture of the same size and place, byte by byte, no further than 255.
+ */
+void addSaturated(const Picture& layer, Picture& sum);
+
+/**
  * Warps shear images. Holds work space between frames.
  */
 class Warper
@@ -47,8 +52,9 @@ class Warper
 public:
   /**
    * Fills the picture with the shear image as seen in a viewport. The picture ends where the
-   * volume's outermost voxel centres are seen (half a voxel further out along axes with one voxel);
-   * pixels beyond and pixels without a sample are transparent.
+   * volume's outermost voxel centres are seen (half a voxel further out along axes with one voxel,
+   * and along all if the geometry shows boxes); pixels beyond and pixels without a sample are
+   * transparent.
    */
   void warp(const ShearImage& image, const ShearWarp& geometry, const ColorTable& table,
     const glm::ivec2& viewport, InstructionSet instructionSet, Picture& picture);

@@ -13,11 +13,15 @@
 #include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
+#include "vtkFieldData.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkImageData.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
+#include "vtkMultiVolume.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
@@ -26,6 +30,8 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSphereSource.h"
+#include "vtkStringArray.h"
+#include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
@@ -78,6 +84,9 @@ struct Scene
   {
     this->mapper->SetInputData(this->image);
     this->mapper->SetScalarModeToDefault();
+    this->mapper->SetVectorModeToDisabled();
+    this->mapper->SetMaskInput(nullptr);
+    this->stage.property->IndependentComponentsOn();
     this->stage.volume->SetScale(1.0, 1.0, 1.0);
     this->stage.volume->SetUserMatrix(nullptr);
     this->stage.volume->SetPosition(0.0, 0.0, 0.0);
@@ -138,21 +147,151 @@ std::vector<Fault> inputFaults()
         s.mapper->SetScalarModeToUsePointFieldData();
         s.mapper->SelectScalarArray("nonsense");
       } },
-    { "cell scalars", "cells",
+    { "wrong array number", "array",
       [](Scene& s)
-      { s.mapper->SetInputData(withArray(vtkNew<vtkUnsignedCharArray>(), 35 * 35 * 35, true)); } },
+      {
+        s.mapper->SetScalarModeToUsePointFieldData();
+        s.mapper->SelectScalarArray(7);
+      } },
+    { "strings", "numeric",
+      [](Scene& s)
+      {
+        const auto image = bareImage();
+        vtkNew<vtkStringArray> strings;
+        strings->SetName("names");
+        strings->SetNumberOfValues(36 * 36 * 36);
+        image->GetPointData()->AddArray(strings);
+        s.mapper->SetScalarModeToUsePointFieldData();
+        s.mapper->SelectScalarArray("names");
+        s.mapper->SetInputData(image);
+      } },
+    { "field data", "field data",
+      [](Scene& s)
+      {
+        const auto image = bareImage();
+        vtkNew<vtkUnsignedCharArray> array;
+        array->SetName("numbers");
+        array->SetNumberOfTuples(36 * 36 * 36);
+        image->GetFieldData()->AddArray(array);
+        s.mapper->SetScalarMode(VTK_SCALAR_MODE_USE_FIELD_DATA);
+        s.mapper->SelectScalarArray("numbers");
+        s.mapper->SetInputData(image);
+      } },
+    { "cell scalars for points", "cells",
+      [](Scene& s)
+      { s.mapper->SetInputData(withArray(vtkNew<vtkUnsignedCharArray>(), 36 * 36 * 36, true)); } },
     { "bit array", "bits",
       [](Scene& s)
       { s.mapper->SetInputData(withArray(vtkNew<vtkBitArray>(), 36 * 36 * 36, false)); } },
     { "too few scalars", "tuples",
       [](Scene& s)
       { s.mapper->SetInputData(withArray(vtkNew<vtkUnsignedCharArray>(), 36 * 36, false)); } },
-    { "rectilinear grid", "vtkRectilinearGrid",
+    { "structured grid", "vtkStructuredGrid",
+      [](Scene& s) { s.mapper->SetInputDataObject(vtkNew<vtkStructuredGrid>()); } },
+  };
+}
+
+vtkSmartPointer<vtkDataArray> withComponents(int components)
+{
+  auto array = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  array->SetNumberOfComponents(components);
+  return array;
+}
+
+std::vector<Fault> componentFaults()
+{
+  return {
+    { "component out of range", "VectorComponent",
       [](Scene& s)
       {
-        vtkNew<vtkRectilinearGrid> grid;
-        grid->SetDimensions(3, 3, 3);
-        s.mapper->SetInputData(grid);
+        s.mapper->SetInputData(withArray(withComponents(2), 36 * 36 * 36, false));
+        s.mapper->SetVectorModeToComponent();
+        s.mapper->SetVectorComponent(2);
+      } },
+    { "five components", "5 components",
+      [](Scene& s) { s.mapper->SetInputData(withArray(withComponents(5), 36 * 36 * 36, false)); } },
+    { "three dependent components", "3 components",
+      [](Scene& s)
+      {
+        s.mapper->SetInputData(withArray(withComponents(3), 36 * 36 * 36, false));
+        s.stage.property->IndependentComponentsOff();
+      } },
+  };
+}
+
+vtkSmartPointer<vtkImageData> maskOf(int type, int width, int components)
+{
+  auto mask = vtkSmartPointer<vtkImageData>::New();
+  mask->SetDimensions(width, 36, 36);
+  mask->AllocateScalars(type, components);
+  return mask;
+}
+
+std::vector<Fault> maskFaults()
+{
+  return {
+    { "mask of another size", "mask",
+      [](Scene& s) { s.mapper->SetMaskInput(maskOf(VTK_UNSIGNED_CHAR, 35, 1)); } },
+    { "mask of another type", "mask",
+      [](Scene& s) { s.mapper->SetMaskInput(maskOf(VTK_SHORT, 36, 1)); } },
+    { "mask with two components", "mask",
+      [](Scene& s) { s.mapper->SetMaskInput(maskOf(VTK_UNSIGNED_CHAR, 36, 2)); } },
+    { "mask without scalars", "mask", [](Scene& s) { s.mapper->SetMaskInput(bareImage()); } },
+    { "too few ghosts", "vtkGhostType",
+      [](Scene& s)
+      {
+        const auto image = vtkSmartPointer<vtkImageData>::New();
+        image->ShallowCopy(s.image);
+        vtkNew<vtkUnsignedCharArray> ghosts;
+        ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+        ghosts->SetNumberOfTuples(36);
+        image->GetPointData()->AddArray(ghosts);
+        s.mapper->SetInputData(image);
+      } },
+  };
+}
+
+/// A grid of 3 x 36 x 36 points.
+vtkSmartPointer<vtkRectilinearGrid> gridWith(const std::vector<double>& x)
+{
+  auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
+  grid->SetDimensions(3, 36, 36);
+  for (int a = 0; a < 3; ++a)
+  {
+    vtkNew<vtkDoubleArray> coordinates;
+    for (int n = 0; n < (a ? 36 : static_cast<int>(x.size())); ++n)
+    {
+      coordinates->InsertNextValue(a ? n : x[n]);
+    }
+    a == 0     ? grid->SetXCoordinates(coordinates)
+      : a == 1 ? grid->SetYCoordinates(coordinates)
+               : grid->SetZCoordinates(coordinates);
+  }
+  vtkNew<vtkUnsignedCharArray> scalars;
+  scalars->SetNumberOfTuples(3 * 36 * 36);
+  scalars->Fill(1.0);
+  grid->GetPointData()->SetScalars(scalars);
+  return grid;
+}
+
+std::vector<Fault> gridFaults()
+{
+  return {
+    { "coordinates to and fro", "X coordinates",
+      [](Scene& s) {
+        s.mapper->SetInputData(gridWith({ 0.0, 2.0, 1.0 }));
+      } },
+    { "coordinates that are equal", "X coordinates",
+      [](Scene& s) {
+        s.mapper->SetInputData(gridWith({ 0.0, 1.0, 1.0 }));
+      } },
+    { "coordinates without number", "X coordinates",
+      [](Scene& s) {
+        s.mapper->SetInputData(gridWith({ 0.0, vtkMath::Nan(), 2.0 }));
+      } },
+    { "too few coordinates", "X coordinates",
+      [](Scene& s) {
+        s.mapper->SetInputData(gridWith({ 0.0, 1.0 }));
       } },
   };
 }
@@ -337,6 +476,19 @@ void testProperties(Scene& scene, stage::Checks& check)
   check(scene.stage.pixels() == before, "With the property the picture is as before.");
   check(errors.texts.empty() && warnings.texts.empty(), "The mapper has nothing to say.");
 }
+
+/// VTK's class for several volumes in one mapper, which only the GPU ray caster knows.
+void testMultiVolume(Scene& scene, stage::Checks& check)
+{
+  const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
+  vtkNew<vtkMultiVolume> several;
+  const stage::Messages ownErrors(several, vtkCommand::ErrorEvent);
+  scene.mapper->Render(scene.stage.renderer, several);
+  scene.mapper->Render(scene.stage.renderer, several);
+  check(errors.texts.size() == 1 && isSentence(errors.texts[0]) &&
+      errors.texts[0].find("vtkMultiVolume") != std::string::npos,
+    "Several volumes give one sentence.");
+}
 }
 
 //------------------------------------------------------------------------------
@@ -345,14 +497,15 @@ int TestBadInput(int, char*[])
   stage::Checks check;
   Scene scene;
   check(showsSphere(scene.stage.pixels()), "The sphere is seen to begin with.");
-  for (const Fault& fault : inputFaults())
+  for (const auto& faults :
+    { inputFaults(), componentFaults(), maskFaults(), gridFaults(), matrixFaults() })
   {
-    test(scene, fault, check);
+    for (const Fault& fault : faults)
+    {
+      test(scene, fault, check);
+    }
   }
-  for (const Fault& fault : matrixFaults())
-  {
-    test(scene, fault, check);
-  }
+  testMultiVolume(scene, check);
   for (const Fault& fault : settingFaults())
   {
     test(scene, fault, check);

@@ -8,6 +8,7 @@
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include "vtkObjectFactory.h"
+#include "vtkSmartVolumeMapper.h"
 
 #include <sstream>
 
@@ -40,6 +41,9 @@ void testDefaults(Mapper* mapper, stage::Checks& check)
   check(mapper->GetLineTolerance() == 0.0, "Default encoding is lossless.");
   check(!mapper->GetEliminateInvisible() && !mapper->GetCullBelowWindow(), "Default keeps all.");
   check(mapper->GetIndexMemoryBudget() == vtkTypeInt64(1) << 32, "Default budget is 4 GiB.");
+  check(mapper->GetVectorMode() == Mapper::DISABLED && mapper->GetVectorComponent() == 0,
+    "Default is all components.");
+  check(mapper->GetMaskInput() == nullptr, "Default is no mask.");
   check(mapper->GetAutoAdjustSampleDistances() == 1, "Default adjusts to the time, as VTK does.");
   check(mapper->GetQualityModeUsed() == Mapper::HIGH, "A new mapper has used no other mode.");
   check(mapper->GetFinalColorWindow() == 1.0f && mapper->GetFinalColorLevel() == 0.5f,
@@ -105,6 +109,30 @@ void testClampingOfAcceleration(Mapper* mapper, stage::Checks& check)
     "SetIndexMemoryBudget below zero");
 }
 
+/// The values are vtkSmartVolumeMapper's.
+void testVectorMode(Mapper* mapper, stage::Checks& check)
+{
+  static_assert(int(Mapper::DISABLED) == int(vtkSmartVolumeMapper::DISABLED) &&
+    int(Mapper::MAGNITUDE) == int(vtkSmartVolumeMapper::MAGNITUDE) &&
+    int(Mapper::COMPONENT) == int(vtkSmartVolumeMapper::COMPONENT));
+  for (const auto& [value, expected] : { std::pair(0, 0), { 1, 1 }, { -7, -1 }, { 2, 1 } })
+  {
+    check(sets(mapper, &Mapper::SetVectorMode, &Mapper::GetVectorMode, value, expected),
+      "SetVectorMode " + std::to_string(value));
+  }
+  for (const auto& [value, expected] : { std::pair(2, 2), { 3, 3 }, { -1, 0 }, { 4, 3 } })
+  {
+    check(sets(mapper, &Mapper::SetVectorComponent, &Mapper::GetVectorComponent, value, expected),
+      "SetVectorComponent " + std::to_string(value));
+  }
+  mapper->SetVectorModeToMagnitude();
+  check(std::string("magnitude") == mapper->GetVectorModeAsString(), "SetVectorModeToMagnitude");
+  mapper->SetVectorModeToComponent();
+  check(std::string("component") == mapper->GetVectorModeAsString(), "SetVectorModeToComponent");
+  mapper->SetVectorModeToDisabled();
+  check(std::string("disabled") == mapper->GetVectorModeAsString(), "SetVectorModeToDisabled");
+}
+
 void testNames(Mapper* mapper, stage::Checks& check)
 {
   const auto modeIs = [&](int value, const char* name)
@@ -145,7 +173,8 @@ void testPrinting(Mapper* mapper, stage::Checks& check)
       "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ", "Acceleration: auto",
       "AccelerationUsed: dense", "LineTolerance: ", "EliminateInvisible: ", "QualityModeUsed: high",
       "AutoAdjustSampleDistances: On", "FinalColorWindow: 1", "FinalColorLevel: 0.5",
-      "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend", "Cropping" })
+      "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend", "VectorMode: disabled",
+      "VectorComponent: ", "MaskInput: ", "Cropping" })
   {
     check(text.find(variable) != std::string::npos, std::string("PrintSelf names ") + variable);
   }
@@ -162,6 +191,7 @@ int TestMapperContract(int, char*[])
   testPrinting(mapper, check);
   testClamping(mapper, check);
   testClampingOfAcceleration(mapper, check);
+  testVectorMode(mapper, check);
   testNames(mapper, check);
   return check.exitCode();
 }

@@ -566,7 +566,8 @@ double Kernel::operator()(double t) const
 }
 
 //------------------------------------------------------------------------------
-Image<double> slabAverage(const Volume<double>& volume, const ShearView& view, const Kernel& kernel)
+RaySamples<double> slabSamples(
+  const Volume<double>& volume, const ShearView& view, const Kernel& kernel)
 {
   if (kernel.shape == Kernel::CosineBell && !(kernel.radius >= 0.5 && kernel.radius <= 1.5))
   {
@@ -574,15 +575,36 @@ Image<double> slabAverage(const Volume<double>& volume, const ShearView& view, c
   }
   const ShearedVolume source = { volume, makeShearGrid(volume.size, view), view };
   const SlabIntegral integral(source, kernel);
-  Image<double> image(source.grid.width, source.grid.height);
+  RaySamples<double> rays;
+  for (int v = 0; v < source.grid.height; ++v)
+  {
+    for (int u = 0; u < source.grid.width; ++u)
+    {
+      rays.emplace_back();
+      for (int slice : crossedSlices(volume, view, u, v))
+      {
+        const WeightedSum slab = integral(u, v, slice);
+        // No weight: 0 / 0, a NaN, no sample.
+        rays.back().push_back({ slice, slab.sum / slab.weight, slab.weight });
+      }
+    }
+  }
+  return rays;
+}
+
+//------------------------------------------------------------------------------
+Image<double> slabAverage(const Volume<double>& volume, const ShearView& view, const Kernel& kernel)
+{
+  const RaySamples<double> rays = slabSamples(volume, view, kernel);
+  const ShearGrid grid = makeShearGrid(volume.size, view);
+  Image<double> image(grid.width, grid.height);
   for (int v = 0; v < image.height; ++v)
   {
     for (int u = 0; u < image.width; ++u)
     {
-      for (int slice : crossedSlices(volume, view, u, v))
+      for (const Sample<double>& sample : rays[image.index(u, v)])
       {
-        const WeightedSum slab = integral(u, v, slice);
-        image.raise(u, v, slab.sum / slab.weight); // no weight: 0 / 0, a NaN, no sample
+        image.raise(u, v, sample.value);
       }
     }
   }

@@ -130,6 +130,46 @@ Image<T> exactTraversal(const Volume<T>& volume, const ShearView& view)
 }
 
 /**
+ * What a ray meets in a slice. The weight is what remains of the slice's average where NaN voxels
+ * are left out: for kernels that sum to one 1 without any NaN and 0 with nothing else.
+ */
+template <class T>
+struct Sample
+{
+  int slice;
+  T value;
+  double weight;
+};
+
+/**
+ * The samples of each pixel's ray by ascending depth, pixels as in Image.
+ */
+template <class T>
+using RaySamples = std::vector<std::vector<Sample<T>>>;
+
+/**
+ * Mode preview: the voxels that rays cross, NaN or not.
+ */
+template <class T>
+RaySamples<T> voxelSamples(const Volume<T>& volume, const ShearView& view)
+{
+  const ShearGrid grid = makeShearGrid(volume.size, view);
+  RaySamples<T> rays;
+  for (int v = 0; v < grid.height; ++v)
+  {
+    for (int u = 0; u < grid.width; ++u)
+    {
+      rays.emplace_back();
+      for (const std::array<int, 3>& position : crossedVoxels(volume.size, view, u, v))
+      {
+        rays.back().push_back({ position[view.axis], volume.at(position), 1.0 });
+      }
+    }
+  }
+  return rays;
+}
+
+/**
  * How the volume is continued between voxel centres: the sum of h(x-i) h(y-j) h(z-k) times voxel
  * (i,j,k), divided by the sum of the weights where they do not sum to one.
  */
@@ -164,6 +204,13 @@ struct Kernel
  * cosine bells.
  */
 Image<double> slabAverage(
+  const Volume<double>& volume, const ShearView& view, const Kernel& kernel);
+
+/**
+ * The averages of all slices that rays cross, of which slabAverage takes the maximum. Those that
+ * have no weight are NaN.
+ */
+RaySamples<double> slabSamples(
   const Volume<double>& volume, const ShearView& view, const Kernel& kernel);
 
 /**

@@ -1,0 +1,443 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ScalarSource.h"
+
+#include "Blanking.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
+#include "vtkPointData.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkSOADataArrayTemplate.h"
+#include "vtkTimerLog.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace
+{
+template <class T>
+splatting::ScalarType sizedType()
+{
+  constexpr bool isSigned = std::numeric_limits<T>::is_signed;
+  switch (sizeof(T))
+  {
+    case 1:
+      return isSigned ? splatting::ScalarType::Int8 : splatting::ScalarType::UInt8;
+    case 2:
+      return isSigned ? splatting::ScalarType::Int16 : splatting::ScalarType::UInt16;
+    case 4:
+      return isSigned ? splatting::ScalarType::Int32 : splatting::ScalarType::UInt32;
+    default:
+      return isSigned ? splatting::ScalarType::Int64 : splatting::ScalarType::UInt64;
+  }
+}
+
+/// Where a component lies of an array that holds one component after the other; nullptr for others.
+template <class T>
+const void* separateComponentOf(vtkDataArray* array, int component)
+{
+  auto* const separate = vtkSOADataArrayTemplate<T>::SafeDownCast(array);
+  return separate ? separate->GetComponentArrayPointer(component) : nullptr;
+}
+
+const void* separateComponent(vtkDataArray* array, int component)
+{
+  switch (array->GetDataType())
+  {
+    vtkTemplateMacro(return separateComponentOf<VTK_TT>(array, component));
+  }
+  return nullptr;
+}
+
+std::ptrdiff_t count(const glm::ivec3& size)
+{
+  return std::ptrdiff_t(size.x) * size.y * size.z;
+}
+
+/// The data set's time with that of all that it holds.
+vtkMTimeType timeOf(vtkDataSet* input)
+{
+  vtkMTimeType time = input->GetMTime();
+  if (auto* const grid = vtkRectilinearGrid::SafeDownCast(input))
+  {
+    for (vtkDataArray* coordinates :
+      { grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates() })
+    {
+      time = std::max(time, coordinates ? coordinates->GetMTime() : 0);
+    }
+  }
+  return time;
+}
+
+/// What is wrong with the data set, its arrays and geometry aside.
+std::string problemOfInput(vtkDataSet* input)
+{
+  if (!input)
+  {
+    return "There is no input: connect a vtkImageData with SetInputData or SetInputConnection.";
+  }
+  if (!vtkImageData::SafeDownCast(input) && !vtkRectilinearGrid::SafeDownCast(input))
+  {
+    return std::string("The input is a ") + input->GetClassName() +
+      ", only vtkImageData and vtkRectilinearGrid can be splatted: resample it with "
+      "vtkResampleToImage.";
+  }
+  if (input->GetNumberOfPoints() < 1)
+  {
+    return "The input has no voxels: its extent is empty.";
+  }
+  return {};
+}
+
+/// The voxels of one component of several, in an array of T; no NaN, but the least number.
+template <class T>
+void interleave(const splatting::VoxelArray& volume, int component, int components, T* out)
+{
+  const T* const in = static_cast<const T*>(volume.voxels);
+  const std::ptrdiff_t n = count(volume.dimensions);
+  T least = std::numeric_limits<T>::max();
+  for (std::ptrdiff_t voxel = 0; voxel < n; ++voxel)
+  {
+    least = in[voxel] < least ? in[voxel] : least;
+  }
+  for (std::ptrdiff_t voxel = 0; voxel < n; ++voxel)
+  {
+    const T value = in[voxel];
+    out[voxel * components + component] = value == value ? value : least;
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+splatting::ScalarType scalarTypeOfVtk(int vtkType)
+{
+  if (vtkType == VTK_DOUBLE)
+  {
+    return splatting::ScalarType::Float64;
+  }
+  if (vtkType == VTK_FLOAT)
+  {
+    return splatting::ScalarType::Float32;
+  }
+  switch (vtkType)
+  {
+    vtkTemplateMacro(return sizedType<VTK_TT>());
+  }
+  return splatting::ScalarType::Float32;
+}
+
+//------------------------------------------------------------------------------
+ScalarSource::ScalarSource() = default;
+
+//------------------------------------------------------------------------------
+ScalarSource::~ScalarSource() = default;
+
+//------------------------------------------------------------------------------
+bool ScalarSource::Key::operator==(const Key& other) const
+{
+  return this->input == other.input && this->time == other.time && this->scalars == other.scalars &&
+    this->buffer == other.buffer && this->vectorMode == other.vectorMode &&
+    this->vectorComponent == other.vectorComponent && this->cells == other.cells &&
+    this->independent == other.independent && this->mask == other.mask &&
+    this->maskTime == other.maskTime;
+}
+
+//------------------------------------------------------------------------------
+void* ScalarSource::Copy::Allocate(std::ptrdiff_t voxels, splatting::ScalarType type)
+{
+  this->size = static_cast<std::size_t>(voxels) * splatting::sizeOf(type);
+  this->bytes.reset(new unsigned char[this->size]);
+  return this->bytes.get();
+}
+
+//------------------------------------------------------------------------------
+std::string ScalarSource::Examine(vtkDataSet* input, const ScalarChoice& choice)
+{
+  Key key;
+  std::string problem = problemOfInput(input);
+  if (problem.empty())
+  {
+    problem = this->FindScalars(input, choice, key);
+  }
+  if (problem.empty() && key == this->Examined)
+  {
+    return problem;
+  }
+  if (problem.empty())
+  {
+    problem = this->CheckComponents(key);
+  }
+  if (problem.empty())
+  {
+    problem = problemOfBlanking(input, key.cells, key.mask);
+  }
+  if (problem.empty())
+  {
+    problem = describeGrid(input, key.cells, this->Place);
+  }
+  this->Examined = problem.empty() ? key : Key{};
+  return problem;
+}
+
+//------------------------------------------------------------------------------
+// Finds the chosen array and says what is wrong with it.
+std::string ScalarSource::FindScalars(vtkDataSet* input, const ScalarChoice& choice, Key& key) const
+{
+  int cellFlag = 0;
+  vtkDataArray* const scalars = vtkAbstractMapper::GetScalars(
+    input, choice.scalarMode, choice.arrayAccessMode, choice.arrayId, choice.arrayName, cellFlag);
+  if (!scalars)
+  {
+    return "The input has no numeric scalars under the chosen ScalarMode and array: set them on "
+           "the input or choose another with SelectScalarArray.";
+  }
+  if (cellFlag == 2)
+  {
+    return "The chosen array is field data, which belongs to neither points nor cells: choose "
+           "another ScalarMode.";
+  }
+  if (scalars->GetDataType() == VTK_BIT)
+  {
+    return "The scalars are bits: convert them with vtkImageCast.";
+  }
+  const bool cells = cellFlag == 1;
+  const vtkIdType voxels = cells ? input->GetNumberOfCells() : input->GetNumberOfPoints();
+  if (scalars->GetNumberOfTuples() != voxels)
+  {
+    return "The scalars have " + std::to_string(scalars->GetNumberOfTuples()) + " tuples for " +
+      std::to_string(voxels) + (cells ? " cells" : " points") + ": the two must agree.";
+  }
+  // The image's time includes its arrays'. Images may share an array, and an array may be given
+  // another buffer without a word.
+  key = { input, timeOf(input), scalars,
+    scalars->HasStandardMemoryLayout() ? scalars->GetVoidPointer(0) : separateComponent(scalars, 0),
+    choice.vectorMode, choice.vectorComponent, cells, choice.independentComponents, choice.mask,
+    choice.mask ? choice.mask->GetMTime() : 0 };
+  return {};
+}
+
+//------------------------------------------------------------------------------
+// What is projected of the array's components.
+std::string ScalarSource::CheckComponents(const Key& key)
+{
+  const int available = key.scalars->GetNumberOfComponents();
+  if (available < 1)
+  {
+    return "The scalars have no components: set their number to 1.";
+  }
+  this->Dependent = false;
+  this->NumberOfComponents = 1;
+  if (key.vectorMode == vtkSplattingMIPVolumeMapper::COMPONENT && key.vectorComponent >= available)
+  {
+    return "VectorComponent is " + std::to_string(key.vectorComponent) + ", but the scalars have " +
+      std::to_string(available) + " components: choose one that is less.";
+  }
+  if (key.vectorMode != vtkSplattingMIPVolumeMapper::DISABLED || available == 1)
+  {
+    return {};
+  }
+  if (available > 4 || (!key.independent && available == 3))
+  {
+    return "The scalars have " + std::to_string(available) +
+      " components, but there can be 1 to 4 independent or 2 or 4 dependent ones: choose their "
+      "magnitude or one of them with SetVectorMode.";
+  }
+  this->Dependent = !key.independent;
+  this->NumberOfComponents = available;
+  return {};
+}
+
+//------------------------------------------------------------------------------
+bool ScalarSource::IsMagnitude() const
+{
+  return this->Examined.vectorMode == vtkSplattingMIPVolumeMapper::MAGNITUDE &&
+    this->Examined.scalars->GetNumberOfComponents() > 1;
+}
+
+//------------------------------------------------------------------------------
+// The components that are projected, or make up the magnitude that is.
+std::vector<splatting::StridedVoxels> ScalarSource::ChosenComponents()
+{
+  vtkDataArray* scalars = this->Examined.scalars;
+  const bool isSeparate = !scalars->HasStandardMemoryLayout() && separateComponent(scalars, 0);
+  if (!scalars->HasStandardMemoryLayout() && !isSeparate)
+  {
+    this->Packed.TakeReference(vtkDataArray::CreateDataArray(this->VtkType));
+    this->Packed->DeepCopy(scalars);
+    scalars = this->Packed;
+  }
+  const int available = scalars->GetNumberOfComponents();
+  const bool one = this->Examined.vectorMode == vtkSplattingMIPVolumeMapper::COMPONENT;
+  const int first = one ? this->Examined.vectorComponent : 0;
+  std::vector<splatting::StridedVoxels> components;
+  for (int c = first; c < (one ? first + 1 : available); ++c)
+  {
+    components.push_back({ isSeparate ? separateComponent(scalars, c) : scalars->GetVoidPointer(c),
+      scalarTypeOfVtk(this->VtkType), isSeparate ? 1 : available });
+  }
+  return components;
+}
+
+//------------------------------------------------------------------------------
+splatting::VoxelArray ScalarSource::MakeVolume(
+  splatting::StridedVoxels voxels, const std::vector<unsigned char>& hidden, Copy& copy) const
+{
+  const std::ptrdiff_t given = count(this->Place.dimensions);
+  if (!hidden.empty())
+  {
+    const splatting::ScalarType type = splatting::averageType(voxels.type);
+    void* const shown = copy.Allocate(given, type);
+    splatting::hide(voxels, hidden.data(), given, shown);
+    voxels = { shown, type, 1 };
+  }
+  if (this->Place.resampled)
+  {
+    const bool cells = this->Place.grid.cells;
+    const splatting::ScalarType type = cells ? voxels.type : splatting::averageType(voxels.type);
+    Copy even;
+    void* const resampled = even.Allocate(count(this->Place.grid.dimensions), type);
+    (cells ? splatting::resampleCells : splatting::resamplePoints)(
+      voxels, this->Place.dimensions, this->Place.axes, resampled);
+    copy = std::move(even);
+    voxels = { resampled, type, 1 };
+  }
+  if (voxels.stride != 1)
+  {
+    void* const gathered = copy.Allocate(given, voxels.type);
+    splatting::gather(voxels, given, gathered);
+    voxels = { gathered, voxels.type, 1 };
+  }
+  return { voxels.voxels, voxels.type, this->Place.grid.dimensions };
+}
+
+//------------------------------------------------------------------------------
+void ScalarSource::Update()
+{
+  if (this->Volumed == this->Examined)
+  {
+    return;
+  }
+  const double start = vtkTimerLog::GetUniversalTime();
+  this->Volumes.clear();
+  this->Copies.clear();
+  this->Packed = nullptr;
+  this->VtkType = this->Examined.scalars->GetDataType();
+  const std::vector<unsigned char> hidden =
+    findBlanked(this->Examined.input, this->Examined.cells, this->Examined.mask);
+  std::vector<splatting::StridedVoxels> components = this->ChosenComponents();
+  Copy lengths;
+  if (this->IsMagnitude())
+  {
+    const std::ptrdiff_t voxels = count(this->Place.dimensions);
+    const splatting::ScalarType type = splatting::averageType(components.front().type);
+    splatting::magnitude(components, voxels, lengths.Allocate(voxels, type));
+    components = { { lengths.bytes.get(), type, 1 } };
+  }
+  for (const splatting::StridedVoxels& component : components)
+  {
+    Copy copy;
+    this->Volumes.push_back(this->MakeVolume(component, hidden, copy));
+    // A magnitude that is splatted as it is stays.
+    this->Copies.push_back(copy.bytes ? std::move(copy) : std::move(lengths));
+  }
+  this->Volumed = this->Examined;
+  ++this->NumberOfUpdates;
+  this->Seconds = vtkTimerLog::GetUniversalTime() - start;
+}
+
+//------------------------------------------------------------------------------
+int ScalarSource::VtkTypeOf(splatting::ScalarType type) const
+{
+  if (type == scalarTypeOfVtk(this->VtkType))
+  {
+    return this->VtkType; // keeps char apart from signed char, long from long long
+  }
+  return type == splatting::ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
+}
+
+//------------------------------------------------------------------------------
+// Whether the chosen array is what is projected, however it is stored.
+bool ScalarSource::IsInputArray() const
+{
+  const bool isPart = this->Examined.vectorMode == vtkSplattingMIPVolumeMapper::COMPONENT &&
+    this->Examined.scalars->GetNumberOfComponents() > 1;
+  return !isPart && !this->IsMagnitude() && !this->Place.resampled &&
+    findBlanked(this->Examined.input, this->Examined.cells, this->Examined.mask).empty();
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkDataArray> ScalarSource::InterleavedVolumes() const
+{
+  const int components = static_cast<int>(this->Volumes.size());
+  const auto array = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(this->VtkTypeOf(this->Volumes.front().type)));
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(count(this->Place.grid.dimensions));
+  for (int c = 0; c < components; ++c)
+  {
+    splatting::dispatch(this->Volumes[c].type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        interleave(this->Volumes[c], c, components, static_cast<T*>(array->GetVoidPointer(0)));
+      });
+  }
+  return array;
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* ScalarSource::Image()
+{
+  if (this->StandIn && this->Imaged == this->Examined)
+  {
+    return this->StandIn;
+  }
+  const VolumeGrid& grid = this->Place.grid;
+  const glm::ivec3 last = grid.dimensions - 1;
+  glm::ivec3 first(0);
+  this->StandIn = vtkSmartPointer<vtkImageData>::New();
+  if (auto* const image = vtkImageData::SafeDownCast(this->Examined.input))
+  {
+    // Cropping is about the image's own axes: extent and direction stay what they are.
+    const int* const extent = image->GetExtent();
+    first = { extent[0], extent[2], extent[4] };
+    this->StandIn->SetDirectionMatrix(image->GetDirectionMatrix());
+  }
+  const glm::dvec4 origin = grid.indexToPhysical * glm::dvec4(-glm::dvec3(first), 1.0);
+  this->StandIn->SetExtent(
+    first.x, first.x + last.x, first.y, first.y + last.y, first.z, first.z + last.z);
+  this->StandIn->SetOrigin(origin.x, origin.y, origin.z);
+  this->StandIn->SetSpacing(grid.spacing.x, grid.spacing.y, grid.spacing.z);
+  this->StandInCopy = nullptr;
+  vtkDataArray* scalars = this->Examined.scalars;
+  if (!this->IsInputArray())
+  {
+    this->Update();
+    this->StandInCopy = this->InterleavedVolumes();
+    scalars = this->StandInCopy;
+  }
+  this->StandIn->GetPointData()->SetScalars(scalars);
+  this->Imaged = this->Examined;
+  return this->StandIn;
+}
+
+//------------------------------------------------------------------------------
+std::size_t ScalarSource::MemorySize() const
+{
+  std::size_t size = 0;
+  for (const Copy& copy : this->Copies)
+  {
+    size += copy.size;
+  }
+  for (vtkDataArray* array : { this->Packed.Get(), this->StandInCopy.Get() })
+  {
+    size +=
+      array ? static_cast<std::size_t>(array->GetNumberOfValues()) * array->GetDataTypeSize() : 0;
+  }
+  return size;
+}

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ScalarSource_h
+#define ScalarSource_h
+
+#include "VolumeGrid.h"
+#include "VoxelCopies.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkDataSet;
+class vtkImageData;
+
+/**
+ * Which numbers of a data set are projected, as the properties of mapper and volume say it.
+ */
+struct ScalarChoice
+{
+  int scalarMode = 0;
+  int arrayAccessMode = 0;
+  int arrayId = -1;
+  const char* arrayName = nullptr;
+  int vectorMode = -1;
+  int vectorComponent = 0;
+  bool independentComponents = true;
+  vtkImageData* mask = nullptr;
+};
+
+/**
+ * From a data set to the volumes that are splatted, one for each component. They are the data set's
+ * own arrays where these hold voxel after voxel, and copies otherwise, made when they are needed
+ * and anew when the data or the choice change.
+ */
+class ScalarSource
+{
+public:
+  ScalarSource();
+  ~ScalarSource();
+
+  /**
+   * The gate: a sentence that says why the input cannot be projected and what to do, or nothing.
+   * Cheap while nothing changes. What follows is about the last input that passed.
+   */
+  std::string Examine(vtkDataSet* input, const ScalarChoice& choice);
+
+  const VolumeGrid& Grid() const { return this->Place.grid; }
+  /// What is projected: 1 to 4.
+  int Components() const { return this->NumberOfComponents; }
+  /// Whether the components are one sample's colour and opacity.
+  bool AreDependent() const { return this->Dependent; }
+
+  /// Makes the copies that are needed; a no-op while nothing changes.
+  void Update();
+  /// Another number after each Update() that changed the volumes.
+  vtkIdType Version() const { return this->NumberOfUpdates; }
+  /// Valid after Update(), as long as the input.
+  const splatting::VoxelArray& Volume(int component) const { return this->Volumes[component]; }
+  /// VTK's name for the type of a volume, or of what is projected from it.
+  int VtkTypeOf(splatting::ScalarType type) const;
+
+  /**
+   * The same voxels as point scalars of a vtkImageData, for mappers that know nothing else. Hidden
+   * voxels have the least value. Shares the input's array if no copy is needed for splatting.
+   */
+  vtkImageData* Image();
+
+  /// Bytes of all copies.
+  std::size_t MemorySize() const;
+  /// Seconds that the last Update() that changed the volumes took.
+  double Time() const { return this->Seconds; }
+
+private:
+  /// What the volumes depend on.
+  struct Key
+  {
+    vtkDataSet* input = nullptr;
+    vtkMTimeType time = 0;
+    vtkDataArray* scalars = nullptr;
+    const void* buffer = nullptr;
+    int vectorMode = -1;
+    int vectorComponent = 0;
+    bool cells = false;
+    bool independent = true;
+    vtkImageData* mask = nullptr;
+    vtkMTimeType maskTime = 0;
+
+    bool operator==(const Key& other) const;
+  };
+  struct Copy
+  {
+    std::unique_ptr<unsigned char[]> bytes;
+    std::size_t size = 0;
+
+    void* Allocate(std::ptrdiff_t count, splatting::ScalarType type);
+  };
+
+  std::string FindScalars(vtkDataSet* input, const ScalarChoice& choice, Key& key) const;
+  std::string CheckComponents(const Key& key);
+  bool IsMagnitude() const;
+  std::vector<splatting::StridedVoxels> ChosenComponents();
+  splatting::VoxelArray MakeVolume(
+    splatting::StridedVoxels voxels, const std::vector<unsigned char>& hidden, Copy& copy) const;
+  bool IsInputArray() const;
+  vtkSmartPointer<vtkDataArray> InterleavedVolumes() const;
+
+  Key Examined; // what passed the gate
+  Key Volumed;  // what the volumes were made of
+  Key Imaged;   // what the image was made of
+  GridOfDataSet Place;
+  int NumberOfComponents = 1;
+  bool Dependent = false;
+  int VtkType = VTK_VOID;
+  vtkIdType NumberOfUpdates = 0;
+  double Seconds = 0.0;
+  std::vector<splatting::VoxelArray> Volumes;
+  std::vector<Copy> Copies;
+  vtkSmartPointer<vtkDataArray> Packed; // the scalars, if they are stored in an unusual way
+  vtkSmartPointer<vtkImageData> StandIn;
+  vtkSmartPointer<vtkDataArray> StandInCopy; // its scalars, if they are not the input's
+};
+
+/**
+ * The core's name for a VTK type; Float32 for types that are no numbers.
+ */
+splatting::ScalarType scalarTypeOfVtk(int vtkType);
+
+#endif

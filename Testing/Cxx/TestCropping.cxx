@@ -1,0 +1,308 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Cropping leaves the samples of the regions that are shown: each of the 27 regions by itself, the
+// sets that VTK has names for and random ones, in all modes and with all accelerations.
+#include "CoreTesting.h"
+#include "Reductions.h"
+
+#include "Cuts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace coretesting;
+using splatting::Acceleration;
+using splatting::Quality;
+
+namespace
+{
+/// VTK's: subvolume, fence, inverted fence, cross, inverted cross.
+constexpr unsigned named[] = { 0x0002000, 0x2ebfeba, 0x5140145, 0x0417410, 0x7be8bef };
+
+struct Scene
+{
+  splatting::ShearWarp geometry;
+  splatting::ProjectionSettings settings;
+  reference::RayCuts cuts;
+};
+
+template <class T>
+splatting::ShearImage projected(const reference::Volume<T>& volume, const Scene& scene)
+{
+  splatting::Cropping cropping;
+  for (int a = 0; a < 3; ++a)
+  {
+    cropping.planes[a] = { scene.cuts.planes[a][0], scene.cuts.planes[a][1] };
+  }
+  cropping.flags = scene.cuts.regions;
+  std::vector<glm::dvec4> halfSpaces;
+  for (const auto& h : scene.cuts.halfSpaces)
+  {
+    halfSpaces.push_back({ h[0], h[1], h[2], h[3] });
+  }
+  return project(volume, scene.geometry, scene.settings, halfSpaces, cropping);
+}
+
+/// The maximum over the samples that count.
+template <class S>
+reference::Image<S> expectedOf(const reference::RaySamples<S>& rays,
+  const reference::ShearGrid& grid, const reference::ShearView& view,
+  const reference::RayCuts& cuts)
+{
+  const reference::RayCutter cutter(grid, view, cuts);
+  reference::Image<S> image(grid.width, grid.height);
+  for (int v = 0; v < grid.height; ++v)
+  {
+    for (int u = 0; u < grid.width; ++u)
+    {
+      const auto ray = reference::cutRay(rays[image.index(u, v)], cutter, u, v, false);
+      const auto maximum = reference::largest(ray)[0];
+      if (maximum.hit)
+      {
+        image.raise(u, v, maximum.value);
+      }
+    }
+  }
+  return image;
+}
+
+/// Every region by itself, the named sets, and some that nobody has named.
+std::vector<unsigned> allFlags(reference::Random& random)
+{
+  std::vector<unsigned> flags(std::begin(named), std::end(named));
+  for (int region = 0; region < 27; ++region)
+  {
+    flags.push_back(1u << region);
+  }
+  for (int n = 0; n < 8; ++n)
+  {
+    flags.push_back(static_cast<unsigned>(random.bits()) & ((1u << 27) - 1));
+  }
+  flags.push_back(0);
+  flags.push_back((1u << 27) - 1);
+  return flags;
+}
+
+/// Planes inside the volume most of the time, on voxel centres and between them, and beyond it.
+void placePlanes(
+  reference::Random& random, const std::array<int, 3>& size, reference::RayCuts& cuts)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    double p = random.uniform(-0.5, 0.5 * size[a]),
+           q = random.uniform(0.5 * size[a], size[a] - 0.5);
+    switch (random.uniform(0, 5))
+    {
+      case 0: // on voxel centres
+        p = std::round(p);
+        q = std::round(q);
+        break;
+      case 1: // within a voxel, perhaps
+        q = p + random.uniform(0.0, 0.9);
+        break;
+      case 2: // one voxel
+        q = p = std::round(p);
+        break;
+      case 3: // all in the middle
+        p = -3.0;
+        q = size[a] + 2.5;
+        break;
+    }
+    cuts.planes[a] = { p, q };
+  }
+}
+
+/// A few spots on a flat ground, so that bricks and chains have something to leave out.
+template <class T>
+reference::Volume<T> spots(reference::Random& random, const std::array<int, 3>& size)
+{
+  reference::Volume<T> volume = wholeRangeNoise<T>(size, random.bits());
+  if (random.uniform(0, 1))
+  {
+    for (T& voxel : volume.voxels)
+    {
+      voxel = random.uniform(0, 30) ? T(0) : voxel;
+    }
+  }
+  return volume;
+}
+
+template <class T>
+void testPreview(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int n = 0; n < 16; ++n)
+  {
+    const auto volume = spots<T>(random, randomSize(random, 14));
+    Scene scene;
+    scene.geometry = splatting::ShearWarp(anyView(volume.size, random));
+    scene.settings.quality = Quality::Preview;
+    const reference::ShearView view = referenceView(scene.geometry);
+    const auto grid = reference::makeShearGrid(volume.size, view);
+    const auto rays = reference::voxelSamples(volume, view);
+    for (unsigned flags : allFlags(random))
+    {
+      scene.cuts = {};
+      placePlanes(random, volume.size, scene.cuts);
+      scene.cuts.regions = flags;
+      if (random.uniform(0, 4) == 0)
+      {
+        scene.cuts.halfSpaces = { { 0.3, -0.2, 1.0,
+          -random.uniform(0.0, double(volume.size[2])) } };
+      }
+      scene.settings.acceleration = static_cast<Acceleration>(random.uniform(0, 5));
+      scene.settings.instructionSet = static_cast<splatting::InstructionSet>(random.uniform(0, 2));
+      scene.settings.eliminateInvisible = random.uniform(0, 1);
+      const auto expected = expectedOf(rays, grid, view, scene.cuts);
+      check(sameBits(expected, toReference<T>(projected(volume, scene))), "type ",
+        int(splatting::scalarTypeOf<T>()), ", volume ", n, ", flags ", std::hex, flags, std::dec,
+        ", acceleration ", int(scene.settings.acceleration), ", ", scene.cuts.halfSpaces.size(),
+        " half-spaces: other samples; axis ", view.axis, ", shear ", view.shear[0], " ",
+        view.shear[1], ", size ", volume.size[0], " ", volume.size[1], " ", volume.size[2]);
+    }
+  }
+}
+
+template <class T>
+void testAverages(Checks& check, std::uint64_t seed)
+{
+  using A = splatting::Accumulator<T>;
+  reference::Random random(seed);
+  for (int n = 0; n < 6; ++n)
+  {
+    const auto volume = wholeRangeNoise<T>(randomSize(random, 6), random.bits());
+    const auto bounds = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
+    const double low = double(*bounds.first), high = double(*bounds.second);
+    Scene scene;
+    scene.geometry = splatting::ShearWarp(anyView(volume.size, random));
+    scene.settings.quality = n % 2 ? Quality::Standard : Quality::High;
+    const reference::ShearView view = referenceView(scene.geometry);
+    const auto grid = reference::makeShearGrid(volume.size, view);
+    const auto rays = reference::slabSamples(reference::toDouble(volume), view,
+      { n % 2 ? reference::Kernel::Nearest : reference::Kernel::Trilinear, 1.0 });
+    // The reference itself is good to some rounding errors of double.
+    const double bound = errorBound<T>(scene.settings.quality, low, high) +
+      2e-13 * std::max(std::abs(low), std::abs(high)) + 1e-300;
+    for (unsigned flags : allFlags(random))
+    {
+      scene.cuts = {};
+      placePlanes(random, volume.size, scene.cuts);
+      scene.cuts.regions = flags;
+      scene.settings.acceleration = Acceleration::Dense;
+      const auto expected = expectedOf(rays, grid, view, scene.cuts);
+      const auto dense = toReference<A>(projected(volume, scene));
+      bool within = dense.hit == expected.hit;
+      for (std::size_t p = 0; within && p < dense.value.size(); ++p)
+      {
+        within = !dense.hit[p] || std::abs(double(dense.value[p]) - expected.value[p]) <= bound;
+      }
+      check(within, "type ", int(splatting::scalarTypeOf<T>()), ", mode ",
+        int(scene.settings.quality), ", flags ", std::hex, flags, std::dec,
+        ": other averages; axis ", view.axis, ", shear ", view.shear[0], " ", view.shear[1],
+        ", size ", volume.size[0], " ", volume.size[1], " ", volume.size[2]);
+      scene.settings.acceleration = static_cast<Acceleration>(random.uniform(0, 5));
+      check(sameBits(dense, toReference<A>(projected(volume, scene))), "mode ",
+        int(scene.settings.quality), ", acceleration ", int(scene.settings.acceleration),
+        " changes the picture");
+    }
+  }
+}
+
+/// Tiles of bricks and several bands, with all accelerations in all modes.
+void testLarge(Checks& check)
+{
+  reference::Random random(12);
+  for (int n = 0; n < 40; ++n)
+  {
+    const auto volume = spots<std::int16_t>(random, { 70, 58, 45 });
+    Scene scene;
+    scene.geometry = splatting::ShearWarp(anyView(volume.size, random));
+    scene.settings.quality = static_cast<Quality>(n % 3);
+    placePlanes(random, volume.size, scene.cuts);
+    scene.cuts.regions = n % 2 ? named[n % 5] : static_cast<unsigned>(random.bits()) & 0x7ffffff;
+    if (random.uniform(0, 2) == 0)
+    {
+      // A slab, which may be thinner than a slice.
+      const double normal[] = { random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 1.0 };
+      const double offset = normal[0] * 35.0 + normal[1] * 29.0 + normal[2] * 22.0;
+      scene.cuts.halfSpaces = { { normal[0], normal[1], normal[2], -offset },
+        { -normal[0], -normal[1], -normal[2], offset + random.uniform(0.1, 20.0) } };
+    }
+    scene.settings.acceleration = Acceleration::Dense;
+    const splatting::ShearImage dense = projected(volume, scene);
+    if (n % 3 == 0)
+    {
+      const reference::ShearView view = referenceView(scene.geometry);
+      const auto grid = reference::makeShearGrid(volume.size, view);
+      check(sameBits(toReference<std::int16_t>(dense),
+              expectedOf(reference::voxelSamples(volume, view), grid, view, scene.cuts)),
+        "large volume ", n, ": other samples");
+    }
+    for (int acceleration = 0; acceleration < 6; ++acceleration)
+    {
+      scene.settings.acceleration = static_cast<Acceleration>(acceleration);
+      const splatting::ShearImage image = projected(volume, scene);
+      const bool same = n % 3 == 0
+        ? sameBits(toReference<std::int16_t>(dense), toReference<std::int16_t>(image))
+        : sameBits(toReference<float>(dense), toReference<float>(image));
+      check(same, "large volume ", n, ": acceleration ", acceleration, " changes the picture");
+    }
+  }
+}
+
+/// Shown regions are a union: the maximum of all is the largest of the regions' maxima.
+void testUnion(Checks& check)
+{
+  reference::Random random(13);
+  for (int n = 0; n < 6; ++n)
+  {
+    const auto volume = wholeRangeNoise<std::uint8_t>(randomSize(random, 12), random.bits());
+    Scene scene;
+    scene.geometry = splatting::ShearWarp(anyView(volume.size, random));
+    scene.settings.quality = static_cast<Quality>(n % 3);
+    placePlanes(random, volume.size, scene.cuts);
+    const auto imageOf = [&](unsigned flags)
+    {
+      scene.cuts.regions = flags;
+      const splatting::ShearImage image = projected(volume, scene);
+      return n % 3 == 0 ? reference::toDouble(toReference<std::uint8_t>(image))
+                        : reference::toDouble(toReference<float>(image));
+    };
+    const auto whole = imageOf((1u << 27) - 1);
+    reference::Image<double> together(whole.width, whole.height);
+    for (int region = 0; region < 27; ++region)
+    {
+      const auto part = imageOf(1u << region);
+      for (int v = 0; v < part.height; ++v)
+      {
+        for (int u = 0; u < part.width; ++u)
+        {
+          if (part.isHit(u, v))
+          {
+            together.raise(u, v, part.at(u, v));
+          }
+        }
+      }
+    }
+    check(sameBits(whole, together), "regions together are not the whole, mode ", n % 3);
+  }
+}
+}
+
+int TestCropping(int, char*[])
+{
+  Checks check;
+  std::uint64_t seed = 1200;
+  forEachType(
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      testPreview<T>(check, ++seed);
+      testAverages<T>(check, ++seed);
+    });
+  testLarge(check);
+  testUnion(check);
+  return check.result();
+}
