@@ -137,4 +137,5 @@ void RayCastFallback::UpdateSettings(vtkSplattingMIPVolumeMapper* settings, vtkI
   this->Mapper->SetClippingPlanes(settings->GetClippingPlanes());
   this->Mapper->SetFinalColorWindow(settings->GetFinalColorWindow());
   this->Mapper->SetFinalColorLevel(settings->GetFinalColorLevel());
+  this->Mapper->SetIntermixIntersectingGeometry(settings->GetIntermixIntersectingGeometry());
 }

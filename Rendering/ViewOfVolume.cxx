@@ -149,3 +149,23 @@ splatting::View makeView(
   }
   return view;
 }
+
+//------------------------------------------------------------------------------
+glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume)
+{
+  return glm::inverse(indexToWorld(grid, volume));
+}
+
+//------------------------------------------------------------------------------
+void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
+  const double centre[3], double thickness)
+{
+  const glm::dmat4 world = indexToWorld(grid, volume);
+  // Rays run where neither coordinate on the screen changes.
+  const glm::dvec3 ray =
+    glm::cross(glm::dvec3(row(view.indexToClip, 0)), glm::dvec3(row(view.indexToClip, 1)));
+  const glm::dvec3 normal = glm::normalize(glm::dmat3(world) * ray);
+  const double place = glm::dot(normal, glm::dvec3(centre[0], centre[1], centre[2]));
+  addHalfSpace(view, glm::dvec4(normal, 0.5 * thickness - place) * world);
+  addHalfSpace(view, glm::dvec4(-normal, 0.5 * thickness + place) * world);
+}

@@ -25,4 +25,16 @@ bool isFlat(const VolumeGrid& grid, vtkVolume* volume);
 splatting::View makeView(
   const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper);
 
+/**
+ * World space to index space, of a volume that is not flat.
+ */
+glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume);
+
+/**
+ * Adds the two half-spaces of a slab across the rays of a parallel view. Centre and thickness are
+ * in the world.
+ */
+void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
+  const double centre[3], double thickness);
+
 #endif

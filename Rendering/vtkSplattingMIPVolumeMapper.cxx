@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSplattingMIPVolumeMapper.h"
 
+#include "BoundingSurface.h"
 #include "Project.h"
 #include "RayCastFallback.h"
 #include "RenderTimes.h"
 #include "ScalarSource.h"
+#include "SceneDepth.h"
 #include "Selection.h"
 #include "ShearWarp.h"
 #include "TransferFunctions.h"
@@ -21,6 +23,7 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkRayCastImageDisplayHelper.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -99,8 +102,13 @@ public:
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
   bool Shows(vtkSplattingMIPVolumeMapper* self, const splatting::ShearWarp& geometry,
     splatting::Quality quality) const;
-  void FindCuts(const splatting::View& view, const splatting::ShearWarp& geometry);
-  bool Project(vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode);
+  std::string ProblemOfCuts(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
+  void CaptureDepth(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren,
+    const splatting::View& view, const splatting::ShearWarp& geometry);
+  void FindCuts(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view,
+    const splatting::ShearWarp& geometry);
+  bool Project(
+    vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode);
   void UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor);
   void Warp(const splatting::View& view);
   void CopyShearImage(vtkImageData* output) const;
@@ -132,6 +140,10 @@ public:
   bool BudgetReported = false;
   splatting::Cuts Cuts, LastCuts;
   std::vector<glm::dvec4> HalfSpaces; // in pixels
+  ::BoundingSurface Surface;
+  bool OpenSurfaceReported = false;
+  splatting::SceneDepth Depth;
+  const vtkRenderer* DepthOf = nullptr; // only compared
   bool ImageValid = false;
   vtkIdType Projections = 0;
   double ProjectionTime = 0.0;
@@ -163,6 +175,11 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     DepthShadingAmbient(0.3),
     DepthShadingChangeRate(0.7),
     LocalMaximumThreshold(0.0),
+    Slab(false),
+    SlabThickness(10.0),
+    SlabCenter{ 0.0, 0.0, 0.0 },
+    BoundingSurface(nullptr),
+    IntermixIntersectingGeometry(1),
     FootprintSampling(0),
     Acceleration(AUTO),
     LineTolerance(0.0),
@@ -184,8 +201,12 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
 //------------------------------------------------------------------------------
 vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper()
 {
+  this->SetBoundingSurface(nullptr);
   this->SetMaskInput(nullptr);
 }
+
+//------------------------------------------------------------------------------
+vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, BoundingSurface, vtkPolyData);
 
 //------------------------------------------------------------------------------
 // The gate: a sentence that says why this input cannot be rendered and what to do, or nothing.
@@ -341,20 +362,77 @@ bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* s
 }
 
 //------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::Internals::FindCuts(
-  const splatting::View& view, const splatting::ShearWarp& geometry)
+// As Problem(): of slab and bounding surface, once the input is known to be good.
+std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfCuts(
+  vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
+{
+  const double* const centre = self->SlabCenter;
+  if (self->Slab && !(self->SlabThickness > 0.0))
+  {
+    return "The slab is not thicker than 0: give it a SlabThickness in world units.";
+  }
+  if (self->Slab && !std::all_of(centre, centre + 3, [](double x) { return std::isfinite(x); }))
+  {
+    return "The slab's centre is not finite: set SlabCenter to a point of the world.";
+  }
+  const glm::dmat4 toIndex =
+    self->BoundingSurface ? worldToIndex(this->Source.Grid(), volume) : glm::dmat4(1.0);
+  const char* const fault = this->Surface.Update(self->BoundingSurface, toIndex);
+  return fault ? fault : "";
+}
+
+//------------------------------------------------------------------------------
+// The depths of what has been rendered where the volume will be seen, if there is anything.
+void vtkSplattingMIPVolumeMapper::Internals::CaptureDepth(vtkSplattingMIPVolumeMapper* self,
+  vtkRenderer* ren, const splatting::View& view, const splatting::ShearWarp& geometry)
+{
+  splatting::placePicture(geometry, view.viewport, this->Picture);
+  const glm::ivec2& origin = this->Picture.origin;
+  const glm::ivec2& size = this->Picture.size;
+  // Selection is by what is seen: its passes draw other depths than frames.
+  if (ren->GetSelector() && this->DepthOf == ren && this->Depth.isOf(origin, size))
+  {
+    this->Depth.place(view, geometry, this->HalfSpaces);
+    return;
+  }
+  this->Depth.clear();
+  this->DepthOf = ren;
+  // Renderers that keep the depths of a lower layer have something to intermix with, too.
+  if (!self->IntermixIntersectingGeometry ||
+    (ren->GetNumberOfPropsRendered() < 1 && !ren->GetPreserveDepthBuffer()) || ren->GetSelector() ||
+    size.x < 1 || size.y < 1)
+  {
+    return;
+  }
+  float* const depths = this->Depth.allocate(origin, size);
+  const float* const end = depths + std::size_t(size.x) * size.y;
+  if (!self->ReadDepth(ren, &origin.x, &size.x, depths) ||
+    std::all_of<const float*>(depths, end, [](float depth) { return depth >= 1.0f; }))
+  {
+    this->Depth.clear();
+    return;
+  }
+  this->Depth.place(view, geometry, this->HalfSpaces);
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::Internals::FindCuts(vtkSplattingMIPVolumeMapper* self,
+  vtkRenderer* ren, const splatting::View& view, const splatting::ShearWarp& geometry)
 {
   this->Cuts.cropping = view.cropping;
-  this->Cuts.intervals.clear();
   this->HalfSpaces.clear();
   for (const glm::dvec4& h : view.halfSpaces)
   {
     this->HalfSpaces.push_back(geometry.inPixels(h));
   }
-  if (!this->HalfSpaces.empty())
+  splatting::ClosedSurface* const surface = this->Surface.Get();
+  if (surface)
   {
-    this->Cuts.intervals.find(geometry, this->HalfSpaces);
+    surface->project(geometry);
   }
+  this->CaptureDepth(self, ren, view, geometry);
+  this->Cuts.intervals.find(
+    geometry, this->HalfSpaces, surface, this->Depth.empty() ? nullptr : &this->Depth);
 }
 
 //------------------------------------------------------------------------------
@@ -377,14 +455,15 @@ bool vtkSplattingMIPVolumeMapper::Internals::Shows(vtkSplattingMIPVolumeMapper* 
 // Projects in this mode, unless the last shear image shows the same, or better within what is
 // wanted. False if the view has no meaning. There is no valid image after an abort.
 bool vtkSplattingMIPVolumeMapper::Internals::Project(
-  vtkSplattingMIPVolumeMapper* self, const splatting::View& view, int mode)
+  vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode)
 {
   const splatting::ShearWarp geometry(view);
   if (!geometry.valid())
   {
     return false;
   }
-  this->FindCuts(view, geometry);
+  const double start = vtkTimerLog::GetUniversalTime();
+  this->FindCuts(self, ren, view, geometry);
   const bool same = this->Shows(self, geometry,
     std::clamp(this->Channels.front().Settings.quality, static_cast<splatting::Quality>(mode),
       static_cast<splatting::Quality>(self->QualityMode)));
@@ -395,7 +474,6 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
   }
   this->ImageValid = false;
   this->ShearImageOutput = nullptr;
-  const double start = vtkTimerLog::GetUniversalTime();
   for (this->Projected = 0; this->Projected < this->Channels.size(); ++this->Projected)
   {
     Channel& channel = this->Channels[this->Projected];
@@ -474,6 +552,10 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   std::string problem = in.Problem(this, vol);
   if (problem.empty())
   {
+    problem = in.ProblemOfCuts(this, vol);
+  }
+  if (problem.empty())
+  {
     problem = this->RenderBySplatting(ren, vol);
   }
   // Told once, not in every frame.
@@ -499,7 +581,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
-  const splatting::View view = makeView(in.Source.Grid(), vol, ren, this);
+  splatting::View view = makeView(in.Source.Grid(), vol, ren, this);
   // Nothing can be seen in a window that is not shown yet.
   if (view.viewport.x < 1 || view.viewport.y < 1)
   {
@@ -519,6 +601,16 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     this->RenderByRayCasting(ren, vol, reason);
     return "";
   }
+  if (this->Slab)
+  {
+    addSlab(view, in.Source.Grid(), vol, this->SlabCenter, this->SlabThickness);
+  }
+  if (in.Surface.IsOpen() && !in.OpenSurfaceReported)
+  {
+    vtkWarningMacro(<< "The bounding surface is not closed: rays that cross it once show nothing. "
+                       "Close it, for instance with vtkFillHolesFilter.");
+  }
+  in.OpenSurfaceReported = in.Surface.IsOpen();
   const vtkIdType version = in.IndexedVersion;
   in.LookAtVolumes();
   if (in.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget)))
@@ -532,7 +624,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     : ren->GetSelector()
     ? std::min(this->GetQualityModeUsed(), this->QualityMode)
     : in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime());
-  if (!in.Project(this, view, mode))
+  if (!in.Project(this, ren, view, mode))
   {
     return DegenerateCamera;
   }
@@ -546,6 +638,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   if (in.ImageValid)
   {
     in.Warp(view);
+    in.Depth.hide(in.Picture);
     this->DisplayPicture(ren);
   }
   return "";
@@ -590,6 +683,11 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
     }
     in.RayCaster = std::make_unique<RayCastFallback>();
   }
+  if ((this->Slab || this->BoundingSurface) && in.Announced.insert("slab").second)
+  {
+    vtkWarningMacro(<< "Slab and BoundingSurface cut nothing where a volume is ray cast: use a "
+                       "parallel projection.");
+  }
   if (ren->GetSelector())
   {
     in.RayCaster->FindMask(this, in.Source.Image(), ren, vol, in.Picture);
@@ -608,6 +706,17 @@ void vtkSplattingMIPVolumeMapper::DisplayImage(
 {
   vtkErrorMacro(<< "There is no OpenGL to draw with: initialise the module with "
                    "vtk_module_autoinit or VTK_MODULE_INIT(vtkRenderingSplattingMIP).");
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPVolumeMapper::ReadDepth(
+  vtkRenderer* ren, const int origin[2], const int size[2], float* depths)
+{
+  int width, height, left, bottom;
+  ren->GetTiledSizeAndOrigin(&width, &height, &left, &bottom);
+  const int x = left + origin[0], y = bottom + origin[1];
+  return ren->GetRenderWindow()->GetZbufferData(x, y, x + size[0] - 1, y + size[1] - 1, depths) ==
+    VTK_OK;
 }
 
 //------------------------------------------------------------------------------
@@ -799,6 +908,14 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DepthShadingAmbient: " << this->DepthShadingAmbient << "\n";
   os << indent << "DepthShadingChangeRate: " << this->DepthShadingChangeRate << "\n";
   os << indent << "LocalMaximumThreshold: " << this->LocalMaximumThreshold << "\n";
+  os << indent << "Slab: " << (this->Slab ? "On" : "Off") << "\n";
+  os << indent << "SlabThickness: " << this->SlabThickness << "\n";
+  os << indent << "SlabCenter: " << this->SlabCenter[0] << ", " << this->SlabCenter[1] << ", "
+     << this->SlabCenter[2] << "\n";
+  os << indent << "BoundingSurface: " << this->BoundingSurface << "\n";
+  os << indent
+     << "IntermixIntersectingGeometry: " << (this->IntermixIntersectingGeometry ? "On" : "Off")
+     << "\n";
   os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";
   os << indent << "Acceleration: " << this->GetAccelerationAsString() << "\n";
   os << indent << "AccelerationUsed: " << nameOf(this->GetAccelerationUsed()) << "\n";

@@ -103,6 +103,7 @@
 #include <memory> // for the hidden implementation
 
 class vtkImageData;
+class vtkPolyData;
 class vtkVolumeProperty;
 
 class VTKRENDERINGSPLATTINGMIP_EXPORT vtkSplattingMIPVolumeMapper : public vtkVolumeMapper
@@ -319,6 +320,66 @@ public:
 
   ///@{
   /**
+   * Show only a slab across the view (thin-slab or sliding MIP): what lies within SlabThickness / 2
+   * of the plane through SlabCenter, a point of the world, that is orthogonal to the rays. Default
+   * off. Each new place of the slab is one projection of the slices in it; nothing is indexed anew.
+   * It cuts as ClippingPlanes do: a ray that has the middle of no slice inside shows the nearest
+   * one, so that a thin slab shows one slice.
+   */
+  vtkSetMacro(Slab, bool);
+  vtkGetMacro(Slab, bool);
+  vtkBooleanMacro(Slab, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The thickness of the slab in world units, above 0; default 10, the usual slab of clinical
+   * volumes in millimetres.
+   */
+  vtkSetMacro(SlabThickness, double);
+  vtkGetMacro(SlabThickness, double);
+  ///@}
+
+  ///@{
+  /**
+   * A point of the world in the middle of the slab, by default (0, 0, 0).
+   */
+  vtkSetVector3Macro(SlabCenter, double);
+  vtkGetVector3Macro(SlabCenter, double);
+  ///@}
+
+  ///@{
+  /**
+   * A closed surface in world coordinates that the volume is shown in, whatever its shape (the
+   * successor of vtkProjectedPolyDataRayBounder); nullptr, the default, for none. Each ray is cut
+   * to the part between its first and its last crossing with the surface, to which hollows and
+   * holes on the ray's way belong; rays that miss it show nothing. Polygons and strips count, in
+   * any orientation. Rays that cross a surface that is not closed once show nothing; a warning says
+   * that it is open.
+   *
+   * The surface is drawn in software once for each view direction, about a millisecond for ten
+   * thousand triangles, and only triangulated again when it is modified.
+   */
+  virtual void SetBoundingSurface(vtkPolyData* surface);
+  vtkGetObjectMacro(BoundingSurface, vtkPolyData);
+  ///@}
+
+  ///@{
+  /**
+   * Whether opaque geometry that was rendered before hides what lies behind it; default on. The
+   * depth buffer is read where the volume is seen, if the renderer has rendered other props. What
+   * lies before the volume hides it, pixel by pixel of the screen; what lies inside ends the rays
+   * of the shear image, so that its edges are as soft as the shear image's pixels are large; what
+   * lies behind the volume does not matter, and the shear image is used again. Geometry between a
+   * part that Cropping or BoundingSurface takes away and what is left counts as inside.
+   */
+  vtkSetMacro(IntermixIntersectingGeometry, vtkTypeBool);
+  vtkGetMacro(IntermixIntersectingGeometry, vtkTypeBool);
+  vtkBooleanMacro(IntermixIntersectingGeometry, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
    * How the footprint weights are obtained. 0 (default): closed form. N in [1, 64]: from the
    * paper's general table, digitised at N x N sub-pixels per pixel [CS98, section 3], whose weights
    * tend to the closed form as N grows.
@@ -505,6 +566,12 @@ protected:
   virtual void DisplayImage(
     vtkRenderer* ren, const int origin[2], const int size[2], const unsigned char* rgba);
 
+  /**
+   * The depths, from 0 to 1, that have been rendered so far at pixels of the renderer's viewport.
+   * The same order as in DisplayImage. False if they cannot be read.
+   */
+  virtual bool ReadDepth(vtkRenderer* ren, const int origin[2], const int size[2], float* depths);
+
   int VectorMode;
   int VectorComponent;
   vtkImageData* MaskInput;
@@ -515,6 +582,11 @@ protected:
   double DepthShadingAmbient;
   double DepthShadingChangeRate;
   double LocalMaximumThreshold;
+  bool Slab;
+  double SlabThickness;
+  double SlabCenter[3];
+  vtkPolyData* BoundingSurface;
+  vtkTypeBool IntermixIntersectingGeometry;
   int FootprintSampling;
   int Acceleration;
   double LineTolerance;

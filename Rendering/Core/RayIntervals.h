@@ -15,13 +15,17 @@
 
 namespace splatting
 {
+class ClosedSurface;
+class SceneDepth;
+
 /**
  * For each pixel of a shear image the slices whose samples count, as far as the ray crosses them.
  *
  * A slice's sample counts if the point where the ray crosses the slice's middle is between the
  * ray's near and far depth. Where that leaves none although the ray has a positive length, the
  * slice nearest to the middle of the interval counts: what is thinner than a slice shows one.
- * Points within 1e-9 slices of a plane (relative to their depth) are inside.
+ * Points within 1e-9 voxels of what cuts (relative to their coordinates) are inside. Rays that lose
+ * nothing to a surface or a depth buffer have all slices, whatever cuts them outside the volume.
  */
 class RayIntervals
 {
@@ -30,8 +34,14 @@ public:
   void clear();
   bool empty() const { return this->First.empty(); }
 
-  /// @param halfSpaces  in pixels, as ShearWarp::inPixels() gives them
-  void find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces);
+  /**
+   * Empty if nothing cuts the volume.
+   * @param halfSpaces  in pixels, as ShearWarp::inPixels() gives them
+   * @param surface     what lies outside is cut away; projected by the same geometry
+   * @param depth       of other things in the scene, which end rays; placed likewise
+   */
+  void find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces,
+    const ClosedSurface* surface = nullptr, const SceneDepth* depth = nullptr);
 
   /// The slices that each pixel's ray crosses, of those in other intervals, if these are not empty.
   void findCrossed(const CrossedSlices& crossed, int width, int height, const RayIntervals& within);

@@ -76,25 +76,6 @@ glm::dvec3 shownSize(const ShearWarp& geometry)
     geometry.showsBoxes() ? geometry.size() : glm::max(geometry.size() - 1, glm::ivec3(1)));
 }
 
-void placePicture(const ShearWarp& geometry, const glm::ivec2& viewport, Picture& picture)
-{
-  const glm::dvec2 half = Silhouette(geometry, shownSize(geometry), 0.0).half();
-  const glm::dvec2 centre(0.5 * (geometry.width() - 1), 0.5 * (geometry.height() - 1));
-  const glm::dmat3x2& m = geometry.shearToScreen();
-  const glm::dvec2 middle = m * glm::dvec3(centre, 1.0);
-  const glm::dvec2 reach = glm::abs(m[0]) * half.x + glm::abs(m[1]) * half.y;
-  for (int a = 0; a < 2; ++a)
-  {
-    const double limit = viewport[a];
-    const int low = static_cast<int>(std::clamp(std::floor(middle[a] - reach[a]), 0.0, limit));
-    const int high =
-      static_cast<int>(std::clamp(std::ceil(middle[a] + reach[a]) + 1.0, 0.0, limit));
-    picture.origin[a] = low;
-    picture.size[a] = std::max(high - low, 0);
-  }
-  picture.pixels.resize(std::size_t(picture.size.x) * picture.size.y);
-}
-
 /// Everything that the rows of one picture share.
 template <class A>
 struct WarpFrame
@@ -211,6 +192,24 @@ void warpRows(const WarpFrame<A>& frame, const ShearWarp& geometry, Picture& pic
 }
 }
 
+void placePicture(const ShearWarp& geometry, const glm::ivec2& viewport, Picture& picture)
+{
+  const glm::dvec2 half = Silhouette(geometry, shownSize(geometry), 0.0).half();
+  const glm::dvec2 centre(0.5 * (geometry.width() - 1), 0.5 * (geometry.height() - 1));
+  const glm::dmat3x2& m = geometry.shearToScreen();
+  const glm::dvec2 middle = m * glm::dvec3(centre, 1.0);
+  const glm::dvec2 reach = glm::abs(m[0]) * half.x + glm::abs(m[1]) * half.y;
+  for (int a = 0; a < 2; ++a)
+  {
+    const double limit = viewport[a];
+    const int low = static_cast<int>(std::clamp(std::floor(middle[a] - reach[a]), 0.0, limit));
+    const int high =
+      static_cast<int>(std::clamp(std::ceil(middle[a] + reach[a]) + 1.0, 0.0, limit));
+    picture.origin[a] = low;
+    picture.size[a] = std::max(high - low, 0);
+  }
+}
+
 void addSaturated(const Picture& layer, Picture& sum)
 {
   const auto* const from = reinterpret_cast<const unsigned char*>(layer.pixels.data());
@@ -229,6 +228,7 @@ void Warper::warp(const ShearImage& image, const ShearWarp& geometry, const Colo
   const glm::ivec2& viewport, InstructionSet instructionSet, Picture& picture)
 {
   placePicture(geometry, viewport, picture);
+  picture.pixels.resize(std::size_t(picture.size.x) * picture.size.y);
   if (picture.pixels.empty())
   {
     return;

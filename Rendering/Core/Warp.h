@@ -36,6 +36,9 @@ struct Picture
   std::vector<std::uint32_t> pixels;
 };
 
+/// Sets the picture's origin and size.
+void placePicture(const ShearWarp& geometry, const glm::ivec2& viewport, Picture& picture);
+
 /**
  * Adds a picture of the same size and place, byte by byte, no further than 255.
  */

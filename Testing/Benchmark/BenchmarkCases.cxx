@@ -7,6 +7,8 @@
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPlane.h"
 #include "vtkPointData.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
@@ -157,6 +159,46 @@ void Rotate(benchmark::State& state, const BenchmarkRotation& rotation, Function
   }
 }
 
+void AddPlane(vtkVolumeMapper* mapper, const double origin[3], double x, double y, double z)
+{
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(origin[0], origin[1], origin[2]);
+  plane->SetNormal(x, y, z);
+  mapper->AddClippingPlane(plane);
+}
+
+/// The margin is a share of the size.
+void AddBox(vtkVolumeMapper* mapper, const double bounds[6], double margin)
+{
+  for (int side = 0; side < 6; ++side)
+  {
+    const int axis = side / 2;
+    const double inwards = side % 2 ? -1.0 : 1.0;
+    double origin[3] = { 0.0, 0.0, 0.0 };
+    origin[axis] = bounds[side] + inwards * margin * (bounds[2 * axis + 1] - bounds[2 * axis]);
+    AddPlane(mapper, origin, axis == 0 ? inwards : 0.0, axis == 1 ? inwards : 0.0,
+      axis == 2 ? inwards : 0.0);
+  }
+}
+
+void AddCut(vtkVolumeMapper* mapper, vtkImageData* image, BenchmarkCut cut)
+{
+  switch (cut)
+  {
+    case BenchmarkCut::NONE:
+      break;
+    case BenchmarkCut::AROUND:
+      AddBox(mapper, image->GetBounds(), -0.1);
+      break;
+    case BenchmarkCut::PLANE:
+      AddPlane(mapper, image->GetCenter(), 1.0, 0.0, 1.0);
+      break;
+    case BenchmarkCut::BOX:
+      AddBox(mapper, image->GetBounds(), 0.2);
+      break;
+  }
+}
+
 /// Nullptr, and the benchmark has failed, if the volume cannot be read.
 vtkImageData* LoadOrFail(benchmark::State& state, const BenchmarkVolume& volume)
 {
@@ -238,7 +280,7 @@ void MeasureRecoloring(benchmark::State& state, const BenchmarkVolume& volume, i
 
 //------------------------------------------------------------------------------
 void MeasureProjections(benchmark::State& state, const BenchmarkVolume& volume,
-  const BenchmarkMapper& mapper, const BenchmarkRotation& rotation)
+  const BenchmarkMapper& mapper, const BenchmarkRotation& rotation, BenchmarkCut cut)
 {
   vtkImageData* image = LoadOrFail(state, volume);
   if (!image)
@@ -248,6 +290,7 @@ void MeasureProjections(benchmark::State& state, const BenchmarkVolume& volume,
   BenchmarkStage& stage = BenchmarkStage::GetInstance();
   stage.SetSize(64); // projections do not depend on it
   stage.SetMapper(mapper, image);
+  AddCut(stage.GetMapper(), image, cut);
   auto* splatting = vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper());
   ShowEachAxis();
   Rotate(state, rotation, [=](double) { return splatting->GetProjectionTime(); });

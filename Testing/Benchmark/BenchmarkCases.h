@@ -40,11 +40,23 @@ void MeasureRecoloring(benchmark::State& state, const BenchmarkVolume& volume, i
   const BenchmarkMapper& mapper, const BenchmarkRotation& rotation);
 
 /**
+ * Clipping planes.
+ */
+enum class BenchmarkCut
+{
+  NONE,
+  AROUND, // a box around the volume, that leaves nothing out
+  PLANE,  // through the middle, at 45 degrees to two axes
+  BOX     // six planes, with a fifth of the volume's size beyond each
+};
+
+/**
  * GetProjectionTime() of the splatting mapper. Counters median_ms, worst_ms and views as above;
  * what is made once per volume is made before.
  */
 void MeasureProjections(benchmark::State& state, const BenchmarkVolume& volume,
-  const BenchmarkMapper& mapper, const BenchmarkRotation& rotation);
+  const BenchmarkMapper& mapper, const BenchmarkRotation& rotation,
+  BenchmarkCut cut = BenchmarkCut::NONE);
 
 /**
  * Makes the index of a volume, again and again: counter median_ms.

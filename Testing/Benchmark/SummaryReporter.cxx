@@ -247,6 +247,25 @@ void SummaryReporter::PrintProjections(std::ostream& os) const
 }
 
 //------------------------------------------------------------------------------
+void SummaryReporter::PrintCuts(std::ostream& os) const
+{
+  MarkdownTable table({ "volume", "mode", "cut", "median ms", "worst ms", "it / uncut" }, 3);
+  for (const Result& result : this->Results)
+  {
+    if (result.Name[0] == "cut")
+    {
+      const Result* whole = this->Find({ "cut", result.Name[1], result.Name[2], "none" });
+      const double median = Get(&result, "median_ms");
+      table.Add({ result.Name[1], result.Name[2], result.Name[3], Format(median, 2),
+        Format(Get(&result, "worst_ms"), 2), Format(median / Get(whole, "median_ms"), 2, "x") });
+    }
+  }
+  os
+    << "\nThe projection alone, cut by clipping planes. Around: planes that leave nothing out.\n\n";
+  table.Print(os);
+}
+
+//------------------------------------------------------------------------------
 void SummaryReporter::PrintIndexes(std::ostream& os) const
 {
   MarkdownTable table({ "volume", "bricks ms", "floor ms", "floor GB/s", "bricks / floor" }, 1);
@@ -293,6 +312,10 @@ void SummaryReporter::PrintSummary(
   if (has("projection"))
   {
     this->PrintProjections(os);
+  }
+  if (has("cut"))
+  {
+    this->PrintCuts(os);
   }
   if (has("index"))
   {

@@ -46,6 +46,7 @@ private:
   void PrintFrames(std::ostream& os) const;
   void PrintRecolorings(std::ostream& os) const;
   void PrintProjections(std::ostream& os) const;
+  void PrintCuts(std::ostream& os) const;
   void PrintIndexes(std::ostream& os) const;
 
   benchmark::BenchmarkReporter* Display;

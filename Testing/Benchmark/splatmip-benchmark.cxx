@@ -42,6 +42,7 @@ void PrintHelp()
   frame/VOLUME/WINDOW/MAPPER  a whole frame, render and read-back
   recolor/VOLUME/WINDOW/MODE  a whole frame of a view that is shown already, in another window/level
   projection/VOLUME/MODE[-ACCELERATION]  the projection alone, volume to shear image
+  cut/VOLUME/MODE/CUT         the projection alone, cut by clipping planes
   first/VOLUME/MODE[-ACCELERATION]       the slowest of the first frames along the three axes, 300^2
   index/VOLUME                making the bricks: one survey of the voxels
   floor/VOLUME                the largest byte of the volume, read once by all threads
@@ -51,6 +52,7 @@ VOLUME   vessels128-uint8, vessels256-uint8, -int16, -float, vessels512-uint8 (n
          lidc0314-int16
 WINDOW   300 or 1024 pixels along each side
 ACCELERATION  dense or bricks; without it the mapper chooses
+CUT      none; around: planes that leave nothing out; plane: through the middle; box: six planes
 MAPPER   preview, standard, high: the modes of vtkSplattingMIPVolumeMapper
          raycast-nearest, raycast-linear: vtkFixedPointVolumeRayCastMapper
          gpu: vtkOpenGLGPUVolumeRayCastMapper, linear
@@ -175,6 +177,28 @@ void RegisterFrames(const BenchmarkVolume& volume, int window, bool isQuick)
   }
 }
 
+void RegisterCuts(const BenchmarkVolume& volume, bool isQuick)
+{
+  for (const BenchmarkMapper& mapper : GetBenchmarkMappers())
+  {
+    if (mapper.Kind != BenchmarkMapper::SPLATTING)
+    {
+      continue;
+    }
+    const BenchmarkRotation rotation = ChooseRotation(mapper, volume.IsBig, isQuick);
+    for (const auto& [name, cut] :
+      { std::pair<const char*, BenchmarkCut>("none", BenchmarkCut::NONE),
+        { "around", BenchmarkCut::AROUND }, { "plane", BenchmarkCut::PLANE },
+        { "box", BenchmarkCut::BOX } })
+    {
+      Register("cut/" + volume.Name + "/" + mapper.Name + "/" + name,
+        rotation.Views * rotation.Passes,
+        [=, kind = cut](benchmark::State& state)
+        { MeasureProjections(state, volume, mapper, rotation, kind); });
+    }
+  }
+}
+
 void RegisterVolume(const BenchmarkVolume& volume, bool isQuick)
 {
   Register(
@@ -189,6 +213,7 @@ void RegisterVolume(const BenchmarkVolume& volume, bool isQuick)
     Register("first/" + volume.Name + "/" + mapper.Name, isQuick ? 1 : 5,
       [=](benchmark::State& state) { MeasureFirst(state, volume, mapper); });
   }
+  RegisterCuts(volume, isQuick);
   for (int window : isQuick ? std::vector<int>{ 100 } : std::vector<int>{ 300, 1024 })
   {
     RegisterFrames(volume, window, isQuick);

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SceneDepth.h"
+
+#include <vtkSMPTools.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace splatting
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr double Rounding = 0x1p-21;
+}
+
+float* SceneDepth::allocate(const glm::ivec2& origin, const glm::ivec2& size)
+{
+  this->Origin = origin;
+  this->Size = size;
+  this->Samples.resize(this->empty() ? 0 : std::size_t(size.x) * size.y);
+  return this->Samples.data();
+}
+
+void SceneDepth::place(
+  const View& view, const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces)
+{
+  this->Geometry = geometry;
+  const glm::dmat4& m = view.indexToClip;
+  const glm::dvec4 clip = glm::dvec4(m[0][2], m[1][2], m[2][2], m[3][2]) / m[3][3];
+  this->Depth = geometry.inPixels(0.5 * (clip + glm::dvec4(0.0, 0.0, 0.0, 1.0)));
+  const glm::dvec3 last(view.dimensions - 1);
+  const glm::dvec3 half(0.5);
+  for (Body* body : { &this->Shown, &this->Voxels })
+  {
+    body->fronts.clear();
+    body->backs.clear();
+    for (const glm::dvec4& h : halfSpaces)
+    {
+      this->addHalfSpace(h, *body);
+    }
+  }
+  this->addBox(-half, last + half, this->Voxels);
+  // An axis with one voxel is as thick as that voxel.
+  const glm::dvec3 thin =
+    view.showsBoxes ? glm::dvec3(1.0) : glm::dvec3(glm::equal(last, glm::dvec3(0.0)));
+  this->addBox(-half * thin, last + half * thin, this->Shown);
+}
+
+void SceneDepth::addBox(const glm::dvec3& low, const glm::dvec3& high, Body& body) const
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    glm::dvec4 plane(0.0, 0.0, 0.0, -low[a]);
+    plane[a] = 1.0;
+    this->addHalfSpace(this->Geometry.inPixels(plane), body);
+    plane = { 0.0, 0.0, 0.0, high[a] };
+    plane[a] = -1.0;
+    this->addHalfSpace(this->Geometry.inPixels(plane), body);
+  }
+}
+
+void SceneDepth::addHalfSpace(const glm::dvec4& h, Body& body) const
+{
+  const glm::dvec4& d = this->Depth;
+  // Rays that run along a plane neither enter nor leave through it.
+  if (std::abs(h.z) <= 1e-12 * glm::length(glm::dvec3(h)) || d.z == 0.0)
+  {
+    return;
+  }
+  // The depth where h vanishes, first of shear pixels, then of screen pixels.
+  const glm::dvec4 crossing = d - d.z / h.z * h;
+  const glm::dmat3x2& m = this->Geometry.screenToShear();
+  const glm::dvec2 slopes(crossing);
+  const glm::dvec3 depth(
+    glm::dot(slopes, m[0]), glm::dot(slopes, m[1]), glm::dot(slopes, m[2]) + crossing.w);
+  (h.z * d.z > 0.0 ? body.fronts : body.backs).push_back(depth);
+}
+
+double SceneDepth::Body::entry(const glm::dvec3& pixel) const
+{
+  double depth = -Infinity;
+  for (const glm::dvec3& front : this->fronts)
+  {
+    depth = std::max(depth, glm::dot(front, pixel));
+  }
+  return depth;
+}
+
+double SceneDepth::Body::exit(const glm::dvec3& pixel) const
+{
+  double depth = Infinity;
+  for (const glm::dvec3& back : this->backs)
+  {
+    depth = std::min(depth, glm::dot(back, pixel));
+  }
+  return depth;
+}
+
+float SceneDepth::at(const glm::ivec2& pixel) const
+{
+  const glm::ivec2 p = pixel - this->Origin;
+  return this->Samples[std::size_t(p.y) * this->Size.x + p.x];
+}
+
+/// Whether a depth lies inside the volume.
+bool SceneDepth::endsRay(const glm::ivec2& pixel, double depth) const
+{
+  const glm::dvec3 p(pixel, 1.0);
+  double entry = this->Shown.entry(p), exit = this->Shown.exit(p);
+  if (entry > exit)
+  {
+    // Beside the picture, where pixels at its rim interpolate.
+    entry = this->Voxels.entry(p);
+    exit = this->Voxels.exit(p);
+  }
+  return depth > entry + Rounding && depth < exit - Rounding;
+}
+
+void SceneDepth::endRays(int u, int v, int count, double* near, double* far) const
+{
+  const glm::dvec4& d = this->Depth;
+  if (this->empty() || d.z == 0.0)
+  {
+    return;
+  }
+  const glm::ivec2 last = this->Origin + this->Size - 1;
+  for (int x = 0; x < count; ++x)
+  {
+    const glm::dvec3 ray(u + x, v, 1.0);
+    const glm::dvec2 seen = glm::floor(this->Geometry.shearToScreen() * ray + 0.5);
+    const glm::ivec2 pixel(glm::clamp(seen, glm::dvec2(this->Origin), glm::dvec2(last)));
+    const double depth = this->at(pixel);
+    if (depth >= 1.0 || !this->endsRay(pixel, depth))
+    {
+      continue;
+    }
+    const double z = (depth - glm::dot(glm::dvec3(d.x, d.y, d.w), ray)) / d.z;
+    if (d.z > 0.0)
+    {
+      far[x] = std::min(far[x], z);
+    }
+    else
+    {
+      near[x] = std::max(near[x], z);
+    }
+  }
+}
+
+void SceneDepth::hide(Picture& picture) const
+{
+  const glm::ivec2 begin = glm::max(this->Origin, picture.origin);
+  const glm::ivec2 end = glm::min(this->Origin + this->Size, picture.origin + picture.size);
+  if (this->empty() || begin.x >= end.x || begin.y >= end.y)
+  {
+    return;
+  }
+  vtkSMPTools::For(begin.y, end.y, 16,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (int y = static_cast<int>(first); y < last; ++y)
+      {
+        std::uint32_t* const row = picture.pixels.data() +
+          std::ptrdiff_t(y - picture.origin.y) * picture.size.x - picture.origin.x;
+        for (int x = begin.x; x < end.x; ++x)
+        {
+          const double depth = this->at({ x, y });
+          if (depth < 1.0 && depth <= this->Shown.entry({ x, y, 1.0 }) + Rounding)
+          {
+            row[x] = 0;
+          }
+        }
+      }
+    });
+}
+}
