@@ -366,10 +366,12 @@ void compare(const Scene& scene, Counts& counts, Checks& check)
   const Oracle oracle(scene, geometry);
   std::vector<splatting::SliceGeometry> slices;
   splatting::findSlices(geometry, slices);
+  splatting::CrossedSlices crossed;
+  crossed.reset(slices, geometry.width());
   std::vector<std::int16_t> first(geometry.width()), last(geometry.width());
   for (int v = 0; v < geometry.height(); ++v)
   {
-    splatting::findCrossedSlices(slices, v, geometry.width(), first.data(), last.data());
+    crossed.find(v, first.data(), last.data());
     for (int u = 0; u < geometry.width(); ++u)
     {
       if (first[u] <= last[u])
@@ -622,10 +624,12 @@ void testBoxes(Checks& check)
     const bool isStraight = a.geometry.shear() == glm::dvec2(0.0);
     std::vector<splatting::SliceGeometry> slices;
     splatting::findSlices(a.geometry, slices);
+    splatting::CrossedSlices crossed;
+    crossed.reset(slices, a.geometry.width());
     std::vector<std::int16_t> first(a.geometry.width()), last(a.geometry.width());
     for (int v = 0; v < a.geometry.height(); ++v)
     {
-      splatting::findCrossedSlices(slices, v, a.geometry.width(), first.data(), last.data());
+      crossed.find(v, first.data(), last.data());
       for (int u = 0; u < a.geometry.width(); ++u)
       {
         if (first[u] > last[u])
