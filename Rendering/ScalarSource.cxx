@@ -247,6 +247,11 @@ std::string ScalarSource::CheckComponents(const Key& key)
       " components, but there can be 1 to 4 independent or 2 or 4 dependent ones: choose their "
       "magnitude or one of them with SetVectorMode.";
   }
+  if (!key.independent && available == 4 && key.scalars->GetDataType() != VTK_UNSIGNED_CHAR)
+  {
+    return "Four dependent components are red, green, blue and opacity, which must be unsigned "
+           "char: convert them with vtkImageCast, or make them independent.";
+  }
   this->Dependent = !key.independent;
   this->NumberOfComponents = available;
   return {};

@@ -3,7 +3,9 @@
 #include "TransferFunctions.h"
 
 #include "vtkColorTransferFunction.h"
+#include "vtkNew.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkSmartPointer.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
@@ -80,10 +82,11 @@ void sample(vtkPiecewiseFunction* grays, double low, double high, std::vector<fl
 
 template <class ColorFunction>
 splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* colors, float weight,
-  double low, double high, bool integers, const FinalColor& finalColor)
+  const ScalarRange& range, const FinalColor& finalColor)
 {
+  double low = range.low, high = range.high;
   chooseRange(opacity, colors, low, high);
-  const double wanted = integers ? 16.0 * (high - low) + 1.0 : 65536.0;
+  const double wanted = range.integers ? 16.0 * (high - low) + 1.0 : 65536.0;
   const int entries = high > low ? static_cast<int>(std::clamp(wanted, 2.0, 65536.0)) : 1;
   const double end = high > low ? high : low + 1.0; // the functions want a range
   const int sampled = std::max(entries, 2);
@@ -98,6 +101,23 @@ splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* col
   }
   return table;
 }
+
+splatting::ColorTable tabulateColors(vtkVolumeProperty* property, int component,
+  vtkPiecewiseFunction* opacity, double weight, const ScalarRange& range,
+  const FinalColor& finalColor)
+{
+  const float share = static_cast<float>(weight);
+  return property->GetColorChannels(component) == 1
+    ? tabulate(opacity, property->GetGrayTransferFunction(component), share, range, finalColor)
+    : tabulate(opacity, property->GetRGBTransferFunction(component), share, range, finalColor);
+}
+
+vtkSmartPointer<vtkPiecewiseFunction> constantOne(const ScalarRange& range)
+{
+  auto one = vtkSmartPointer<vtkPiecewiseFunction>::New();
+  one->AddPoint(range.low, 1.0);
+  return one;
+}
 }
 
 bool FinalColor::isValid() const
@@ -107,13 +127,42 @@ bool FinalColor::isValid() const
 }
 
 splatting::ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
-  double dataLow, double dataHigh, bool integers, const FinalColor& finalColor)
+  const ScalarRange& range, const FinalColor& finalColor)
 {
-  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(component);
-  const float share = static_cast<float>(weight);
-  return property->GetColorChannels(component) == 1
-    ? tabulate(opacity, property->GetGrayTransferFunction(component), share, dataLow, dataHigh,
-        integers, finalColor)
-    : tabulate(opacity, property->GetRGBTransferFunction(component), share, dataLow, dataHigh,
-        integers, finalColor);
+  return tabulateColors(
+    property, component, property->GetScalarOpacity(component), weight, range, finalColor);
+}
+
+splatting::ColorTable tabulateOpaque(
+  vtkVolumeProperty* property, const ScalarRange& range, const FinalColor& finalColor)
+{
+  return tabulateColors(property, 0, constantOne(range), 1.0, range, finalColor);
+}
+
+splatting::ColorTable tabulateOpacity(vtkVolumeProperty* property, const ScalarRange& range)
+{
+  return tabulate<vtkPiecewiseFunction>(
+    property->GetScalarOpacity(0), constantOne(range), 1.0f, range, {});
+}
+
+splatting::ColorTable tabulatePrimary(int primary, const FinalColor& finalColor)
+{
+  const ScalarRange bytes{ 0.0, 255.0, true };
+  vtkNew<vtkColorTransferFunction> colors;
+  colors->AddRGBPoint(0.0, 0.0, 0.0, 0.0);
+  colors->AddRGBPoint(255.0, primary == 0, primary == 1, primary == 2);
+  splatting::ColorTable table =
+    tabulate<vtkColorTransferFunction>(constantOne(bytes), colors, 1.0f, bytes, finalColor);
+  // The others are added to it: a level must not show in their colours.
+  for (std::uint32_t& color : table.colors)
+  {
+    unsigned char rgba[4];
+    std::memcpy(rgba, &color, sizeof(color));
+    for (int c = 0; c < 3; ++c)
+    {
+      rgba[c] = c == primary ? rgba[c] : 0;
+    }
+    std::memcpy(&color, rgba, sizeof(color));
+  }
+  return table;
 }

@@ -26,11 +26,31 @@ struct FinalColor
 };
 
 /**
- * The colour and opacity functions of one of a property's components, as a table for values from
- * dataLow to dataHigh; opacities are multiplied by the weight. Integers get sixteen entries per
- * grey level, as far as 65536 go, other values all of those.
+ * The values that a table is for.
+ */
+struct ScalarRange
+{
+  double low;
+  double high;
+  bool integers;
+};
+
+/**
+ * The colour and opacity functions of one of a property's components, as a table; opacities are
+ * multiplied by the weight. Integers get sixteen entries per grey level, as far as 65536 go, other
+ * values all of those.
  */
 splatting::ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
-  double dataLow, double dataHigh, bool integers, const FinalColor& finalColor);
+  const ScalarRange& range, const FinalColor& finalColor);
+
+/**
+ * Of dependent components, whose functions are those of the first one: the colours without opacity,
+ * the opacities (white, premultiplied), and, for unsigned char as red (0), green (1) or blue (2),
+ * the primary colour itself.
+ */
+splatting::ColorTable tabulateOpaque(
+  vtkVolumeProperty* property, const ScalarRange& range, const FinalColor& finalColor);
+splatting::ColorTable tabulateOpacity(vtkVolumeProperty* property, const ScalarRange& range);
+splatting::ColorTable tabulatePrimary(int primary, const FinalColor& finalColor);
 
 #endif

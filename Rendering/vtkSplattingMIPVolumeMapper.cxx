@@ -2,44 +2,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSplattingMIPVolumeMapper.h"
 
-#include "BoundingSurface.h"
-#include "Project.h"
+#include "ComponentProjector.h"
 #include "RayCastFallback.h"
 #include "RenderTimes.h"
 #include "ScalarSource.h"
-#include "SceneDepth.h"
+#include "SceneCuts.h"
 #include "Selection.h"
-#include "ShearWarp.h"
-#include "TransferFunctions.h"
 #include "View.h"
 #include "ViewOfVolume.h"
-#include "VolumeIndex.h"
-#include "Warp.h"
 
 #include "vtkCommand.h"
 #include "vtkDataSet.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkRayCastImageDisplayHelper.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimerLog.h"
-#include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <functional>
 #include <set>
 #include <string>
-#include <vector>
 
 vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
 vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
@@ -93,72 +82,33 @@ class vtkSplattingMIPVolumeMapper::Internals
 {
 public:
   std::string Problem(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
-  const char* ReasonToRayCast(
-    vtkSplattingMIPVolumeMapper* self, vtkVolume* volume, const splatting::View& view);
-  void LookAtVolumes();
-  bool SetBudget(std::size_t bytes);
-  bool ExceedsBudget() const;
-  double IndexTime() const;
+  std::string ProblemOfSettings(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
+  const char* ReasonToRayCast(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
+  void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
-  bool Shows(vtkSplattingMIPVolumeMapper* self, const splatting::ShearWarp& geometry,
-    splatting::Quality quality) const;
-  std::string ProblemOfCuts(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
-  void CaptureDepth(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren,
-    const splatting::View& view, const splatting::ShearWarp& geometry);
-  void FindCuts(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view,
-    const splatting::ShearWarp& geometry);
+  double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
+  splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self, int mode) const;
   bool Project(
     vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode);
-  void UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor);
-  void Warp(const splatting::View& view);
-  void CopyShearImage(vtkImageData* output) const;
 
   std::string Reported;              // the last problem, so that each is told once
-  std::set<std::string> Announced;   // reasons to ray cast that were told
+  std::set<std::string> Announced;   // what ray casting leads to, and was told
+  bool BudgetReported = false;       // as in: since it was no problem
+  bool OpenSurfaceReported = false;  // likewise
   vtkRenderWindow* Window = nullptr; // which may abort, during a render
 
   ScalarSource Source;
-  vtkIdType IndexedVersion = 0; // of the source
+  ComponentProjector Components;
+  SceneCuts Cuts;
+  splatting::ShearWarp Geometry; // of the last frame
+  splatting::Picture Picture;
 
-  /// One for each component that is projected.
-  struct Channel
-  {
-    splatting::VolumeIndex Index;
-    splatting::ColorTable Colors;
-    splatting::ProjectionSettings Settings;
-    splatting::ShearImage Image;
-    splatting::Acceleration Used = splatting::Acceleration::Dense;
-
-    splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self) const;
-    double FloorOfWindow() const;
-  };
-  std::vector<Channel> Channels = std::vector<Channel>(1);
-  std::size_t Projected = 0; // of these in the present frame
-
-  splatting::Projector Projector;
-  splatting::ShearWarp Geometry;
-  bool BudgetReported = false;
-  splatting::Cuts Cuts, LastCuts;
-  std::vector<glm::dvec4> HalfSpaces; // in pixels
-  ::BoundingSurface Surface;
-  bool OpenSurfaceReported = false;
-  splatting::SceneDepth Depth;
-  const vtkRenderer* DepthOf = nullptr; // only compared
-  bool ImageValid = false;
   vtkIdType Projections = 0;
   double ProjectionTime = 0.0;
   splatting::RenderTimes Times;
   double IndexTimeBefore = 0.0; // before what the present frame makes of the index
   double Shear[2] = { 0.0, 0.0 };
   vtkSmartPointer<vtkImageData> ShearImageOutput;
-
-  vtkVolumeProperty* ColoredBy = nullptr;
-  vtkMTimeType ColorTime = 0;
-  FinalColor ColoredFor;
-  bool ColorsValid = false;
-  splatting::Warper Warper;
-  splatting::Picture Picture;
-  splatting::Picture Layer; // of one component
 
   std::unique_ptr<RayCastFallback> RayCaster; // made when first needed: it is megabytes large
 };
@@ -192,9 +142,9 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     LastRenderUsedRayCasting(false),
     Internal(new Internals)
 {
-  this->Internal->Projector.setProgress([this](double done) { this->UpdateProgress(done); });
-  this->Internal->Projector.setWatch(
-    [this](double done) { return this->Internal->GoOn(this, done); });
+  splatting::Projector& projector = this->Internal->Components.GetProjector();
+  projector.setProgress([this](double done) { this->UpdateProgress(done); });
+  projector.setWatch([this](double done) { return this->Internal->GoOn(this, done); });
   this->BlendMode = MAXIMUM_INTENSITY_BLEND;
 }
 
@@ -237,16 +187,12 @@ std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
 
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
-  vtkSplattingMIPVolumeMapper* self, vtkVolume*, const splatting::View& view)
+  vtkSplattingMIPVolumeMapper* self, const splatting::View& view)
 {
   if (self->BlendMode != MAXIMUM_INTENSITY_BLEND && self->BlendMode != MINIMUM_INTENSITY_BLEND &&
     self->BlendMode != AVERAGE_INTENSITY_BLEND)
   {
     return "the blend mode is no intensity projection";
-  }
-  if (this->Source.AreDependent())
-  {
-    return "the scalars have several components that are dependent";
   }
   if (!splatting::isParallel(view))
   {
@@ -256,69 +202,11 @@ const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
 }
 
 //------------------------------------------------------------------------------
-// Points the indices at the volumes, anew if these changed.
-void vtkSplattingMIPVolumeMapper::Internals::LookAtVolumes()
-{
-  this->Source.Update();
-  if (this->IndexedVersion == this->Source.Version())
-  {
-    return;
-  }
-  const splatting::VoxelArray before = this->Channels.front().Index.volume();
-  const splatting::VoxelArray now = this->Source.Volume(0);
-  const std::size_t components = this->Source.Components();
-  if (before.dimensions != now.dimensions || before.type != now.type ||
-    this->Channels.size() != components)
-  {
-    this->Times.clear(); // those of other sizes; changed data take what the last ones took
-  }
-  this->IndexedVersion = this->Source.Version();
-  this->Channels.resize(components);
-  for (std::size_t c = 0; c < components; ++c)
-  {
-    this->Channels[c].Index.reset(this->Source.Volume(static_cast<int>(c)));
-  }
-  this->ImageValid = false;
-  this->ShearImageOutput = nullptr;
-  this->ColorsValid = false;
-}
-
-//------------------------------------------------------------------------------
-// Every component gets the same share. Returns whether the budget changed.
-bool vtkSplattingMIPVolumeMapper::Internals::SetBudget(std::size_t bytes)
-{
-  bool changed = false;
-  for (Channel& channel : this->Channels)
-  {
-    changed = channel.Index.setBudget(bytes / this->Channels.size()) || changed;
-  }
-  return changed;
-}
-
-//------------------------------------------------------------------------------
-bool vtkSplattingMIPVolumeMapper::Internals::ExceedsBudget() const
-{
-  return std::any_of(this->Channels.begin(), this->Channels.end(),
-    [](const Channel& channel) { return channel.Index.exceedsBudget(); });
-}
-
-//------------------------------------------------------------------------------
-double vtkSplattingMIPVolumeMapper::Internals::IndexTime() const
-{
-  double seconds = this->Source.Time();
-  for (const Channel& channel : this->Channels)
-  {
-    seconds += channel.Index.time();
-  }
-  return seconds;
-}
-
-//------------------------------------------------------------------------------
-splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::Channel::MakeSettings(
-  vtkSplattingMIPVolumeMapper* self) const
+splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::MakeSettings(
+  vtkSplattingMIPVolumeMapper* self, int mode) const
 {
   splatting::ProjectionSettings settings;
-  settings.quality = static_cast<splatting::Quality>(self->QualityMode);
+  settings.quality = static_cast<splatting::Quality>(mode);
   settings.reduction = reductionOf(self->BlendMode, self->MaximumType);
   settings.ambient = self->DepthShadingAmbient;
   settings.changeRate = self->DepthShadingChangeRate;
@@ -332,38 +220,21 @@ splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::Channel::M
   settings.acceleration = static_cast<splatting::Acceleration>(self->Acceleration);
   settings.lineTolerance = self->LineTolerance;
   settings.eliminateInvisible = self->EliminateInvisible;
-  if (self->CullBelowWindow)
-  {
-    settings.floor = this->FloorOfWindow();
-  }
   return settings;
-}
-
-//------------------------------------------------------------------------------
-// The scalar up to which all have the colour of the lowest.
-double vtkSplattingMIPVolumeMapper::Internals::Channel::FloorOfWindow() const
-{
-  const std::vector<std::uint32_t>& colors = this->Colors.colors;
-  const auto last = std::adjacent_find(colors.begin(), colors.end(), std::not_equal_to<>());
-  const double steps = std::max<double>(static_cast<double>(colors.size()) - 1.0, 1.0);
-  const double share =
-    last == colors.end() ? 1.0 : static_cast<double>(last - colors.begin()) / steps;
-  return this->Colors.low + share * (this->Colors.high - this->Colors.low);
 }
 
 //------------------------------------------------------------------------------
 // Tells how much of the projection is done and whether the window wants the rest.
 bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* self, double done)
 {
-  const double projected = static_cast<double>(this->Projected);
-  done = (projected + done) / static_cast<double>(this->Channels.size());
+  done = this->Components.ShareOfAll(done);
   self->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &done);
   return !this->Window || !this->Window->CheckAbortStatus();
 }
 
 //------------------------------------------------------------------------------
-// As Problem(): of slab and bounding surface, once the input is known to be good.
-std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfCuts(
+// As Problem(): of the mapper's own settings, once the input is known to be good.
+std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfSettings(
   vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
 {
   const double* const centre = self->SlabCenter;
@@ -375,85 +246,30 @@ std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfCuts(
   {
     return "The slab's centre is not finite: set SlabCenter to a point of the world.";
   }
+  if (self->MaximumType == LOCAL && std::isnan(self->LocalMaximumThreshold))
+  {
+    return "LocalMaximumThreshold is not a number: set it to the scalar from which on local maxima "
+           "count.";
+  }
+  if (self->MaximumType == DEPTH_SHADED &&
+    !(std::isfinite(self->DepthShadingAmbient) && std::isfinite(self->DepthShadingChangeRate)))
+  {
+    return "DepthShadingAmbient and DepthShadingChangeRate must be finite.";
+  }
+  if (self->BlendMode == AVERAGE_INTENSITY_BLEND &&
+    !(self->AverageIPScalarRange[0] <= self->AverageIPScalarRange[1]))
+  {
+    return "AverageIPScalarRange holds no scalars: its first value must not be above its second.";
+  }
   const glm::dmat4 toIndex =
     self->BoundingSurface ? worldToIndex(this->Source.Grid(), volume) : glm::dmat4(1.0);
-  const char* const fault = this->Surface.Update(self->BoundingSurface, toIndex);
+  const char* const fault = this->Cuts.Surface().Update(self->BoundingSurface, toIndex);
   return fault ? fault : "";
 }
 
 //------------------------------------------------------------------------------
-// The depths of what has been rendered where the volume will be seen, if there is anything.
-void vtkSplattingMIPVolumeMapper::Internals::CaptureDepth(vtkSplattingMIPVolumeMapper* self,
-  vtkRenderer* ren, const splatting::View& view, const splatting::ShearWarp& geometry)
-{
-  splatting::placePicture(geometry, view.viewport, this->Picture);
-  const glm::ivec2& origin = this->Picture.origin;
-  const glm::ivec2& size = this->Picture.size;
-  // Selection is by what is seen: its passes draw other depths than frames.
-  if (ren->GetSelector() && this->DepthOf == ren && this->Depth.isOf(origin, size))
-  {
-    this->Depth.place(view, geometry, this->HalfSpaces);
-    return;
-  }
-  this->Depth.clear();
-  this->DepthOf = ren;
-  // Renderers that keep the depths of a lower layer have something to intermix with, too.
-  if (!self->IntermixIntersectingGeometry ||
-    (ren->GetNumberOfPropsRendered() < 1 && !ren->GetPreserveDepthBuffer()) || ren->GetSelector() ||
-    size.x < 1 || size.y < 1)
-  {
-    return;
-  }
-  float* const depths = this->Depth.allocate(origin, size);
-  const float* const end = depths + std::size_t(size.x) * size.y;
-  if (!self->ReadDepth(ren, &origin.x, &size.x, depths) ||
-    std::all_of<const float*>(depths, end, [](float depth) { return depth >= 1.0f; }))
-  {
-    this->Depth.clear();
-    return;
-  }
-  this->Depth.place(view, geometry, this->HalfSpaces);
-}
-
-//------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::Internals::FindCuts(vtkSplattingMIPVolumeMapper* self,
-  vtkRenderer* ren, const splatting::View& view, const splatting::ShearWarp& geometry)
-{
-  this->Cuts.cropping = view.cropping;
-  this->HalfSpaces.clear();
-  for (const glm::dvec4& h : view.halfSpaces)
-  {
-    this->HalfSpaces.push_back(geometry.inPixels(h));
-  }
-  splatting::ClosedSurface* const surface = this->Surface.Get();
-  if (surface)
-  {
-    surface->project(geometry);
-  }
-  this->CaptureDepth(self, ren, view, geometry);
-  this->Cuts.intervals.find(
-    geometry, this->HalfSpaces, surface, this->Depth.empty() ? nullptr : &this->Depth);
-}
-
-//------------------------------------------------------------------------------
-// Whether the last shear image is what this asks for; the cuts are found already.
-bool vtkSplattingMIPVolumeMapper::Internals::Shows(vtkSplattingMIPVolumeMapper* self,
-  const splatting::ShearWarp& geometry, splatting::Quality quality) const
-{
-  const bool turned = geometry.reversed() != this->Geometry.reversed();
-  return this->ImageValid && geometry.sameShear(this->Geometry) && this->Cuts == this->LastCuts &&
-    std::all_of(this->Channels.begin(), this->Channels.end(),
-      [=](const Channel& channel)
-      {
-        splatting::ProjectionSettings settings = channel.MakeSettings(self);
-        settings.quality = quality;
-        return settings == channel.Settings && !(turned && isOrdered(settings.reduction));
-      });
-}
-
-//------------------------------------------------------------------------------
 // Projects in this mode, unless the last shear image shows the same, or better within what is
-// wanted. False if the view has no meaning. There is no valid image after an abort.
+// wanted. False if the view has no meaning. There is no image after an abort.
 bool vtkSplattingMIPVolumeMapper::Internals::Project(
   vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode)
 {
@@ -463,75 +279,41 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
     return false;
   }
   const double start = vtkTimerLog::GetUniversalTime();
-  this->FindCuts(self, ren, view, geometry);
-  const bool same = this->Shows(self, geometry,
-    std::clamp(this->Channels.front().Settings.quality, static_cast<splatting::Quality>(mode),
-      static_cast<splatting::Quality>(self->QualityMode)));
+  this->Cuts.Find(view, geometry, ren, self->IntermixIntersectingGeometry != 0,
+    [=](const int origin[2], const int size[2], float* depths)
+    { return self->ReadDepth(ren, origin, size, depths); });
+  const int usable =
+    std::clamp(static_cast<int>(this->Components.Settings().quality), mode, self->QualityMode);
+  const bool turned = geometry.reversed() != this->Geometry.reversed() &&
+    isOrdered(reductionOf(self->BlendMode, self->MaximumType));
+  const bool same = !turned && geometry.sameShear(this->Geometry) && this->Cuts.AreKept() &&
+    this->Components.Shows(this->MakeSettings(self, usable));
   this->Geometry = geometry;
   if (same)
   {
     return true;
   }
-  this->ImageValid = false;
   this->ShearImageOutput = nullptr;
-  for (this->Projected = 0; this->Projected < this->Channels.size(); ++this->Projected)
+  if (this->Components.Project(geometry, this->MakeSettings(self, mode), this->Cuts.Get()))
   {
-    Channel& channel = this->Channels[this->Projected];
-    channel.Settings = channel.MakeSettings(self);
-    channel.Settings.quality = static_cast<splatting::Quality>(mode);
-    const splatting::Acceleration used =
-      this->Projector.project(channel.Index, geometry, channel.Settings, this->Cuts, channel.Image);
-    if (this->Projector.stopped())
-    {
-      return true;
-    }
-    channel.Used = used;
+    this->Cuts.Keep();
+    this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
+    ++this->Projections;
   }
-  std::swap(this->Cuts, this->LastCuts);
-  this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
-  this->ImageValid = true;
-  ++this->Projections;
   return true;
 }
 
 //------------------------------------------------------------------------------
-// Transfer functions to tables of colours.
-void vtkSplattingMIPVolumeMapper::Internals::UpdateColors(
-  vtkVolumeProperty* property, const FinalColor& finalColor)
+// What is set but means nothing where rays are cast.
+void vtkSplattingMIPVolumeMapper::Internals::WarnOfIgnored(vtkSplattingMIPVolumeMapper* self)
 {
-  if (this->ColorsValid && this->ColoredBy == property && this->ColorTime == property->GetMTime() &&
-    this->ColoredFor == finalColor)
+  const bool hasType =
+    self->MaximumType != GLOBAL && self->BlendMode == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND;
+  if ((self->Slab || self->BoundingSurface || hasType) && this->Announced.insert("ignored").second)
   {
-    return;
-  }
-  const int components = static_cast<int>(this->Channels.size());
-  for (int c = 0; c < components; ++c)
-  {
-    Channel& channel = this->Channels[c];
-    const splatting::VolumeIndex::Range& range = channel.Index.range();
-    const double weight = components > 1 ? property->GetComponentWeight(c) : 1.0;
-    channel.Colors = tabulateColors(property, c, weight, range.low, range.high,
-      channel.Index.volume().type < splatting::ScalarType::Float32, finalColor);
-  }
-  this->ColoredFor = finalColor;
-  this->ColoredBy = property;
-  this->ColorTime = property->GetMTime();
-  this->ColorsValid = true;
-}
-
-//------------------------------------------------------------------------------
-// Every component by itself; their colours add up.
-void vtkSplattingMIPVolumeMapper::Internals::Warp(const splatting::View& view)
-{
-  for (Channel& channel : this->Channels)
-  {
-    const bool first = &channel == &this->Channels.front();
-    this->Warper.warp(channel.Image, this->Geometry, channel.Colors, view.viewport,
-      channel.Settings.instructionSet, first ? this->Picture : this->Layer);
-    if (!first)
-    {
-      splatting::addSaturated(this->Layer, this->Picture);
-    }
+    vtkWarningWithObjectMacro(self,
+      << "Slab, BoundingSurface and MaximumType mean nothing where a volume is ray cast: use a "
+         "parallel projection.");
   }
 }
 
@@ -552,7 +334,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   std::string problem = in.Problem(this, vol);
   if (problem.empty())
   {
-    problem = in.ProblemOfCuts(this, vol);
+    problem = in.ProblemOfSettings(this, vol);
   }
   if (problem.empty())
   {
@@ -596,7 +378,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return DegenerateCamera;
   }
-  if (const char* reason = in.ReasonToRayCast(this, vol, view))
+  if (const char* reason = in.ReasonToRayCast(this, view))
   {
     this->RenderByRayCasting(ren, vol, reason);
     return "";
@@ -605,20 +387,22 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     addSlab(view, in.Source.Grid(), vol, this->SlabCenter, this->SlabThickness);
   }
-  if (in.Surface.IsOpen() && !in.OpenSurfaceReported)
+  const bool isOpen = in.Cuts.Surface().IsOpen();
+  if (isOpen && !in.OpenSurfaceReported)
   {
     vtkWarningMacro(<< "The bounding surface is not closed: rays that cross it once show nothing. "
                        "Close it, for instance with vtkFillHolesFilter.");
   }
-  in.OpenSurfaceReported = in.Surface.IsOpen();
-  const vtkIdType version = in.IndexedVersion;
-  in.LookAtVolumes();
-  if (in.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget)))
+  in.OpenSurfaceReported = isOpen;
+  const vtkIdType version = in.Source.Version();
+  if (in.Components.LookAt(in.Source))
   {
-    in.ImageValid = false; // so that the answer to "what was used" is right
+    in.Times.clear(); // changed data of the same kind take what the last ones took
   }
-  in.IndexTimeBefore = in.IndexedVersion == version ? in.IndexTime() : 0.0;
-  in.UpdateColors(vol->GetProperty(), finalColor);
+  in.Components.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget));
+  in.IndexTimeBefore = in.Source.Version() == version ? in.IndexTime() : 0.0;
+  in.Components.UpdateColors(vol->GetProperty(), finalColor);
+  in.Components.SetCullBelowWindow(this->CullBelowWindow);
   // Selection is by what is seen.
   const int mode = !this->AutoAdjustSampleDistances ? this->QualityMode
     : ren->GetSelector()
@@ -628,17 +412,18 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return DegenerateCamera;
   }
-  if (in.ExceedsBudget() && !in.BudgetReported)
+  const bool exceeds = in.Components.ExceedsBudget();
+  if (exceeds && !in.BudgetReported)
   {
     vtkWarningMacro(<< "An index for fast projection does not fit into IndexMemoryBudget ("
                     << this->IndexMemoryBudget
                     << " bytes): this volume is projected without it. Raise the budget.");
   }
-  in.BudgetReported = in.ExceedsBudget();
-  if (in.ImageValid)
+  in.BudgetReported = exceeds;
+  if (in.Components.IsProjected())
   {
-    in.Warp(view);
-    in.Depth.hide(in.Picture);
+    in.Components.Warp(in.Geometry, view, in.Picture);
+    in.Cuts.Hide(in.Picture);
     this->DisplayPicture(ren);
   }
   return "";
@@ -683,11 +468,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
     }
     in.RayCaster = std::make_unique<RayCastFallback>();
   }
-  if ((this->Slab || this->BoundingSurface) && in.Announced.insert("slab").second)
-  {
-    vtkWarningMacro(<< "Slab and BoundingSurface cut nothing where a volume is ray cast: use a "
-                       "parallel projection.");
-  }
+  in.WarnOfIgnored(this);
   if (ren->GetSelector())
   {
     in.RayCaster->FindMask(this, in.Source.Image(), ren, vol, in.Picture);
@@ -730,47 +511,18 @@ void vtkSplattingMIPVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 }
 
 //------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::Internals::CopyShearImage(vtkImageData* output) const
-{
-  const splatting::ShearImage& first = this->Channels.front().Image;
-  const std::size_t components = this->Channels.size(), size = splatting::sizeOf(first.type);
-  output->SetDimensions(first.width, first.height, 1);
-  output->SetOrigin(-this->Geometry.margin().x, -this->Geometry.margin().y, 0.0);
-  output->AllocateScalars(this->Source.VtkTypeOf(first.type), static_cast<int>(components));
-  const std::size_t pixels = static_cast<std::size_t>(output->GetNumberOfPoints());
-  auto* const scalars = static_cast<unsigned char*>(output->GetScalarPointer());
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-  ghosts->SetNumberOfValues(output->GetNumberOfPoints());
-  ghosts->Fill(vtkDataSetAttributes::HIDDENPOINT);
-  for (std::size_t c = 0; c < components; ++c)
-  {
-    const splatting::ShearImage& image = this->Channels[c].Image;
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
-    {
-      std::memcpy(
-        scalars + (pixel * components + c) * size, image.bytes.data() + pixel * size, size);
-      const int u = static_cast<int>(pixel % image.width),
-                v = static_cast<int>(pixel / image.width);
-      const vtkIdType id = static_cast<vtkIdType>(pixel);
-      if (image.covers(u, v) &&
-        !std::isnan(output->GetPointData()->GetScalars()->GetComponent(id, static_cast<int>(c))))
-      {
-        ghosts->SetValue(id, 0);
-      }
-    }
-  }
-  output->GetPointData()->AddArray(ghosts);
-}
-
-//------------------------------------------------------------------------------
 vtkImageData* vtkSplattingMIPVolumeMapper::GetShearImage()
 {
   Internals& in = *this->Internal;
-  if (in.ImageValid && !in.ShearImageOutput)
+  if (!in.Components.IsProjected())
+  {
+    in.ShearImageOutput = nullptr;
+  }
+  else if (!in.ShearImageOutput)
   {
     in.ShearImageOutput = vtkSmartPointer<vtkImageData>::New();
-    in.CopyShearImage(in.ShearImageOutput);
+    in.Components.CopyImages(
+      in.Geometry, in.Source.VtkTypeOf(in.Components.ImageType()), in.ShearImageOutput);
   }
   return in.ShearImageOutput;
 }
@@ -778,7 +530,7 @@ vtkImageData* vtkSplattingMIPVolumeMapper::GetShearImage()
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetPrincipalAxis()
 {
-  return this->Internal->ImageValid ? this->Internal->Geometry.principalAxis() : -1;
+  return this->Internal->Components.IsProjected() ? this->Internal->Geometry.principalAxis() : -1;
 }
 
 //------------------------------------------------------------------------------
@@ -798,12 +550,8 @@ double* vtkSplattingMIPVolumeMapper::GetShear()
 //------------------------------------------------------------------------------
 vtkIdType vtkSplattingMIPVolumeMapper::GetIndexMemorySize()
 {
-  std::size_t size = this->Internal->Source.MemorySize();
-  for (const Internals::Channel& channel : this->Internal->Channels)
-  {
-    size += channel.Index.memorySize();
-  }
-  return static_cast<vtkIdType>(size);
+  return static_cast<vtkIdType>(
+    this->Internal->Source.MemorySize() + this->Internal->Components.MemorySize());
 }
 
 //------------------------------------------------------------------------------
@@ -827,13 +575,13 @@ double vtkSplattingMIPVolumeMapper::GetProjectionTime()
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetInstructionSet()
 {
-  return splatting::nameOf(this->Internal->Channels.front().Settings.instructionSet);
+  return splatting::nameOf(this->Internal->Components.Settings().instructionSet);
 }
 
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetAccelerationUsed()
 {
-  return static_cast<int>(this->Internal->Channels.front().Used);
+  return static_cast<int>(this->Internal->Components.Used());
 }
 
 //------------------------------------------------------------------------------
@@ -865,7 +613,7 @@ const char* vtkSplattingMIPVolumeMapper::GetQualityModeAsString()
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetQualityModeUsed()
 {
-  return static_cast<int>(this->Internal->Channels.front().Settings.quality);
+  return static_cast<int>(this->Internal->Components.Settings().quality);
 }
 
 //------------------------------------------------------------------------------

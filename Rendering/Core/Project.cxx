@@ -325,28 +325,27 @@ void Projector::carryType(const VoxelArray& other, const ShearWarp& geometry,
   const std::vector<SliceGeometry>& slices = this->Memory->slices;
   const auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
   const PermutedVoxels<T> voxels(other, geometry);
-  image.type = preview ? scalarTypeOf<T>() : scalarTypeOf<A>();
-  image.bytes.resize(std::size_t(image.width) * image.height * (preview ? sizeof(T) : sizeof(A)));
+  image.type = projected.type;
+  image.bytes.resize(projected.bytes.size());
   image.special = std::numeric_limits<T>::has_quiet_NaN;
+  const auto fill = [&](int v, auto* row)
+  {
+    using P = std::remove_pointer_t<decltype(row)>;
+    const std::int32_t* const winners = &projected.winners[std::size_t(v) * projected.width];
+    for (int u = 0; u < image.width; ++u)
+    {
+      const int step = winners[u], k = std::max(step, 0) / StepsPerSlice;
+      row[u] = step < 0 ? P(0)
+        : preview       ? static_cast<P>(carriedVoxel(voxels, slices[k].path, u, v, step))
+                        : static_cast<P>(carriedAverage<T>(voxels, footprints[k], u, v, k));
+    }
+  };
   vtkSMPTools::For(0, image.height, TileHeight,
     [&](vtkIdType begin, vtkIdType end)
     {
       for (int v = static_cast<int>(begin); v < end; ++v)
       {
-        const std::int32_t* const winners = &projected.winners[std::size_t(v) * projected.width];
-        for (int u = 0; u < image.width; ++u)
-        {
-          const int step = winners[u], k = std::max(step, 0) / StepsPerSlice;
-          if (preview)
-          {
-            image.row<T>(v)[u] = step < 0 ? T(0) : carriedVoxel(voxels, slices[k].path, u, v, step);
-          }
-          else
-          {
-            image.row<A>(v)[u] =
-              step < 0 ? A(0) : carriedAverage<T>(voxels, footprints[k], u, v, k);
-          }
-        }
+        image.type == scalarTypeOf<T>() ? fill(v, image.row<T>(v)) : fill(v, image.row<A>(v));
       }
     });
 }

@@ -224,6 +224,20 @@ void addSaturated(const Picture& layer, Picture& sum)
     });
 }
 
+void multiplyByOpacity(const Picture& opacity, Picture& picture)
+{
+  const auto* const from = reinterpret_cast<const unsigned char*>(opacity.pixels.data());
+  auto* const to = reinterpret_cast<unsigned char*>(picture.pixels.data());
+  vtkSMPTools::For(0, static_cast<vtkIdType>(picture.pixels.size()), 1 << 14,
+    [=](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType n = 4 * first; n < 4 * last; ++n)
+      {
+        to[n] = static_cast<unsigned char>((to[n] * from[n | 3] + 127) / 255);
+      }
+    });
+}
+
 void Warper::warp(const ShearImage& image, const ShearWarp& geometry, const ColorTable& table,
   const glm::ivec2& viewport, InstructionSet instructionSet, Picture& picture)
 {

@@ -45,6 +45,12 @@ void placePicture(const ShearWarp& geometry, const glm::ivec2& viewport, Picture
 void addSaturated(const Picture& layer, Picture& sum);
 
 /**
+ * Multiplies a picture without transparency by the opacities of another one of the same size and
+ * place.
+ */
+void multiplyByOpacity(const Picture& opacity, Picture& picture);
+
+/**
  * Warps shear images. Holds work space between frames.
  */
 class Warper

@@ -11,7 +11,6 @@
 #include "vtkCommand.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkGPUVolumeRayCastMapper.h"
-#include "vtkImageAppendComponents.h"
 #include "vtkImageData.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkRenderWindow.h"
@@ -140,21 +139,6 @@ void testMovedVolume(stage::Stage& stage, stage::Checks& check)
   stage.volume->SetPosition(0.0, 0.0, 0.0);
 }
 
-void testComponents(stage::Stage& stage, stage::Checks& check)
-{
-  vtkNew<vtkImageAppendComponents> append;
-  append->AddInputData(stage::toImageData(reference::constant<std::uint8_t>({ 48, 40, 44 }, 60)));
-  append->AddInputData(blobs());
-  append->Update();
-  const auto mapper = stage::splatting(append->GetOutput());
-  stage.show(mapper);
-  look(stage, false);
-  stage.property->IndependentComponentsOff();
-  check(!isBlack(renderWithOneWarning(stage, mapper, "several components", check)),
-    "Dependent components: the picture is not black.");
-  stage.property->IndependentComponentsOn();
-}
-
 void testComposite(stage::Stage& stage, stage::Checks& check)
 {
   const auto image = blobs();
@@ -221,7 +205,6 @@ int TestRayCasting(int, char*[])
   testPerspectiveWithDirection(stage, check);
   testPerspectivePreview(stage, check);
   testMovedVolume(stage, check);
-  testComponents(stage, check);
   testComposite(stage, check);
   testColors(stage, check);
   testSeveralReasons(stage, check);

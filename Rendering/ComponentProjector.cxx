@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ComponentProjector.h"
+
+#include "ScalarSource.h"
+
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+//------------------------------------------------------------------------------
+bool ComponentProjector::LookAt(ScalarSource& source)
+{
+  source.Update();
+  this->Dependent = source.AreDependent();
+  if (this->Version == source.Version())
+  {
+    return false;
+  }
+  const splatting::VoxelArray before = this->Channels.front().Index.volume();
+  const splatting::VoxelArray now = source.Volume(0);
+  const std::size_t components = source.Components();
+  const bool differs = before.dimensions != now.dimensions || before.type != now.type ||
+    this->Channels.size() != components;
+  this->Version = source.Version();
+  this->Channels.resize(components);
+  for (std::size_t c = 0; c < components; ++c)
+  {
+    this->Channels[c].Index.reset(source.Volume(static_cast<int>(c)));
+  }
+  this->Projected = false;
+  this->Colored = false;
+  return differs;
+}
+
+//------------------------------------------------------------------------------
+bool ComponentProjector::SetBudget(std::size_t bytes)
+{
+  bool changed = false;
+  for (Channel& channel : this->Channels)
+  {
+    changed = channel.Index.setBudget(bytes / this->Channels.size()) || changed;
+  }
+  this->Projected = this->Projected && !changed; // so that the answer to "what was used" is right
+  return changed;
+}
+
+//------------------------------------------------------------------------------
+bool ComponentProjector::ExceedsBudget() const
+{
+  return std::any_of(this->Channels.begin(), this->Channels.end(),
+    [](const Channel& channel) { return channel.Index.exceedsBudget(); });
+}
+
+//------------------------------------------------------------------------------
+std::size_t ComponentProjector::MemorySize() const
+{
+  std::size_t size = 0;
+  for (const Channel& channel : this->Channels)
+  {
+    size += channel.Index.memorySize();
+  }
+  return size;
+}
+
+//------------------------------------------------------------------------------
+double ComponentProjector::Time() const
+{
+  double seconds = 0.0;
+  for (const Channel& channel : this->Channels)
+  {
+    seconds += channel.Index.time();
+  }
+  return seconds;
+}
+
+//------------------------------------------------------------------------------
+splatting::ColorTable ComponentProjector::ColorsOf(
+  int channel, vtkVolumeProperty* property, const FinalColor& finalColor)
+{
+  splatting::VolumeIndex& index = this->Channels[channel].Index;
+  const splatting::VolumeIndex::Range& range = index.range();
+  const ScalarRange scalars{ range.low, range.high,
+    index.volume().type < splatting::ScalarType::Float32 };
+  const int components = static_cast<int>(this->Channels.size());
+  if (!this->Dependent)
+  {
+    const double weight = components > 1 ? property->GetComponentWeight(channel) : 1.0;
+    return tabulateColors(property, channel, weight, scalars, finalColor);
+  }
+  if (channel == components - 1)
+  {
+    return tabulateOpacity(property, scalars);
+  }
+  return components == 2 ? tabulateOpaque(property, scalars, finalColor)
+                         : tabulatePrimary(channel, finalColor);
+}
+
+//------------------------------------------------------------------------------
+void ComponentProjector::UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor)
+{
+  if (this->Colored && this->ColoredBy == property && this->ColorTime == property->GetMTime() &&
+    this->ColoredFor == finalColor)
+  {
+    return;
+  }
+  for (std::size_t c = 0; c < this->Channels.size(); ++c)
+  {
+    this->Channels[c].Colors = this->ColorsOf(static_cast<int>(c), property, finalColor);
+  }
+  this->ColoredFor = finalColor;
+  this->ColoredBy = property;
+  this->ColorTime = property->GetMTime();
+  this->Colored = true;
+}
+
+//------------------------------------------------------------------------------
+// The scalar up to which all have the colour of the lowest.
+double ComponentProjector::Channel::FloorOfWindow() const
+{
+  const std::vector<std::uint32_t>& colors = this->Colors.colors;
+  const auto last = std::adjacent_find(colors.begin(), colors.end(), std::not_equal_to<>());
+  const double steps = std::max<double>(static_cast<double>(colors.size()) - 1.0, 1.0);
+  const double share =
+    last == colors.end() ? 1.0 : static_cast<double>(last - colors.begin()) / steps;
+  return this->Colors.low + share * (this->Colors.high - this->Colors.low);
+}
+
+//------------------------------------------------------------------------------
+// Whether all but the last component go with the winners.
+bool ComponentProjector::Carries(const splatting::ProjectionSettings& settings) const
+{
+  return this->Dependent && settings.reduction != splatting::Reduction::Mean;
+}
+
+//------------------------------------------------------------------------------
+splatting::ProjectionSettings ComponentProjector::SettingsOf(
+  const Channel& channel, splatting::ProjectionSettings settings) const
+{
+  settings.keepWinners = this->Carries(settings);
+  // Colours that are carried matter below the window, too.
+  if (this->Cull && !this->Dependent && settings.reduction == splatting::Reduction::Maximum)
+  {
+    settings.floor = channel.FloorOfWindow();
+  }
+  return settings;
+}
+
+//------------------------------------------------------------------------------
+bool ComponentProjector::Shows(const splatting::ProjectionSettings& settings) const
+{
+  return this->Projected &&
+    std::all_of(this->Channels.begin(), this->Channels.end(),
+      [&](const Channel& channel)
+      { return this->SettingsOf(channel, settings) == channel.Settings; });
+}
+
+//------------------------------------------------------------------------------
+bool ComponentProjector::ProjectChannel(Channel& channel, const splatting::ShearWarp& geometry,
+  const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts)
+{
+  channel.Settings = this->SettingsOf(channel, settings);
+  const splatting::Acceleration used =
+    this->Projector.project(channel.Index, geometry, channel.Settings, cuts, channel.Image);
+  if (this->Projector.stopped())
+  {
+    return false;
+  }
+  channel.Used = used;
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool ComponentProjector::Project(const splatting::ShearWarp& geometry,
+  const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts)
+{
+  this->Projected = false;
+  const bool carries = this->Carries(settings);
+  Channel& last = this->Channels.back();
+  this->Done = 0;
+  if (carries && !this->ProjectChannel(last, geometry, settings, cuts))
+  {
+    return false;
+  }
+  for (Channel& channel : this->Channels)
+  {
+    if (!carries)
+    {
+      if (!this->ProjectChannel(channel, geometry, settings, cuts))
+      {
+        return false;
+      }
+      ++this->Done;
+    }
+    else if (&channel != &last)
+    {
+      channel.Settings = last.Settings;
+      channel.Used = last.Used;
+      this->Projector.carry(
+        channel.Index.volume(), geometry, last.Settings, last.Image, channel.Image);
+    }
+  }
+  this->Projected = true;
+  return true;
+}
+
+//------------------------------------------------------------------------------
+double ComponentProjector::ShareOfAll(double done) const
+{
+  const double projections =
+    this->Carries(this->Settings()) ? 1.0 : static_cast<double>(this->Channels.size());
+  return (this->Done + done) / projections;
+}
+
+//------------------------------------------------------------------------------
+void ComponentProjector::Warp(
+  const splatting::ShearWarp& geometry, const splatting::View& view, splatting::Picture& picture)
+{
+  for (Channel& channel : this->Channels)
+  {
+    const bool first = &channel == &this->Channels.front();
+    this->Warper.warp(channel.Image, geometry, channel.Colors, view.viewport,
+      channel.Settings.instructionSet, first ? picture : this->Layer);
+    if (first)
+    {
+      continue;
+    }
+    if (this->Dependent && &channel == &this->Channels.back())
+    {
+      splatting::multiplyByOpacity(this->Layer, picture);
+    }
+    else
+    {
+      splatting::addSaturated(this->Layer, picture);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void ComponentProjector::CopyImages(
+  const splatting::ShearWarp& geometry, int vtkType, vtkImageData* output) const
+{
+  const splatting::ShearImage& first = this->Channels.front().Image;
+  const std::size_t components = this->Channels.size(), size = splatting::sizeOf(first.type);
+  output->SetDimensions(first.width, first.height, 1);
+  output->SetOrigin(-geometry.margin().x, -geometry.margin().y, 0.0);
+  output->AllocateScalars(vtkType, static_cast<int>(components));
+  const std::size_t pixels = static_cast<std::size_t>(output->GetNumberOfPoints());
+  auto* const scalars = static_cast<unsigned char*>(output->GetScalarPointer());
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfValues(output->GetNumberOfPoints());
+  ghosts->Fill(vtkDataSetAttributes::HIDDENPOINT);
+  for (std::size_t c = 0; c < components; ++c)
+  {
+    const splatting::ShearImage& image = this->Channels[c].Image;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+    {
+      std::memcpy(
+        scalars + (pixel * components + c) * size, image.bytes.data() + pixel * size, size);
+      const int u = static_cast<int>(pixel % image.width),
+                v = static_cast<int>(pixel / image.width);
+      const vtkIdType id = static_cast<vtkIdType>(pixel);
+      if (image.covers(u, v) &&
+        !std::isnan(output->GetPointData()->GetScalars()->GetComponent(id, static_cast<int>(c))))
+      {
+        ghosts->SetValue(id, 0);
+      }
+    }
+  }
+  output->GetPointData()->AddArray(ghosts);
+}

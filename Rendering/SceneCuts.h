@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef SceneCuts_h
+#define SceneCuts_h
+
+#include "BoundingSurface.h"
+#include "Cuts.h"
+#include "SceneDepth.h"
+
+#include <functional>
+#include <vector>
+
+class vtkRenderer;
+
+/**
+ * What clipping, cropping, a bounding surface and other things in the scene leave of a volume, and
+ * whether that has changed since the last projection.
+ */
+class SceneCuts
+{
+public:
+  BoundingSurface& Surface() { return this->Bounds; }
+
+  /// Reads the depths of a rectangle of the viewport; false if there are none.
+  using DepthReader = std::function<bool(const int origin[2], const int size[2], float* depths)>;
+
+  /**
+   * @param intermixes  whether geometry in the scene hides the volume and ends rays in it
+   */
+  void Find(const splatting::View& view, const splatting::ShearWarp& geometry,
+    vtkRenderer* renderer, bool intermixes, const DepthReader& readDepth);
+
+  /// What Find() has found.
+  const splatting::Cuts& Get() const { return this->Present; }
+
+  /// Whether that is what it was when it was last kept.
+  bool AreKept() const { return this->Present == this->Kept; }
+  /// The present cuts are those of a projection. They are no longer to be had.
+  void Keep() { std::swap(this->Present, this->Kept); }
+
+  /// Clears the pixels of a picture that other things hide.
+  void Hide(splatting::Picture& picture) const { this->Depth.hide(picture); }
+
+private:
+  void FindDepth(const splatting::View& view, const splatting::ShearWarp& geometry,
+    vtkRenderer* renderer, bool intermixes, const DepthReader& readDepth);
+
+  ::BoundingSurface Bounds;
+  splatting::Cuts Present, Kept;
+  std::vector<glm::dvec4> HalfSpaces; // in pixels
+  splatting::SceneDepth Depth;
+  const vtkRenderer* DepthOf = nullptr; // only compared
+  splatting::Picture Place;             // where the volume will be seen
+};
+
+#endif
