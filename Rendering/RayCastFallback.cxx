@@ -6,6 +6,7 @@
 
 #include "vtkFixedPointRayCastImage.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
+#include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
@@ -14,6 +15,29 @@
 
 #include <algorithm>
 #include <cmath>
+
+namespace
+{
+float smallestStep(vtkImageData* image)
+{
+  const double* const spacing = image->GetSpacing();
+  return static_cast<float>(
+    std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) }));
+}
+
+/// What both ray casters have, though not from a common base.
+template <class Mapper>
+void copySettings(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, Mapper* mapper)
+{
+  mapper->SetSampleDistance(smallestStep(image));
+  mapper->SetBlendMode(settings->GetBlendMode());
+  mapper->SetCropping(settings->GetCropping());
+  mapper->SetCroppingRegionFlags(settings->GetCroppingRegionFlags());
+  mapper->SetClippingPlanes(settings->GetClippingPlanes());
+  mapper->SetFinalColorWindow(settings->GetFinalColorWindow());
+  mapper->SetFinalColorLevel(settings->GetFinalColorLevel());
+}
+}
 
 RayCastFallback::RayCastFallback()
 {
@@ -29,8 +53,35 @@ RayCastFallback::~RayCastFallback() = default;
 void RayCastFallback::Render(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image,
   vtkRenderer* renderer, vtkVolume* volume)
 {
+  if (IsForGpu(settings->GetBlendMode()))
+  {
+    this->RenderOnGpu(settings, image, renderer, volume);
+    return;
+  }
   this->Update(settings, image, volume);
   this->Mapper->Render(renderer, this->Volume);
+}
+
+bool RayCastFallback::IsForGpu(int blendMode)
+{
+  return blendMode != vtkVolumeMapper::COMPOSITE_BLEND &&
+    blendMode != vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND &&
+    blendMode != vtkVolumeMapper::MINIMUM_INTENSITY_BLEND;
+}
+
+void RayCastFallback::RenderOnGpu(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image,
+  vtkRenderer* renderer, vtkVolume* volume)
+{
+  if (!this->GpuMapper)
+  {
+    this->GpuMapper.TakeReference(vtkGPUVolumeRayCastMapper::New());
+    this->GpuMapper->AutoAdjustSampleDistancesOff();
+  }
+  copySettings(settings, image, this->GpuMapper.Get());
+  this->GpuMapper->SetCroppingRegionPlanes(settings->GetCroppingRegionPlanes());
+  this->GpuMapper->SetAverageIPScalarRange(settings->GetAverageIPScalarRange());
+  this->GpuMapper->SetInputData(image);
+  this->GpuMapper->Render(renderer, volume);
 }
 
 void RayCastFallback::FindMask(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image,
@@ -69,6 +120,10 @@ void RayCastFallback::Update(
 void RayCastFallback::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Mapper->ReleaseGraphicsResources(window);
+  if (this->GpuMapper)
+  {
+    this->GpuMapper->ReleaseGraphicsResources(window);
+  }
 }
 
 void RayCastFallback::UpdateImage(vtkImageData* image)
@@ -111,31 +166,24 @@ void RayCastFallback::UpdateProperty(int blendMode, vtkVolumeProperty* property)
     this->PropertySource = property;
     this->PropertyTime = property->GetMTime();
   }
-  // Its nearest interpolation truncates, which moves a MIP by half a voxel: no mode asks for that.
-  this->Property->SetInterpolationType(blendMode == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
-      ? VTK_LINEAR_INTERPOLATION
-      : property->GetInterpolationType());
+  // Its nearest interpolation truncates, which moves a projection by half a voxel: no mode asks for
+  // that.
+  this->Property->SetInterpolationType(blendMode == vtkVolumeMapper::COMPOSITE_BLEND
+      ? property->GetInterpolationType()
+      : VTK_LINEAR_INTERPOLATION);
 }
 
 void RayCastFallback::UpdateSettings(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image)
 {
-  const double* const spacing = image->GetSpacing();
-  this->Mapper->SetSampleDistance(static_cast<float>(
-    std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) })));
-  this->Mapper->SetBlendMode(settings->GetBlendMode());
-  this->Mapper->SetCropping(settings->GetCropping());
+  copySettings(settings, image, this->Mapper.Get());
   // Where it crops, it takes the first voxel to lie at the origin, whatever the extent (VTK 9.1).
   double planes[6];
   for (int plane = 0; plane < 6; ++plane)
   {
     const int axis = plane / 2;
-    planes[plane] =
-      settings->GetCroppingRegionPlanes()[plane] - image->GetExtent()[2 * axis] * spacing[axis];
+    planes[plane] = settings->GetCroppingRegionPlanes()[plane] -
+      image->GetExtent()[2 * axis] * image->GetSpacing()[axis];
   }
   this->Mapper->SetCroppingRegionPlanes(planes);
-  this->Mapper->SetCroppingRegionFlags(settings->GetCroppingRegionFlags());
-  this->Mapper->SetClippingPlanes(settings->GetClippingPlanes());
-  this->Mapper->SetFinalColorWindow(settings->GetFinalColorWindow());
-  this->Mapper->SetFinalColorLevel(settings->GetFinalColorLevel());
   this->Mapper->SetIntermixIntersectingGeometry(settings->GetIntermixIntersectingGeometry());
 }

@@ -6,9 +6,11 @@
 #include "Warp.h"
 
 #include "vtkNew.h"
+#include "vtkSmartPointer.h"
 #include "vtkType.h"
 
 class vtkFixedPointVolumeRayCastMapper;
+class vtkGPUVolumeRayCastMapper;
 class vtkImageData;
 class vtkMatrix4x4;
 class vtkRenderer;
@@ -18,8 +20,9 @@ class vtkVolumeProperty;
 class vtkWindow;
 
 /**
- * Renders by vtkFixedPointVolumeRayCastMapper what vtkSplattingMIPVolumeMapper does not splat, with
- * the same settings. It works on a stand-in for the volume that the ray caster renders rightly.
+ * Renders what vtkSplattingMIPVolumeMapper does not splat, with the same settings: by
+ * vtkFixedPointVolumeRayCastMapper, on a stand-in for the volume that it renders rightly, or, if it
+ * does not have the blend mode, by vtkGPUVolumeRayCastMapper.
  */
 class RayCastFallback
 {
@@ -35,7 +38,13 @@ public:
     vtkVolume* volume, splatting::Picture& mask);
   void ReleaseGraphicsResources(vtkWindow* window);
 
+  /// Whether the mapper for a blend mode is vtkGPUVolumeRayCastMapper, which draws into selections
+  /// by itself.
+  static bool IsForGpu(int blendMode);
+
 private:
+  void RenderOnGpu(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image,
+    vtkRenderer* renderer, vtkVolume* volume);
   void Update(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, vtkVolume* volume);
   void UpdateImage(vtkImageData* image);
   void UpdateMatrix(vtkImageData* image, vtkVolume* volume);
@@ -43,6 +52,7 @@ private:
   void UpdateSettings(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image);
 
   vtkNew<vtkFixedPointVolumeRayCastMapper> Mapper;
+  vtkSmartPointer<vtkGPUVolumeRayCastMapper> GpuMapper; // made when first needed
   vtkNew<vtkImageData> Image;
   vtkNew<vtkMatrix4x4> Matrix;
   vtkNew<vtkVolume> Volume;

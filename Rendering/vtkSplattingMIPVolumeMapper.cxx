@@ -450,9 +450,12 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
   vtkRenderer* ren, vtkVolume* vol, const char* reason)
 {
   Internals& in = *this->Internal;
+  const bool isForGpu = RayCastFallback::IsForGpu(this->BlendMode);
   if (in.Announced.insert(reason).second)
   {
-    vtkWarningMacro(<< "Rendering by vtkFixedPointVolumeRayCastMapper, because " << reason << ".");
+    vtkWarningMacro(<< "Rendering by "
+                    << (isForGpu ? "vtkGPUVolumeRayCastMapper" : "vtkFixedPointVolumeRayCastMapper")
+                    << ", because " << reason << ".");
   }
   if (!in.RayCaster)
   {
@@ -469,7 +472,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
     in.RayCaster = std::make_unique<RayCastFallback>();
   }
   in.WarnOfIgnored(this);
-  if (ren->GetSelector())
+  if (ren->GetSelector() && !isForGpu)
   {
     in.RayCaster->FindMask(this, in.Source.Image(), ren, vol, in.Picture);
     this->DisplayPicture(ren);

@@ -198,7 +198,7 @@ void testDefinitions(stage::Stage& stage, stage::Checks& check)
     prop->Scale(1.0, random.uniform(0.8, 1.2), random.uniform(0, 1) ? 1.0 : -1.0);
     stage.volume->SetUserTransform(prop);
     stage.look(directions[turn % 6], up);
-    mapper->SetAverageIPScalarRange(random.uniform(0.0, 150.0), random.uniform(100.0, 300.0));
+    mapper->SetAverageIPScalarRange(random.uniform(0.0, 120.0), random.uniform(120.0, 300.0));
     mapper->SetDepthShadingAmbient(random.uniform(0.0, 1.0));
     mapper->SetDepthShadingChangeRate(random.uniform(0.0, 1.0));
     mapper->SetLocalMaximumThreshold(random.uniform(0.0, 255.0));

@@ -9,10 +9,12 @@
 #include "vtkCamera.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
+#include "vtkContourValues.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkImageData.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
@@ -159,6 +161,40 @@ void testComposite(stage::Stage& stage, stage::Checks& check)
   stage.setGrayRamp(0.0, 255.0);
 }
 
+/// What vtkFixedPointVolumeRayCastMapper would show as something else.
+void testBlendModesOfGpu(stage::Stage& stage, stage::Checks& check)
+{
+  const auto image = blobs();
+  vtkNew<vtkPlane> slice;
+  slice->SetOrigin(image->GetCenter());
+  slice->SetNormal(0.3, 1.0, -0.2);
+  stage.property->SetSliceFunction(slice);
+  stage.property->GetIsoSurfaceValues()->SetValue(0, 120.0);
+  struct Case
+  {
+    int blendMode;
+    bool perspective;
+    const char* reason;
+  };
+  for (const Case& c : { Case{ vtkVolumeMapper::ADDITIVE_BLEND, false, "blend mode" },
+         Case{ vtkVolumeMapper::ISOSURFACE_BLEND, false, "blend mode" },
+         Case{ vtkVolumeMapper::SLICE_BLEND, true, "blend mode" },
+         Case{ vtkVolumeMapper::AVERAGE_INTENSITY_BLEND, true, "perspective" } })
+  {
+    const auto mapper = stage::splatting(image);
+    const auto rayCaster = stage::gpuRayCaster(image, 1.0);
+    mapper->SetBlendMode(c.blendMode);
+    rayCaster->SetBlendMode(c.blendMode);
+    stage.show(mapper);
+    look(stage, c.perspective);
+    const std::string name = "Blend mode " + std::to_string(c.blendMode);
+    const stage::Pixels picture = renderWithOneWarning(stage, mapper, c.reason, check);
+    check(!isBlack(picture), name + ": the picture is not black.");
+    stage.show(rayCaster);
+    check(stage.pixels() == picture, name + ": the picture is that of the GPU ray caster.");
+  }
+}
+
 /// Colours that change, and properties that are exchanged for older ones.
 void testColors(stage::Stage& stage, stage::Checks& check)
 {
@@ -206,6 +242,7 @@ int TestRayCasting(int, char*[])
   testPerspectivePreview(stage, check);
   testMovedVolume(stage, check);
   testComposite(stage, check);
+  testBlendModesOfGpu(stage, check);
   testColors(stage, check);
   testSeveralReasons(stage, check);
   return check.exitCode();
