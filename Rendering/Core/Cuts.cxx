@@ -87,13 +87,16 @@ TileExtremes BandCuts::extremesOf(int group)
 SliceBits BandCuts::findBits(const Span& slices, int group, unsigned char* flags)
 {
   this->findShares(slices, group);
+  unsigned char* const shares = this->Shares.data();
   unsigned char least = All, greatest = None;
   for (int t = 0; t < this->Tiles; ++t)
   {
-    this->Shares[t] = flags[t] ? this->Shares[t] : static_cast<unsigned char>(None);
-    flags[t] = this->Shares[t] != None;
-    least = std::min(least, this->Shares[t]);
-    greatest = std::max(greatest, this->Shares[t]);
+    const unsigned char wanted = static_cast<unsigned char>(-flags[t]); // all bits or none
+    const unsigned char share = shares[t] & wanted;
+    shares[t] = share;
+    flags[t] = std::min<unsigned char>(share, 1);
+    least = std::min(least, share);
+    greatest = std::max(greatest, share);
   }
   if (least == All || greatest == None)
   {
@@ -111,13 +114,18 @@ SliceBits BandCuts::findBits(const Span& slices, int group, unsigned char* flags
   {
     std::memcpy(rows + (v - v0) * this->Stride, rows, this->Stride);
   }
-  for (int t = 0; t < this->Tiles; ++t)
+  const unsigned char* const last = shares + this->Tiles;
+  for (const unsigned char* begin = shares; (begin = std::find(begin, last, Some)) != last;)
   {
-    const Span pixels{ t * TileWidth, std::min((t + 1) * TileWidth, this->Width) };
-    for (int v = v0; v < v1 && this->Shares[t] == Some; ++v)
+    const unsigned char* const end =
+      std::find_if(begin, last, [](unsigned char share) { return share != Some; });
+    const Span pixels{ static_cast<int>(begin - shares) * TileWidth,
+      std::min(static_cast<int>(end - shares) * TileWidth, this->Width) };
+    for (int v = v0; v < v1; ++v)
     {
       this->findSome(slices, v, pixels, rows + (v - v0) * this->Stride + pixels.begin);
     }
+    begin = end;
   }
   return { this->Bits.data() - this->V0 * this->Stride, this->Stride };
 }

@@ -78,20 +78,33 @@ public:
 
   /// The same for all layers of some rows; to be opened once.
   void open(int, int, const Span&, Patch&) const {}
-  void splatOpened(int z, const std::vector<RowRuns>& rows, int count, Patch& patch) const
+  void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const
   {
     for (int r = 0, end = 0; r < count; r = end)
     {
-      // Rows without cuts go together.
-      for (end = r + 1; end < count && !rows[r].bits.origin && !rows[end].bits.origin &&
-           rows[r].runs.empty() == rows[end].runs.empty();
+      // Rows go together for long streams through memory: those without cuts, and those with bits,
+      // which say what counts between the first run and the last.
+      RowRuns& first = rows[r];
+      for (end = r + 1; end < count && !first.bits.origin == !rows[end].bits.origin &&
+           first.runs.empty() == rows[end].runs.empty();
            ++end)
       {
+        if (first.bits.origin)
+        {
+          first.runs.front().begin =
+            std::min(first.runs.front().begin, rows[end].runs.front().begin);
+          first.runs.back().end = std::max(first.runs.back().end, rows[end].runs.back().end);
+        }
       }
-      if (!rows[r].runs.empty())
+      if (first.runs.empty())
       {
-        this->splat(z, rows[r].v0, rows[end - 1].v1, rows[r].runs, rows[r].bits, patch);
+        continue;
       }
+      if (first.bits.origin)
+      {
+        first.runs.assign(1, { first.runs.front().begin, first.runs.back().end });
+      }
+      this->splat(z, first.v0, rows[end - 1].v1, first.runs, first.bits, patch);
     }
   }
 

@@ -131,7 +131,7 @@ public:
     patch.rows = { v0, v1 };
     patch.pixels = columns;
   }
-  void splatOpened(int z, const std::vector<RowRuns>& rows, int count, Patch& patch) const
+  void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
     for (int k = slices.begin; k < slices.end; ++k)
