@@ -83,13 +83,25 @@ double ComponentProjector::Time() const
 }
 
 //------------------------------------------------------------------------------
+// Of what is projected: depth shading can leave the range of the voxels.
+ScalarRange ComponentProjector::RangeOf(Channel& channel) const
+{
+  const splatting::VolumeIndex::Range& range = channel.Index.range();
+  const bool integers = channel.Index.volume().type < splatting::ScalarType::Float32;
+  if (this->Shading[0] >= 0.0 && this->Shading[1] <= 1.0)
+  {
+    return { range.low, range.high, integers };
+  }
+  const double low = std::isfinite(range.low) ? range.low : 0.0;
+  return { std::min(range.low, low + this->Shading[0] * (range.high - low)),
+    std::max(range.high, low + this->Shading[1] * (range.high - low)), integers };
+}
+
+//------------------------------------------------------------------------------
 splatting::ColorTable ComponentProjector::ColorsOf(
   int channel, vtkVolumeProperty* property, const FinalColor& finalColor)
 {
-  splatting::VolumeIndex& index = this->Channels[channel].Index;
-  const splatting::VolumeIndex::Range& range = index.range();
-  const ScalarRange scalars{ range.low, range.high,
-    index.volume().type < splatting::ScalarType::Float32 };
+  const ScalarRange scalars = this->RangeOf(this->Channels[channel]);
   const int components = static_cast<int>(this->Channels.size());
   if (!this->Dependent)
   {
@@ -105,13 +117,23 @@ splatting::ColorTable ComponentProjector::ColorsOf(
 }
 
 //------------------------------------------------------------------------------
-void ComponentProjector::UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor)
+void ComponentProjector::UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor,
+  const splatting::ProjectionSettings& settings)
 {
-  if (this->Colored && this->ColoredBy == property && this->ColorTime == property->GetMTime() &&
+  double shading[2] = { 0.0, 1.0 };
+  if (settings.reduction == splatting::Reduction::DepthShaded)
+  {
+    const double nearest = settings.ambient + settings.changeRate;
+    shading[0] = std::min({ 0.0, settings.ambient, nearest });
+    shading[1] = std::max({ 1.0, settings.ambient, nearest });
+  }
+  if (this->Colored && std::equal(shading, shading + 2, this->Shading) &&
+    this->ColoredBy == property && this->ColorTime == property->GetMTime() &&
     this->ColoredFor == finalColor)
   {
     return;
   }
+  std::copy(shading, shading + 2, this->Shading);
   for (std::size_t c = 0; c < this->Channels.size(); ++c)
   {
     this->Channels[c].Colors = this->ColorsOf(static_cast<int>(c), property, finalColor);

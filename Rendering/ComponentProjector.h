@@ -38,8 +38,9 @@ public:
   std::size_t MemorySize() const;
   double Time() const;
 
-  /// Tables of colours, anew if something changed.
-  void UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor);
+  /// Tables of colours for what these settings project, anew if something changed.
+  void UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor,
+    const splatting::ProjectionSettings& settings);
 
   /// Values at or below the window are not told apart; needs the colours.
   void SetCullBelowWindow(bool cull) { this->Cull = cull; }
@@ -95,6 +96,7 @@ private:
   bool Carries(const splatting::ProjectionSettings& settings) const;
   bool ProjectChannel(Channel& channel, const splatting::ShearWarp& geometry,
     const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
+  ScalarRange RangeOf(Channel& channel) const;
   splatting::ColorTable ColorsOf(
     int channel, vtkVolumeProperty* property, const FinalColor& finalColor);
 
@@ -108,6 +110,7 @@ private:
   vtkVolumeProperty* ColoredBy = nullptr; // only compared
   vtkMTimeType ColorTime = 0;
   FinalColor ColoredFor;
+  double Shading[2] = { 0.0, 1.0 }; // of all samples, the least and the greatest factor
   bool Colored = false;
 
   splatting::Projector Projector;

@@ -8,6 +8,7 @@
 #include "ScalarSource.h"
 #include "SceneCuts.h"
 #include "Selection.h"
+#include "SettingsFaults.h"
 #include "View.h"
 #include "ViewOfVolume.h"
 
@@ -205,21 +206,42 @@ const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
 splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::MakeSettings(
   vtkSplattingMIPVolumeMapper* self, int mode) const
 {
+  // What has no effect stays as it is by default, so that a change of it projects nothing.
   splatting::ProjectionSettings settings;
   settings.quality = static_cast<splatting::Quality>(mode);
   settings.reduction = reductionOf(self->BlendMode, self->MaximumType);
-  settings.ambient = self->DepthShadingAmbient;
-  settings.changeRate = self->DepthShadingChangeRate;
-  settings.threshold = self->LocalMaximumThreshold;
-  settings.meanLow = self->AverageIPScalarRange[0];
-  settings.meanHigh = self->AverageIPScalarRange[1];
-  settings.kernel = { self->Kernel == COSINE_BELL ? splatting::Reconstruction::CosineBell
-                                                  : splatting::Reconstruction::Hat,
-    self->KernelRadius };
-  settings.footprintSampling = self->FootprintSampling;
-  settings.acceleration = static_cast<splatting::Acceleration>(self->Acceleration);
-  settings.lineTolerance = self->LineTolerance;
-  settings.eliminateInvisible = self->EliminateInvisible;
+  switch (settings.reduction)
+  {
+    case splatting::Reduction::DepthShaded:
+      settings.ambient = self->DepthShadingAmbient;
+      settings.changeRate = self->DepthShadingChangeRate;
+      break;
+    case splatting::Reduction::Local:
+      settings.threshold = self->LocalMaximumThreshold;
+      break;
+    case splatting::Reduction::Mean:
+      settings.meanLow = self->AverageIPScalarRange[0];
+      settings.meanHigh = self->AverageIPScalarRange[1];
+      break;
+    case splatting::Reduction::Maximum:
+      settings.acceleration = static_cast<splatting::Acceleration>(self->Acceleration);
+      if (self->Acceleration >= LINES)
+      {
+        settings.lineTolerance = self->LineTolerance;
+        settings.eliminateInvisible = self->EliminateInvisible && mode == PREVIEW;
+      }
+      break;
+    case splatting::Reduction::Minimum:
+      break;
+  }
+  if (mode == HIGH && self->Kernel == COSINE_BELL)
+  {
+    settings.kernel = { splatting::Reconstruction::CosineBell, self->KernelRadius };
+  }
+  if (mode != PREVIEW)
+  {
+    settings.footprintSampling = self->FootprintSampling;
+  }
   return settings;
 }
 
@@ -237,29 +259,9 @@ bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* s
 std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfSettings(
   vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
 {
-  const double* const centre = self->SlabCenter;
-  if (self->Slab && !(self->SlabThickness > 0.0))
+  if (const char* const fault = faultOfSettings(self, volume->GetProperty()))
   {
-    return "The slab is not thicker than 0: give it a SlabThickness in world units.";
-  }
-  if (self->Slab && !std::all_of(centre, centre + 3, [](double x) { return std::isfinite(x); }))
-  {
-    return "The slab's centre is not finite: set SlabCenter to a point of the world.";
-  }
-  if (self->MaximumType == LOCAL && std::isnan(self->LocalMaximumThreshold))
-  {
-    return "LocalMaximumThreshold is not a number: set it to the scalar from which on local maxima "
-           "count.";
-  }
-  if (self->MaximumType == DEPTH_SHADED &&
-    !(std::isfinite(self->DepthShadingAmbient) && std::isfinite(self->DepthShadingChangeRate)))
-  {
-    return "DepthShadingAmbient and DepthShadingChangeRate must be finite.";
-  }
-  if (self->BlendMode == AVERAGE_INTENSITY_BLEND &&
-    !(self->AverageIPScalarRange[0] <= self->AverageIPScalarRange[1]))
-  {
-    return "AverageIPScalarRange holds no scalars: its first value must not be above its second.";
+    return fault;
   }
   const glm::dmat4 toIndex =
     self->BoundingSurface ? worldToIndex(this->Source.Grid(), volume) : glm::dmat4(1.0);
@@ -312,8 +314,8 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfIgnored(vtkSplattingMIPVolume
   if ((self->Slab || self->BoundingSurface || hasType) && this->Announced.insert("ignored").second)
   {
     vtkWarningWithObjectMacro(self,
-      << "Slab, BoundingSurface and MaximumType mean nothing where a volume is ray cast: use a "
-         "parallel projection.");
+      << "Slab, BoundingSurface and MaximumType mean nothing where a volume is ray cast: it is "
+         "shown without them.");
   }
 }
 
@@ -401,7 +403,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   }
   in.Components.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget));
   in.IndexTimeBefore = in.Source.Version() == version ? in.IndexTime() : 0.0;
-  in.Components.UpdateColors(vol->GetProperty(), finalColor);
+  in.Components.UpdateColors(vol->GetProperty(), finalColor, in.MakeSettings(this, PREVIEW));
   in.Components.SetCullBelowWindow(this->CullBelowWindow);
   // Selection is by what is seen.
   const int mode = !this->AutoAdjustSampleDistances ? this->QualityMode

@@ -72,14 +72,17 @@ class SamplesLeft
 {
 public:
   SamplesLeft(const std::vector<SliceGeometry>& slices, const CrossedSlices& crossed,
-    const CutMap& map, int width)
+    const CutMap& map, int width, OutlineSpace::Rows& rows)
     : Slices(slices),
       Crossed(crossed),
       Map(map),
-      First(width),
-      Last(width),
-      Slice(width)
+      First(rows.first),
+      Last(rows.last),
+      Slice(rows.slice)
   {
+    this->First.resize(width);
+    this->Last.resize(width);
+    this->Slice.resize(width);
   }
 
   void find(int v, unsigned char* mask)
@@ -162,8 +165,9 @@ private:
   const std::vector<SliceGeometry>& Slices;
   const CrossedSlices& Crossed;
   const CutMap& Map;
-  std::vector<std::int16_t> First, Last;
-  std::vector<unsigned char> Slice;
+  std::vector<std::int16_t>& First;
+  std::vector<std::int16_t>& Last;
+  std::vector<unsigned char>& Slice;
 };
 }
 
@@ -253,7 +257,7 @@ void CrossedSlices::find(int v, std::int16_t* first, std::int16_t* last) const
 }
 
 void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
-  const CutMap& cuts, CrossedSlices& crossed, ShearImage& image)
+  const CutMap& cuts, OutlineSpace& space, ShearImage& image)
 {
   image.width = geometry.width();
   image.height = geometry.height();
@@ -264,11 +268,11 @@ void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& s
   {
     return;
   }
-  crossed.reset(slices, image.width);
+  space.crossed.reset(slices, image.width);
   vtkSMPTools::For(0, image.height, 16,
     [&](vtkIdType begin, vtkIdType end)
     {
-      SamplesLeft samples(slices, crossed, cuts, image.width);
+      SamplesLeft samples(slices, space.crossed, cuts, image.width, space.rows.Local());
       for (int v = static_cast<int>(begin); v < end; ++v)
       {
         samples.find(v, &image.mask[std::ptrdiff_t(v) * image.width]);

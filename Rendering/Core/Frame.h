@@ -10,6 +10,8 @@
 #include "ShearImage.h"
 #include "VolumeIndex.h"
 
+#include <vtkSMPThreadLocal.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -51,10 +53,21 @@ private:
 
 class CutMap;
 
+/// Work space of outlineImage().
+struct OutlineSpace
+{
+  struct Rows
+  {
+    std::vector<std::int16_t> first, last;
+    std::vector<unsigned char> slice;
+  };
+  CrossedSlices crossed;
+  vtkSMPThreadLocal<Rows> rows;
+};
+
 /// Sets size and spans of an image and, if samples are left out, its mask.
-/// @param crossed  work space
 void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
-  const CutMap& cuts, CrossedSlices& crossed, ShearImage& image);
+  const CutMap& cuts, OutlineSpace& space, ShearImage& image);
 
 template <class T>
 constexpr T leastValue()

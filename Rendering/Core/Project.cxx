@@ -122,7 +122,7 @@ struct Projector::Scratch
   std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> footprints;
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> reach;
   CutMap cuts;
-  CrossedSlices crossed;
+  OutlineSpace outline;
   RayState rays;
   vtkSMPThreadLocal<RayScratch> rayBands;
   std::vector<unsigned char> chunk;
@@ -205,9 +205,9 @@ void Projector::walkRays(
     settings.keepWinners ? std::size_t(frame.image.width) * frame.image.height : 0);
   if (settings.reduction == Reduction::DepthShaded)
   {
-    this->Memory->crossed.reset(frame.sliceGeometry, frame.image.width);
-    state.crossed.findCrossed(
-      this->Memory->crossed, frame.image.width, frame.image.height, frame.cuts.source().intervals);
+    this->Memory->outline.crossed.reset(frame.sliceGeometry, frame.image.width);
+    state.crossed.findCrossed(this->Memory->outline.crossed, frame.image.width, frame.image.height,
+      frame.cuts.source().intervals);
   }
   const Walk walk(frame, layers, settings, state);
   this->forSlices(index, frame, Layers::Beyond, walk.isReversed(),
@@ -302,8 +302,11 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
     this->walk(index, frame, layers, used, count);
     if (!this->stopped())
     {
-      learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality)),
-        used, count);
+      if (frame.cuts.none()) // what is left of a cut volume says nothing about the whole one
+      {
+        learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality)),
+          used, count);
+      }
     }
   };
   if (preview)
@@ -399,7 +402,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   image.winners.clear();
   memory.cuts.reset(cuts, geometry);
   findSlices(geometry, memory.slices);
-  outlineImage(geometry, memory.slices, memory.cuts, memory.crossed, image);
+  outlineImage(geometry, memory.slices, memory.cuts, memory.outline, image);
   const VolumeIndex::Range& range = index.range();
   // The mean of no sample is none.
   image.special = range.special || settings.reduction == Reduction::Mean;
