@@ -15,17 +15,29 @@
  *
  * What is splatted: vtkImageData and vtkRectilinearGrid with point or cell scalars of any numeric
  * type, any extent, spacing, origin and direction matrix, any invertible prop matrix, any
- * orthographic view, cut by the camera's clipping range and by this mapper's ClippingPlanes.
- * Perspective cameras, blend modes other than maximum intensity, cropping and dependent components
- * are passed, with the same settings, to an internal vtkFixedPointVolumeRayCastMapper, and a
- * warning says so once. The blend mode of a new mapper is maximum intensity.
+ * orthographic view, in the blend modes MAXIMUM_INTENSITY (the default here), MINIMUM_INTENSITY and
+ * AVERAGE_INTENSITY. Rays are cut by the camera's clipping range, ClippingPlanes, Cropping, the
+ * slab, the bounding surface, and opaque geometry in the scene.
+ *
+ * Perspective cameras and other blend modes are passed, with the same settings but slab, bounding
+ * surface and MaximumType, to an internal vtkFixedPointVolumeRayCastMapper, or to a
+ * vtkGPUVolumeRayCastMapper if it alone has the blend mode; a warning says so once. Hidden voxels
+ * and NaN have the lowest value there (the highest in minima), and cells end at their centres.
  *
  * Which scalars: those that ScalarMode, SelectScalarArray and VectorMode choose. Of 1 to 4
  * independent components (vtkVolumeProperty::IndependentComponents) each has a maximum of its own;
  * a pixel is the sum of weight * opacity * colour over components, each with its own transfer
  * functions and ComponentWeight, clamped. Each component's colour is rounded to 1/255 before the
- * sum. Components that are interleaved in memory are copied, those of vtkSOADataArrayTemplate are
- * not.
+ * sum. Of 2 or 4 dependent components the last one, the opacity, is projected, and the first ones,
+ * a colour index or (unsigned char) red, green and blue, go with the sample that wins, the first
+ * from the viewer of several; averages are taken of each. That looks at every sample: Acceleration
+ * and CullBelowWindow have no effect. Components that are interleaved in memory are copied, those
+ * of vtkSOADataArrayTemplate are not.
+ *
+ * Averages [AverageIPScalarRange]: the mean of a ray's samples (see SetMaximumType) in the range,
+ * which is then coloured; VTK's GPU ray caster shows it as a gray. A sample counts for itself, not
+ * by the length of the ray in it. A ray without any is transparent. VTK's default range is that of
+ * float.
  *
  * Cells are voxels about the cells' centres, one less than points along each axis; an axis with one
  * point has one layer of cells about that point.
@@ -43,9 +55,10 @@
  * as the grid, if these are more); beyond that, steps are enlarged by one factor. Peaks between the
  * points of the copy are lowered by the interpolation.
  *
- * A slice counts for a ray if the ray crosses it (voxels being boxes) and, where planes cut the
- * volume, if the point where the ray crosses the middle of the slice is inside. Footprints that
- * stick out of the volume repeat its outermost voxels; those beside a plane read beyond it.
+ * A slice counts for a ray if the ray crosses it (voxels being boxes) and, where the ray is cut, if
+ * the point where it crosses the middle of the slice is left. Where a cut leaves less than a slice,
+ * the nearest one counts. Footprints that stick out of the volume repeat its outermost voxels;
+ * those beside a plane read beyond it.
  *
  * The picture ends where VTK's ray casters end it, at the outermost points (GetBounds()): voxel
  * centres for point scalars, the sides of voxels for cell scalars. An axis with one voxel is as
@@ -59,7 +72,7 @@
  * Selection by vtkHardwareSelector, and all that uses it (vtkRenderer::PickProp, vtkPropPicker),
  * finds the volume where its picture is not transparent. A volume is one thing there: composite
  * index 1, point and cell 0. A pass costs a frame with the last shear image, or a ray cast frame
- * where rays are cast. For the voxel behind a pixel use vtkVolumePicker.
+ * where rays are cast. For the voxel behind a pixel use vtkVolumePicker (image data only).
  *
  * Aborting. While it projects, and while it makes chains, the mapper asks the render window's
  * CheckAbortStatus() between bands of image rows, on the thread that renders. An aborted render
@@ -87,8 +100,11 @@
  * one, chains of voxels where SetAcceleration asks for them, all of this for each component, and a
  * copy of scalars that are not stored voxel after voxel, hidden or resampled; GetIndexMemorySize()
  * counts all, SetIndexMemoryBudget() limits all but the last (components have equal shares). Work
- * space comes on top: shear image, picture, footprints (about 3 kB a slice) and, for each thread,
- * some rows of voxels and the bounds of a band of tiles.
+ * space comes on top: per component the shear image; the picture (two with several components);
+ * footprints (about 3 kB a slice); for each thread some rows of voxels and the bounds of a band of
+ * tiles; per pixel of the shear image up to 9 bytes where rays are cut, 12 for averages, 5 for
+ * depth shading and local maxima, 4 for dependent components, 16 for a bounding surface; per pixel
+ * of the screen 4 for depths.
  *
  * Objects are made through VTK's object factory; the class that New() returns draws with OpenGL.
  *
@@ -241,7 +257,7 @@ public:
    * FinalColorWindow), cut off at 0 and 1, as in VTK's ray casters: bright colours of translucent
    * pixels may exceed their opacity. Both must be finite; the window may be negative (the picture
    * is then inverted), but not 0. Default 1 and 0.5, which change nothing. A change costs a new
-   * table of colours; the shear image is used again.
+   * table of colours; the shear image is used again (unless CullBelowWindow finds another window).
    */
   vtkSetMacro(FinalColorWindow, float);
   vtkGetMacro(FinalColorWindow, float);
@@ -302,7 +318,7 @@ public:
   /**
    * Of depth shading: what is left of a sample at the far end of the ray, and what is added to that
    * at the near end. Defaults 0.3 and 0.7: from everything to 30 %. Ambient 1 and change rate 0
-   * give the plain maximum. Any finite numbers.
+   * give the plain maximum. Magnitudes that sum to no more than a million.
    */
   vtkSetMacro(DepthShadingAmbient, double);
   vtkGetMacro(DepthShadingAmbient, double);
@@ -371,7 +387,8 @@ public:
    * lies before the volume hides it, pixel by pixel of the screen; what lies inside ends the rays
    * of the shear image, so that its edges are as soft as the shear image's pixels are large; what
    * lies behind the volume does not matter, and the shear image is used again. Geometry between a
-   * part that Cropping or BoundingSurface takes away and what is left counts as inside.
+   * part that Cropping or BoundingSurface takes away and what is left counts as inside. With
+   * geometry inside, panning and zooming project anew.
    */
   vtkSetMacro(IntermixIntersectingGeometry, vtkTypeBool);
   vtkGetMacro(IntermixIntersectingGeometry, vtkTypeBool);
@@ -410,8 +427,9 @@ public:
    * chains, which are slower on all data that we measured (splatmip-paper reports it), but need
    * less memory than the volume.
    *
-   * Volumes with NaN or infinity are walked densely, as are all when IndexMemoryBudget has no room
-   * for the index; GetAccelerationUsed() tells.
+   * Where rays are cut, BRICKS take the place of chains. Volumes with NaN or infinity are walked
+   * densely, as are all when IndexMemoryBudget has no room for the index; GetAccelerationUsed()
+   * tells.
    */
   vtkSetClampMacro(Acceleration, int, AUTO, SORTED_VOLUME);
   vtkGetMacro(Acceleration, int);
@@ -447,8 +465,8 @@ public:
   /**
    * Leave voxels out of the chains that no ray can see, because a higher voxel lies before or
    * behind on each [Mroz, Hauser, Groeller 2000]. The picture stays the same, bit for bit. Mode
-   * PREVIEW without clipping only; the other modes, and clipped volumes, are encoded with all
-   * voxels. Default off: it pays where chains are used for a turn of a smooth volume.
+   * PREVIEW only; the other modes are encoded with all voxels. Default off: it pays where chains
+   * are used for a turn of a smooth volume.
    */
   vtkSetMacro(EliminateInvisible, bool);
   vtkGetMacro(EliminateInvisible, bool);
@@ -461,7 +479,7 @@ public:
    * colour and opacity of the lowest one. What cannot rise above them is left out. The shear image
    * is the larger of the window's lower end and what it would be otherwise; since the picture
    * interpolates between its pixels, edges against the background become brighter by up to half a
-   * pixel. Default off.
+   * pixel. MaximumType GLOBAL only. Default off.
    */
   vtkSetMacro(CullBelowWindow, bool);
   vtkGetMacro(CullBelowWindow, bool);
@@ -482,13 +500,14 @@ public:
   /**
    * The last shear image, one pixel per voxel, or nullptr before the first native render. Scalars:
    * as many components as are projected, in the input's type in mode PREVIEW (that of the copy, if
-   * voxels are hidden or resampled), else float (double for 32- and 64-bit integers and double).
-   * The image's physical coordinates are voxel indices, relative to the volume's first voxel, on
-   * the volume's middle slice along the principal axis: the ray of pixel (u, v) at origin + (u, v)
-   * crosses slice k there at that point minus GetShear() * (k - (slices-1)/2). Pixels whose ray
-   * meets no sample of any component are marked hidden in the ghost array. Axes: for principal axis
-   * 2 the image's x and y are the volume's first and second axis, for 1 first and third, for 0
-   * second and third. Costs a copy of the shear image; the caller must not change it.
+   * voxels are hidden or resampled, or a magnitude), else, and for averages and depth shading,
+   * float (double for 32- and 64-bit integers and double). The image's physical coordinates are
+   * voxel indices, relative to the volume's first voxel, on the volume's middle slice along the
+   * principal axis: the ray of pixel (u, v) at origin + (u, v) crosses slice k there at that point
+   * minus GetShear() * (k - (slices-1)/2). Pixels whose ray meets no sample of any component are
+   * marked hidden in the ghost array. Axes: for principal axis 2 the image's x and y are the
+   * volume's first and second axis, for 1 first and third, for 0 second and third. Costs a copy of
+   * the shear image; the caller must not change it.
    */
   vtkImageData* GetShearImage();
 
@@ -520,8 +539,10 @@ public:
 
   /**
    * How often this mapper has projected the volume. A render that changes only colours, opacity,
-   * the window, or the camera's position and zoom re-uses the last shear image and leaves the
-   * number as it is, unless the camera's clipping range cuts the volume.
+   * the window, or the camera's position and zoom, or looks from the other side, re-uses the last
+   * shear image and leaves the number as it is; unless what cuts the volume has moved with the
+   * camera (its clipping range, geometry in the scene), CullBelowWindow finds another window, or
+   * depth shading and local maxima are seen from the other side.
    */
   vtkIdType GetNumberOfProjections();
 
@@ -537,7 +558,7 @@ public:
   const char* GetInstructionSet();
 
   /**
-   * Whether the last render was passed to the internal vtkFixedPointVolumeRayCastMapper.
+   * Whether the last render was passed to one of VTK's ray casters.
    */
   vtkGetMacro(LastRenderUsedRayCasting, bool);
 
