@@ -366,12 +366,14 @@ int ScalarSource::VtkTypeOf(splatting::ScalarType type) const
 }
 
 //------------------------------------------------------------------------------
-// Whether the chosen array is what is projected, however it is stored.
+// Whether the chosen array is what is projected, one voxel after the other: ray casters read its
+// buffer from several threads, and an array that is stored otherwise makes one only then.
 bool ScalarSource::IsInputArray() const
 {
   const bool isPart = this->Examined.vectorMode == vtkSplattingMIPVolumeMapper::COMPONENT &&
     this->Examined.scalars->GetNumberOfComponents() > 1;
   return !isPart && !this->IsMagnitude() && !this->Place.resampled &&
+    this->Examined.scalars->HasStandardMemoryLayout() &&
     findBlanked(this->Examined.input, this->Examined.cells, this->Examined.mask).empty();
 }
 

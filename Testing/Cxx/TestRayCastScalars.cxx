@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which scalars a ray caster gets where nothing is splatted: those of plain arrays, from any.
+#include "ScalarTesting.h"
+
+#include "vtkCamera.h"
+#include "vtkCommand.h"
+#include "vtkRenderer.h"
+#include "vtkSOADataArrayTemplate.h"
+
+using namespace scalartesting;
+
+namespace
+{
+vtkIdType voxelsOf(const Size& size)
+{
+  return vtkIdType(size[0]) * size[1] * size[2];
+}
+
+/// The picture in perspective.
+stage::Pixels seen(stage::Stage& stage, Mapper* mapper)
+{
+  stage.show(mapper);
+  stage.look({ 0.45, -0.5, -0.74 }, { 0.1, 1.0, 0.0 });
+  stage.renderer->GetActiveCamera()->ParallelProjectionOff();
+  stage.renderer->ResetCameraClippingRange();
+  const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+  return stage.pixels();
+}
+
+/// Large enough for the ray caster to prepare it by several threads.
+void testSeparateComponents(stage::Stage& stage, int components, stage::Checks& check)
+{
+  const Size size = { 128, 128, 128 };
+  const vtkIdType voxels = voxelsOf(size);
+  const auto together = noiseArray(VTK_FLOAT, voxels, components, 5);
+  vtkNew<vtkSOADataArrayTemplate<float>> separate;
+  separate->SetNumberOfComponents(components);
+  separate->SetNumberOfTuples(voxels);
+  for (vtkIdType n = 0; n < voxels; ++n)
+  {
+    for (int c = 0; c < components; ++c)
+    {
+      separate->SetComponent(n, c, together->GetComponent(n, c));
+    }
+  }
+  const std::string name = std::to_string(components) + " components, one after the other: ";
+  const stage::Pixels truth = seen(stage, stage::splatting(plainImage(size, together)));
+  const auto mapper = stage::splatting(plainImage(size, separate));
+  const stage::Pixels picture = seen(stage, mapper);
+  check(mapper->GetLastRenderUsedRayCasting(), name + "ray cast.");
+  check(!isBlack(truth) && picture == truth, name + "the picture of an ordinary array.");
+  const auto bytes = static_cast<vtkIdType>(voxels * components * sizeof(float));
+  check(mapper->GetIndexMemorySize() == bytes, name + "the copy is counted.");
+}
+}
+
+//------------------------------------------------------------------------------
+int TestRayCastScalars(int, char*[])
+{
+  stage::Checks check;
+  stage::Stage stage(120, 110);
+  stage.setGrayRamp(0.0, 110.0);
+  testSeparateComponents(stage, 1, check);
+  testSeparateComponents(stage, 3, check);
+  return check.exitCode();
+}
