@@ -67,9 +67,10 @@ public:
 
   /**
    * The same voxels as point scalars of a vtkImageData, for mappers that know nothing else. Hidden
-   * voxels have the least value. Shares the input's array if no copy is needed for splatting.
+   * voxels and NaN have the least value, or the greatest for minima. Shares the input's array if
+   * this holds voxel after voxel and all have a number. nullptr if no voxel has one.
    */
-  vtkImageData* Image();
+  vtkImageData* Image(bool forMinimum);
 
   /// Bytes of all copies.
   std::size_t MemorySize() const;
@@ -108,11 +109,13 @@ private:
   splatting::VoxelArray MakeVolume(
     splatting::StridedVoxels voxels, const std::vector<unsigned char>& hidden, Copy& copy) const;
   bool IsInputArray() const;
-  vtkSmartPointer<vtkDataArray> InterleavedVolumes() const;
+  vtkSmartPointer<vtkDataArray> InterleavedVolumes(bool forMinimum) const;
+  void MakeImage(bool forMinimum);
 
-  Key Examined; // what passed the gate
-  Key Volumed;  // what the volumes were made of
-  Key Imaged;   // what the image was made of
+  Key Examined;                  // what passed the gate
+  Key Volumed;                   // what the volumes were made of
+  Key Imaged;                    // what the image was made of
+  bool ImagedForMinimum = false; // likewise
   GridOfDataSet Place;
   int NumberOfComponents = 1;
   bool Dependent = false;

@@ -472,16 +472,21 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
     in.RayCaster = std::make_unique<RayCastFallback>();
   }
   in.WarnOfIgnored(this);
+  this->LastRenderUsedRayCasting = true;
+  vtkImageData* const image = in.Source.Image(this->BlendMode == MINIMUM_INTENSITY_BLEND);
+  if (!image)
+  {
+    return; // no voxel is shown
+  }
   if (ren->GetSelector() && !isForGpu)
   {
-    in.RayCaster->FindMask(this, in.Source.Image(), ren, vol, in.Picture);
+    in.RayCaster->FindMask(this, image, ren, vol, in.Picture);
     this->DisplayPicture(ren);
   }
   else
   {
-    in.RayCaster->Render(this, in.Source.Image(), ren, vol);
+    in.RayCaster->Render(this, image, ren, vol);
   }
-  this->LastRenderUsedRayCasting = true;
 }
 
 //------------------------------------------------------------------------------

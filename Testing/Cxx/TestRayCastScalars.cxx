@@ -54,6 +54,37 @@ void testSeparateComponents(stage::Stage& stage, int components, stage::Checks& 
   const auto bytes = static_cast<vtkIdType>(voxels * components * sizeof(float));
   check(mapper->GetIndexMemorySize() == bytes, name + "the copy is counted.");
 }
+
+/// Nothing is seen where all is hidden; after that the volume is there again.
+void testNothingShown(stage::Stage& stage, stage::Checks& check)
+{
+  const Size size = { 20, 16, 24 };
+  const vtkIdType voxels = voxelsOf(size);
+  const auto scalars = noiseArray(VTK_UNSIGNED_CHAR, voxels, 1, 6);
+  vtkNew<vtkUnsignedCharArray> inside;
+  inside->SetNumberOfValues(voxels);
+  const auto hidden = withoutHidden(scalars, VTK_FLOAT, [](vtkIdType) { return true; });
+  const auto masked = stage::splatting(plainImage(size, scalars));
+  masked->SetMaskInput(plainImage(size, inside));
+  const auto undefined = stage::splatting(plainImage(size, hidden));
+  for (int blendMode : { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND,
+         vtkVolumeMapper::MINIMUM_INTENSITY_BLEND, vtkVolumeMapper::COMPOSITE_BLEND })
+  {
+    for (Mapper* mapper : { masked.Get(), undefined.Get() })
+    {
+      inside->FillValue(0);
+      inside->Modified();
+      mapper->SetBlendMode(blendMode);
+      const std::string name = std::string(mapper == masked ? "Mask" : "NaN") + ", blend mode " +
+        std::to_string(blendMode) + ": ";
+      check(isBlack(seen(stage, mapper)), name + "nothing is seen.");
+      check(isBlack(seen(stage, mapper)), name + "nor in the next frame.");
+    }
+    inside->FillValue(1);
+    inside->Modified();
+    check(!isBlack(seen(stage, masked)), "What is no more hidden is seen.");
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -64,5 +95,6 @@ int TestRayCastScalars(int, char*[])
   stage.setGrayRamp(0.0, 110.0);
   testSeparateComponents(stage, 1, check);
   testSeparateComponents(stage, 3, check);
+  testNothingShown(stage, check);
   return check.exitCode();
 }
