@@ -93,6 +93,24 @@ void testMaskOfComponents(stage::Stage& stage, stage::Checks& check)
   expectSame(stage, stage::splatting(plainImage(size, holes)), mapper, "Mask of components", check);
 }
 
+/// A mask that hides nothing costs nothing.
+void testMaskOfNothing(stage::Stage& stage, stage::Checks& check)
+{
+  const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
+  vtkNew<vtkUnsignedCharArray> inside;
+  inside->SetNumberOfValues(Voxels);
+  inside->FillValue(3);
+  const auto plain = stage::splatting(plainImage(size, scalars));
+  const auto mapper = stage::splatting(plainImage(size, scalars));
+  mapper->SetMaskInput(plainImage(size, inside));
+  expectSame(stage, plain, mapper, "Mask of nothing", check);
+  check(mapper->GetIndexMemorySize() == plain->GetIndexMemorySize(), "Nothing hidden, no copy.");
+  inside->SetValue(5, 0);
+  inside->Modified();
+  stage.pixels();
+  check(mapper->GetIndexMemorySize() > plain->GetIndexMemorySize(), "One hidden, a copy.");
+}
+
 //------------------------------------------------------------------------------
 /// Twice the same blobs and tubes side by side, with nothing where they meet, so that it does not
 /// matter where between two voxels a renderer cuts.
@@ -259,6 +277,7 @@ int TestMask(int, char*[])
     testMask(stage, check);
     testMaskOfCells(stage, check);
     testMaskOfComponents(stage, check);
+    testMaskOfNothing(stage, check);
   }
   testRayCasting(check);
   testRayCastExtremes(true, check);
