@@ -173,6 +173,21 @@ bool ScalarSource::Key::operator==(const Key& other) const
 }
 
 //------------------------------------------------------------------------------
+// Choices that make no difference are made equal, so that a change of them changes nothing.
+void ScalarSource::Key::DropIdle()
+{
+  constexpr int all = vtkSplattingMIPVolumeMapper::DISABLED;
+  constexpr int one = vtkSplattingMIPVolumeMapper::COMPONENT;
+  const bool isSingle = this->scalars->GetNumberOfComponents() == 1;
+  if (isSingle && !(this->vectorMode == one && this->vectorComponent > 0)) // which is a fault
+  {
+    this->vectorMode = all;
+  }
+  this->vectorComponent = this->vectorMode == one ? this->vectorComponent : 0;
+  this->independent = this->independent || isSingle || this->vectorMode != all;
+}
+
+//------------------------------------------------------------------------------
 void* ScalarSource::Copy::Allocate(std::ptrdiff_t voxels, splatting::ScalarType type)
 {
   this->size = static_cast<std::size_t>(voxels) * splatting::sizeOf(type);
@@ -243,6 +258,7 @@ std::string ScalarSource::FindScalars(vtkDataSet* input, const ScalarChoice& cho
     scalars->HasStandardMemoryLayout() ? scalars->GetVoidPointer(0) : separateComponent(scalars, 0),
     choice.vectorMode, choice.vectorComponent, cells, choice.independentComponents, choice.mask,
     choice.mask ? choice.mask->GetMTime() : 0 };
+  key.DropIdle();
   return {};
 }
 

@@ -93,6 +93,7 @@ private:
     vtkMTimeType maskTime = 0;
 
     bool operator==(const Key& other) const;
+    void DropIdle();
   };
   struct Copy
   {
