@@ -208,6 +208,8 @@ std::string ScalarSource::Examine(vtkDataSet* input, const ScalarChoice& choice)
   {
     return problem;
   }
+  this->StandIn = nullptr; // lest the old scalars stay in memory
+  this->StandInCopy = nullptr;
   if (problem.empty())
   {
     problem = this->CheckComponents(key);

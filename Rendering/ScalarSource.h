@@ -71,6 +71,8 @@ public:
    * this holds voxel after voxel and all have a number. nullptr if no voxel has one.
    */
   vtkImageData* Image(bool forMinimum);
+  /// Whether there is such an image, from before; none if the input changed since.
+  bool HasImage() const { return this->StandIn != nullptr; }
 
   /// Bytes of all copies.
   std::size_t MemorySize() const;

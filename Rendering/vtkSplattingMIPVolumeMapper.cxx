@@ -346,6 +346,12 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< problem);
   }
   in.Reported = problem;
+  // The old scalars would stay in memory with it.
+  if (in.RayCaster && !this->LastRenderUsedRayCasting && !in.Source.HasImage())
+  {
+    in.RayCaster->ReleaseGraphicsResources(in.Window);
+    in.RayCaster = nullptr;
+  }
   this->Timer->StopTimer();
   this->TimeToDraw = this->Timer->GetElapsedTime();
   // Frames that re-use an image say nothing about the next ones, nor does what is made once.

@@ -85,6 +85,55 @@ void testNothingShown(stage::Stage& stage, stage::Checks& check)
     check(!isBlack(seen(stage, masked)), "What is no more hidden is seen.");
   }
 }
+
+/// A volume that was ray cast does not stay in memory when there is another one, or none.
+void testRelease(stage::Stage& stage, stage::Checks& check)
+{
+  const Size size = { 20, 16, 24 };
+  const vtkIdType voxels = voxelsOf(size);
+  const auto first = noiseArray(VTK_UNSIGNED_CHAR, voxels, 1, 6);
+  const auto second = noiseArray(VTK_UNSIGNED_CHAR, voxels, 1, 7);
+  for (int blendMode :
+    { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::AVERAGE_INTENSITY_BLEND })
+  {
+    for (bool splat : { true, false })
+    {
+      const std::string name = "Blend mode " + std::to_string(blendMode) +
+        (splat ? ", splatted afterwards: " : ", ray cast afterwards: ");
+      const auto mapper = stage::splatting(plainImage(size, first));
+      mapper->SetBlendMode(blendMode);
+      seen(stage, mapper);
+      check(mapper->GetLastRenderUsedRayCasting(), name + "ray cast.");
+      mapper->SetInputData(plainImage(size, second));
+      stage.renderer->GetActiveCamera()->SetParallelProjection(splat);
+      check(!isBlack(stage.pixels()), name + "the new volume is seen.");
+      check(mapper->GetLastRenderUsedRayCasting() != splat, name + "as expected.");
+      check(first->GetReferenceCount() == 1, name + "the old scalars are ours alone.");
+      check(!isBlack(seen(stage, mapper)), name + "the new volume is seen in perspective.");
+    }
+  }
+  const auto mapper = stage::splatting(plainImage(size, first));
+  vtkNew<vtkUnsignedCharArray> inside;
+  inside->SetNumberOfValues(voxels);
+  inside->FillValue(1);
+  inside->SetValue(0, 0);
+  mapper->SetMaskInput(plainImage(size, inside));
+  seen(stage, mapper);
+  mapper->SetMaskInput(nullptr);
+  stage.renderer->GetActiveCamera()->ParallelProjectionOn();
+  stage.pixels();
+  const auto fresh = stage::splatting(plainImage(size, first));
+  stage.show(fresh);
+  stage.pixels();
+  check(mapper->GetIndexMemorySize() == fresh->GetIndexMemorySize(), "Nor does a copy stay.");
+  fresh->SetInputData(plainImage(size, second));
+  stage.show(mapper);
+  const stage::Messages errors(mapper, vtkCommand::ErrorEvent);
+  vtkNew<vtkImageData> empty;
+  mapper->SetInputData(empty);
+  stage.pixels();
+  check(first->GetReferenceCount() == 1, "Without voxels, the old scalars are ours alone.");
+}
 }
 
 //------------------------------------------------------------------------------
@@ -96,5 +145,6 @@ int TestRayCastScalars(int, char*[])
   testSeparateComponents(stage, 1, check);
   testSeparateComponents(stage, 3, check);
   testNothingShown(stage, check);
+  testRelease(stage, check);
   return check.exitCode();
 }
