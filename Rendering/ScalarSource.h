@@ -51,6 +51,8 @@ public:
   std::string Examine(vtkDataSet* input, const ScalarChoice& choice);
 
   const VolumeGrid& Grid() const { return this->Place.grid; }
+  /// Whether small cells of a rectilinear grid may be missing, because the grid got larger steps.
+  bool IsCoarse() const { return this->Place.coarse; }
   /// What is projected: 1 to 4.
   int Components() const { return this->NumberOfComponents; }
   /// Whether the components are one sample's colour and opacity.

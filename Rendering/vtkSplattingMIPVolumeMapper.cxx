@@ -384,6 +384,11 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return DegenerateCamera;
   }
+  if (in.Source.IsCoarse() && in.Announced.insert("coarse").second)
+  {
+    vtkWarningMacro(<< "The rectilinear grid is resampled to larger steps than its least, which is "
+                       "too small for that: small cells may be lost. Extract a part of it.");
+  }
   if (const char* reason = in.ReasonToRayCast(this, view))
   {
     this->RenderByRayCasting(ren, vol, reason);
