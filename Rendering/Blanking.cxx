@@ -181,5 +181,7 @@ std::vector<unsigned char> findBlanked(vtkDataSet* data, bool cells, vtkImageDat
       [&](vtkIdType voxel, vtkIdType, vtkIdType, vtkIdType)
       { hidden[voxel] |= inside[voxel] == 0; });
   }
-  return hidden;
+  const bool isAny =
+    std::any_of(hidden.begin(), hidden.end(), [](unsigned char flag) { return flag != 0; });
+  return isAny ? hidden : std::vector<unsigned char>{};
 }

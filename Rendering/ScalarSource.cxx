@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace
@@ -94,22 +95,46 @@ std::string problemOfInput(vtkDataSet* input)
   return {};
 }
 
-/// The voxels of one component of several, in an array of T; no NaN, but the least number.
+/// The voxels of one component of several, in an array of T. In place of NaN what never wins: the
+/// least number, or the greatest where minima are projected. False if all are NaN.
 template <class T>
-void interleave(const splatting::VoxelArray& volume, int component, int components, T* out)
+bool interleave(
+  const splatting::VoxelArray& volume, int component, int components, bool forMinimum, T* out)
 {
   const T* const in = static_cast<const T*>(volume.voxels);
   const std::ptrdiff_t n = count(volume.dimensions);
-  T least = std::numeric_limits<T>::max();
+  bool found = false;
+  T filler = T(0);
   for (std::ptrdiff_t voxel = 0; voxel < n; ++voxel)
   {
-    least = in[voxel] < least ? in[voxel] : least;
+    const T value = in[voxel];
+    const bool isFarther = forMinimum ? value > filler : value < filler;
+    if (value == value && (isFarther || !found))
+    {
+      filler = value;
+      found = true;
+    }
   }
   for (std::ptrdiff_t voxel = 0; voxel < n; ++voxel)
   {
     const T value = in[voxel];
-    out[voxel * components + component] = value == value ? value : least;
+    out[voxel * components + component] = value == value ? value : filler;
   }
+  return found;
+}
+
+/// Whether one of the values, stored one after the other, is NaN.
+bool hasNaN(vtkDataArray* scalars)
+{
+  return splatting::dispatch(scalarTypeOfVtk(scalars->GetDataType()),
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      const T* const begin = static_cast<const T*>(scalars->GetVoidPointer(0));
+      return !std::is_integral_v<T> &&
+        std::any_of(
+          begin, begin + scalars->GetNumberOfValues(), [](T value) { return value != value; });
+    });
 }
 }
 
@@ -148,6 +173,21 @@ bool ScalarSource::Key::operator==(const Key& other) const
 }
 
 //------------------------------------------------------------------------------
+// Choices that make no difference are made equal, so that a change of them changes nothing.
+void ScalarSource::Key::DropIdle()
+{
+  constexpr int all = vtkSplattingMIPVolumeMapper::DISABLED;
+  constexpr int one = vtkSplattingMIPVolumeMapper::COMPONENT;
+  const bool isSingle = this->scalars->GetNumberOfComponents() == 1;
+  if (isSingle && !(this->vectorMode == one && this->vectorComponent > 0)) // which is a fault
+  {
+    this->vectorMode = all;
+  }
+  this->vectorComponent = this->vectorMode == one ? this->vectorComponent : 0;
+  this->independent = this->independent || isSingle || this->vectorMode != all;
+}
+
+//------------------------------------------------------------------------------
 void* ScalarSource::Copy::Allocate(std::ptrdiff_t voxels, splatting::ScalarType type)
 {
   this->size = static_cast<std::size_t>(voxels) * splatting::sizeOf(type);
@@ -168,6 +208,8 @@ std::string ScalarSource::Examine(vtkDataSet* input, const ScalarChoice& choice)
   {
     return problem;
   }
+  this->StandIn = nullptr; // lest the old scalars stay in memory
+  this->StandInCopy = nullptr;
   if (problem.empty())
   {
     problem = this->CheckComponents(key);
@@ -218,6 +260,7 @@ std::string ScalarSource::FindScalars(vtkDataSet* input, const ScalarChoice& cho
     scalars->HasStandardMemoryLayout() ? scalars->GetVoidPointer(0) : separateComponent(scalars, 0),
     choice.vectorMode, choice.vectorComponent, cells, choice.independentComponents, choice.mask,
     choice.mask ? choice.mask->GetMTime() : 0 };
+  key.DropIdle();
   return {};
 }
 
@@ -366,42 +409,58 @@ int ScalarSource::VtkTypeOf(splatting::ScalarType type) const
 }
 
 //------------------------------------------------------------------------------
-// Whether the chosen array is what is projected, however it is stored.
+// Whether the chosen array is what is projected, one voxel after the other and without holes: ray
+// casters take NaN for a number, and read the buffer from several threads, while an array that is
+// stored otherwise makes one only then.
 bool ScalarSource::IsInputArray() const
 {
   const bool isPart = this->Examined.vectorMode == vtkSplattingMIPVolumeMapper::COMPONENT &&
     this->Examined.scalars->GetNumberOfComponents() > 1;
   return !isPart && !this->IsMagnitude() && !this->Place.resampled &&
-    findBlanked(this->Examined.input, this->Examined.cells, this->Examined.mask).empty();
+    this->Examined.scalars->HasStandardMemoryLayout() &&
+    findBlanked(this->Examined.input, this->Examined.cells, this->Examined.mask).empty() &&
+    !hasNaN(this->Examined.scalars);
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkDataArray> ScalarSource::InterleavedVolumes() const
+// Nothing if no voxel has a number.
+vtkSmartPointer<vtkDataArray> ScalarSource::InterleavedVolumes(bool forMinimum) const
 {
   const int components = static_cast<int>(this->Volumes.size());
   const auto array = vtkSmartPointer<vtkDataArray>::Take(
     vtkDataArray::CreateDataArray(this->VtkTypeOf(this->Volumes.front().type)));
   array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(count(this->Place.grid.dimensions));
+  bool found = false;
   for (int c = 0; c < components; ++c)
   {
     splatting::dispatch(this->Volumes[c].type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
-        interleave(this->Volumes[c], c, components, static_cast<T*>(array->GetVoidPointer(0)));
+        T* const values = static_cast<T*>(array->GetVoidPointer(0));
+        found |= interleave(this->Volumes[c], c, components, forMinimum, values);
       });
   }
-  return array;
+  return found ? array : nullptr;
 }
 
 //------------------------------------------------------------------------------
-vtkImageData* ScalarSource::Image()
+vtkImageData* ScalarSource::Image(bool forMinimum)
 {
-  if (this->StandIn && this->Imaged == this->Examined)
+  // Only copies have fillers.
+  if (!this->StandIn || !(this->Imaged == this->Examined) ||
+    (this->StandInCopy && this->ImagedForMinimum != forMinimum))
   {
-    return this->StandIn;
+    this->MakeImage(forMinimum);
   }
+  return this->StandIn->GetPointData()->GetScalars() ? this->StandIn.Get() : nullptr;
+}
+
+//------------------------------------------------------------------------------
+// Without scalars if there is nothing to see, so that this, too, is found once.
+void ScalarSource::MakeImage(bool forMinimum)
+{
   const VolumeGrid& grid = this->Place.grid;
   const glm::ivec3 last = grid.dimensions - 1;
   glm::ivec3 first(0);
@@ -423,12 +482,12 @@ vtkImageData* ScalarSource::Image()
   if (!this->IsInputArray())
   {
     this->Update();
-    this->StandInCopy = this->InterleavedVolumes();
+    this->StandInCopy = this->InterleavedVolumes(forMinimum);
     scalars = this->StandInCopy;
   }
   this->StandIn->GetPointData()->SetScalars(scalars);
   this->Imaged = this->Examined;
-  return this->StandIn;
+  this->ImagedForMinimum = forMinimum;
 }
 
 //------------------------------------------------------------------------------

@@ -51,6 +51,8 @@ public:
   std::string Examine(vtkDataSet* input, const ScalarChoice& choice);
 
   const VolumeGrid& Grid() const { return this->Place.grid; }
+  /// Whether small cells of a rectilinear grid may be missing, because the grid got larger steps.
+  bool IsCoarse() const { return this->Place.coarse; }
   /// What is projected: 1 to 4.
   int Components() const { return this->NumberOfComponents; }
   /// Whether the components are one sample's colour and opacity.
@@ -67,9 +69,12 @@ public:
 
   /**
    * The same voxels as point scalars of a vtkImageData, for mappers that know nothing else. Hidden
-   * voxels have the least value. Shares the input's array if no copy is needed for splatting.
+   * voxels and NaN have the least value, or the greatest for minima. Shares the input's array if
+   * this holds voxel after voxel and all have a number. nullptr if no voxel has one.
    */
-  vtkImageData* Image();
+  vtkImageData* Image(bool forMinimum);
+  /// Whether there is such an image, from before; none if the input changed since.
+  bool HasImage() const { return this->StandIn != nullptr; }
 
   /// Bytes of all copies.
   std::size_t MemorySize() const;
@@ -92,6 +97,7 @@ private:
     vtkMTimeType maskTime = 0;
 
     bool operator==(const Key& other) const;
+    void DropIdle();
   };
   struct Copy
   {
@@ -108,11 +114,13 @@ private:
   splatting::VoxelArray MakeVolume(
     splatting::StridedVoxels voxels, const std::vector<unsigned char>& hidden, Copy& copy) const;
   bool IsInputArray() const;
-  vtkSmartPointer<vtkDataArray> InterleavedVolumes() const;
+  vtkSmartPointer<vtkDataArray> InterleavedVolumes(bool forMinimum) const;
+  void MakeImage(bool forMinimum);
 
-  Key Examined; // what passed the gate
-  Key Volumed;  // what the volumes were made of
-  Key Imaged;   // what the image was made of
+  Key Examined;                  // what passed the gate
+  Key Volumed;                   // what the volumes were made of
+  Key Imaged;                    // what the image was made of
+  bool ImagedForMinimum = false; // likewise
   GridOfDataSet Place;
   int NumberOfComponents = 1;
   bool Dependent = false;

@@ -154,7 +154,7 @@ void describeImage(vtkImageData* image, GridOfDataSet& result)
   }
   m[3] = m * first;
   result.grid.dimensions = result.dimensions;
-  result.resampled = false;
+  result.resampled = result.coarse = false;
 }
 
 /// The step of axes that have one point only.
@@ -176,6 +176,7 @@ void describeAxes(const Axis (&axes)[3], GridOfDataSet& result)
   result.grid.dimensions = result.resampled
     ? resampledSize(axes, cells, std::max(GridOfDataSet::MostResampled, n.x * n.y * n.z))
     : result.dimensions;
+  result.coarse = false;
   result.grid.indexToPhysical = glm::dmat4(1.0);
   for (int a = 0; a < 3; ++a)
   {
@@ -183,6 +184,8 @@ void describeAxes(const Axis (&axes)[3], GridOfDataSet& result)
     const int count = result.grid.dimensions[a];
     const double steps = cells ? count : count - 1.0;
     const double step = axis.step != 0.0 ? axis.length() / steps : stepOfOthers(axes);
+    // Steps that are not enlarged are at most the least one, but for rounding.
+    result.coarse |= axis.step != 0.0 && std::abs(step) > 1.000001 * std::abs(axis.step);
     const double first = axis.points[0] + (cells && axis.step != 0.0 ? 0.5 * step : 0.0);
     result.grid.indexToPhysical[a][a] = result.grid.spacing[a] = step;
     result.grid.indexToPhysical[3][a] = result.grid.first[a] = first;

@@ -45,6 +45,8 @@ struct GridOfDataSet
   /// As the data set has them; grid.dimensions unless resampled.
   glm::ivec3 dimensions{ 0 };
   bool resampled = false;
+  /// Whether it was resampled to steps that are larger than the least one of an axis.
+  bool coarse = false;
   splatting::ResampledAxis axes[3];
 };
 

@@ -348,6 +348,12 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< problem);
   }
   in.Reported = problem;
+  // The old scalars would stay in memory with it.
+  if (in.RayCaster && !this->LastRenderUsedRayCasting && !in.Source.HasImage())
+  {
+    in.RayCaster->ReleaseGraphicsResources(in.Window);
+    in.RayCaster = nullptr;
+  }
   this->Timer->StopTimer();
   this->TimeToDraw = this->Timer->GetElapsedTime();
   // Frames that re-use an image say nothing about the next ones, nor does what is made once.
@@ -379,6 +385,11 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   if (!splatting::isFinite(view))
   {
     return DegenerateCamera;
+  }
+  if (in.Source.IsCoarse() && in.Announced.insert("coarse").second)
+  {
+    vtkWarningMacro(<< "The rectilinear grid is resampled to larger steps than its least, which is "
+                       "too small for that: small cells may be lost. Extract a part of it.");
   }
   if (const char* reason = in.ReasonToRayCast(this, view))
   {
@@ -474,16 +485,21 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
     in.RayCaster = std::make_unique<RayCastFallback>();
   }
   in.WarnOfIgnored(this);
+  this->LastRenderUsedRayCasting = true;
+  vtkImageData* const image = in.Source.Image(this->BlendMode == MINIMUM_INTENSITY_BLEND);
+  if (!image)
+  {
+    return; // no voxel is shown
+  }
   if (ren->GetSelector() && !isForGpu)
   {
-    in.RayCaster->FindMask(this, in.Source.Image(), ren, vol, in.Picture);
+    in.RayCaster->FindMask(this, image, ren, vol, in.Picture);
     this->DisplayPicture(ren);
   }
   else
   {
-    in.RayCaster->Render(this, in.Source.Image(), ren, vol);
+    in.RayCaster->Render(this, image, ren, vol);
   }
-  this->LastRenderUsedRayCasting = true;
 }
 
 //------------------------------------------------------------------------------

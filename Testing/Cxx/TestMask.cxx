@@ -5,10 +5,12 @@
 // and what is ray cast has them, too.
 #include "ScalarTesting.h"
 
+#include "vtkCamera.h"
 #include "vtkCommand.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkRenderer.h"
 #include "vtkUniformGrid.h"
 #include "vtkVolumeProperty.h"
 
@@ -89,6 +91,24 @@ void testMaskOfComponents(stage::Stage& stage, stage::Checks& check)
   const auto mapper = stage::splatting(plainImage(size, scalars));
   mapper->SetMaskInput(plainImage(size, inside));
   expectSame(stage, stage::splatting(plainImage(size, holes)), mapper, "Mask of components", check);
+}
+
+/// A mask that hides nothing costs nothing.
+void testMaskOfNothing(stage::Stage& stage, stage::Checks& check)
+{
+  const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
+  vtkNew<vtkUnsignedCharArray> inside;
+  inside->SetNumberOfValues(Voxels);
+  inside->FillValue(3);
+  const auto plain = stage::splatting(plainImage(size, scalars));
+  const auto mapper = stage::splatting(plainImage(size, scalars));
+  mapper->SetMaskInput(plainImage(size, inside));
+  expectSame(stage, plain, mapper, "Mask of nothing", check);
+  check(mapper->GetIndexMemorySize() == plain->GetIndexMemorySize(), "Nothing hidden, no copy.");
+  inside->SetValue(5, 0);
+  inside->Modified();
+  stage.pixels();
+  check(mapper->GetIndexMemorySize() > plain->GetIndexMemorySize(), "One hidden, a copy.");
 }
 
 //------------------------------------------------------------------------------
@@ -174,6 +194,48 @@ void testRayCasting(stage::Checks& check)
   check(!isBlack(picture) && stage.pixels() == picture, "Ray casting meets the same voxels.");
 }
 
+/// Hidden voxels win neither maxima nor minima of what is ray cast, nor do those without a number.
+void testRayCastExtremes(bool byMask, stage::Checks& check)
+{
+  stage::Stage stage(200, 190);
+  stage.property->SetInterpolationTypeToLinear();
+  const auto scalars = componentOf(twins(), 0, VTK_FLOAT);
+  const vtkIdType voxels = scalars->GetNumberOfTuples();
+  for (vtkIdType n = 0; n < voxels; ++n)
+  {
+    scalars->SetComponent(n, 0, 240.0 - 0.8 * scalars->GetComponent(n, 0)); // from 36 to 240
+  }
+  const auto holes = withoutHidden(scalars, VTK_FLOAT, isSecondTwin);
+  const auto mapper = stage::splatting(plainImage(Twins, byMask ? scalars : holes));
+  mapper->SetMaskInput(byMask ? maskOfTwins().Get() : nullptr);
+  const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+  double range[2];
+  scalars->GetRange(range); // of the first twin, too
+  for (bool minimum : { false, true })
+  {
+    const auto shown = componentOf(scalars, 0);
+    for (vtkIdType n = 0; n < voxels; ++n)
+    {
+      shown->SetComponent(n, 0, isSecondTwin(n) ? range[minimum] : scalars->GetComponent(n, 0));
+    }
+    const auto rayCaster = stage::fixedPointRayCaster(plainImage(Twins, shown), 0.75);
+    const int blendMode =
+      minimum ? vtkVolumeMapper::MINIMUM_INTENSITY_BLEND : vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND;
+    rayCaster->SetBlendMode(blendMode);
+    mapper->SetBlendMode(blendMode);
+    stage.show(rayCaster);
+    stage.look({ 0.8, -0.3, 0.4 }, { 0.0, 1.0, 0.0 }); // through both
+    stage.renderer->GetActiveCamera()->ParallelProjectionOff();
+    stage.renderer->ResetCameraClippingRange();
+    const stage::Pixels truth = stage.pixels();
+    stage.show(mapper);
+    const stage::Pixels picture = stage.pixels();
+    const std::string name = std::string(byMask ? "Mask" : "NaN") + (minimum ? ", minima" : "");
+    check(mapper->GetLastRenderUsedRayCasting(), name + ": ray cast.");
+    check(!isBlack(truth) && picture == truth, name + ": what is hidden does not win.");
+  }
+}
+
 /// A mask and blanked points against VTK's GPU ray caster.
 void testAgainstGPU(bool byMask, stage::Checks& check)
 {
@@ -215,8 +277,11 @@ int TestMask(int, char*[])
     testMask(stage, check);
     testMaskOfCells(stage, check);
     testMaskOfComponents(stage, check);
+    testMaskOfNothing(stage, check);
   }
   testRayCasting(check);
+  testRayCastExtremes(true, check);
+  testRayCastExtremes(false, check);
   testAgainstGPU(true, check);
   testAgainstGPU(false, check);
   return check.exitCode();

@@ -4,6 +4,7 @@
 // Rectilinear grids with equal steps are the same as images, others are resampled.
 #include "ScalarTesting.h"
 
+#include "vtkCommand.h"
 #include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkRectilinearGrid.h"
 
@@ -258,7 +259,9 @@ void testUnequalStepsAgainstGPU(stage::Checks& check)
   mapper->SetInputData(grid);
   stage.show(mapper);
   stage.look({ 0.4, -0.3, 0.8 }, { 0.0, 1.0, 0.0 });
+  const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
   const auto picture = stage.gray();
+  check(warnings.texts.empty(), "Nothing is lost, nothing is said.");
   // The ray caster's own rectilinear grids are off by pixels: it gets an image with half the steps.
   Size fine;
   for (int a = 0; a < 3; ++a)
@@ -304,11 +307,35 @@ void testLimit(stage::Stage& stage, stage::Checks& check)
   mapper->SetInputData(grid);
   stage.show(mapper);
   stage.look({ 0.0, 0.0, -1.0 }, { 0.0, 1.0, 0.0 });
+  const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+  stage.pixels();
   const stage::Pixels picture = stage.pixels();
+  check(warnings.texts.size() == 1 && warnings.texts[0].find("larger steps") != std::string::npos,
+    "Many small steps: one warning.");
   check(std::abs(picture[3 * (55 * 120 + 60)] - 127.5) <= 1.0, "Many small steps: the picture.");
   const double size = static_cast<double>(mapper->GetIndexMemorySize());
   const double limit = 1 << 26;
   check(size > 0.9 * limit && size <= limit * (1.0 + 4.0 / 128.0), "Many small steps: the limit.");
+}
+
+/// One axis that would ask for more voxels than there may be along an axis, or just as many.
+void testLimitOfAxis(stage::Stage& stage, stage::Checks& check)
+{
+  for (bool isTooFine : { true, false })
+  {
+    const double least = isTooFine ? 20.0 / 16500 : 20.0 / 16300;
+    const auto grid =
+      gridOf({ std::vector<double>{ 0.0, 10.0, 10.0 + least, 20.0 }, { 0.0, 20.0 }, { 0.0, 20.0 } },
+        VTK_DOUBLE);
+    grid->GetPointData()->SetScalars(noiseArray(VTK_UNSIGNED_CHAR, 16, 1, 1));
+    auto mapper = vtkSmartPointer<Mapper>::New();
+    mapper->SetInputData(grid);
+    stage.show(mapper);
+    stage.look({ 0.0, 0.0, -1.0 }, { 0.0, 1.0, 0.0 });
+    const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+    check(!isBlack(stage.pixels()), "A long axis is seen.");
+    check(warnings.texts.size() == (isTooFine ? 1 : 0), "A warning if the axis is too long.");
+  }
 }
 }
 
@@ -325,6 +352,7 @@ int TestScalarGrids(int, char*[])
     testUnequalSteps(false, stage, check);
     testModifiedCoordinates(stage, check);
     testLimit(stage, check);
+    testLimitOfAxis(stage, check);
   }
   testUnequalStepsAgainstGPU(check);
   return check.exitCode();

@@ -226,6 +226,52 @@ void testProjection(stage::Stage& stage, Mapper* mapper, vtkImageData* image, st
   mapper->SetInputData(image); // the buffer ends here
 }
 
+/// What makes no difference to the scalars that are projected.
+void testIdleChoices(stage::Stage& stage, stage::Checks& check)
+{
+  for (int components : { 1, 3 })
+  {
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(11, 9, 14);
+    image->AllocateScalars(VTK_UNSIGNED_CHAR, components);
+    for (int c = 0; c < components; ++c)
+    {
+      image->GetPointData()->GetScalars()->FillComponent(c, 60.0 + c);
+    }
+    const auto mapper = stage::splatting(image);
+    stage.show(mapper);
+    stage.look(oblique, up);
+    mapper->SetVectorMode(components == 1 ? Mapper::DISABLED : Mapper::MAGNITUDE);
+    stage.window->Render();
+    const double time = mapper->GetIndexTime();
+    const auto stays = [&](const std::string& when)
+    {
+      stage.window->Render();
+      check(mapper->GetNumberOfProjections() == 1 && mapper->GetIndexTime() == time,
+        std::to_string(components) + " components are not projected again when " + when);
+    };
+    mapper->SetVectorComponent(2);
+    stays("an idle VectorComponent changes.");
+    stage.property->SetIndependentComponents(0);
+    stays("IndependentComponents changes, but there is one.");
+    stage.property->SetIndependentComponents(1);
+    if (components == 1)
+    {
+      mapper->SetVectorModeToMagnitude();
+      stays("it is itself that is the magnitude.");
+      mapper->SetVectorComponent(0);
+      mapper->SetVectorModeToComponent();
+      stays("it is itself that is chosen.");
+    }
+    else
+    {
+      mapper->SetVectorModeToComponent();
+      stage.window->Render();
+      check(mapper->GetNumberOfProjections() == 2, "Another choice is projected.");
+    }
+  }
+}
+
 void testNumberOfProjections(stage::Stage& stage, stage::Checks& check)
 {
   const auto image = stage::toImageData(smallNoise());
@@ -246,5 +292,6 @@ int TestShearImageReuse(int, char*[])
   testTypes(stage, check);
   testValues(stage, check);
   testNumberOfProjections(stage, check);
+  testIdleChoices(stage, check);
   return check.exitCode();
 }

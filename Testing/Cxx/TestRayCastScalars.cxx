@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which scalars a ray caster gets where nothing is splatted: those of plain arrays, from any.
+#include "ScalarTesting.h"
+
+#include "vtkCamera.h"
+#include "vtkCommand.h"
+#include "vtkRenderer.h"
+#include "vtkSOADataArrayTemplate.h"
+
+using namespace scalartesting;
+
+namespace
+{
+vtkIdType voxelsOf(const Size& size)
+{
+  return vtkIdType(size[0]) * size[1] * size[2];
+}
+
+/// The picture in perspective.
+stage::Pixels seen(stage::Stage& stage, Mapper* mapper)
+{
+  stage.show(mapper);
+  stage.look({ 0.45, -0.5, -0.74 }, { 0.1, 1.0, 0.0 });
+  stage.renderer->GetActiveCamera()->ParallelProjectionOff();
+  stage.renderer->ResetCameraClippingRange();
+  const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+  return stage.pixels();
+}
+
+/// Large enough for the ray caster to prepare it by several threads.
+void testSeparateComponents(stage::Stage& stage, int components, stage::Checks& check)
+{
+  const Size size = { 128, 128, 128 };
+  const vtkIdType voxels = voxelsOf(size);
+  const auto together = noiseArray(VTK_FLOAT, voxels, components, 5);
+  vtkNew<vtkSOADataArrayTemplate<float>> separate;
+  separate->SetNumberOfComponents(components);
+  separate->SetNumberOfTuples(voxels);
+  for (vtkIdType n = 0; n < voxels; ++n)
+  {
+    for (int c = 0; c < components; ++c)
+    {
+      separate->SetComponent(n, c, together->GetComponent(n, c));
+    }
+  }
+  const std::string name = std::to_string(components) + " components, one after the other: ";
+  const stage::Pixels truth = seen(stage, stage::splatting(plainImage(size, together)));
+  const auto mapper = stage::splatting(plainImage(size, separate));
+  const stage::Pixels picture = seen(stage, mapper);
+  check(mapper->GetLastRenderUsedRayCasting(), name + "ray cast.");
+  check(!isBlack(truth) && picture == truth, name + "the picture of an ordinary array.");
+  const auto bytes = static_cast<vtkIdType>(voxels * components * sizeof(float));
+  check(mapper->GetIndexMemorySize() == bytes, name + "the copy is counted.");
+}
+
+/// Nothing is seen where all is hidden; after that the volume is there again.
+void testNothingShown(stage::Stage& stage, stage::Checks& check)
+{
+  const Size size = { 20, 16, 24 };
+  const vtkIdType voxels = voxelsOf(size);
+  const auto scalars = noiseArray(VTK_UNSIGNED_CHAR, voxels, 1, 6);
+  vtkNew<vtkUnsignedCharArray> inside;
+  inside->SetNumberOfValues(voxels);
+  const auto hidden = withoutHidden(scalars, VTK_FLOAT, [](vtkIdType) { return true; });
+  const auto masked = stage::splatting(plainImage(size, scalars));
+  masked->SetMaskInput(plainImage(size, inside));
+  const auto undefined = stage::splatting(plainImage(size, hidden));
+  for (int blendMode : { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND,
+         vtkVolumeMapper::MINIMUM_INTENSITY_BLEND, vtkVolumeMapper::COMPOSITE_BLEND })
+  {
+    for (Mapper* mapper : { masked.Get(), undefined.Get() })
+    {
+      inside->FillValue(0);
+      inside->Modified();
+      mapper->SetBlendMode(blendMode);
+      const std::string name = std::string(mapper == masked ? "Mask" : "NaN") + ", blend mode " +
+        std::to_string(blendMode) + ": ";
+      check(isBlack(seen(stage, mapper)), name + "nothing is seen.");
+      check(isBlack(seen(stage, mapper)), name + "nor in the next frame.");
+    }
+    inside->FillValue(1);
+    inside->Modified();
+    check(!isBlack(seen(stage, masked)), "What is no more hidden is seen.");
+  }
+}
+
+/// A volume that was ray cast does not stay in memory when there is another one, or none.
+void testRelease(stage::Stage& stage, stage::Checks& check)
+{
+  const Size size = { 20, 16, 24 };
+  const vtkIdType voxels = voxelsOf(size);
+  const auto first = noiseArray(VTK_UNSIGNED_CHAR, voxels, 1, 6);
+  const auto second = noiseArray(VTK_UNSIGNED_CHAR, voxels, 1, 7);
+  for (int blendMode :
+    { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::AVERAGE_INTENSITY_BLEND })
+  {
+    for (bool splat : { true, false })
+    {
+      const std::string name = "Blend mode " + std::to_string(blendMode) +
+        (splat ? ", splatted afterwards: " : ", ray cast afterwards: ");
+      const auto mapper = stage::splatting(plainImage(size, first));
+      mapper->SetBlendMode(blendMode);
+      seen(stage, mapper);
+      check(mapper->GetLastRenderUsedRayCasting(), name + "ray cast.");
+      mapper->SetInputData(plainImage(size, second));
+      stage.renderer->GetActiveCamera()->SetParallelProjection(splat);
+      check(!isBlack(stage.pixels()), name + "the new volume is seen.");
+      check(mapper->GetLastRenderUsedRayCasting() != splat, name + "as expected.");
+      check(first->GetReferenceCount() == 1, name + "the old scalars are ours alone.");
+      check(!isBlack(seen(stage, mapper)), name + "the new volume is seen in perspective.");
+    }
+  }
+  const auto mapper = stage::splatting(plainImage(size, first));
+  vtkNew<vtkUnsignedCharArray> inside;
+  inside->SetNumberOfValues(voxels);
+  inside->FillValue(1);
+  inside->SetValue(0, 0);
+  mapper->SetMaskInput(plainImage(size, inside));
+  seen(stage, mapper);
+  mapper->SetMaskInput(nullptr);
+  stage.renderer->GetActiveCamera()->ParallelProjectionOn();
+  stage.pixels();
+  const auto fresh = stage::splatting(plainImage(size, first));
+  stage.show(fresh);
+  stage.pixels();
+  check(mapper->GetIndexMemorySize() == fresh->GetIndexMemorySize(), "Nor does a copy stay.");
+  fresh->SetInputData(plainImage(size, second));
+  stage.show(mapper);
+  const stage::Messages errors(mapper, vtkCommand::ErrorEvent);
+  vtkNew<vtkImageData> empty;
+  mapper->SetInputData(empty);
+  stage.pixels();
+  check(first->GetReferenceCount() == 1, "Without voxels, the old scalars are ours alone.");
+}
+}
+
+//------------------------------------------------------------------------------
+int TestRayCastScalars(int, char*[])
+{
+  stage::Checks check;
+  stage::Stage stage(120, 110);
+  stage.setGrayRamp(0.0, 110.0);
+  testSeparateComponents(stage, 1, check);
+  testSeparateComponents(stage, 3, check);
+  testNothingShown(stage, check);
+  testRelease(stage, check);
+  return check.exitCode();
+}
