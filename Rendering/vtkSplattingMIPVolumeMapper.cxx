@@ -88,8 +88,8 @@ public:
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
   double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
   splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self, int mode) const;
-  bool Project(
-    vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode);
+  bool Project(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
+    const splatting::View& view, int mode);
 
   std::string Reported;              // the last problem, so that each is told once
   std::set<std::string> Announced;   // what ray casting leads to, and was told
@@ -270,8 +270,8 @@ std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfSettings(
 //------------------------------------------------------------------------------
 // Projects in this mode, unless the last shear image shows the same, or better within what is
 // wanted. False if the view has no meaning. There is no image after an abort.
-bool vtkSplattingMIPVolumeMapper::Internals::Project(
-  vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode)
+bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper* self,
+  vtkRenderer* ren, vtkVolume* vol, const splatting::View& view, int mode)
 {
   const splatting::ShearWarp geometry(view);
   if (!geometry.valid())
@@ -279,7 +279,7 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
     return false;
   }
   const double start = vtkTimerLog::GetUniversalTime();
-  this->Cuts.Find(view, geometry, ren, self->IntermixIntersectingGeometry != 0,
+  this->Cuts.Find(view, geometry, ren, vol, self->IntermixIntersectingGeometry != 0,
     [=](const int origin[2], const int size[2], float* depths)
     { return self->ReadDepth(ren, origin, size, depths); });
   const int usable =
@@ -408,7 +408,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     : ren->GetSelector()
     ? std::min(this->GetQualityModeUsed(), this->QualityMode)
     : in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime());
-  if (!in.Project(this, ren, view, mode))
+  if (!in.Project(this, ren, vol, view, mode))
   {
     return DegenerateCamera;
   }
