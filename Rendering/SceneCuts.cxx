@@ -66,9 +66,10 @@ SceneCuts::Scene* SceneCuts::LookAtScene(
   Scene& scene = this->SceneOf(renderer, volume);
   scene.depth.clear();
   const glm::ivec2& size = this->Place.size;
-  // Renderers that keep the depths of a lower layer have something to intermix with, too.
-  const bool hasDepths =
-    renderer->GetNumberOfPropsRendered() > 0 || renderer->GetPreserveDepthBuffer();
+  // Renderers that keep the depths of a lower layer have something to intermix with, too. Render
+  // passes do not count what they render.
+  const bool hasDepths = renderer->GetNumberOfPropsRendered() > 0 ||
+    renderer->GetPreserveDepthBuffer() || renderer->GetPass();
   if (!intermixes || !hasDepths || size.x < 1 || size.y < 1)
   {
     return nullptr;
