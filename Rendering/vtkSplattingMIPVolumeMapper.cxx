@@ -24,11 +24,13 @@
 #include "vtkTimerLog.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
+#include "vtkWeakPointer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
+#include <vector>
 
 vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
 vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
@@ -91,7 +93,17 @@ public:
   bool Project(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
     const splatting::View& view, int mode);
 
-  std::string Reported;              // the last problem, so that each is told once
+  void Report(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
+    const std::string& problem);
+
+  /// Why the last frame of a view is missing, so that each reason is told once.
+  struct Complaint
+  {
+    vtkWeakPointer<vtkRenderer> renderer;
+    vtkWeakPointer<vtkVolume> volume;
+    std::string problem;
+  };
+  std::vector<Complaint> Complaints;
   std::set<std::string> Announced;   // what ray casting leads to, and was told
   bool BudgetReported = false;       // as in: since it was no problem
   bool OpenSurfaceReported = false;  // likewise
@@ -318,6 +330,29 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfIgnored(vtkSplattingMIPVolume
 }
 
 //------------------------------------------------------------------------------
+// Tells a problem once, not in every frame, nor in every view that has the same. None: the view's
+// are over.
+void vtkSplattingMIPVolumeMapper::Internals::Report(
+  vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol, const std::string& problem)
+{
+  std::vector<Complaint>& all = this->Complaints;
+  const auto drop = [&](const auto& isOver)
+  { all.erase(std::remove_if(all.begin(), all.end(), isOver), all.end()); };
+  drop([](const Complaint& c) { return !c.renderer || !c.volume; });
+  const bool isNew = !problem.empty() &&
+    std::none_of(all.begin(), all.end(), [&](const Complaint& c) { return c.problem == problem; });
+  drop([&](const Complaint& c) { return c.renderer == ren && c.volume == vol; });
+  if (!problem.empty())
+  {
+    all.push_back({ ren, vol, problem });
+  }
+  if (isNew)
+  {
+    vtkErrorWithObjectMacro(self, << problem);
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
@@ -340,12 +375,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   {
     problem = this->RenderBySplatting(ren, vol);
   }
-  // Told once, not in every frame.
-  if (!problem.empty() && problem != in.Reported)
-  {
-    vtkErrorMacro(<< problem);
-  }
-  in.Reported = problem;
+  in.Report(this, ren, vol, problem);
   this->Timer->StopTimer();
   this->TimeToDraw = this->Timer->GetElapsedTime();
   // Frames that re-use an image say nothing about the next ones, nor does what is made once.
