@@ -116,6 +116,7 @@ public:
   splatting::Picture Picture;
 
   vtkIdType Projections = 0;
+  int QualityModeUsed = HIGH; // in the last projection that was not aborted
   double ProjectionTime = 0.0;
   splatting::RenderTimes Times;
   double IndexTimeBefore = 0.0; // before what the present frame makes of the index
@@ -311,6 +312,7 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper
     this->Cuts.Keep();
     this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
     ++this->Projections;
+    this->QualityModeUsed = mode;
   }
   return true;
 }
@@ -646,7 +648,7 @@ const char* vtkSplattingMIPVolumeMapper::GetQualityModeAsString()
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetQualityModeUsed()
 {
-  return static_cast<int>(this->Internal->Components.Settings().quality);
+  return this->Internal->QualityModeUsed;
 }
 
 //------------------------------------------------------------------------------

@@ -214,6 +214,19 @@ void testAbortCheckEvent(Scene& scene, stage::Checks& check)
   check(scene.stage.pixels() == expected, "The next render is right.");
 }
 
+/// What was aborted has not been used.
+void testQualityModeUsed(Scene& scene, stage::Checks& check)
+{
+  scene.mapper->SetQualityModeToPreview();
+  scene.stage.pixels();
+  check(scene.mapper->GetQualityModeUsed() == Mapper::PREVIEW, "A preview was made.");
+  scene.mapper->SetQualityModeToHigh();
+  check(abortAt(scene, 1, "quality", check), "There is something to abort.");
+  check(scene.mapper->GetQualityModeUsed() == Mapper::PREVIEW, "The preview was the last.");
+  scene.stage.pixels();
+  check(scene.mapper->GetQualityModeUsed() == Mapper::HIGH, "Now it is the better picture.");
+}
+
 /// Rendering from within is refused with a sentence.
 void testRendersWithin(Scene& scene, stage::Checks& check)
 {
@@ -273,6 +286,7 @@ int TestAbort(int, char*[])
   scene.stage.look(Directions[0], Up);
   testChains(scene, check);
   testAbortCheckEvent(scene, check);
+  testQualityModeUsed(scene, check);
   testRendersWithin(scene, check);
   return check.exitCode();
 }
