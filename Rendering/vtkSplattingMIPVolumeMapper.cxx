@@ -71,6 +71,19 @@ bool isOrdered(splatting::Reduction reduction)
   return reduction == splatting::Reduction::DepthShaded || reduction == splatting::Reduction::Local;
 }
 
+/// Sets a pointer for as long as this lives, whatever is thrown.
+class During
+{
+public:
+  During(vtkRenderWindow*& pointer, vtkRenderWindow* value) : Pointer(pointer) { pointer = value; }
+  ~During() { this->Pointer = nullptr; }
+  During(const During&) = delete;
+  During& operator=(const During&) = delete;
+
+private:
+  vtkRenderWindow*& Pointer;
+};
+
 const char* nameOf(int acceleration)
 {
   static const char* const names[] = { "auto", "dense", "bricks", "lines", "sorted lines",
@@ -363,7 +376,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< "An observer of this mapper's render events must not render with it.");
     return;
   }
-  in.Window = ren->GetRenderWindow();
+  const During during(in.Window, ren->GetRenderWindow());
   const vtkIdType projections = in.Projections;
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
@@ -387,7 +400,6 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
       this->TimeToDraw - (in.IndexTime() - in.IndexTimeBefore));
   }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent);
-  in.Window = nullptr;
 }
 
 //------------------------------------------------------------------------------
