@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSplattingMIPVolumeMapper.h"
 
+#include "Complaints.h"
 #include "ComponentProjector.h"
 #include "RayCastFallback.h"
 #include "RenderTimes.h"
@@ -24,13 +25,11 @@
 #include "vtkTimerLog.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
-#include "vtkWeakPointer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
-#include <vector>
 
 vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
 vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
@@ -106,17 +105,7 @@ public:
   bool Project(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
     const splatting::View& view, int mode);
 
-  void Report(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
-    const std::string& problem);
-
-  /// Why the last frame of a view is missing, so that each reason is told once.
-  struct Complaint
-  {
-    vtkWeakPointer<vtkRenderer> renderer;
-    vtkWeakPointer<vtkVolume> volume;
-    std::string problem;
-  };
-  std::vector<Complaint> Complaints;
+  Complaints Reported;
   std::set<std::string> Announced;   // what ray casting leads to, and was told
   bool BudgetReported = false;       // as in: since it was no problem
   bool OpenSurfaceReported = false;  // likewise
@@ -345,29 +334,6 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfIgnored(vtkSplattingMIPVolume
 }
 
 //------------------------------------------------------------------------------
-// Tells a problem once, not in every frame, nor in every view that has the same. None: the view's
-// are over.
-void vtkSplattingMIPVolumeMapper::Internals::Report(
-  vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol, const std::string& problem)
-{
-  std::vector<Complaint>& all = this->Complaints;
-  const auto drop = [&](const auto& isOver)
-  { all.erase(std::remove_if(all.begin(), all.end(), isOver), all.end()); };
-  drop([](const Complaint& c) { return !c.renderer || !c.volume; });
-  const bool isNew = !problem.empty() &&
-    std::none_of(all.begin(), all.end(), [&](const Complaint& c) { return c.problem == problem; });
-  drop([&](const Complaint& c) { return c.renderer == ren && c.volume == vol; });
-  if (!problem.empty())
-  {
-    all.push_back({ ren, vol, problem });
-  }
-  if (isNew)
-  {
-    vtkErrorWithObjectMacro(self, << problem);
-  }
-}
-
-//------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
@@ -390,7 +356,10 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   {
     problem = this->RenderBySplatting(ren, vol);
   }
-  in.Report(this, ren, vol, problem);
+  if (in.Reported.Update(ren, vol, problem))
+  {
+    vtkErrorMacro(<< problem);
+  }
   this->Timer->StopTimer();
   this->TimeToDraw = this->Timer->GetElapsedTime();
   // Frames that re-use an image say nothing about the next ones, nor does what is made once.
