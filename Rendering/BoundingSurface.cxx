@@ -13,15 +13,20 @@
 #include "vtkTriangleFilter.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace
 {
 const char* const NoPolygons =
   "The bounding surface has no polygons: give it some, or take it away with "
+  "SetBoundingSurface(nullptr).";
+const char* const NoArea =
+  "The polygons of the bounding surface have no area: give it some that have, or take it away with "
   "SetBoundingSurface(nullptr).";
 const char* const NoPlaces =
   "The bounding surface has points that are not finite, or farther away than 1e12 voxels: give it "
@@ -33,6 +38,14 @@ bool isNear(const glm::dvec3& p)
   // NaN is not.
   const glm::dvec3 distance = glm::abs(p);
   return distance.x <= 1e12 && distance.y <= 1e12 && distance.z <= 1e12;
+}
+
+/// Not if the corners lie on a line, within the rounding of coordinates in double precision.
+bool hasArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
+{
+  const glm::dvec3 largest = glm::max(glm::abs(b - a), glm::abs(c - a));
+  const double size = std::max({ largest.x, largest.y, largest.z });
+  return size > 0.0 && glm::length(glm::cross((b - a) / size, (c - a) / size)) > 1e-14;
 }
 
 /// Whether an edge has a triangle on one side only. Points in the same place are one: surfaces with
@@ -95,7 +108,7 @@ const char* BoundingSurface::MakeTriangles(vtkPolyData* data)
   for (vtkIdType p = 0; p < points->GetNumberOfPoints(); ++p)
   {
     const double* const x = points->GetPoint(p);
-    if (!isNear(glm::dvec3(x[0], x[1], x[2]) * 1e-100)) // in the world, any number will do
+    if (!std::isfinite(x[0]) || !std::isfinite(x[1]) || !std::isfinite(x[2]))
     {
       return NoPlaces;
     }
@@ -124,8 +137,21 @@ const char* BoundingSurface::MakeTriangles(vtkPolyData* data)
       this->Triangles.emplace_back(ids[0], ids[1], ids[2]);
     }
   }
-  this->Open = !this->Triangles.empty() && isOpen(triangles);
-  return this->Triangles.empty() ? NoPolygons : nullptr;
+  if (this->Triangles.empty())
+  {
+    return NoPolygons;
+  }
+  // Some without area may close the gaps between others.
+  if (std::none_of(this->Triangles.begin(), this->Triangles.end(),
+        [this](const glm::ivec3& t)
+        { return hasArea(this->Points[t.x], this->Points[t.y], this->Points[t.z]); }))
+  {
+    this->Points.clear();
+    this->Triangles.clear();
+    return NoArea;
+  }
+  this->Open = isOpen(triangles);
+  return nullptr;
 }
 
 //------------------------------------------------------------------------------

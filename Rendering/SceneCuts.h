@@ -7,10 +7,15 @@
 #include "Cuts.h"
 #include "SceneDepth.h"
 
+#include "vtkType.h"
+
+#include <glm/mat4x4.hpp>
+
 #include <functional>
 #include <vector>
 
 class vtkRenderer;
+class vtkVolume;
 
 /**
  * What clipping, cropping, a bounding surface and other things in the scene leave of a volume, and
@@ -28,7 +33,7 @@ public:
    * @param intermixes  whether geometry in the scene hides the volume and ends rays in it
    */
   void Find(const splatting::View& view, const splatting::ShearWarp& geometry,
-    vtkRenderer* renderer, bool intermixes, const DepthReader& readDepth);
+    vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
 
   /// What Find() has found.
   const splatting::Cuts& Get() const { return this->Present; }
@@ -39,18 +44,34 @@ public:
   void Keep() { std::swap(this->Present, this->Kept); }
 
   /// Clears the pixels of a picture that other things hide.
-  void Hide(splatting::Picture& picture) const { this->Depth.hide(picture); }
+  void Hide(splatting::Picture& picture) const;
 
 private:
-  void FindDepth(const splatting::View& view, const splatting::ShearWarp& geometry,
-    vtkRenderer* renderer, bool intermixes, const DepthReader& readDepth);
+  /// What a renderer's last frame had rendered before a volume was.
+  struct Scene
+  {
+    const vtkRenderer* renderer; // only compared, so that they may be gone
+    const vtkVolume* volume;
+    vtkTypeInt64 lastFrame = 0;
+    glm::dmat4 indexToClip{ 0.0 };
+    splatting::SceneDepth depth{};
+  };
+  /// A scene that others were rendered so often after is given up.
+  static constexpr vtkTypeInt64 FramesKept = 64;
+
+  Scene* RememberScene(const splatting::View& view, const vtkRenderer* renderer,
+    const vtkVolume* volume, bool intermixes);
+  Scene* LookAtScene(
+    vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
+  Scene& SceneOf(const vtkRenderer* renderer, const vtkVolume* volume);
 
   ::BoundingSurface Bounds;
   splatting::Cuts Present, Kept;
   std::vector<glm::dvec4> HalfSpaces; // in pixels
-  splatting::SceneDepth Depth;
-  const vtkRenderer* DepthOf = nullptr; // only compared
-  splatting::Picture Place;             // where the volume will be seen
+  std::vector<Scene> Scenes;
+  Scene* Seen = nullptr; // in the present frame, if there is anything
+  vtkTypeInt64 Frame = 0;
+  splatting::Picture Place; // where the volume will be seen
 };
 
 #endif

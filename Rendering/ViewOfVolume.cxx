@@ -10,6 +10,7 @@
 #include "vtkVolume.h"
 #include "vtkVolumeMapper.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -164,8 +165,14 @@ void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
   // Rays run where neither coordinate on the screen changes.
   const glm::dvec3 ray =
     glm::cross(glm::dvec3(row(view.indexToClip, 0)), glm::dvec3(row(view.indexToClip, 1)));
-  const glm::dvec3 normal = glm::normalize(glm::dmat3(world) * ray);
+  const glm::dvec3 across = glm::dmat3(world) * ray;
+  const glm::dvec3 normal = glm::normalize(across);
   const double place = glm::dot(normal, glm::dvec3(centre[0], centre[1], centre[2]));
-  addHalfSpace(view, glm::dvec4(normal, 0.5 * thickness - place) * world);
-  addHalfSpace(view, glm::dvec4(-normal, 0.5 * thickness + place) * world);
+  // What is thinner than a slice shows the nearest one, however thin: it must not drown in
+  // rounding.
+  const glm::dvec3 steps = glm::abs(ray);
+  const double slice = glm::length(across) / std::max({ steps.x, steps.y, steps.z });
+  const double half = 0.5 * std::max(thickness, 1e-3 * slice);
+  addHalfSpace(view, glm::dvec4(normal, half - place) * world);
+  addHalfSpace(view, glm::dvec4(-normal, half + place) * world);
 }

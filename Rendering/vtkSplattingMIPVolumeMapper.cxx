@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSplattingMIPVolumeMapper.h"
 
+#include "Complaints.h"
 #include "ComponentProjector.h"
 #include "RayCastFallback.h"
 #include "RenderTimes.h"
@@ -70,6 +71,19 @@ bool isOrdered(splatting::Reduction reduction)
   return reduction == splatting::Reduction::DepthShaded || reduction == splatting::Reduction::Local;
 }
 
+/// Sets a pointer for as long as this lives, whatever is thrown.
+class During
+{
+public:
+  During(vtkRenderWindow*& pointer, vtkRenderWindow* value) : Pointer(pointer) { pointer = value; }
+  ~During() { this->Pointer = nullptr; }
+  During(const During&) = delete;
+  During& operator=(const During&) = delete;
+
+private:
+  vtkRenderWindow*& Pointer;
+};
+
 const char* nameOf(int acceleration)
 {
   static const char* const names[] = { "auto", "dense", "bricks", "lines", "sorted lines",
@@ -89,10 +103,10 @@ public:
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
   double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
   splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self, int mode) const;
-  bool Project(
-    vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode);
+  bool Project(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
+    const splatting::View& view, int mode);
 
-  std::string Reported;              // the last problem, so that each is told once
+  Complaints Reported;
   std::set<std::string> Announced;   // what ray casting leads to, and was told
   bool BudgetReported = false;       // as in: since it was no problem
   bool OpenSurfaceReported = false;  // likewise
@@ -105,6 +119,7 @@ public:
   splatting::Picture Picture;
 
   vtkIdType Projections = 0;
+  int QualityModeUsed = HIGH; // in the last projection that was not aborted
   double ProjectionTime = 0.0;
   splatting::RenderTimes Times;
   double IndexTimeBefore = 0.0; // before what the present frame makes of the index
@@ -272,8 +287,8 @@ std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfSettings(
 //------------------------------------------------------------------------------
 // Projects in this mode, unless the last shear image shows the same, or better within what is
 // wanted. False if the view has no meaning. There is no image after an abort.
-bool vtkSplattingMIPVolumeMapper::Internals::Project(
-  vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, const splatting::View& view, int mode)
+bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper* self,
+  vtkRenderer* ren, vtkVolume* vol, const splatting::View& view, int mode)
 {
   const splatting::ShearWarp geometry(view);
   if (!geometry.valid())
@@ -281,7 +296,7 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
     return false;
   }
   const double start = vtkTimerLog::GetUniversalTime();
-  this->Cuts.Find(view, geometry, ren, self->IntermixIntersectingGeometry != 0,
+  this->Cuts.Find(view, geometry, ren, vol, self->IntermixIntersectingGeometry != 0,
     [=](const int origin[2], const int size[2], float* depths)
     { return self->ReadDepth(ren, origin, size, depths); });
   const int usable =
@@ -301,6 +316,7 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(
     this->Cuts.Keep();
     this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
     ++this->Projections;
+    this->QualityModeUsed = mode;
   }
   return true;
 }
@@ -328,7 +344,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< "An observer of this mapper's render events must not render with it.");
     return;
   }
-  in.Window = ren->GetRenderWindow();
+  const During during(in.Window, ren->GetRenderWindow());
   const vtkIdType projections = in.Projections;
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
@@ -342,12 +358,10 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   {
     problem = this->RenderBySplatting(ren, vol);
   }
-  // Told once, not in every frame.
-  if (!problem.empty() && problem != in.Reported)
+  if (in.Reported.Update(ren, vol, problem))
   {
     vtkErrorMacro(<< problem);
   }
-  in.Reported = problem;
   // The old scalars would stay in memory with it.
   if (in.RayCaster && !this->LastRenderUsedRayCasting && !in.Source.HasImage())
   {
@@ -363,7 +377,6 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
       this->TimeToDraw - (in.IndexTime() - in.IndexTimeBefore));
   }
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent);
-  in.Window = nullptr;
 }
 
 //------------------------------------------------------------------------------
@@ -421,7 +434,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     : ren->GetSelector()
     ? std::min(this->GetQualityModeUsed(), this->QualityMode)
     : in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime());
-  if (!in.Project(this, ren, view, mode))
+  if (!in.Project(this, ren, vol, view, mode))
   {
     return DegenerateCamera;
   }
@@ -634,7 +647,7 @@ const char* vtkSplattingMIPVolumeMapper::GetQualityModeAsString()
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetQualityModeUsed()
 {
-  return static_cast<int>(this->Internal->Components.Settings().quality);
+  return this->Internal->QualityModeUsed;
 }
 
 //------------------------------------------------------------------------------

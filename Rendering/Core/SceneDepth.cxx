@@ -20,9 +20,10 @@ constexpr double Rounding = 0x1p-21;
 
 float* SceneDepth::allocate(const glm::ivec2& origin, const glm::ivec2& size)
 {
+  this->clear(); // in case there is no memory
+  this->Samples.resize(std::size_t(std::max(size.x, 0)) * std::max(size.y, 0));
   this->Origin = origin;
   this->Size = size;
-  this->Samples.resize(this->empty() ? 0 : std::size_t(size.x) * size.y);
   return this->Samples.data();
 }
 

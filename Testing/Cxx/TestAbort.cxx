@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <new>
 #include <thread>
 #include <vector>
 
@@ -214,6 +215,43 @@ void testAbortCheckEvent(Scene& scene, stage::Checks& check)
   check(scene.stage.pixels() == expected, "The next render is right.");
 }
 
+/// What was aborted has not been used.
+void testQualityModeUsed(Scene& scene, stage::Checks& check)
+{
+  scene.mapper->SetQualityModeToPreview();
+  scene.stage.pixels();
+  check(scene.mapper->GetQualityModeUsed() == Mapper::PREVIEW, "A preview was made.");
+  scene.mapper->SetQualityModeToHigh();
+  check(abortAt(scene, 1, "quality", check), "There is something to abort.");
+  check(scene.mapper->GetQualityModeUsed() == Mapper::PREVIEW, "The preview was the last.");
+  scene.stage.pixels();
+  check(scene.mapper->GetQualityModeUsed() == Mapper::HIGH, "Now it is the better picture.");
+}
+
+/// When memory runs out, the next render is a new attempt.
+void testExceptions(Scene& scene, stage::Checks& check)
+{
+  const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
+  const stage::Pixels expected = scene.stage.pixels();
+  bool isCaught = false;
+  {
+    const Observer observer(scene.mapper, vtkCommand::VolumeMapperRenderStartEvent,
+      [](void*) { throw std::bad_alloc(); });
+    try
+    {
+      // Without the window, which does not expect exceptions.
+      scene.mapper->Render(scene.stage.renderer, scene.stage.volume);
+    }
+    catch (const std::bad_alloc&)
+    {
+      isCaught = true;
+    }
+  }
+  check(isCaught, "Exceptions get through.");
+  check(scene.stage.pixels() == expected, "After an exception the next render is right.");
+  check(errors.texts.empty(), "It says nothing of renders within renders.");
+}
+
 /// Rendering from within is refused with a sentence.
 void testRendersWithin(Scene& scene, stage::Checks& check)
 {
@@ -273,6 +311,8 @@ int TestAbort(int, char*[])
   scene.stage.look(Directions[0], Up);
   testChains(scene, check);
   testAbortCheckEvent(scene, check);
+  testQualityModeUsed(scene, check);
+  testExceptions(scene, check);
   testRendersWithin(scene, check);
   return check.exitCode();
 }

@@ -431,6 +431,44 @@ void testCameras(Scene& scene, stage::Checks& check)
   }
 }
 
+/// A view that cannot be rendered beside one that can: told once, and again once mended in between.
+void testOneBadView(Scene& scene, stage::Checks& check)
+{
+  scene.stage.renderer->SetViewport(0.0, 0.0, 0.5, 1.0);
+  vtkNew<vtkRenderer> other;
+  other->SetViewport(0.5, 0.0, 1.0, 1.0);
+  other->AddVolume(scene.stage.volume);
+  vtkCamera* const camera = other->GetActiveCamera();
+  camera->DeepCopy(scene.stage.renderer->GetActiveCamera());
+  scene.stage.window->AddRenderer(other);
+  for (int time = 0; time < 2; ++time)
+  {
+    const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
+    const double scale = camera->GetParallelScale();
+    camera->SetParallelScale(0.0);
+    for (int frame = 0; frame < 3; ++frame)
+    {
+      scene.stage.window->Render();
+      // Renderers leave props out whose bounds such cameras do not see.
+      scene.mapper->Render(other, scene.stage.volume);
+    }
+    check(errors.texts.size() == 1 && errors.texts[0].find("camera") != std::string::npos,
+      "One bad view of two gives one sentence, not " + std::to_string(errors.texts.size()) + ".");
+    camera->SetParallelScale(scale);
+    scene.stage.window->Render();
+  }
+  {
+    const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
+    scene.mapper->SetFinalColorWindow(0.0f);
+    scene.stage.window->Render();
+    scene.stage.window->Render();
+    check(errors.texts.size() == 1, "What is wrong in both views is told once.");
+    scene.mapper->SetFinalColorWindow(1.0f);
+  }
+  scene.stage.window->RemoveRenderer(other);
+  scene.stage.renderer->SetViewport(0.0, 0.0, 1.0, 1.0);
+}
+
 /// The sphere has none.
 double meanRed(const stage::Pixels& pixels)
 {
@@ -511,6 +549,7 @@ int TestBadInput(int, char*[])
     test(scene, fault, check);
   }
   testCameras(scene, check);
+  testOneBadView(scene, check);
   testProperties(scene, check);
   return check.exitCode();
 }

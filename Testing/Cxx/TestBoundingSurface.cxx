@@ -247,11 +247,24 @@ void testBadInput(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stag
   far->GetPoints()->SetPoint(3, 0.0, 1e15, 0.0);
   const auto endless = cube(box);
   endless->GetPoints()->SetPoint(3, 0.0, std::numeric_limits<double>::infinity(), 0.0);
+  const vtkIdType corners[] = { 0, 0, 0 }, line[] = { 0, 1, 2 };
+  const auto point = vtkSmartPointer<vtkPolyData>::New();
+  point->SetPoints(points->GetPoints());
+  point->SetPolys(vtkNew<vtkCellArray>());
+  point->GetPolys()->InsertNextCell(3, corners);
+  const auto lines = vtkSmartPointer<vtkPolyData>::New();
+  lines->SetPoints(vtkNew<vtkPoints>());
+  lines->GetPoints()->InsertNextPoint(0.0, 0.0, 0.0);
+  lines->GetPoints()->InsertNextPoint(10.0, 20.0, 30.0);
+  lines->GetPoints()->InsertNextPoint(20.0, 40.0, 60.0);
+  lines->SetPolys(vtkNew<vtkCellArray>());
+  lines->GetPolys()->InsertNextCell(3, line);
   const auto good = cube(box);
   mapper->SetBoundingSurface(good);
   const stage::Pixels expected = stage.pixels();
   for (const Fault& fault : { Fault{ "polygons", vtkSmartPointer<vtkPolyData>::New() },
-         { "polygons", points }, { "finite", odd }, { "finite", far }, { "finite", endless } })
+         { "polygons", points }, { "area", point }, { "area", lines }, { "finite", odd },
+         { "finite", far }, { "finite", endless } })
   {
     const stage::Messages errors(mapper, vtkCommand::ErrorEvent);
     mapper->SetBoundingSurface(fault.surface);

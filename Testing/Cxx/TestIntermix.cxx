@@ -9,19 +9,29 @@
 
 #include "vtkActor.h"
 #include "vtkCamera.h"
+#include "vtkCameraPass.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
+#include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkImageData.h"
+#include "vtkLightsPass.h"
 #include "vtkMath.h"
+#include "vtkOpaquePass.h"
+#include "vtkOverlayPass.h"
 #include "vtkPlane.h"
 #include "vtkPlaneSource.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
+#include "vtkRenderPassCollection.h"
+#include "vtkRenderStepsPass.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkSequencePass.h"
 #include "vtkSphereSource.h"
+#include "vtkTranslucentPass.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
+#include "vtkVolumetricPass.h"
 #include "vtkWindowToImageFilter.h"
 
 #include <algorithm>
@@ -272,6 +282,57 @@ void testSpheres(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkIm
   }
 }
 
+vtkSmartPointer<vtkRenderPass> sequencePass()
+{
+  vtkNew<vtkRenderPassCollection> passes;
+  passes->AddItem(vtkNew<vtkLightsPass>());
+  passes->AddItem(vtkNew<vtkOpaquePass>());
+  passes->AddItem(vtkNew<vtkTranslucentPass>());
+  passes->AddItem(vtkNew<vtkVolumetricPass>());
+  passes->AddItem(vtkNew<vtkOverlayPass>());
+  vtkNew<vtkSequencePass> sequence;
+  sequence->SetPasses(passes);
+  auto pass = vtkSmartPointer<vtkCameraPass>::New();
+  pass->SetDelegatePass(sequence);
+  return pass;
+}
+
+/// Render passes draw what the renderer draws without: pixel by pixel, and within what
+/// testSpheres() allows as VTK's GPU ray caster does under the same passes.
+void testPasses(vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
+{
+  const auto rayCaster = stage::gpuRayCaster(image, 0.25);
+  for (double distance : { -80.0, -20.0, 5.0 })
+  {
+    const auto actor = sphere(along(image, directions[0], distance), 14.0);
+    stage::Stage plain(Width, Height);
+    plain.show(mapper);
+    plain.look(directions[0], up);
+    const Pictures expected = pictures(plain, mapper, actor);
+    check(expected.both != expected.volume, "The sphere matters.");
+    for (const vtkSmartPointer<vtkRenderPass>& pass :
+      { sequencePass(), vtkSmartPointer<vtkRenderPass>(vtkNew<vtkRenderStepsPass>()) })
+    {
+      // A stage of its own: what renderers have counted before a pass is set does not change.
+      stage::Stage stage(Width, Height);
+      stage.renderer->SetPass(pass);
+      stage.show(mapper);
+      stage.look(directions[0], up);
+      stage.renderer->AddActor(actor);
+      stage.renderer->ResetCameraClippingRange();
+      const stage::Pixels mine = stage.pixels();
+      stage.show(rayCaster);
+      const stage::Pixels truth = stage.pixels();
+      const double psnr =
+        psnrWhere(truth, mine, [&](int pixel) { return !isNearRim(expected.actor, pixel, 2); });
+      std::cout << pass->GetClassName() << ", sphere at " << distance << ": " << psnr << " dB, "
+                << differing(mine, expected.both) << " pixels differ from no pass" << std::endl;
+      check(mine == expected.both, "A render pass changes nothing.");
+      check(psnr > 37.0, "Under render passes geometry ends rays as the GPU ray caster's.");
+    }
+  }
+}
+
 /// The lower left corner of a window.
 stage::Pixels part(const stage::Pixels& pixels, int width, int left, int bottom)
 {
@@ -407,6 +468,7 @@ int TestIntermix(int, char*[])
   const auto mapper = stage::splatting(image);
   stage.show(mapper);
   testSpheres(stage, mapper, image, check);
+  testPasses(mapper, image, check);
   stage.setGrayRamp(-40.0, 255.0);
   testBeforeAndBehind(stage, mapper, image, check);
   testWall(stage, mapper, image, check);

@@ -226,6 +226,82 @@ void testPicking(Scene& scene, stage::Checks& check)
   check(scene.stage.pixels() == before, "The picture after picking is as before.");
 }
 
+/// A scene with the sphere before the volume, and a pixel where it hides the volume.
+struct HidingScene : Scene
+{
+  int place[2] = { 0, 0 };
+
+  explicit HidingScene(stage::Checks& check)
+  {
+    this->actor->SetPosition(-36.0, -7.0, 42.0);
+    this->stage.renderer->ResetCameraClippingRange();
+    vtkCamera* const camera = this->stage.renderer->GetActiveCamera();
+    this->mapper->IntermixIntersectingGeometryOff();
+    const stage::Pixels over = this->stage.pixels();
+    camera->Azimuth(180.0);
+    const stage::Pixels behind = this->stage.pixels();
+    camera->Azimuth(-180.0);
+    this->mapper->IntermixIntersectingGeometryOn();
+    const stage::Pixels pixels = this->stage.pixels();
+    int count = 0;
+    for (int pixel = 0; pixel < Width * Height && count == 0; ++pixel)
+    {
+      const int x = pixel % Width, y = pixel / Width;
+      const bool isRimOfAny =
+        isRim(*this, over, x, y) || isRim(*this, behind, x, y) || isRim(*this, pixels, x, y);
+      if (!isRimOfAny && this->shownAt(pixels, x, y) == this->actor &&
+        this->shownAt(over, x, y) == this->stage.volume &&
+        this->shownAt(behind, x, y) == this->stage.volume)
+      {
+        this->place[0] = x;
+        this->place[1] = y;
+        ++count;
+      }
+    }
+    check(count > 0, "The sphere hides some of the volume.");
+  }
+
+  vtkProp* picked(vtkRenderer* renderer, int left = 0) const
+  {
+    vtkAssemblyPath* const path = renderer->PickProp(left + this->place[0], this->place[1]);
+    return path ? path->GetFirstNode()->GetViewProp() : nullptr;
+  }
+};
+
+/// Two renderers show one volume, but only one the sphere before it.
+void testTwoRenderers(stage::Checks& check)
+{
+  HidingScene scene(check);
+  vtkRenderer* const left = scene.stage.renderer;
+  vtkNew<vtkRenderer> right;
+  scene.stage.window->SetSize(2 * Width, Height);
+  scene.stage.window->AddRenderer(right);
+  left->SetViewport(0.0, 0.0, 0.5, 1.0);
+  right->SetViewport(0.5, 0.0, 1.0, 1.0);
+  right->SetActiveCamera(left->GetActiveCamera());
+  right->AddVolume(scene.stage.volume);
+  scene.stage.window->Render();
+  for (int time = 0; time < 2; ++time)
+  {
+    check(scene.picked(left) == scene.actor, "What hides the volume is picked.");
+    check(scene.picked(right, Width) == scene.stage.volume, "What another renderer hides, too.");
+  }
+}
+
+/// What the last frame has found does not matter to a view that it did not show.
+void testOtherView(stage::Checks& check)
+{
+  HidingScene scene(check);
+  vtkRenderer* const renderer = scene.stage.renderer;
+  check(scene.picked(renderer) == scene.actor, "What hides the volume is picked.");
+  scene.mapper->IntermixIntersectingGeometryOff();
+  check(scene.picked(renderer) == scene.stage.volume, "Without intermixing nothing hides it.");
+  scene.mapper->IntermixIntersectingGeometryOn();
+  check(scene.picked(renderer) == scene.actor, "With intermixing it is hidden again.");
+  renderer->GetActiveCamera()->Azimuth(180.0);
+  check(scene.picked(renderer) == scene.stage.volume, "From behind nothing hides the volume.");
+}
+
 struct Pick
 {
   int found;
@@ -297,6 +373,8 @@ int TestSelection(int, char*[])
   testSelect(scene, vtkDataObject::FIELD_ASSOCIATION_CELLS, check);
   testSelect(scene, vtkDataObject::FIELD_ASSOCIATION_POINTS, check);
   testPicking(scene, check);
+  testTwoRenderers(check);
+  testOtherView(check);
   const int hits = testRayPicker<vtkVolumePicker>(scene, "vtkVolumePicker", false, check);
   check(testRayPicker<vtkVolumePicker>(scene, "vtkVolumePicker, cropping", true, check) < hits,
     "Cropping takes picks away.");

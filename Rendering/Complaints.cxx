@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Complaints.h"
+
+#include "vtkRenderer.h"
+#include "vtkVolume.h"
+
+#include <algorithm>
+
+//------------------------------------------------------------------------------
+bool Complaints::Update(vtkRenderer* renderer, vtkVolume* volume, const std::string& problem)
+{
+  const auto drop = [this](const auto& isOver)
+  { this->All.erase(std::remove_if(this->All.begin(), this->All.end(), isOver), this->All.end()); };
+  drop([](const Complaint& c) { return !c.renderer || !c.volume; });
+  const bool isKnown = std::any_of(
+    this->All.begin(), this->All.end(), [&](const Complaint& c) { return c.problem == problem; });
+  drop([&](const Complaint& c) { return c.renderer == renderer && c.volume == volume; });
+  if (problem.empty())
+  {
+    return false;
+  }
+  this->All.push_back({ renderer, volume, problem });
+  return !isKnown;
+}
