@@ -4,12 +4,12 @@
 
 #include "Complaints.h"
 #include "ComponentProjector.h"
+#include "MapperSettings.h"
 #include "RayCastFallback.h"
 #include "RenderTimes.h"
 #include "ScalarSource.h"
 #include "SceneCuts.h"
 #include "Selection.h"
-#include "SettingsFaults.h"
 #include "View.h"
 #include "ViewOfVolume.h"
 
@@ -49,28 +49,6 @@ const char* nameOfMode(int mode)
   return names[mode];
 }
 
-splatting::Reduction reductionOf(int blendMode, int maximumType)
-{
-  switch (blendMode)
-  {
-    case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
-      return splatting::Reduction::Minimum;
-    case vtkVolumeMapper::AVERAGE_INTENSITY_BLEND:
-      return splatting::Reduction::Mean;
-    default:
-      return maximumType == vtkSplattingMIPVolumeMapper::DEPTH_SHADED
-        ? splatting::Reduction::DepthShaded
-        : maximumType == vtkSplattingMIPVolumeMapper::LOCAL ? splatting::Reduction::Local
-                                                            : splatting::Reduction::Maximum;
-  }
-}
-
-/// Whether it matters which end of a ray is nearest to the viewer.
-bool isOrdered(splatting::Reduction reduction)
-{
-  return reduction == splatting::Reduction::DepthShaded || reduction == splatting::Reduction::Local;
-}
-
 /// Sets a pointer for as long as this lives, whatever is thrown.
 class During
 {
@@ -102,7 +80,6 @@ public:
   void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
   double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
-  splatting::ProjectionSettings MakeSettings(vtkSplattingMIPVolumeMapper* self, int mode) const;
   bool Project(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
     const splatting::View& view, int mode);
 
@@ -218,49 +195,6 @@ const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
 }
 
 //------------------------------------------------------------------------------
-splatting::ProjectionSettings vtkSplattingMIPVolumeMapper::Internals::MakeSettings(
-  vtkSplattingMIPVolumeMapper* self, int mode) const
-{
-  // What has no effect stays as it is by default, so that a change of it projects nothing.
-  splatting::ProjectionSettings settings;
-  settings.quality = static_cast<splatting::Quality>(mode);
-  settings.reduction = reductionOf(self->BlendMode, self->MaximumType);
-  switch (settings.reduction)
-  {
-    case splatting::Reduction::DepthShaded:
-      settings.ambient = self->DepthShadingAmbient;
-      settings.changeRate = self->DepthShadingChangeRate;
-      break;
-    case splatting::Reduction::Local:
-      settings.threshold = self->LocalMaximumThreshold;
-      break;
-    case splatting::Reduction::Mean:
-      settings.meanLow = self->AverageIPScalarRange[0];
-      settings.meanHigh = self->AverageIPScalarRange[1];
-      break;
-    case splatting::Reduction::Maximum:
-      settings.acceleration = static_cast<splatting::Acceleration>(self->Acceleration);
-      if (self->Acceleration >= LINES)
-      {
-        settings.lineTolerance = self->LineTolerance;
-        settings.eliminateInvisible = self->EliminateInvisible && mode == PREVIEW;
-      }
-      break;
-    case splatting::Reduction::Minimum:
-      break;
-  }
-  if (mode == HIGH && self->Kernel == COSINE_BELL)
-  {
-    settings.kernel = { splatting::Reconstruction::CosineBell, self->KernelRadius };
-  }
-  if (mode != PREVIEW)
-  {
-    settings.footprintSampling = self->FootprintSampling;
-  }
-  return settings;
-}
-
-//------------------------------------------------------------------------------
 // Tells how much of the projection is done and whether the window wants the rest.
 bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* self, double done)
 {
@@ -301,17 +235,18 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper
     { return self->ReadDepth(ren, origin, size, depths); });
   const int usable =
     std::clamp(static_cast<int>(this->Components.Settings().quality), mode, self->QualityMode);
-  const bool turned = geometry.reversed() != this->Geometry.reversed() &&
-    isOrdered(reductionOf(self->BlendMode, self->MaximumType));
+  const splatting::ProjectionSettings wanted = projectionSettings(self, usable);
+  const bool turned =
+    geometry.reversed() != this->Geometry.reversed() && splatting::isOrdered(wanted.reduction);
   const bool same = !turned && geometry.sameShear(this->Geometry) && this->Cuts.AreKept() &&
-    this->Components.Shows(this->MakeSettings(self, usable));
+    this->Components.Shows(wanted);
   this->Geometry = geometry;
   if (same)
   {
     return true;
   }
   this->ShearImageOutput = nullptr;
-  if (this->Components.Project(geometry, this->MakeSettings(self, mode), this->Cuts.Get()))
+  if (this->Components.Project(geometry, projectionSettings(self, mode), this->Cuts.Get()))
   {
     this->Cuts.Keep();
     this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
@@ -427,7 +362,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   }
   in.Components.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget));
   in.IndexTimeBefore = in.Source.Version() == version ? in.IndexTime() : 0.0;
-  in.Components.UpdateColors(vol->GetProperty(), finalColor, in.MakeSettings(this, PREVIEW));
+  in.Components.UpdateColors(vol->GetProperty(), finalColor, projectionSettings(this, PREVIEW));
   in.Components.SetCullBelowWindow(this->CullBelowWindow);
   // Selection is by what is seen.
   const int mode = !this->AutoAdjustSampleDistances ? this->QualityMode

@@ -49,6 +49,12 @@ enum class Reduction
   Local        ///< the first local maximum, from the viewer, at or above a threshold
 };
 
+/// Whether it matters which end of a ray is nearest to the viewer.
+inline bool isOrdered(Reduction reduction)
+{
+  return reduction == Reduction::DepthShaded || reduction == Reduction::Local;
+}
+
 struct ProjectionSettings
 {
   Quality quality = Quality::High;

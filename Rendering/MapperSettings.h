@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef SettingsFaults_h
-#define SettingsFaults_h
+#ifndef MapperSettings_h
+#define MapperSettings_h
+
+#include "Project.h"
 
 class vtkSplattingMIPVolumeMapper;
 class vtkVolumeProperty;
@@ -11,5 +13,11 @@ class vtkVolumeProperty;
  * has no effect may be anything.
  */
 const char* faultOfSettings(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* property);
+
+/**
+ * What the mapper's properties mean to a projection in a quality mode. What has no effect is as by
+ * default, so that its changes project nothing.
+ */
+splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* mapper, int mode);
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SettingsFaults.h"
+#include "MapperSettings.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
 
@@ -14,6 +14,28 @@
 
 namespace
 {
+splatting::Reduction reductionOf(vtkSplattingMIPVolumeMapper* mapper)
+{
+  switch (mapper->GetBlendMode())
+  {
+    case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
+      return splatting::Reduction::Minimum;
+    case vtkVolumeMapper::AVERAGE_INTENSITY_BLEND:
+      return splatting::Reduction::Mean;
+    default:
+      break;
+  }
+  switch (mapper->GetMaximumType())
+  {
+    case vtkSplattingMIPVolumeMapper::DEPTH_SHADED:
+      return splatting::Reduction::DepthShaded;
+    case vtkSplattingMIPVolumeMapper::LOCAL:
+      return splatting::Reduction::Local;
+    default:
+      return splatting::Reduction::Maximum;
+  }
+}
+
 /// What is wrong with clipping planes, or nullptr.
 const char* faultOfPlanes(vtkPlaneCollection* planes)
 {
@@ -79,4 +101,48 @@ const char* faultOfSettings(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProper
     }
   }
   return faultOfPlanes(mapper->GetClippingPlanes());
+}
+
+//------------------------------------------------------------------------------
+splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* mapper, int mode)
+{
+  // What has no effect stays as it is by default, so that a change of it projects nothing.
+  splatting::ProjectionSettings settings;
+  settings.quality = static_cast<splatting::Quality>(mode);
+  settings.reduction = reductionOf(mapper);
+  switch (settings.reduction)
+  {
+    case splatting::Reduction::DepthShaded:
+      settings.ambient = mapper->GetDepthShadingAmbient();
+      settings.changeRate = mapper->GetDepthShadingChangeRate();
+      break;
+    case splatting::Reduction::Local:
+      settings.threshold = mapper->GetLocalMaximumThreshold();
+      break;
+    case splatting::Reduction::Mean:
+      settings.meanLow = mapper->GetAverageIPScalarRange()[0];
+      settings.meanHigh = mapper->GetAverageIPScalarRange()[1];
+      break;
+    case splatting::Reduction::Maximum:
+      settings.acceleration = static_cast<splatting::Acceleration>(mapper->GetAcceleration());
+      if (mapper->GetAcceleration() >= vtkSplattingMIPVolumeMapper::LINES)
+      {
+        settings.lineTolerance = mapper->GetLineTolerance();
+        settings.eliminateInvisible =
+          mapper->GetEliminateInvisible() && mode == vtkSplattingMIPVolumeMapper::PREVIEW;
+      }
+      break;
+    case splatting::Reduction::Minimum:
+      break;
+  }
+  if (mode == vtkSplattingMIPVolumeMapper::HIGH &&
+    mapper->GetKernel() == vtkSplattingMIPVolumeMapper::COSINE_BELL)
+  {
+    settings.kernel = { splatting::Reconstruction::CosineBell, mapper->GetKernelRadius() };
+  }
+  if (mode != vtkSplattingMIPVolumeMapper::PREVIEW)
+  {
+    settings.footprintSampling = mapper->GetFootprintSampling();
+  }
+  return settings;
 }
