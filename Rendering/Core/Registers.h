@@ -158,6 +158,18 @@ inline Pack<float> loadWidened(const std::int16_t* p)
 }
 #endif
 
+/// The larger; the second if either is NaN.
+template <class P>
+inline P larger(P a, P b)
+{
+  return a > b ? a : b;
+}
+
+template <class P>
+inline P smaller(P a, P b)
+{
+  return a < b ? a : b;
+}
 }
 }
 
