@@ -242,6 +242,22 @@ void draw(reference::Volume<std::uint8_t>& volume, const Capsule& capsule)
 }
 
 //------------------------------------------------------------------------------
+void placeAtRandom(vtkImageData* image, reference::Random& random)
+{
+  const int* size = image->GetDimensions();
+  int extent[6];
+  for (int a = 0; a < 3; ++a)
+  {
+    extent[2 * a] = random.uniform(-40, 40);
+    extent[2 * a + 1] = extent[2 * a] + size[a] - 1;
+  }
+  image->SetExtent(extent);
+  image->SetSpacing(random.uniform(0.6, 1.4), random.uniform(0.6, 1.4), random.uniform(0.6, 1.4));
+  image->SetOrigin(
+    random.uniform(-90.0, 90.0), random.uniform(-90.0, 90.0), random.uniform(-90.0, 90.0));
+}
+
+//------------------------------------------------------------------------------
 reference::Volume<std::uint8_t> blobsAndTubes(const std::array<int, 3>& size, int count)
 {
   reference::Volume<std::uint8_t> volume(size);

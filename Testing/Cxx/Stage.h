@@ -119,6 +119,11 @@ private:
 vtkSmartPointer<vtkImageData> toImageData(const reference::Volume<std::uint8_t>& volume);
 
 /**
+ * Gives the voxels another spacing, origin and extent.
+ */
+void placeAtRandom(vtkImageData* image, reference::Random& random);
+
+/**
  * Blobs and tubes with soft rims and values up to 255 at random places, without symmetry, and
  * nothing within 5 voxels of the border, so that it does not matter where rays end. At least 32
  * voxels along each axis.

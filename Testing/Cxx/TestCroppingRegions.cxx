@@ -28,22 +28,6 @@ constexpr int All = (1 << 27) - 1;
 const stage::Vector up = { 0.1, 1.0, 0.05 };
 const stage::Vector directions[] = { { 0.3, 0.4, -0.8 }, { -0.8, 0.3, 0.4 }, { 0.2, -0.9, 0.3 } };
 
-/// Other spacings, origins and extents.
-void placeAtRandom(vtkImageData* image, reference::Random& random)
-{
-  const int* size = image->GetDimensions();
-  int extent[6];
-  for (int a = 0; a < 3; ++a)
-  {
-    extent[2 * a] = random.uniform(-40, 40);
-    extent[2 * a + 1] = extent[2 * a] + size[a] - 1;
-  }
-  image->SetExtent(extent);
-  image->SetSpacing(random.uniform(0.6, 1.4), random.uniform(0.6, 1.4), random.uniform(0.6, 1.4));
-  image->SetOrigin(
-    random.uniform(-90.0, 90.0), random.uniform(-90.0, 90.0), random.uniform(-90.0, 90.0));
-}
-
 /// Planes at shares of the image's bounds without its direction matrix, lower and upper ones.
 void placePlanes(
   vtkVolumeMapper* mapper, vtkImageData* image, reference::Random& random, double margin)
@@ -128,7 +112,7 @@ void testAgainstRayCasters(stage::Stage& stage, stage::Checks& check)
   {
     for (const stage::Vector& direction : directions)
     {
-      placeAtRandom(image, random);
+      stage::placeAtRandom(image, random);
       const auto mapper = stage::splatting(image);
       placePlanes(mapper, image, random, 0.15);
       mapper->SetCroppingRegionFlags(region);
@@ -180,7 +164,7 @@ void testDefinition(stage::Stage& stage, stage::Checks& check)
   stage.show(mapper);
   for (int turn = 0; turn < 90; ++turn)
   {
-    placeAtRandom(image, random);
+    stage::placeAtRandom(image, random);
     setDirection(image, random);
     stage.look(
       { random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(0.1, 1.0) }, up);

@@ -105,22 +105,6 @@ stage::Vector randomDirection(reference::Random& random)
   return direction;
 }
 
-/// The same voxels with another spacing, origin and extent.
-void placeAtRandom(vtkImageData* image, reference::Random& random)
-{
-  const int* size = image->GetDimensions();
-  int extent[6];
-  for (int a = 0; a < 3; ++a)
-  {
-    extent[2 * a] = random.uniform(-40, 40);
-    extent[2 * a + 1] = extent[2 * a] + size[a] - 1;
-  }
-  image->SetExtent(extent);
-  image->SetSpacing(random.uniform(0.6, 1.4), random.uniform(0.6, 1.4), random.uniform(0.6, 1.4));
-  image->SetOrigin(
-    random.uniform(-90.0, 90.0), random.uniform(-90.0, 90.0), random.uniform(-90.0, 90.0));
-}
-
 /// Rotation, scales that differ and every other time a reflection.
 void turnPropAtRandom(vtkVolume* volume, reference::Random& random)
 {
@@ -232,7 +216,7 @@ void testPropMatrices(stage::Stage& stage, vtkImageData* image, stage::Checks& c
   Comparison comparison(fixedPointBounds);
   for (int camera = 0; camera < Cameras; ++camera)
   {
-    placeAtRandom(image, random);
+    stage::placeAtRandom(image, random);
     const auto mapper = stage::splatting(image);
     stage.show(mapper);
     turnPropAtRandom(stage.volume, random);
@@ -250,7 +234,7 @@ void compareRayCasters(stage::Stage& stage, vtkImageData* image)
   Summary summary;
   for (int camera = 0; camera < TurnedCameras; ++camera)
   {
-    placeAtRandom(image, random);
+    stage::placeAtRandom(image, random);
     stage.show(stage::splatting(image));
     turnPropAtRandom(stage.volume, random);
     lookAtRandom(stage, random);
@@ -272,7 +256,7 @@ void testDirectionMatrices(stage::Stage& stage, vtkImageData* image, stage::Chec
   Comparison comparison(gpuBounds);
   for (int camera = 0; camera < TurnedCameras; ++camera)
   {
-    placeAtRandom(image, random);
+    stage::placeAtRandom(image, random);
     vtkNew<vtkImageData> turned;
     turned->ShallowCopy(image);
     const bool mirrored = camera % 2 == 1;
