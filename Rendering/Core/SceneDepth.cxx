@@ -75,10 +75,10 @@ void SceneDepth::addHalfSpace(const glm::dvec4& h, Body& body) const
   }
   // The depth where h vanishes, first of shear pixels, then of screen pixels.
   const glm::dvec4 crossing = d - d.z / h.z * h;
-  const glm::dmat3x2& m = this->Geometry.screenToShear();
+  const glm::dmat3& m = this->Geometry.screenToShear();
   const glm::dvec2 slopes(crossing);
-  const glm::dvec3 depth(
-    glm::dot(slopes, m[0]), glm::dot(slopes, m[1]), glm::dot(slopes, m[2]) + crossing.w);
+  const glm::dvec3 depth(glm::dot(slopes, glm::dvec2(m[0])), glm::dot(slopes, glm::dvec2(m[1])),
+    glm::dot(slopes, glm::dvec2(m[2])) + crossing.w);
   (h.z * d.z > 0.0 ? body.fronts : body.backs).push_back(depth);
 }
 
@@ -133,7 +133,7 @@ void SceneDepth::endRays(int u, int v, int count, double* near, double* far) con
   for (int x = 0; x < count; ++x)
   {
     const glm::dvec3 ray(u + x, v, 1.0);
-    const glm::dvec2 seen = glm::floor(this->Geometry.shearToScreen() * ray + 0.5);
+    const glm::dvec2 seen = glm::floor(glm::dvec2(this->Geometry.shearToScreen() * ray) + 0.5);
     const glm::ivec2 pixel(glm::clamp(seen, glm::dvec2(this->Origin), glm::dvec2(last)));
     const double depth = this->at(pixel);
     if (depth >= 1.0 || !this->endsRay(pixel, depth))

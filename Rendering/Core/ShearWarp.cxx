@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace splatting
 {
@@ -19,11 +20,13 @@ glm::dvec4 row(const glm::dmat4& m, int r)
   return { m[0][r], m[1][r], m[2][r], m[3][r] };
 }
 
-double quantised(double shear)
+/// The nearest multiple of 2^-bits.
+double quantised(double x, int bits)
 {
-  constexpr double steps = 1 << 24;
-  return std::round(shear * steps) / steps;
+  return std::ldexp(std::round(std::ldexp(x, bits)), -bits);
 }
+
+constexpr int SlopeBits = 24, PositionBits = 20, EyeBits = 10;
 
 /// One coordinate of a ray while it crosses a slice, relative to its pixel.
 struct Crossing
@@ -38,15 +41,75 @@ Crossing cross(double entry, double exit)
   // the voxel that the ray runs in next to it: after the entry, before the exit.
   const bool forward = exit >= entry;
   const int first = static_cast<int>(forward ? std::floor(entry + 0.5) : std::ceil(entry - 0.5));
+  if (exit == entry)
+  {
+    return { first, first, 0.0 };
+  }
   const int last = static_cast<int>(forward ? std::ceil(exit - 0.5) : std::floor(exit + 0.5));
   return { first, last, std::abs(first + (forward ? 0.5 : -0.5) - entry) };
+}
+
+/// The voxels between two points of a ray, a slice apart or less.
+RayPath path(const glm::dvec2& entry, const glm::dvec2& exit, const glm::dvec2& speed)
+{
+  const Crossing x = cross(entry.x, exit.x);
+  const Crossing y = cross(entry.y, exit.y);
+  RayPath found;
+  const auto add = [&found](int di, int dj)
+  {
+    found.di[found.count] = di;
+    found.dj[found.count] = dj;
+    ++found.count;
+  };
+  add(x.first, y.first);
+  if (x.first != x.last && y.first != y.last)
+  {
+    // Which face comes first? distance / speed, multiplied out: products of 25 and 24 bits, exact.
+    const double timeX = x.faceDistance * speed.y;
+    const double timeY = y.faceDistance * speed.x;
+    if (timeX < timeY)
+    {
+      add(x.last, y.first);
+    }
+    else if (timeY < timeX)
+    {
+      add(x.first, y.last);
+    }
+  }
+  if (x.first != x.last || y.first != y.last)
+  {
+    add(x.last, y.last);
+  }
+  return found;
+}
+
+/// A convex cone, given by its edges, where dot(side, direction) >= 0.
+std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm::dvec3& side)
+{
+  std::vector<glm::dvec3> result;
+  for (std::size_t n = 0; n < edges.size(); ++n)
+  {
+    const glm::dvec3& a = edges[n];
+    const glm::dvec3& b = edges[(n + 1) % edges.size()];
+    const double atA = glm::dot(side, a), atB = glm::dot(side, b);
+    if (atA >= 0.0)
+    {
+      result.push_back(a);
+    }
+    if ((atA < 0.0) != (atB < 0.0))
+    {
+      result.push_back((atA * b - atB * a) / (atA - atB));
+    }
+  }
+  return result;
 }
 }
 
 ShearWarp::ShearWarp(const View& view)
 {
   const glm::dmat4& m = view.indexToClip;
-  const double w = m[3][3];
+  const glm::dvec3 centre = 0.5 * glm::dvec3(view.dimensions - 1);
+  const double w = glm::dot(glm::dvec3(row(m, 3)), centre) + m[3][3];
   // Rows of the affine map from index space to pixels, whose centres lie at integers.
   const glm::dvec4 half(0.0, 0.0, 0.0, 1.0);
   const glm::dvec4 rowX = 0.5 * view.viewport.x * (row(m, 0) / w + half) - 0.5 * half;
@@ -67,7 +130,27 @@ ShearWarp::ShearWarp(const View& view)
   const double deeper = glm::dot(glm::dvec3(row(m, 2)) / w, direction);
   this->Reversed = deeper * direction[this->Axes[2]] < 0.0;
   this->computeWarp(rowX, rowY);
+  this->setParallelFans();
   this->Valid = true;
+}
+
+void ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images)
+{
+  if (isParallel(view))
+  {
+    images.resize(1);
+    images.front() = ShearWarp(view);
+    images.resize(images.front().valid() ? 1 : 0);
+    return;
+  }
+  std::size_t count = 0;
+  Rays rays;
+  for (int direction = 0; findRays(view, rays) && direction < 6; ++direction)
+  {
+    images.resize(std::max(images.size(), count + 1));
+    count += images[count].lookAlong(direction / 2, direction % 2 == 1, view, rays);
+  }
+  images.resize(count);
 }
 
 void ShearWarp::chooseAxes(const glm::dvec3& direction)
@@ -81,19 +164,171 @@ void ShearWarp::chooseAxes(const glm::dvec3& direction)
       k = a;
     }
   }
-  this->Axes = { k == 0 ? 1 : 0, k == 2 ? 1 : 2, k };
-  const glm::ivec3 dimensions = this->Size;
-  for (int a = 0; a < 3; ++a)
-  {
-    this->Size[a] = dimensions[this->Axes[a]];
-  }
-  this->Middle = 0.5 * (this->Size.z - 1);
+  this->permute(k, this->Size);
   for (int a = 0; a < 2; ++a)
   {
     const double shear = -direction[this->Axes[a]] / direction[k];
-    this->Shear[a] = quantised(std::clamp(shear, -1.0, 1.0));
+    this->Shear[a] = quantised(std::clamp(shear, -1.0, 1.0), SlopeBits);
     // Half the stack on either side of the middle, and a pixel for footprints at the rim.
     this->Margin[a] = static_cast<int>(std::ceil(std::abs(this->Shear[a]) * this->Size.z / 2)) + 1;
+    this->ImageSize[a] = this->Size[a] + 2 * this->Margin[a];
+  }
+}
+
+void ShearWarp::permute(int principalAxis, const glm::ivec3& dimensions)
+{
+  const int k = principalAxis;
+  this->Axes = { k == 0 ? 1 : 0, k == 2 ? 1 : 2, k };
+  const glm::ivec3 size = dimensions;
+  for (int a = 0; a < 3; ++a)
+  {
+    this->Size[a] = size[this->Axes[a]];
+  }
+  this->Middle = 0.5 * (this->Size.z - 1);
+}
+
+void ShearWarp::setParallelFans()
+{
+  this->Reference = this->Middle;
+  this->DepthRange = { -0.5, this->Size.z - 0.5 };
+  this->SlicesSeen = { 0, this->Size.z };
+  for (int a = 0; a < 2; ++a)
+  {
+    Fan& fan = a == 0 ? this->Columns : this->Rows;
+    fan.at.resize(this->ImageSize[a]);
+    std::iota(fan.at.begin(), fan.at.end(), -this->Margin[a]);
+    fan.slope.assign(this->ImageSize[a], -this->Shear[a]);
+  }
+}
+
+bool ShearWarp::findRays(const View& view, Rays& rays)
+{
+  const glm::dmat4& m = view.indexToClip;
+  glm::dmat3 linear;
+  for (int c = 0; c < 3; ++c)
+  {
+    linear[c] = { m[c][0], m[c][1], m[c][3] };
+  }
+  const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+  if (!(std::abs(glm::determinant(linear)) > 1e-12 * lengths) || !std::isfinite(lengths))
+  {
+    return false;
+  }
+  // Points of a ray, but for their distance from the eye: linear (p - eye) = w (x, y, 1), x and y
+  // in [-1, 1] over the viewport.
+  const glm::dmat3 inverse = glm::inverse(linear);
+  const glm::dvec2 step = 2.0 / glm::dvec2(view.viewport);
+  const glm::dmat3 viewport(
+    step.x, 0.0, 0.0, 0.0, step.y, 0.0, 0.5 * step.x - 1.0, 0.5 * step.y - 1.0, 1.0);
+  rays.eye = -(inverse * glm::dvec3(m[3][0], m[3][1], m[3][3]));
+  rays.directions = inverse * viewport;
+  return std::isfinite(glm::length(rays.eye)) && std::isfinite(glm::determinant(rays.directions));
+}
+
+bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays& rays)
+{
+  this->permute(axis, view.dimensions);
+  this->Perspective = true;
+  this->ShowsBoxes = view.showsBoxes;
+  this->Reversed = reversed;
+  glm::dmat3 directions;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int b = this->Axes[a];
+    this->Eye[a] = quantised(rays.eye[b], EyeBits);
+    for (int c = 0; c < 3; ++c)
+    {
+      directions[c][a] = rays.directions[c][b] * (a == 2 && reversed ? -1.0 : 1.0);
+    }
+  }
+  const double end = this->Size.z - 0.5, eye = this->Eye.z;
+  this->Reference = reversed ? -0.5 : end;
+  const double farthest = reversed ? eye + 0.5 : end - eye;
+  this->DepthRange = { reversed ? -0.5 : std::max(eye, -0.5), reversed ? std::min(eye, end) : end };
+  const double middle = std::clamp(eye, -1.0, double(this->Size.z));
+  this->SlicesSeen = reversed
+    ? Span{ 0, std::min(static_cast<int>(std::ceil(middle)), this->Size.z) }
+    : Span{ static_cast<int>(std::floor(middle)) + 1, this->Size.z };
+  this->SlicesSeen.begin = std::max(this->SlicesSeen.begin, 0);
+  if (this->SlicesSeen.empty())
+  {
+    return false;
+  }
+  // An odd number of steps has no ray along the axis, which could run between voxels.
+  constexpr double narrower = 1.0 + 0x1p-10;
+  this->Steps = static_cast<std::int64_t>(std::ceil(2.0 * farthest * narrower)) | 1;
+  this->Pitch = 2.0 * farthest / static_cast<double>(this->Steps);
+  std::int64_t first[2];
+  if (!this->placeImage(view, directions, first))
+  {
+    return false;
+  }
+  this->setFan(0, first[0], this->Columns);
+  this->setFan(1, first[1], this->Rows);
+  // Pixel n of all has slope (2 n / Steps - 1): (x, y, z) of a direction to (u w, v w, w), w = z.
+  const double half = 0.5 * static_cast<double>(this->Steps);
+  const glm::dmat3 toPixels(half, 0.0, 0.0, 0.0, half, 0.0, half - static_cast<double>(first[0]),
+    half - static_cast<double>(first[1]), 1.0);
+  this->ScreenToShear = toPixels * directions;
+  this->ShearToScreen = glm::inverse(this->ScreenToShear);
+  this->Valid = true;
+  return true;
+}
+
+/// The part of all pixels that shows the volume in the viewport.
+bool ShearWarp::placeImage(const View& view, const glm::dmat3& directions, std::int64_t first[2])
+{
+  // The viewport's pyramid, cut down to the rays that follow the axis most.
+  std::vector<glm::dvec3> corners;
+  const double right = view.viewport.x - 0.5, top = view.viewport.y - 0.5;
+  for (const glm::dvec2& corner : { glm::dvec2(-0.5, -0.5), glm::dvec2(right, -0.5),
+         glm::dvec2(right, top), glm::dvec2(-0.5, top) })
+  {
+    corners.push_back(directions * glm::dvec3(corner, 1.0));
+  }
+  for (const glm::dvec3& side : { glm::dvec3(1.0, 0.0, 1.0), glm::dvec3(-1.0, 0.0, 1.0),
+         glm::dvec3(0.0, 1.0, 1.0), glm::dvec3(0.0, -1.0, 1.0) })
+  {
+    corners = clipped(corners, side);
+  }
+  const double nearest =
+    this->Reversed ? this->Eye.z - this->DepthRange.y : this->DepthRange.x - this->Eye.z;
+  const double farthest = this->DepthRange.y - this->DepthRange.x + nearest;
+  const double half = 0.5 * static_cast<double>(this->Steps);
+  for (int a = 0; a < 2; ++a)
+  {
+    double low = 1.0, high = -1.0;
+    for (const glm::dvec3& corner : corners)
+    {
+      low = std::min(low, std::max(corner[a] / corner.z, -1.0));
+      high = std::max(high, std::min(corner[a] / corner.z, 1.0));
+    }
+    const double begin = -0.5 - this->Eye[a], end = this->Size[a] - 0.5 - this->Eye[a];
+    const double close = std::max(nearest, 1e-3);
+    low = std::max(low, begin / (begin < 0.0 ? close : farthest));
+    high = std::min(high, end / (end > 0.0 ? close : farthest));
+    if (!(low <= high))
+    {
+      return false;
+    }
+    first[a] = static_cast<std::int64_t>(std::floor(half * (low + 1.0)));
+    const auto last = static_cast<std::int64_t>(std::ceil(half * (high + 1.0)));
+    this->ImageSize[a] = static_cast<int>(last - first[a]) + 1;
+  }
+  return true;
+}
+
+void ShearWarp::setFan(int a, std::int64_t first, Fan& fan) const
+{
+  const double sign = this->Reversed ? -1.0 : 1.0;
+  const double start = this->Eye[a] + (this->Eye.z - this->Reference) * sign;
+  fan.at.resize(this->ImageSize[a]);
+  fan.slope.resize(this->ImageSize[a]);
+  for (int n = 0; n < this->ImageSize[a]; ++n)
+  {
+    const double step = static_cast<double>(first + n);
+    fan.slope[n] = sign * quantised(2.0 * step / static_cast<double>(this->Steps) - 1.0, SlopeBits);
+    fan.at[n] = quantised(start + step * this->Pitch, PositionBits);
   }
 }
 
@@ -105,44 +340,23 @@ void ShearWarp::computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY)
   const glm::dvec2 middle =
     glm::dvec2(rowX.w, rowY.w) + this->Middle * glm::dvec2(rowX[k], rowY[k]);
   const glm::dvec2 offset = middle - linear * glm::dvec2(this->Margin);
-  this->ShearToScreen = glm::dmat3x2(linear[0], linear[1], offset);
+  this->ShearToScreen =
+    glm::dmat3(glm::dvec3(linear[0], 0.0), glm::dvec3(linear[1], 0.0), glm::dvec3(offset, 1.0));
   const glm::dmat2 inverse = glm::inverse(linear);
-  this->ScreenToShear = glm::dmat3x2(inverse[0], inverse[1], -(inverse * offset));
+  this->ScreenToShear = glm::dmat3(
+    glm::dvec3(inverse[0], 0.0), glm::dvec3(inverse[1], 0.0), glm::dvec3(-(inverse * offset), 1.0));
 }
 
 RayPath ShearWarp::rayPath(int k) const
 {
-  const glm::dvec2 entry = -this->position(k - 0.5);
-  const glm::dvec2 exit = -this->position(k + 0.5);
-  const Crossing x = cross(entry.x, exit.x);
-  const Crossing y = cross(entry.y, exit.y);
-  RayPath path;
-  const auto add = [&path](int di, int dj)
-  {
-    path.di[path.count] = di;
-    path.dj[path.count] = dj;
-    ++path.count;
-  };
-  add(x.first, y.first);
-  if (x.first != x.last && y.first != y.last)
-  {
-    // Which face comes first? distance / speed, multiplied out: products of 25 and 24 bits, exact.
-    const double timeX = x.faceDistance * std::abs(this->Shear.y);
-    const double timeY = y.faceDistance * std::abs(this->Shear.x);
-    if (timeX < timeY)
-    {
-      add(x.last, y.first);
-    }
-    else if (timeY < timeX)
-    {
-      add(x.first, y.last);
-    }
-  }
-  if (x.first != x.last || y.first != y.last)
-  {
-    add(x.last, y.last);
-  }
-  return path;
+  return path(-this->position(k - 0.5), -this->position(k + 0.5), glm::abs(this->Shear));
+}
+
+RayPath ShearWarp::voxelsOnRay(int u, int v, int k) const
+{
+  const glm::dvec2 slope(this->Columns.slope[u], this->Rows.slope[v]);
+  const glm::dvec2 depths = this->faces(k);
+  return path(this->onRay(u, v, depths.x), this->onRay(u, v, depths.y), glm::abs(slope));
 }
 
 Span ShearWarp::coverage(const RayPath& path, int v) const
@@ -173,7 +387,9 @@ glm::dvec4 ShearWarp::inPixels(const glm::dvec4& halfSpace) const
 
 bool ShearWarp::sameShear(const ShearWarp& other) const
 {
+  // Fans hold the shears.
   return this->Valid == other.Valid && this->Axes == other.Axes && this->Size == other.Size &&
-    this->Shear == other.Shear;
+    this->Reference == other.Reference && this->DepthRange == other.DepthRange &&
+    this->Columns == other.Columns && this->Rows == other.Rows;
 }
 }

@@ -161,15 +161,15 @@ void warpRows(const WarpFrame<A>& frame, const ShearWarp& geometry, Picture& pic
   // one pixel away.
   const Silhouette inside(geometry, glm::dvec3(geometry.size()), 1.0 + 1e-6);
   const bool holes = !frame.image.mask.empty() || frame.image.special;
-  const glm::dmat3x2& m = geometry.screenToShear();
-  const glm::dvec2 step = m[0];
+  const glm::dmat3& m = geometry.screenToShear();
+  const glm::dvec2 step(m[0]);
   vtkSMPTools::For(0, picture.size.y, 16,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType y = first; y < last; ++y)
       {
-        const glm::dvec2 start =
-          m * glm::dvec3(picture.origin.x, picture.origin.y + static_cast<double>(y), 1.0);
+        const glm::dvec2 start(
+          m * glm::dvec3(picture.origin.x, picture.origin.y + static_cast<double>(y), 1.0));
         std::uint32_t* const out = picture.pixels.data() + y * picture.size.x;
         const Span row = shown.cut({ 0, picture.size.x }, start, step);
         const Span plain = holes || row.empty() ? Span{} : inside.cut(row, start, step);
@@ -196,9 +196,9 @@ void placePicture(const ShearWarp& geometry, const glm::ivec2& viewport, Picture
 {
   const glm::dvec2 half = Silhouette(geometry, shownSize(geometry), 0.0).half();
   const glm::dvec2 centre(0.5 * (geometry.width() - 1), 0.5 * (geometry.height() - 1));
-  const glm::dmat3x2& m = geometry.shearToScreen();
-  const glm::dvec2 middle = m * glm::dvec3(centre, 1.0);
-  const glm::dvec2 reach = glm::abs(m[0]) * half.x + glm::abs(m[1]) * half.y;
+  const glm::dmat3& m = geometry.shearToScreen();
+  const glm::dvec2 middle(m * glm::dvec3(centre, 1.0));
+  const glm::dvec2 reach = glm::dvec2(glm::abs(m[0]) * half.x + glm::abs(m[1]) * half.y);
   for (int a = 0; a < 2; ++a)
   {
     const double limit = viewport[a];

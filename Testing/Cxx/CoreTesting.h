@@ -90,6 +90,40 @@ inline splatting::View randomView(const std::array<int, 3>& size, reference::Ran
   return view;
 }
 
+/// A perspective view: from inside the volume, from nearby or from afar, some from half-way between
+/// voxels or along an axis, with any spacing, view angles from 5 to 120 degrees, some off-axis.
+inline splatting::View randomPerspective(const std::array<int, 3>& size, reference::Random& random)
+{
+  splatting::View view;
+  view.dimensions = toGlm(size);
+  view.viewport = { random.uniform(20, 200), random.uniform(20, 200) };
+  const glm::dvec3 spacing(
+    random.uniform(0.5, 2.0), random.uniform(0.5, 2.0), random.uniform(0.5, 2.0));
+  const double reach = std::pow(10.0, random.uniform(-1.0, 2.5));
+  glm::dvec3 eye, focus;
+  for (int a = 0; a < 3; ++a)
+  {
+    focus[a] = random.uniform(0.0, size[a] - 1.0);
+    eye[a] = 0.5 * (size[a] - 1) + reach * size[a] * random.uniform(-1.0, 1.0);
+  }
+  if (random.uniform(0, 3) == 0)
+  {
+    // Where rays meet edges, and look along an axis or a diagonal.
+    eye = glm::round(2.0 * eye) / 2.0;
+    focus = eye + glm::dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  }
+  const glm::dvec3 up(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.9);
+  const double angle = glm::radians(random.uniform(5.0, 120.0));
+  const double top = 0.1 * std::tan(0.5 * angle), right = top * view.viewport.x / view.viewport.y;
+  const double shift = random.uniform(0, 1) ? random.uniform(-0.5, 0.5) : 0.0;
+  const glm::dmat4 projection =
+    glm::frustum((shift - 1.0) * right, (shift + 1.0) * right, -top, top, 0.1, 10000.0);
+  view.indexToClip = projection *
+    glm::lookAt(eye * spacing, focus * spacing + glm::dvec3(1e-9), up) *
+    glm::scale(glm::dmat4(1.0), spacing);
+  return view;
+}
+
 /// Shears at which rays meet edges and corners: no shear, diagonals, simple fractions.
 inline double specialShear(reference::Random& random)
 {

@@ -39,20 +39,105 @@ void testShearThenWarpIsTheView(Checks& check, reference::Random& random)
       point[axes[a]] = ijk[a];
     }
     const glm::dvec2 pixel = glm::dvec2(ijk) + geometry.position(ijk.z);
-    const glm::dvec2 warped = geometry.shearToScreen() * glm::dvec3(pixel, 1.0);
+    const glm::dvec2 warped(geometry.shearToScreen() * glm::dvec3(pixel, 1.0));
     const glm::dvec2 expected = onScreen(view, point);
     // Shears are rounded by up to 2^-25 pixels per slice; a pixel may be several on the screen.
-    const glm::dmat3x2& m = geometry.shearToScreen();
+    const glm::dmat3& m = geometry.shearToScreen();
     const double scale = std::abs(m[0].x) + std::abs(m[0].y) + std::abs(m[1].x) + std::abs(m[1].y);
     const double bound = 0x1p-25 * geometry.size().z * scale + 1e-9 * (1.0 + scale);
     check(glm::length(warped - expected) <= bound, "a voxel is ", glm::length(warped - expected),
       " pixels off");
-    const glm::dvec2 back = geometry.screenToShear() * glm::dvec3(warped, 1.0);
+    const glm::dvec2 back(geometry.screenToShear() * glm::dvec3(warped, 1.0));
     check(
       glm::length(back - pixel) < 1e-7 * (1.0 + glm::length(pixel)), "the warp is not inverted");
     check(std::abs(geometry.shear().x) <= 1.0 && std::abs(geometry.shear().y) <= 1.0,
       "a shear is above 1");
   }
+}
+
+/// A point of the volume in permuted coordinates.
+glm::dvec3 permuted(const splatting::ShearWarp& image, const glm::dvec3& p)
+{
+  const auto& axes = image.axes();
+  return { p[axes[0]], p[axes[1]], p[axes[2]] };
+}
+
+glm::dvec3 unpermuted(const splatting::ShearWarp& image, const glm::dvec3& p)
+{
+  glm::dvec3 result;
+  for (int a = 0; a < 3; ++a)
+  {
+    result[image.axes()[a]] = p[a];
+  }
+  return result;
+}
+
+/// The rays of an image run where the view has them, and are no more than a voxel apart.
+void checkRays(Checks& check, const splatting::View& view, const splatting::ShearWarp& image,
+  reference::Random& random)
+{
+  const int u = random.uniform(0, image.width() - 1), v = random.uniform(0, image.height() - 1);
+  const glm::dvec3 shown = image.shearToScreen() * glm::dvec3(u, v, 1.0);
+  for (const double z : { image.faces(image.slices().begin).y, image.reference() })
+  {
+    const glm::dvec3 point(image.onRay(u, v, z), z);
+    const double far = glm::distance(point, image.eye());
+    if (far > 1.0 && shown.z > 0.0)
+    {
+      // The eye is rounded by 2^-11, which is seen larger from nearby; rays by 2^-25 and 2^-21.
+      const glm::dvec2 expected = onScreen(view, unpermuted(image, point));
+      const glm::dvec2 found = glm::dvec2(shown) / shown.z;
+      const glm::dvec2 beside =
+        onScreen(view, unpermuted(image, point + glm::dvec3(0x1p-9, 0x1p-9, 0.0)));
+      check(glm::length(expected - found) <=
+          1e-6 * (1.0 + glm::length(found)) + 2.0 * glm::length(beside - expected),
+        "a ray is ", glm::length(expected - found), " pixels off");
+    }
+  }
+  check(std::abs(image.columns().slope[u]) <= 1.0 && std::abs(image.rows().slope[v]) <= 1.0,
+    "a slope is above 1");
+  check(u == 0 || image.columns().at[u] - image.columns().at[u - 1] < 0.9995,
+    "rays are more than a voxel apart");
+  const double far = std::abs(image.reference() - image.eye().z);
+  check(image.pitch() * (1.001 + 1.0 / far) >= 1.0, "rays are ", image.pitch(), " voxels apart");
+}
+
+void testPerspectiveShearThenWarpIsTheView(Checks& check, reference::Random& random)
+{
+  std::vector<splatting::ShearWarp> images;
+  int mostImages = 0, seen = 0;
+  for (int n = 0; n < 2000; ++n)
+  {
+    const auto size = randomSize(random, 100);
+    const splatting::View view = randomPerspective(size, random);
+    splatting::ShearWarp::factorise(view, images);
+    mostImages = std::max(mostImages, static_cast<int>(images.size()));
+    for (const splatting::ShearWarp& image : images)
+    {
+      checkRays(check, view, image, random);
+    }
+    // What the viewport shows of the volume is in an image whose axis the ray follows most.
+    const glm::dvec3 point(random.uniform(-0.5, size[0] - 0.5), random.uniform(-0.5, size[1] - 0.5),
+      random.uniform(-0.5, size[2] - 0.5));
+    const glm::dvec4 clip = view.indexToClip * glm::dvec4(point, 1.0);
+    if (clip.w > 0.0 && std::abs(clip.x) < clip.w && std::abs(clip.y) < clip.w)
+    {
+      ++seen;
+      check(std::any_of(images.begin(), images.end(),
+              [&](const splatting::ShearWarp& image)
+              {
+                const glm::dvec3 p = image.screenToShear() * glm::dvec3(onScreen(view, point), 1.0);
+                const glm::dvec3 d = permuted(image, point) - image.eye();
+                const double along = image.reversed() ? -d.z : d.z;
+                const double slack = 0x1p-8;
+                return along + slack >= std::max(std::abs(d.x), std::abs(d.y)) && p.z > 0.0 &&
+                  p.x / p.z > -slack && p.x / p.z < image.width() - 1 + slack &&
+                  p.y / p.z > -slack && p.y / p.z < image.height() - 1 + slack;
+              }),
+        "no image has a point of the volume");
+    }
+  }
+  check(mostImages >= 5 && seen > 500, "only ", mostImages, " images, ", seen, " points");
 }
 
 void testRayPaths(Checks& check, reference::Random& random)
@@ -131,6 +216,7 @@ int TestShearWarp(int, char*[])
   Checks check;
   reference::Random random(7);
   testShearThenWarpIsTheView(check, random);
+  testPerspectiveShearThenWarpIsTheView(check, random);
   testRayPaths(check, random);
   testSymmetricViewsAreExact(check);
   testDegenerateViews(check);

@@ -62,7 +62,7 @@ splatting::ColorTable countingTable(double low, double high)
 bool meetsBox(
   const splatting::View& view, const splatting::ShearWarp& geometry, int x, int y, double margin)
 {
-  const glm::dvec2 pixel = geometry.screenToShear() * glm::dvec3(x, y, 1.0);
+  const glm::dvec2 pixel(geometry.screenToShear() * glm::dvec3(x, y, 1.0));
   double enter = -1e30, leave = 1e30;
   for (int a = 0; a < 3; ++a)
   {
@@ -128,7 +128,7 @@ void testLinearImages(Checks& check)
         {
           continue;
         }
-        const glm::dvec2 p = geometry.screenToShear() * glm::dvec3(x, y, 1.0);
+        const glm::dvec2 p(geometry.screenToShear() * glm::dvec3(x, y, 1.0));
         // At the rim the last samples stand for missing neighbours, up to a pixel away in u and v.
         bool rim = false;
         for (int corner = 0; corner < 4; ++corner)
