@@ -8,30 +8,29 @@
 #include <algorithm>
 
 //------------------------------------------------------------------------------
-void SceneCuts::Find(const splatting::View& view, const splatting::ShearWarp& geometry,
+void SceneCuts::Find(const splatting::View& view, const std::vector<splatting::ShearWarp>& images,
   vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
 {
-  this->Present.cropping = view.cropping;
-  this->HalfSpaces.clear();
-  for (const glm::dvec4& h : view.halfSpaces)
-  {
-    this->HalfSpaces.push_back(geometry.inPixels(h));
-  }
-  splatting::ClosedSurface* const surface = this->Bounds.Get();
-  if (surface)
-  {
-    surface->project(geometry);
-  }
-  splatting::placePicture(geometry, view.viewport, this->Place);
+  splatting::placePicture(images, view.viewport, this->Place);
   this->Seen = renderer->GetSelector() ? this->RememberScene(view, renderer, volume, intermixes)
                                        : this->LookAtScene(renderer, volume, intermixes, readDepth);
   if (this->Seen)
   {
     this->Seen->indexToClip = view.indexToClip;
-    this->Seen->depth.place(view, geometry, this->HalfSpaces);
+    this->Seen->depth.place(view, view.halfSpaces);
   }
-  this->Present.intervals.find(
-    geometry, this->HalfSpaces, surface, this->Seen ? &this->Seen->depth : nullptr);
+  splatting::ClosedSurface* const surface = this->Bounds.Get();
+  this->Present.resize(images.size());
+  for (std::size_t n = 0; n < images.size(); ++n)
+  {
+    this->Present[n].cropping = view.cropping;
+    if (surface)
+    {
+      surface->project(images[n], n);
+    }
+    this->Present[n].intervals.find(
+      images[n], view.halfSpaces, surface, this->Seen ? &this->Seen->depth : nullptr);
+  }
 }
 
 //------------------------------------------------------------------------------

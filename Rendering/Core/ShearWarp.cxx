@@ -137,23 +137,25 @@ ShearWarp::ShearWarp(const View& view)
   this->Valid = true;
 }
 
-void ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images)
+bool ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images)
 {
   if (isParallel(view))
   {
     images.resize(1);
     images.front() = ShearWarp(view);
     images.resize(images.front().valid() ? 1 : 0);
-    return;
+    return !images.empty();
   }
   std::size_t count = 0;
   Rays rays;
-  for (int direction = 0; findRays(view, rays) && direction < 6; ++direction)
+  const bool valid = findRays(view, rays);
+  for (int direction = 0; valid && direction < 6; ++direction)
   {
     images.resize(std::max(images.size(), count + 1));
     count += images[count].lookAlong(direction / 2, direction % 2 == 1, view, rays);
   }
   images.resize(count);
+  return valid;
 }
 
 void ShearWarp::chooseAxes(const glm::dvec3& direction)

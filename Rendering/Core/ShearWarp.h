@@ -85,9 +85,10 @@ public:
 
   /**
    * Factorises any view: one image for a parallel view, up to six for a perspective one, those that
-   * show some of the volume. None if nothing of it can be seen or the view flattens it.
+   * show some of the volume; none if nothing of it can be seen.
+   * @return  false if the view flattens the volume to a line or a point; there are no images then
    */
-  static void factorise(const View& view, std::vector<ShearWarp>& images);
+  static bool factorise(const View& view, std::vector<ShearWarp>& images);
 
   bool valid() const { return this->Valid; }
   /// The volume axis along which slices are stacked, 0, 1 or 2.
