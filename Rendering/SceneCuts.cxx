@@ -17,19 +17,14 @@ void SceneCuts::Find(const splatting::View& view, const std::vector<splatting::S
   if (this->Seen)
   {
     this->Seen->indexToClip = view.indexToClip;
-    this->Seen->depth.place(view, view.halfSpaces);
+    this->Seen->depth.place(view);
   }
-  splatting::ClosedSurface* const surface = this->Bounds.Get();
   this->Present.resize(images.size());
   for (std::size_t n = 0; n < images.size(); ++n)
   {
     this->Present[n].cropping = view.cropping;
-    if (surface)
-    {
-      surface->project(images[n], n);
-    }
-    this->Present[n].intervals.find(
-      images[n], view.halfSpaces, surface, this->Seen ? &this->Seen->depth : nullptr);
+    this->Present[n].intervals.find(images[n], view.halfSpaces, this->Bounds.Get(),
+      this->Seen ? &this->Seen->depth : nullptr);
   }
 }
 

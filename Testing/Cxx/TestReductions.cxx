@@ -176,14 +176,9 @@ splatting::ShearImage projected(const reference::Volume<T>& volume, const Case& 
   std::vector<glm::dvec4> halfSpaces;
   for (const auto& h : c.cuts.halfSpaces)
   {
-    halfSpaces.push_back(c.geometry.inPixels({ h[0], h[1], h[2], h[3] }));
+    halfSpaces.push_back({ h[0], h[1], h[2], h[3] });
   }
-  splatting::Cuts cuts;
-  if (!halfSpaces.empty())
-  {
-    cuts.intervals.find(c.geometry, halfSpaces);
-  }
-  cuts.cropping = croppingOf(c.cuts);
+  const splatting::Cuts cuts = cutsBy(c.geometry, halfSpaces, croppingOf(c.cuts));
   splatting::VolumeIndex index;
   index.setBudget(c.budget);
   index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
