@@ -190,8 +190,8 @@ bool ComponentProjector::ProjectChannel(Channel& channel, const splatting::Shear
   const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts)
 {
   channel.Settings = this->SettingsOf(channel, settings);
-  const splatting::Acceleration used =
-    this->Projector.project(channel.Index, geometry, channel.Settings, cuts, channel.Image);
+  const splatting::Acceleration used = this->Projector.project(
+    channel.Index, geometry, channel.Settings, cuts, channel.Images.front());
   if (this->Projector.stopped())
   {
     return false;
@@ -226,8 +226,8 @@ bool ComponentProjector::Project(const splatting::ShearWarp& geometry,
     {
       channel.Settings = last.Settings;
       channel.Used = last.Used;
-      this->Projector.carry(
-        channel.Index.volume(), geometry, last.Settings, last.Image, channel.Image);
+      this->Projector.carry(channel.Index.volume(), geometry, last.Settings, last.Images.front(),
+        channel.Images.front());
     }
   }
   this->Projected = true;
@@ -249,7 +249,7 @@ void ComponentProjector::Warp(
   for (Channel& channel : this->Channels)
   {
     const bool first = &channel == &this->Channels.front();
-    this->Warper.warp(channel.Image, geometry, channel.Colors, view.viewport,
+    this->Warper.warp(channel.Images, { geometry }, channel.Colors, view.viewport,
       channel.Settings.instructionSet, first ? picture : this->Layer);
     if (first)
     {
@@ -270,7 +270,7 @@ void ComponentProjector::Warp(
 void ComponentProjector::CopyImages(
   const splatting::ShearWarp& geometry, int vtkType, vtkImageData* output) const
 {
-  const splatting::ShearImage& first = this->Channels.front().Image;
+  const splatting::ShearImage& first = this->Channels.front().Images.front();
   const std::size_t components = this->Channels.size(), size = splatting::sizeOf(first.type);
   output->SetDimensions(first.width, first.height, 1);
   output->SetOrigin(-geometry.margin().x, -geometry.margin().y, 0.0);
@@ -283,7 +283,7 @@ void ComponentProjector::CopyImages(
   ghosts->Fill(vtkDataSetAttributes::HIDDENPOINT);
   for (std::size_t c = 0; c < components; ++c)
   {
-    const splatting::ShearImage& image = this->Channels[c].Image;
+    const splatting::ShearImage& image = this->Channels[c].Images.front();
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     {
       std::memcpy(

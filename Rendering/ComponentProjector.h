@@ -72,7 +72,7 @@ public:
   /// Of the last projection.
   const splatting::ProjectionSettings& Settings() const { return this->Channels.front().Settings; }
   splatting::Acceleration Used() const { return this->Channels.front().Used; }
-  splatting::ScalarType ImageType() const { return this->Channels.front().Image.type; }
+  splatting::ScalarType ImageType() const { return this->Channels.front().Images.front().type; }
 
   /// Part of all components that the projection of one is, from the share of that.
   double ShareOfAll(double done) const;
@@ -85,7 +85,7 @@ private:
     splatting::VolumeIndex Index;
     splatting::ColorTable Colors;
     splatting::ProjectionSettings Settings;
-    splatting::ShearImage Image;
+    std::vector<splatting::ShearImage> Images = std::vector<splatting::ShearImage>(1);
     splatting::Acceleration Used = splatting::Acceleration::Dense;
 
     double FloorOfWindow() const;

@@ -22,7 +22,7 @@ void SceneCuts::Find(const splatting::View& view, const splatting::ShearWarp& ge
   {
     surface->project(geometry);
   }
-  splatting::placePicture(geometry, view.viewport, this->Place);
+  splatting::placePicture({ geometry }, view.viewport, this->Place);
   this->Seen = renderer->GetSelector() ? this->RememberScene(view, renderer, volume, intermixes)
                                        : this->LookAtScene(renderer, volume, intermixes, readDepth);
   if (this->Seen)

@@ -385,7 +385,7 @@ void compare(const Scene& scene, Counts& counts, Checks& check)
     return;
   }
   splatting::Picture picture;
-  splatting::placePicture(geometry, scene.view.viewport, picture);
+  splatting::placePicture({ geometry }, scene.view.viewport, picture);
   picture.pixels.assign(std::size_t(picture.size.x) * picture.size.y, 1);
   found.depth.hide(picture);
   for (int n = 0; n < picture.size.x * picture.size.y; ++n)
@@ -488,7 +488,7 @@ void spreadDepths(View& view, Random& random)
 Depths randomDepths(const View& view, Random& random)
 {
   splatting::Picture picture;
-  splatting::placePicture(ShearWarp(view), view.viewport, picture);
+  splatting::placePicture({ ShearWarp(view) }, view.viewport, picture);
   Depths depths{ picture.origin, picture.size,
     std::vector<float>(std::size_t(picture.size.x) * picture.size.y, 1.0f) };
   for (int patch = 0; patch < 12; ++patch)
