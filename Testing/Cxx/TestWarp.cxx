@@ -244,16 +244,19 @@ struct Camera
   }
 };
 
-/// Whether a ray meets the box that pictures show, grown by `margin` voxels.
-bool meetsShownBox(
-  const splatting::View& view, const glm::dvec3& eye, const glm::dvec3& direction, double margin)
+struct Box
+{
+  glm::dvec3 low, high;
+};
+
+/// Whether a ray meets a box, grown by `margin` voxels.
+bool meets(const Box& box, const glm::dvec3& eye, const glm::dvec3& direction, double margin)
 {
   double enter = 0.0, leave = 1e30;
   for (int a = 0; a < 3; ++a)
   {
-    const int n = view.dimensions[a];
-    const double rim = (n > 1 && !view.showsBoxes ? 0.0 : 0.5) + margin;
-    const double low = -rim - eye[a], high = n - 1.0 + rim - eye[a], d = direction[a];
+    const double low = box.low[a] - margin - eye[a], high = box.high[a] + margin - eye[a];
+    const double d = direction[a];
     if (d == 0.0)
     {
       leave = low > 0.0 || high < 0.0 ? -1.0 : leave;
@@ -263,6 +266,35 @@ bool meetsShownBox(
     leave = std::min(leave, std::max(low / d, high / d));
   }
   return enter <= leave;
+}
+
+/// What pictures show.
+Box shownBox(const splatting::View& view)
+{
+  Box box;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int n = view.dimensions[a];
+    const double rim = n > 1 && !view.showsBoxes ? 0.0 : 0.5;
+    box.low[a] = -rim;
+    box.high[a] = n - 1.0 + rim;
+  }
+  return box;
+}
+
+/// The slices along an axis whose middle lies before the eye.
+Box slicesSeen(const splatting::View& view, const glm::dvec3& eye, int axis, bool reversed)
+{
+  Box box{ glm::dvec3(-0.5), glm::dvec3(view.dimensions) - 0.5 };
+  if (reversed)
+  {
+    box.high[axis] = std::min(box.high[axis], std::ceil(eye[axis]) - 0.5);
+  }
+  else
+  {
+    box.low[axis] = std::max(box.low[axis], std::floor(eye[axis]) + 0.5);
+  }
+  return box;
 }
 
 /// The direction that an image's rays follow, axes permuted.
@@ -354,6 +386,7 @@ void checkPerspectivePicture(Checks& check, const splatting::View& view,
     }
   }
   check(glm::length(eye - camera.eye) <= 0x1p-10 + 1e-9 * glm::length(eye), "the eye has moved");
+  const Box shown = shownBox(view);
   for (int y = 0; y < view.viewport.y; ++y)
   {
     for (int x = 0; x < view.viewport.x; ++x)
@@ -362,25 +395,25 @@ void checkPerspectivePicture(Checks& check, const splatting::View& view,
       const glm::dvec3 ray = camera.direction(x, y);
       constexpr double margin = 1e-6;
       counts.shown += color != 0;
-      if (!meetsShownBox(view, eye, ray, margin))
+      if (!meets(shown, eye, ray, margin))
       {
         counts.beside += check(color == 0, "a pixel outside the volume has a colour");
         continue;
       }
-      bool expected = false, matches = false;
+      bool crosses = false, matches = false;
       for (std::size_t n = 0; n < geometries.size(); ++n)
       {
-        if (follows(geometries[n], ray))
+        const splatting::ShearWarp& image = geometries[n];
+        if (follows(image, ray))
         {
-          expected = true;
-          matches =
-            matches || mayBe(images[n], placeIn(geometries[n], ray), (double(color) - 1.0) / 65535);
+          // From within half a voxel of the rim a ray may leave before it comes to a slice.
+          crosses =
+            meets(slicesSeen(view, eye, image.principalAxis(), image.reversed()), eye, ray, -1e-5);
+          matches = matches || mayBe(images[n], placeIn(image, ray), (double(color) - 1.0) / 65535);
         }
       }
-      // From within half a voxel of the rim a ray may leave before the middle of any slice.
-      const bool inside = meetsShownBox(view, eye, ray, -margin);
-      check(!inside || color != 0 || !expected, "a pixel inside the volume is transparent, ", x,
-        ", ", y);
+      check(color != 0 || !crosses || !meets(shown, eye, ray, -margin),
+        "a pixel inside the volume is transparent, ", x, ", ", y);
       check(color == 0 || matches, "a pixel has another colour than its ray, ", x, ", ", y);
     }
   }
@@ -524,7 +557,8 @@ void testSeams(Checks& check)
         const std::uint32_t color = colorAt(picture, x, y);
         const glm::dvec3 ray = camera.direction(x, y);
         shown += color != 0;
-        check(color != 0 || !meetsShownBox(view, camera.eye, ray, -0.01), "a gap at ", x, ", ", y);
+        check(
+          color != 0 || !meets(shownBox(view), camera.eye, ray, -0.01), "a gap at ", x, ", ", y);
         const double off = (double(color) - 1.0) / 65535 - f(ray);
         check(color == 0 || std::abs(off) <= bound, "a seam: ", off, " at ", x, ", ", y,
           ", not within ", bound);
