@@ -178,9 +178,9 @@ Outline withinSamples(const ShearWarp& geometry)
   if (geometry.isPerspective())
   {
     inside.add({ 1.0, 0.0, 0.0 }, rounding);
-    inside.add({ -1.0, 0.0, geometry.width() - 1.0 }, rounding);
+    inside.add({ -1.0, 0.0, geometry.rayCount().x - 1.0 }, rounding);
     inside.add({ 0.0, 1.0, 0.0 }, rounding);
-    inside.add({ 0.0, -1.0, geometry.height() - 1.0 }, rounding);
+    inside.add({ 0.0, -1.0, geometry.rayCount().y - 1.0 }, rounding);
   }
   return inside;
 }

@@ -36,7 +36,7 @@ void spreadDepths(View& view, Random& random)
 Depths randomDepths(const View& view, Random& random)
 {
   splatting::Picture picture;
-  splatting::placePicture(ShearWarp(view), view.viewport, picture);
+  splatting::placePicture({ ShearWarp(view) }, view.viewport, picture);
   return cutscenes::randomDepths(
     picture.origin, picture.size, random, [](Random& r) { return r.uniform(0.0, 1.0); });
 }
