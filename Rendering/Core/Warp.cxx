@@ -73,7 +73,7 @@ public:
   /// Keeps what the image shows of a box.
   void add(const Box& box, double inset)
   {
-    // Its outline are the edges between faces of which the viewer sees one from outside.
+    // Its outline are the edges between faces of which the viewer sees one; none from inside.
     for (int edge = 0; edge < 12; ++edge)
     {
       const int a = edge / 4, b = (a + 1) % 3, c = (a + 2) % 3;
@@ -131,13 +131,13 @@ public:
   }
 
 private:
-  /// Whether the viewer sees a face of a box from outside.
+  /// Whether the viewer is beyond a face of a box, or on it.
   bool faces(const Box& box, int axis, bool high) const
   {
     if (this->Geometry.isPerspective())
     {
       const double eye = this->Geometry.eye()[axis];
-      return high ? eye > box.high[axis] : eye < box.low[axis];
+      return high ? eye >= box.high[axis] : eye <= box.low[axis];
     }
     const glm::dvec3 direction(-this->Geometry.shear(), 1.0);
     return high ? direction[axis] < 0.0 : direction[axis] > 0.0;
