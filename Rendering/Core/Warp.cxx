@@ -247,9 +247,8 @@ template <class A>
 std::uint32_t warpPoint(const WarpSource<A>& source, const glm::dvec3& homogeneous)
 {
   const ShearImage& image = source.image;
-  // Points on the line between two images may round out of theirs.
-  const glm::dvec2 p = glm::clamp(glm::dvec2(homogeneous) / homogeneous.z, glm::dvec2(0.0),
-    glm::dvec2(image.width - 1, image.height - 1));
+  const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
+  // Points on the line between two images may round out of theirs, where they have no neighbours.
   const int u = static_cast<int>(std::floor(p.x)), v = static_cast<int>(std::floor(p.y));
   const double fu = p.x - u, fv = p.y - v;
   double sum = 0.0, weight = 0.0, lost = 0.0, largest = -1.0;
