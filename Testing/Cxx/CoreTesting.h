@@ -7,6 +7,7 @@
 #ifndef CoreTesting_h
 #define CoreTesting_h
 
+#include "PerspectiveProjection.h"
 #include "Project.h"
 #include "Projection.h"
 #include "ShearWarp.h"
@@ -157,6 +158,21 @@ reference::Volume<T> wholeRangeNoise(const std::array<int, 3>& size, std::uint64
 inline reference::ShearView referenceView(const splatting::ShearWarp& geometry)
 {
   return { geometry.principalAxis(), { geometry.shear().x, geometry.shear().y } };
+}
+
+/// The rays of a perspective image.
+inline reference::PerspectiveRays referenceRays(const splatting::ShearWarp& geometry)
+{
+  reference::PerspectiveRays rays;
+  rays.axes = geometry.axes();
+  rays.size = { geometry.size().x, geometry.size().y, geometry.size().z };
+  rays.at = { { geometry.columns().at, geometry.rows().at } };
+  rays.slope = { { geometry.columns().slope, geometry.rows().slope } };
+  rays.start = geometry.reference();
+  rays.pitch = geometry.pitch();
+  rays.eye = geometry.eye().z;
+  rays.reversed = geometry.reversed();
+  return rays;
 }
 
 /// Half-spaces of index space and cropping, as a projection takes them.
