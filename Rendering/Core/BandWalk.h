@@ -44,6 +44,8 @@ struct BandScratch
   std::vector<RowRuns> rows;
   BandCuts cuts;
   std::vector<unsigned char> mask;
+  std::vector<unsigned char> brickRow;
+  std::vector<Span> tileWindows;
   TileCount count;
 };
 
@@ -167,11 +169,12 @@ private:
     this->Scratch.mask.resize(this->Shared.image.width);
     this->Stack.forSamples(slices, false, this->V0, this->V1, { 0, this->Shared.image.width },
       this->Scratch.patch,
-      [&](int step, int v, const Span& pixels, const P* samples)
+      [&](int step, int v, const Span& pixels, const P* samples, const unsigned char* present)
       {
         unsigned char* const mask = this->Scratch.mask.data();
         if (this->Shared.cuts.findMask(step / StepsPerSlice, v, pixels, mask))
         {
+          narrow(mask, present, pixels);
           loops.raise(this->Shared.image.template row<P>(v) + pixels.begin, samples, mask,
             pixels.end - pixels.begin);
         }
@@ -204,10 +207,17 @@ private:
     {
       for (int g = 0; g < this->Groups; ++g)
       {
-        this->takeBricks(bricks, z, g, this->voxelBounds(z, g));
+        if constexpr (Layers::Perspective)
+        {
+          this->takeOwnBricks(bricks, z, g, this->voxelBounds(z, g));
+        }
+        else
+        {
+          this->takeBricks(bricks, z, g, this->voxelBounds(z, g));
+        }
       }
     }
-    if constexpr (std::is_same_v<Layers, PreviewLayers<T>>)
+    if constexpr (Layers::Beyond == 0) // voxels as they are
     {
       this->Scratch.bounds.swap(this->Scratch.voxelBounds);
     }
@@ -267,6 +277,61 @@ private:
     {
       out[tiles.end] = out[tiles.end - 1];
     }
+  }
+
+  /// The same in perspective, where each tile has a window of its own.
+  void takeOwnBricks(const BrickMaxima& bricks, int z, int group, T* out)
+  {
+    const glm::ivec3& size = this->Shared.geometry.size();
+    std::fill(out, out + this->Tiles, leastValue<T>());
+    const int v0 = this->firstRow(group);
+    const Span rows = this->Stack.rowsOf(z, { v0, v0 + this->rowsOf(group) });
+    if (rows.end <= -Reach || rows.begin >= size.y + Reach || rows.empty())
+    {
+      return;
+    }
+    // Where worksheets read beyond the volume they repeat its outermost voxels.
+    const int low = std::clamp(rows.begin, 0, size.y - 1) / BrickHeight;
+    const int high = std::clamp(rows.end - 1, 0, size.y - 1) / BrickHeight;
+    const T* all[MostBricks];
+    for (int j = low; j <= high; ++j)
+    {
+      all[j - low] = bricks.row<T>(j, z);
+    }
+    this->Scratch.brickRow.resize(bricks.count.x * sizeof(T) + BrickMaxima::Padding);
+    T* const row = reinterpret_cast<T*>(this->Scratch.brickRow.data());
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    loops.largest(all, high - low + 1, row, bricks.count.x);
+    const Span* const windows = this->tileWindows(z);
+    for (int t = 0; t < this->Tiles; ++t)
+    {
+      if (!windows[t].empty())
+      {
+        out[t] = *std::max_element(row + windows[t].begin, row + windows[t].end);
+        ++this->Scratch.count.met;
+      }
+    }
+  }
+
+  /// The bricks along i that each tile of a layer meets.
+  const Span* tileWindows(int z)
+  {
+    std::vector<Span>& windows = this->Scratch.tileWindows;
+    if (this->WindowsOf != z)
+    {
+      this->WindowsOf = z;
+      windows.resize(this->Tiles);
+      const int size = this->Shared.geometry.size().x;
+      for (int t = 0; t < this->Tiles; ++t)
+      {
+        const Span voxels = this->Stack.columnsOf(z, { t * TileWidth, (t + 1) * TileWidth });
+        windows[t] = voxels.empty() || voxels.end <= -Reach || voxels.begin >= size + Reach
+          ? Span{}
+          : Span{ std::clamp(voxels.begin, 0, size - 1) / BrickWidth,
+              std::clamp(voxels.end - 1, 0, size - 1) / BrickWidth + 1 };
+      }
+    }
+    return windows.data();
   }
 
   /// How far beyond the volume worksheets may read: a footprint and the drift of a slice. Less than
@@ -455,6 +520,7 @@ private:
   Span Range; // of layers that are walked
   Span Known; // and that have bounds: their neighbours, too
   int Tiles, Groups;
+  int WindowsOf = -1; // the layer that the scratch's windows are of
 };
 }
 

@@ -7,6 +7,7 @@
 #ifndef splattingCarry_h
 #define splattingCarry_h
 
+#include "PerspectiveFootprints.h"
 #include "Worksheets.h"
 
 namespace splatting
@@ -47,6 +48,33 @@ T carriedVoxel(const PermutedVoxels<T>& voxels, const RayPath& path, int u, int 
 {
   const int t = step % StepsPerSlice;
   return voxels.at(u + path.di[t], v + path.dj[t], step / StepsPerSlice);
+}
+
+/// The same where each ray has a path of its own.
+template <class T>
+T carriedVoxel(const PermutedVoxels<T>& voxels, const ShearWarp& geometry, int u, int v, int step)
+{
+  const int t = step % StepsPerSlice, k = step / StepsPerSlice;
+  const RayPath path = geometry.voxelsOnRay(u, v, k);
+  return voxels.at(path.di[t], path.dj[t], k);
+}
+
+template <class T>
+Accumulator<T> carriedAverage(const PermutedVoxels<T>& voxels,
+  const PerspectiveFootprints<Accumulator<T>>& footprints, int u, int v, int k)
+{
+  double sum = 0.0, weight = 0.0;
+  footprints.forVoxels(u, v, k,
+    [&](int i, int j, int s, double w)
+    {
+      const T value = voxels.at(i, j, s);
+      if (value == value)
+      {
+        sum += w * static_cast<double>(value);
+        weight += w;
+      }
+    });
+  return static_cast<Accumulator<T>>(sum / weight);
 }
 
 /// NaN aside, as in worksheets; NaN if there is nothing else.

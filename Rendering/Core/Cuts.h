@@ -46,6 +46,15 @@ private:
   std::vector<SliceRegions> Regions; // of all slices, if cropping cuts
 };
 
+/// Leaves out of a mask what is not present, if that is known.
+inline void narrow(unsigned char* mask, const unsigned char* present, const Span& pixels)
+{
+  for (int x = 0; present && x < pixels.end - pixels.begin; ++x)
+  {
+    mask[x] = static_cast<unsigned char>(mask[x] & present[x]);
+  }
+}
+
 /// For each pixel of some rows, which of a few slices count: bit s of a byte is the s-th slice.
 struct SliceBits
 {

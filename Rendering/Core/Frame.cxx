@@ -10,9 +10,8 @@ namespace splatting
 {
 namespace
 {
-SliceGeometry sliceOf(const ShearWarp& geometry, int k)
+void findParallelSlice(const ShearWarp& geometry, int k, SliceGeometry& slice)
 {
-  SliceGeometry slice;
   slice.path = geometry.rayPath(k);
   const auto end = slice.path.dj.begin() + slice.path.count;
   const int low = *std::min_element(slice.path.dj.begin(), end);
@@ -21,14 +20,79 @@ SliceGeometry sliceOf(const ShearWarp& geometry, int k)
   slice.vEnd = geometry.size().y - low;
   slice.innerBegin = -low;
   slice.innerEnd = std::max(geometry.size().y - high, slice.innerBegin);
-  slice.lower = geometry.coverage(slice.path, slice.vBegin);
   slice.inner = geometry.coverage(slice.path, slice.innerBegin);
-  slice.upper = geometry.coverage(slice.path, slice.vEnd - 1);
-  return slice;
+  // In parallel views no more than a row at either end.
+  slice.lower.resize(slice.innerBegin - slice.vBegin);
+  slice.upper.resize(std::max(slice.vEnd - slice.innerEnd, 0));
+  for (Span& span : slice.lower)
+  {
+    span = geometry.coverage(slice.path, slice.vBegin);
+  }
+  for (Span& span : slice.upper)
+  {
+    span = geometry.coverage(slice.path, slice.vEnd - 1);
+  }
+}
+
+/// The pixels of a row whose rays only enter the slice, or only leave it, in a row of voxels.
+Span rimOf(const FanSteps::Slice& columns, const Span& reach, int size, bool enters, double time)
+{
+  const auto meets = [&](int u)
+  {
+    const int own = enters ? columns.first[u] : columns.last[u];
+    const int corner = enters ? columns.last[u] : columns.first[u];
+    if (own >= 0 && own < size)
+    {
+      return true;
+    }
+    // The ray is in the next column before it is in the next row, or still in the last one.
+    return corner >= 0 && corner < size &&
+      (enters ? columns.time[u] < time : time < columns.time[u]);
+  };
+  Span rim = reach;
+  for (; rim.begin < rim.end && !meets(rim.begin); ++rim.begin)
+  {
+  }
+  for (; rim.end > rim.begin && !meets(rim.end - 1); --rim.end)
+  {
+  }
+  return rim;
+}
+
+void findPerspectiveSlice(
+  const ShearWarp& geometry, const PerspectiveSteps& steps, int k, SliceGeometry& slice)
+{
+  const FanSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
+  const Span& some = steps.rows.reach(k).some;
+  const Span& all = steps.rows.reach(k).all;
+  slice.vBegin = some.begin;
+  slice.vEnd = some.end;
+  slice.innerBegin = all.empty() ? some.end : all.begin;
+  slice.innerEnd = all.empty() ? some.end : all.end;
+  slice.inner = steps.columns.reach(k).some;
+  const auto rim = [&](int v)
+  {
+    const bool enters = rows.first[v] >= 0 && rows.first[v] < geometry.size().y;
+    return rimOf(columns, slice.inner, geometry.size().x, enters, rows.time[v]);
+  };
+  slice.lower.resize(slice.innerBegin - slice.vBegin);
+  for (int v = slice.vBegin; v < slice.innerBegin; ++v)
+  {
+    slice.lower[v - slice.vBegin] = rim(v);
+  }
+  slice.upper.resize(slice.vEnd - slice.innerEnd);
+  for (int v = slice.innerEnd; v < slice.vEnd; ++v)
+  {
+    slice.upper[v - slice.innerEnd] = rim(v);
+  }
 }
 
 void extend(Span& all, const Span& span)
 {
+  if (span.empty())
+  {
+    return;
+  }
   all.begin = std::min(all.begin, span.begin);
   all.end = std::max(all.end, span.end);
 }
@@ -53,8 +117,14 @@ void findSpans(const std::vector<SliceGeometry>& slices, std::vector<Span>& span
   for (std::size_t k = 0; k < slices.size(); ++k)
   {
     const SliceGeometry& slice = slices[k];
-    extendRows(slice.vBegin, slice.innerBegin, slice.lower);
-    extendRows(slice.innerEnd, slice.vEnd, slice.upper);
+    for (int v = slice.vBegin; v < slice.innerBegin; ++v)
+    {
+      extend(spans[v], slice.span(v));
+    }
+    for (int v = slice.innerEnd; v < slice.vEnd; ++v)
+    {
+      extend(spans[v], slice.span(v));
+    }
     if (k > 0)
     {
       extendDifference(slice, slices[k - 1]);
@@ -172,12 +242,25 @@ private:
 }
 
 std::vector<SliceGeometry>& findSlices(
-  const ShearWarp& geometry, std::vector<SliceGeometry>& slices)
+  const ShearWarp& geometry, std::vector<SliceGeometry>& slices, const PerspectiveSteps& steps)
 {
   slices.resize(geometry.size().z);
   for (int k = 0; k < geometry.size().z; ++k)
   {
-    slices[k] = sliceOf(geometry, k);
+    SliceGeometry& slice = slices[k];
+    if (!geometry.isPerspective())
+    {
+      findParallelSlice(geometry, k, slice);
+    }
+    else if (k >= geometry.slices().begin && k < geometry.slices().end &&
+      !steps.columns.reach(k).some.empty() && !steps.rows.reach(k).some.empty())
+    {
+      findPerspectiveSlice(geometry, steps, k, slice);
+    }
+    else
+    {
+      slice = {}; // no ray crosses it
+    }
   }
   return slices;
 }

@@ -6,6 +6,7 @@
 #ifndef splattingFrame_h
 #define splattingFrame_h
 
+#include "FanSteps.h"
 #include "Kernels.h"
 #include "ShearImage.h"
 #include "VolumeIndex.h"
@@ -23,19 +24,31 @@ namespace splatting
 /// One slice as seen by all pixels.
 struct SliceGeometry
 {
-  RayPath path;
-  int vBegin, vEnd;         ///< image rows whose rays cross the slice
-  int innerBegin, innerEnd; ///< those whose whole path lies in it: all but one at either end
-  Span lower, inner, upper; ///< pixels that the slice covers in the rows before, in and after these
+  RayPath path;             ///< of parallel views
+  int vBegin = 0, vEnd = 0; ///< image rows whose rays cross the slice
+  int innerBegin = 0,
+      innerEnd = 0; ///< those whose whole path lies in it: all but a few at either end
+  Span inner;       ///< pixels that the slice covers in these rows
+  std::vector<Span> lower, upper; ///< and in each row before and after
 
   const Span& span(int v) const
   {
-    return v < this->innerBegin ? this->lower : v < this->innerEnd ? this->inner : this->upper;
+    return v < this->innerBegin ? this->lower[v - this->vBegin]
+      : v < this->innerEnd      ? this->inner
+                                : this->upper[v - this->innerEnd];
   }
 };
 
-std::vector<SliceGeometry>& findSlices(
-  const ShearWarp& geometry, std::vector<SliceGeometry>& slices);
+/// How the rays of a perspective image run through the volume.
+struct PerspectiveSteps
+{
+  FanSteps columns, rows;
+  FanWindows windows; ///< of the columns; for preview only
+};
+
+/// @param steps  of perspective images, else ignored
+std::vector<SliceGeometry>& findSlices(const ShearWarp& geometry,
+  std::vector<SliceGeometry>& slices, const PerspectiveSteps& steps = {});
 
 /// The slices that the rays of a row of pixels cross.
 class CrossedSlices
@@ -91,6 +104,7 @@ struct Frame
   Slices slices; // those that are walked at present
   VolumeIndex::Range range;
   const std::vector<SliceGeometry>& sliceGeometry;
+  const PerspectiveSteps& steps;
   const CutMap& cuts;
   double floor; // as in ProjectionSettings
   ShearImage& image;

@@ -7,6 +7,7 @@
 // it might be the one that only the newest processors can run. For the same reason all is in an
 // anonymous namespace, but the table.
 #include "Kernels.h"
+#include "FanKernels.h"
 #include "RayKernels.h"
 #include "Registers.h"
 
@@ -14,38 +15,6 @@ namespace splatting
 {
 namespace
 {
-/// Calls block.run<V>(x) for blocks of V registers that cover [0, n), the last one overlapping the
-/// one before (a maximum may be taken twice), and single(x) for each x if n is too short for one.
-template <class T, class Block, class Single>
-inline void blocks(std::ptrdiff_t n, Block&& block, Single&& single)
-{
-  constexpr std::ptrdiff_t w = width<T>;
-  std::ptrdiff_t x = 0;
-  for (; n - x >= 4 * w; x += 4 * w)
-  {
-    block.template run<4>(x);
-  }
-  if (n - x >= 2 * w)
-  {
-    block.template run<2>(x);
-    x += 2 * w;
-  }
-  if (n - x >= w)
-  {
-    block.template run<1>(x);
-    x += w;
-  }
-  if (x < n && n >= w)
-  {
-    block.template run<1>(n - w);
-    x = n;
-  }
-  for (; x < n; ++x)
-  {
-    single(x);
-  }
-}
-
 template <class T>
 struct MaximumBlock
 {
@@ -621,8 +590,8 @@ void lookUp(const A* __restrict values, A low, A scale, std::int32_t last,
 }
 
 template <class T>
-constexpr VoxelLoops<T> voxelLoops{ width<T>, &maximum<T>, &largest<T>, &sweep<T>, &widen<T>,
-  &survey<T>, &largestOfFour<T> };
+constexpr VoxelLoops<T> voxelLoops{ width<T>, Picker<T>::group, &maximum<T>, &largest<T>, &sweep<T>,
+  &cross<T>, &widen<T>, &survey<T>, &largestOfFour<T> };
 template <class P>
 constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P> };
 template <class P>
@@ -630,14 +599,15 @@ constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::climb)>(&climb<P>),
   static_cast<decltype(RayLoops<P>::note)>(&note<P>) };
 template <class A>
-constexpr WorksheetLoops<A> worksheetLoops{ &splat<A>, &splatValid<A>,
+constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>, &resample<A>,
+  &blend<A>, &raiseBlend<A>, &splat<A>, &splatValid<A>,
   static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
   static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
   &lookUp<A> };
 }
 
 extern const Kernels SPLATTING_KERNELS;
-const Kernels SPLATTING_KERNELS = { { &sliceBits, &tileExtremes, &tileShares },
+const Kernels SPLATTING_KERNELS = { { &sliceBits, &tileExtremes, &tileShares }, { &steps },
   voxelLoops<std::int8_t>, voxelLoops<std::uint8_t>, voxelLoops<std::int16_t>,
   voxelLoops<std::uint16_t>, voxelLoops<std::int32_t>, voxelLoops<std::uint32_t>,
   voxelLoops<std::int64_t>, voxelLoops<std::uint64_t>, voxelLoops<float>, voxelLoops<double>,

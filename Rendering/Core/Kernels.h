@@ -11,6 +11,8 @@
 
 #include "ScalarType.h"
 
+#include <type_traits>
+
 namespace splatting
 {
 /// Pixels along a tile of the image, the unit in which parts of slices are skipped, and its rows.
@@ -66,12 +68,40 @@ struct Sweep
   unsigned char bit[MostRows];
 };
 
+/// Rows of pixels of a perspective image and the voxels that their rays cross in one slice; see
+/// FanSteps and FanWindows for the arrays, which begin with the first column and the first row.
+template <class T>
+struct Crossing
+{
+  T* image; ///< the row's first pixel
+  std::ptrdiff_t imageStride;
+  std::ptrdiff_t width; ///< pixels in a row
+  int height;
+  const T* voxels; ///< the slice's first
+  std::ptrdiff_t rowStride;
+  std::int32_t columns, rows; ///< of voxels
+  const T* none;              ///< a row of the least value
+  const std::int32_t *firstRow, *lastRow;
+  const double *rowTime, *columnTime;
+  const std::int16_t *rowTick, *columnTick;
+  const std::int32_t *entryBase, *exitBase;
+  const void *entryLanes, *exitLanes;
+  const Span* runs; ///< the pixels that count: multiples of 64 bytes, but for the row's end
+  int runCount;
+  /// Where rays are cut, pixel x takes voxels if bits[x] & bit; else nullptr.
+  const unsigned char* bits;
+  std::ptrdiff_t bitsStride;
+  unsigned char bit;
+};
+
 /// Loops over voxels of type T.
 template <class T>
 struct VoxelLoops
 {
   /// Elements of a register.
   std::ptrdiff_t lanes;
+  /// Pixels of a perspective image that pick their voxels from as many.
+  int group;
   /// image[x] = max(image[x], rows[0..count)[x]); NaN never wins.
   void (*maximum)(T* image, const T* const* rows, int count, std::ptrdiff_t n);
   /// out[x] = the largest of rows[0..count)[x], in whole registers: up to lanes - 1 elements beyond
@@ -80,6 +110,8 @@ struct VoxelLoops
   /// `maximum` for all rows of pixels: for the runs, as far as they are valid and perhaps some
   /// valid pixels beside them, and for the rims.
   void (*sweep)(const Sweep<T>& sweep);
+  /// `maximum` of the voxels that rays cross, each pixel its own.
+  void (*cross)(const Crossing<T>& crossing);
   /// out[x] = row[x] - base, which must be exact, for some rows of n elements.
   void (*widen)(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
     Accumulator<T> base, std::ptrdiff_t n, int rows);
@@ -178,10 +210,64 @@ struct CutLoops
     const TileExtremes& tiles, int begin, int end, unsigned char* shares, std::ptrdiff_t n);
 };
 
+/// Loops over the rays of perspective images.
+struct FanLoops
+{
+  /// Voxels in which rays enter and leave a slice, as in FanSteps::Slice: rays are at
+  /// at[x] + slope[x] from there and at at[x] + slope[x] to here.
+  void (*steps)(const double* at, const double* slope, double from, double to, std::int32_t size,
+    std::int32_t* first, std::int32_t* last, double* time, std::int16_t* tick, std::ptrdiff_t n);
+};
+
+/// Integers that pick elements of type A from a register.
+template <class A>
+using LaneOf = std::conditional_t<sizeof(A) == 4, std::int32_t, std::int64_t>;
+
+/// The weights of the pixels of a fan in a part of a slice; see FanFootprints.
+template <class A>
+struct FanWeights
+{
+  int shape;      ///< of the kernel, a Reconstruction
+  double support; ///< its half-width
+  const double *at, *slope;
+  double depth;     ///< of the part's middle, from the reference
+  double thickness; ///< of the part
+  double pitch;     ///< from ray to ray
+  std::int32_t low, high;
+  int taps;
+  std::int32_t* first; ///< voxels, clamped to [low, high]
+  A* weights;          ///< tap t of pixel x at weights[t * stride + x]
+  std::ptrdiff_t stride;
+};
+
+/// Some pixels of a row, and the voxels that each of them weighs on its own.
+template <class A>
+struct Resampling
+{
+  const A* voxels; ///< voxel 0, which need not exist
+  const std::int32_t* base;
+  const void* lanes;
+  const A* weights;
+  std::ptrdiff_t stride;
+  int taps;
+};
+
 /// Loops over worksheets and images of type A (float or double).
 template <class A>
 struct WorksheetLoops
 {
+  /// Pixels of a perspective image that pick their voxels from as many.
+  int group;
+  void (*fanWeights)(const FanWeights<A>& weights, std::ptrdiff_t n);
+  /// out[x] = the sum of taps times voxels, for x from begin on; voxels are read up to a register
+  /// further, as are weights before and behind, and written, in whole registers.
+  void (*resample)(const Resampling<A>& row, A* out, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// out[x] = the sum of weights[r] rows[r][x].
+  void (*blend)(const A* const* rows, const A* weights, int count, A* out, std::ptrdiff_t n);
+  /// image[x] = max(image[x], the sum of weights[r] rows[r][x]); where there are bits, if
+  /// bits[x] & bit.
+  void (*raiseBlend)(A* image, const A* const* rows, const A* weights, int count,
+    const unsigned char* bits, unsigned char bit, std::ptrdiff_t n);
   /// Every pixel of the rectangle: the maximum of it and the weighted sum of its voxels, which must
   /// be finite.
   void (*splat)(const Splat<A>& splat);
@@ -213,6 +299,7 @@ struct WorksheetLoops
 
 struct Kernels
   : CutLoops
+  , FanLoops
   , VoxelLoops<std::int8_t>
   , VoxelLoops<std::uint8_t>
   , VoxelLoops<std::int16_t>

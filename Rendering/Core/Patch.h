@@ -16,6 +16,9 @@ namespace splatting
 /// worksheet reads. What footprints read beyond the volume repeats its outermost voxels.
 struct Patch
 {
+  /// Bytes behind the last voxel, so that loops can read whole registers.
+  static constexpr std::size_t Padding = 128;
+
   struct Sheet
   {
     int slice = -1;
@@ -25,10 +28,15 @@ struct Patch
   std::vector<unsigned char> bytes;
   std::vector<std::uint16_t> runEnds;   ///< of walks along chains only
   std::vector<unsigned char> worksheet; ///< of walks that look at each sample only
+  std::vector<unsigned char> present;   ///< which of its pixels have one, in perspective previews
+  std::vector<Span> runs;               ///< of perspective previews: what a slice covers of others
   Span rows, pixels;                    ///< of the image, that it has the voxels for
   std::ptrdiff_t rowLength = 0;
   std::ptrdiff_t sheetLength = 0;
   std::array<Sheet, 3> sheets;
+  std::vector<unsigned char> resampledBytes, blendedBytes;
+  std::ptrdiff_t resampledLength = 0;
+  int resampledRows = 0;
 
   /// Forgets all sheets.
   template <class A>
@@ -36,13 +44,39 @@ struct Patch
   {
     this->rowLength = columns;
     this->sheetLength = this->rowLength * rows;
-    const std::size_t size = this->sheets.size() * this->sheetLength * sizeof(A);
+    const std::size_t size = this->sheets.size() * this->sheetLength * sizeof(A) + Padding;
     if (this->bytes.size() < size)
     {
       this->bytes.resize(size);
     }
     this->sheets.fill(Sheet{});
   }
+  /// Rows of pixels from weighed rows of voxels, in perspective: `rows` of `length` for each part.
+  template <class A>
+  void resizeResampled(int parts, int rows, int length)
+  {
+    this->resampledRows = rows;
+    this->resampledLength = length;
+    const std::size_t size = std::size_t(parts) * rows * length * sizeof(A);
+    if (this->resampledBytes.size() < size)
+    {
+      this->resampledBytes.resize(size);
+    }
+  }
+  template <class A>
+  A* resampled(int part, int row)
+  {
+    return reinterpret_cast<A*>(this->resampledBytes.data()) +
+      (std::ptrdiff_t(part) * this->resampledRows + row) * this->resampledLength;
+  }
+  /// Room for a row of voxels between slices.
+  template <class A>
+  A* blended(int columns)
+  {
+    this->blendedBytes.resize(columns * sizeof(A) + Padding);
+    return reinterpret_cast<A*>(this->blendedBytes.data());
+  }
+
   Sheet& sheet(int slice) { return this->sheets[slice % this->sheets.size()]; }
   template <class A>
   A* voxel(int i, int j, int slice)

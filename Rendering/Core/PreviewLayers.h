@@ -36,6 +36,7 @@ class PreviewLayers
 public:
   using Voxel = T;
   using Pixel = T;
+  static constexpr bool Perspective = false;
   /// How many slices beyond its own a layer reads.
   static constexpr int Beyond = 0;
   /// Rows that cut layers are walked for at a time.
@@ -108,9 +109,9 @@ public:
     }
   }
 
-  /// Calls f(step, v, pixels, samples) for all samples of some slices and of pixels in some rows
-  /// and columns, in the order of the rays if they come from the first slice, or else reversed.
-  /// Steps as in ShearImage::winners.
+  /// Calls f(step, v, pixels, samples, nullptr) for all samples of some slices and of pixels in
+  /// some rows and columns, in the order of the rays if they come from the first slice, or else
+  /// reversed. Steps as in ShearImage::winners.
   template <class F>
   void forSamples(
     const Span& slices, bool reversed, int v0, int v1, const Span& columns, Patch&, F&& f) const
@@ -123,7 +124,7 @@ public:
       {
         this->forVoxels(k, v, common(columns, this->Shared.pixels(v, k)), reversed,
           [&](int t, const Span& pixels, const T* voxels)
-          { f(StepsPerSlice * k + t, v, pixels, voxels); });
+          { f(StepsPerSlice * k + t, v, pixels, voxels, nullptr); });
       }
     }
   }

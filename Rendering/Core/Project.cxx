@@ -6,6 +6,8 @@
 #include "Carry.h"
 #include "LineWalk.h"
 #include "LineWorksheets.h"
+#include "PerspectivePreview.h"
+#include "PerspectiveWorksheets.h"
 #include "RayWalk.h"
 
 #include <vtkSMPThreadLocal.h>
@@ -120,7 +122,10 @@ struct Projector::Scratch
   std::vector<SliceGeometry> slices;
   std::vector<PreviewLayer> previewLayers;
   std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> footprints;
+  std::tuple<PerspectiveFootprints<float>, PerspectiveFootprints<double>> perspectiveFootprints;
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> reach;
+  PerspectiveSteps steps;
+  std::vector<unsigned char> none;
   CutMap cuts;
   OutlineSpace outline;
   RayState rays;
@@ -280,10 +285,17 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   image.bytes.resize(std::size_t(image.width) * image.height * (samples ? sizeof(T) : sizeof(A)));
   auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
   auto& reach = std::get<WorksheetReach<A>>(this->Memory->reach);
-  if (!preview)
+  const Kernel kernel = standard ? Kernel{ Reconstruction::Box } : settings.kernel;
+  const bool perspective = frame.geometry.isPerspective();
+  auto& own = std::get<PerspectiveFootprints<A>>(this->Memory->perspectiveFootprints);
+  if (!preview && perspective)
   {
-    findFootprints(frame.geometry, standard ? Kernel{ Reconstruction::Box } : settings.kernel,
-      settings.footprintSampling, weightBits<T>, footprints);
+    own.find(frame.geometry, kernel, frame.kernels);
+    findReach(frame.geometry, own, reach);
+  }
+  else if (!preview)
+  {
+    findFootprints(frame.geometry, kernel, settings.footprintSampling, weightBits<T>, footprints);
     findReach(frame.sliceGeometry, footprints, reach);
   }
   if (lines)
@@ -309,13 +321,24 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
       }
     }
   };
-  if (preview)
+  const int depth = standard ? 0 : 1;
+  if (preview && perspective)
+  {
+    const VoxelLoops<T>& loops = frame.kernels;
+    this->Memory->steps.windows.find(this->Memory->steps.columns, loops.group, sizeof(T));
+    splat(PerspectivePreview<T>(frame, this->Memory->none));
+  }
+  else if (preview)
   {
     splat(PreviewLayers<T>(frame, this->Memory->previewLayers));
   }
+  else if (perspective)
+  {
+    splat(PerspectiveWorksheets<T>(frame, own, reach, depth));
+  }
   else
   {
-    splat(WorksheetLayers<T>(frame, footprints, reach, standard ? 0 : 1));
+    splat(WorksheetLayers<T>(frame, footprints, reach, depth));
   }
 }
 
@@ -327,7 +350,19 @@ void Projector::carryType(const VoxelArray& other, const ShearWarp& geometry,
   const bool preview = settings.quality == Quality::Preview;
   const std::vector<SliceGeometry>& slices = this->Memory->slices;
   const auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
+  const auto& own = std::get<PerspectiveFootprints<A>>(this->Memory->perspectiveFootprints);
+  const bool perspective = geometry.isPerspective();
   const PermutedVoxels<T> voxels(other, geometry);
+  const auto voxel = [&](int u, int v, int k, int step)
+  {
+    return perspective ? carriedVoxel(voxels, geometry, u, v, step)
+                       : carriedVoxel(voxels, slices[k].path, u, v, step);
+  };
+  const auto average = [&](int u, int v, int k)
+  {
+    return perspective ? carriedAverage<T>(voxels, own, u, v, k)
+                       : carriedAverage<T>(voxels, footprints[k], u, v, k);
+  };
   image.type = projected.type;
   image.bytes.resize(projected.bytes.size());
   image.special = std::numeric_limits<T>::has_quiet_NaN;
@@ -339,8 +374,8 @@ void Projector::carryType(const VoxelArray& other, const ShearWarp& geometry,
     {
       const int step = winners[u], k = std::max(step, 0) / StepsPerSlice;
       row[u] = step < 0 ? P(0)
-        : preview       ? static_cast<P>(carriedVoxel(voxels, slices[k].path, u, v, step))
-                        : static_cast<P>(carriedAverage<T>(voxels, footprints[k], u, v, k));
+        : preview       ? static_cast<P>(voxel(u, v, k, step))
+                        : static_cast<P>(average(u, v, k));
     }
   };
   vtkSMPTools::For(0, image.height, TileHeight,
@@ -377,7 +412,7 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   {
     return Acceleration::Dense;
   }
-  if (wanted >= Acceleration::Lines && cuts.none() && !this->stopped())
+  if (wanted >= Acceleration::Lines && cuts.none() && !geometry.isPerspective() && !this->stopped())
   {
     lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),
       [this](double share)
@@ -401,7 +436,13 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
   this->Observer.start();
   image.winners.clear();
   memory.cuts.reset(cuts, geometry);
-  findSlices(geometry, memory.slices);
+  if (geometry.isPerspective())
+  {
+    const Kernels& kernels = kernelsFor(settings.instructionSet);
+    memory.steps.columns.find(geometry, 0, kernels);
+    memory.steps.rows.find(geometry, 1, kernels);
+  }
+  findSlices(geometry, memory.slices, memory.steps);
   outlineImage(geometry, memory.slices, memory.cuts, memory.outline, image);
   const VolumeIndex::Range& range = index.range();
   // The mean of no sample is none.
@@ -417,7 +458,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
     {
       using T = std::remove_pointer_t<decltype(null)>;
       Frame<T> frame{ geometry, kernelsFor(settings.instructionSet), {}, range, memory.slices,
-        memory.cuts, settings.floor, image };
+        memory.steps, memory.cuts, settings.floor, image };
       this->projectType(index, settings, used, lines, frame);
     });
   return used;

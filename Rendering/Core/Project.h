@@ -75,8 +75,8 @@ struct ProjectionSettings
   int footprintSampling = 0;
   InstructionSet instructionSet = bestInstructionSet();
   /// Reductions other than Maximum are walked densely, as are volumes with NaN or infinities. Lines
-  /// and its sorted kin are Bricks where rays are cut; sorted orders are for Quality::Preview,
-  /// elsewhere they are Lines.
+  /// and its sorted kin are Bricks where rays are cut and in perspective; sorted orders are for
+  /// Quality::Preview, elsewhere they are Lines.
   Acceleration acceleration = Acceleration::Auto;
   /// Delta encoding of lines: see LineEncoding. 0 gives the same bits as Dense.
   double lineTolerance = 0.0;

@@ -101,13 +101,17 @@ public:
     scratch.widened.resize(this->Shared.image.width * sizeof(A));
     this->Stack.forSamples(some, this->isReversed(), v0, v1, { 0, this->Shared.image.width },
       scratch.patch,
-      [&](int step, int v, const Span& pixels, const P* samples)
+      [&](int step, int v, const Span& pixels, const P* samples, const unsigned char* present)
       {
         const bool isCut = !this->Shared.cuts.none();
         const int k = step / StepsPerSlice;
         if (!isCut || this->Shared.cuts.findMask(k, v, pixels, scratch.mask.data()))
         {
-          const Row row{ step, v, pixels, isCut ? scratch.mask.data() : nullptr };
+          if (isCut)
+          {
+            narrow(scratch.mask.data(), present, pixels);
+          }
+          const Row row{ step, v, pixels, isCut ? scratch.mask.data() : present };
           this->Settings.keepWinners ? this->takeAndNote(row, samples, scratch)
                                      : this->take(row, samples, scratch);
         }

@@ -170,6 +170,38 @@ inline P smaller(P a, P b)
 {
   return a < b ? a : b;
 }
+
+/// Calls block.run<V>(x) for blocks of V registers that cover [0, n), the last one overlapping the
+/// one before (a maximum may be taken twice), and single(x) for each x if n is too short for one.
+template <class T, class Block, class Single>
+inline void blocks(std::ptrdiff_t n, Block&& block, Single&& single)
+{
+  constexpr std::ptrdiff_t w = width<T>;
+  std::ptrdiff_t x = 0;
+  for (; n - x >= 4 * w; x += 4 * w)
+  {
+    block.template run<4>(x);
+  }
+  if (n - x >= 2 * w)
+  {
+    block.template run<2>(x);
+    x += 2 * w;
+  }
+  if (n - x >= w)
+  {
+    block.template run<1>(x);
+    x += w;
+  }
+  if (x < n && n >= w)
+  {
+    block.template run<1>(n - w);
+    x = n;
+  }
+  for (; x < n; ++x)
+  {
+    single(x);
+  }
+}
 }
 }
 

@@ -26,6 +26,9 @@ double quantised(double x, int bits)
   return std::ldexp(std::round(std::ldexp(x, bits)), -bits);
 }
 
+/// Rows of pixels fill whole registers.
+constexpr int RowUnit = 64;
+
 constexpr int SlopeBits = 24, PositionBits = 20, EyeBits = 10;
 
 /// One coordinate of a ray while it crosses a slice, relative to its pixel.
@@ -171,7 +174,7 @@ void ShearWarp::chooseAxes(const glm::dvec3& direction)
     this->Shear[a] = quantised(std::clamp(shear, -1.0, 1.0), SlopeBits);
     // Half the stack on either side of the middle, and a pixel for footprints at the rim.
     this->Margin[a] = static_cast<int>(std::ceil(std::abs(this->Shear[a]) * this->Size.z / 2)) + 1;
-    this->ImageSize[a] = this->Size[a] + 2 * this->Margin[a];
+    this->ImageSize[a] = this->RayCount[a] = this->Size[a] + 2 * this->Margin[a];
   }
 }
 
@@ -313,8 +316,9 @@ bool ShearWarp::placeImage(const View& view, const glm::dmat3& directions, std::
     }
     first[a] = static_cast<std::int64_t>(std::floor(half * (low + 1.0)));
     const auto last = static_cast<std::int64_t>(std::ceil(half * (high + 1.0)));
-    this->ImageSize[a] = static_cast<int>(last - first[a]) + 1;
+    this->RayCount[a] = static_cast<int>(last - first[a]) + 1;
   }
+  this->ImageSize = { (this->RayCount.x + RowUnit - 1) / RowUnit * RowUnit, this->RayCount.y };
   return true;
 }
 
@@ -322,9 +326,10 @@ void ShearWarp::setFan(int a, std::int64_t first, Fan& fan) const
 {
   const double sign = this->Reversed ? -1.0 : 1.0;
   const double start = this->Eye[a] + (this->Eye.z - this->Reference) * sign;
-  fan.at.resize(this->ImageSize[a]);
-  fan.slope.resize(this->ImageSize[a]);
-  for (int n = 0; n < this->ImageSize[a]; ++n)
+  constexpr double outside = 1e6;
+  fan.at.assign(this->ImageSize[a], this->Size[a] + outside);
+  fan.slope.assign(this->ImageSize[a], 0.0);
+  for (int n = 0; n < this->RayCount[a]; ++n)
   {
     const double step = static_cast<double>(first + n);
     fan.slope[n] = sign * quantised(2.0 * step / static_cast<double>(this->Steps) - 1.0, SlopeBits);

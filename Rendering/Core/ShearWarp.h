@@ -101,6 +101,10 @@ public:
   int width() const { return this->ImageSize.x; }
   int height() const { return this->ImageSize.y; }
 
+  /// Columns and rows that are rays of the view. In perspective images there are a few columns
+  /// more, to fill registers, whose rays are far beside the volume.
+  const glm::ivec2& rayCount() const { return this->RayCount; }
+
   bool isPerspective() const { return this->Perspective; }
   const Fan& columns() const { return this->Columns; }
   const Fan& rows() const { return this->Rows; }
@@ -201,7 +205,7 @@ private:
   bool Reversed = false;
   std::array<int, 3> Axes{ 0, 1, 2 };
   glm::ivec3 Size{ 0 };
-  glm::ivec2 ImageSize{ 0 };
+  glm::ivec2 ImageSize{ 0 }, RayCount{ 0 };
   glm::dvec2 Shear{ 0.0 };
   glm::ivec2 Margin{ 0 };
   double Middle = 0.0;

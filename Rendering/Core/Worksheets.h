@@ -73,6 +73,7 @@ public:
   using A = Accumulator<T>;
   using Voxel = T;
   using Pixel = A;
+  static constexpr bool Perspective = false;
   /// How many slices beyond its own a layer reads.
   static constexpr int Beyond = 1;
   /// Rows that cut layers are walked for at a time: those of a piece.
@@ -146,9 +147,9 @@ public:
     }
   }
 
-  /// Calls f(step, v, pixels, worksheet) for all worksheets of some slices and of pixels in some
-  /// rows and columns, before finish(), from the first slice on or else reversed. A pixel without a
-  /// sample is NaN. Steps as in ShearImage::winners.
+  /// Calls f(step, v, pixels, worksheet, nullptr) for all worksheets of some slices and of pixels
+  /// in some rows and columns, before finish(), from the first slice on or else reversed. A pixel
+  /// without a sample is NaN. Steps as in ShearImage::winners.
   template <class F>
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
     Patch& patch, F&& f) const
@@ -163,7 +164,7 @@ public:
           const int k = reversed ? slices.end - 1 - n : slices.begin + n;
           this->splatSlice(k, first, last, piece, worksheet, patch,
             [&](int v, const Span& pixels)
-            { f(StepsPerSlice * k, v, pixels, worksheet.at(pixels.begin, v)); });
+            { f(StepsPerSlice * k, v, pixels, worksheet.at(pixels.begin, v), nullptr); });
         }
       });
   }
@@ -342,7 +343,9 @@ private:
     }
   }
 
-  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const
+protected:
+  /// The voxels of slice s that worksheets need for some pixels.
+  virtual Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const
   {
     const Window& window = this->Reach.slices[s];
     return { s, columns.begin + window.iMin, v0 + window.jMin,
@@ -350,7 +353,6 @@ private:
       v1 - v0 + window.jMax - window.jMin };
   }
 
-protected:
   virtual void loadSheet(const Patch::Sheet& sheet, Patch& patch) const
   {
     // Rows inside the volume go together, those beyond repeat the outermost.

@@ -76,7 +76,8 @@ glm::dvec3 unpermuted(const splatting::ShearWarp& image, const glm::dvec3& p)
 void checkRays(Checks& check, const splatting::View& view, const splatting::ShearWarp& image,
   reference::Random& random)
 {
-  const int u = random.uniform(0, image.width() - 1), v = random.uniform(0, image.height() - 1);
+  const int u = random.uniform(0, image.rayCount().x - 1);
+  const int v = random.uniform(0, image.rayCount().y - 1);
   const glm::dvec3 shown = image.shearToScreen() * glm::dvec3(u, v, 1.0);
   for (const double z : { image.faces(image.slices().begin).y, image.reference() })
   {
@@ -131,8 +132,8 @@ void testPerspectiveShearThenWarpIsTheView(Checks& check, reference::Random& ran
                 const double along = image.reversed() ? -d.z : d.z;
                 const double slack = 0x1p-8;
                 return along + slack >= std::max(std::abs(d.x), std::abs(d.y)) && p.z > 0.0 &&
-                  p.x / p.z > -slack && p.x / p.z < image.width() - 1 + slack &&
-                  p.y / p.z > -slack && p.y / p.z < image.height() - 1 + slack;
+                  p.x / p.z > -slack && p.x / p.z < image.rayCount().x - 1 + slack &&
+                  p.y / p.z > -slack && p.y / p.z < image.rayCount().y - 1 + slack;
               }),
         "no image has a point of the volume");
     }

@@ -1,0 +1,611 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The loops of perspective images. For Kernels.cxx only, which says why all of this is in an
+ * anonymous namespace.
+ */
+#ifndef splattingFanKernels_h
+#define splattingFanKernels_h
+
+#include "Kernels.h"
+#include "Registers.h"
+
+namespace splatting
+{
+namespace
+{
+inline double roundedDown(double x)
+{
+  const double whole = static_cast<double>(static_cast<std::int32_t>(x));
+  return whole > x ? whole - 1.0 : whole;
+}
+
+inline void steps(const double* __restrict at, const double* __restrict slope, double from,
+  double to, std::int32_t size, std::int32_t* __restrict first, std::int32_t* __restrict last,
+  double* __restrict time, std::int16_t* __restrict tick, std::ptrdiff_t n)
+{
+  const double low = -2.0, high = size + 1.0;
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    // Seen from rays that run to lower voxels everything is mirrored.
+    const double turn = slope[x] < 0.0 ? -1.0 : 1.0;
+    double entry = at[x] + slope[x] * from, exit = at[x] + slope[x] * to;
+    entry = entry < low ? low : entry > high ? high : entry;
+    exit = exit < low ? low : exit > high ? high : exit;
+    // A point on a face belongs to the voxel that the ray runs in next to it.
+    const double enters = roundedDown(turn * entry + 0.5);
+    const double leaves = slope[x] == 0.0 ? enters : -roundedDown(0.5 - turn * exit);
+    const double speed = turn * slope[x];
+    const double passes = leaves > enters ? (enters + 0.5 - turn * entry) / speed : 0.0;
+    const double a = turn * enters, b = turn * leaves;
+    first[x] = static_cast<std::int32_t>(a < -1.0 ? -1.0 : a > size ? size : a);
+    last[x] = static_cast<std::int32_t>(b < -1.0 ? -1.0 : b > size ? size : b);
+    time[x] = passes;
+    const double ticks = passes * 32768.0;
+    tick[x] = static_cast<std::int16_t>(ticks < 32767.0 ? static_cast<std::int32_t>(ticks) : 32767);
+  }
+}
+
+/// Picks voxels for a register of pixels. In general not at all: `group` is any, and `picks` tells.
+template <class T, int Size = sizeof(T)>
+struct Picker
+{
+  static constexpr int group = 16 / Size;
+  static constexpr bool picks = false;
+};
+
+#if defined(__AVX512F__)
+using Register = __m512i;
+inline Register loadRegister(const void* p)
+{
+  return _mm512_loadu_si512(p);
+}
+template <class T>
+struct Picker<T, 1>
+{
+  static constexpr int group = 16;
+  static constexpr bool picks = true;
+  static inline Register pick(const T* row, const std::int32_t* base, Register lanes, Register none)
+  {
+    const auto four = [=](int n)
+    { return _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + base[n])); };
+    Register voxels = _mm512_castsi128_si512(four(0));
+    voxels = _mm512_inserti32x4(voxels, four(1), 1);
+    voxels = _mm512_inserti32x4(voxels, four(2), 2);
+    voxels = _mm512_inserti32x4(voxels, four(3), 3);
+    const Register picked = _mm512_shuffle_epi8(voxels, lanes);
+    return _mm512_mask_blend_epi8(_mm512_movepi8_mask(lanes), picked, none);
+  }
+};
+template <class T>
+struct Picker<T, 2>
+{
+  static constexpr int group = 32;
+  static constexpr bool picks = true;
+  static inline Register pick(const T* row, const std::int32_t* base, Register lanes, Register none)
+  {
+    const Register picked = _mm512_permutexvar_epi16(lanes, loadRegister(row + base[0]));
+    return _mm512_mask_blend_epi16(_mm512_movepi16_mask(lanes), picked, none);
+  }
+};
+template <class T>
+struct Picker<T, 4>
+{
+  static constexpr int group = 16;
+  static constexpr bool picks = true;
+  static inline Register pick(const T* row, const std::int32_t* base, Register lanes, Register none)
+  {
+    const Register picked = _mm512_permutexvar_epi32(lanes, loadRegister(row + base[0]));
+    return _mm512_mask_blend_epi32(_mm512_movepi32_mask(lanes), picked, none);
+  }
+};
+template <class T>
+struct Picker<T, 8>
+{
+  static constexpr int group = 8;
+  static constexpr bool picks = true;
+  static inline Register pick(const T* row, const std::int32_t* base, Register lanes, Register none)
+  {
+    const Register picked = _mm512_permutexvar_epi64(lanes, loadRegister(row + base[0]));
+    return _mm512_mask_blend_epi64(_mm512_movepi64_mask(lanes), picked, none);
+  }
+};
+#elif defined(__AVX2__)
+using Register = __m256i;
+inline Register loadRegister(const void* p)
+{
+  return _mm256_loadu_si256(static_cast<const __m256i*>(p));
+}
+/// Two groups, each from its own half.
+template <class T>
+inline Register loadHalves(const T* row, const std::int32_t* base)
+{
+  return _mm256_inserti128_si256(
+    _mm256_castsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(row + base[0]))),
+    _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + base[1])), 1);
+}
+template <class T>
+struct Picker<T, 1>
+{
+  static constexpr int group = 16;
+  static constexpr bool picks = true;
+  static inline Register pick(const T* row, const std::int32_t* base, Register lanes, Register none)
+  {
+    const Register picked = _mm256_shuffle_epi8(loadHalves(row, base), lanes);
+    return _mm256_blendv_epi8(picked, none, lanes);
+  }
+};
+template <class T>
+struct Picker<T, 2>
+{
+  static constexpr int group = 8;
+  static constexpr bool picks = true;
+  static inline Register pick(const T* row, const std::int32_t* base, Register lanes, Register none)
+  {
+    // Lane n is bytes 2 n and 2 n + 1.
+    const Register bytes = _mm256_add_epi16(
+      _mm256_mullo_epi16(lanes, _mm256_set1_epi16(0x0202)), _mm256_set1_epi16(0x0100));
+    const Register picked = _mm256_shuffle_epi8(loadHalves(row, base), bytes);
+    return _mm256_blendv_epi8(picked, none, _mm256_srai_epi16(lanes, 15));
+  }
+};
+template <class T>
+struct Picker<T, 4>
+{
+  static constexpr int group = 8;
+  static constexpr bool picks = true;
+  static inline Register pick(const T* row, const std::int32_t* base, Register lanes, Register none)
+  {
+    const Register picked = _mm256_permutevar8x32_epi32(loadRegister(row + base[0]), lanes);
+    return _mm256_blendv_epi8(picked, none, _mm256_srai_epi32(lanes, 31));
+  }
+};
+#endif
+
+/// One pixel of one row; rows[0] and rows[1] are those of voxels where rays enter and leave.
+template <class T>
+inline void crossPixel(const Crossing<T>& c, T* image, const unsigned char* bits,
+  const T* const (&rows)[2], double rowTime, std::ptrdiff_t x)
+{
+  if (bits && !(bits[x] & c.bit))
+  {
+    return;
+  }
+  const Integer<T> enters = static_cast<const Integer<T>*>(c.entryLanes)[x];
+  const Integer<T> leaves = static_cast<const Integer<T>*>(c.exitLanes)[x];
+  const std::ptrdiff_t group = x / Picker<T>::group;
+  const std::int32_t entry = c.entryBase[group] + enters, exit = c.exitBase[group] + leaves;
+  if (enters >= 0)
+  {
+    image[x] = larger(rows[0][entry], image[x]);
+  }
+  if (leaves >= 0)
+  {
+    image[x] = larger(rows[1][exit], image[x]);
+  }
+  if (leaves >= 0 && c.columnTime[x] < rowTime)
+  {
+    image[x] = larger(rows[0][exit], image[x]);
+  }
+  if (enters >= 0 && rowTime < c.columnTime[x])
+  {
+    image[x] = larger(rows[1][entry], image[x]);
+  }
+}
+
+template <class T>
+inline void crossPixels(const Crossing<T>& c, T* image, const unsigned char* bits,
+  const T* const (&rows)[2], double rowTime, std::ptrdiff_t begin, std::ptrdiff_t end)
+{
+  for (std::ptrdiff_t x = begin; x < end; ++x)
+  {
+    crossPixel(c, image, bits, rows, rowTime, x);
+  }
+}
+
+#if defined(__AVX2__)
+/// All bits of the elements of a register of T whose ticks are less, and of those that are greater.
+template <class T>
+struct TickOrder
+{
+  Pack<Integer<T>> less, greater;
+  bool ties;
+};
+
+template <class T>
+inline TickOrder<T> orderOf(const std::int16_t* ticks, std::int16_t tick)
+{
+  typedef std::int16_t loose __attribute__((vector_size(2 * width<T>), aligned(2), may_alias));
+  typedef std::int16_t whole __attribute__((vector_size(2 * width<T>)));
+  const whole own = *reinterpret_cast<const loose*>(ticks);
+  TickOrder<T> order;
+  order.less = __builtin_convertvector(own < tick, Pack<Integer<T>>);
+  order.greater = __builtin_convertvector(own > tick, Pack<Integer<T>>);
+  return order;
+}
+
+/// One register of pixels, of which some may lie behind the row's end.
+template <class T, bool TwoRows>
+inline Pack<T> crossed(
+  const Crossing<T>& c, const T* const (&rows)[2], std::int16_t tick, std::ptrdiff_t x, bool& ties)
+{
+  const Register none = loadRegister(c.none);
+  const std::int32_t* const entryBase = c.entryBase + x / Picker<T>::group;
+  const std::int32_t* const exitBase = c.exitBase + x / Picker<T>::group;
+  const Register entryLanes = loadRegister(static_cast<const Integer<T>*>(c.entryLanes) + x);
+  const Register exitLanes = loadRegister(static_cast<const Integer<T>*>(c.exitLanes) + x);
+  const Pack<T> first = (Pack<T>)Picker<T>::pick(rows[0], entryBase, entryLanes, none);
+  const Pack<T> last = (Pack<T>)Picker<T>::pick(rows[1], exitBase, exitLanes, none);
+  Pack<T> best = larger(first, last);
+  if constexpr (TwoRows)
+  {
+    const Pack<T> columnFirst = (Pack<T>)Picker<T>::pick(rows[0], exitBase, exitLanes, none);
+    const Pack<T> rowFirst = (Pack<T>)Picker<T>::pick(rows[1], entryBase, entryLanes, none);
+    const TickOrder<T> order = orderOf<T>(c.columnTick + x, tick);
+    const Pack<T> corner = order.less ? columnFirst : order.greater ? rowFirst : first;
+    const Pack<Integer<T>> unequal = order.less | order.greater;
+    ties = false;
+    const Register bits = (Register)unequal;
+#if defined(__AVX512F__)
+    ties = _mm512_movepi8_mask(bits) != ~0ull;
+#else
+    ties = _mm256_movemask_epi8(bits) != -1;
+#endif
+    best = larger(corner, best);
+  }
+  return best;
+}
+
+/// Whole registers of one row from x on, as far as the run goes; returns where it stopped.
+template <class T, bool TwoRows>
+inline std::ptrdiff_t crossRegisters(const Crossing<T>& c, T* image, const unsigned char* bits,
+  const T* const (&rows)[2], int v, const Span& run)
+{
+  std::ptrdiff_t x = run.begin;
+  for (; x + width<T> <= run.end; x += width<T>)
+  {
+    bool ties = false;
+    Pack<T> best = crossed<T, TwoRows>(c, rows, c.rowTick[v], x, ties);
+    if (TwoRows && ties)
+    {
+      // Which face comes first takes more digits.
+      crossPixels(c, image, bits, rows, c.rowTime[v], x, x + width<T>);
+      continue;
+    }
+    const Pack<T> before = load<T>(image + x);
+    best = larger(best, before);
+    if (bits)
+    {
+      const Pack<Integer<T>> own = loadBits<T>(bits + x);
+      best = (own & static_cast<Integer<T>>(c.bit)) != 0 ? best : before;
+    }
+    store<T>(image + x, best);
+  }
+  return x;
+}
+#endif
+
+template <class T>
+inline void crossRow(const Crossing<T>& c, T* image, const unsigned char* bits, int v)
+{
+  const std::int32_t j[2] = { c.firstRow[v], c.lastRow[v] };
+  const bool inside[2] = { j[0] >= 0 && j[0] < c.rows, j[1] >= 0 && j[1] < c.rows };
+  if (!inside[0] && !inside[1])
+  {
+    return;
+  }
+  const T* const rows[2] = { inside[0] ? c.voxels + j[0] * c.rowStride : c.none,
+    inside[1] ? c.voxels + j[1] * c.rowStride : c.none };
+  for (int n = 0; n < c.runCount; ++n)
+  {
+    std::ptrdiff_t x = c.runs[n].begin;
+#if defined(__AVX2__)
+    if constexpr (Picker<T>::picks)
+    {
+      if (c.columns >= Picker<T>::group)
+      {
+        x = j[0] == j[1] ? crossRegisters<T, false>(c, image, bits, rows, v, c.runs[n])
+                         : crossRegisters<T, true>(c, image, bits, rows, v, c.runs[n]);
+      }
+    }
+#endif
+    crossPixels(c, image, bits, rows, c.rowTime[v], x, c.runs[n].end);
+  }
+}
+
+template <class T>
+void cross(const Crossing<T>& c)
+{
+  for (int v = 0; v < c.height; ++v)
+  {
+    crossRow(c, c.image + v * c.imageStride, c.bits ? c.bits + v * c.bitsStride : nullptr, v);
+  }
+}
+
+/// Reconstruction kernels, integrated twice from -infinity.
+struct TwiceBox
+{
+  inline double operator()(double t) const
+  {
+    const double x = t < -0.5 ? 0.0 : t > 0.5 ? 1.0 : t + 0.5;
+    return 0.5 * x * x + (t > 0.5 ? t - 0.5 : 0.0);
+  }
+};
+
+struct TwiceHat
+{
+  inline double operator()(double t) const
+  {
+    const double a = t < -1.0 ? 0.0 : t > 1.0 ? 2.0 : t + 1.0; // from the left end
+    const double b = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;        // from the middle
+    return (a * a * a - 2.0 * b * b * b) * (1.0 / 6.0) + (t > 1.0 ? t - 1.0 : 0.0);
+  }
+};
+
+struct TwiceBell
+{
+  double radius;
+  inline double operator()(double t) const
+  {
+    const double r = this->radius;
+    const double x = t < -r ? -r : t > r ? r : t;
+    // 1 + cos(pi x / r) = 2 cos^2 = 2 sin^2 of what is missing to pi / 2, at most pi / 2.
+    constexpr double halfPi = 1.57079632679489661923;
+    const double missing = halfPi * (1.0 - (x < 0.0 ? -x : x) / r);
+    const double z = missing * missing;
+    // The sine's series, to 1e-13 at pi / 2.
+    double sine = -1.0 / 1307674368000.0;
+    sine = sine * z + 1.0 / 6227020800.0;
+    sine = sine * z - 1.0 / 39916800.0;
+    sine = sine * z + 1.0 / 362880.0;
+    sine = sine * z - 1.0 / 5040.0;
+    sine = sine * z + 1.0 / 120.0;
+    sine = sine * z - 1.0 / 6.0;
+    sine = (sine * z + 1.0) * missing;
+    constexpr double perPi = 0.31830988618379067154;
+    return 0.25 * (x + r) * (x + r) - r * r * perPi * perPi * sine * sine +
+      (t > r ? r * (t - r) : 0.0);
+  }
+};
+
+template <class A, class Twice>
+inline void weigh(const FanWeights<A>& w, const Twice& twice, std::ptrdiff_t n)
+{
+  constexpr std::ptrdiff_t chunk = 64;
+  // Spreads of nothing would be divided by; these move no weight by more than 1e-5.
+  constexpr double leastPitch = 1e-3, leastSpread = 1e-6;
+  const double pitch = w.pitch > leastPitch ? w.pitch : leastPitch;
+  for (std::ptrdiff_t begin = 0; begin < n; begin += chunk)
+  {
+    const std::ptrdiff_t count = begin + chunk < n ? chunk : n - begin;
+    double place[chunk], spread[chunk], sum[chunk], taps[5][chunk];
+    for (std::ptrdiff_t x = 0; x < count; ++x)
+    {
+      const double slope = w.slope[begin + x];
+      const double own = (slope < 0.0 ? -slope : slope) * w.thickness;
+      spread[x] = own > leastSpread ? own : leastSpread;
+      const double at = w.at[begin + x] + slope * w.depth;
+      const double reach = 0.5 * (pitch + spread[x]) + w.support;
+      // The first voxel that is nearer than that.
+      double first = at - reach;
+      first = first < w.low - 1.0 ? w.low - 1.0 : first > w.high - 1.0 ? w.high - 1.0 : first;
+      first = roundedDown(first) + 1.0;
+      w.first[begin + x] = static_cast<std::int32_t>(first);
+      place[x] = at - first;
+      sum[x] = 0.0;
+    }
+    for (int t = 0; t < w.taps; ++t)
+    {
+      for (std::ptrdiff_t x = 0; x < count; ++x)
+      {
+        const double p = 0.5 * (pitch + spread[x]), m = 0.5 * (pitch - spread[x]);
+        const double d = place[x] - t;
+        const double weight = twice(d + p) - twice(d + m) - twice(d - m) + twice(d - p);
+        taps[t][x] = weight > 0.0 ? weight : 0.0;
+        sum[x] += taps[t][x];
+      }
+    }
+    for (int t = 0; t < w.taps; ++t)
+    {
+      A* const out = w.weights + t * w.stride + begin;
+      for (std::ptrdiff_t x = 0; x < count; ++x)
+      {
+        // Far beside the volume there is nothing to weigh.
+        out[x] = static_cast<A>(sum[x] > 0.0 ? taps[t][x] / sum[x] : 0.0);
+      }
+    }
+  }
+}
+
+template <class A>
+void fanWeights(const FanWeights<A>& w, std::ptrdiff_t n)
+{
+  switch (w.shape)
+  {
+    case 0:
+      weigh(w, TwiceBox{}, n);
+      break;
+    case 1:
+      weigh(w, TwiceHat{}, n);
+      break;
+    default:
+      weigh(w, TwiceBell{ w.support }, n);
+  }
+}
+
+/// Picks voxels of the accumulator's type. In general not at all.
+template <class A>
+struct Resampler
+{
+  static constexpr int group = 8;
+  static constexpr bool picks = false;
+};
+#if defined(__AVX512F__)
+template <>
+struct Resampler<float>
+{
+  static constexpr int group = 16;
+  static constexpr bool picks = true;
+  static inline Pack<float> pick(const float* voxels, Register lanes)
+  {
+    return _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(voxels));
+  }
+};
+template <>
+struct Resampler<double>
+{
+  static constexpr int group = 8;
+  static constexpr bool picks = true;
+  static inline Pack<double> pick(const double* voxels, Register lanes)
+  {
+    return _mm512_permutexvar_pd(lanes, _mm512_loadu_pd(voxels));
+  }
+};
+#elif defined(__AVX2__)
+template <>
+struct Resampler<float>
+{
+  static constexpr int group = 8;
+  static constexpr bool picks = true;
+  static inline Pack<float> pick(const float* voxels, Register lanes)
+  {
+    return _mm256_permutevar8x32_ps(_mm256_loadu_ps(voxels), lanes);
+  }
+};
+#endif
+
+#if defined(__AVX2__)
+template <class A, int Taps>
+inline void resampleRegisters(
+  const Resampling<A>& r, A* out, std::ptrdiff_t begin, std::ptrdiff_t end)
+{
+  for (std::ptrdiff_t x = begin; x < end; x += width<A>)
+  {
+    const Register lanes = loadRegister(static_cast<const LaneOf<A>*>(r.lanes) + x);
+    const A* const voxels = r.voxels + r.base[x / Resampler<A>::group];
+    Pack<A> sum{};
+#pragma GCC unroll 5
+    for (int t = 0; t < Taps; ++t)
+    {
+      sum += load<A>(r.weights + t * r.stride + x) * Resampler<A>::pick(voxels + t, lanes);
+    }
+    store<A>(out + x, sum);
+  }
+}
+#endif
+
+template <class A>
+void resample(const Resampling<A>& r, A* out, std::ptrdiff_t begin, std::ptrdiff_t end)
+{
+#if defined(__AVX2__)
+  if constexpr (Resampler<A>::picks)
+  {
+    static_assert(Resampler<A>::group == width<A>);
+    begin = begin / width<A> * width<A>;
+    switch (r.taps)
+    {
+      case 2:
+        return resampleRegisters<A, 2>(r, out, begin, end);
+      case 3:
+        return resampleRegisters<A, 3>(r, out, begin, end);
+      case 4:
+        return resampleRegisters<A, 4>(r, out, begin, end);
+      default:
+        return resampleRegisters<A, 5>(r, out, begin, end);
+    }
+  }
+#endif
+  const LaneOf<A>* const lanes = static_cast<const LaneOf<A>*>(r.lanes);
+  for (std::ptrdiff_t x = begin; x < end; ++x)
+  {
+    const A* const voxels = r.voxels + r.base[x / Resampler<A>::group] + lanes[x];
+    A sum = 0;
+    for (int t = 0; t < r.taps; ++t)
+    {
+      sum += r.weights[t * r.stride + x] * voxels[t];
+    }
+    out[x] = sum;
+  }
+}
+
+template <class A>
+void blend(const A* const* rows, const A* weights, int count, A* __restrict out, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    A sum = 0;
+    for (int r = 0; r < count; ++r)
+    {
+      sum += weights[r] * rows[r][x];
+    }
+    out[x] = sum;
+  }
+}
+
+template <class A>
+struct RaiseBlock
+{
+  A* image;
+  const A* const* rows;
+  const A* weights;
+  int count;
+  const unsigned char* bits;
+  unsigned char bit;
+
+  inline void single(std::ptrdiff_t x) const
+  {
+    A sum = 0;
+    for (int r = 0; r < this->count; ++r)
+    {
+      sum += this->weights[r] * this->rows[r][x];
+    }
+    if (!this->bits || this->bits[x] & this->bit)
+    {
+      this->image[x] = larger(sum, this->image[x]);
+    }
+  }
+  template <int V>
+  inline void run(std::ptrdiff_t x) const
+  {
+    Pack<A> sum[V];
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      sum[v] = Pack<A>{};
+    }
+    for (int r = 0; r < this->count; ++r)
+    {
+      const A* const row = this->rows[r] + x;
+      const A weight = this->weights[r];
+#pragma GCC unroll 4
+      for (int v = 0; v < V; ++v)
+      {
+        sum[v] += weight * load<A>(row + v * width<A>);
+      }
+    }
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      A* const pixels = this->image + x + v * width<A>;
+      const Pack<A> before = load<A>(pixels);
+      if (this->bits)
+      {
+        const Pack<Integer<A>> own = loadBits<A>(this->bits + x + v * width<A>);
+        sum[v] = (own & static_cast<Integer<A>>(this->bit)) != 0 ? sum[v] : before;
+      }
+      store<A>(pixels, larger(sum[v], before));
+    }
+  }
+};
+
+template <class A>
+void raiseBlend(A* image, const A* const* rows, const A* weights, int count,
+  const unsigned char* bits, unsigned char bit, std::ptrdiff_t n)
+{
+  const RaiseBlock<A> block{ image, rows, weights, count, bits, bit };
+  blocks<A>(n, block, [&](std::ptrdiff_t x) { block.single(x); });
+}
+}
+}
+
+#endif

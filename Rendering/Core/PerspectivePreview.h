@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Preview mode in perspective views: the voxels that rays cross, each ray its own.
+ */
+#ifndef splattingPerspectivePreview_h
+#define splattingPerspectivePreview_h
+
+#include "Cuts.h"
+#include "Frame.h"
+#include "Patch.h"
+
+namespace splatting
+{
+template <class T>
+class PerspectivePreview
+{
+public:
+  using Voxel = T;
+  using Pixel = T;
+  static constexpr bool Perspective = true;
+  /// As in PreviewLayers.
+  static constexpr int Beyond = 0;
+  static constexpr int RowsTogether = 32;
+  static constexpr int RunUnit = 64 / sizeof(T);
+  static_assert(RunUnit % TileWidth == 0);
+
+  /// @param none  work space
+  PerspectivePreview(const Frame<T>& frame, std::vector<unsigned char>& none) : Shared(frame)
+  {
+    // A row without voxels, and a register of them.
+    const std::size_t count = std::max<std::size_t>(frame.geometry.size().x, 64);
+    none.resize(count * sizeof(T));
+    this->None = reinterpret_cast<T*>(none.data());
+    std::fill_n(reinterpret_cast<T*>(none.data()), count, leastValue<T>());
+  }
+
+  /// The voxels that some columns (or rows) of pixels read in a layer, from first to last; they may
+  /// lie outside the volume.
+  Span columnsOf(int z, const Span& pixels) const
+  {
+    return this->Shared.steps.columns.voxels(this->slices(z), pixels);
+  }
+  Span rowsOf(int z, const Span& pixels) const
+  {
+    return this->Shared.steps.rows.voxels(this->slices(z), pixels);
+  }
+
+  void splat(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  {
+    const Span slices = this->slices(z);
+    for (int k = slices.begin; k < slices.end; ++k)
+    {
+      this->splatSlice(k, v0, v1, runs, bits, patch);
+    }
+  }
+
+  void open(int, int, const Span&, Patch&) const {}
+  void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const
+  {
+    for (int r = 0; r < count; ++r)
+    {
+      if (!rows[r].runs.empty())
+      {
+        this->splat(z, rows[r].v0, rows[r].v1, rows[r].runs, rows[r].bits, patch);
+      }
+    }
+  }
+
+  void splatAll(
+    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const
+  {
+    for (int z = layers.begin; z < layers.end; ++z)
+    {
+      this->splat(z, v0, v1, all, {}, patch);
+    }
+  }
+
+  /// As PreviewLayers::forSamples(), and f(..., present): which of the pixels have that step.
+  template <class F>
+  void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
+    Patch& patch, F&& f) const
+  {
+    const Span some = common(slices, this->Shared.geometry.slices());
+    for (int n = 0; n < some.end - some.begin; ++n)
+    {
+      const int k = reversed ? some.end - 1 - n : some.begin + n;
+      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+      for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
+      {
+        const Span pixels = common(columns, slice.span(v));
+        for (int t = 0; t < StepsPerSlice && !pixels.empty(); ++t)
+        {
+          const int step = reversed ? StepsPerSlice - 1 - t : t;
+          if (this->findStep(k, v, step, pixels, patch))
+          {
+            f(StepsPerSlice * k + step, v, pixels,
+              reinterpret_cast<const T*>(patch.worksheet.data()), patch.present.data());
+          }
+        }
+      }
+    }
+  }
+
+  Accumulator<T> base() const { return 0; }
+  T floor() const { return previewFloor(this->Shared); }
+  void finish(int, int) const {}
+
+private:
+  Span slices(int z) const
+  {
+    return common(slicesOfLayer(z, this->Shared.geometry.size()), this->Shared.geometry.slices());
+  }
+
+  void splatSlice(
+    int k, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  {
+    const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+    v0 = std::max(v0, slice.vBegin);
+    v1 = std::min(v1, slice.vEnd);
+    patch.runs.clear();
+    for (const Span& run : runs)
+    {
+      // Whole registers around what the slice covers.
+      const Span covered = common(run,
+        { slice.inner.begin / RunUnit * RunUnit,
+          std::min(
+            (slice.inner.end + RunUnit - 1) / RunUnit * RunUnit, this->Shared.image.width) });
+      if (!covered.empty())
+      {
+        patch.runs.push_back(covered);
+      }
+    }
+    if (v0 >= v1 || patch.runs.empty())
+    {
+      return;
+    }
+    if (this->Shared.range.special)
+    {
+      this->splatSamples(k, v0, v1, bits, patch);
+      return;
+    }
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    loops.cross(this->crossingOf(k, v0, v1, bits, patch));
+  }
+
+  Crossing<T> crossingOf(int k, int v0, int v1, const SliceBits& bits, const Patch& patch) const
+  {
+    const PerspectiveSteps& steps = this->Shared.steps;
+    const FanSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
+    const FanWindows::Picks entry = steps.windows.entering(k), exit = steps.windows.leaving(k);
+    Crossing<T> c;
+    c.image = this->Shared.image.template row<T>(v0);
+    c.imageStride = c.width = this->Shared.image.width;
+    c.height = v1 - v0;
+    c.voxels = this->Shared.voxelRow(0, k);
+    c.rowStride = this->Shared.slices.rowStride;
+    c.columns = this->Shared.geometry.size().x;
+    c.rows = this->Shared.geometry.size().y;
+    c.none = this->None;
+    c.firstRow = rows.first + v0;
+    c.lastRow = rows.last + v0;
+    c.rowTime = rows.time + v0;
+    c.rowTick = rows.tick + v0;
+    c.columnTime = columns.time;
+    c.columnTick = columns.tick;
+    c.entryBase = entry.base;
+    c.entryLanes = entry.lanes;
+    c.exitBase = exit.base;
+    c.exitLanes = exit.lanes;
+    c.runs = patch.runs.data();
+    c.runCount = static_cast<int>(patch.runs.size());
+    c.bits = bits.origin ? bits.at(0, v0) : nullptr;
+    c.bitsStride = bits.stride;
+    c.bit = static_cast<unsigned char>(1u << k % BrickDepth);
+    return c;
+  }
+
+  /// Voxels that compare with nothing.
+  void splatSamples(int k, int v0, int v1, const SliceBits& bits, Patch& patch) const
+  {
+    const RayLoops<T>& loops = this->Shared.kernels;
+    const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
+    this->forSamples({ k, k + 1 }, false, v0, v1, { 0, this->Shared.image.width }, patch,
+      [&](int, int v, const Span& pixels, const T* samples, unsigned char* present)
+      {
+        for (int u = pixels.begin; bits.origin && u < pixels.end; ++u)
+        {
+          present[u - pixels.begin] &= (*bits.at(u, v) & bit) != 0;
+        }
+        loops.raise(this->Shared.image.template row<T>(v) + pixels.begin, samples, present,
+          pixels.end - pixels.begin);
+      });
+  }
+
+  /// One step of the rays of some pixels, into patch.worksheet and patch.present. Whether there is
+  /// any.
+  bool findStep(int k, int v, int step, const Span& pixels, Patch& patch) const
+  {
+    const glm::ivec3& size = this->Shared.geometry.size();
+    const FanSteps::Slice columns = this->Shared.steps.columns.slice(k);
+    const FanSteps::Slice rows = this->Shared.steps.rows.slice(k);
+    const int count = pixels.end - pixels.begin;
+    patch.worksheet.resize(std::size_t(this->Shared.image.width) * sizeof(T));
+    patch.present.resize(this->Shared.image.width);
+    T* const out = reinterpret_cast<T*>(patch.worksheet.data());
+    const int j0 = rows.first[v], j1 = rows.last[v];
+    const bool inside[2] = { j0 >= 0 && j0 < size.y, j1 >= 0 && j1 < size.y };
+    const T* const first = this->Shared.voxelRow(inside[0] ? j0 : 0, k);
+    const T* const last = this->Shared.voxelRow(inside[1] ? j1 : 0, k);
+    unsigned any = 0;
+    for (int x = 0; x < count; ++x)
+    {
+      const int u = pixels.begin + x;
+      const int i0 = columns.first[u], i1 = columns.last[u];
+      const bool moves = i0 != i1 || j0 != j1;
+      const double a = columns.time[u], b = rows.time[v];
+      const bool corner = i0 != i1 && j0 != j1 && a != b;
+      // The path is first, (corner), last.
+      const bool atCorner = corner && step == 1;
+      const bool takesLast = atCorner ? a < b : step > 0;    // of columns
+      const bool takesNext = atCorner ? !(a < b) : step > 0; // of rows
+      const bool exists = step == 0 || (moves && (step == 1 || corner));
+      const int i = takesLast ? i1 : i0;
+      const bool has = exists && inside[takesNext] && i >= 0 && i < size.x;
+      out[x] = has ? (takesNext ? last : first)[i] : T(0);
+      patch.present[x] = has;
+      any |= has;
+    }
+    return any != 0;
+  }
+
+  const Frame<T>& Shared;
+  const T* None;
+};
+}
+
+#endif

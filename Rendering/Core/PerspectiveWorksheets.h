@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Standard and high mode in perspective views. The weights of a pixel are products, so a slice's
+ * worksheet is made in two steps: its rows of voxels are weighed into rows of pixels, which the
+ * image's rows then weigh.
+ */
+#ifndef splattingPerspectiveWorksheets_h
+#define splattingPerspectiveWorksheets_h
+
+#include "PerspectiveFootprints.h"
+#include "Worksheets.h"
+
+namespace splatting
+{
+/// What the layers of an image read, as far as WorksheetLayers asks for it.
+template <class A>
+void findReach(
+  const ShearWarp& geometry, const PerspectiveFootprints<A>& footprints, WorksheetReach<A>& reach)
+{
+  const int count = geometry.size().z;
+  reach.layers.assign((count + BrickDepth - 1) / BrickDepth, {});
+  for (int k = geometry.slices().begin; k < geometry.slices().end; ++k)
+  {
+    A before = 0, behind = 0;
+    for (int q = 0; q < footprints.parts; ++q)
+    {
+      before += footprints.share(k, q)[0];
+      behind += footprints.share(k, q)[2];
+    }
+    A& share = reach.layers[k / BrickDepth].share;
+    share = std::max({ share, k % BrickDepth == 0 ? before : A(0),
+      k % BrickDepth == BrickDepth - 1 ? behind : A(0) });
+  }
+  // Pixels are narrower than voxels: as many voxels, some for the taps and for what rays move.
+  reach.columns = reach.rows = 16;
+}
+
+template <class A>
+const std::vector<SliceFootprint<A>>& noFootprints()
+{
+  static const std::vector<SliceFootprint<A>> none;
+  return none;
+}
+
+template <class T>
+class PerspectiveWorksheets : public WorksheetLayers<T>
+{
+public:
+  using A = Accumulator<T>;
+  static constexpr bool Perspective = true;
+
+  /// @param depth  how many slices beyond its own a footprint reads
+  PerspectiveWorksheets(const Frame<T>& frame, const PerspectiveFootprints<A>& footprints,
+    const WorksheetReach<A>& reach, int depth)
+    : WorksheetLayers<T>(frame, noFootprints<A>(), reach, depth),
+      Own(footprints)
+  {
+  }
+
+  /// The voxels of a layer that some columns (or rows) of pixels read, from first to last; they may
+  /// lie outside the volume.
+  Span columnsOf(int z, const Span& pixels) const
+  {
+    return this->Own.columns.voxels(this->readers(this->slicesOf(z)), pixels);
+  }
+  Span rowsOf(int z, const Span& pixels) const
+  {
+    return this->Own.rows.voxels(this->readers(this->slicesOf(z)), pixels);
+  }
+
+  /// As in WorksheetLayers, of up to 3 + 5 + 15 products and sums and the weights' own rounding.
+  A slack() const { return 60 * std::numeric_limits<A>::epsilon() / 2; }
+
+private:
+  using typename WorksheetLayers<T>::Target;
+
+  Span slicesOf(int z) const { return slicesOfLayer(z, this->Shared.geometry.size()); }
+  /// The slices whose worksheets read some slices.
+  Span readers(const Span& slices) const
+  {
+    return { slices.begin - this->Depth, slices.end + this->Depth };
+  }
+
+  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
+  {
+    const Span readers = this->readers({ s, s + 1 });
+    const Span i = this->Own.columns.voxels(readers, columns);
+    const Span j = this->Own.rows.voxels(readers, { v0, v1 });
+    return { s, i.begin, j.begin, std::max(i.end - i.begin, 0), std::max(j.end - j.begin, 0) };
+  }
+
+  void splatRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  {
+    if (this->Shared.range.special)
+    {
+      for (int v = first; v < end; ++v)
+      {
+        this->splatValidRow(k, v, span, target, patch);
+      }
+      return;
+    }
+    Span voxelRows[MostParts];
+    this->resampleRows(k, { first, end }, span, patch, voxelRows);
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    for (int v = first; v < end; ++v)
+    {
+      const A* rows[MostParts * MostTaps];
+      A weights[MostParts * MostTaps];
+      int count = 0;
+      for (int q = 0; q < this->Own.parts; ++q)
+      {
+        const auto part = this->Own.rows.part(k, q);
+        const A share = this->Depth > 0 ? A(1) : this->Own.share(k, q)[1];
+        for (int t = 0; t < part.taps; ++t)
+        {
+          rows[count] = patch.template resampled<A>(q, part.first[v] + t - voxelRows[q].begin) +
+            (span.begin - alignedDown(span.begin));
+          weights[count++] = share * part.weights[t * part.stride + v];
+        }
+      }
+      loops.raiseBlend(target.at(span.begin, v), rows, weights, count,
+        target.bits.origin ? target.bits.at(span.begin, v) : nullptr, target.bit,
+        span.end - span.begin);
+    }
+  }
+
+  /// Registers of pixels begin at their multiples.
+  static constexpr int Unit = 16;
+  static int alignedDown(int u) { return u / Unit * Unit; }
+
+  /// Weighs the rows of voxels that some rows of pixels need into rows of pixels, for each part.
+  void resampleRows(int k, const Span& rows, const Span& span, Patch& patch, Span* voxelRows) const
+  {
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    const int begin = alignedDown(span.begin), length = alignedDown(span.end - begin + Unit - 1);
+    int most = 0;
+    for (int q = 0; q < this->Own.parts; ++q)
+    {
+      const auto part = this->Own.rows.part(k, q);
+      voxelRows[q] = { part.first[rows.begin], part.first[rows.end - 1] + part.taps };
+      most = std::max(most, voxelRows[q].end - voxelRows[q].begin);
+    }
+    patch.template resizeResampled<A>(this->Own.parts, most, length);
+    for (int q = 0; q < this->Own.parts; ++q)
+    {
+      const auto part = this->Own.columns.part(k, q);
+      Resampling<A> resampling{ nullptr, part.base, part.lanes, part.weights, part.stride,
+        part.taps };
+      for (int j = voxelRows[q].begin; j < voxelRows[q].end; ++j)
+      {
+        resampling.voxels = this->blended(k, q, j, patch);
+        loops.resample(resampling, patch.template resampled<A>(q, j - voxelRows[q].begin) - begin,
+          span.begin, span.end);
+      }
+    }
+  }
+
+  /// Row j of part q of the volume's slice k, by share of the slices around it: its voxel 0.
+  const A* blended(int k, int q, int j, Patch& patch) const
+  {
+    if (this->Depth == 0)
+    {
+      return patch.template voxel<A>(0, j, k); // all parts have the same, see splatRows()
+    }
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    const std::array<A, 3>& shares = this->Own.share(k, q);
+    const int last = this->Shared.geometry.size().z - 1;
+    // All sheets that are read together have these columns.
+    const Patch::Sheet& own = patch.sheet(k);
+    Span columns{ own.i, own.i + own.columns };
+    const A* rows[3];
+    A weights[3];
+    int count = 0;
+    for (int c = -this->Depth; c <= this->Depth; ++c)
+    {
+      if (shares[c + 1] != 0)
+      {
+        const int s = std::clamp(k + c, 0, last);
+        const Patch::Sheet& sheet = patch.sheet(s);
+        columns = common(columns, { sheet.i, sheet.i + sheet.columns });
+        weights[count] = shares[c + 1];
+        rows[count++] = patch.template voxel<A>(0, j, s);
+      }
+    }
+    for (int c = 0; c < count; ++c)
+    {
+      rows[c] += columns.begin;
+    }
+    const int n = columns.end - columns.begin;
+    A* const out = patch.template blended<A>(n);
+    loops.blend(rows, weights, count, out, n);
+    return out - columns.begin;
+  }
+
+  void splatValidRow(int k, int v, const Span& span, const Target& target, Patch& patch) const
+  {
+    const int last = this->Shared.geometry.size().z - 1;
+    for (int u = span.begin; u < span.end; ++u)
+    {
+      A sum = 0, weight = 0;
+      this->Own.forVoxels(u, v, k,
+        [&](int i, int j, int s, A w)
+        {
+          const A value = *patch.template voxel<A>(i, j, std::clamp(s, 0, last));
+          if (value == value && w != 0)
+          {
+            sum += w * value;
+            weight += w;
+          }
+        });
+      const A average = sum / weight;
+      A& pixel = *target.at(u, v);
+      const bool counts = !target.bits.origin || *target.bits.at(u, v) & target.bit;
+      if (counts && (average > pixel || (pixel != pixel && average == average)))
+      {
+        pixel = average;
+      }
+    }
+  }
+
+  const PerspectiveFootprints<A>& Own;
+};
+}
+
+#endif
