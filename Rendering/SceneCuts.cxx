@@ -12,26 +12,16 @@ void SceneCuts::Find(const splatting::View& view, const splatting::ShearWarp& ge
   vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
 {
   this->Present.cropping = view.cropping;
-  this->HalfSpaces.clear();
-  for (const glm::dvec4& h : view.halfSpaces)
-  {
-    this->HalfSpaces.push_back(geometry.inPixels(h));
-  }
-  splatting::ClosedSurface* const surface = this->Bounds.Get();
-  if (surface)
-  {
-    surface->project(geometry);
-  }
   splatting::placePicture(geometry, view.viewport, this->Place);
   this->Seen = renderer->GetSelector() ? this->RememberScene(view, renderer, volume, intermixes)
                                        : this->LookAtScene(renderer, volume, intermixes, readDepth);
   if (this->Seen)
   {
     this->Seen->indexToClip = view.indexToClip;
-    this->Seen->depth.place(view, geometry, this->HalfSpaces);
+    this->Seen->depth.place(view);
   }
   this->Present.intervals.find(
-    geometry, this->HalfSpaces, surface, this->Seen ? &this->Seen->depth : nullptr);
+    geometry, view.halfSpaces, this->Bounds.Get(), this->Seen ? &this->Seen->depth : nullptr);
 }
 
 //------------------------------------------------------------------------------

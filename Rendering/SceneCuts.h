@@ -67,7 +67,6 @@ private:
 
   ::BoundingSurface Bounds;
   splatting::Cuts Present, Kept;
-  std::vector<glm::dvec4> HalfSpaces; // in pixels
   std::vector<Scene> Scenes;
   Scene* Seen = nullptr; // in the present frame, if there is anything
   vtkTypeInt64 Frame = 0;

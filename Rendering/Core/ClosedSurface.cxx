@@ -25,49 +25,87 @@ Span integersIn(double low, double high, int size)
     static_cast<int>(std::floor(std::clamp(high, -1.0, limit - 1.0))) + 1 };
 }
 
-/// A triangle whose corners are pixels and slices, and how it meets rows of pixels.
+/// The largest rounding error of what rays pass at the reference, and of their slopes: those of a
+/// ray and of two that it is interpolated between.
+constexpr double PlaceRounding = 0x1p-20, SlopeRounding = 0x1p-24;
+
+double largest(const glm::dvec3& p)
+{
+  return std::max({ std::abs(p.x), std::abs(p.y), std::abs(p.z) });
+}
+
+double sumOfSizes(const glm::dvec3& p)
+{
+  return std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
+}
+
+/// A triangle of (i, j, k), and how the rays of an image meet it.
 class Triangle
 {
 public:
-  Triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
-    : Corners{ a, b, c },
+  Triangle(const ShearWarp& geometry, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
+    : Geometry(geometry),
+      Corners{ a, b, c },
       Normal(glm::cross(b - a, c - a))
   {
-    const glm::dvec3 reach = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
-    // Larger than what rounding does to the distance between a pixel and an edge.
-    this->Margin = 1e-9 * (1.0 + std::max(reach.x, reach.y));
     this->Low = std::min({ a.z, b.z, c.z });
     this->High = std::max({ a.z, b.z, c.z });
-  }
-
-  bool isEdgeOn() const
-  {
-    double longest = 0.0;
-    for (int e = 0; e < 3; ++e)
+    double reach = std::max({ largest(a), largest(b), largest(c) });
+    if (geometry.isPerspective())
     {
-      longest = std::max(longest, glm::length(glm::dvec2(this->edge(e))));
+      const glm::dvec3& eye = geometry.eye();
+      const double distance = std::max({ largest(a - eye), largest(b - eye), largest(c - eye) });
+      this->Facing = glm::dot(this->Normal, a - eye) / (geometry.reversed() ? -distance : distance);
+      reach = std::max(reach, largest(eye));
+      double& end = geometry.reversed() ? this->High : this->Low;
+      end = geometry.reversed() ? std::min(end, eye.z) : std::max(end, eye.z);
     }
-    return !(std::abs(this->Normal.z) > this->Margin * longest);
+    else
+    {
+      const glm::dvec3 ray(geometry.columns().slope[0], geometry.rows().slope[0], 1.0);
+      this->Facing = glm::dot(this->Normal, ray);
+    }
+    // Larger than what rounding does to the distance between a ray and an edge.
+    this->Margin = 1e-9 * (1.0 + reach);
   }
 
-  Span rows(int height) const
+  /// Whether no ray meets the triangle, or it has no more than edges for them.
+  bool isUnseen() const
   {
-    const glm::dvec3* const p = this->Corners;
-    return integersIn(std::min({ p[0].y, p[1].y, p[2].y }) - this->Margin,
-      std::max({ p[0].y, p[1].y, p[2].y }) + this->Margin, height);
+    const double longest =
+      std::max({ largest(this->edge(0)), largest(this->edge(1)), largest(this->edge(2)) });
+    return !(std::abs(this->Facing) > this->Margin * longest) || this->Low > this->High;
+  }
+
+  /// The rows of pixels that may see the triangle.
+  Span rows() const
+  {
+    double low = Infinity, high = -Infinity;
+    for (const glm::dvec3& corner : this->Corners)
+    {
+      const glm::dvec2 range =
+        this->Geometry.isPerspective() ? this->rowsOf(corner) : this->parallelRowsOf(corner);
+      low = std::min(low, range.x);
+      high = std::max(high, range.y);
+    }
+    return integersIn(low, high, this->Geometry.height());
   }
 
   /// Widens the depths of the pixels of row v that the triangle covers.
-  void cover(int v, int width, double* near, double* far) const
+  void cover(int v, double* near, double* far) const
   {
-    const Span pixels = this->pixels(v, width);
-    const glm::dvec3& a = this->Corners[0];
-    const double slope = -this->Normal.x / this->Normal.z;
-    const double start = a.z - this->Normal.y / this->Normal.z * (v - a.y);
+    const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
+    const Span pixels = this->pixels(v);
+    const glm::dvec3 &a = this->Corners[0], &n = this->Normal;
+    const double depth = a.z - this->Geometry.reference();
+    const double rest = n.y * (rows.at[v] + rows.slope[v] * depth - a.y);
+    const double speed = n.y * rows.slope[v] + n.z;
     for (int u = pixels.begin; u < pixels.end; ++u)
     {
+      const double distance = n.x * (columns.at[u] + columns.slope[u] * depth - a.x) + rest;
       // Steep triangles would leave their own depths beside their edges.
-      const double z = std::clamp(start + slope * (u - a.x), this->Low, this->High);
+      const double z =
+        std::clamp(a.z - distance / (n.x * columns.slope[u] + speed), this->Low, this->High);
       near[u] = std::min(near[u], z);
       far[u] = std::max(far[u], z);
     }
@@ -76,73 +114,160 @@ public:
 private:
   glm::dvec3 edge(int e) const { return this->Corners[(e + 1) % 3] - this->Corners[e]; }
 
-  Span pixels(int v, int width) const
+  glm::dvec2 parallelRowsOf(const glm::dvec3& corner) const
   {
+    const Fan& rows = this->Geometry.rows();
+    const double v =
+      corner.y - rows.at[0] - rows.slope[0] * (corner.z - this->Geometry.reference());
+    return { v - this->Margin, v + this->Margin };
+  }
+
+  /// Of a perspective view: all if the point does not lie well before the eye.
+  glm::dvec2 rowsOf(const glm::dvec3& corner) const
+  {
+    const glm::dvec3 place = corner - this->Geometry.eye();
+    const double far = this->Geometry.reference() - this->Geometry.eye().z;
+    const double ratio = far / place.z;
+    if (!(ratio > 0.0 && ratio < 1e12))
+    {
+      return { -Infinity, Infinity };
+    }
+    const double v = (this->Geometry.eye().y + place.y * ratio - this->Geometry.rows().at[0]) /
+      this->Geometry.pitch();
+    // Rounding matters most near the eye, where rays are close together.
+    const double rounding = (this->Margin + PlaceRounding + SlopeRounding * std::abs(far)) *
+      std::max(ratio, 1.0) / this->Geometry.pitch();
+    return { v - 1.0 - rounding, v + 1.0 + rounding };
+  }
+
+  Span pixels(int v) const
+  {
+    const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
+    const double turn = this->Facing > 0.0 ? 1.0 : -1.0;
+    const int last = this->Geometry.width() - 1;
     double low = -Infinity, high = Infinity;
     for (int e = 0; e < 3; ++e)
     {
-      // across * (u - corner.x) + along >= 0 inside.
-      const double turn = this->Normal.z > 0.0 ? 1.0 : -1.0;
+      // The volume between a ray and an edge is not negative if the ray passes inside. Along the
+      // row it is linear, but for what the rays are rounded by.
       const glm::dvec3& corner = this->Corners[e];
-      const glm::dvec2 side = turn * glm::dvec2(this->edge(e));
-      const double across = -side.y;
-      const double along =
-        side.x * (v - corner.y) + this->Margin * (std::abs(side.x) + std::abs(side.y));
-      if (across > 0.0)
+      const glm::dvec3 side = turn * this->edge(e);
+      const double depth = corner.z - this->Geometry.reference();
+      const double q = rows.at[v] + rows.slope[v] * depth - corner.y;
+      const double across = side.z * rows.slope[v] - side.y;
+      const auto inside = [&](int u)
       {
-        low = std::max(low, corner.x - along / across);
-      }
-      else if (across < 0.0)
+        const double p = columns.at[u] + columns.slope[u] * depth - corner.x;
+        return across * p + side.x * q - side.z * q * columns.slope[u];
+      };
+      double start = inside(0);
+      const double step = last > 0 ? (inside(last) - start) / last : 0.0;
+      start += this->Margin * sumOfSizes(side);
+      if (this->Geometry.isPerspective())
       {
-        high = std::min(high, corner.x - along / across);
+        start +=
+          PlaceRounding * std::abs(across) + SlopeRounding * std::abs(across * depth - side.z * q);
       }
-      else if (along < 0.0)
+      if (step > 0.0)
+      {
+        low = std::max(low, -start / step);
+      }
+      else if (step < 0.0)
+      {
+        high = std::min(high, -start / step);
+      }
+      else if (start < 0.0)
       {
         return {};
       }
     }
-    return integersIn(low, high, width);
+    return integersIn(low, high, last + 1);
   }
 
+  const ShearWarp& Geometry;
   glm::dvec3 Corners[3];
   glm::dvec3 Normal;
+  double Facing; // more than 0 if rays see the corners in the sense of rotation from i to j
   double Margin, Low, High;
 };
-}
 
-void ClosedSurface::clear()
+/// Whether a half-line from the origin along +z, or -z, meets a triangle. All triangles that share
+/// an edge decide in the same way on which side of it the line passes, however it is rounded.
+bool isMet(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, bool reversed)
 {
-  this->Points.clear();
-  this->Triangles.clear();
-  this->Projected = false;
+  const glm::dvec3* const corners[] = { &a, &b, &c };
+  bool isInside = false;
+  for (int e = 0; e < 3; ++e)
+  {
+    const glm::dvec3* low = corners[e];
+    const glm::dvec3* high = corners[(e + 1) % 3];
+    if (low->y > high->y)
+    {
+      std::swap(low, high);
+    }
+    isInside ^= low->y <= 0.0 && high->y > 0.0 && low->x * high->y - high->x * low->y > 0.0;
+  }
+  const glm::dvec3 normal = glm::cross(b - a, c - a);
+  const double z = std::clamp(
+    glm::dot(normal, a) / normal.z, std::min({ a.z, b.z, c.z }), std::max({ a.z, b.z, c.z }));
+  return isInside && (reversed ? z < 0.0 : z > 0.0);
+}
 }
 
 void ClosedSurface::reset(std::vector<glm::dvec3> points, std::vector<glm::ivec3> triangles)
 {
   this->Points = std::move(points);
   this->Triangles = std::move(triangles);
-  this->Projected = false;
+  this->Projections = {};
 }
 
-void ClosedSurface::project(const ShearWarp& geometry)
+const SurfaceDepths& ClosedSurface::project(const ShearWarp& geometry)
 {
-  if (this->Projected && geometry.sameShear(this->Geometry))
+  const int direction =
+    geometry.isPerspective() ? 2 * geometry.principalAxis() + geometry.reversed() : 0;
+  SurfaceDepths& depths = this->Projections[direction];
+  if (!depths.Valid || !geometry.sameShear(depths.Geometry) ||
+    geometry.eye() != depths.Geometry.eye())
   {
-    return;
+    depths.Valid = true;
+    depths.Geometry = geometry;
+    this->permute(geometry.axes());
+    this->findRows(geometry);
+    this->findDepths(depths);
   }
-  this->Projected = true;
-  this->Geometry = geometry;
-  this->Width = geometry.width();
-  const int height = geometry.height();
-  this->Near.resize(std::size_t(this->Width) * height);
-  this->Far.resize(this->Near.size());
-  this->toPixels(geometry);
-  this->findRows(height);
-  vtkSMPTools::For(0, height, 32,
+  return depths;
+}
+
+void ClosedSurface::permute(const std::array<int, 3>& axes)
+{
+  this->Places.resize(this->Points.size());
+  std::transform(this->Points.begin(), this->Points.end(), this->Places.begin(),
+    [&](const glm::dvec3& p) { return glm::dvec3(p[axes[0]], p[axes[1]], p[axes[2]]); });
+}
+
+void ClosedSurface::findRows(const ShearWarp& geometry)
+{
+  this->Rows.resize(this->Triangles.size());
+  std::transform(this->Triangles.begin(), this->Triangles.end(), this->Rows.begin(),
+    [&](const glm::ivec3& t)
+    {
+      const Triangle triangle(geometry, this->Places[t[0]], this->Places[t[1]], this->Places[t[2]]);
+      return triangle.isUnseen() ? Span{} : triangle.rows();
+    });
+}
+
+void ClosedSurface::findDepths(SurfaceDepths& depths) const
+{
+  const ShearWarp& geometry = depths.Geometry;
+  const std::size_t width = geometry.width();
+  const glm::dvec2 beginning = this->beginning(geometry);
+  depths.Near.resize(width * geometry.height());
+  depths.Far.resize(depths.Near.size());
+  vtkSMPTools::For(0, geometry.height(), 32,
     [&](vtkIdType begin, vtkIdType end)
     {
-      std::fill(&this->Near[begin * this->Width], &this->Near[0] + end * this->Width, Infinity);
-      std::fill(&this->Far[begin * this->Width], &this->Far[0] + end * this->Width, -Infinity);
+      std::fill_n(&depths.Near[begin * width], (end - begin) * width, beginning.x);
+      std::fill_n(&depths.Far[begin * width], (end - begin) * width, beginning.y);
       for (std::size_t t = 0; t < this->Triangles.size(); ++t)
       {
         const int first = std::max(this->Rows[t].begin, static_cast<int>(begin));
@@ -151,38 +276,32 @@ void ClosedSurface::project(const ShearWarp& geometry)
         {
           const glm::ivec3& corners = this->Triangles[t];
           const Triangle triangle(
-            this->Pixels[corners[0]], this->Pixels[corners[1]], this->Pixels[corners[2]]);
+            geometry, this->Places[corners[0]], this->Places[corners[1]], this->Places[corners[2]]);
           for (int v = first; v < last; ++v)
           {
-            const std::size_t row = std::size_t(v) * this->Width;
-            triangle.cover(v, this->Width, &this->Near[row], &this->Far[row]);
+            triangle.cover(v, &depths.Near[v * width], &depths.Far[v * width]);
           }
         }
       }
     });
 }
 
-void ClosedSurface::toPixels(const ShearWarp& geometry)
+/// What the near and far depths of all rays begin with.
+glm::dvec2 ClosedSurface::beginning(const ShearWarp& geometry) const
 {
-  const std::array<int, 3>& axes = geometry.axes();
-  this->Pixels.resize(this->Points.size());
-  std::transform(this->Points.begin(), this->Points.end(), this->Pixels.begin(),
-    [&](const glm::dvec3& p)
-    {
-      const double z = p[axes[2]];
-      return glm::dvec3(glm::dvec2(p[axes[0]], p[axes[1]]) + geometry.position(z), z);
-    });
-}
-
-void ClosedSurface::findRows(int height)
-{
-  this->Rows.resize(this->Triangles.size());
-  std::transform(this->Triangles.begin(), this->Triangles.end(), this->Rows.begin(),
-    [&](const glm::ivec3& corners)
-    {
-      const Triangle triangle(
-        this->Pixels[corners[0]], this->Pixels[corners[1]], this->Pixels[corners[2]]);
-      return triangle.isEdgeOn() ? Span{} : triangle.rows(height);
-    });
+  glm::dvec2 result(Infinity, -Infinity);
+  const glm::dvec3& eye = geometry.eye();
+  bool isInside = false;
+  for (std::size_t t = 0; geometry.isPerspective() && t < this->Triangles.size(); ++t)
+  {
+    const glm::ivec3& corners = this->Triangles[t];
+    isInside ^= isMet(this->Places[corners[0]] - eye, this->Places[corners[1]] - eye,
+      this->Places[corners[2]] - eye, geometry.reversed());
+  }
+  if (isInside)
+  {
+    (geometry.reversed() ? result.y : result.x) = eye.z;
+  }
+  return result;
 }
 }

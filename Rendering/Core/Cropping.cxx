@@ -27,6 +27,21 @@ std::array<int, 2> boundaries(const glm::dvec2& planes, double shift)
   return { begin, std::max(begin, end) };
 }
 
+/// The same for the rays of a perspective image at `depth` from the reference: the first of them.
+std::array<int, 2> boundaries(const glm::dvec2& planes, const Fan& fan, double depth)
+{
+  const auto countBefore = [&](auto isBefore)
+  {
+    const auto end = std::partition_point(fan.at.begin(), fan.at.end(),
+      [&](const double& at) { return isBefore(at + fan.slope[&at - fan.at.data()] * depth); });
+    return static_cast<int>(end - fan.at.begin());
+  };
+  const glm::dvec2 p = widened(planes);
+  const int begin = countBefore([&](double x) { return x < p[0]; });
+  const int end = countBefore([&](double x) { return x <= p[1]; });
+  return { begin, std::max(begin, end) };
+}
+
 int regionOfSlice(const glm::dvec2& planes, int k)
 {
   std::array<int, 2> middle = boundaries(planes, 0.0);
@@ -43,15 +58,24 @@ int regionOfSlice(const glm::dvec2& planes, int k)
 SliceRegions regionsOf(const Cropping& cropping, const ShearWarp& geometry, int k)
 {
   const std::array<int, 3>& axes = geometry.axes();
-  const glm::dvec2 shift = geometry.position(k);
-  SliceRegions regions;
-  regions.u = boundaries(cropping.planes[axes[0]], shift.x);
-  regions.v = boundaries(cropping.planes[axes[1]], shift.y);
+  SliceRegions regions{};
+  if (geometry.isPerspective())
+  {
+    const double depth = k - geometry.reference();
+    regions.u = boundaries(cropping.planes[axes[0]], geometry.columns(), depth);
+    regions.v = boundaries(cropping.planes[axes[1]], geometry.rows(), depth);
+  }
+  else
+  {
+    const glm::dvec2 shift = geometry.position(k);
+    regions.u = boundaries(cropping.planes[axes[0]], shift.x);
+    regions.v = boundaries(cropping.planes[axes[1]], shift.y);
+  }
   const int strides[3] = { 1, 3, 9 };
   const int slice = strides[axes[2]] * regionOfSlice(cropping.planes[axes[2]], k);
-  for (int j = 0; j < 3; ++j)
+  const bool exists = k >= geometry.slices().begin && k < geometry.slices().end;
+  for (int j = 0; j < 3 && exists; ++j)
   {
-    regions.rows[j] = 0;
     for (int i = 0; i < 3; ++i)
     {
       const int bit = slice + strides[axes[1]] * j + strides[axes[0]] * i;

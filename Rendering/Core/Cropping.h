@@ -34,7 +34,7 @@ struct SliceRegions
 /**
  * A sample of slice k counts if the point where the ray crosses the middle of the slice lies in a
  * region that is shown. Where the middle region is thinner than a slice and has the middle of none,
- * the nearest slice is in it.
+ * the nearest slice is in it. Of slices that do not lie before the eye no region is shown.
  */
 SliceRegions regionsOf(const Cropping& cropping, const ShearWarp& geometry, int k);
 }

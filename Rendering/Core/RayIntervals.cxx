@@ -29,6 +29,19 @@ inline double nearestInteger(double x)
   return (x + unit) - unit;
 }
 
+/// The half-spaces as Depths::cut() and cutFan() take them.
+std::vector<glm::dvec4> asSeen(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces)
+{
+  const std::array<int, 3>& axes = geometry.axes();
+  std::vector<glm::dvec4> result;
+  for (const glm::dvec4& h : halfSpaces)
+  {
+    result.push_back(geometry.isPerspective() ? glm::dvec4(h[axes[0]], h[axes[1]], h[axes[2]], h.w)
+                                              : geometry.inPixels(h));
+  }
+  return result;
+}
+
 /// Near and far depths of some pixels in a row, in slices.
 struct Depths
 {
@@ -40,6 +53,7 @@ struct Depths
     std::fill_n(this->far, count, high);
   }
 
+  /// By a half-space of the pixels of a parallel image.
   void cut(const glm::dvec4 h, int u0, int v, int count)
   {
     // h.x u + rest + h.z z >= 0
@@ -69,6 +83,28 @@ struct Depths
     }
   }
 
+  /// By a half-space of (i, j, k), for the rays of a perspective image.
+  void cutFan(const glm::dvec4 h, const ShearWarp& geometry, int u0, int v, int count)
+  {
+    // (h.x slope + rest) (z - reference) + h.x at + start >= 0
+    const double* const at = geometry.columns().at.data() + u0;
+    const double* const slope = geometry.columns().slope.data() + u0;
+    const double reference = geometry.reference();
+    const double rest = h.y * geometry.rows().slope[v] + h.z;
+    const double start = h.y * geometry.rows().at[v] + h.z * reference + h.w;
+    const double size = glm::length(glm::dvec3(h));
+    const double level = 1e-14 * size, least = -Rounding * (size + std::abs(h.w));
+    for (int x = 0; x < count; ++x)
+    {
+      const double speed = h.x * slope[x] + rest, value = h.x * at[x] + start;
+      const double z = reference - value / speed;
+      const double nearer = std::max(this->near[x], z), farther = std::min(this->far[x], z);
+      const double outside = value < least ? -Infinity : this->far[x];
+      this->near[x] = speed > level ? nearer : this->near[x];
+      this->far[x] = speed > level ? this->far[x] : speed < -level ? farther : outside;
+    }
+  }
+
   void cut(const double* nearest, const double* farthest, int count)
   {
     for (int x = 0; x < count; ++x)
@@ -79,9 +115,9 @@ struct Depths
   }
 
   /// The first and last slice of each pixel, first > last if there are none, instead of depths.
-  void round(int slices, int count)
+  void round(const Span& slices, int count)
   {
-    const double end = slices - 1;
+    const double begin = slices.begin, end = slices.end - 1;
     for (int x = 0; x < count; ++x)
     {
       // Also keeps infinities out of the arithmetic.
@@ -94,14 +130,14 @@ struct Depths
       const bool isThin = first > last && high - low > margin;
       // Of two slices that are as near, the higher one.
       const double middle = nearestInteger(0.5 * (low + high) + Rounding);
-      this->near[x] = std::max(isThin ? middle : first, 0.0);
+      this->near[x] = std::max(isThin ? middle : first, begin);
       this->far[x] = std::min(isThin ? middle : last, end);
     }
   }
 
   /// Whether any slices are lost.
-  bool write(
-    int slices, int count, std::int16_t* __restrict first, std::int16_t* __restrict last) const
+  bool write(const Span& slices, int count, std::int16_t* __restrict first,
+    std::int16_t* __restrict last) const
   {
     int lost = 0;
     for (int x = 0; x < count; ++x)
@@ -109,7 +145,7 @@ struct Depths
       const int begin = static_cast<int>(this->near[x]), end = static_cast<int>(this->far[x]);
       first[x] = static_cast<std::int16_t>(begin);
       last[x] = static_cast<std::int16_t>(end);
-      lost |= begin | (slices - 1 - end);
+      lost |= (begin - slices.begin) | (slices.end - 1 - end);
     }
     return lost != 0;
   }
@@ -117,51 +153,66 @@ struct Depths
   double near[Most], far[Most];
 };
 
-/// Where rays enter and leave the voxels' boxes.
+/// Where rays begin and end, and where they enter and leave the voxels' boxes.
 class Reach
 {
 public:
-  explicit Reach(const ShearWarp& geometry) : Slices(geometry.size().z)
+  explicit Reach(const ShearWarp& geometry) : Columns(geometry.width()), Rows(geometry.height())
   {
-    for (int a = 0; a < 2; ++a)
+    const Span& slices = geometry.slices();
+    this->All = { geometry.faces(slices.begin).x, geometry.faces(slices.end - 1).y };
+    if (geometry.isPerspective())
     {
-      const int axis = geometry.axes()[a];
-      glm::dvec4 plane(0.0, 0.0, 0.0, 0.5);
-      plane[axis] = 1.0;
-      this->Planes[2 * a] = geometry.inPixels(plane);
-      plane = { 0.0, 0.0, 0.0, geometry.size()[a] - 0.5 };
-      plane[axis] = -1.0;
-      this->Planes[2 * a + 1] = geometry.inPixels(plane);
+      double& eye = geometry.reversed() ? this->Ends.y : this->Ends.x;
+      eye = std::clamp(geometry.eye().z, Before, Beyond);
     }
+    find(geometry.columns(), geometry.reference(), geometry.size().x, this->Columns);
+    find(geometry.rows(), geometry.reference(), geometry.size().y, this->Rows);
   }
+
+  /// The depths between which there are rays at all.
+  const glm::dvec2& ends() const { return this->Ends; }
 
   /// Opens the rays that lose no sample, or have none.
   void openWhole(int u0, int v, int count, Depths& depths) const
   {
-    Depths reach;
-    this->find(u0, v, count, reach);
+    const glm::dvec2 row = { std::max(this->All.x, this->Rows[v].x),
+      std::min(this->All.y, this->Rows[v].y) };
     for (int x = 0; x < count; ++x)
     {
+      const glm::dvec2& column = this->Columns[u0 + x];
+      const double enter = std::max(row.x, column.x), leave = std::min(row.y, column.y);
       // Voxels that a ray crosses are centred up to half a slice outside its reach.
-      const bool whole = (reach.near[x] >= reach.far[x]) |
-        ((depths.near[x] <= reach.near[x] - 0.5) & (depths.far[x] >= reach.far[x] + 0.5));
-      depths.near[x] = whole ? Before : depths.near[x];
-      depths.far[x] = whole ? Beyond : depths.far[x];
+      const bool whole = (enter >= leave) |
+        ((depths.near[x] <= std::max(enter - 0.5, this->Ends.x)) &
+          (depths.far[x] >= std::min(leave + 0.5, this->Ends.y)));
+      depths.near[x] = whole ? this->Ends.x : depths.near[x];
+      depths.far[x] = whole ? this->Ends.y : depths.far[x];
     }
   }
 
 private:
-  void find(int u0, int v, int count, Depths& depths) const
+  /// Between which depths the rays of each column (or row) are in the volume's.
+  static void find(const Fan& fan, double reference, int size, std::vector<glm::dvec2>& reach)
   {
-    depths.reset(-0.5, this->Slices - 0.5, count);
-    for (const glm::dvec4& plane : this->Planes)
+    for (std::size_t n = 0; n < reach.size(); ++n)
     {
-      depths.cut(plane, u0, v, count);
+      const double low = -0.5 - fan.at[n], high = size - 0.5 - fan.at[n], slope = fan.slope[n];
+      if (std::abs(slope) > 1e-14)
+      {
+        reach[n] = reference +
+          glm::dvec2(std::min(low / slope, high / slope), std::max(low / slope, high / slope));
+      }
+      else
+      {
+        const double rounding = Rounding * (1.0 + size);
+        reach[n] = { -Infinity, low <= rounding && high >= -rounding ? Infinity : -Infinity };
+      }
     }
   }
 
-  int Slices;
-  glm::dvec4 Planes[4];
+  glm::dvec2 All, Ends{ Before, Beyond };
+  std::vector<glm::dvec2> Columns, Rows;
 };
 }
 
@@ -173,7 +224,7 @@ void RayIntervals::clear()
 }
 
 void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces,
-  const ClosedSurface* surface, const SceneDepth* depth)
+  ClosedSurface* surface, const SceneDepth* depth)
 {
   if (halfSpaces.empty() && !surface && !depth)
   {
@@ -185,7 +236,9 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
   this->First.resize(pixels);
   this->Last.resize(pixels);
   const Reach reach(geometry);
-  const int slices = geometry.size().z;
+  const Span slices = geometry.slices();
+  const std::vector<glm::dvec4> planes = asSeen(geometry, halfSpaces);
+  const SurfaceDepths* const hull = surface ? &surface->project(geometry) : nullptr;
   std::atomic<bool> isCut(false);
   vtkSMPTools::For(0, geometry.height(), 16,
     [&](vtkIdType begin, vtkIdType end)
@@ -197,18 +250,25 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
         for (int u = 0; u < this->Width; u += Depths::Most)
         {
           const int count = std::min(Depths::Most, this->Width - u);
-          depths.reset(Before, Beyond, count);
-          for (const glm::dvec4& h : halfSpaces)
+          depths.reset(reach.ends().x, reach.ends().y, count);
+          for (const glm::dvec4& h : planes)
           {
-            depths.cut(h, u, v, count);
+            if (geometry.isPerspective())
+            {
+              depths.cutFan(h, geometry, u, v, count);
+            }
+            else
+            {
+              depths.cut(h, u, v, count);
+            }
           }
-          if (surface)
+          if (hull)
           {
-            depths.cut(surface->near(v) + u, surface->far(v) + u, count);
+            depths.cut(hull->near(v) + u, hull->far(v) + u, count);
           }
           if (depth)
           {
-            depth->endRays(u, v, count, depths.near, depths.far);
+            depth->endRays(geometry, u, v, count, depths.near, depths.far);
           }
           if (surface || depth)
           {

@@ -26,6 +26,7 @@ class SceneDepth;
  * slice nearest to the middle of the interval counts: what is thinner than a slice shows one.
  * Points within 1e-9 voxels of what cuts (relative to their coordinates) are inside. Rays that lose
  * nothing to a surface or a depth buffer have all slices, whatever cuts them outside the volume.
+ * Rays of perspective images begin at the eye, and only have slices in ShearWarp::slices().
  */
 class RayIntervals
 {
@@ -36,12 +37,12 @@ public:
 
   /**
    * Empty if nothing cuts the volume.
-   * @param halfSpaces  in pixels, as ShearWarp::inPixels() gives them
-   * @param surface     what lies outside is cut away; projected by the same geometry
-   * @param depth       of other things in the scene, which end rays; placed likewise
+   * @param halfSpaces  of index space, as View has them
+   * @param surface     what lies outside is cut away; it is projected
+   * @param depth       of other things in the scene, which end rays; placed in the same view
    */
   void find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces,
-    const ClosedSurface* surface = nullptr, const SceneDepth* depth = nullptr);
+    ClosedSurface* surface = nullptr, const SceneDepth* depth = nullptr);
 
   /// The slices that each pixel's ray crosses, of those in other intervals, if these are not empty.
   void findCrossed(const CrossedSlices& crossed, int width, int height, const RayIntervals& within);

@@ -5,6 +5,7 @@
 #include <vtkSMPTools.h>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -27,20 +28,21 @@ float* SceneDepth::allocate(const glm::ivec2& origin, const glm::ivec2& size)
   return this->Samples.data();
 }
 
-void SceneDepth::place(
-  const View& view, const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces)
+void SceneDepth::place(const View& view)
 {
-  this->Geometry = geometry;
-  const glm::dmat4& m = view.indexToClip;
-  const glm::dvec4 clip = glm::dvec4(m[0][2], m[1][2], m[2][2], m[3][2]) / m[3][3];
-  this->Depth = geometry.inPixels(0.5 * (clip + glm::dvec4(0.0, 0.0, 0.0, 1.0)));
+  // What lies before the eye has a positive w.
+  const glm::dmat4 m = view.indexToClip / (isParallel(view) ? view.indexToClip[3][3] : 1.0);
+  this->Viewport = view.viewport;
+  this->ClipToIndex = glm::inverse(m);
+  this->ClipZ = { m[0][2], m[1][2], m[2][2], m[3][2] };
+  this->ClipW = { m[0][3], m[1][3], m[2][3], m[3][3] };
   const glm::dvec3 last(view.dimensions - 1);
   const glm::dvec3 half(0.5);
   for (Body* body : { &this->Shown, &this->Voxels })
   {
     body->fronts.clear();
     body->backs.clear();
-    for (const glm::dvec4& h : halfSpaces)
+    for (const glm::dvec4& h : view.halfSpaces)
     {
       this->addHalfSpace(h, *body);
     }
@@ -58,28 +60,29 @@ void SceneDepth::addBox(const glm::dvec3& low, const glm::dvec3& high, Body& bod
   {
     glm::dvec4 plane(0.0, 0.0, 0.0, -low[a]);
     plane[a] = 1.0;
-    this->addHalfSpace(this->Geometry.inPixels(plane), body);
+    this->addHalfSpace(plane, body);
     plane = { 0.0, 0.0, 0.0, high[a] };
     plane[a] = -1.0;
-    this->addHalfSpace(this->Geometry.inPixels(plane), body);
+    this->addHalfSpace(plane, body);
   }
 }
 
 void SceneDepth::addHalfSpace(const glm::dvec4& h, Body& body) const
 {
-  const glm::dvec4& d = this->Depth;
+  // Planes are planes in the clip cube, too: dot(plane, (x, y, depth, 1)) >= 0, from -1 to 1.
+  const glm::dvec4 plane = h * this->ClipToIndex;
+  const glm::dvec4& deeper = this->ClipToIndex[2];
+  const double rounding = 1e-12 *
+    (glm::length(glm::dvec3(h)) * glm::length(glm::dvec3(deeper)) + std::abs(h.w * deeper.w));
   // Rays that run along a plane neither enter nor leave through it.
-  if (std::abs(h.z) <= 1e-12 * glm::length(glm::dvec3(h)) || d.z == 0.0)
+  if (!(std::abs(plane.z) > rounding))
   {
     return;
   }
-  // The depth where h vanishes, first of shear pixels, then of screen pixels.
-  const glm::dvec4 crossing = d - d.z / h.z * h;
-  const glm::dmat3& m = this->Geometry.screenToShear();
-  const glm::dvec2 slopes(crossing);
-  const glm::dvec3 depth(glm::dot(slopes, glm::dvec2(m[0])), glm::dot(slopes, glm::dvec2(m[1])),
-    glm::dot(slopes, glm::dvec2(m[2])) + crossing.w);
-  (h.z * d.z > 0.0 ? body.fronts : body.backs).push_back(depth);
+  const glm::dvec2 step = 1.0 / glm::dvec2(this->Viewport);
+  const glm::dvec2 slope = -glm::dvec2(plane) / plane.z;
+  const double start = 0.5 * (1.0 - plane.w / plane.z + glm::dot(slope, step - 1.0));
+  (plane.z > 0.0 ? body.fronts : body.backs).emplace_back(slope * step, start);
 }
 
 double SceneDepth::Body::entry(const glm::dvec3& pixel) const
@@ -122,30 +125,42 @@ bool SceneDepth::endsRay(const glm::ivec2& pixel, double depth) const
   return depth > entry + Rounding && depth < exit - Rounding;
 }
 
-void SceneDepth::endRays(int u, int v, int count, double* near, double* far) const
+void SceneDepth::endRays(
+  const ShearWarp& geometry, int u, int v, int count, double* near, double* far) const
 {
-  const glm::dvec4& d = this->Depth;
-  if (this->empty() || d.z == 0.0)
+  if (this->empty())
   {
     return;
   }
+  const std::array<int, 3>& axes = geometry.axes();
   const glm::ivec2 last = this->Origin + this->Size - 1;
   for (int x = 0; x < count; ++x)
   {
-    const glm::dvec3 ray(u + x, v, 1.0);
-    const glm::dvec2 seen = glm::floor(glm::dvec2(this->Geometry.shearToScreen() * ray) + 0.5);
-    const glm::ivec2 pixel(glm::clamp(seen, glm::dvec2(this->Origin), glm::dvec2(last)));
+    const glm::dvec3 seen = geometry.shearToScreen() * glm::dvec3(u + x, v, 1.0);
+    if (!(seen.z > 0.0))
+    {
+      continue; // behind the viewport's plane
+    }
+    const glm::ivec2 pixel(glm::clamp(
+      glm::floor(glm::dvec2(seen) / seen.z + 0.5), glm::dvec2(this->Origin), glm::dvec2(last)));
     const double depth = this->at(pixel);
     if (depth >= 1.0 || !this->endsRay(pixel, depth))
     {
       continue;
     }
-    const double z = (depth - glm::dot(glm::dvec3(d.x, d.y, d.w), ray)) / d.z;
-    if (d.z > 0.0)
+    // What is deeper than that, a half-space, along the ray.
+    const glm::dvec4 deeper = this->ClipZ - (2.0 * depth - 1.0) * this->ClipW;
+    const glm::dvec3 h(deeper[axes[0]], deeper[axes[1]], deeper[axes[2]]);
+    const double reference = geometry.reference();
+    const double speed =
+      glm::dot(h, glm::dvec3(geometry.columns().slope[u + x], geometry.rows().slope[v], 1.0));
+    const double z = reference -
+      (glm::dot(h, glm::dvec3(geometry.onRay(u + x, v, reference), reference)) + deeper.w) / speed;
+    if (speed > 0.0)
     {
       far[x] = std::min(far[x], z);
     }
-    else
+    else if (speed < 0.0)
     {
       near[x] = std::max(near[x], z);
     }

@@ -235,15 +235,7 @@ inline splatting::Cuts cutsBy(const splatting::ShearWarp& geometry,
 {
   splatting::Cuts cuts;
   cuts.cropping = cropping;
-  if (!halfSpaces.empty())
-  {
-    std::vector<glm::dvec4> inPixels;
-    for (const glm::dvec4& h : halfSpaces)
-    {
-      inPixels.push_back(geometry.inPixels(h));
-    }
-    cuts.intervals.find(geometry, inPixels);
-  }
+  cuts.intervals.find(geometry, halfSpaces);
   return cuts;
 }
 
