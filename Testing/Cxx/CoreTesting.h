@@ -368,16 +368,17 @@ double errorBound(splatting::Quality quality, double low, double high)
  * A column's weight of a voxel is a second difference of the kernel integrated twice, divided by
  * w s, w being the distance of rays and s the way that they go in a part: four numbers below 6,
  * known to 8 roundings (those of bells to 2^-44 as well), for 5 voxels, and as much again as they
- * are divided by their sum. Where s or w is next to nothing, 1e-6 or 1e-3 stand in for it. Rows
- * have the same. Then the weights' three factors, at most 5 products and 45 sums of them are
- * rounded to the accumulator.
+ * are divided by their sum, which of narrow bells is least between two voxels. Where s or w is next
+ * to nothing, 1e-6 or 1e-3 stand in for it. Rows have the same. Then the weights' three factors, at
+ * most 5 products and 45 sums of them are rounded to the accumulator.
  */
 template <class T>
 double perspectiveErrorBound(
   const reference::PerspectiveRays& rays, const reference::Kernel& kernel, double low, double high)
 {
-  const double number =
-    8.0 * 6.0 * 0x1p-53 + (kernel.shape == reference::Kernel::CosineBell ? 0x1p-44 : 0.0);
+  const bool isBell = kernel.shape == reference::Kernel::CosineBell;
+  const double number = 8.0 * 6.0 * 0x1p-53 + (isBell ? 0x1p-44 : 0.0);
+  const double least = isBell ? std::min(2.0 * kernel(0.5), 1.0) : 1.0;
   const int parts = reference::partsPerSlice(rays, kernel);
   double weights[2] = { 0.0, 0.0 };
   for (int k = 0; k < rays.size[2]; ++k)
@@ -391,8 +392,13 @@ double perspectiveErrorBound(
         rays.spacing(faces[0] + 0.5 * thickness), rays.spacing(faces[1] - 0.5 * thickness));
       for (double slope : rays.slope[a])
       {
+        if (slope == 0.0)
+        {
+          continue; // no ray, see ShearWarp::rayCount()
+        }
         const double s = std::abs(slope) * thickness;
-        const double off = 2.0 * 5.0 * 4.0 * number / (std::max(w, 1e-3) * std::max(s, 1e-6)) +
+        const double off =
+          2.0 * 5.0 * 4.0 * number / (least * std::max(w, 1e-3) * std::max(s, 1e-6)) +
           (s < 1e-6 ? 1e-6 / w : 0.0) + (w < 1e-3 ? 1.0 : 0.0);
         weights[a] = std::max(weights[a], off);
       }

@@ -115,7 +115,8 @@ void testTraversalByBruteForce(Checks& check, reference::Random& random)
     for (const splatting::ShearWarp& image : images)
     {
       const PerspectiveRays rays = referenceRays(image);
-      const int u = random.uniform(0, rays.width() - 1), v = random.uniform(0, rays.height() - 1);
+      const int u = random.uniform(0, image.rayCount().x - 1);
+      const int v = random.uniform(0, image.rayCount().y - 1);
       const auto found = reference::crossedVoxels(rays, u, v);
       std::array<int, 3> ijk, voxel;
       for (ijk[2] = 0; ijk[2] < rays.size[2]; ++ijk[2])
@@ -309,7 +310,8 @@ void testAveragesByBruteForce(Checks& check, reference::Random& random)
       {
         const PerspectiveRays rays = referenceRays(image);
         const auto samples = reference::slabSamples(volume, rays, kernel);
-        const int u = random.uniform(0, rays.width() - 1), v = random.uniform(0, rays.height() - 1);
+        const int u = random.uniform(0, image.rayCount().x - 1);
+        const int v = random.uniform(0, image.rayCount().y - 1);
         for (const auto& sample : samples[std::size_t(v) * rays.width() + u])
         {
           const double expected = bruteForceAverage(volume, rays, kernel, u, v, sample.slice);

@@ -193,7 +193,8 @@ void testPerspectiveRayPaths(Checks& check, reference::Random& random)
     for (const splatting::ShearWarp& image : images)
     {
       const reference::PerspectiveRays rays = referenceRays(image);
-      const int u = random.uniform(0, image.width() - 1), v = random.uniform(0, image.height() - 1);
+      const int u = random.uniform(0, image.rayCount().x - 1);
+      const int v = random.uniform(0, image.rayCount().y - 1);
       std::vector<glm::ivec3> found, expected;
       for (int k = 0; k < image.size().z; ++k)
       {
