@@ -186,48 +186,67 @@ bool ComponentProjector::Shows(const splatting::ProjectionSettings& settings) co
 }
 
 //------------------------------------------------------------------------------
-bool ComponentProjector::ProjectChannel(Channel& channel, const splatting::ShearWarp& geometry,
-  const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts)
+bool ComponentProjector::ProjectChannel(Channel& channel, std::size_t n,
+  const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
+  const splatting::Cuts& cuts)
 {
   channel.Settings = this->SettingsOf(channel, settings);
   const splatting::Acceleration used =
-    this->Projector.project(channel.Index, geometry, channel.Settings, cuts, channel.Image);
+    this->Projector.project(channel.Index, geometry, channel.Settings, cuts, channel.Images[n]);
   if (this->Projector.stopped())
   {
     return false;
   }
   channel.Used = used;
+  ++this->Done;
   return true;
 }
 
 //------------------------------------------------------------------------------
-bool ComponentProjector::Project(const splatting::ShearWarp& geometry,
+// One image of all channels: what is carried needs the projector as the projection has left it.
+bool ComponentProjector::ProjectImage(std::size_t n, const splatting::ShearWarp& geometry,
   const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts)
 {
-  this->Projected = false;
-  const bool carries = this->Carries(settings);
+  if (!this->Carries(settings))
+  {
+    return std::all_of(this->Channels.begin(), this->Channels.end(),
+      [&](Channel& channel) { return this->ProjectChannel(channel, n, geometry, settings, cuts); });
+  }
   Channel& last = this->Channels.back();
-  this->Done = 0;
-  if (carries && !this->ProjectChannel(last, geometry, settings, cuts))
+  if (!this->ProjectChannel(last, n, geometry, settings, cuts))
   {
     return false;
   }
   for (Channel& channel : this->Channels)
   {
-    if (!carries)
-    {
-      if (!this->ProjectChannel(channel, geometry, settings, cuts))
-      {
-        return false;
-      }
-      ++this->Done;
-    }
-    else if (&channel != &last)
+    if (&channel != &last)
     {
       channel.Settings = last.Settings;
       channel.Used = last.Used;
       this->Projector.carry(
-        channel.Index.volume(), geometry, last.Settings, last.Image, channel.Image);
+        channel.Index.volume(), geometry, last.Settings, last.Images[n], channel.Images[n]);
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool ComponentProjector::Project(const std::vector<splatting::ShearWarp>& geometries,
+  const splatting::ProjectionSettings& settings, const std::vector<splatting::Cuts>& cuts)
+{
+  this->Projected = false;
+  this->Done = 0;
+  this->Images = geometries.size();
+  for (Channel& channel : this->Channels)
+  {
+    channel.Images.resize(std::max(channel.Images.size(), this->Images));
+    channel.Settings = this->SettingsOf(channel, settings); // there may be no image
+  }
+  for (std::size_t n = 0; n < this->Images; ++n)
+  {
+    if (!this->ProjectImage(n, geometries[n], settings, cuts[n]))
+    {
+      return false;
     }
   }
   this->Projected = true;
@@ -237,19 +256,19 @@ bool ComponentProjector::Project(const splatting::ShearWarp& geometry,
 //------------------------------------------------------------------------------
 double ComponentProjector::ShareOfAll(double done) const
 {
-  const double projections =
-    this->Carries(this->Settings()) ? 1.0 : static_cast<double>(this->Channels.size());
-  return (this->Done + done) / projections;
+  const std::size_t channels = this->Carries(this->Settings()) ? 1 : this->Channels.size();
+  return (this->Done + done) /
+    static_cast<double>(channels * std::max<std::size_t>(this->Images, 1));
 }
 
 //------------------------------------------------------------------------------
-void ComponentProjector::Warp(
-  const splatting::ShearWarp& geometry, const splatting::View& view, splatting::Picture& picture)
+void ComponentProjector::Warp(const std::vector<splatting::ShearWarp>& geometries,
+  const splatting::View& view, splatting::Picture& picture)
 {
   for (Channel& channel : this->Channels)
   {
     const bool first = &channel == &this->Channels.front();
-    this->Warper.warp(channel.Image, geometry, channel.Colors, view.viewport,
+    this->Warper.warp(channel.Images, geometries, channel.Colors, view.viewport,
       channel.Settings.instructionSet, first ? picture : this->Layer);
     if (first)
     {
@@ -267,13 +286,14 @@ void ComponentProjector::Warp(
 }
 
 //------------------------------------------------------------------------------
-void ComponentProjector::CopyImages(
-  const splatting::ShearWarp& geometry, int vtkType, vtkImageData* output) const
+void ComponentProjector::CopyImage(
+  std::size_t n, const splatting::ShearWarp& geometry, int vtkType, vtkImageData* output) const
 {
-  const splatting::ShearImage& first = this->Channels.front().Image;
+  const splatting::ShearImage& first = this->Channels.front().Images[n];
   const std::size_t components = this->Channels.size(), size = splatting::sizeOf(first.type);
   output->SetDimensions(first.width, first.height, 1);
-  output->SetOrigin(-geometry.margin().x, -geometry.margin().y, 0.0);
+  output->SetOrigin(geometry.columns().at.front(), geometry.rows().at.front(), 0.0);
+  output->SetSpacing(geometry.pitch(), geometry.pitch(), 1.0);
   output->AllocateScalars(vtkType, static_cast<int>(components));
   const std::size_t pixels = static_cast<std::size_t>(output->GetNumberOfPoints());
   auto* const scalars = static_cast<unsigned char*>(output->GetScalarPointer());
@@ -283,7 +303,7 @@ void ComponentProjector::CopyImages(
   ghosts->Fill(vtkDataSetAttributes::HIDDENPOINT);
   for (std::size_t c = 0; c < components; ++c)
   {
-    const splatting::ShearImage& image = this->Channels[c].Image;
+    const splatting::ShearImage& image = this->Channels[c].Images[n];
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     {
       std::memcpy(

@@ -51,28 +51,30 @@ public:
   bool Shows(const splatting::ProjectionSettings& settings) const;
 
   /**
-   * Projects all components. False if the projector's watch has stopped it: there are no images
-   * then.
+   * Projects all components into all images of a view, each with its cuts. False if the projector's
+   * watch has stopped it: there are no images then.
    */
-  bool Project(const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
-    const splatting::Cuts& cuts);
+  bool Project(const std::vector<splatting::ShearWarp>& geometries,
+    const splatting::ProjectionSettings& settings, const std::vector<splatting::Cuts>& cuts);
 
   /// Whether there are images.
   bool IsProjected() const { return this->Projected; }
   /// The images no longer show what they should.
   void Forget() { this->Projected = false; }
 
-  /// The picture of the images in a view with that geometry.
-  void Warp(
-    const splatting::ShearWarp& geometry, const splatting::View& view, splatting::Picture& picture);
+  /// The picture of the images in a view with these geometries.
+  void Warp(const std::vector<splatting::ShearWarp>& geometries, const splatting::View& view,
+    splatting::Picture& picture);
 
-  /// The images as one with as many components, and which pixels have no sample in its ghost array.
-  void CopyImages(const splatting::ShearWarp& geometry, int vtkType, vtkImageData* output) const;
+  /// One image of all components as one with as many components, and which pixels have no sample in
+  /// its ghost array.
+  void CopyImage(
+    std::size_t n, const splatting::ShearWarp& geometry, int vtkType, vtkImageData* output) const;
 
   /// Of the last projection.
   const splatting::ProjectionSettings& Settings() const { return this->Channels.front().Settings; }
   splatting::Acceleration Used() const { return this->Channels.front().Used; }
-  splatting::ScalarType ImageType() const { return this->Channels.front().Image.type; }
+  splatting::ScalarType ImageType() const { return this->Channels.front().Images.front().type; }
 
   /// Part of all components that the projection of one is, from the share of that.
   double ShareOfAll(double done) const;
@@ -85,7 +87,7 @@ private:
     splatting::VolumeIndex Index;
     splatting::ColorTable Colors;
     splatting::ProjectionSettings Settings;
-    splatting::ShearImage Image;
+    std::vector<splatting::ShearImage> Images; // at least as many as the view has
     splatting::Acceleration Used = splatting::Acceleration::Dense;
 
     double FloorOfWindow() const;
@@ -94,7 +96,9 @@ private:
   splatting::ProjectionSettings SettingsOf(
     const Channel& channel, splatting::ProjectionSettings settings) const;
   bool Carries(const splatting::ProjectionSettings& settings) const;
-  bool ProjectChannel(Channel& channel, const splatting::ShearWarp& geometry,
+  bool ProjectImage(std::size_t n, const splatting::ShearWarp& geometry,
+    const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
+  bool ProjectChannel(Channel& channel, std::size_t n, const splatting::ShearWarp& geometry,
     const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
   ScalarRange RangeOf(Channel& channel) const;
   splatting::ColorTable ColorsOf(
@@ -104,8 +108,9 @@ private:
   bool Dependent = false;
   bool Cull = false;
   bool Projected = false;
-  int Done = 0;          // channels of the present projection
-  vtkIdType Version = 0; // of the source
+  int Done = 0;           // of the present projection's images of channels
+  std::size_t Images = 1; // of a channel
+  vtkIdType Version = 0;  // of the source
 
   vtkVolumeProperty* ColoredBy = nullptr; // only compared
   vtkMTimeType ColorTime = 0;

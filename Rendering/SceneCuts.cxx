@@ -8,11 +8,10 @@
 #include <algorithm>
 
 //------------------------------------------------------------------------------
-void SceneCuts::Find(const splatting::View& view, const splatting::ShearWarp& geometry,
+void SceneCuts::Find(const splatting::View& view, const std::vector<splatting::ShearWarp>& images,
   vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
 {
-  this->Present.cropping = view.cropping;
-  splatting::placePicture(geometry, view.viewport, this->Place);
+  splatting::placePicture(images, view.viewport, this->Place);
   this->Seen = renderer->GetSelector() ? this->RememberScene(view, renderer, volume, intermixes)
                                        : this->LookAtScene(renderer, volume, intermixes, readDepth);
   if (this->Seen)
@@ -20,8 +19,13 @@ void SceneCuts::Find(const splatting::View& view, const splatting::ShearWarp& ge
     this->Seen->indexToClip = view.indexToClip;
     this->Seen->depth.place(view);
   }
-  this->Present.intervals.find(
-    geometry, view.halfSpaces, this->Bounds.Get(), this->Seen ? &this->Seen->depth : nullptr);
+  this->Present.resize(images.size());
+  for (std::size_t n = 0; n < images.size(); ++n)
+  {
+    this->Present[n].cropping = view.cropping;
+    this->Present[n].intervals.find(images[n], view.halfSpaces, this->Bounds.Get(),
+      this->Seen ? &this->Seen->depth : nullptr);
+  }
 }
 
 //------------------------------------------------------------------------------

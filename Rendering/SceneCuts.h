@@ -32,11 +32,11 @@ public:
   /**
    * @param intermixes  whether geometry in the scene hides the volume and ends rays in it
    */
-  void Find(const splatting::View& view, const splatting::ShearWarp& geometry,
+  void Find(const splatting::View& view, const std::vector<splatting::ShearWarp>& images,
     vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
 
-  /// What Find() has found.
-  const splatting::Cuts& Get() const { return this->Present; }
+  /// What Find() has found, for each image.
+  const std::vector<splatting::Cuts>& Get() const { return this->Present; }
 
   /// Whether that is what it was when it was last kept.
   bool AreKept() const { return this->Present == this->Kept; }
@@ -66,7 +66,7 @@ private:
   Scene& SceneOf(const vtkRenderer* renderer, const vtkVolume* volume);
 
   ::BoundingSurface Bounds;
-  splatting::Cuts Present, Kept;
+  std::vector<splatting::Cuts> Present, Kept;
   std::vector<Scene> Scenes;
   Scene* Seen = nullptr; // in the present frame, if there is anything
   vtkTypeInt64 Frame = 0;

@@ -76,9 +76,12 @@ class vtkSplattingMIPVolumeMapper::Internals
 public:
   std::string Problem(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
   std::string ProblemOfSettings(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
-  const char* ReasonToRayCast(vtkSplattingMIPVolumeMapper* self, const splatting::View& view);
+  const char* ReasonToRayCast(vtkSplattingMIPVolumeMapper* self);
   void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
+  bool AreAsBefore(bool ordered) const;
+  std::size_t MainImage() const;
+  bool HasImage() const { return this->Components.IsProjected() && !this->Images.empty(); }
   double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
   bool Project(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
     const splatting::View& view, int mode);
@@ -92,7 +95,7 @@ public:
   ScalarSource Source;
   ComponentProjector Components;
   SceneCuts Cuts;
-  splatting::ShearWarp Geometry; // of the last frame
+  std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last frame and the one before
   splatting::Picture Picture;
 
   vtkIdType Projections = 0;
@@ -180,16 +183,12 @@ std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
 
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
-  vtkSplattingMIPVolumeMapper* self, const splatting::View& view)
+  vtkSplattingMIPVolumeMapper* self)
 {
   if (self->BlendMode != MAXIMUM_INTENSITY_BLEND && self->BlendMode != MINIMUM_INTENSITY_BLEND &&
     self->BlendMode != AVERAGE_INTENSITY_BLEND)
   {
     return "the blend mode is no intensity projection";
-  }
-  if (!splatting::isParallel(view))
-  {
-    return "the camera is perspective";
   }
   return nullptr;
 }
@@ -219,34 +218,50 @@ std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfSettings(
 }
 
 //------------------------------------------------------------------------------
+// Whether this frame's rays are the last one's, and come from the same side where that matters.
+bool vtkSplattingMIPVolumeMapper::Internals::AreAsBefore(bool ordered) const
+{
+  return std::equal(this->Images.begin(), this->Images.end(), this->ImagesBefore.begin(),
+    this->ImagesBefore.end(),
+    [=](const splatting::ShearWarp& a, const splatting::ShearWarp& b)
+    { return a.sameShear(b) && (!ordered || a.reversed() == b.reversed()); });
+}
+
+//------------------------------------------------------------------------------
+// The largest image; there is one.
+std::size_t vtkSplattingMIPVolumeMapper::Internals::MainImage() const
+{
+  const auto largest = std::max_element(this->Images.begin(), this->Images.end(),
+    [](const splatting::ShearWarp& a, const splatting::ShearWarp& b)
+    { return a.rayCount().x * a.rayCount().y < b.rayCount().x * b.rayCount().y; });
+  return static_cast<std::size_t>(largest - this->Images.begin());
+}
+
+//------------------------------------------------------------------------------
 // Projects in this mode, unless the last shear image shows the same, or better within what is
 // wanted. False if the view has no meaning. There is no image after an abort.
 bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper* self,
   vtkRenderer* ren, vtkVolume* vol, const splatting::View& view, int mode)
 {
-  const splatting::ShearWarp geometry(view);
-  if (!geometry.valid())
+  std::swap(this->Images, this->ImagesBefore);
+  if (!splatting::ShearWarp::factorise(view, this->Images))
   {
     return false;
   }
   const double start = vtkTimerLog::GetUniversalTime();
-  this->Cuts.Find(view, geometry, ren, vol, self->IntermixIntersectingGeometry != 0,
+  this->Cuts.Find(view, this->Images, ren, vol, self->IntermixIntersectingGeometry != 0,
     [=](const int origin[2], const int size[2], float* depths)
     { return self->ReadDepth(ren, origin, size, depths); });
   const int usable =
     std::clamp(static_cast<int>(this->Components.Settings().quality), mode, self->QualityMode);
   const splatting::ProjectionSettings wanted = projectionSettings(self, usable);
-  const bool turned =
-    geometry.reversed() != this->Geometry.reversed() && splatting::isOrdered(wanted.reduction);
-  const bool same = !turned && geometry.sameShear(this->Geometry) && this->Cuts.AreKept() &&
-    this->Components.Shows(wanted);
-  this->Geometry = geometry;
-  if (same)
+  if (this->AreAsBefore(splatting::isOrdered(wanted.reduction)) && this->Cuts.AreKept() &&
+    this->Components.Shows(wanted))
   {
     return true;
   }
   this->ShearImageOutput = nullptr;
-  if (this->Components.Project(geometry, projectionSettings(self, mode), this->Cuts.Get()))
+  if (this->Components.Project(this->Images, projectionSettings(self, mode), this->Cuts.Get()))
   {
     this->Cuts.Keep();
     this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
@@ -339,7 +354,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     vtkWarningMacro(<< "The rectilinear grid is resampled to larger steps than its least, which is "
                        "too small for that: small cells may be lost. Extract a part of it.");
   }
-  if (const char* reason = in.ReasonToRayCast(this, view))
+  if (const char* reason = in.ReasonToRayCast(this))
   {
     this->RenderByRayCasting(ren, vol, reason);
     return "";
@@ -383,7 +398,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   in.BudgetReported = exceeds;
   if (in.Components.IsProjected())
   {
-    in.Components.Warp(in.Geometry, view, in.Picture);
+    in.Components.Warp(in.Images, view, in.Picture);
     in.Cuts.Hide(in.Picture);
     this->DisplayPicture(ren);
   }
@@ -483,15 +498,16 @@ void vtkSplattingMIPVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 vtkImageData* vtkSplattingMIPVolumeMapper::GetShearImage()
 {
   Internals& in = *this->Internal;
-  if (!in.Components.IsProjected())
+  if (!in.HasImage())
   {
     in.ShearImageOutput = nullptr;
   }
   else if (!in.ShearImageOutput)
   {
     in.ShearImageOutput = vtkSmartPointer<vtkImageData>::New();
-    in.Components.CopyImages(
-      in.Geometry, in.Source.VtkTypeOf(in.Components.ImageType()), in.ShearImageOutput);
+    const std::size_t n = in.MainImage();
+    in.Components.CopyImage(
+      n, in.Images[n], in.Source.VtkTypeOf(in.Components.ImageType()), in.ShearImageOutput);
   }
   return in.ShearImageOutput;
 }
@@ -499,14 +515,21 @@ vtkImageData* vtkSplattingMIPVolumeMapper::GetShearImage()
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetPrincipalAxis()
 {
-  return this->Internal->Components.IsProjected() ? this->Internal->Geometry.principalAxis() : -1;
+  const Internals& in = *this->Internal;
+  return in.HasImage() ? in.Images[in.MainImage()].principalAxis() : -1;
 }
 
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::GetShear(double shear[2])
 {
-  shear[0] = this->Internal->Geometry.shear().x;
-  shear[1] = this->Internal->Geometry.shear().y;
+  const Internals& in = *this->Internal;
+  shear[0] = shear[1] = 0.0;
+  if (in.HasImage())
+  {
+    const splatting::ShearWarp& image = in.Images[in.MainImage()];
+    shear[0] = -image.columns().slope[image.rayCount().x / 2];
+    shear[1] = -image.rows().slope[image.rayCount().y / 2];
+  }
 }
 
 //------------------------------------------------------------------------------

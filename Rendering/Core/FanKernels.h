@@ -204,27 +204,115 @@ inline void crossPixels(const Crossing<T>& c, T* image, const unsigned char* bit
 }
 
 #if defined(__AVX2__)
-/// All bits of the elements of a register of T whose ticks are less, and of those that are greater.
-template <class T>
+/// Of a register of pixels, those that change columns before the ray changes rows, those that
+/// change them after it, and whether any are neither or cannot be told by their ticks.
+#if defined(__AVX512F__)
 struct TickOrder
 {
-  Pack<Integer<T>> less, greater;
+  std::uint64_t before, after;
   bool ties;
 };
 
-template <class T>
-inline TickOrder<T> orderOf(const std::int16_t* ticks, std::int16_t tick)
+template <int Pixels>
+inline TickOrder orderOf(const std::int16_t* ticks, std::int16_t tick)
 {
-  typedef std::int16_t loose __attribute__((vector_size(2 * width<T>), aligned(2), may_alias));
-  typedef std::int16_t whole __attribute__((vector_size(2 * width<T>)));
-  const whole own = *reinterpret_cast<const loose*>(ticks);
-  TickOrder<T> order;
-  order.less = __builtin_convertvector(own < tick, Pack<Integer<T>>);
-  order.greater = __builtin_convertvector(own > tick, Pack<Integer<T>>);
+  if constexpr (Pixels == 64)
+  {
+    const TickOrder low = orderOf<32>(ticks, tick), high = orderOf<32>(ticks + 32, tick);
+    return { low.before | high.before << 32, low.after | high.after << 32, low.ties || high.ties };
+  }
+  else if constexpr (Pixels == 32)
+  {
+    const Register own = loadRegister(ticks), other = _mm512_set1_epi16(tick);
+    const std::uint32_t before = _mm512_cmplt_epi16_mask(own, other);
+    const std::uint32_t after = _mm512_cmpgt_epi16_mask(own, other);
+    return { before, after, (before | after) != 0xffffffffu };
+  }
+  else if constexpr (Pixels == 16)
+  {
+    const __m256i own = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(ticks));
+    const __m256i other = _mm256_set1_epi16(tick);
+    const std::uint32_t before = _mm256_cmplt_epi16_mask(own, other);
+    const std::uint32_t after = _mm256_cmpgt_epi16_mask(own, other);
+    return { before, after, (before | after) != 0xffffu };
+  }
+  else
+  {
+    const __m128i own = _mm_loadu_si128(reinterpret_cast<const __m128i*>(ticks));
+    const __m128i other = _mm_set1_epi16(tick);
+    const std::uint32_t before = _mm_cmplt_epi16_mask(own, other);
+    const std::uint32_t after = _mm_cmpgt_epi16_mask(own, other);
+    return { before, after, (before | after) != 0xffu };
+  }
+}
+
+/// b where there are bits, else a.
+template <int Bytes>
+inline Register chosen(std::uint64_t bits, Register a, Register b)
+{
+  if constexpr (Bytes == 1)
+  {
+    return _mm512_mask_blend_epi8(bits, a, b);
+  }
+  else if constexpr (Bytes == 2)
+  {
+    return _mm512_mask_blend_epi16(static_cast<__mmask32>(bits), a, b);
+  }
+  else if constexpr (Bytes == 4)
+  {
+    return _mm512_mask_blend_epi32(static_cast<__mmask16>(bits), a, b);
+  }
+  else
+  {
+    return _mm512_mask_blend_epi64(static_cast<__mmask8>(bits), a, b);
+  }
+}
+#else
+struct TickOrder
+{
+  Register before, after;
+  bool ties;
+};
+
+template <int Pixels>
+inline TickOrder orderOf(const std::int16_t* ticks, std::int16_t tick)
+{
+  TickOrder order;
+  const Register other = _mm256_set1_epi16(tick);
+  if constexpr (Pixels == 32)
+  {
+    const Register low = loadRegister(ticks), high = loadRegister(ticks + 16);
+    // Packed within halves.
+    const auto packed = [](Register a, Register b)
+    { return _mm256_permute4x64_epi64(_mm256_packs_epi16(a, b), 0xD8); };
+    order.before = packed(_mm256_cmpgt_epi16(other, low), _mm256_cmpgt_epi16(other, high));
+    order.after = packed(_mm256_cmpgt_epi16(low, other), _mm256_cmpgt_epi16(high, other));
+  }
+  else if constexpr (Pixels == 16)
+  {
+    const Register own = loadRegister(ticks);
+    order.before = _mm256_cmpgt_epi16(other, own);
+    order.after = _mm256_cmpgt_epi16(own, other);
+  }
+  else
+  {
+    const Register own =
+      _mm256_cvtepi16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(ticks)));
+    order.before = _mm256_cmpgt_epi32(_mm256_set1_epi32(tick), own);
+    order.after = _mm256_cmpgt_epi32(own, _mm256_set1_epi32(tick));
+  }
+  order.ties = _mm256_movemask_epi8(_mm256_or_si256(order.before, order.after)) != -1;
   return order;
 }
 
-/// One register of pixels, of which some may lie behind the row's end.
+template <int>
+inline Register chosen(Register bits, Register a, Register b)
+{
+  return _mm256_blendv_epi8(a, b, bits);
+}
+#endif
+
+/// One register of pixels.
 template <class T, bool TwoRows>
 inline Pack<T> crossed(
   const Crossing<T>& c, const T* const (&rows)[2], std::int16_t tick, std::ptrdiff_t x, bool& ties)
@@ -234,24 +322,18 @@ inline Pack<T> crossed(
   const std::int32_t* const exitBase = c.exitBase + x / Picker<T>::group;
   const Register entryLanes = loadRegister(static_cast<const Integer<T>*>(c.entryLanes) + x);
   const Register exitLanes = loadRegister(static_cast<const Integer<T>*>(c.exitLanes) + x);
-  const Pack<T> first = (Pack<T>)Picker<T>::pick(rows[0], entryBase, entryLanes, none);
-  const Pack<T> last = (Pack<T>)Picker<T>::pick(rows[1], exitBase, exitLanes, none);
-  Pack<T> best = larger(first, last);
+  const Register first = Picker<T>::pick(rows[0], entryBase, entryLanes, none);
+  const Register last = Picker<T>::pick(rows[1], exitBase, exitLanes, none);
+  const Pack<T> best = larger((Pack<T>)first, (Pack<T>)last);
   if constexpr (TwoRows)
   {
-    const Pack<T> columnFirst = (Pack<T>)Picker<T>::pick(rows[0], exitBase, exitLanes, none);
-    const Pack<T> rowFirst = (Pack<T>)Picker<T>::pick(rows[1], entryBase, entryLanes, none);
-    const TickOrder<T> order = orderOf<T>(c.columnTick + x, tick);
-    const Pack<T> corner = order.less ? columnFirst : order.greater ? rowFirst : first;
-    const Pack<Integer<T>> unequal = order.less | order.greater;
-    ties = false;
-    const Register bits = (Register)unequal;
-#if defined(__AVX512F__)
-    ties = _mm512_movepi8_mask(bits) != ~0ull;
-#else
-    ties = _mm256_movemask_epi8(bits) != -1;
-#endif
-    best = larger(corner, best);
+    const TickOrder order = orderOf<width<T>>(c.columnTick + x, tick);
+    ties = order.ties;
+    const Register columnFirst = Picker<T>::pick(rows[0], exitBase, exitLanes, none);
+    const Register rowFirst = Picker<T>::pick(rows[1], entryBase, entryLanes, none);
+    const Register corner =
+      chosen<sizeof(T)>(order.before, chosen<sizeof(T)>(order.after, first, rowFirst), columnFirst);
+    return larger((Pack<T>)corner, best);
   }
   return best;
 }

@@ -542,36 +542,75 @@ void bound(A* __restrict own, const A* __restrict before, const A* __restrict af
   }
 }
 
+/// What places on the screen mix into, `chunk` of them at a time: each its pixel and the three
+/// beyond it along u and v.
+template <class A>
+struct Places
+{
+  static constexpr std::int32_t chunk = 64;
+  std::int32_t at[chunk];
+  A fu[chunk], fv[chunk];
+
+  inline void set(std::int32_t x, double u, double v, std::int32_t rowLength)
+  {
+    const std::int32_t i = static_cast<std::int32_t>(u); // both positive: truncation is floor
+    const std::int32_t j = static_cast<std::int32_t>(v);
+    this->fu[x] = static_cast<A>(u - i);
+    this->fv[x] = static_cast<A>(v - j);
+    this->at[x] = j * rowLength + i;
+  }
+  inline void mix(
+    const A* __restrict image, std::int32_t rowLength, A* __restrict out, std::int32_t count) const
+  {
+    for (std::int32_t x = 0; x < count; ++x)
+    {
+      const A a = image[this->at[x]], b = image[this->at[x] + 1];
+      const A c = image[this->at[x] + rowLength], d = image[this->at[x] + rowLength + 1];
+      const A lower = a + this->fu[x] * (b - a);
+      const A upper = c + this->fu[x] * (d - c);
+      out[x] = lower + this->fv[x] * (upper - lower);
+    }
+  }
+};
+
 template <class A>
 void interpolate(const A* __restrict image, std::ptrdiff_t stride, const double start[2],
   const double step[2], A* __restrict out, std::ptrdiff_t n)
 {
   // In steps that each vectorise: places, then the four neighbours, then their mixture.
-  constexpr std::int32_t chunk = 64;
   const double u0 = start[0], v0 = start[1], du = step[0], dv = step[1];
   const std::int32_t rowLength = static_cast<std::int32_t>(stride);
-  for (std::int32_t begin = 0; begin < n; begin += chunk)
+  Places<A> places;
+  for (std::int32_t begin = 0; begin < n; begin += places.chunk)
   {
-    const std::int32_t count = begin + chunk < n ? chunk : static_cast<std::int32_t>(n) - begin;
-    std::int32_t at[chunk];
-    A fu[chunk], fv[chunk];
+    const std::int32_t left = static_cast<std::int32_t>(n) - begin;
+    const std::int32_t count = left < places.chunk ? left : places.chunk;
     for (std::int32_t x = 0; x < count; ++x)
     {
-      const double u = u0 + (begin + x) * du, v = v0 + (begin + x) * dv;
-      const std::int32_t i = static_cast<std::int32_t>(u); // both positive: truncation is floor
-      const std::int32_t j = static_cast<std::int32_t>(v);
-      fu[x] = static_cast<A>(u - i);
-      fv[x] = static_cast<A>(v - j);
-      at[x] = j * rowLength + i;
+      places.set(x, u0 + (begin + x) * du, v0 + (begin + x) * dv, rowLength);
     }
+    places.mix(image, rowLength, out + begin, count);
+  }
+}
+
+template <class A>
+void interpolateProjective(const A* __restrict image, std::ptrdiff_t stride, const double start[3],
+  const double step[3], A* __restrict out, std::ptrdiff_t n)
+{
+  const double u0 = start[0], v0 = start[1], w0 = start[2];
+  const double du = step[0], dv = step[1], dw = step[2];
+  const std::int32_t rowLength = static_cast<std::int32_t>(stride);
+  Places<A> places;
+  for (std::int32_t begin = 0; begin < n; begin += places.chunk)
+  {
+    const std::int32_t left = static_cast<std::int32_t>(n) - begin;
+    const std::int32_t count = left < places.chunk ? left : places.chunk;
     for (std::int32_t x = 0; x < count; ++x)
     {
-      const A a = image[at[x]], b = image[at[x] + 1];
-      const A c = image[at[x] + rowLength], d = image[at[x] + rowLength + 1];
-      const A lower = a + fu[x] * (b - a);
-      const A upper = c + fu[x] * (d - c);
-      out[begin + x] = lower + fv[x] * (upper - lower);
+      const double perW = 1.0 / (w0 + (begin + x) * dw);
+      places.set(x, (u0 + (begin + x) * du) * perW, (v0 + (begin + x) * dv) * perW, rowLength);
     }
+    places.mix(image, rowLength, out + begin, count);
   }
 }
 
@@ -603,7 +642,7 @@ constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>,
   &blend<A>, &raiseBlend<A>, &splat<A>, &splatValid<A>,
   static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
   static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
-  &lookUp<A> };
+  &interpolateProjective<A>, &lookUp<A> };
 }
 
 extern const Kernels SPLATTING_KERNELS;

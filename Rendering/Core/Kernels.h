@@ -292,6 +292,9 @@ struct WorksheetLoops
   /// exist.
   void (*interpolate)(const A* image, std::ptrdiff_t stride, const double start[2],
     const double step[2], A* out, std::ptrdiff_t n);
+  /// The same at (u, v) of start + x step = (u w, v w, w).
+  void (*interpolateProjective)(const A* image, std::ptrdiff_t stride, const double start[3],
+    const double step[3], A* out, std::ptrdiff_t n);
   /// out[x] = colors[nearest entry to scale (values[x] - low)], clamped to [0, last].
   void (*lookUp)(const A* values, A low, A scale, std::int32_t last, const std::uint32_t* colors,
     std::uint32_t* out, std::ptrdiff_t n);

@@ -74,7 +74,7 @@ void SceneDepth::addHalfSpace(const glm::dvec4& h, Body& body) const
   const glm::dvec4& deeper = this->ClipToIndex[2];
   const double rounding = 1e-12 *
     (glm::length(glm::dvec3(h)) * glm::length(glm::dvec3(deeper)) + std::abs(h.w * deeper.w));
-  // Rays that run along a plane neither enter nor leave through it.
+  // Rays that run along a plane, or begin in it, neither enter nor leave through it.
   if (!(std::abs(plane.z) > rounding))
   {
     return;

@@ -85,8 +85,8 @@ RayPath path(const glm::dvec2& entry, const glm::dvec2& exit, const glm::dvec2& 
   }
   return found;
 }
+}
 
-/// A convex cone, given by its edges, where dot(side, direction) >= 0.
 std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm::dvec3& side)
 {
   std::vector<glm::dvec3> result;
@@ -105,7 +105,6 @@ std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm:
     }
   }
   return result;
-}
 }
 
 ShearWarp::ShearWarp(const View& view)
@@ -137,23 +136,25 @@ ShearWarp::ShearWarp(const View& view)
   this->Valid = true;
 }
 
-void ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images)
+bool ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images)
 {
   if (isParallel(view))
   {
     images.resize(1);
     images.front() = ShearWarp(view);
     images.resize(images.front().valid() ? 1 : 0);
-    return;
+    return !images.empty();
   }
   std::size_t count = 0;
   Rays rays;
-  for (int direction = 0; findRays(view, rays) && direction < 6; ++direction)
+  const bool valid = findRays(view, rays);
+  for (int direction = 0; valid && direction < 6; ++direction)
   {
     images.resize(std::max(images.size(), count + 1));
     count += images[count].lookAlong(direction / 2, direction % 2 == 1, view, rays);
   }
   images.resize(count);
+  return valid;
 }
 
 void ShearWarp::chooseAxes(const glm::dvec3& direction)
@@ -261,25 +262,39 @@ bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays&
   constexpr double narrower = 1.0 + 0x1p-10;
   this->Steps = static_cast<std::int64_t>(std::ceil(2.0 * farthest * narrower)) | 1;
   this->Pitch = 2.0 * farthest / static_cast<double>(this->Steps);
-  std::int64_t first[2];
-  if (!this->placeImage(view, directions, first))
+  if (!this->placeImage(view, directions))
   {
     return false;
   }
-  this->setFan(0, first[0], this->Columns);
-  this->setFan(1, first[1], this->Rows);
-  // Pixel n of all has slope (2 n / Steps - 1): (x, y, z) of a direction to (u w, v w, w), w = z.
-  const double half = 0.5 * static_cast<double>(this->Steps);
-  const glm::dmat3 toPixels(half, 0.0, 0.0, 0.0, half, 0.0, half - static_cast<double>(first[0]),
-    half - static_cast<double>(first[1]), 1.0);
-  this->ScreenToShear = toPixels * directions;
+  this->setFan(0, this->Columns);
+  this->setFan(1, this->Rows);
+  this->ScreenToShear = this->directionToPixel() * directions;
   this->ShearToScreen = glm::inverse(this->ScreenToShear);
   this->Valid = true;
   return true;
 }
 
+/// From directions (x, y, z), z along the image's axis, to (u w, v w, w) with w = z.
+glm::dmat3 ShearWarp::directionToPixel() const
+{
+  // Step n of all has slope 2 n / Steps - 1.
+  const double half = 0.5 * static_cast<double>(this->Steps);
+  return { half, 0.0, 0.0, 0.0, half, 0.0, half - static_cast<double>(this->First[0]),
+    half - static_cast<double>(this->First[1]), 1.0 };
+}
+
+glm::dvec3 ShearWarp::pixelOf(const glm::dvec3& point) const
+{
+  if (!this->Perspective)
+  {
+    return { glm::dvec2(point) + this->position(point.z), 1.0 };
+  }
+  const glm::dvec3 d = point - this->Eye;
+  return this->directionToPixel() * glm::dvec3(d.x, d.y, this->Reversed ? -d.z : d.z);
+}
+
 /// The part of all pixels that shows the volume in the viewport.
-bool ShearWarp::placeImage(const View& view, const glm::dmat3& directions, std::int64_t first[2])
+bool ShearWarp::placeImage(const View& view, const glm::dmat3& directions)
 {
   // The viewport's pyramid, cut down to the rays that follow the axis most.
   std::vector<glm::dvec3> corners;
@@ -314,15 +329,15 @@ bool ShearWarp::placeImage(const View& view, const glm::dmat3& directions, std::
     {
       return false;
     }
-    first[a] = static_cast<std::int64_t>(std::floor(half * (low + 1.0)));
+    this->First[a] = static_cast<std::int64_t>(std::floor(half * (low + 1.0)));
     const auto last = static_cast<std::int64_t>(std::ceil(half * (high + 1.0)));
-    this->RayCount[a] = static_cast<int>(last - first[a]) + 1;
+    this->RayCount[a] = static_cast<int>(last - this->First[a]) + 1;
   }
   this->ImageSize = { (this->RayCount.x + RowUnit - 1) / RowUnit * RowUnit, this->RayCount.y };
   return true;
 }
 
-void ShearWarp::setFan(int a, std::int64_t first, Fan& fan) const
+void ShearWarp::setFan(int a, Fan& fan) const
 {
   const double sign = this->Reversed ? -1.0 : 1.0;
   const double start = this->Eye[a] + (this->Eye.z - this->Reference) * sign;
@@ -331,7 +346,7 @@ void ShearWarp::setFan(int a, std::int64_t first, Fan& fan) const
   fan.slope.assign(this->ImageSize[a], 0.0);
   for (int n = 0; n < this->RayCount[a]; ++n)
   {
-    const double step = static_cast<double>(first + n);
+    const double step = static_cast<double>(this->First[a] + n);
     fan.slope[n] = sign * quantised(2.0 * step / static_cast<double>(this->Steps) - 1.0, SlopeBits);
     fan.at[n] = quantised(start + step * this->Pitch, PositionBits);
   }

@@ -49,6 +49,12 @@ struct Fan
 };
 
 /**
+ * A convex cone, given by its edges, or polygon, by its corners (x, y, 1), where
+ * dot(side, edge) >= 0.
+ */
+std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm::dvec3& side);
+
+/**
  * Geometry of a shear image. The volume is seen with its axes permuted: (i, j) in the slice, k
  * along the principal axis.
  *
@@ -85,9 +91,10 @@ public:
 
   /**
    * Factorises any view: one image for a parallel view, up to six for a perspective one, those that
-   * show some of the volume. None if nothing of it can be seen or the view flattens it.
+   * show some of the volume; none if nothing of it can be seen.
+   * @return  false if the view flattens the volume to a line or a point; there are no images then
    */
-  static void factorise(const View& view, std::vector<ShearWarp>& images);
+  static bool factorise(const View& view, std::vector<ShearWarp>& images);
 
   bool valid() const { return this->Valid; }
   /// The volume axis along which slices are stacked, 0, 1 or 2.
@@ -141,6 +148,13 @@ public:
   {
     return glm::dvec2(this->Margin) + this->Shear * (z - this->Middle);
   }
+
+  /**
+   * Where the image shows a point (i, j, k), in homogeneous pixels: (u w, v w, w). In parallel
+   * views w is 1; in perspective ones it is the distance from the eye along the principal axis,
+   * negative behind the eye.
+   */
+  glm::dvec3 pixelOf(const glm::dvec3& point) const;
 
   /**
    * What the rays of a parallel view cross in slice k. Voxels are boxes; one counts when the ray
@@ -197,8 +211,9 @@ private:
   };
   static bool findRays(const View& view, Rays& rays);
   bool lookAlong(int axis, bool reversed, const View& view, const Rays& rays);
-  bool placeImage(const View& view, const glm::dmat3& directions, std::int64_t first[2]);
-  void setFan(int a, std::int64_t first, Fan& fan) const;
+  bool placeImage(const View& view, const glm::dmat3& directions);
+  void setFan(int a, Fan& fan) const;
+  glm::dmat3 directionToPixel() const;
 
   bool Valid = false;
   bool ShowsBoxes = false;
@@ -211,7 +226,8 @@ private:
   double Middle = 0.0;
   bool Perspective = false;
   glm::dvec3 Eye{ 0.0 };
-  std::int64_t Steps = 0; // of slopes from -1 to 1
+  std::int64_t Steps = 0;              // of slopes from -1 to 1
+  std::array<std::int64_t, 2> First{}; // the steps of pixel (0, 0)
   double Reference = 0.0, Pitch = 1.0;
   glm::dvec2 DepthRange{ 0.0 }; // of the volume, as far as it lies before the eye
   Span SlicesSeen;

@@ -4,84 +4,191 @@
 
 #include <vtkSMPTools.h>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 namespace splatting
 {
 namespace
 {
-/**
- * What a box, seen along the shear, covers of the shear image: a hexagon, symmetric about the
- * image's middle.
- */
-class Silhouette
+/// A box of a volume with its axes permuted.
+struct Box
 {
-public:
-  /// `size` is the box's in voxels; `inset` keeps points off the rim by so many pixels along u and
-  /// v.
-  Silhouette(const ShearWarp& geometry, const glm::dvec3& size, double inset)
-    : Centre(0.5 * (geometry.width() - 1), 0.5 * (geometry.height() - 1)),
-      Shear(geometry.shear())
-  {
-    const glm::dvec2 s(std::abs(this->Shear.x), std::abs(this->Shear.y));
-    this->Half = { 0.5 * (size.x + s.x * size.z) - inset, 0.5 * (size.y + s.y * size.z) - inset };
-    this->HalfAcross = 0.5 * (s.y * size.x + s.x * size.y) - (s.x + s.y) * inset;
-  }
-
-  const glm::dvec2& half() const { return this->Half; }
-
-  /// The x in `row` whose points start + x step lie in the hexagon.
-  Span cut(Span row, const glm::dvec2& start, const glm::dvec2& step) const
-  {
-    const glm::dvec2 p = start - this->Centre;
-    row = within(row, p.x, step.x, this->Half.x);
-    row = within(row, p.y, step.y, this->Half.y);
-    return within(row, this->Shear.y * p.x - this->Shear.x * p.y,
-      this->Shear.y * step.x - this->Shear.x * step.y, this->HalfAcross);
-  }
-
-private:
-  /// The x in `row` with |at + x step| <= bound.
-  static Span within(Span row, double at, double step, double bound)
-  {
-    // Rims that fall on pixel centres must not flicker with rounding errors.
-    bound += 1e-9 * (1.0 + std::abs(bound));
-    if (bound < 0.0)
-    {
-      return {};
-    }
-    if (std::abs(step) * (row.end - row.begin) < 1e-12)
-    {
-      return std::abs(at) <= bound ? row : Span{};
-    }
-    const double a = (-bound - at) / step, b = (bound - at) / step;
-    const double limitLow = row.begin, limitHigh = row.end;
-    row.begin = static_cast<int>(std::ceil(std::clamp(std::min(a, b), limitLow, limitHigh)));
-    row.end =
-      static_cast<int>(std::floor(std::clamp(std::max(a, b), limitLow - 1.0, limitHigh - 1.0))) + 1;
-    return row;
-  }
-
-  glm::dvec2 Centre, Shear, Half;
-  double HalfAcross;
+  glm::dvec3 low, high;
 };
 
 /// The box that the picture shows: all of the voxels' boxes, or voxel centre to voxel centre and a
 /// single voxel's whole thickness.
-glm::dvec3 shownSize(const ShearWarp& geometry)
+Box shownBox(const ShearWarp& geometry)
 {
-  return glm::dvec3(
-    geometry.showsBoxes() ? geometry.size() : glm::max(geometry.size() - 1, glm::ivec3(1)));
+  const glm::dvec3 last(geometry.size() - 1);
+  const glm::dvec3 thin = geometry.showsBoxes()
+    ? glm::dvec3(1.0)
+    : glm::dvec3(glm::equal(geometry.size(), glm::ivec3(1)));
+  return { -0.5 * thin, last + 0.5 * thin };
+}
+
+/// A box that pixels have samples in whose rays cross it.
+Box sampledBox(const ShearWarp& geometry)
+{
+  const Span& slices = geometry.slices();
+  Box box{ glm::dvec3(-0.5), glm::dvec3(geometry.size()) - 0.5 };
+  box.low.z = geometry.faces(slices.begin).x;
+  box.high.z = geometry.faces(slices.end - 1).y;
+  if (geometry.isPerspective())
+  {
+    // Rays are rounded: by 2^-21 of a voxel, and 2^-25 for each slice from the farthest one. With
+    // twice as much they cross voxels over a positive length.
+    const double rounding = 0x1p-20 + 0x1p-24 * geometry.size().z;
+    box.low += glm::dvec3(rounding, rounding, 0.0);
+    box.high -= glm::dvec3(rounding, rounding, 0.0);
+  }
+  return box;
+}
+
+/**
+ * A convex part of the screen, bounded by the lines (a, b, c) where a x + b y + c = 0.
+ */
+class Outline
+{
+public:
+  /// Of the screen pixels that an image shows.
+  explicit Outline(const ShearWarp& geometry) : Geometry(geometry) {}
+
+  /// Keeps pixels of the image where a u + b v + c >= 0, off the line by `inset` along both u and
+  /// v.
+  void add(glm::dvec3 line, double inset)
+  {
+    line.z -= inset * (std::abs(line.x) + std::abs(line.y));
+    this->Lines.push_back(line * this->Geometry.screenToShear());
+  }
+
+  /// Keeps what the image shows of a box.
+  void add(const Box& box, double inset)
+  {
+    // Its outline are the edges between faces of which the viewer sees one from outside.
+    for (int edge = 0; edge < 12; ++edge)
+    {
+      const int a = edge / 4, b = (a + 1) % 3, c = (a + 2) % 3;
+      const bool highB = edge & 1, highC = edge & 2;
+      if (this->faces(box, b, highB) == this->faces(box, c, highC))
+      {
+        continue;
+      }
+      glm::dvec3 corner = box.low;
+      corner[b] = highB ? box.high[b] : box.low[b];
+      corner[c] = highC ? box.high[c] : box.low[c];
+      const glm::dvec3 begin = this->Geometry.pixelOf(corner);
+      corner[a] = box.high[a];
+      const glm::dvec3 end = this->Geometry.pixelOf(corner);
+      const glm::dvec3 middle = this->Geometry.pixelOf(0.5 * (box.low + box.high));
+      const glm::dvec3 line = glm::cross(begin, end - begin);
+      this->add(glm::dot(line, middle - begin) < 0.0 ? -line : line, inset);
+    }
+  }
+
+  /// The x in `row` for which the point (x, 0, 0) from `start` is inside.
+  Span cut(Span row, const glm::dvec3& start) const
+  {
+    for (const glm::dvec3& line : this->Lines)
+    {
+      if (row.empty())
+      {
+        return {};
+      }
+      const double at = glm::dot(line, start), low = row.begin, high = row.end;
+      if (line.x > 0.0)
+      {
+        row.begin = static_cast<int>(std::ceil(std::clamp(-at / line.x, low, high)));
+      }
+      else if (line.x < 0.0)
+      {
+        row.end = static_cast<int>(std::floor(std::clamp(-at / line.x, low - 1.0, high - 1.0))) + 1;
+      }
+      else if (at < 0.0)
+      {
+        return {};
+      }
+    }
+    return row;
+  }
+
+  /// What is inside of a polygon of pixels (x, y, 1).
+  std::vector<glm::dvec3> cut(std::vector<glm::dvec3> polygon) const
+  {
+    for (const glm::dvec3& line : this->Lines)
+    {
+      polygon = clipped(polygon, line);
+    }
+    return polygon;
+  }
+
+private:
+  /// Whether the viewer sees a face of a box from outside.
+  bool faces(const Box& box, int axis, bool high) const
+  {
+    if (this->Geometry.isPerspective())
+    {
+      const double eye = this->Geometry.eye()[axis];
+      return high ? eye > box.high[axis] : eye < box.low[axis];
+    }
+    const glm::dvec3 direction(-this->Geometry.shear(), 1.0);
+    return high ? direction[axis] < 0.0 : direction[axis] > 0.0;
+  }
+
+  const ShearWarp& Geometry;
+  std::vector<glm::dvec3> Lines;
+};
+
+/// The pixels of the screen that an image shows something in.
+Outline shownBy(const ShearWarp& geometry)
+{
+  // Rims that fall on pixel centres must not flicker with rounding errors.
+  constexpr double rounding = 1e-8;
+  Outline shown(geometry);
+  shown.add(shownBox(geometry), -rounding);
+  if (geometry.isPerspective())
+  {
+    // Where slopes are at most 1. Both images have what lies between two.
+    const double forwards = geometry.reversed() ? -1.0 : 1.0;
+    const glm::dvec3 low = geometry.pixelOf(geometry.eye() + glm::dvec3(-1.0, -1.0, forwards));
+    const glm::dvec3 high = geometry.pixelOf(geometry.eye() + glm::dvec3(1.0, 1.0, forwards));
+    const double overlap = rounding + 1e-12 * (high.x - low.x);
+    shown.add({ 1.0, 0.0, -low.x }, -overlap);
+    shown.add({ -1.0, 0.0, high.x }, -overlap);
+    shown.add({ 0.0, 1.0, -low.y }, -overlap);
+    shown.add({ 0.0, -1.0, high.y }, -overlap);
+  }
+  return shown;
+}
+
+/// The pixels of the screen whose four neighbours in the image are samples, if it has no holes.
+Outline withinSamples(const ShearWarp& geometry)
+{
+  constexpr double rounding = 1e-6;
+  Outline inside(geometry);
+  inside.add(sampledBox(geometry), 1.0 + rounding); // neighbours are at most one pixel away
+  if (geometry.isPerspective())
+  {
+    inside.add({ 1.0, 0.0, 0.0 }, rounding);
+    inside.add({ -1.0, 0.0, geometry.width() - 1.0 }, rounding);
+    inside.add({ 0.0, 1.0, 0.0 }, rounding);
+    inside.add({ 0.0, -1.0, geometry.height() - 1.0 }, rounding);
+  }
+  return inside;
 }
 
 /// Everything that the rows of one picture share.
 template <class A>
 struct WarpFrame
 {
-  const ShearImage& image;
-  const A* pixels;
   const WorksheetLoops<A>& loops;
   const ColorTable& table;
   A low, scale;
@@ -94,26 +201,55 @@ struct WarpFrame
   }
 };
 
+/// Everything that they share of one image.
+template <class A>
+struct WarpSource
+{
+  const WarpFrame<A>& frame;
+  const ShearImage& image;
+  const A* pixels;
+  const ShearWarp& geometry;
+  Outline shown, inside;
+
+  WarpSource(const WarpFrame<A>& f, const ShearImage& i, const A* p, const ShearWarp& g)
+    : frame(f),
+      image(i),
+      pixels(p),
+      geometry(g),
+      shown(shownBy(g)),
+      inside(withinSamples(g))
+  {
+  }
+  bool hasHoles() const { return !this->image.mask.empty() || this->image.special; }
+};
+
 /// Where all four neighbours of all points are samples.
 template <class A>
-void warpInside(const WarpFrame<A>& frame, const glm::dvec2& start, const glm::dvec2& step,
+void warpInside(const WarpSource<A>& source, const glm::dvec3& start, const glm::dvec3& step,
   std::uint32_t* out, int n)
 {
   constexpr int chunk = 256; // stays in the first-level cache
   A values[chunk];
+  const WorksheetLoops<A>& loops = source.frame.loops;
+  const auto interpolate =
+    source.geometry.isPerspective() ? loops.interpolateProjective : loops.interpolate;
   for (int x = 0; x < n; x += chunk)
   {
     const int count = std::min(chunk, n - x);
-    const glm::dvec2 p = start + double(x) * step;
-    frame.loops.interpolate(frame.pixels, frame.image.width, &p.x, &step.x, values, count);
-    frame.lookUp(values, out + x, count);
+    const glm::dvec3 p = start + double(x) * step;
+    interpolate(source.pixels, source.image.width, &p.x, &step.x, values, count);
+    source.frame.lookUp(values, out + x, count);
   }
 }
 
 /// Where a neighbour may be missing, NaN or infinite: interpolates between those that count.
 template <class A>
-std::uint32_t warpPoint(const WarpFrame<A>& frame, const glm::dvec2& p)
+std::uint32_t warpPoint(const WarpSource<A>& source, const glm::dvec3& homogeneous)
 {
+  const ShearImage& image = source.image;
+  // Points on the line between two images may round out of theirs.
+  const glm::dvec2 p = glm::clamp(glm::dvec2(homogeneous) / homogeneous.z, glm::dvec2(0.0),
+    glm::dvec2(image.width - 1, image.height - 1));
   const int u = static_cast<int>(std::floor(p.x)), v = static_cast<int>(std::floor(p.y));
   const double fu = p.x - u, fv = p.y - v;
   double sum = 0.0, weight = 0.0, lost = 0.0, largest = -1.0;
@@ -121,13 +257,13 @@ std::uint32_t warpPoint(const WarpFrame<A>& frame, const glm::dvec2& p)
   for (int n = 0; n < 4; ++n)
   {
     const int i = n & 1, j = n >> 1;
-    if (!frame.image.meetsVolume(u + i, v + j))
+    if (!image.meetsVolume(u + i, v + j))
     {
       continue;
     }
-    const A value = frame.pixels[std::ptrdiff_t(v + j) * frame.image.width + u + i];
+    const A value = source.pixels[std::ptrdiff_t(v + j) * image.width + u + i];
     const double w = (i ? fu : 1.0 - fu) * (j ? fv : 1.0 - fv);
-    if (value != value || !frame.image.covers(u + i, v + j))
+    if (value != value || !image.covers(u + i, v + j))
     {
       lost += w;
       continue;
@@ -149,65 +285,124 @@ std::uint32_t warpPoint(const WarpFrame<A>& frame, const glm::dvec2& p)
   const double average = sum / weight;
   const A value = std::isfinite(average) ? static_cast<A>(average) : nearest;
   std::uint32_t color;
-  frame.lookUp(&value, &color, 1);
+  source.frame.lookUp(&value, &color, 1);
   return color;
 }
 
+/// The pixels of a row, `start` being the first, that one image shows.
 template <class A>
-void warpRows(const WarpFrame<A>& frame, const ShearWarp& geometry, Picture& picture)
+void warpSpan(
+  const WarpSource<A>& source, const glm::dvec3& start, const Span& row, std::uint32_t* out)
 {
-  const Silhouette shown(geometry, shownSize(geometry), 0.0);
-  // Pixels are samples inside the silhouette of the voxels' boxes; a point's neighbours are at most
-  // one pixel away.
-  const Silhouette inside(geometry, glm::dvec3(geometry.size()), 1.0 + 1e-6);
-  const bool holes = !frame.image.mask.empty() || frame.image.special;
-  const glm::dmat3& m = geometry.screenToShear();
-  const glm::dvec2 step(m[0]);
+  const glm::dmat3& m = source.geometry.screenToShear();
+  const glm::dvec3 first = m * start, step = m[0];
+  const Span plain = source.hasHoles() ? Span{} : source.inside.cut(row, start);
+  const int plainBegin = plain.empty() ? row.end : plain.begin;
+  const int plainEnd = plain.empty() ? row.end : plain.end;
+  for (int x = row.begin; x < plainBegin; ++x)
+  {
+    out[x] = warpPoint(source, first + double(x) * step);
+  }
+  warpInside(
+    source, first + double(plainBegin) * step, step, out + plainBegin, plainEnd - plainBegin);
+  for (int x = plainEnd; x < row.end; ++x)
+  {
+    out[x] = warpPoint(source, first + double(x) * step);
+  }
+}
+
+/// Of a view: one for each direction of each axis.
+constexpr std::size_t MostImages = 6;
+
+template <class A>
+void warpRow(
+  const std::vector<WarpSource<A>>& sources, const glm::dvec3& start, int width, std::uint32_t* out)
+{
+  // Images meet at lines: the one that begins first has the pixels that two show.
+  std::array<std::pair<int, std::size_t>, MostImages> order;
+  std::array<Span, MostImages> spans;
+  for (std::size_t n = 0; n < sources.size(); ++n)
+  {
+    spans[n] = sources[n].shown.cut({ 0, width }, start);
+    order[n] = { spans[n].begin, n };
+  }
+  std::sort(order.begin(), order.begin() + sources.size());
+  int done = 0;
+  for (std::size_t n = 0; n < sources.size(); ++n)
+  {
+    const std::size_t which = order[n].second;
+    const Span row{ std::max(spans[which].begin, done), spans[which].end };
+    if (!row.empty())
+    {
+      std::fill(out + done, out + row.begin, 0u);
+      warpSpan(sources[which], start, row, out);
+      done = row.end;
+    }
+  }
+  std::fill(out + done, out + width, 0u);
+}
+
+template <class A>
+void warpRows(const std::vector<WarpSource<A>>& sources, Picture& picture)
+{
   vtkSMPTools::For(0, picture.size.y, 16,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType y = first; y < last; ++y)
       {
-        const glm::dvec2 start(
-          m * glm::dvec3(picture.origin.x, picture.origin.y + static_cast<double>(y), 1.0));
-        std::uint32_t* const out = picture.pixels.data() + y * picture.size.x;
-        const Span row = shown.cut({ 0, picture.size.x }, start, step);
-        const Span plain = holes || row.empty() ? Span{} : inside.cut(row, start, step);
-        const int plainBegin = plain.empty() ? row.end : plain.begin;
-        const int plainEnd = plain.empty() ? row.end : plain.end;
-        std::fill(out, out + std::max(row.begin, 0), 0u);
-        for (int x = row.begin; x < plainBegin; ++x)
-        {
-          out[x] = warpPoint(frame, start + double(x) * step);
-        }
-        warpInside(
-          frame, start + double(plainBegin) * step, step, out + plainBegin, plainEnd - plainBegin);
-        for (int x = plainEnd; x < row.end; ++x)
-        {
-          out[x] = warpPoint(frame, start + double(x) * step);
-        }
-        std::fill(out + std::max(row.end, row.begin), out + picture.size.x, 0u);
+        const glm::dvec3 start(picture.origin.x, picture.origin.y + static_cast<double>(y), 1.0);
+        warpRow(sources, start, picture.size.x, picture.pixels.data() + y * picture.size.x);
       }
     });
 }
+
+/// Corners of a rectangle of viewport pixels.
+struct Rectangle
+{
+  glm::dvec2 low, high;
+};
+
+/// Has all pixels that an image shows something in, and perhaps some beside them.
+Rectangle boundsOf(const ShearWarp& geometry, const glm::dvec2& viewport)
+{
+  if (!geometry.isPerspective())
+  {
+    // The image is symmetric about its middle.
+    const Box box = shownBox(geometry);
+    const glm::dvec3 size = box.high - box.low;
+    const glm::dvec2 s = glm::abs(geometry.shear());
+    const glm::dvec2 half = 0.5 * (glm::dvec2(size) + s * size.z);
+    const glm::dvec2 centre(0.5 * (geometry.width() - 1), 0.5 * (geometry.height() - 1));
+    const glm::dmat3& m = geometry.shearToScreen();
+    const glm::dvec2 middle(m * glm::dvec3(centre, 1.0));
+    const glm::dvec2 reach = glm::dvec2(glm::abs(m[0]) * half.x + glm::abs(m[1]) * half.y);
+    return { middle - reach, middle + reach };
+  }
+  const glm::dvec2 last = viewport - 1.0;
+  Rectangle bounds{ viewport, glm::dvec2(-2.0) };
+  for (const glm::dvec3& corner : shownBy(geometry).cut(
+         { { 0.0, 0.0, 1.0 }, { last.x, 0.0, 1.0 }, { last, 1.0 }, { 0.0, last.y, 1.0 } }))
+  {
+    bounds.low = glm::min(bounds.low, glm::dvec2(corner));
+    bounds.high = glm::max(bounds.high, glm::dvec2(corner));
+  }
+  return bounds;
+}
 }
 
-void placePicture(const ShearWarp& geometry, const glm::ivec2& viewport, Picture& picture)
+void placePicture(
+  const std::vector<ShearWarp>& images, const glm::ivec2& viewport, Picture& picture)
 {
-  const glm::dvec2 half = Silhouette(geometry, shownSize(geometry), 0.0).half();
-  const glm::dvec2 centre(0.5 * (geometry.width() - 1), 0.5 * (geometry.height() - 1));
-  const glm::dmat3& m = geometry.shearToScreen();
-  const glm::dvec2 middle(m * glm::dvec3(centre, 1.0));
-  const glm::dvec2 reach = glm::dvec2(glm::abs(m[0]) * half.x + glm::abs(m[1]) * half.y);
-  for (int a = 0; a < 2; ++a)
+  const glm::dvec2 limit(viewport);
+  glm::dvec2 low = limit, high(0.0);
+  for (const ShearWarp& image : images)
   {
-    const double limit = viewport[a];
-    const int low = static_cast<int>(std::clamp(std::floor(middle[a] - reach[a]), 0.0, limit));
-    const int high =
-      static_cast<int>(std::clamp(std::ceil(middle[a] + reach[a]) + 1.0, 0.0, limit));
-    picture.origin[a] = low;
-    picture.size[a] = std::max(high - low, 0);
+    const Rectangle bounds = boundsOf(image, limit);
+    low = glm::min(low, glm::clamp(glm::floor(bounds.low), glm::dvec2(0.0), limit));
+    high = glm::max(high, glm::clamp(glm::ceil(bounds.high) + 1.0, glm::dvec2(0.0), limit));
   }
+  picture.origin = glm::ivec2(low);
+  picture.size = glm::max(glm::ivec2(high) - picture.origin, glm::ivec2(0));
 }
 
 void addSaturated(const Picture& layer, Picture& sum)
@@ -238,40 +433,57 @@ void multiplyByOpacity(const Picture& opacity, Picture& picture)
     });
 }
 
-void Warper::warp(const ShearImage& image, const ShearWarp& geometry, const ColorTable& table,
-  const glm::ivec2& viewport, InstructionSet instructionSet, Picture& picture)
+namespace
 {
-  placePicture(geometry, viewport, picture);
+/// The pixels of an image in the accumulator's type, `widened` being a place for them.
+template <class T>
+const Accumulator<T>* widenedPixels(
+  const ShearImage& image, const VoxelLoops<T>& loops, std::vector<unsigned char>& widened)
+{
+  using A = Accumulator<T>;
+  if constexpr (std::is_same_v<T, A>)
+  {
+    return image.row<T>(0);
+  }
+  else
+  {
+    const std::size_t count = std::size_t(image.width) * image.height;
+    widened.resize(count * sizeof(A));
+    A* const pixels = reinterpret_cast<A*>(widened.data());
+    loops.widen(image.row<T>(0), 0, pixels, 0, A(0), static_cast<std::ptrdiff_t>(count), 1);
+    return pixels;
+  }
+}
+}
+
+void Warper::warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+  const ColorTable& table, const glm::ivec2& viewport, InstructionSet instructionSet,
+  Picture& picture)
+{
+  placePicture(geometries, viewport, picture);
   picture.pixels.resize(std::size_t(picture.size.x) * picture.size.y);
   if (picture.pixels.empty())
   {
     return;
   }
+  this->Widened.resize(std::max(this->Widened.size(), geometries.size()));
   const Kernels& kernels = kernelsFor(instructionSet);
-  dispatch(image.type,
+  dispatch(images.front().type,
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
       using A = Accumulator<T>;
-      const A* pixels = nullptr;
-      if constexpr (std::is_same_v<T, A>)
-      {
-        pixels = image.row<T>(0);
-      }
-      else
-      {
-        const std::size_t count = std::size_t(image.width) * image.height;
-        this->Widened.resize(count * sizeof(A));
-        A* const widened = reinterpret_cast<A*>(this->Widened.data());
-        const VoxelLoops<T>& loops = kernels;
-        loops.widen(image.row<T>(0), 0, widened, 0, A(0), static_cast<std::ptrdiff_t>(count), 1);
-        pixels = widened;
-      }
       const std::int32_t last = static_cast<std::int32_t>(table.colors.size()) - 1;
       const double scale = table.high > table.low ? last / (table.high - table.low) : 0.0;
-      const WarpFrame<A> frame{ image, pixels, kernels, table, static_cast<A>(table.low),
-        static_cast<A>(scale), last };
-      warpRows(frame, geometry, picture);
+      const WarpFrame<A> frame{ kernels, table, static_cast<A>(table.low), static_cast<A>(scale),
+        last };
+      std::vector<WarpSource<A>> sources;
+      for (std::size_t n = 0; n < geometries.size(); ++n)
+      {
+        const A* const pixels = widenedPixels<T>(images[n], kernels, this->Widened[n]);
+        sources.emplace_back(frame, images[n], pixels, geometries[n]);
+      }
+      warpRows(sources, picture);
     });
 }
 }

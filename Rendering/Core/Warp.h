@@ -36,8 +36,12 @@ struct Picture
   std::vector<std::uint32_t> pixels;
 };
 
-/// Sets the picture's origin and size.
-void placePicture(const ShearWarp& geometry, const glm::ivec2& viewport, Picture& picture);
+/**
+ * Sets the picture's origin and size.
+ * @param images  as ShearWarp::factorise() gives them; without any the picture is empty
+ */
+void placePicture(
+  const std::vector<ShearWarp>& images, const glm::ivec2& viewport, Picture& picture);
 
 /**
  * Adds a picture of the same size and place, byte by byte, no further than 255.
@@ -57,17 +61,21 @@ class Warper
 {
 public:
   /**
-   * Fills the picture with the shear image as seen in a viewport. The picture ends where the
-   * volume's outermost voxel centres are seen (half a voxel further out along axes with one voxel,
-   * and along all if the geometry shows boxes); pixels beyond and pixels without a sample are
-   * transparent.
+   * Fills the picture with the shear images of a view as seen in a viewport, each pixel from the
+   * image whose axis its ray follows most. The picture ends where the volume's outermost voxel
+   * centres are seen (half a voxel further out along axes with one voxel, and along all if the
+   * geometry shows boxes); around an eye inside that box it does not end. Pixels beyond and pixels
+   * without a sample are transparent.
+   * @param images      all of one type; those behind the last geometry are left alone
+   * @param geometries  as ShearWarp::factorise() gives them
    */
-  void warp(const ShearImage& image, const ShearWarp& geometry, const ColorTable& table,
-    const glm::ivec2& viewport, InstructionSet instructionSet, Picture& picture);
+  void warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+    const ColorTable& table, const glm::ivec2& viewport, InstructionSet instructionSet,
+    Picture& picture);
 
 private:
-  /// A preview image in the accumulator's type.
-  std::vector<unsigned char> Widened;
+  /// Preview images in the accumulator's type.
+  std::vector<std::vector<unsigned char>> Widened;
 };
 }
 

@@ -109,15 +109,16 @@ void ProjectiveRenderer::Render(const splatting::View& view)
   reference::projectSlices(
     { static_cast<const std::uint8_t*>(slices.voxels), slices.rowStride, slices.sliceStride },
     reference::makeShearGrid(this->Volume.Voxels.size, shear), shear, this->Bytes);
-  this->Image.width = this->Bytes.width;
-  this->Image.height = this->Bytes.height;
-  this->Image.bytes.swap(this->Bytes.value);
-  this->Image.spans.clear();
+  splatting::ShearImage& image = this->Images.front();
+  image.width = this->Bytes.width;
+  image.height = this->Bytes.height;
+  image.bytes.swap(this->Bytes.value);
+  image.spans.clear();
   for (const std::array<int, 2>& range : this->Bytes.range)
   {
-    this->Image.spans.push_back({ range[0], range[1] });
+    image.spans.push_back({ range[0], range[1] });
   }
-  this->Warper.warp(this->Image, geometry, this->Greys, view.viewport,
+  this->Warper.warp(this->Images, { geometry }, this->Greys, view.viewport,
     splatting::bestInstructionSet(), this->Frame);
 }
 
@@ -125,11 +126,11 @@ void ProjectiveRenderer::Render(const splatting::View& view)
 void ReferenceRenderer::Render(const splatting::View& view)
 {
   const splatting::ShearWarp geometry(view);
-  const splatting::ShearImage image =
-    MakeShearImage(this->Project(this->Volume, ToReference(geometry)));
+  const std::vector<splatting::ShearImage> images{ MakeShearImage(
+    this->Project(this->Volume, ToReference(geometry))) };
   splatting::Warper warper;
   warper.warp(
-    image, geometry, this->Greys, view.viewport, splatting::bestInstructionSet(), this->Frame);
+    images, { geometry }, this->Greys, view.viewport, splatting::bestInstructionSet(), this->Frame);
 }
 
 //------------------------------------------------------------------------------

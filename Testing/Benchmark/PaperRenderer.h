@@ -77,7 +77,7 @@ private:
   const PaperVolume& Volume;
   splatting::VolumeIndex Index; // for the slices along the first axis, as splatting has them
   reference::ByteImage Bytes;
-  splatting::ShearImage Image; // of bytes
+  std::vector<splatting::ShearImage> Images = std::vector<splatting::ShearImage>(1); // of bytes
   splatting::Warper Warper;
 };
 

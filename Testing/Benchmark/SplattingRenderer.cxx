@@ -55,17 +55,18 @@ SplattingRenderer::SplattingRenderer(
 void SplattingRenderer::Render(const splatting::View& view)
 {
   const splatting::ShearWarp geometry(view);
-  this->Projector.project(this->Index, geometry, this->Settings, {}, this->Image);
-  this->Warper.warp(
-    this->Image, geometry, this->Greys, view.viewport, this->Settings.instructionSet, this->Frame);
+  this->Projector.project(this->Index, geometry, this->Settings, {}, this->Images.front());
+  this->Warper.warp(this->Images, { geometry }, this->Greys, view.viewport,
+    this->Settings.instructionSet, this->Frame);
 }
 
 //------------------------------------------------------------------------------
 reference::Image<double> SplattingRenderer::Project(const splatting::ShearWarp& geometry)
 {
-  this->Projector.project(this->Index, geometry, this->Settings, {}, this->Image);
-  reference::Image<double> result(this->Image.width, this->Image.height);
-  splatting::dispatch(this->Image.type,
-    [&](auto* null) { CopyCovered<std::remove_pointer_t<decltype(null)>>(this->Image, result); });
+  this->Projector.project(this->Index, geometry, this->Settings, {}, this->Images.front());
+  const splatting::ShearImage& image = this->Images.front();
+  reference::Image<double> result(image.width, image.height);
+  splatting::dispatch(image.type,
+    [&](auto* null) { CopyCovered<std::remove_pointer_t<decltype(null)>>(image, result); });
   return result;
 }

@@ -47,7 +47,7 @@ private:
   splatting::VolumeIndex Index;
   splatting::ProjectionSettings Settings;
   splatting::Projector Projector;
-  splatting::ShearImage Image;
+  std::vector<splatting::ShearImage> Images = std::vector<splatting::ShearImage>(1);
   splatting::Warper Warper;
 };
 

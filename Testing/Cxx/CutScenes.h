@@ -319,13 +319,15 @@ private:
     Stretch result{ -Infinity, Infinity };
     for (const glm::dvec4& h : crossed)
     {
-      // From the eye on: what is outside there is entered, perhaps, what is inside is left.
+      // From the eye on: what is outside there is entered, perhaps, what is inside is left, and
+      // planes through the eye are neither.
       const Stretch one = inside({ h }, from, direction);
-      if (glm::dot(h, glm::dvec4(from + eye * direction, 1.0)) < 0.0)
+      const double value = glm::dot(h, glm::dvec4(from + eye * direction, 1.0));
+      if (value < -1e-9)
       {
         result.begin = std::max(result.begin, depthAt(one.begin > eye ? one.begin : Infinity));
       }
-      else
+      else if (value > 1e-9)
       {
         result.end = std::min(result.end, depthAt(one.end > eye ? one.end : Infinity));
       }

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Where parallel rays begin and end, against their definition in index space, ray by ray and slice
-// by slice: half-spaces, closed surfaces, depth buffers, and all of them together.
+// by slice: half-spaces, closed surfaces, depth buffers, and all of them together. Surfaces are
+// watertight in any view.
 #include "CutScenes.h"
 
 using namespace cutscenes;
@@ -143,6 +144,111 @@ void testNothingCut(Checks& check)
   }
 }
 
+/// A closed surface over a rectangle of pixels whose every corner lies on a ray, so that rays pass
+/// edges and corners only, as exactly as rounding allows.
+struct Lattice
+{
+  glm::ivec2 first, last; // pixels
+  std::vector<double> fronts, backs;
+  Mesh mesh;
+
+  int cornerAt(int u, int v) const
+  {
+    return (v - this->first.y) * (this->last.x - this->first.x + 1) + u - this->first.x;
+  }
+};
+
+Lattice randomLattice(const Oracle& oracle, const ShearWarp& image, Random& random)
+{
+  Lattice lattice;
+  const glm::ivec2 end(image.width() - 1, image.height() - 1);
+  lattice.first = { random.uniform(0, end.x / 2), random.uniform(0, end.y / 2) };
+  lattice.last = { random.uniform(end.x / 2 + 1, end.x), random.uniform(end.y / 2 + 1, end.y) };
+  const splatting::Span& slices = image.slices();
+  const double low = image.faces(slices.begin).x, high = image.faces(slices.end - 1).y;
+  const double middle = random.uniform(0.7 * low + 0.3 * high, 0.3 * low + 0.7 * high);
+  const int count = lattice.cornerAt(lattice.last.x, lattice.last.y) + 1;
+  for (int side = 0; side < 2; ++side)
+  {
+    for (int v = lattice.first.y; v <= lattice.last.y; ++v)
+    {
+      for (int u = lattice.first.x; u <= lattice.last.x; ++u)
+      {
+        const double bound = side ? std::min(high, middle + 2.0) : std::max(low, middle - 2.0);
+        const double share = random.uniform(0.05, 0.95);
+        const double z = (1.0 - share) * middle + share * bound;
+        (side ? lattice.backs : lattice.fronts).push_back(z);
+        lattice.mesh.points.push_back(oracle.point(u, v, z));
+      }
+    }
+  }
+  auto& triangles = lattice.mesh.triangles;
+  const auto addWall = [&](int a, int b)
+  {
+    triangles.push_back({ a, b, b + count });
+    triangles.push_back({ a, b + count, a + count });
+  };
+  for (int v = lattice.first.y; v < lattice.last.y; ++v)
+  {
+    for (int u = lattice.first.x; u < lattice.last.x; ++u)
+    {
+      for (int side = 0; side < 2; ++side)
+      {
+        const int a = lattice.cornerAt(u, v) + side * count;
+        const int b = lattice.cornerAt(u, v + 1) + side * count;
+        triangles.push_back({ a, a + 1, b + 1 });
+        triangles.push_back({ a, b + 1, b });
+      }
+      addWall(lattice.cornerAt(u, lattice.first.y), lattice.cornerAt(u + 1, lattice.first.y));
+      addWall(lattice.cornerAt(u, lattice.last.y), lattice.cornerAt(u + 1, lattice.last.y));
+    }
+    addWall(lattice.cornerAt(lattice.first.x, v), lattice.cornerAt(lattice.first.x, v + 1));
+    addWall(lattice.cornerAt(lattice.last.x, v), lattice.cornerAt(lattice.last.x, v + 1));
+  }
+  return lattice;
+}
+
+/// No ray slips through between triangles, in either projection.
+void testWatertight(Checks& check)
+{
+  Random random(5);
+  int rays = 0;
+  for (int n = 0; n < 400; ++n)
+  {
+    Scene scene;
+    const std::array<int, 3> size = coretesting::randomSize(random, 17);
+    scene.view =
+      n % 2 ? coretesting::randomPerspective(size, random) : coretesting::anyView(size, random);
+    std::vector<ShearWarp> images;
+    ShearWarp::factorise(scene.view, images);
+    for (const ShearWarp& image : images)
+    {
+      if (image.width() < 2 || image.height() < 2)
+      {
+        continue;
+      }
+      const Lattice lattice = randomLattice(Oracle(scene, image), image, random);
+      splatting::ClosedSurface surface;
+      surface.reset(lattice.mesh.points, lattice.mesh.triangles);
+      const splatting::SurfaceDepths& depths = surface.project(image);
+      for (int v = lattice.first.y; v <= lattice.last.y; ++v)
+      {
+        for (int u = lattice.first.x; u <= lattice.last.x; ++u)
+        {
+          const int corner = lattice.cornerAt(u, v);
+          ++rays;
+          check(depths.near(v)[u] <= lattice.fronts[corner] + 1e-6 &&
+              depths.far(v)[u] >= lattice.backs[corner] - 1e-6,
+            "View ", n, ": a ray slips through between triangles: ", depths.near(v)[u], " to ",
+            depths.far(v)[u], ", not ", lattice.fronts[corner], " to ", lattice.backs[corner]);
+        }
+      }
+    }
+  }
+  std::cout << "watertight: " << rays << " rays" << std::endl;
+  check(rays > 10000, "Enough rays pass corners.");
+}
+
 /// A surface with a hole: rays through the hole cross it once.
 void testOpenSurface(Checks& check)
 {
@@ -170,6 +276,7 @@ int TestRayIntervals(int, char*[])
   }
   testBoxes(check);
   testNothingCut(check);
+  testWatertight(check);
   testOpenSurface(check);
   return check.result();
 }

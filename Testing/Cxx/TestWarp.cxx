@@ -2,24 +2,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The warp: linear images stay linear, the picture ends where the volume's box ends, missing
-// samples and infinities do not spread.
+// samples and infinities do not spread. In perspective views each pixel is what a slow, independent
+// look-up in the image of its ray gives, and images meet without seams.
 #include "CoreTesting.h"
 #include "Warp.h"
 
+#include <vtkSMPTools.h>
+
+#include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <functional>
 #include <limits>
+#include <vector>
 
 using namespace coretesting;
 
 namespace
 {
+/// Whether the ray of a pixel crosses a voxel.
+bool meetsVolume(const splatting::ShearWarp& geometry, int u, int v)
+{
+  for (int k = geometry.slices().begin; k < geometry.slices().end; ++k)
+  {
+    const splatting::RayPath path = geometry.voxelsOnRay(u, v, k);
+    for (int n = 0; n < path.count; ++n)
+    {
+      if (path.di[n] >= 0 && path.di[n] < geometry.size().x && path.dj[n] >= 0 &&
+        path.dj[n] < geometry.size().y)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 /// A shear image of a float function of the pixel.
 template <class F>
 splatting::ShearImage imageOf(const splatting::ShearWarp& geometry, F&& f)
 {
-  const reference::Volume<float> volume(
-    { geometry.size().x, geometry.size().y, geometry.size().z }, 0.0f);
   splatting::ShearImage image;
   image.type = splatting::ScalarType::Float32;
   image.width = geometry.width();
@@ -28,17 +49,16 @@ splatting::ShearImage imageOf(const splatting::ShearWarp& geometry, F&& f)
   image.spans.assign(image.height, { image.width, 0 });
   for (int v = 0; v < image.height; ++v)
   {
-    for (int k = 0; k < geometry.size().z; ++k)
-    {
-      const splatting::Span span = geometry.coverage(geometry.rayPath(k), v);
-      image.spans[v].begin = std::min(image.spans[v].begin, span.begin);
-      image.spans[v].end = std::max(image.spans[v].end, span.end);
-    }
     for (int u = 0; u < image.width; ++u)
     {
       // What lies outside has no meaning and must not be read.
+      const bool meets = meetsVolume(geometry, u, v);
       image.row<float>(v)[u] =
-        image.covers(u, v) ? static_cast<float>(f(u, v)) : std::numeric_limits<float>::quiet_NaN();
+        meets ? static_cast<float>(f(u, v)) : std::numeric_limits<float>::quiet_NaN();
+      if (meets)
+      {
+        image.spans[v] = { std::min(image.spans[v].begin, u), u + 1 };
+      }
     }
   }
   return image;
@@ -55,6 +75,14 @@ splatting::ColorTable countingTable(double low, double high)
     table.colors.push_back(entry + 1);
   }
   return table;
+}
+
+/// Of a pixel of the viewport; 0 beside the picture.
+std::uint32_t colorAt(const splatting::Picture& picture, int x, int y)
+{
+  const int px = x - picture.origin.x, py = y - picture.origin.y;
+  const bool inPicture = px >= 0 && py >= 0 && px < picture.size.x && py < picture.size.y;
+  return inPicture ? picture.pixels[std::size_t(py) * picture.size.x + px] : 0;
 }
 
 /// Whether the ray of a screen pixel meets the box from the first voxel centres to the last, grown
@@ -100,20 +128,18 @@ void testLinearImages(Checks& check)
     const splatting::ShearWarp geometry(view);
     const double a = random.uniform(-1.0, 1.0), b = random.uniform(-1.0, 1.0);
     const auto f = [=](double u, double v) { return a * u + b * v; };
-    const splatting::ShearImage image = imageOf(geometry, f);
+    const std::vector<splatting::ShearImage> images{ imageOf(geometry, f) };
+    const splatting::ShearImage& image = images.front();
     const splatting::ColorTable table = countingTable(-400.0, 400.0);
     splatting::Picture picture;
     splatting::Warper warper;
-    warper.warp(image, geometry, table, view.viewport,
+    warper.warp(images, { geometry }, table, view.viewport,
       static_cast<splatting::InstructionSet>(random.uniform(0, 2)), picture);
     for (int y = 0; y < view.viewport.y; ++y)
     {
       for (int x = 0; x < view.viewport.x; ++x)
       {
-        const int px = x - picture.origin.x, py = y - picture.origin.y;
-        const bool inPicture = px >= 0 && py >= 0 && px < picture.size.x && py < picture.size.y;
-        const std::uint32_t color =
-          inPicture ? picture.pixels[std::size_t(py) * picture.size.x + px] : 0;
+        const std::uint32_t color = colorAt(picture, x, y);
         // Rays within a thousandth of a voxel of the rim may go either way.
         if (!meetsBox(view, geometry, x, y, 1e-3))
         {
@@ -152,11 +178,11 @@ void testOddPixels(Checks& check)
   const splatting::ShearWarp geometry(view);
   const auto odd = [&](float value)
   {
-    splatting::ShearImage image = imageOf(geometry, [](int, int) { return 50.0; });
-    image.row<float>(15)[15] = value;
-    image.special = true;
+    std::vector<splatting::ShearImage> images{ imageOf(geometry, [](int, int) { return 50.0; }) };
+    images.front().row<float>(15)[15] = value;
+    images.front().special = true;
     splatting::Picture picture;
-    splatting::Warper().warp(image, geometry, countingTable(0.0, 100.0), view.viewport,
+    splatting::Warper().warp(images, { geometry }, countingTable(0.0, 100.0), view.viewport,
       splatting::bestInstructionSet(), picture);
     // One screen pixel per shear pixel, perhaps half-way between: at most four show the odd one.
     int others = 0;
@@ -182,9 +208,397 @@ void testOutsideTheViewport(Checks& check)
   view.indexToClip[3][0] = 5.0; // far to the right
   const splatting::ShearWarp geometry(view);
   splatting::Picture picture;
-  splatting::Warper().warp(imageOf(geometry, [](int, int) { return 1.0; }), geometry,
+  splatting::Warper().warp({ imageOf(geometry, [](int, int) { return 1.0; }) }, { geometry },
     countingTable(0.0, 1.0), view.viewport, splatting::bestInstructionSet(), picture);
   check(picture.pixels.empty(), "a volume outside the viewport leaves a picture");
+}
+
+/// A perspective view as its matrix has it: the eye and the rays of pixels.
+struct Camera
+{
+  glm::dvec3 x, y, w; // rows of the matrix
+  glm::dvec3 eye;
+  glm::dvec2 viewport;
+
+  explicit Camera(const splatting::View& view) : viewport(view.viewport)
+  {
+    const glm::dmat4& m = view.indexToClip;
+    for (int c = 0; c < 3; ++c)
+    {
+      this->x[c] = m[c][0];
+      this->y[c] = m[c][1];
+      this->w[c] = m[c][3];
+    }
+    // Where three planes meet.
+    const glm::dvec3 yw = glm::cross(this->y, this->w), wx = glm::cross(this->w, this->x),
+                     xy = glm::cross(this->x, this->y);
+    this->eye = -(m[3][0] * yw + m[3][1] * wx + m[3][3] * xy) / glm::dot(this->x, yw);
+  }
+  /// Where neither pixel coordinate changes.
+  glm::dvec3 direction(int px, int py) const
+  {
+    const glm::dvec2 clip = 2.0 * (glm::dvec2(px, py) + 0.5) / this->viewport - 1.0;
+    const glm::dvec3 d =
+      glm::normalize(glm::cross(this->x - clip.x * this->w, this->y - clip.y * this->w));
+    return glm::dot(d, this->w) < 0.0 ? -d : d;
+  }
+};
+
+struct Box
+{
+  glm::dvec3 low, high;
+};
+
+/// Whether a ray meets a box, grown by `margin` voxels.
+bool meets(const Box& box, const glm::dvec3& eye, const glm::dvec3& direction, double margin)
+{
+  double enter = 0.0, leave = 1e30;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = box.low[a] - margin - eye[a], high = box.high[a] + margin - eye[a];
+    const double d = direction[a];
+    if (d == 0.0)
+    {
+      leave = low > 0.0 || high < 0.0 ? -1.0 : leave;
+      continue;
+    }
+    enter = std::max(enter, std::min(low / d, high / d));
+    leave = std::min(leave, std::max(low / d, high / d));
+  }
+  return enter <= leave;
+}
+
+/// What pictures show.
+Box shownBox(const splatting::View& view)
+{
+  Box box;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int n = view.dimensions[a];
+    const double rim = n > 1 && !view.showsBoxes ? 0.0 : 0.5;
+    box.low[a] = -rim;
+    box.high[a] = n - 1.0 + rim;
+  }
+  return box;
+}
+
+/// The slices along an axis whose middle lies before the eye.
+Box slicesSeen(const splatting::View& view, const glm::dvec3& eye, int axis, bool reversed)
+{
+  Box box{ glm::dvec3(-0.5), glm::dvec3(view.dimensions) - 0.5 };
+  if (reversed)
+  {
+    box.high[axis] = std::min(box.high[axis], std::ceil(eye[axis]) - 0.5);
+  }
+  else
+  {
+    box.low[axis] = std::max(box.low[axis], std::floor(eye[axis]) + 0.5);
+  }
+  return box;
+}
+
+/// The direction that an image's rays follow, axes permuted.
+glm::dvec3 inImage(const splatting::ShearWarp& image, const glm::dvec3& direction)
+{
+  const auto& axes = image.axes();
+  return { direction[axes[0]], direction[axes[1]],
+    image.reversed() ? -direction[axes[2]] : direction[axes[2]] };
+}
+
+/// Whether a ray follows the image's axis most, to a rounding error.
+bool follows(const splatting::ShearWarp& image, const glm::dvec3& direction)
+{
+  const glm::dvec3 d = inImage(image, direction);
+  return d.z * (1.0 + 1e-9) >= std::max(std::abs(d.x), std::abs(d.y));
+}
+
+/// Where a ray lies between the columns and rows of an image, told by what these pass.
+glm::dvec2 placeIn(const splatting::ShearWarp& image, const glm::dvec3& direction)
+{
+  const glm::dvec3 d = inImage(image, direction);
+  const double far = std::abs(image.reference() - image.eye().z);
+  const glm::dvec2 at = glm::dvec2(image.eye()) + far * glm::dvec2(d) / d.z;
+  return (at - glm::dvec2(image.columns().at.front(), image.rows().at.front())) / image.pitch();
+}
+
+/// Columns and rows are rounded to 2^-20 of a voxel, the first one as well.
+constexpr double Misplaced = 2.0 * 0x1p-20;
+/// Interpolation and colours, of values in [0, 1].
+constexpr double Rounded = 8.0 * 0x1p-24 + 1.0 / 65535;
+
+/// The values that an image may have at p: interpolated between the four pixels around, or, where
+/// some of them are no samples, anything between the others.
+bool mayBe(const splatting::ShearImage& image, const glm::dvec2& p, double found)
+{
+  const glm::ivec2 last(image.width - 1, image.height - 1);
+  const glm::ivec2 low = glm::clamp(glm::ivec2(glm::floor(p - Misplaced)), glm::ivec2(0), last);
+  const glm::ivec2 high =
+    glm::clamp(glm::ivec2(glm::floor(p + Misplaced)) + 1, glm::ivec2(0), last);
+  double least = 1e30, greatest = -1e30;
+  bool all = true;
+  for (int v = low.y; v <= high.y; ++v)
+  {
+    for (int u = low.x; u <= high.x; ++u)
+    {
+      all = all && image.covers(u, v);
+      if (image.covers(u, v))
+      {
+        least = std::min<double>(least, image.row<float>(v)[u]);
+        greatest = std::max<double>(greatest, image.row<float>(v)[u]);
+      }
+    }
+  }
+  if (found < least - Rounded || found > greatest + Rounded)
+  {
+    return false;
+  }
+  double expected = 0.0;
+  for (int v = low.y; all && v <= high.y; ++v)
+  {
+    for (int u = low.x; u <= high.x; ++u)
+    {
+      const double weight =
+        std::max(0.0, 1.0 - std::abs(p.x - u)) * std::max(0.0, 1.0 - std::abs(p.y - v));
+      expected += weight * image.row<float>(v)[u];
+    }
+  }
+  // Neighbours differ by at most 1, along u and along v.
+  return !all || std::abs(found - expected) <= 2.0 * Misplaced + Rounded;
+}
+
+struct PixelCounts
+{
+  int shown = 0, beside = 0;
+};
+
+void checkPerspectivePicture(Checks& check, const splatting::View& view,
+  const std::vector<splatting::ShearWarp>& geometries,
+  const std::vector<splatting::ShearImage>& images, const splatting::Picture& picture,
+  PixelCounts& counts)
+{
+  const Camera camera(view);
+  glm::dvec3 eye = camera.eye;
+  for (const splatting::ShearWarp& geometry : geometries)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      eye[geometry.axes()[a]] = geometry.eye()[a]; // rounded
+    }
+  }
+  check(glm::length(eye - camera.eye) <= 0x1p-10 + 1e-9 * glm::length(eye), "the eye has moved");
+  const Box shown = shownBox(view);
+  for (int y = 0; y < view.viewport.y; ++y)
+  {
+    for (int x = 0; x < view.viewport.x; ++x)
+    {
+      const std::uint32_t color = colorAt(picture, x, y);
+      const glm::dvec3 ray = camera.direction(x, y);
+      constexpr double margin = 1e-6;
+      counts.shown += color != 0;
+      if (!meets(shown, eye, ray, margin))
+      {
+        counts.beside += check(color == 0, "a pixel outside the volume has a colour");
+        continue;
+      }
+      bool crosses = false, matches = false;
+      for (std::size_t n = 0; n < geometries.size(); ++n)
+      {
+        const splatting::ShearWarp& image = geometries[n];
+        if (follows(image, ray))
+        {
+          // From within half a voxel of the rim a ray may leave before it comes to a slice.
+          crosses =
+            meets(slicesSeen(view, eye, image.principalAxis(), image.reversed()), eye, ray, -1e-5);
+          matches = matches || mayBe(images[n], placeIn(image, ray), (double(color) - 1.0) / 65535);
+        }
+      }
+      check(color != 0 || !crosses || !meets(shown, eye, ray, -margin),
+        "a pixel inside the volume is transparent, ", x, ", ", y);
+      check(color == 0 || matches, "a pixel has another colour than its ray, ", x, ", ", y);
+    }
+  }
+}
+
+std::vector<splatting::ShearImage> noiseImages(
+  const std::vector<splatting::ShearWarp>& geometries, reference::Random& random)
+{
+  std::vector<splatting::ShearImage> images;
+  for (const splatting::ShearWarp& geometry : geometries)
+  {
+    images.push_back(imageOf(geometry, [&](int, int) { return random.uniform(0.0, 1.0); }));
+  }
+  return images;
+}
+
+void testPerspective(Checks& check)
+{
+  reference::Random random(43);
+  const splatting::ColorTable table = countingTable(0.0, 1.0);
+  splatting::Warper warper;
+  std::vector<splatting::ShearWarp> geometries;
+  PixelCounts counts;
+  std::size_t mostImages = 0;
+  for (int n = 0; n < 200; ++n)
+  {
+    auto size = randomSize(random, 30);
+    if (n % 6 < 3)
+    {
+      size[n % 3] = 1;
+    }
+    splatting::View view = randomPerspective(size, random);
+    view.showsBoxes = n % 4 == 0;
+    splatting::ShearWarp::factorise(view, geometries);
+    mostImages = std::max(mostImages, geometries.size());
+    std::vector<splatting::ShearImage> images = noiseImages(geometries, random);
+    images.resize(images.size() + random.uniform(0, 2)); // spare ones
+    for (bool special : { false, true }) // where all pixels go the way of those near holes
+    {
+      for (splatting::ShearImage& image : images)
+      {
+        image.special = special;
+      }
+      splatting::Picture picture;
+      warper.warp(images, geometries, table, view.viewport,
+        static_cast<splatting::InstructionSet>(random.uniform(0, 2)), picture);
+      checkPerspectivePicture(check, view, geometries, images, picture, counts);
+    }
+  }
+  check(mostImages >= 4, "only ", mostImages, " images");
+  check(counts.shown > 200000 && counts.beside > 200000, "only ", counts.shown, " pixels shown, ",
+    counts.beside, " beside the volume");
+}
+
+/// A view from a place in index space, its middle ray along `direction`. Along axes and between
+/// two, rays of pixels have slopes of exactly 1: those of the 16th from the middle, and the middle.
+splatting::View wideView(const std::array<int, 3>& size, const glm::dvec3& eye,
+  const glm::dvec3& direction, const glm::dvec3& up, int pixels)
+{
+  splatting::View view;
+  view.dimensions = toGlm(size);
+  view.viewport = { pixels, pixels };
+  const double right = 0.1 * pixels / 32.0;
+  view.indexToClip =
+    glm::frustum(-right, right, -right, right, 0.1, 1000.0) * glm::lookAt(eye, eye + direction, up);
+  return view;
+}
+
+/// Images of a smooth function of the ray's direction show that function, whatever the image.
+void testSeams(Checks& check)
+{
+  const glm::dvec3 slope(0.11, -0.13, 0.17);
+  const auto f = [&](const glm::dvec3& d) { return 0.5 + glm::dot(slope, glm::normalize(d)); };
+  reference::Random random(47);
+  const splatting::ColorTable table = countingTable(0.0, 1.0);
+  const glm::dvec3 z(0.0, 0.0, 1.0);
+  const std::array<int, 3> size{ 31, 27, 35 };
+  std::vector<splatting::View> views;
+  for (const glm::dvec3& eye : { glm::dvec3(15.0, 13.0, 17.0), glm::dvec3(7.3, 20.1, 11.9),
+         glm::dvec3(-3.0, 13.0, 17.0), glm::dvec3(-9.0, -9.0, -9.0) })
+  {
+    for (int n = 0; n < 12; ++n)
+    {
+      const glm::dvec3 direction = n == 0 ? z
+        : n == 1                          ? glm::dvec3(1.0, 0.0, 0.0)
+        : n == 2                          ? glm::dvec3(1.0, 1.0, 0.0)
+        : n == 3                          ? glm::dvec3(1.0, 1.0, 1.0)
+                 : glm::dvec3(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
+                     random.uniform(-1.0, 1.0));
+      const glm::dvec3 up = n == 0 ? glm::dvec3(0.0, 1.0, 0.0) : z;
+      views.push_back(wideView(size, eye, direction, up, n % 3 == 2 ? 129 : 65));
+    }
+  }
+  std::array<int, 7> viewsOf{};
+  int shown = 0;
+  for (const splatting::View& view : views)
+  {
+    std::vector<splatting::ShearWarp> geometries;
+    splatting::ShearWarp::factorise(view, geometries);
+    ++viewsOf[geometries.size()];
+    std::vector<splatting::ShearImage> images;
+    double step = 0.0; // of slopes
+    for (const splatting::ShearWarp& geometry : geometries)
+    {
+      const auto atPixel = [&](int u, int v)
+      {
+        const double forwards = geometry.reversed() ? -1.0 : 1.0;
+        const glm::dvec3 d(
+          forwards * geometry.columns().slope[u], forwards * geometry.rows().slope[v], forwards);
+        glm::dvec3 direction;
+        for (int a = 0; a < 3; ++a)
+        {
+          direction[geometry.axes()[a]] = d[a];
+        }
+        return f(direction);
+      };
+      images.push_back(imageOf(geometry, atPixel));
+      for (int v = 0; v < geometry.height(); ++v)
+      {
+        // Beside the volume, too: all points have four neighbours.
+        images.back().spans[v] = { 0, geometry.width() };
+        for (int u = 0; u < geometry.width(); ++u)
+        {
+          images.back().row<float>(v)[u] = static_cast<float>(atPixel(u, v));
+        }
+      }
+      step = std::max(step, geometry.pitch() / std::abs(geometry.reference() - geometry.eye().z));
+    }
+    splatting::Picture picture;
+    splatting::Warper().warp(
+      images, geometries, table, view.viewport, splatting::bestInstructionSet(), picture);
+    const Camera camera(view);
+    // Second derivatives of each component of a direction with regard to a slope are at most 1.
+    const double bound =
+      step * step / 4.0 * (std::abs(slope.x) + std::abs(slope.y) + std::abs(slope.z)) +
+      Misplaced * step + Rounded;
+    for (int y = 0; y < view.viewport.y; ++y)
+    {
+      for (int x = 0; x < view.viewport.x; ++x)
+      {
+        const std::uint32_t color = colorAt(picture, x, y);
+        const glm::dvec3 ray = camera.direction(x, y);
+        shown += color != 0;
+        check(
+          color != 0 || !meets(shownBox(view), camera.eye, ray, -0.01), "a gap at ", x, ", ", y);
+        const double off = (double(color) - 1.0) / 65535 - f(ray);
+        check(color == 0 || std::abs(off) <= bound, "a seam: ", off, " at ", x, ", ", y,
+          ", not within ", bound);
+      }
+    }
+  }
+  for (int n = 1; n <= 5; ++n)
+  {
+    check(viewsOf[n] > 0, "no view with ", n, " images");
+  }
+  check(shown > 100000, "only ", shown, " pixels shown");
+}
+
+void testEveryWayGivesTheSameBits(Checks& check)
+{
+  reference::Random random(53);
+  const splatting::ColorTable table = countingTable(0.0, 1.0);
+  const splatting::View view =
+    wideView({ 31, 27, 35 }, { 7.0, 13.0, 17.0 }, { 1.0, 0.3, 0.8 }, { 0.0, 0.0, 1.0 }, 257);
+  std::vector<splatting::ShearWarp> geometries;
+  splatting::ShearWarp::factorise(view, geometries);
+  const std::vector<splatting::ShearImage> images = noiseImages(geometries, random);
+  splatting::Picture expected;
+  splatting::Warper().warp(
+    images, geometries, table, view.viewport, splatting::InstructionSet::Baseline, expected);
+  for (auto set : { splatting::InstructionSet::Baseline, splatting::InstructionSet::AVX2,
+         splatting::InstructionSet::AVX512 })
+  {
+    for (int threads : { 1, 2 })
+    {
+      vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
+        [&]
+        {
+          splatting::Picture picture;
+          splatting::Warper().warp(images, geometries, table, view.viewport, set, picture);
+          check(picture.pixels == expected.pixels, splatting::nameOf(set), " with ", threads,
+            " threads gives other bits");
+        });
+    }
+  }
 }
 }
 
@@ -194,5 +608,8 @@ int TestWarp(int, char*[])
   testLinearImages(check);
   testOddPixels(check);
   testOutsideTheViewport(check);
+  testPerspective(check);
+  testSeams(check);
+  testEveryWayGivesTheSameBits(check);
   return check.result();
 }

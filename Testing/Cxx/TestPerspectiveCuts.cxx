@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where the rays of perspective views begin and end, in all images of a view, against their
+// definition in index space: from afar, from nearby and from inside the volume and what cuts it.
+#include "CutScenes.h"
+
+using namespace cutscenes;
+
+namespace
+{
+/// Near and far plane, in units of w.
+struct DepthRange
+{
+  double near, far;
+
+  double depthOf(double w) const
+  {
+    return this->far / (this->far - this->near) * (1.0 - this->near / w);
+  }
+};
+
+/// Planes close around the volume, as far as it lies before the eye, or within it.
+DepthRange placePlanes(View& view, Random& random)
+{
+  double least = Infinity, greatest = -Infinity;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec3 p(corner & 1 ? view.dimensions.x : 0, corner & 2 ? view.dimensions.y : 0,
+      corner & 4 ? view.dimensions.z : 0);
+    const double w = (view.indexToClip * glm::dvec4(p, 1.0)).w;
+    least = std::min(least, w);
+    greatest = std::max(greatest, w);
+  }
+  greatest = std::max(greatest, 0.1);
+  const double near = std::max(0.9 * least, random.uniform(0.02, 0.1) * greatest);
+  const DepthRange range{ near, 1.1 * greatest };
+  const double extent = range.far - range.near;
+  for (int c = 0; c < 4; ++c)
+  {
+    view.indexToClip[c][2] = (range.far + range.near) / extent * view.indexToClip[c][3];
+  }
+  view.indexToClip[3][2] -= 2.0 * range.far * range.near / extent;
+  return range;
+}
+
+/// As a mapper adds it.
+void addNearPlane(View& view)
+{
+  const glm::dmat4& m = view.indexToClip;
+  glm::dvec4 plane;
+  for (int c = 0; c < 4; ++c)
+  {
+    plane[c] = m[c][3] + m[c][2];
+  }
+  view.halfSpaces.push_back(plane);
+}
+
+Depths randomDepths(const View& view, const DepthRange& range, Random& random)
+{
+  const glm::ivec2 origin(
+    random.uniform(0, view.viewport.x / 4), random.uniform(0, view.viewport.y / 4));
+  return cutscenes::randomDepths(origin, view.viewport - origin, random,
+    [&](Random& r) { return range.depthOf(r.uniform(range.near, range.far)); });
+}
+
+Scene randomScene(Random& random, int cutters)
+{
+  Scene scene;
+  scene.view = coretesting::randomPerspective(coretesting::randomSize(random, 17), random);
+  const DepthRange range = placePlanes(scene.view, random);
+  if (cutters & HalfSpaces)
+  {
+    scene.view.halfSpaces = randomHalfSpaces(random, scene.view.dimensions);
+    if (random.uniform(0, 1))
+    {
+      addNearPlane(scene.view);
+    }
+  }
+  if (cutters & (Convex | Bumpy))
+  {
+    scene.mesh = randomBlob(random, scene.view.dimensions, cutters & Bumpy ? 0.6 : 0.0);
+  }
+  if (cutters & Depth)
+  {
+    scene.depths = randomDepths(scene.view, range, random);
+  }
+  return scene;
+}
+
+void testRandomScenes(int cutters, Checks& check)
+{
+  Random random(140 + cutters);
+  Counts counts;
+  for (int n = 0; n < 400; ++n)
+  {
+    compare(randomScene(random, cutters), counts, check);
+  }
+  std::cout << "cutters " << cutters << ": " << counts.rays << " rays, " << counts.doubtful
+            << " left out, " << counts.cut << " samples cut, " << counts.kept << " kept, "
+            << counts.thin << " thin, " << counts.hidden << " hidden" << std::endl;
+  check(counts.cut > 20000 && counts.kept > 20000, "Enough is cut, and enough is left.");
+  check(!(cutters & HalfSpaces) || counts.thin > 500, "Some intervals are thinner than a slice.");
+  check(!(cutters & Depth) || counts.hidden > 1000, "Some pixels are hidden.");
+  check(50 * counts.doubtful < counts.rays, "Few rays are left out.");
+}
+
+/// Half of the boxes have their corners at voxels' corners; some hold the eye, which is at such
+/// places, too.
+void testBoxes(Checks& check)
+{
+  Random random(107);
+  int cut = 0, holding = 0, rays = 0, doubtful = 0;
+  for (int n = 0; n < 400; ++n)
+  {
+    Scene planes, mesh, wide, narrow;
+    planes.view = coretesting::randomPerspective(coretesting::randomSize(random, 20), random);
+    mesh.view = wide.view = narrow.view = planes.view;
+    glm::dvec3 low = randomPoint(random, planes.view.dimensions);
+    if (n % 3 == 0)
+    {
+      const glm::dvec4 eye = glm::inverse(planes.view.indexToClip)[2];
+      low = glm::dvec3(eye) / eye.w - random.uniform(0.1, 5.0);
+    }
+    glm::dvec3 high = low + glm::abs(randomVector(random)) * 20.0;
+    if (n % 2)
+    {
+      low = glm::floor(low) + 0.5;
+      high = glm::floor(high) + 1.5;
+    }
+    planes.view.halfSpaces = halfSpacesOfBox(low, high);
+    const double width = 1e-4; // more than rounding moves rays and the eye by
+    wide.view.halfSpaces = halfSpacesOfBox(low - width, high + width);
+    narrow.view.halfSpaces = halfSpacesOfBox(low + width, high - width);
+    mesh.mesh = boxOfTriangles(random, low, high, random.uniform(1, 5));
+    const Found a(planes), b(mesh), c(wide), d(narrow);
+    cut += !a.cutsNothing();
+    for (std::size_t image = 0; image < a.images.size(); ++image)
+    {
+      const glm::dvec3& eye = a.images[image].eye();
+      const std::array<int, 3>& axes = a.images[image].axes();
+      bool isInside = true;
+      for (int m = 0; m < 3; ++m)
+      {
+        isInside &= eye[m] > low[axes[m]] && eye[m] < high[axes[m]];
+      }
+      holding += isInside;
+      forEachRay(Oracle(planes, a.images[image]), a.images[image],
+        [&](int u, int v, const std::vector<int>& crossed)
+        {
+          const auto slicesOf = [&](const Found& found)
+          { return left(found.intervals[image], u, v, crossed); };
+          // Rays that meet an edge are for rounding to decide.
+          const bool isDoubtful = slicesOf(c) != slicesOf(d);
+          ++rays;
+          doubtful += isDoubtful;
+          check(isDoubtful || slicesOf(a) == slicesOf(b), "Box ", n, ": a surface cuts pixel ", u,
+            ", ", v, " as planes do.");
+        });
+    }
+  }
+  std::cout << "boxes: " << cut << " cut, " << holding << " images with the eye inside, " << rays
+            << " rays, " << doubtful << " left out" << std::endl;
+  check(cut > 200 && holding > 50 && 10 * doubtful < rays,
+    "Most boxes cut, some hold the eye, and few rays are left out.");
+}
+
+void testNothingCut(Checks& check)
+{
+  Random random(111);
+  for (int n = 0; n < 100; ++n)
+  {
+    Scene scene;
+    scene.view = coretesting::randomPerspective({ 9, 12, 7 }, random);
+    const DepthRange range = placePlanes(scene.view, random);
+    check(Found(scene).cutsNothing(), "Nothing cuts.");
+    // From within as well as from outside.
+    scene.mesh = boxOfTriangles(random, glm::dvec3(-12.3), glm::dvec3(30.7), 2);
+    check(Found(scene).cutsNothing(), "A surface around the volume cuts nothing.");
+    scene.mesh = {};
+    scene.depths = randomDepths(scene.view, range, random);
+    std::fill(scene.depths.samples.begin(), scene.depths.samples.end(),
+      static_cast<float>(range.depthOf(0.999 * range.far)));
+    check(Found(scene).cutsNothing(), "What lies behind cuts nothing.");
+  }
+}
+
+/// Each direction has a projection of its own, which is the right one whatever came before.
+void testReuse(Checks& check)
+{
+  Random random(113);
+  splatting::ClosedSurface surface;
+  const Mesh mesh = randomBlob(random, { 9, 12, 7 }, 0.3);
+  surface.reset(mesh.points, mesh.triangles);
+  std::vector<ShearWarp> images;
+  for (int n = 0; n < 100; ++n)
+  {
+    const View view = n % 3 ? coretesting::randomPerspective({ 9, 12, 7 }, random)
+                            : coretesting::anyView({ 9, 12, 7 }, random);
+    ShearWarp::factorise(view, images);
+    std::vector<const splatting::SurfaceDepths*> depths;
+    for (const ShearWarp& image : images)
+    {
+      depths.push_back(&surface.project(image));
+    }
+    for (std::size_t m = 0; m < images.size(); ++m)
+    {
+      splatting::ClosedSurface fresh;
+      fresh.reset(mesh.points, mesh.triangles);
+      const splatting::SurfaceDepths& expected = fresh.project(images[m]);
+      const std::size_t pixels = std::size_t(images[m].width()) * images[m].height();
+      check(std::equal(expected.near(0), expected.near(0) + pixels, depths[m]->near(0)) &&
+          std::equal(expected.far(0), expected.far(0) + pixels, depths[m]->far(0)) &&
+          &surface.project(images[m]) == depths[m],
+        "View ", n, ", image ", m, ": another projection than that of a new surface.");
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+int TestPerspectiveCuts(int, char*[])
+{
+  Checks check;
+  for (int cutters :
+    { int(HalfSpaces), int(Convex), int(Bumpy), int(Depth), HalfSpaces | Bumpy | Depth })
+  {
+    testRandomScenes(cutters, check);
+  }
+  testBoxes(check);
+  testNothingCut(check);
+  testReuse(check);
+  return check.result();
+}
