@@ -352,7 +352,7 @@ int wrongPixels(const splatting::ShearImage& image, const reference::RaySamples<
         {
           const std::size_t pixel = found.index(u, v);
           const auto ray = reference::cutRay(rays[pixel], cutter, u, v, c.reversed);
-          ++count.all;
+          count.all += !rays[pixel].empty();
           if (std::isinf(bounds.ofSamples(ray.leastWeight)))
           {
             ++count.skipped;
