@@ -23,8 +23,8 @@ void SceneCuts::Find(const splatting::View& view, const std::vector<splatting::S
   for (std::size_t n = 0; n < images.size(); ++n)
   {
     this->Present[n].cropping = view.cropping;
-    this->Present[n].intervals.find(images[n], view.halfSpaces, this->Bounds.Get(),
-      this->Seen ? &this->Seen->depth : nullptr);
+    this->Present[n].intervals.find(
+      images[n], view.halfSpaces, this->Bounds.Get(), this->Seen ? &this->Seen->depth : nullptr);
   }
 }
 

@@ -92,6 +92,34 @@ splatting::Cropping croppingOf(const VolumeGrid& grid, vtkVolumeMapper* mapper)
   return cropping;
 }
 
+/// The direction of projection in the world, and how far at most rays go along it from one slice to
+/// the next.
+struct Projection
+{
+  glm::dvec3 normal;
+  double slice;
+};
+
+Projection projectionOf(const splatting::View& view, const glm::dmat4& world)
+{
+  const glm::dmat3 linear(world);
+  if (splatting::isParallel(view))
+  {
+    // Rays run where neither coordinate on the screen changes.
+    const glm::dvec3 ray =
+      glm::cross(glm::dvec3(row(view.indexToClip, 0)), glm::dvec3(row(view.indexToClip, 1)));
+    const glm::dvec3 across = linear * ray, steps = glm::abs(ray);
+    return { glm::normalize(across),
+      glm::length(across) / std::max({ steps.x, steps.y, steps.z }) };
+  }
+  // Where w grows; a plane is a row vector. From slice to slice rays go by one step along one axis
+  // and at most one along the others.
+  const glm::dvec3 w(row(view.indexToClip, 3));
+  const glm::dvec3 normal = glm::normalize(w * glm::inverse(linear));
+  const glm::dvec3 steps = glm::abs(normal * linear);
+  return { normal, steps.x + steps.y + steps.z };
+}
+
 /// Keeps a half-space of index space if it cuts into the volume's voxels at all.
 void addHalfSpace(splatting::View& view, const glm::dvec4& h)
 {
@@ -162,17 +190,11 @@ void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
   const double centre[3], double thickness)
 {
   const glm::dmat4 world = indexToWorld(grid, volume);
-  // Rays run where neither coordinate on the screen changes.
-  const glm::dvec3 ray =
-    glm::cross(glm::dvec3(row(view.indexToClip, 0)), glm::dvec3(row(view.indexToClip, 1)));
-  const glm::dvec3 across = glm::dmat3(world) * ray;
-  const glm::dvec3 normal = glm::normalize(across);
-  const double place = glm::dot(normal, glm::dvec3(centre[0], centre[1], centre[2]));
+  const Projection projection = projectionOf(view, world);
+  const double place = glm::dot(projection.normal, glm::dvec3(centre[0], centre[1], centre[2]));
   // What is thinner than a slice shows the nearest one, however thin: it must not drown in
   // rounding.
-  const glm::dvec3 steps = glm::abs(ray);
-  const double slice = glm::length(across) / std::max({ steps.x, steps.y, steps.z });
-  const double half = 0.5 * std::max(thickness, 1e-3 * slice);
-  addHalfSpace(view, glm::dvec4(normal, half - place) * world);
-  addHalfSpace(view, glm::dvec4(-normal, half + place) * world);
+  const double half = 0.5 * std::max(thickness, 1e-3 * projection.slice);
+  addHalfSpace(view, glm::dvec4(projection.normal, half - place) * world);
+  addHalfSpace(view, glm::dvec4(-projection.normal, half + place) * world);
 }

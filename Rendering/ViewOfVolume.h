@@ -31,8 +31,9 @@ splatting::View makeView(
 glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume);
 
 /**
- * Adds the two half-spaces of a slab across the rays of a parallel view. Centre and thickness are
- * in the world.
+ * Adds the two half-spaces of a slab across the direction of projection: that of the rays of a
+ * parallel view; in perspective that in which w, the fourth coordinate of clip space, grows. Centre
+ * and thickness are in the world.
  */
 void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
   const double centre[3], double thickness);

@@ -39,6 +39,12 @@ double sumOfSizes(const glm::dvec3& p)
   return std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
 }
 
+/// Depths of all pixels.
+struct SurfaceRows
+{
+  double *near, *far;
+};
+
 /// A triangle of (i, j, k), and how the rays of an image meet it.
 class Triangle
 {
@@ -57,6 +63,9 @@ public:
       const double distance = std::max({ largest(a - eye), largest(b - eye), largest(c - eye) });
       this->Facing = glm::dot(this->Normal, a - eye) / (geometry.reversed() ? -distance : distance);
       reach = std::max(reach, largest(eye));
+      const double z = geometry.reference();
+      this->Margin = PlaceRounding +
+        SlopeRounding * std::max({ std::abs(a.z - z), std::abs(b.z - z), std::abs(c.z - z) });
       double& end = geometry.reversed() ? this->High : this->Low;
       end = geometry.reversed() ? std::min(end, eye.z) : std::max(end, eye.z);
     }
@@ -66,7 +75,7 @@ public:
       this->Facing = glm::dot(this->Normal, ray);
     }
     // Larger than what rounding does to the distance between a ray and an edge.
-    this->Margin = 1e-9 * (1.0 + reach);
+    this->Margin += 1e-9 * (1.0 + reach);
   }
 
   /// Whether no ray meets the triangle, or it has no more than edges for them.
@@ -91,23 +100,14 @@ public:
     return integersIn(low, high, this->Geometry.height());
   }
 
-  /// Widens the depths of the pixels of row v that the triangle covers.
-  void cover(int v, double* near, double* far) const
+  /// Widens the depths of the pixels that the triangle covers in some rows.
+  void cover(const Span& rows, SurfaceRows depths) const
   {
-    const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
-    const Span pixels = this->pixels(v);
-    const glm::dvec3 &a = this->Corners[0], &n = this->Normal;
-    const double depth = a.z - this->Geometry.reference();
-    const double rest = n.y * (rows.at[v] + rows.slope[v] * depth - a.y);
-    const double speed = n.y * rows.slope[v] + n.z;
-    for (int u = pixels.begin; u < pixels.end; ++u)
+    const Side sides[] = { this->side(0), this->side(1), this->side(2) };
+    for (int v = rows.begin; v < rows.end; ++v)
     {
-      const double distance = n.x * (columns.at[u] + columns.slope[u] * depth - a.x) + rest;
-      // Steep triangles would leave their own depths beside their edges.
-      const double z =
-        std::clamp(a.z - distance / (n.x * columns.slope[u] + speed), this->Low, this->High);
-      near[u] = std::min(near[u], z);
-      far[u] = std::max(far[u], z);
+      const std::size_t row = std::size_t(v) * this->Geometry.width();
+      this->cover(v, this->pixels(sides, v), depths.near + row, depths.far + row);
     }
   }
 
@@ -135,46 +135,50 @@ private:
     const double v = (this->Geometry.eye().y + place.y * ratio - this->Geometry.rows().at[0]) /
       this->Geometry.pitch();
     // Rounding matters most near the eye, where rays are close together.
-    const double rounding = (this->Margin + PlaceRounding + SlopeRounding * std::abs(far)) *
-      std::max(ratio, 1.0) / this->Geometry.pitch();
-    return { v - 1.0 - rounding, v + 1.0 + rounding };
+    const double rounding = (this->Margin + SlopeRounding * std::abs(far)) * std::max(ratio, 1.0) /
+      this->Geometry.pitch();
+    return { v - rounding, v + rounding };
   }
 
-  Span pixels(int v) const
+  /// What rays are compared with an edge by.
+  struct Side
+  {
+    glm::dvec3 corner, edge; // in the sense of rotation in which rays see it
+    double depth, tolerance;
+  };
+
+  Side side(int e) const
+  {
+    const glm::dvec3 edge = this->Facing > 0.0 ? this->edge(e) : -this->edge(e);
+    return { this->Corners[e], edge, this->Corners[e].z - this->Geometry.reference(),
+      this->Margin * sumOfSizes(edge) };
+  }
+
+  /// The pixels of row v that the triangle covers.
+  Span pixels(const Side (&sides)[3], int v) const
   {
     const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
-    const double turn = this->Facing > 0.0 ? 1.0 : -1.0;
     const int last = this->Geometry.width() - 1;
     double low = -Infinity, high = Infinity;
-    for (int e = 0; e < 3; ++e)
+    for (const Side& s : sides)
     {
       // The volume between a ray and an edge is not negative if the ray passes inside. Along the
       // row it is linear, but for what the rays are rounded by.
-      const glm::dvec3& corner = this->Corners[e];
-      const glm::dvec3 side = turn * this->edge(e);
-      const double depth = corner.z - this->Geometry.reference();
-      const double q = rows.at[v] + rows.slope[v] * depth - corner.y;
-      const double across = side.z * rows.slope[v] - side.y;
+      const double q = rows.at[v] + rows.slope[v] * s.depth - s.corner.y;
+      const double across = s.edge.z * rows.slope[v] - s.edge.y;
+      const double turned = across * s.depth - s.edge.z * q;
+      const double rest = s.edge.x * q - across * s.corner.x;
       const auto inside = [&](int u)
+      { return across * columns.at[u] + turned * columns.slope[u] + rest; };
+      const double begin = inside(0), rise = inside(last) - begin;
+      const double start = begin + s.tolerance;
+      if (rise > 0.0)
       {
-        const double p = columns.at[u] + columns.slope[u] * depth - corner.x;
-        return across * p + side.x * q - side.z * q * columns.slope[u];
-      };
-      double start = inside(0);
-      const double step = last > 0 ? (inside(last) - start) / last : 0.0;
-      start += this->Margin * sumOfSizes(side);
-      if (this->Geometry.isPerspective())
-      {
-        start +=
-          PlaceRounding * std::abs(across) + SlopeRounding * std::abs(across * depth - side.z * q);
+        low = std::max(low, -start * last / rise);
       }
-      if (step > 0.0)
+      else if (rise < 0.0)
       {
-        low = std::max(low, -start / step);
-      }
-      else if (step < 0.0)
-      {
-        high = std::min(high, -start / step);
+        high = std::min(high, -start * last / rise);
       }
       else if (start < 0.0)
       {
@@ -184,11 +188,29 @@ private:
     return integersIn(low, high, last + 1);
   }
 
+  void cover(int v, const Span& pixels, double* near, double* far) const
+  {
+    const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
+    const glm::dvec3 &a = this->Corners[0], &n = this->Normal;
+    const double depth = a.z - this->Geometry.reference();
+    const double rest = n.y * (rows.at[v] + rows.slope[v] * depth - a.y);
+    const double speed = n.y * rows.slope[v] + n.z;
+    for (int u = pixels.begin; u < pixels.end; ++u)
+    {
+      const double distance = n.x * (columns.at[u] + columns.slope[u] * depth - a.x) + rest;
+      // Steep triangles would leave their own depths beside their edges.
+      const double z =
+        std::clamp(a.z - distance / (n.x * columns.slope[u] + speed), this->Low, this->High);
+      near[u] = std::min(near[u], z);
+      far[u] = std::max(far[u], z);
+    }
+  }
+
   const ShearWarp& Geometry;
   glm::dvec3 Corners[3];
   glm::dvec3 Normal;
   double Facing; // more than 0 if rays see the corners in the sense of rotation from i to j
-  double Margin, Low, High;
+  double Margin = 0.0, Low, High;
 };
 
 /// Whether a half-line from the origin along +z, or -z, meets a triangle. All triangles that share
@@ -218,7 +240,10 @@ void ClosedSurface::reset(std::vector<glm::dvec3> points, std::vector<glm::ivec3
 {
   this->Points = std::move(points);
   this->Triangles = std::move(triangles);
-  this->Projections = {};
+  for (SurfaceDepths& depths : this->Projections)
+  {
+    depths.Valid = false;
+  }
 }
 
 const SurfaceDepths& ClosedSurface::project(const ShearWarp& geometry)
@@ -277,10 +302,7 @@ void ClosedSurface::findDepths(SurfaceDepths& depths) const
           const glm::ivec3& corners = this->Triangles[t];
           const Triangle triangle(
             geometry, this->Places[corners[0]], this->Places[corners[1]], this->Places[corners[2]]);
-          for (int v = first; v < last; ++v)
-          {
-            triangle.cover(v, &depths.Near[v * width], &depths.Far[v * width]);
-          }
+          triangle.cover({ first, last }, { depths.Near.data(), depths.Far.data() });
         }
       }
     });

@@ -14,10 +14,17 @@ namespace splatting
 {
 namespace
 {
+/// Of numbers that fit.
 inline double roundedDown(double x)
 {
   const double whole = static_cast<double>(static_cast<std::int32_t>(x));
-  return whole > x ? whole - 1.0 : whole;
+  return whole - (whole > x ? 1.0 : 0.0);
+}
+
+inline double clamped(double x, double low, double high)
+{
+  x = x > low ? x : low;
+  return x < high ? x : high;
 }
 
 inline void steps(const double* __restrict at, const double* __restrict slope, double from,
@@ -28,21 +35,26 @@ inline void steps(const double* __restrict at, const double* __restrict slope, d
   for (std::ptrdiff_t x = 0; x < n; ++x)
   {
     // Seen from rays that run to lower voxels everything is mirrored.
-    const double turn = slope[x] < 0.0 ? -1.0 : 1.0;
-    double entry = at[x] + slope[x] * from, exit = at[x] + slope[x] * to;
-    entry = entry < low ? low : entry > high ? high : entry;
-    exit = exit < low ? low : exit > high ? high : exit;
-    // A point on a face belongs to the voxel that the ray runs in next to it.
-    const double enters = roundedDown(turn * entry + 0.5);
-    const double leaves = slope[x] == 0.0 ? enters : -roundedDown(0.5 - turn * exit);
-    const double speed = turn * slope[x];
-    const double passes = leaves > enters ? (enters + 0.5 - turn * entry) / speed : 0.0;
-    const double a = turn * enters, b = turn * leaves;
-    first[x] = static_cast<std::int32_t>(a < -1.0 ? -1.0 : a > size ? size : a);
-    last[x] = static_cast<std::int32_t>(b < -1.0 ? -1.0 : b > size ? size : b);
+    const double own = slope[x];
+    const double turn = own < 0.0 ? -1.0 : 1.0;
+    const double entry = turn * clamped(at[x] + own * from, low, high);
+    const double exit = turn * clamped(at[x] + own * to, low, high);
+    // A point on a face belongs to the voxel that the ray runs in next to it; a ray that stays on
+    // it has but one.
+    const double enters = roundedDown(entry + 0.5);
+    const double before = -roundedDown(0.5 - exit);
+    const double leaves = own == 0.0 ? enters : before;
+    const double speed = own == 0.0 ? 1.0 : turn * own;
+    const double way = (enters + 0.5 - entry) / speed;
+    const double passes = leaves > enters ? way : 0.0;
+    first[x] = static_cast<std::int32_t>(clamped(turn * enters, -1.0, size));
+    last[x] = static_cast<std::int32_t>(clamped(turn * leaves, -1.0, size));
     time[x] = passes;
-    const double ticks = passes * 32768.0;
-    tick[x] = static_cast<std::int16_t>(ticks < 32767.0 ? static_cast<std::int32_t>(ticks) : 32767);
+  }
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const std::int32_t ticks = static_cast<std::int32_t>(time[x] * 32768.0);
+    tick[x] = static_cast<std::int16_t>(ticks < 32767 ? ticks : 32767);
   }
 }
 
@@ -396,8 +408,9 @@ inline void crossRow(const Crossing<T>& c, T* image, const unsigned char* bits, 
 }
 
 template <class T>
-void cross(const Crossing<T>& c)
+void cross(const Crossing<T>& crossing)
 {
+  const Crossing<T> c = crossing; // pixels that are bytes might be part of the other one
   for (int v = 0; v < c.height; ++v)
   {
     crossRow(c, c.image + v * c.imageStride, c.bits ? c.bits + v * c.bitsStride : nullptr, v);
@@ -610,17 +623,49 @@ void resample(const Resampling<A>& r, A* out, std::ptrdiff_t begin, std::ptrdiff
   }
 }
 
-template <class A>
-void blend(const A* const* rows, const A* weights, int count, A* __restrict out, std::ptrdiff_t n)
+template <class A, int Rows>
+inline void blendRows(const A* const* rows, const A* weights, A* out, std::ptrdiff_t n)
 {
-  for (std::ptrdiff_t x = 0; x < n; ++x)
+  const A* row[Rows];
+  A weight[Rows];
+  for (int r = 0; r < Rows; ++r)
+  {
+    row[r] = rows[r];
+    weight[r] = weights[r];
+  }
+  std::ptrdiff_t x = 0;
+  for (; x + width<A> <= n; x += width<A>)
+  {
+    Pack<A> sum{};
+#pragma GCC unroll 3
+    for (int r = 0; r < Rows; ++r)
+    {
+      sum += weight[r] * load<A>(row[r] + x);
+    }
+    store<A>(out + x, sum);
+  }
+  for (; x < n; ++x)
   {
     A sum = 0;
-    for (int r = 0; r < count; ++r)
+    for (int r = 0; r < Rows; ++r)
     {
-      sum += weights[r] * rows[r][x];
+      sum += weight[r] * row[r][x];
     }
     out[x] = sum;
+  }
+}
+
+template <class A>
+void blend(const A* const* rows, const A* weights, int count, A* out, std::ptrdiff_t n)
+{
+  switch (count)
+  {
+    case 1:
+      return blendRows<A, 1>(rows, weights, out, n);
+    case 2:
+      return blendRows<A, 2>(rows, weights, out, n);
+    default:
+      return blendRows<A, 3>(rows, weights, out, n);
   }
 }
 

@@ -94,6 +94,20 @@ struct Depths
     const double start = h.y * geometry.rows().at[v] + h.z * reference + h.w;
     const double size = glm::length(glm::dvec3(h));
     const double level = 1e-14 * size, least = -Rounding * (size + std::abs(h.w));
+    // Most planes bound a whole row in the same sense; speeds change linearly along it.
+    const double speeds[] = { h.x * slope[0] + rest, h.x * slope[count - 1] + rest };
+    const bool begins = std::min(speeds[0], speeds[1]) > level;
+    if (begins || std::max(speeds[0], speeds[1]) < -level)
+    {
+      double* const bounds = begins ? this->near : this->far;
+      const double sense = begins ? 1.0 : -1.0;
+      for (int x = 0; x < count; ++x)
+      {
+        const double z = reference - (h.x * at[x] + start) / (h.x * slope[x] + rest);
+        bounds[x] = sense * std::max(sense * bounds[x], sense * z);
+      }
+      return;
+    }
     for (int x = 0; x < count; ++x)
     {
       const double speed = h.x * slope[x] + rest, value = h.x * at[x] + start;
@@ -115,7 +129,7 @@ struct Depths
   }
 
   /// The first and last slice of each pixel, first > last if there are none, instead of depths.
-  void round(const Span& slices, int count)
+  void round(const Span slices, int count)
   {
     const double begin = slices.begin, end = slices.end - 1;
     for (int x = 0; x < count; ++x)
@@ -136,7 +150,7 @@ struct Depths
   }
 
   /// Whether any slices are lost.
-  bool write(const Span& slices, int count, std::int16_t* __restrict first,
+  bool write(const Span slices, int count, std::int16_t* __restrict first,
     std::int16_t* __restrict last) const
   {
     int lost = 0;
@@ -157,15 +171,20 @@ struct Depths
 class Reach
 {
 public:
-  explicit Reach(const ShearWarp& geometry) : Columns(geometry.width()), Rows(geometry.height())
+  explicit Reach(const ShearWarp& geometry)
   {
-    const Span& slices = geometry.slices();
-    this->All = { geometry.faces(slices.begin).x, geometry.faces(slices.end - 1).y };
     if (geometry.isPerspective())
     {
       double& eye = geometry.reversed() ? this->Ends.y : this->Ends.x;
       eye = std::clamp(geometry.eye().z, Before, Beyond);
     }
+  }
+
+  /// To be called before openWhole().
+  void findVolume(const ShearWarp& geometry)
+  {
+    const Span& slices = geometry.slices();
+    this->All = { geometry.faces(slices.begin).x, geometry.faces(slices.end - 1).y };
     find(geometry.columns(), geometry.reference(), geometry.size().x, this->Columns);
     find(geometry.rows(), geometry.reference(), geometry.size().y, this->Rows);
   }
@@ -195,6 +214,7 @@ private:
   /// Between which depths the rays of each column (or row) are in the volume's.
   static void find(const Fan& fan, double reference, int size, std::vector<glm::dvec2>& reach)
   {
+    reach.resize(fan.at.size());
     for (std::size_t n = 0; n < reach.size(); ++n)
     {
       const double low = -0.5 - fan.at[n], high = size - 0.5 - fan.at[n], slope = fan.slope[n];
@@ -211,7 +231,7 @@ private:
     }
   }
 
-  glm::dvec2 All, Ends{ Before, Beyond };
+  glm::dvec2 Ends{ Before, Beyond }, All{ 0.0 };
   std::vector<glm::dvec2> Columns, Rows;
 };
 }
@@ -235,7 +255,11 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
   const std::size_t pixels = std::size_t(this->Width) * geometry.height();
   this->First.resize(pixels);
   this->Last.resize(pixels);
-  const Reach reach(geometry);
+  Reach reach(geometry);
+  if (surface || depth)
+  {
+    reach.findVolume(geometry);
+  }
   const Span slices = geometry.slices();
   const std::vector<glm::dvec4> planes = asSeen(geometry, halfSpaces);
   const SurfaceDepths* const hull = surface ? &surface->project(geometry) : nullptr;

@@ -73,7 +73,7 @@ public:
   /// Keeps what the image shows of a box.
   void add(const Box& box, double inset)
   {
-    // Its outline are the edges between faces of which the viewer sees one from outside.
+    // Its outline are the edges between faces of which the viewer sees one; none from inside.
     for (int edge = 0; edge < 12; ++edge)
     {
       const int a = edge / 4, b = (a + 1) % 3, c = (a + 2) % 3;
@@ -131,13 +131,13 @@ public:
   }
 
 private:
-  /// Whether the viewer sees a face of a box from outside.
+  /// Whether the viewer is beyond a face of a box, or on it.
   bool faces(const Box& box, int axis, bool high) const
   {
     if (this->Geometry.isPerspective())
     {
       const double eye = this->Geometry.eye()[axis];
-      return high ? eye > box.high[axis] : eye < box.low[axis];
+      return high ? eye >= box.high[axis] : eye <= box.low[axis];
     }
     const glm::dvec3 direction(-this->Geometry.shear(), 1.0);
     return high ? direction[axis] < 0.0 : direction[axis] > 0.0;
@@ -178,9 +178,9 @@ Outline withinSamples(const ShearWarp& geometry)
   if (geometry.isPerspective())
   {
     inside.add({ 1.0, 0.0, 0.0 }, rounding);
-    inside.add({ -1.0, 0.0, geometry.width() - 1.0 }, rounding);
+    inside.add({ -1.0, 0.0, geometry.rayCount().x - 1.0 }, rounding);
     inside.add({ 0.0, 1.0, 0.0 }, rounding);
-    inside.add({ 0.0, -1.0, geometry.height() - 1.0 }, rounding);
+    inside.add({ 0.0, -1.0, geometry.rayCount().y - 1.0 }, rounding);
   }
   return inside;
 }
@@ -247,9 +247,8 @@ template <class A>
 std::uint32_t warpPoint(const WarpSource<A>& source, const glm::dvec3& homogeneous)
 {
   const ShearImage& image = source.image;
-  // Points on the line between two images may round out of theirs.
-  const glm::dvec2 p = glm::clamp(glm::dvec2(homogeneous) / homogeneous.z, glm::dvec2(0.0),
-    glm::dvec2(image.width - 1, image.height - 1));
+  const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
+  // Points on the line between two images may round out of theirs, where they have no neighbours.
   const int u = static_cast<int>(std::floor(p.x)), v = static_cast<int>(std::floor(p.y));
   const double fu = p.x - u, fv = p.y - v;
   double sum = 0.0, weight = 0.0, lost = 0.0, largest = -1.0;

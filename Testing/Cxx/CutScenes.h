@@ -335,31 +335,34 @@ private:
     return result;
   }
 
-  /// The screen pixel that a ray is seen at. False if rounding decides, or it is not seen.
-  bool seenAt(int u, int v, glm::ivec2& pixel) const
+  /// Where a ray is seen: in perspective, by its direction.
+  glm::dvec4 clipPlaceOf(int u, int v) const
   {
-    const bool isPerspective = this->Geometry.isPerspective();
     const glm::dvec3 from = this->point(u, v, 0.0);
     const glm::dvec3 step = this->point(u, v, 1.0) - from;
-    const glm::dvec4 clip = this->Source.view.indexToClip *
-      (isPerspective ? glm::dvec4(this->Geometry.reversed() ? -step : step, 0.0)
-                     : glm::dvec4(from, 1.0));
-    const glm::dvec2 seen =
-      0.5 * (glm::dvec2(clip) / clip.w + 1.0) * glm::dvec2(this->Source.view.viewport);
-    const glm::dvec2 rest = glm::fract(seen);
-    const Depths& d = this->Source.depths;
-    pixel = glm::clamp(glm::floor(seen), glm::dvec2(d.origin), glm::dvec2(d.origin + d.size - 1));
-    return clip.w > 0.0 &&
-      std::min({ rest.x, rest.y, 1.0 - rest.x, 1.0 - rest.y }) > (isPerspective ? 1e-3 : Doubt);
+    return this->Source.view.indexToClip *
+      (this->Geometry.isPerspective() ? glm::dvec4(this->Geometry.reversed() ? -step : step, 0.0)
+                                      : glm::dvec4(from, 1.0));
   }
 
   bool endAtDepth(int u, int v, Stretch& stretch) const
   {
-    glm::ivec2 pixel;
-    if (!this->seenAt(u, v, pixel))
+    const glm::dvec4 clip = this->clipPlaceOf(u, v);
+    if (clip.w <= 0.0)
+    {
+      return true; // nothing is seen in that direction
+    }
+    const glm::dvec2 seen =
+      0.5 * (glm::dvec2(clip) / clip.w + 1.0) * glm::dvec2(this->Source.view.viewport);
+    const glm::dvec2 rest = glm::fract(seen);
+    if (std::min({ rest.x, rest.y, 1.0 - rest.x, 1.0 - rest.y }) <
+      (this->Geometry.isPerspective() ? 1e-3 : Doubt))
     {
       return false;
     }
+    const Depths& d = this->Source.depths;
+    const glm::ivec2 pixel =
+      glm::clamp(glm::floor(seen), glm::dvec2(d.origin), glm::dvec2(d.origin + d.size - 1));
     const double depth = this->sample(pixel);
     Stretch body = this->stretchOfDepths(pixel, this->Shown);
     if (std::abs(body.begin - body.end) < Doubt)

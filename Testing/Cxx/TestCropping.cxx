@@ -252,6 +252,77 @@ void testLarge(Checks& check)
   }
 }
 
+/// The region of a place along an axis; -1 if rounding decides. Of slices only the place matters:
+/// where the middle region has none it has the one that is nearest to its middle.
+int regionOf(std::array<double, 2> planes, double place, bool isSlice)
+{
+  const double doubt = 1e-6;
+  if (isSlice && planes[0] <= planes[1] && std::ceil(planes[0]) > std::floor(planes[1]))
+  {
+    planes[0] = planes[1] = std::floor(0.5 * (planes[0] + planes[1]) + 0.5);
+  }
+  else if (!isSlice && std::min(std::abs(place - planes[0]), std::abs(place - planes[1])) < doubt)
+  {
+    return -1;
+  }
+  return place < planes[0] ? 0 : place <= planes[1] ? 1 : 2;
+}
+
+/// Which samples of perspective images count, in index space.
+void testPerspective(Checks& check)
+{
+  reference::Random random(14);
+  std::vector<splatting::ShearWarp> images;
+  int samples = 0, doubtful = 0, shown = 0;
+  for (int n = 0; n < 300; ++n)
+  {
+    const std::array<int, 3> size = randomSize(random, 17);
+    splatting::ShearWarp::factorise(randomPerspective(size, random), images);
+    reference::RayCuts cuts;
+    placePlanes(random, size, cuts);
+    splatting::Cropping cropping;
+    for (int a = 0; a < 3; ++a)
+    {
+      cropping.planes[a] = { cuts.planes[a][0], cuts.planes[a][1] };
+    }
+    cropping.flags = n % 2 ? named[n % 5] : static_cast<unsigned>(random.bits()) & 0x7ffffff;
+    for (const splatting::ShearWarp& image : images)
+    {
+      for (int k = 0; k < image.size().z; ++k)
+      {
+        const splatting::SliceRegions regions = splatting::regionsOf(cropping, image, k);
+        const bool exists = k >= image.slices().begin && k < image.slices().end;
+        for (int pixel = 0; pixel < image.width() * image.height(); ++pixel)
+        {
+          const int u = pixel % image.width(), v = pixel / image.width();
+          const glm::dvec2 place = image.onRay(u, v, k);
+          const double point[3] = { place.x, place.y, double(k) };
+          int number = 0;
+          bool isDoubtful = false;
+          for (int a = 0; a < 3; ++a)
+          {
+            const int axis = image.axes()[a];
+            const int region = regionOf(cuts.planes[axis], point[a], a == 2);
+            isDoubtful |= region < 0;
+            number += region * (axis == 0 ? 1 : axis == 1 ? 3 : 9);
+          }
+          const int i = u < regions.u[0] ? 0 : u < regions.u[1] ? 1 : 2;
+          const bool counts = regions.regionsOfRow(v) >> i & 1u;
+          ++samples;
+          doubtful += exists && isDoubtful;
+          shown += counts;
+          check(exists ? isDoubtful || counts == (cropping.flags >> number & 1u) : !counts, "view ",
+            n, ": slice ", k, ", pixel ", u, ", ", v, ": another region than ", number);
+        }
+      }
+    }
+  }
+  std::cout << "perspective: " << samples << " samples, " << shown << " shown, " << doubtful
+            << " left out" << std::endl;
+  check(shown > samples / 10 && shown < samples * 9 / 10 && 100 * doubtful < samples,
+    "Some samples are shown and some are not, and few are left out.");
+}
+
 /// Shown regions are a union: the maximum of all is the largest of the regions' maxima.
 void testUnion(Checks& check)
 {
@@ -304,5 +375,6 @@ int TestCropping(int, char*[])
     });
   testLarge(check);
   testUnion(check);
+  testPerspective(check);
   return check.result();
 }

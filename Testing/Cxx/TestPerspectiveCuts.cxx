@@ -177,11 +177,59 @@ void testNothingCut(Checks& check)
     // From within as well as from outside.
     scene.mesh = boxOfTriangles(random, glm::dvec3(-12.3), glm::dvec3(30.7), 2);
     check(Found(scene).cutsNothing(), "A surface around the volume cuts nothing.");
+    // Near enough to cut slices that the rays have left the volume before.
+    scene.mesh =
+      boxOfTriangles(random, glm::dvec3(-1.1), glm::dvec3(scene.view.dimensions) + 0.1, 2);
+    check(Found(scene).cutsNothing(), "A surface close around the volume cuts nothing.");
     scene.mesh = {};
     scene.depths = randomDepths(scene.view, range, random);
     std::fill(scene.depths.samples.begin(), scene.depths.samples.end(),
       static_cast<float>(range.depthOf(0.999 * range.far)));
     check(Found(scene).cutsNothing(), "What lies behind cuts nothing.");
+  }
+}
+
+/// Octahedra around the eye, or beside it, whose corners are where the lines along the axes meet
+/// them.
+void testEyeAndCorners(Checks& check)
+{
+  Random random(112);
+  std::vector<ShearWarp> images;
+  for (int n = 0; n < 100; ++n)
+  {
+    ShearWarp::factorise(coretesting::randomPerspective({ 9, 12, 7 }, random), images);
+    for (const ShearWarp& image : images)
+    {
+      glm::dvec3 eye;
+      for (int a = 0; a < 3; ++a)
+      {
+        eye[image.axes()[a]] = image.eye()[a];
+      }
+      for (int place = -1; place < 6; ++place)
+      {
+        glm::dvec3 centre = eye;
+        if (place >= 0)
+        {
+          centre[place / 2] += place % 2 ? 4.0 : -4.0;
+        }
+        Mesh mesh;
+        for (int corner = 0; corner < 6; ++corner)
+        {
+          mesh.points.push_back(centre);
+          mesh.points.back()[corner / 2] += corner % 2 ? 2.0 : -2.0;
+        }
+        for (int face = 0; face < 8; ++face)
+        {
+          mesh.triangles.push_back({ face & 1, 2 + (face >> 1 & 1), 4 + (face >> 2) });
+        }
+        splatting::ClosedSurface surface;
+        surface.reset(mesh.points, mesh.triangles);
+        const splatting::SurfaceDepths& depths = surface.project(image);
+        const double found = image.reversed() ? depths.far(0)[0] : depths.near(0)[0];
+        check((found == image.eye().z) == (place < 0), "View ", n, ", octahedron ", place,
+          ": the eye is taken to be elsewhere.");
+      }
+    }
   }
 }
 
@@ -229,6 +277,7 @@ int TestPerspectiveCuts(int, char*[])
   }
   testBoxes(check);
   testNothingCut(check);
+  testEyeAndCorners(check);
   testReuse(check);
   return check.result();
 }

@@ -36,7 +36,7 @@ void spreadDepths(View& view, Random& random)
 Depths randomDepths(const View& view, Random& random)
 {
   splatting::Picture picture;
-  splatting::placePicture(ShearWarp(view), view.viewport, picture);
+  splatting::placePicture({ ShearWarp(view) }, view.viewport, picture);
   return cutscenes::randomDepths(
     picture.origin, picture.size, random, [](Random& r) { return r.uniform(0.0, 1.0); });
 }
@@ -208,7 +208,21 @@ Lattice randomLattice(const Oracle& oracle, const ShearWarp& image, Random& rand
   return lattice;
 }
 
-/// No ray slips through between triangles, in either projection.
+/// The least front and the greatest back of a corner and its neighbours.
+Stretch around(const Lattice& lattice, int u, int v)
+{
+  Stretch stretch{ Infinity, -Infinity };
+  for (int n = 0; n < 9; ++n)
+  {
+    const int x = std::clamp(u + n % 3 - 1, lattice.first.x, lattice.last.x);
+    const int y = std::clamp(v + n / 3 - 1, lattice.first.y, lattice.last.y);
+    stretch.begin = std::min(stretch.begin, lattice.fronts[lattice.cornerAt(x, y)]);
+    stretch.end = std::max(stretch.end, lattice.backs[lattice.cornerAt(x, y)]);
+  }
+  return stretch;
+}
+
+/// No ray slips through between triangles, in either projection, nor meets them where they are not.
 void testWatertight(Checks& check)
 {
   Random random(5);
@@ -237,6 +251,10 @@ void testWatertight(Checks& check)
         {
           const int corner = lattice.cornerAt(u, v);
           ++rays;
+          const Stretch own = around(lattice, u, v);
+          check(depths.near(v)[u] >= own.begin - 1e-6 && depths.far(v)[u] <= own.end + 1e-6,
+            "View ", n, ": a triangle is met beside its corners: ", depths.near(v)[u], " to ",
+            depths.far(v)[u], ", not ", own.begin, " to ", own.end);
           check(depths.near(v)[u] <= lattice.fronts[corner] + 1e-6 &&
               depths.far(v)[u] >= lattice.backs[corner] - 1e-6,
             "View ", n, ": a ray slips through between triangles: ", depths.near(v)[u], " to ",
