@@ -16,12 +16,16 @@
 #include "vtkVersion.h"
 #include "vtkVolumeProperty.h"
 
+#include <algorithm>
+
 vtkStandardNewMacro(vtkSplattingMIPGPUVolumeRayCastMapper);
 
 namespace
 {
 const char* const Replaced = "vtkGPUVolumeRayCastMapper";
 const char* const Replacement = "vtkSplattingMIPGPUVolumeRayCastMapper";
+
+int globalQualityMode = vtkSplattingMIPVolumeMapper::HIGH;
 
 VTK_CREATE_CREATE_FUNCTION(vtkSplattingMIPGPUVolumeRayCastMapper);
 
@@ -92,10 +96,24 @@ bool vtkSplattingMIPGPUVolumeRayCastMapper::GetGlobalOverride()
 }
 
 //------------------------------------------------------------------------------
+void vtkSplattingMIPGPUVolumeRayCastMapper::SetGlobalQualityMode(int mode)
+{
+  globalQualityMode =
+    std::clamp<int>(mode, vtkSplattingMIPVolumeMapper::PREVIEW, vtkSplattingMIPVolumeMapper::HIGH);
+}
+
+//------------------------------------------------------------------------------
+int vtkSplattingMIPGPUVolumeRayCastMapper::GetGlobalQualityMode()
+{
+  return globalQualityMode;
+}
+
+//------------------------------------------------------------------------------
 vtkSplattingMIPGPUVolumeRayCastMapper::vtkSplattingMIPGPUVolumeRayCastMapper()
   : LastRenderUsedSplatting(false),
     LoggedReason("")
 {
+  this->SplattingMapper->SetQualityMode(globalQualityMode);
   using Self = vtkSplattingMIPGPUVolumeRayCastMapper;
   vtkObject* const splatting = this->SplattingMapper;
   splatting->AddObserver(vtkCommand::ErrorEvent, this, &Self::ForwardMessage);
@@ -235,6 +253,7 @@ void vtkSplattingMIPGPUVolumeRayCastMapper::PrintSelf(ostream& os, vtkIndent ind
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "GlobalOverride: " << (GetGlobalOverride() ? "On" : "Off") << "\n";
+  os << indent << "GlobalQualityMode: " << globalQualityMode << "\n";
   os << indent << "LastRenderUsedSplatting: " << (this->LastRenderUsedSplatting ? "Yes" : "No")
      << "\n";
   os << indent << "SplattingMapper:\n";

@@ -67,14 +67,22 @@ public:
   ///@{
   /**
    * Whether vtkGPUVolumeRayCastMapper::New() gives objects of this class, in the whole program.
-   * Default off. On puts an object factory before all others; off disables this override in all
-   * factories, also in those that VTK_AUTOLOAD_PATH loaded. Mappers that exist already stay what
+   * Default off. On puts an object factory before all others. Mappers that exist already stay what
    * they are: call it before a vtkSmartVolumeMapper is made.
    */
   static void SetGlobalOverride(bool on);
   static bool GetGlobalOverride();
   static void GlobalOverrideOn() { SetGlobalOverride(true); }
   static void GlobalOverrideOff() { SetGlobalOverride(false); }
+  ///@}
+
+  ///@{
+  /**
+   * The QualityMode of vtkSplattingMIPVolumeMapper that new objects of this class start with, as
+   * vtkSmartVolumeMapper does not show what it has made. Default HIGH, clamped to [PREVIEW, HIGH].
+   */
+  static void SetGlobalQualityMode(int mode);
+  static int GetGlobalQualityMode();
   ///@}
 
   /**

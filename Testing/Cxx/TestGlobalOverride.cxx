@@ -85,6 +85,22 @@ void testSwitch(stage::Checks& check)
   Override::GlobalOverrideOff();
 }
 
+void testGlobalQualityMode(stage::Checks& check)
+{
+  const auto qualityOfNew = []()
+  { return vtkSmartPointer<Override>::New()->GetSplattingMapper()->GetQualityMode(); };
+  check(qualityOfNew() == vtkSplattingMIPVolumeMapper::HIGH, "High quality by default.");
+  for (const auto& [mode, expected] : { std::pair(1, 1), { 0, 0 }, { -1, 0 }, { 3, 2 } })
+  {
+    Override::SetGlobalQualityMode(mode);
+    check(Override::GetGlobalQualityMode() == expected && qualityOfNew() == expected,
+      "Quality mode " + std::to_string(mode) + ".");
+  }
+  check(vtkSmartPointer<vtkSplattingMIPVolumeMapper>::New()->GetQualityMode() ==
+      vtkSplattingMIPVolumeMapper::HIGH,
+    "Only of this class.");
+}
+
 void testOtherOverrides(vtkImageData* image, stage::Checks& check)
 {
   Override::GlobalOverrideOn();
@@ -294,6 +310,7 @@ int TestGlobalOverride(int, char*[])
   stage::Checks check;
   const auto image = blobsAndHoles();
   testSwitch(check);
+  testGlobalQualityMode(check);
   testOtherOverrides(image, check);
   testSmartMapper(image, check);
   testSmartMapperKeepsIndex(image, check);
