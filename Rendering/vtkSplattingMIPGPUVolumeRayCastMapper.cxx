@@ -48,6 +48,13 @@ protected:
 };
 vtkStandardNewMacro(OverrideFactory);
 
+bool hasCode(vtkShaderProperty* shader)
+{
+  return shader &&
+    (shader->HasVertexShaderCode() || shader->HasFragmentShaderCode() ||
+      shader->HasGeometryShaderCode() || shader->GetNumberOfShaderReplacements() > 0);
+}
+
 /// The first of all registered factories that can give the replacement, or nullptr.
 vtkObjectFactory* registeredFactory()
 {
@@ -133,7 +140,6 @@ vtkSplattingMIPVolumeMapper* vtkSplattingMIPGPUVolumeRayCastMapper::GetSplatting
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPGPUVolumeRayCastMapper::ReasonNotToSplat(vtkVolume* vol)
 {
-  vtkShaderProperty* const shader = vol->GetShaderProperty();
   vtkInformation* const keys = vol->GetPropertyKeys();
   const struct
   {
@@ -145,9 +151,7 @@ const char* vtkSplattingMIPGPUVolumeRayCastMapper::ReasonNotToSplat(vtkVolume* v
     { vol->IsA("vtkMultiVolume") || this->GetInputCount() > 1, "there are several inputs" },
     { vol->GetProperty()->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D,
       "the transfer functions are two-dimensional" },
-    { shader->HasVertexShaderCode() || shader->HasFragmentShaderCode() ||
-        shader->HasGeometryShaderCode() || shader->GetNumberOfShaderReplacements() > 0,
-      "the volume brings shader code" },
+    { hasCode(vol->GetShaderProperty()), "the volume brings shader code" },
     { keys && keys->Has(vtkOpenGLRenderPass::RenderPasses()), "a render pass brings shader code" },
     { this->RenderToImage != 0, "it renders to an image" },
   };

@@ -85,6 +85,20 @@ void testReuse(stage::Checks& check)
   check(projections() == 3 && splatting->GetIndexTime() != indexTime, "Changed data.");
 }
 
+/// How the quality adapts to the time for a frame is tested with the splatting mapper itself.
+void testAutoAdjust(stage::Checks& check)
+{
+  const auto mapper = projecting(blobs());
+  Scene scene(mapper);
+  for (int on : { 0, 1 })
+  {
+    mapper->SetAutoAdjustSampleDistances(on);
+    scene.pixels();
+    check(mapper->GetSplattingMapper()->GetAutoAdjustSampleDistances() == on,
+      "AutoAdjustSampleDistances " + std::to_string(on) + ".");
+  }
+}
+
 /// Old data are let go of with the first frame of others, splatted or not.
 void testInputs(stage::Checks& check)
 {
@@ -292,6 +306,7 @@ int TestOverrideState(int, char*[])
 {
   stage::Checks check;
   testReuse(check);
+  testAutoAdjust(check);
   testInputs(check);
   testEvents(check);
   testMessages(check);
