@@ -13,7 +13,7 @@ build_dir=$1
 shift
 
 packages=(
-  cmake ninja-build g++ ccache
+  cmake ninja-build g++ ccache xz-utils
   libvtk9-dev python3-vtk9 libglm-dev          # the module and its Python package
   libcli11-dev libvtk-dicom-dev                # splatmip
   libbenchmark-dev                             # the benchmark

@@ -28,6 +28,7 @@
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
+#include <algorithm>
 #include <functional>
 
 using namespace scalartesting;
@@ -93,6 +94,10 @@ struct Pair
     check(!isBlack(expected), name + ": there is something to see.");
     check(this->of(this->override) == expected, name + ": the same picture.");
     check(this->override->GetLastRenderUsedSplatting(), name + ": splatted.");
+    double here[6], there[6];
+    this->splatting->GetBounds(here);
+    this->override->GetBounds(there);
+    check(std::equal(here, here + 6, there), name + ": the same bounds.");
     return expected;
   }
 };
