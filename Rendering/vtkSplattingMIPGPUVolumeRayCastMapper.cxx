@@ -171,6 +171,8 @@ const char* vtkSplattingMIPGPUVolumeRayCastMapper::ReasonNotToSplat(vtkVolume* v
 void vtkSplattingMIPGPUVolumeRayCastMapper::CopySettings()
 {
   vtkSplattingMIPVolumeMapper* const to = this->SplattingMapper;
+  to->SetInputConnection(
+    this->GetNumberOfInputConnections(0) > 0 ? this->GetInputConnection(0, 0) : nullptr);
   to->SetBlendMode(this->BlendMode);
   to->SetCropping(this->Cropping);
   to->SetCroppingRegionPlanes(this->CroppingRegionPlanes);
@@ -196,8 +198,7 @@ void vtkSplattingMIPGPUVolumeRayCastMapper::CopySettings()
 void vtkSplattingMIPGPUVolumeRayCastMapper::GPURender(vtkRenderer* ren, vtkVolume* vol)
 {
   // In all modes, or the splatting mapper would hold on to data that are no longer rendered.
-  this->SplattingMapper->SetInputConnection(
-    this->GetNumberOfInputConnections(0) > 0 ? this->GetInputConnection(0, 0) : nullptr);
+  this->CopySettings();
   const char* const reason = this->ReasonNotToSplat(vol);
   if (reason != this->LoggedReason)
   {
@@ -212,7 +213,6 @@ void vtkSplattingMIPGPUVolumeRayCastMapper::GPURender(vtkRenderer* ren, vtkVolum
     this->Superclass::GPURender(ren, vol);
     return;
   }
-  this->CopySettings();
   this->SplattingMapper->Render(ren, vol);
 }
 

@@ -104,17 +104,20 @@ void testInputs(stage::Checks& check)
 {
   for (int mode : { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::COMPOSITE_BLEND })
   {
-    auto old = blobs();
-    const vtkWeakPointer<vtkImageData> watched(old.Get());
+    auto old = blobs(), mask = blobs();
+    const vtkWeakPointer<vtkImageData> watched(old.Get()), watchedMask(mask.Get());
     const auto mapper = projecting(old);
+    mapper->SetMaskInput(mask);
+    mapper->SetMaskTypeToBinary();
     Scene scene(mapper);
     scene.pixels();
     const auto other = stage::toImageData(stage::blobsAndTubes({ 44, 40, 36 }, 9));
     mapper->SetInputData(other);
     mapper->SetBlendMode(mode);
-    old = nullptr;
+    mapper->SetMaskInput(nullptr);
+    old = mask = nullptr;
     scene.pixels();
-    check(!watched, "Data that are no longer shown are freed.");
+    check(!watched && !watchedMask, "Data that are no longer shown are freed.");
   }
 }
 
