@@ -5,6 +5,7 @@
 #include "vtkOpenGLSplattingMIPVolumeMapper.h"
 
 #include "vtkCommand.h"
+#include "vtkDataSet.h"
 #include "vtkInformation.h"
 #include "vtkLogger.h"
 #include "vtkMultiVolume.h"
@@ -171,8 +172,8 @@ const char* vtkSplattingMIPGPUVolumeRayCastMapper::ReasonNotToSplat(vtkVolume* v
 void vtkSplattingMIPGPUVolumeRayCastMapper::CopySettings()
 {
   vtkSplattingMIPVolumeMapper* const to = this->SplattingMapper;
-  to->SetInputConnection(
-    this->GetNumberOfInputConnections(0) > 0 ? this->GetInputConnection(0, 0) : nullptr);
+  // Not by a connection: VTK's garbage collector does not see that two mappers in one share it.
+  to->SetInputDataObject(this->GetInput(0));
   to->SetBlendMode(this->BlendMode);
   to->SetCropping(this->Cropping);
   to->SetCroppingRegionPlanes(this->CroppingRegionPlanes);

@@ -99,6 +99,23 @@ void testAutoAdjust(stage::Checks& check)
   }
 }
 
+/// Data do not outlive all mappers that show them.
+void testFinalInputs(stage::Checks& check)
+{
+  for (int mode : { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::COMPOSITE_BLEND })
+  {
+    auto image = blobs();
+    const vtkWeakPointer<vtkImageData> watched(image.Get());
+    auto mapper = projecting(image);
+    mapper->SetBlendMode(mode);
+    image = nullptr;
+    Scene(mapper).pixels();
+    check(watched, "Data stay with their mapper.");
+    mapper = nullptr;
+    check(!watched, "Data go with their mapper.");
+  }
+}
+
 /// Old data are let go of with the first frame of others, splatted or not.
 void testInputs(stage::Checks& check)
 {
@@ -310,6 +327,7 @@ int TestOverrideState(int, char*[])
   stage::Checks check;
   testReuse(check);
   testAutoAdjust(check);
+  testFinalInputs(check);
   testInputs(check);
   testEvents(check);
   testMessages(check);
