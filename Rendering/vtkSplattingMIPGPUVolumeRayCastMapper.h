@@ -9,9 +9,10 @@
  *   vtkSplattingMIPGPUVolumeRayCastMapper::GlobalOverrideOn();
  *
  * VTK's object factory gives this class wherever vtkGPUVolumeRayCastMapper is asked for, as
- * vtkSmartVolumeMapper and, through it, vtkMultiBlockVolumeMapper and vtkAMRVolumeMapper do. It
- * hands the blend modes MAXIMUM_INTENSITY and MINIMUM_INTENSITY to a vtkSplattingMIPVolumeMapper
- * and leaves everything else to its superclass:
+ * vtkSmartVolumeMapper and, through it, vtkMultiBlockVolumeMapper and vtkAMRVolumeMapper do.
+ * (Programs that cannot be changed get it by VTK_AUTOLOAD_PATH; see Module/Autoload.) It hands the
+ * blend modes MAXIMUM_INTENSITY and MINIMUM_INTENSITY to a vtkSplattingMIPVolumeMapper and leaves
+ * everything else to its superclass:
  *
  * - all other blend modes;
  * - volumes with several inputs (vtkMultiVolume);
@@ -41,6 +42,9 @@
  * from 0 to 1) if ReportProgress is on. Errors and warnings of the splatting mapper go to observers
  * of this one. Which mapper renders, and why, is logged with vtkLogger::VERBOSITY_1 whenever it
  * changes.
+ *
+ * vtkMultiBlockVolumeMapper loads its blocks into the GPU's memory all the same, and blends their
+ * projections over each other from back to front, as it does without.
  *
  * The index of the splatting mapper is kept while other blend modes are rendered, for the way back.
  *

@@ -31,6 +31,12 @@ public:
 };
 vtkStandardNewMacro(EmptyFactory);
 
+std::string valueOf(const char* variable)
+{
+  const char* const value = std::getenv(variable);
+  return value ? value : "";
+}
+
 void setQuality(const std::string& quality)
 {
   using Override = vtkSplattingMIPGPUVolumeRayCastMapper;
@@ -42,7 +48,7 @@ void setQuality(const std::string& quality)
   {
     Override::SetGlobalQualityMode(vtkSplattingMIPVolumeMapper::STANDARD);
   }
-  else if (quality != "high")
+  else if (!quality.empty() && quality != "high")
   {
     vtkGenericWarningMacro(<< "SPLATTINGMIP_QUALITY is \"" << quality
                            << "\", which is taken as high: set it to preview, standard or high.");
@@ -52,15 +58,13 @@ void setQuality(const std::string& quality)
 
 extern "C" VTK_ABI_EXPORT vtkObjectFactory* splattingmip_new_factory()
 {
-  if (const char* const file = std::getenv("SPLATTINGMIP_LOG"))
+  const std::string file = valueOf("SPLATTINGMIP_LOG");
+  if (!file.empty())
   {
     vtkLogger::SetInternalVerbosityLevel(vtkLogger::VERBOSITY_1);
-    vtkLogger::LogToFile(file, vtkLogger::APPEND, vtkLogger::VERBOSITY_1);
+    vtkLogger::LogToFile(file.c_str(), vtkLogger::APPEND, vtkLogger::VERBOSITY_1);
   }
-  if (const char* const quality = std::getenv("SPLATTINGMIP_QUALITY"))
-  {
-    setQuality(quality);
-  }
+  setQuality(valueOf("SPLATTINGMIP_QUALITY"));
   vtkSplattingMIPGPUVolumeRayCastMapper::GlobalOverrideOn();
   return EmptyFactory::New();
 }

@@ -96,6 +96,9 @@ class TestAutoload(unittest.TestCase):
         for quality in ("Preview", "Standard", "High"):
             run = self.run_silently(command, FOLDER, SPLATTINGMIP_QUALITY=quality.lower())
             self.assertEqual(run.pixels, splatted(MAXIMUM, quality), quality)
+        self.assertEqual(
+            self.run_silently(command, FOLDER, SPLATTINGMIP_QUALITY="").pixels, run.pixels
+        )
         run = Run(command, FOLDER, SPLATTINGMIP_QUALITY="best")
         self.assertEqual(run.pixels, splatted(MAXIMUM))
         self.assertIn('SPLATTINGMIP_QUALITY is "best", which is taken as high', run.messages)
