@@ -552,8 +552,8 @@ public:
   double GetProjectionTime();
 
   /**
-   * The instruction set of the loops in use: "baseline", "AVX2" or "AVX-512", the best that both
-   * the processor and the build have.
+   * The instruction set of the loops in use: "baseline", "AVX2", "AVX-512" or "AVX-512 VBMI", the
+   * best that both the processor and the build have.
    */
   const char* GetInstructionSet();
 

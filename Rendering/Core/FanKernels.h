@@ -72,6 +72,19 @@ inline Register loadRegister(const void* p)
 {
   return _mm512_loadu_si512(p);
 }
+#if defined(__AVX512VBMI__)
+template <class T>
+struct Picker<T, 1>
+{
+  static constexpr int group = 64;
+  static constexpr bool picks = true;
+  static inline Register pick(const T* row, const std::int32_t* base, Register lanes, Register none)
+  {
+    const Register picked = _mm512_permutexvar_epi8(lanes, loadRegister(row + base[0]));
+    return _mm512_mask_blend_epi8(_mm512_movepi8_mask(lanes), picked, none);
+  }
+};
+#else
 template <class T>
 struct Picker<T, 1>
 {
@@ -89,6 +102,7 @@ struct Picker<T, 1>
     return _mm512_mask_blend_epi8(_mm512_movepi8_mask(lanes), picked, none);
   }
 };
+#endif
 template <class T>
 struct Picker<T, 2>
 {
@@ -523,15 +537,6 @@ void cross(const Crossing<T>& crossing)
 }
 
 /// Reconstruction kernels, integrated twice from -infinity.
-struct TwiceBox
-{
-  inline double operator()(double t) const
-  {
-    const double x = t < -0.5 ? 0.0 : t > 0.5 ? 1.0 : t + 0.5;
-    return 0.5 * x * x + (t > 0.5 ? t - 0.5 : 0.0);
-  }
-};
-
 struct TwiceHat
 {
   inline double operator()(double t) const
@@ -568,30 +573,47 @@ struct TwiceBell
   }
 };
 
+inline double positive(double x)
+{
+  return x > 0.0 ? x : 0.0;
+}
+
+/// Where some pixels lie from the first voxel that they weigh, and how far their points spread
+/// along the ray. Returns how far from ray to ray.
+template <class A>
+inline double placePixels(const FanWeights<A>& w, std::ptrdiff_t begin, std::ptrdiff_t count,
+  double* __restrict place, double* __restrict spread)
+{
+  // What spreads over nothing would be divided by it. These are small enough for no pixel to tell:
+  // nearer to the eye no ray is a thousandth of a voxel from the next.
+  constexpr double leastPitch = 1e-3, leastSpread = 1e-6;
+  const double pitch = w.pitch > leastPitch ? w.pitch : leastPitch;
+  for (std::ptrdiff_t x = 0; x < count; ++x)
+  {
+    const double slope = w.slope[begin + x];
+    const double own = (slope < 0.0 ? -slope : slope) * w.thickness;
+    spread[x] = own > leastSpread ? own : leastSpread;
+    const double at = w.at[begin + x] + slope * w.depth;
+    const double reach = 0.5 * (pitch + spread[x]) + w.support;
+    // The first voxel that is nearer than that.
+    const double first = roundedDown(clamped(at - reach, w.low - 1.0, w.high - 1.0)) + 1.0;
+    w.first[begin + x] = static_cast<std::int32_t>(first);
+    place[x] = at - first;
+  }
+  return pitch;
+}
+
 template <class A, class Twice>
 inline void weigh(const FanWeights<A>& w, const Twice& twice, std::ptrdiff_t n)
 {
   constexpr std::ptrdiff_t chunk = 64;
-  // Spreads of nothing would be divided by; these move no weight by more than 1e-5.
-  constexpr double leastPitch = 1e-3, leastSpread = 1e-6;
-  const double pitch = w.pitch > leastPitch ? w.pitch : leastPitch;
   for (std::ptrdiff_t begin = 0; begin < n; begin += chunk)
   {
     const std::ptrdiff_t count = begin + chunk < n ? chunk : n - begin;
     double place[chunk], spread[chunk], sum[chunk], taps[5][chunk];
+    const double pitch = placePixels(w, begin, count, place, spread);
     for (std::ptrdiff_t x = 0; x < count; ++x)
     {
-      const double slope = w.slope[begin + x];
-      const double own = (slope < 0.0 ? -slope : slope) * w.thickness;
-      spread[x] = own > leastSpread ? own : leastSpread;
-      const double at = w.at[begin + x] + slope * w.depth;
-      const double reach = 0.5 * (pitch + spread[x]) + w.support;
-      // The first voxel that is nearer than that.
-      double first = at - reach;
-      first = first < w.low - 1.0 ? w.low - 1.0 : first > w.high - 1.0 ? w.high - 1.0 : first;
-      first = roundedDown(first) + 1.0;
-      w.first[begin + x] = static_cast<std::int32_t>(first);
-      place[x] = at - first;
       sum[x] = 0.0;
     }
     for (int t = 0; t < w.taps; ++t)
@@ -617,13 +639,47 @@ inline void weigh(const FanWeights<A>& w, const Twice& twice, std::ptrdiff_t n)
   }
 }
 
+/// A voxel that is a box weighs as much of the pixel's points as lie in it: the difference of the
+/// shares that lie below its ends.
+template <class A>
+inline void weighBoxes(const FanWeights<A>& w, std::ptrdiff_t n)
+{
+  constexpr std::ptrdiff_t chunk = 64;
+  for (std::ptrdiff_t begin = 0; begin < n; begin += chunk)
+  {
+    const std::ptrdiff_t count = begin + chunk < n ? chunk : n - begin;
+    double place[chunk], spread[chunk], below[chunk];
+    const double pitch = placePixels(w, begin, count, place, spread);
+    for (std::ptrdiff_t x = 0; x < count; ++x)
+    {
+      below[x] = 0.0;
+    }
+    for (int t = 0; t < w.taps; ++t)
+    {
+      A* const out = w.weights + t * w.stride + begin;
+      const bool isLast = t + 1 == w.taps;
+      for (std::ptrdiff_t x = 0; x < count; ++x)
+      {
+        const double p = 0.5 * (pitch + spread[x]), m = 0.5 * (pitch - spread[x]);
+        const double d = t + 0.5 - place[x]; // of the voxel's end
+        const double a = positive(d + p), b = positive(d + m), c = positive(d - m),
+                     e = positive(d - p);
+        const double share = (a * a - b * b - c * c + e * e) / (2.0 * pitch * spread[x]);
+        const double now = isLast ? 1.0 : clamped(share, below[x], 1.0);
+        out[x] = static_cast<A>(now - below[x]);
+        below[x] = now;
+      }
+    }
+  }
+}
+
 template <class A>
 void fanWeights(const FanWeights<A>& w, std::ptrdiff_t n)
 {
   switch (w.shape)
   {
     case 0:
-      weigh(w, TwiceBox{}, n);
+      weighBoxes(w, n);
       break;
     case 1:
       weigh(w, TwiceHat{}, n);
@@ -676,26 +732,36 @@ struct Resampler<float>
 
 #if defined(__AVX2__)
 template <class A, int Taps>
-inline void resampleRegisters(
-  const Resampling<A>& r, A* out, std::ptrdiff_t begin, std::ptrdiff_t end)
+inline void resampleRegisters(const Resampling<A>& r, std::ptrdiff_t begin, std::ptrdiff_t end)
 {
+  // Rows of pixels from x on share the weights.
   for (std::ptrdiff_t x = begin; x < end; x += width<A>)
   {
     const Register lanes = loadRegister(static_cast<const LaneOf<A>*>(r.lanes) + x);
-    const A* const voxels = r.voxels + r.base[x / Resampler<A>::group];
-    Pack<A> sum{};
+    const A* voxels = r.voxels + r.base[x / Resampler<A>::group];
+    A* out = r.out + x;
+    Pack<A> weights[Taps];
 #pragma GCC unroll 5
     for (int t = 0; t < Taps; ++t)
     {
-      sum += load<A>(r.weights + t * r.stride + x) * Resampler<A>::pick(voxels + t, lanes);
+      weights[t] = load<A>(r.weights + t * r.stride + x);
     }
-    store<A>(out + x, sum);
+    for (int row = 0; row < r.rows; ++row, voxels += r.voxelStride, out += r.outStride)
+    {
+      Pack<A> sum{};
+#pragma GCC unroll 5
+      for (int t = 0; t < Taps; ++t)
+      {
+        sum += weights[t] * Resampler<A>::pick(voxels + t, lanes);
+      }
+      store<A>(out, sum);
+    }
   }
 }
 #endif
 
 template <class A>
-void resample(const Resampling<A>& r, A* out, std::ptrdiff_t begin, std::ptrdiff_t end)
+void resample(const Resampling<A>& r, std::ptrdiff_t begin, std::ptrdiff_t end)
 {
 #if defined(__AVX2__)
   if constexpr (Resampler<A>::picks)
@@ -705,26 +771,30 @@ void resample(const Resampling<A>& r, A* out, std::ptrdiff_t begin, std::ptrdiff
     switch (r.taps)
     {
       case 2:
-        return resampleRegisters<A, 2>(r, out, begin, end);
+        return resampleRegisters<A, 2>(r, begin, end);
       case 3:
-        return resampleRegisters<A, 3>(r, out, begin, end);
+        return resampleRegisters<A, 3>(r, begin, end);
       case 4:
-        return resampleRegisters<A, 4>(r, out, begin, end);
+        return resampleRegisters<A, 4>(r, begin, end);
       default:
-        return resampleRegisters<A, 5>(r, out, begin, end);
+        return resampleRegisters<A, 5>(r, begin, end);
     }
   }
 #endif
   const LaneOf<A>* const lanes = static_cast<const LaneOf<A>*>(r.lanes);
-  for (std::ptrdiff_t x = begin; x < end; ++x)
+  for (int row = 0; row < r.rows; ++row)
   {
-    const A* const voxels = r.voxels + r.base[x / Resampler<A>::group] + lanes[x];
-    A sum = 0;
-    for (int t = 0; t < r.taps; ++t)
+    for (std::ptrdiff_t x = begin; x < end; ++x)
     {
-      sum += r.weights[t * r.stride + x] * voxels[t];
+      const A* const voxels =
+        r.voxels + row * r.voxelStride + r.base[x / Resampler<A>::group] + lanes[x];
+      A sum = 0;
+      for (int t = 0; t < r.taps; ++t)
+      {
+        sum += r.weights[t * r.stride + x] * voxels[t];
+      }
+      r.out[row * r.outStride + x] = sum;
     }
-    out[x] = sum;
   }
 }
 

@@ -118,22 +118,24 @@ template <class Lane>
 void FanWindows::fill(const std::int32_t* voxels, std::size_t row, const FanSteps& steps)
 {
   Lane* const lanes = reinterpret_cast<Lane*>(this->Lanes.data()) + row * steps.Padded;
+  const std::int32_t size = steps.Size;
   for (int g = 0; g < this->Groups; ++g)
   {
     const std::int32_t* const own = voxels + std::ptrdiff_t(g) * this->Group;
-    std::int32_t least = steps.Size;
+    std::int32_t least = size;
     for (int p = 0; p < this->Group; ++p)
     {
-      least = own[p] >= 0 && own[p] < least ? own[p] : least;
+      const std::int32_t voxel = own[p] < 0 ? size : own[p];
+      least = voxel < least ? voxel : least;
     }
     // Registers of voxels stay in their row.
-    const std::int32_t base = std::max(std::min(least, steps.Size - this->Group), 0);
+    const std::int32_t base = std::max(std::min(least, size - this->Group), 0);
     this->Bases[row * this->Groups + g] = base;
     Lane* const out = lanes + std::ptrdiff_t(g) * this->Group;
     for (int p = 0; p < this->Group; ++p)
     {
-      const bool inside = own[p] >= 0 && own[p] < steps.Size;
-      out[p] = static_cast<Lane>(inside ? own[p] - base : -1);
+      const bool outside = (own[p] < 0) | (own[p] >= size);
+      out[p] = static_cast<Lane>(outside ? -1 : own[p] - base);
     }
   }
 }

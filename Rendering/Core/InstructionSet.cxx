@@ -8,6 +8,7 @@ extern const Kernels kernelsBaseline;
 #if defined(SPLATTING_HAS_AVX)
 extern const Kernels kernelsAVX2;
 extern const Kernels kernelsAVX512;
+extern const Kernels kernelsAVX512VBMI;
 #endif
 
 InstructionSet bestInstructionSet()
@@ -18,7 +19,8 @@ InstructionSet bestInstructionSet()
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
     {
-      return InstructionSet::AVX512;
+      return __builtin_cpu_supports("avx512vbmi") ? InstructionSet::AVX512VBMI
+                                                  : InstructionSet::AVX512;
     }
     return __builtin_cpu_supports("avx2") ? InstructionSet::AVX2 : InstructionSet::Baseline;
   }();
@@ -37,6 +39,8 @@ const Kernels& kernelsFor(InstructionSet set)
   }
   switch (set)
   {
+    case InstructionSet::AVX512VBMI:
+      return kernelsAVX512VBMI;
     case InstructionSet::AVX512:
       return kernelsAVX512;
     case InstructionSet::AVX2:
@@ -54,6 +58,8 @@ const char* nameOf(InstructionSet set)
 {
   switch (set)
   {
+    case InstructionSet::AVX512VBMI:
+      return "AVX-512 VBMI";
     case InstructionSet::AVX512:
       return "AVX-512";
     case InstructionSet::AVX2:

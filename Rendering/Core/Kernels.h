@@ -23,7 +23,8 @@ enum class InstructionSet
 {
   Baseline,
   AVX2,
-  AVX512
+  AVX512,
+  AVX512VBMI ///< and instructions that pick bytes
 };
 
 /// Most rows of voxels that a row of pixels meets at a time: three in each of four slices.
@@ -241,11 +242,15 @@ struct FanWeights
   std::ptrdiff_t stride;
 };
 
-/// Some pixels of a row, and the voxels that each of them weighs on its own.
+/// Some rows of voxels, and how each pixel of a row weighs them on its own.
 template <class A>
 struct Resampling
 {
-  const A* voxels; ///< voxel 0, which need not exist
+  const A* voxels; ///< voxel 0 of the first row, which need not exist
+  std::ptrdiff_t voxelStride;
+  A* out; ///< pixel 0 of the first row, likewise
+  std::ptrdiff_t outStride;
+  int rows;
   const std::int32_t* base;
   const void* lanes;
   const A* weights;
@@ -260,9 +265,9 @@ struct WorksheetLoops
   /// Pixels of a perspective image that pick their voxels from as many.
   int group;
   void (*fanWeights)(const FanWeights<A>& weights, std::ptrdiff_t n);
-  /// out[x] = the sum of taps times voxels, for x from begin on; voxels are read up to a register
-  /// further, as are weights before and behind, and written, in whole registers.
-  void (*resample)(const Resampling<A>& row, A* out, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// out[x] = the sum of taps times voxels, for all rows and x from begin to end, in whole
+  /// registers, as voxels and weights are read.
+  void (*resample)(const Resampling<A>& rows, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// out[x] = the sum of weights[r] rows[r][x].
   void (*blend)(const A* const* rows, const A* weights, int count, A* out, std::ptrdiff_t n);
   /// image[x] = max(image[x], the sum of weights[r] rows[r][x]); where there are bits, if

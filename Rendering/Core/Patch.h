@@ -69,11 +69,15 @@ struct Patch
     return reinterpret_cast<A*>(this->resampledBytes.data()) +
       (std::ptrdiff_t(part) * this->resampledRows + row) * this->resampledLength;
   }
-  /// Room for a row of voxels between slices.
+  /// Room for rows of voxels between slices.
   template <class A>
-  A* blended(int columns)
+  A* blended(int rows, int columns)
   {
-    this->blendedBytes.resize(columns * sizeof(A) + Padding);
+    const std::size_t size = std::size_t(rows) * columns * sizeof(A) + Padding;
+    if (this->blendedBytes.size() < size)
+    {
+      this->blendedBytes.resize(size);
+    }
     return reinterpret_cast<A*>(this->blendedBytes.data());
   }
 

@@ -11,6 +11,10 @@ namespace splatting
 {
 namespace
 {
+/// Of slopes within a part: the covariance of 0.25 / 12 that is lost then moves weights by no more
+/// than the general tables of [CS98] with 16 x 16 sub-pixels do.
+constexpr double MostProduct = 0.25;
+
 double steepest(const Fan& fan)
 {
   double slope = 0.0;
@@ -49,10 +53,9 @@ glm::dvec2 depthsOf(const ShearWarp& geometry, int k, int q, int parts)
 
 int partsOf(const ShearWarp& geometry, const Kernel& kernel)
 {
-  // A covariance of 0.01 is 0.12 / 12.
   const double product = steepest(geometry.columns()) * steepest(geometry.rows());
   const int least = kernel.shape == Reconstruction::Box ? 1 : 2;
-  return std::clamp(static_cast<int>(std::ceil(std::sqrt(product / 0.12))), least, MostParts);
+  return std::clamp(static_cast<int>(std::ceil(std::sqrt(product / MostProduct))), least, MostParts);
 }
 
 template <class A>

@@ -15,7 +15,7 @@
  *
  * Exact weights would know that x and y grow together along a ray. Between parts these do; within
  * one that is lost, a covariance of slope_x slope_y t^2 / 12. There are as many parts as keep it
- * at or below 0.01 for all pixels.
+ * at or below 0.021 for all pixels of an image.
  */
 #ifndef splattingPerspectiveFootprints_h
 #define splattingPerspectiveFootprints_h

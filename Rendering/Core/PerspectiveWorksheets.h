@@ -56,6 +56,8 @@ public:
     : WorksheetLayers<T>(frame, noFootprints<A>(), reach, depth),
       Own(footprints)
   {
+    // Each sample is written and read once more, in the first-level cache.
+    this->PieceWidth = 1024;
   }
 
   /// The voxels of a layer that some columns (or rows) of pixels read, from first to last; they may
@@ -104,6 +106,15 @@ private:
     Span voxelRows[MostParts];
     this->resampleRows(k, { first, end }, span, patch, voxelRows);
     const WorksheetLoops<A>& loops = this->Shared.kernels;
+    typename FanFootprints<A>::Part parts[MostParts];
+    A shares[MostParts];
+    const A* resampled[MostParts];
+    for (int q = 0; q < this->Own.parts; ++q)
+    {
+      parts[q] = this->Own.rows.part(k, q);
+      shares[q] = this->Depth > 0 ? A(1) : this->Own.share(k, q)[1];
+      resampled[q] = patch.template resampled<A>(q, 0) + (span.begin - alignedDown(span.begin));
+    }
     for (int v = first; v < end; ++v)
     {
       const A* rows[MostParts * MostTaps];
@@ -111,13 +122,13 @@ private:
       int count = 0;
       for (int q = 0; q < this->Own.parts; ++q)
       {
-        const auto part = this->Own.rows.part(k, q);
-        const A share = this->Depth > 0 ? A(1) : this->Own.share(k, q)[1];
-        for (int t = 0; t < part.taps; ++t)
+        const typename FanFootprints<A>::Part& part = parts[q];
+        const A* row = resampled[q] + (part.first[v] - voxelRows[q].begin) * patch.resampledLength;
+        const A* weight = part.weights + v;
+        for (int t = 0; t < part.taps; ++t, row += patch.resampledLength, weight += part.stride)
         {
-          rows[count] = patch.template resampled<A>(q, part.first[v] + t - voxelRows[q].begin) +
-            (span.begin - alignedDown(span.begin));
-          weights[count++] = share * part.weights[t * part.stride + v];
+          rows[count] = row;
+          weights[count++] = shares[q] * *weight;
         }
       }
       loops.raiseBlend(target.at(span.begin, v), rows, weights, count,
@@ -146,23 +157,28 @@ private:
     for (int q = 0; q < this->Own.parts; ++q)
     {
       const auto part = this->Own.columns.part(k, q);
-      Resampling<A> resampling{ nullptr, part.base, part.lanes, part.weights, part.stride,
-        part.taps };
-      for (int j = voxelRows[q].begin; j < voxelRows[q].end; ++j)
-      {
-        resampling.voxels = this->blended(k, q, j, patch);
-        loops.resample(resampling, patch.template resampled<A>(q, j - voxelRows[q].begin) - begin,
-          span.begin, span.end);
-      }
+      Resampling<A> resampling;
+      resampling.base = part.base;
+      resampling.lanes = part.lanes;
+      resampling.weights = part.weights;
+      resampling.stride = part.stride;
+      resampling.taps = part.taps;
+      resampling.rows = voxelRows[q].end - voxelRows[q].begin;
+      resampling.out = patch.template resampled<A>(q, 0) - begin;
+      resampling.outStride = patch.resampledLength;
+      this->findVoxels(k, q, voxelRows[q], patch, resampling);
+      loops.resample(resampling, span.begin, span.end);
     }
   }
 
-  /// Row j of part q of the volume's slice k, by share of the slices around it: its voxel 0.
-  const A* blended(int k, int q, int j, Patch& patch) const
+  /// The voxels of some rows: of slice k, or, in part q, by share of the slices around it.
+  void findVoxels(int k, int q, const Span& rows, Patch& patch, Resampling<A>& resampling) const
   {
     if (this->Depth == 0)
     {
-      return patch.template voxel<A>(0, j, k); // all parts have the same, see splatRows()
+      resampling.voxels = patch.template voxel<A>(0, rows.begin, k); // for shares see splatRows()
+      resampling.voxelStride = patch.rowLength;
+      return;
     }
     const WorksheetLoops<A>& loops = this->Shared.kernels;
     const std::array<A, 3>& shares = this->Own.share(k, q);
@@ -170,28 +186,32 @@ private:
     // All sheets that are read together have these columns.
     const Patch::Sheet& own = patch.sheet(k);
     Span columns{ own.i, own.i + own.columns };
-    const A* rows[3];
+    int slices[3];
     A weights[3];
     int count = 0;
-    for (int c = -this->Depth; c <= this->Depth; ++c)
+    for (int c = -1; c <= 1; ++c)
     {
       if (shares[c + 1] != 0)
       {
-        const int s = std::clamp(k + c, 0, last);
-        const Patch::Sheet& sheet = patch.sheet(s);
+        slices[count] = std::clamp(k + c, 0, last);
+        const Patch::Sheet& sheet = patch.sheet(slices[count]);
         columns = common(columns, { sheet.i, sheet.i + sheet.columns });
-        weights[count] = shares[c + 1];
-        rows[count++] = patch.template voxel<A>(0, j, s);
+        weights[count++] = shares[c + 1];
       }
     }
-    for (int c = 0; c < count; ++c)
-    {
-      rows[c] += columns.begin;
-    }
     const int n = columns.end - columns.begin;
-    A* const out = patch.template blended<A>(n);
-    loops.blend(rows, weights, count, out, n);
-    return out - columns.begin;
+    A* const out = patch.template blended<A>(rows.end - rows.begin, n);
+    for (int j = rows.begin; j < rows.end; ++j)
+    {
+      const A* sources[3];
+      for (int c = 0; c < count; ++c)
+      {
+        sources[c] = patch.template voxel<A>(columns.begin, j, slices[c]);
+      }
+      loops.blend(sources, weights, count, out + std::ptrdiff_t(j - rows.begin) * n, n);
+    }
+    resampling.voxels = out - columns.begin;
+    resampling.voxelStride = n;
   }
 
   void splatValidRow(int k, int v, const Span& span, const Target& target, Patch& patch) const

@@ -241,16 +241,16 @@ private:
     return std::numeric_limits<T>::is_integer && sizeof(T) < 8 ? static_cast<A>(range.low) : A(0);
   }
 
-  /// Calls f for pieces of the image whose patch stays in the second-level cache.
+  /// Calls f for pieces of the image whose patch stays in the cache.
   template <class F>
-  static void forPieces(int v0, int v1, const Span& columns, F&& f)
+  void forPieces(int v0, int v1, const Span& columns, F&& f) const
   {
-    constexpr int width = 1024, height = RowsTogether;
+    constexpr int height = RowsTogether;
     for (int v = v0; v < v1; v += height)
     {
-      for (int u = columns.begin; u < columns.end; u += width)
+      for (int u = columns.begin; u < columns.end; u += this->PieceWidth)
       {
-        f(v, std::min(v + height, v1), Span{ u, std::min(u + width, columns.end) });
+        f(v, std::min(v + height, v1), Span{ u, std::min(u + this->PieceWidth, columns.end) });
       }
     }
   }
@@ -463,6 +463,7 @@ protected:
   const std::vector<SliceFootprint<A>>& Footprints;
   const WorksheetReach<A>& Reach;
   int Depth;
+  int PieceWidth = 1024; ///< pixels; for the second-level cache
   A Base;
 };
 }

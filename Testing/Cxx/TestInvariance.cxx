@@ -51,7 +51,7 @@ void testThreadsAndInstructionSets(Checks& check, bool perspective, std::uint64_
       vtkSMPTools::SetBackend(usual.c_str());
     }
     for (auto set : { splatting::InstructionSet::Baseline, splatting::InstructionSet::AVX2,
-           splatting::InstructionSet::AVX512 })
+           splatting::InstructionSet::AVX512, splatting::InstructionSet::AVX512VBMI })
     {
       settings.instructionSet = set;
       check(sameImages(project(volume, geometry, settings), expected), splatting::nameOf(set),

@@ -599,7 +599,7 @@ void testEveryWayGivesTheSameBits(Checks& check)
   splatting::Warper().warp(
     images, geometries, table, view.viewport, splatting::InstructionSet::Baseline, expected);
   for (auto set : { splatting::InstructionSet::Baseline, splatting::InstructionSet::AVX2,
-         splatting::InstructionSet::AVX512 })
+         splatting::InstructionSet::AVX512, splatting::InstructionSet::AVX512VBMI })
   {
     for (int threads : { 1, 2 })
     {

@@ -254,7 +254,7 @@ int partsPerSlice(const PerspectiveRays& rays, const Kernel& kernel)
 {
   const double product = largestSlope(rays.slope[0]) * largestSlope(rays.slope[1]);
   int parts = kernel.shape == Kernel::Nearest ? 1 : 2;
-  while (product > 0.12 * parts * parts)
+  while (product > 0.25 * parts * parts)
   {
     ++parts;
   }

@@ -109,7 +109,7 @@ Image<T> exactTraversal(const Volume<T>& volume, const PerspectiveRays& rays)
 }
 
 /**
- * Modes standard and high: how many parts a slice is cut into, the fewest n with A B <= 0.12 n^2, A
+ * Modes standard and high: how many parts a slice is cut into, the fewest n with A B <= 0.25 n^2, A
  * and B the largest |slope| of columns and rows; but two at least for kernels other than Nearest.
  */
 int partsPerSlice(const PerspectiveRays& rays, const Kernel& kernel);
