@@ -577,7 +577,7 @@ protected:
   ~vtkSplattingMIPVolumeMapper() override;
 
   const char* RenderBySplatting(vtkRenderer* ren, vtkVolume* vol);
-  void RenderByRayCasting(vtkRenderer* ren, vtkVolume* vol, const char* reason);
+  void RenderByRayCasting(vtkRenderer* ren, vtkVolume* vol);
   void DisplayPicture(vtkRenderer* ren);
 
   /**

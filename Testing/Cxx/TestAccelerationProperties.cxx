@@ -172,10 +172,14 @@ int TestAccelerationProperties(int, char*[])
   stage::Checks check;
   stage::Stage stage(160, 150);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 60, 56, 52 }, 12));
-  testForced(stage, image, check);
-  testBudget(stage, image, check);
-  testRenewal(stage, image, check);
-  testTolerance(stage, image, check);
-  testCulling(stage, image, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    testForced(stage, image, check);
+    testBudget(stage, image, check);
+    testRenewal(stage, image, check);
+    testTolerance(stage, image, check);
+    testCulling(stage, image, check);
+  }
   return check.exitCode();
 }

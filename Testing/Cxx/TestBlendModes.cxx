@@ -288,12 +288,20 @@ int TestBlendModes(int, char*[])
 {
   stage::Checks check;
   stage::Stage stage(Width, Height);
-  testMinimumAgainstRayCaster(stage, check);
-  testMinimumOfNegative<std::uint8_t>(stage, VTK_UNSIGNED_CHAR, 255.0, check);
-  testMinimumOfNegative<float>(stage, VTK_FLOAT, 0.0, check);
-  testAverageAgainstRayCaster(stage, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    testMinimumAgainstRayCaster(stage, check);
+    testMinimumOfNegative<std::uint8_t>(stage, VTK_UNSIGNED_CHAR, 255.0, check);
+    testMinimumOfNegative<float>(stage, VTK_FLOAT, 0.0, check);
+    testAverageAgainstRayCaster(stage, check);
+  }
   testDefinitions(stage, check);
-  testReuse(stage, check);
-  testEmptyRange(stage, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    testReuse(stage, check);
+    testEmptyRange(stage, check);
+  }
   return check.exitCode();
 }

@@ -183,9 +183,14 @@ int TestClipping(int, char*[])
   stage::Stage stage(Width, Height);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
   const auto mapper = stage::splatting(image);
-  testClippingRange(stage, mapper, image, check);
-  testCameraInside(stage, mapper, image, check);
-  testClippingPlanes(stage, mapper, image, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    testClippingRange(stage, mapper, image, check);
+    testCameraInside(stage, mapper, image, check);
+    testClippingPlanes(stage, mapper, image, check);
+  }
+  stage.viewAngle = 0.0;
   for (const std::array<int, 3>& size : { std::array<int, 3>{ 40, 40, 1 }, { 40, 1, 40 },
          { 1, 40, 40 }, { 1, 1, 40 }, { 1, 40, 1 }, { 40, 1, 1 }, { 1, 1, 1 }, { 2, 2, 2 } })
   {

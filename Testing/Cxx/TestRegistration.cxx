@@ -55,6 +55,12 @@ const Modes fixedPointBounds = { {
   { vtkSplattingMIPVolumeMapper::STANDARD, "standard", 0.1, 40.9, 0.993 },
   { vtkSplattingMIPVolumeMapper::HIGH, "high", 0.1, 37.4, 0.9915 },
 } };
+// In perspective: the same, with structures near the eye that are magnified.
+const Modes perspectiveBounds = { {
+  { vtkSplattingMIPVolumeMapper::PREVIEW, "preview", 0.15, 30.0, 0.97 },
+  { vtkSplattingMIPVolumeMapper::STANDARD, "standard", 0.15, 35.0, 0.98 },
+  { vtkSplattingMIPVolumeMapper::HIGH, "high", 0.15, 35.0, 0.98 },
+} };
 const Modes gpuBounds = { {
   { vtkSplattingMIPVolumeMapper::PREVIEW, "preview", 0.15, 36.2, 0.9915 },
   { vtkSplattingMIPVolumeMapper::STANDARD, "standard", 0.03, 47.2, 0.997 },
@@ -160,6 +166,27 @@ void lookAtRandom(stage::Stage& stage, reference::Random& random)
     random.uniform(-0.06, 0.06), random.uniform(-0.06, 0.06));
 }
 
+/// In perspective: the eye outside the volume or, every third time, inside it.
+void lookInPerspective(stage::Stage& stage, int camera, reference::Random& random)
+{
+  stage.viewAngle = random.uniform(5.0, 120.0);
+  lookAtRandom(stage, random);
+  if (camera % 3 == 2)
+  {
+    const double* const bounds = stage.volume->GetBounds();
+    double eye[3], focus[3];
+    const stage::Vector direction = randomDirection(random);
+    for (int a = 0; a < 3; ++a)
+    {
+      eye[a] = bounds[2 * a] + random.uniform(0.1, 0.9) * (bounds[2 * a + 1] - bounds[2 * a]);
+      focus[a] = eye[a] + 20.0 * direction[a];
+    }
+    stage.renderer->GetActiveCamera()->SetPosition(eye);
+    stage.renderer->GetActiveCamera()->SetFocalPoint(focus);
+  }
+  stage.renderer->ResetCameraClippingRange();
+}
+
 /// A quarter of a voxel at most, in the world.
 double fineDistance(vtkImageData* image)
 {
@@ -187,7 +214,9 @@ public:
     for (const Mode& mode : this->Bounds)
     {
       mapper->SetQualityMode(mode.value);
-      this->Summaries[mode.value].add(stage::Likeness(truth, pictureOf(stage, mapper)));
+      const stage::Likeness l(truth, pictureOf(stage, mapper));
+      if (std::getenv("VIEWS_PRINT")) std::cout << "  " << mode.name << " " << l.text() << std::endl;
+      this->Summaries[mode.value].add(l);
     }
   }
 
@@ -225,6 +254,33 @@ void testPropMatrices(stage::Stage& stage, vtkImageData* image, stage::Checks& c
       stage, mapper, pictureOf(stage, stage::fixedPointRayCaster(image, fineDistance(image))));
   }
   comparison.judge(check, "the fixed-point ray caster");
+}
+
+/// Perspective views, beside both ray casters.
+void testPerspective(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+{
+  reference::Random random(10);
+  Comparison fixedPoint(perspectiveBounds), gpu(perspectiveBounds);
+  Summary rayCasters;
+  for (int camera = 0; camera < Cameras; ++camera)
+  {
+    stage::placeAtRandom(image, random);
+    const auto mapper = stage::splatting(image);
+    stage.show(mapper);
+    turnPropAtRandom(stage.volume, random);
+    lookInPerspective(stage, camera, random);
+    const double distance = fineDistance(image);
+    const auto truth = pictureOf(stage, stage::fixedPointRayCaster(image, distance));
+    const auto other = pictureOf(stage, stage::gpuRayCaster(image, distance));
+    if (std::getenv("VIEWS_PRINT")) std::cout << camera << " angle " << stage.viewAngle << " casters " << stage::Likeness(truth, other).text() << std::endl;
+    rayCasters.add(stage::Likeness(truth, other));
+    fixedPoint.add(stage, mapper, truth);
+    gpu.add(stage, mapper, other);
+  }
+  stage.viewAngle = 0.0;
+  rayCasters.print("For orientation, the two ray casters in perspective");
+  fixedPoint.judge(check, "the fixed-point ray caster in perspective");
+  gpu.judge(check, "the GPU ray caster in perspective");
 }
 
 /// How well the truths agree with each other.
@@ -289,6 +345,7 @@ int TestRegistration(int, char*[])
   stage::Stage stage(Width, Height);
   testPropMatrices(stage, image, check);
   compareRayCasters(stage, image);
+  testPerspective(stage, image, check);
   testDirectionMatrices(stage, image, check);
   return check.exitCode();
 }

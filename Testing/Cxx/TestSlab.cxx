@@ -6,7 +6,6 @@
 
 #include "vtkSplattingMIPVolumeMapper.h"
 
-#include "vtkCamera.h"
 #include "vtkCommand.h"
 #include "vtkImageData.h"
 #include "vtkMath.h"
@@ -159,12 +158,12 @@ void testRayCasting(stage::Stage& stage, vtkImageData* image, stage::Checks& che
   const auto mapper = stage::splatting(image);
   stage.show(mapper);
   stage.look(directions[0], up);
-  stage.renderer->GetActiveCamera()->ParallelProjectionOff();
+  mapper->SetBlendModeToComposite();
   const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
   mapper->SlabOn();
   stage.pixels();
   stage.pixels();
-  check(mapper->GetLastRenderUsedRayCasting(), "Perspective is ray cast.");
+  check(mapper->GetLastRenderUsedRayCasting(), "Composite is ray cast.");
   const auto about = std::count_if(warnings.texts.begin(), warnings.texts.end(),
     [](const std::string& text) { return text.find("Slab") != std::string::npos; });
   check(about == 1, "One warning that a ray cast volume has no slab.");
@@ -262,12 +261,16 @@ int TestSlab(int, char*[])
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
   const auto mapper = stage::splatting(image);
   check(!mapper->GetSlab() && mapper->GetSlabThickness() == 10.0, "Defaults.");
-  stage.show(mapper);
-  testPlanes(stage, mapper, check);
-  testSliding(stage, mapper, check);
-  testBadInput(stage, mapper, check);
+  for (double viewAngle : { 50.0, 0.0 })
+  {
+    stage.viewAngle = viewAngle;
+    stage.show(mapper);
+    testPlanes(stage, mapper, check);
+    testSliding(stage, mapper, check);
+    testBadInput(stage, mapper, check);
+    testThinnerSlabs(stage, check);
+  }
   testThinSlab(stage, check);
-  testThinnerSlabs(stage, check);
   testRayCasting(stage, image, check);
   return check.exitCode();
 }
