@@ -13,10 +13,11 @@ build_dir=$1
 shift
 
 packages=(
-  cmake ninja-build g++ ccache
+  cmake ninja-build g++ ccache xz-utils
   libvtk9-dev python3-vtk9 libglm-dev          # the module and its Python package
   libcli11-dev libvtk-dicom-dev                # splatmip
   libbenchmark-dev                             # the benchmark
+  python3-vedo python3-vedo-examples           # programs of others, for the tests
   xvfb xauth libgl1-mesa-dri                   # OpenGL without a display
 )
 missing=()
@@ -29,8 +30,10 @@ if ((${#missing[@]})); then
   as_root=()
   ((EUID == 0)) || as_root=(sudo)
   "${as_root[@]}" apt-get update -qq
+  # Slim images leave documentation out, which is where examples are.
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+    apt-get install -y -qq --no-install-recommends \
+    -o Dpkg::Options::='--path-include=/usr/share/doc/*/examples/*' "${missing[@]}" >/dev/null
 fi
 
 cmake -S "$source_dir" -B "$build_dir" -G Ninja -Wno-dev \

@@ -6,10 +6,10 @@
 
 #include "vtkFixedPointRayCastImage.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
-#include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
+#include "vtkOpenGLGPUVolumeRayCastMapper.h"
 #include "vtkVolume.h"
 
 #include <algorithm>
@@ -70,7 +70,8 @@ void RayCastFallback::RenderOnGpu(vtkSplattingMIPVolumeMapper* settings, vtkImag
 {
   if (!this->GpuMapper)
   {
-    this->GpuMapper.TakeReference(vtkGPUVolumeRayCastMapper::New());
+    // VTK's own: the object factory may give one that would hand the volume back.
+    this->GpuMapper = vtkSmartPointer<vtkOpenGLGPUVolumeRayCastMapper>::New();
     this->GpuMapper->AutoAdjustSampleDistancesOff();
   }
   copySettings(settings, image, this->GpuMapper.Get());

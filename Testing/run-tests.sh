@@ -10,8 +10,10 @@ set -euo pipefail
 
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build_dir=$source_dir/build/tests
+vtk_tests=$source_dir/build/vtk-tests
 bash "$source_dir/Module/build-on-debian.sh" "$build_dir" \
-  -DSPLATTINGMIP_STRICT=ON -DSPLATTINGMIP_BUILD_BENCHMARK=ON
+  -DSPLATTINGMIP_STRICT=ON -DSPLATTINGMIP_BUILD_BENCHMARK=ON "-DSPLATTINGMIP_VTK_TESTS=$vtk_tests"
+bash "$source_dir/Testing/Package/VTKsOwn/fetch-on-debian.sh" "$vtk_tests"
 # The tests compare with pictures that were rendered without multisampling.
 export VTK_TESTING=1
 # Without -noreset the server would forget its settings whenever a test closes its last window.

@@ -258,6 +258,22 @@ inline TickOrder orderOf(const std::int16_t* ticks, std::int16_t tick)
   }
 }
 
+/// The same from the times themselves, which tell all but ties.
+template <int Pixels>
+inline TickOrder orderOf(const double* times, double time)
+{
+  std::uint64_t before = 0, after = 0;
+  const __m512d other = _mm512_set1_pd(time);
+#pragma GCC unroll 8
+  for (int n = 0; n < Pixels; n += 8)
+  {
+    const __m512d own = _mm512_loadu_pd(times + n);
+    before |= std::uint64_t(_mm512_cmp_pd_mask(own, other, _CMP_LT_OQ)) << n;
+    after |= std::uint64_t(_mm512_cmp_pd_mask(own, other, _CMP_GT_OQ)) << n;
+  }
+  return { before, after, false };
+}
+
 /// b where there are bits, else a.
 template <int Bytes>
 inline Register chosen(std::uint64_t bits, Register a, Register b)
@@ -317,6 +333,19 @@ inline TickOrder orderOf(const std::int16_t* ticks, std::int16_t tick)
   return order;
 }
 
+/// The same from the times themselves, which tell all but ties.
+template <int Pixels>
+inline TickOrder orderOf(const double* times, double time)
+{
+  typename IntegerOf<32 / Pixels>::type before[Pixels], after[Pixels];
+  for (int n = 0; n < Pixels; ++n)
+  {
+    before[n] = static_cast<typename IntegerOf<32 / Pixels>::type>(-(times[n] < time));
+    after[n] = static_cast<typename IntegerOf<32 / Pixels>::type>(-(times[n] > time));
+  }
+  return { loadRegister(before), loadRegister(after), false };
+}
+
 template <int>
 inline Register chosen(Register bits, Register a, Register b)
 {
@@ -324,96 +353,172 @@ inline Register chosen(Register bits, Register a, Register b)
 }
 #endif
 
-/// One register of pixels.
-template <class T, bool TwoRows>
-inline Pack<T> crossed(
-  const Crossing<T>& c, const T* const (&rows)[2], std::int16_t tick, std::ptrdiff_t x, bool& ties)
+/// Some columns of pixels, and what they pick from the rows of voxels that were met last: rows of
+/// pixels are narrower than those of voxels, and the next one mostly meets the same.
+template <class T>
+class PickedRows
 {
-  const Register none = loadRegister(c.none);
-  const std::int32_t* const entryBase = c.entryBase + x / Picker<T>::group;
-  const std::int32_t* const exitBase = c.exitBase + x / Picker<T>::group;
-  const Register entryLanes = loadRegister(static_cast<const Integer<T>*>(c.entryLanes) + x);
-  const Register exitLanes = loadRegister(static_cast<const Integer<T>*>(c.exitLanes) + x);
-  const Register first = Picker<T>::pick(rows[0], entryBase, entryLanes, none);
-  const Register last = Picker<T>::pick(rows[1], exitBase, exitLanes, none);
-  const Pack<T> best = larger((Pack<T>)first, (Pack<T>)last);
-  if constexpr (TwoRows)
-  {
-    const TickOrder order = orderOf<width<T>>(c.columnTick + x, tick);
-    ties = order.ties;
-    const Register columnFirst = Picker<T>::pick(rows[0], exitBase, exitLanes, none);
-    const Register rowFirst = Picker<T>::pick(rows[1], entryBase, entryLanes, none);
-    const Register corner =
-      chosen<sizeof(T)>(order.before, chosen<sizeof(T)>(order.after, first, rowFirst), columnFirst);
-    return larger((Pack<T>)corner, best);
-  }
-  return best;
-}
+public:
+  static constexpr std::ptrdiff_t Width = 8 * width<T>;
 
-/// Whole registers of one row from x on, as far as the run goes; returns where it stopped.
-template <class T, bool TwoRows>
-inline std::ptrdiff_t crossRegisters(const Crossing<T>& c, T* image, const unsigned char* bits,
-  const T* const (&rows)[2], int v, const Span& run)
-{
-  std::ptrdiff_t x = run.begin;
-  for (; x + width<T> <= run.end; x += width<T>)
+  PickedRows(const Crossing<T>& crossing, std::ptrdiff_t begin, std::ptrdiff_t end)
+    : C(crossing),
+      Begin(begin),
+      Registers(static_cast<int>((end - begin) / width<T>))
   {
-    bool ties = false;
-    Pack<T> best = crossed<T, TwoRows>(c, rows, c.rowTick[v], x, ties);
-    if (TwoRows && ties)
+    for (Row& row : this->Rows)
     {
-      // Which face comes first takes more digits.
-      crossPixels(c, image, bits, rows, c.rowTime[v], x, x + width<T>);
-      continue;
+      row.j = -2; // none yet
     }
-    const Pack<T> before = load<T>(image + x);
-    best = larger(best, before);
+  }
+
+  void cross(int v, T* image, const unsigned char* bits)
+  {
+    const std::int32_t j0 = this->C.firstRow[v], j1 = this->C.lastRow[v];
+    const Row* const first = this->row(j0);
+    const Row* const last = j1 == j0 ? first : this->row(j1);
     if (bits)
     {
-      const Pack<Integer<T>> own = loadBits<T>(bits + x);
-      best = (own & static_cast<Integer<T>>(c.bit)) != 0 ? best : before;
+      j0 == j1 ? this->raise<false, true>(v, first, last, image, bits)
+               : this->raise<true, true>(v, first, last, image, bits);
     }
-    store<T>(image + x, best);
+    else
+    {
+      j0 == j1 ? this->raise<false, false>(v, first, last, image, bits)
+               : this->raise<true, false>(v, first, last, image, bits);
+    }
   }
-  return x;
+
+private:
+  /// The voxels in which rays enter the slice and leave it.
+  struct Row
+  {
+    std::int32_t j;
+    alignas(64) T entry[Width];
+    alignas(64) T exit[Width];
+  };
+
+  const Row* row(std::int32_t j)
+  {
+    const bool inside = j >= 0 && j < this->C.rows;
+    const std::int32_t wanted = inside ? j : -1;
+    Row& row = this->Rows[inside ? j & 1 : 2];
+    if (row.j != wanted)
+    {
+      row.j = wanted;
+      this->pick(inside ? this->C.voxels + j * this->C.rowStride : this->C.none, row);
+    }
+    return &row;
+  }
+
+  void pick(const T* voxels, Row& row) const
+  {
+    const Crossing<T>& c = this->C;
+    const Register none = loadRegister(c.none);
+    for (int n = 0; n < this->Registers; ++n)
+    {
+      const std::ptrdiff_t x = this->Begin + n * width<T>, group = x / Picker<T>::group;
+      const Register entry = loadRegister(static_cast<const Integer<T>*>(c.entryLanes) + x);
+      const Register exit = loadRegister(static_cast<const Integer<T>*>(c.exitLanes) + x);
+      // A band of rows is too short for processors to notice that the next slice will come.
+      __builtin_prefetch(voxels + c.ahead + c.entryBase[group]);
+      store<T>(row.entry + n * width<T>,
+        (Pack<T>)Picker<T>::pick(voxels, c.entryBase + group, entry, none));
+      store<T>(
+        row.exit + n * width<T>, (Pack<T>)Picker<T>::pick(voxels, c.exitBase + group, exit, none));
+    }
+  }
+
+  template <bool TwoRows, bool Cut>
+  void raise(int v, const Row* first, const Row* last, T* image, const unsigned char* bits) const
+  {
+    const Crossing<T>& c = this->C;
+    for (int n = 0; n < this->Registers; ++n)
+    {
+      const std::ptrdiff_t at = n * width<T>, x = this->Begin + at;
+      const Pack<T> entry = load<T>(first->entry + at);
+      Pack<T> best = larger(entry, load<T>(last->exit + at));
+      if constexpr (TwoRows)
+      {
+        TickOrder order = orderOf<width<T>>(c.columnTick + x, c.rowTick[v]);
+        if (order.ties)
+        {
+          // Which face comes first takes more digits.
+          order = orderOf<width<T>>(c.columnTime + x, c.rowTime[v]);
+        }
+        const Register rowFirst = (Register)load<T>(last->entry + at);
+        const Register columnFirst = (Register)load<T>(first->exit + at);
+        const Register corner = chosen<sizeof(T)>(
+          order.before, chosen<sizeof(T)>(order.after, (Register)entry, rowFirst), columnFirst);
+        best = larger((Pack<T>)corner, best);
+      }
+      const Pack<T> before = load<T>(image + x);
+      best = larger(best, before);
+      if constexpr (Cut)
+      {
+        const Pack<Integer<T>> own = loadBits<T>(bits + x);
+        best = (own & static_cast<Integer<T>>(c.bit)) != 0 ? best : before;
+      }
+      store<T>(image + x, best);
+    }
+  }
+
+  const Crossing<T>& C;
+  std::ptrdiff_t Begin;
+  int Registers;
+  Row Rows[3]; // two neighbours, and one without voxels
+};
+
+/// Whole registers of a run, for all rows of pixels. Returns where they end.
+template <class T>
+inline std::ptrdiff_t crossRegisters(const Crossing<T>& c, const Span& run)
+{
+  const std::ptrdiff_t end = run.begin + (run.end - run.begin) / width<T> * width<T>;
+  for (std::ptrdiff_t begin = run.begin; begin < end; begin += PickedRows<T>::Width)
+  {
+    const std::ptrdiff_t left = end - begin;
+    PickedRows<T> rows(
+      c, begin, begin + (left < PickedRows<T>::Width ? left : PickedRows<T>::Width));
+    for (int v = 0; v < c.height; ++v)
+    {
+      rows.cross(v, c.image + v * c.imageStride, c.bits ? c.bits + v * c.bitsStride : nullptr);
+    }
+  }
+  return end;
 }
 #endif
 
 template <class T>
-inline void crossRow(const Crossing<T>& c, T* image, const unsigned char* bits, int v)
+inline void crossRow(const Crossing<T>& c, const Span& run, int v)
 {
   const std::int32_t j[2] = { c.firstRow[v], c.lastRow[v] };
   const bool inside[2] = { j[0] >= 0 && j[0] < c.rows, j[1] >= 0 && j[1] < c.rows };
-  if (!inside[0] && !inside[1])
-  {
-    return;
-  }
   const T* const rows[2] = { inside[0] ? c.voxels + j[0] * c.rowStride : c.none,
     inside[1] ? c.voxels + j[1] * c.rowStride : c.none };
-  for (int n = 0; n < c.runCount; ++n)
-  {
-    std::ptrdiff_t x = c.runs[n].begin;
-#if defined(__AVX2__)
-    if constexpr (Picker<T>::picks)
-    {
-      if (c.columns >= Picker<T>::group)
-      {
-        x = j[0] == j[1] ? crossRegisters<T, false>(c, image, bits, rows, v, c.runs[n])
-                         : crossRegisters<T, true>(c, image, bits, rows, v, c.runs[n]);
-      }
-    }
-#endif
-    crossPixels(c, image, bits, rows, c.rowTime[v], x, c.runs[n].end);
-  }
+  crossPixels(c, c.image + v * c.imageStride, c.bits ? c.bits + v * c.bitsStride : nullptr, rows,
+    c.rowTime[v], run.begin, run.end);
 }
 
 template <class T>
 void cross(const Crossing<T>& crossing)
 {
   const Crossing<T> c = crossing; // pixels that are bytes might be part of the other one
-  for (int v = 0; v < c.height; ++v)
+  for (int n = 0; n < c.runCount; ++n)
   {
-    crossRow(c, c.image + v * c.imageStride, c.bits ? c.bits + v * c.bitsStride : nullptr, v);
+    Span rest = c.runs[n];
+#if defined(__AVX2__)
+    if constexpr (Picker<T>::picks)
+    {
+      if (c.columns >= Picker<T>::group)
+      {
+        rest.begin = static_cast<int>(crossRegisters(c, rest));
+      }
+    }
+#endif
+    for (int v = 0; v < c.height && rest.begin < rest.end; ++v)
+    {
+      crossRow(c, rest, v);
+    }
   }
 }
 

@@ -79,6 +79,7 @@ struct Crossing
   int height;
   const T* voxels; ///< the slice's first
   std::ptrdiff_t rowStride;
+  std::ptrdiff_t ahead;       ///< to voxels that will be needed next
   std::int32_t columns, rows; ///< of voxels
   const T* none;              ///< a row of the least value
   const std::int32_t *firstRow, *lastRow;

@@ -156,6 +156,7 @@ private:
     c.height = v1 - v0;
     c.voxels = this->Shared.voxelRow(0, k);
     c.rowStride = this->Shared.slices.rowStride;
+    c.ahead = this->Shared.slices.sliceStride;
     c.columns = this->Shared.geometry.size().x;
     c.rows = this->Shared.geometry.size().y;
     c.none = this->None;

@@ -7,6 +7,7 @@
 #ifndef CoreTesting_h
 #define CoreTesting_h
 
+#include "PerspectiveProjection.h"
 #include "Project.h"
 #include "Projection.h"
 #include "ShearWarp.h"
@@ -17,6 +18,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
+#include <limits>
 
 namespace coretesting
 {
@@ -124,6 +126,38 @@ inline splatting::View randomPerspective(const std::array<int, 3>& size, referen
   return view;
 }
 
+/// The view of a volume whose axes were permuted and reversed, so that it looks the same.
+inline splatting::View transformedView(
+  const splatting::View& view, const reference::AxisSymmetry& symmetry)
+{
+  splatting::View result = view;
+  glm::dvec4 last = view.indexToClip[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    const int source = symmetry.axis[a];
+    result.dimensions[a] = view.dimensions[source];
+    result.indexToClip[a] = view.indexToClip[source] * double(symmetry.sign[a]);
+    if (symmetry.sign[a] < 0)
+    {
+      last += view.indexToClip[source] * double(view.dimensions[source] - 1);
+    }
+  }
+  result.indexToClip[3] = last;
+  return result;
+}
+
+/// One of the images of a perspective view.
+inline splatting::ShearWarp randomPerspectiveImage(
+  const std::array<int, 3>& size, reference::Random& random)
+{
+  std::vector<splatting::ShearWarp> images;
+  while (images.empty())
+  {
+    splatting::ShearWarp::factorise(randomPerspective(size, random), images);
+  }
+  return images[random.uniform(0, static_cast<int>(images.size()) - 1)];
+}
+
 /// Shears at which rays meet edges and corners: no shear, diagonals, simple fractions.
 inline double specialShear(reference::Random& random)
 {
@@ -154,9 +188,45 @@ reference::Volume<T> wholeRangeNoise(const std::array<int, 3>& size, std::uint64
     Limits::is_integer ? Limits::max() : T(1));
 }
 
+/// Noise; of floating point one volume in three has NaN and infinities, some of them mostly NaN.
+template <class T>
+reference::Volume<T> volumeWithOddValues(const std::array<int, 3>& size, reference::Random& random)
+{
+  reference::Volume<T> volume = wholeRangeNoise<T>(size, random.bits());
+  if constexpr (std::numeric_limits<T>::has_infinity)
+  {
+    const int share = random.uniform(0, 2) == 0 ? random.uniform(1, 9) : 0;
+    for (T& voxel : volume.voxels)
+    {
+      if (random.uniform(0, 9) < share)
+      {
+        const T odd[] = { std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::quiet_NaN(),
+          std::numeric_limits<T>::infinity(), -std::numeric_limits<T>::infinity() };
+        voxel = odd[random.uniform(0, 3)];
+      }
+    }
+  }
+  return volume;
+}
+
 inline reference::ShearView referenceView(const splatting::ShearWarp& geometry)
 {
   return { geometry.principalAxis(), { geometry.shear().x, geometry.shear().y } };
+}
+
+/// The rays of a perspective image.
+inline reference::PerspectiveRays referenceRays(const splatting::ShearWarp& geometry)
+{
+  reference::PerspectiveRays rays;
+  rays.axes = geometry.axes();
+  rays.size = { geometry.size().x, geometry.size().y, geometry.size().z };
+  rays.at = { { geometry.columns().at, geometry.rows().at } };
+  rays.slope = { { geometry.columns().slope, geometry.rows().slope } };
+  rays.start = geometry.reference();
+  rays.pitch = geometry.pitch();
+  rays.eye = geometry.eye().z;
+  rays.reversed = geometry.reversed();
+  return rays;
 }
 
 /// Half-spaces of index space and cropping, as a projection takes them.
@@ -208,6 +278,33 @@ bool sameBits(const reference::Image<P>& a, const reference::Image<P>& b)
   return a.width == b.width && a.height == b.height && a.hit == b.hit && a.value == b.value;
 }
 
+/// Whether type and pixels are the same. What lies outside the volume has no meaning.
+inline bool sameImages(const splatting::ShearImage& a, const splatting::ShearImage& b)
+{
+  return splatting::dispatch(a.type,
+    [&](auto* null)
+    {
+      using P = std::remove_pointer_t<decltype(null)>;
+      return a.type == b.type && sameBits(toReference<P>(a), toReference<P>(b));
+    });
+}
+
+/// Infinity where one has a sample and the other one not.
+template <class P>
+double largestDifference(const reference::Image<P>& a, const reference::Image<P>& b)
+{
+  if (a.width != b.width || a.height != b.height || a.hit != b.hit)
+  {
+    return std::numeric_limits<double>::infinity();
+  }
+  double largest = 0.0;
+  for (std::size_t p = 0; p < a.value.size(); ++p)
+  {
+    largest = std::max(largest, std::abs(double(a.value[p]) - double(b.value[p])));
+  }
+  return largest;
+}
+
 /// Calls f with a null pointer to each voxel type.
 template <class F>
 void forEachType(F&& f)
@@ -216,6 +313,34 @@ void forEachType(F&& f)
   {
     splatting::dispatch(static_cast<splatting::ScalarType>(type), f);
   }
+}
+
+/// Modes standard and high, with the kernels that matter.
+struct Mode
+{
+  splatting::Quality quality;
+  splatting::Kernel kernel;
+  reference::Kernel reference;
+};
+
+inline std::vector<Mode> modes()
+{
+  using splatting::Quality;
+  using splatting::Reconstruction;
+  return { { Quality::Standard, {}, { reference::Kernel::Nearest, 1.0 } },
+    { Quality::High, { Reconstruction::Hat, 1.0 }, { reference::Kernel::Trilinear, 1.0 } },
+    { Quality::High, { Reconstruction::CosineBell, 1.0 }, { reference::Kernel::CosineBell, 1.0 } },
+    { Quality::High, { Reconstruction::CosineBell, 0.6 }, { reference::Kernel::CosineBell, 0.6 } },
+    { Quality::High, { Reconstruction::CosineBell, 1.5 },
+      { reference::Kernel::CosineBell, 1.5 } } };
+}
+
+inline splatting::ProjectionSettings settingsOf(const Mode& mode)
+{
+  splatting::ProjectionSettings settings;
+  settings.quality = mode.quality;
+  settings.kernel = mode.kernel;
+  return settings;
 }
 
 /**
@@ -235,6 +360,53 @@ double errorBound(splatting::Quality quality, double low, double high)
   return std::is_same_v<splatting::Accumulator<T>, float>
     ? n * 0x1p-24 * range + (n + 1) * 0x1p-24 * largest
     : n * 0x1p-48 * range + (n + 1) * 0x1p-53 * largest;
+}
+
+/**
+ * The same for perspective views and the reference's averages of parts.
+ *
+ * A column's weight of a voxel is a second difference of the kernel integrated twice, divided by
+ * w s, w being the distance of rays and s the way that they go in a part: four numbers below 6,
+ * known to 8 roundings (those of bells to 2^-44 as well), for 5 voxels, and as much again as they
+ * are divided by their sum, which of narrow bells is least between two voxels. Where s or w is next
+ * to nothing, 1e-6 or 1e-3 stand in for it. Rows have the same. Then the weights' three factors, at
+ * most 5 products and 45 sums of them are rounded to the accumulator.
+ */
+template <class T>
+double perspectiveErrorBound(
+  const reference::PerspectiveRays& rays, const reference::Kernel& kernel, double low, double high)
+{
+  const bool isBell = kernel.shape == reference::Kernel::CosineBell;
+  const double number = 8.0 * 6.0 * 0x1p-53 + (isBell ? 0x1p-44 : 0.0);
+  const double least = isBell ? std::min(2.0 * kernel(0.5), 1.0) : 1.0;
+  const int parts = reference::partsPerSlice(rays, kernel);
+  double weights[2] = { 0.0, 0.0 };
+  for (int k = 0; k < rays.size[2]; ++k)
+  {
+    const auto faces = rays.faces(k, k);
+    const double thickness = (faces[1] - faces[0]) / parts;
+    for (int a = 0; rays.sees(k) && a < 2; ++a)
+    {
+      // The narrowest part is next to the eye.
+      const double w = std::min(
+        rays.spacing(faces[0] + 0.5 * thickness), rays.spacing(faces[1] - 0.5 * thickness));
+      for (double slope : rays.slope[a])
+      {
+        if (slope == 0.0)
+        {
+          continue; // no ray, see ShearWarp::rayCount()
+        }
+        const double s = std::abs(slope) * thickness;
+        const double off =
+          2.0 * 5.0 * 4.0 * number / (least * std::max(w, 1e-3) * std::max(s, 1e-6)) +
+          (s < 1e-6 ? 1e-6 / w : 0.0) + (w < 1e-3 ? 1.0 : 0.0);
+        weights[a] = std::max(weights[a], off);
+      }
+    }
+  }
+  const double rounding = std::is_same_v<splatting::Accumulator<T>, float> ? 0x1p-24 : 0x1p-53;
+  return (weights[0] + weights[1]) * (high - low) +
+    (3 + 5 + 45) * rounding * std::max(std::abs(low), std::abs(high));
 }
 }
 

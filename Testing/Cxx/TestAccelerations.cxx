@@ -102,14 +102,11 @@ Result projected(const reference::Volume<T>& volume, const splatting::ShearWarp&
   return result;
 }
 
-bool sameImages(const splatting::ShearImage& a, const splatting::ShearImage& b)
+Acceleration linesLike(int n)
 {
-  return splatting::dispatch(a.type,
-    [&](auto* null)
-    {
-      using P = std::remove_pointer_t<decltype(null)>;
-      return a.type == b.type && sameBits(toReference<P>(a), toReference<P>(b));
-    });
+  const Acceleration all[] = { Acceleration::Lines, Acceleration::SortedLines,
+    Acceleration::SortedVolume };
+  return all[n % 3];
 }
 
 template <class T>
@@ -120,13 +117,21 @@ void testBricks(Checks& check, std::uint64_t seed)
   for (int n = 0; n < 120; ++n)
   {
     const reference::Volume<T> volume = spottedVolume<T>(random);
-    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    const splatting::ShearWarp geometry = n % 3 ? splatting::ShearWarp(anyView(volume.size, random))
+                                                : randomPerspectiveImage(volume.size, random);
     const Case c = randomCase(random, volume.size);
     const Result dense = projected(volume, geometry, c, Acceleration::Dense);
     const Result bricks = projected(volume, geometry, c, Acceleration::Bricks);
     check(bricks.used == Acceleration::Bricks, "bricks were not used");
     check(sameImages(dense.image, bricks.image), "type ", int(splatting::scalarTypeOf<T>()),
       ", view ", n, ", mode ", int(c.settings.quality), ": bricks change the picture");
+    if (geometry.isPerspective())
+    {
+      const Result lines = projected(volume, geometry, c, linesLike(n / 3));
+      check(lines.used == Acceleration::Bricks && sameImages(dense.image, lines.image), "type ",
+        int(splatting::scalarTypeOf<T>()), ", view ", n, ", mode ", int(c.settings.quality),
+        ": lines are not bricks in perspective");
+    }
     least = std::min(least, bricks.share);
   }
   check(least < 0.5, "bricks leave nothing out: the test sees nothing");
@@ -170,8 +175,12 @@ void testBudget(Checks& check, std::uint64_t seed)
   {
     reference::Volume<T> volume = wholeRangeNoise<T>(
       { random.uniform(1, 90), random.uniform(1, 20), random.uniform(1, 20) }, random.bits());
-    const splatting::ShearWarp geometry(
+    splatting::ShearWarp geometry(
       viewWithShear(volume.size, 0, random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)));
+    while (n % 4 == 0 && (geometry.principalAxis() != 0 || !geometry.isPerspective()))
+    {
+      geometry = randomPerspectiveImage(volume.size, random);
+    }
     Case c = randomCase(random, volume.size);
     const Result rich = projected(volume, geometry, c, Acceleration::Dense);
     c.budget = 0;
@@ -195,13 +204,15 @@ void testFloor(Checks& check, std::uint64_t seed)
   for (int n = 0; n < 30; ++n)
   {
     const reference::Volume<T> volume = spottedVolume<T>(random);
-    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    const splatting::ShearWarp geometry = n % 3 ? splatting::ShearWarp(anyView(volume.size, random))
+                                                : randomPerspectiveImage(volume.size, random);
     Case c = randomCase(random, volume.size);
     const Result plain = projected(volume, geometry, c, Acceleration::Dense);
     T value = volume.voxels[random.uniform(0, int(volume.voxels.size()) - 1)];
-    if (std::numeric_limits<T>::is_integer && sizeof(T) == 8)
+    if constexpr (std::numeric_limits<T>::is_integer && sizeof(T) == 8)
     {
-      value = value / 4096 * 4096; // a double holds it
+      // A double holds it, and it is not above all voxels, which no pixel would be.
+      value = value & ~T(4095);
     }
     c.settings.floor = static_cast<double>(value);
     const Result raised = projected(volume, geometry, c, Acceleration::Bricks);
@@ -217,7 +228,10 @@ void testFloor(Checks& check, std::uint64_t seed)
             expected.value[p] = std::max(expected.value[p], static_cast<P>(value));
           }
         }
-        check(sameBits(expected, toReference<P>(raised.image)), "the floor does more or less");
+        check(sameBits(expected, toReference<P>(raised.image)), "type ",
+          int(splatting::scalarTypeOf<T>()), ", view ", n, ", mode ", int(c.settings.quality),
+          ", axis ", geometry.principalAxis(), geometry.isPerspective() ? " in perspective" : "",
+          ": the floor does more or less");
       });
   }
 }

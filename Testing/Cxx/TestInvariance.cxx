@@ -17,20 +17,17 @@ namespace
 {
 const Quality qualities[] = { Quality::Preview, Quality::Standard, Quality::High };
 
-bool sameImage(const splatting::ShearImage& a, const splatting::ShearImage& b)
-{
-  return a.type == b.type && a.width == b.width && a.height == b.height && a.bytes == b.bytes;
-}
-
 /// One and five threads of each backend that VTK has; each instruction set.
 template <class T>
-void testThreadsAndInstructionSets(Checks& check, std::uint64_t seed)
+void testThreadsAndInstructionSets(Checks& check, bool perspective, std::uint64_t seed)
 {
   reference::Random random(seed);
   const auto volume = wholeRangeNoise<T>({ 83, 61, 47 }, seed);
   for (Quality quality : qualities)
   {
-    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    const splatting::ShearWarp geometry = perspective
+      ? randomPerspectiveImage(volume.size, random)
+      : splatting::ShearWarp(anyView(volume.size, random));
     splatting::ProjectionSettings settings;
     settings.quality = quality;
     const splatting::ShearImage expected = project(volume, geometry, settings);
@@ -47,7 +44,7 @@ void testThreadsAndInstructionSets(Checks& check, std::uint64_t seed)
         vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
           [&]
           {
-            check(sameImage(project(volume, geometry, settings), expected), backend, " with ",
+            check(sameImages(project(volume, geometry, settings), expected), backend, " with ",
               threads, " threads gives other bits, mode ", int(quality));
           });
       }
@@ -57,45 +54,10 @@ void testThreadsAndInstructionSets(Checks& check, std::uint64_t seed)
            splatting::InstructionSet::AVX512 })
     {
       settings.instructionSet = set;
-      check(sameImage(project(volume, geometry, settings), expected), splatting::nameOf(set),
+      check(sameImages(project(volume, geometry, settings), expected), splatting::nameOf(set),
         " gives other bits, mode ", int(quality), ", type ", int(splatting::scalarTypeOf<T>()));
     }
   }
-}
-
-/// The view of a volume whose axes were permuted and reversed, so that it looks the same.
-splatting::View transformedView(
-  const splatting::View& view, const reference::AxisSymmetry& symmetry)
-{
-  splatting::View result = view;
-  glm::dvec4 last = view.indexToClip[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    const int source = symmetry.axis[a];
-    result.dimensions[a] = view.dimensions[source];
-    result.indexToClip[a] = view.indexToClip[source] * double(symmetry.sign[a]);
-    if (symmetry.sign[a] < 0)
-    {
-      last += view.indexToClip[source] * double(view.dimensions[source] - 1);
-    }
-  }
-  result.indexToClip[3] = last;
-  return result;
-}
-
-template <class P>
-double largestDifference(const reference::Image<P>& a, const reference::Image<P>& b)
-{
-  if (a.width != b.width || a.height != b.height || a.hit != b.hit)
-  {
-    return 1e30;
-  }
-  double largest = 0.0;
-  for (std::size_t p = 0; p < a.value.size(); ++p)
-  {
-    largest = std::max(largest, std::abs(double(a.value[p]) - double(b.value[p])));
-  }
-  return largest;
 }
 
 template <class T>
@@ -133,6 +95,134 @@ void testSymmetries(Checks& check, std::uint64_t seed)
           int(quality), " by ", difference);
       }
     }
+  }
+}
+
+/// Where a ray of one image is in the other one, whose axis a has been axis `source` in the first.
+/// Rays that only one of them has are left out.
+struct MirroredRays
+{
+  std::array<std::vector<int>, 2> pixels; ///< of the other image's columns and rows, or -1
+  bool transposed = false;
+
+  MirroredRays(const splatting::ShearWarp& image, const splatting::ShearWarp& other,
+    const reference::AxisSymmetry& symmetry)
+  {
+    const reference::PerspectiveRays from = referenceRays(image), to = referenceRays(other);
+    const int along = symmetry.sign[to.axes[2]];
+    this->transposed = symmetry.axis[to.axes[0]] != from.axes[0];
+    for (int a = 0; a < 2; ++a)
+    {
+      const int b = this->transposed ? 1 - a : a; // what has become of it
+      const int sign = symmetry.sign[to.axes[b]];
+      const double last = from.size[a] - 1;
+      for (int n = 0; n < int(from.at[a].size()); ++n)
+      {
+        const double at = sign > 0 ? from.at[a][n] : last - from.at[a][n];
+        int found = -1;
+        for (int m = 0; m < int(to.at[b].size()); ++m)
+        {
+          found =
+            to.at[b][m] == at && to.slope[b][m] == sign * along * from.slope[a][n] ? m : found;
+        }
+        this->pixels[a].push_back(found);
+      }
+    }
+  }
+};
+
+/// Pixels that both images have, and by how much they differ.
+struct Comparison
+{
+  int common = 0, all = 0;
+  double difference = 0.0;
+};
+
+template <class P>
+void compare(const splatting::ShearImage& left, const splatting::ShearImage& right,
+  const MirroredRays& rays, Comparison& result)
+{
+  const auto plain = toReference<P>(left), other = toReference<P>(right);
+  for (int v = 0; v < plain.height; ++v)
+  {
+    for (int u = 0; u < plain.width; ++u)
+    {
+      const int x = rays.pixels[0][u], y = rays.pixels[1][v];
+      result.all += plain.isHit(u, v);
+      if (x >= 0 && y >= 0)
+      {
+        const int p = rays.transposed ? y : x, q = rays.transposed ? x : y;
+        const double difference = std::abs(double(plain.at(u, v)) - double(other.at(p, q)));
+        result.common += plain.isHit(u, v);
+        result.difference = std::max(result.difference,
+          plain.isHit(u, v) == other.isHit(p, q) ? difference
+                                                 : std::numeric_limits<double>::infinity());
+      }
+    }
+  }
+}
+
+template <class T>
+void testPerspectiveSymmetries(Checks& check, std::uint64_t seed)
+{
+  using A = splatting::Accumulator<T>;
+  reference::Random random(seed);
+  const auto volume = reference::uniformNoise<T>({ 13, 9, 11 }, seed, T(0), T(100));
+  std::vector<splatting::ShearWarp> images, others;
+  Comparison pictures[3];
+  for (const reference::AxisSymmetry& symmetry : reference::allAxisSymmetries())
+  {
+    const splatting::View view = randomPerspective(volume.size, random);
+    const auto mirrored = reference::transformed(volume, symmetry);
+    splatting::ShearWarp::factorise(view, images);
+    splatting::ShearWarp::factorise(transformedView(view, symmetry), others);
+    check(images.size() == others.size(), "a symmetry changes the number of images");
+    for (const splatting::ShearWarp& image : images)
+    {
+      for (const splatting::ShearWarp& other : others)
+      {
+        const int axis = other.principalAxis();
+        const bool turned = symmetry.sign[axis] < 0;
+        if (symmetry.axis[axis] != image.principalAxis() ||
+          (image.reversed() != turned) != other.reversed())
+        {
+          continue;
+        }
+        const MirroredRays rays(image, other, symmetry);
+        for (Quality quality : qualities)
+        {
+          splatting::ProjectionSettings settings;
+          settings.quality = quality;
+          const splatting::ShearImage plain = project(volume, image, settings);
+          const splatting::ShearImage turnedPlain = project(mirrored, other, settings);
+          Comparison result;
+          double bound = 0.0;
+          if (quality == Quality::Preview)
+          {
+            compare<T>(plain, turnedPlain, rays, result);
+          }
+          else
+          {
+            compare<A>(plain, turnedPlain, rays, result);
+            bound = 2.0 *
+              perspectiveErrorBound<T>(referenceRays(image),
+                { quality == Quality::Standard ? reference::Kernel::Nearest
+                                               : reference::Kernel::Trilinear,
+                  1.0 },
+                0.0, 100.0);
+          }
+          check(result.difference <= bound, "a symmetry changes mode ", int(quality), " by ",
+            result.difference, ", not ", bound, ", axis ", image.principalAxis());
+          pictures[int(quality)].common += result.common;
+          pictures[int(quality)].all += result.all;
+        }
+      }
+    }
+  }
+  for (const Comparison& picture : pictures)
+  {
+    check(picture.common > 1000 && picture.common > 0.95 * picture.all, "only ", picture.common,
+      " pixels of ", picture.all, " have a mirror image");
   }
 }
 
@@ -194,12 +284,20 @@ int TestInvariance(int, char*[])
 {
   Checks check;
   std::uint64_t seed = 60;
-  forEachType([&](auto* null)
-    { testThreadsAndInstructionSets<std::remove_pointer_t<decltype(null)>>(check, ++seed); });
+  forEachType(
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      testThreadsAndInstructionSets<T>(check, false, ++seed);
+      testThreadsAndInstructionSets<T>(check, true, seed);
+    });
   testSymmetries<std::uint8_t>(check, 1);
   testSymmetries<std::int16_t>(check, 2);
   testSymmetries<float>(check, 3);
   testSymmetries<double>(check, 4);
+  testPerspectiveSymmetries<std::uint8_t>(check, 5);
+  testPerspectiveSymmetries<std::int32_t>(check, 6);
+  testPerspectiveSymmetries<float>(check, 7);
   testMonotoneMap(check);
   testAffineMap(check);
   return check.result();

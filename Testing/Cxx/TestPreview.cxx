@@ -5,40 +5,17 @@
 // 2500 views, half of them through edges and corners of voxels.
 #include "CoreTesting.h"
 
-#include <limits>
-
 using namespace coretesting;
 
 namespace
 {
-template <class T>
-reference::Volume<T> randomVolume(reference::Random& random)
-{
-  reference::Volume<T> volume = wholeRangeNoise<T>(randomSize(random, 12), random.bits());
-  if constexpr (std::numeric_limits<T>::has_infinity)
-  {
-    // One volume in three has NaN and infinities, some of them mostly NaN.
-    const int share = random.uniform(0, 2) == 0 ? random.uniform(1, 9) : 0;
-    for (T& voxel : volume.voxels)
-    {
-      if (random.uniform(0, 9) < share)
-      {
-        const T odd[] = { std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::quiet_NaN(),
-          std::numeric_limits<T>::infinity(), -std::numeric_limits<T>::infinity() };
-        voxel = odd[random.uniform(0, 3)];
-      }
-    }
-  }
-  return volume;
-}
-
 template <class T>
 void testViews(Checks& check, int views, std::uint64_t seed)
 {
   reference::Random random(seed);
   for (int n = 0; n < views; ++n)
   {
-    const reference::Volume<T> volume = randomVolume<T>(random);
+    const reference::Volume<T> volume = volumeWithOddValues<T>(randomSize(random, 12), random);
     const splatting::ShearWarp geometry(anyView(volume.size, random));
     splatting::ProjectionSettings settings;
     settings.quality = splatting::Quality::Preview;

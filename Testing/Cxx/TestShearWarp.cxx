@@ -181,6 +181,53 @@ void testRayPaths(Checks& check, reference::Random& random)
   }
 }
 
+/// Rays cross the voxels that they should, of the slices before the eye.
+void testPerspectiveRayPaths(Checks& check, reference::Random& random)
+{
+  std::vector<splatting::ShearWarp> images;
+  std::size_t crossed = 0;
+  for (int n = 0; n < 2000; ++n)
+  {
+    const auto size = randomSize(random, 20);
+    splatting::ShearWarp::factorise(randomPerspective(size, random), images);
+    for (const splatting::ShearWarp& image : images)
+    {
+      const reference::PerspectiveRays rays = referenceRays(image);
+      const int u = random.uniform(0, image.rayCount().x - 1);
+      const int v = random.uniform(0, image.rayCount().y - 1);
+      std::vector<glm::ivec3> found, expected;
+      for (int k = 0; k < image.size().z; ++k)
+      {
+        const bool seen = k >= image.slices().begin && k < image.slices().end;
+        check(seen == rays.sees(k), "slice ", k, " is not before the eye, or is");
+        if (seen)
+        {
+          const auto faces = rays.faces(k, k);
+          check(image.faces(k) == glm::dvec2(faces[0], faces[1]), "other faces of slice ", k);
+          const splatting::RayPath path = image.voxelsOnRay(u, v, k);
+          for (int t = 0; t < path.count; ++t)
+          {
+            const glm::ivec3 voxel(path.di[t], path.dj[t], k);
+            if (glm::clamp(voxel, glm::ivec3(0), image.size() - 1) == voxel)
+            {
+              found.push_back(voxel);
+            }
+          }
+        }
+      }
+      for (const std::array<int, 3>& p : reference::crossedVoxels(rays, u, v))
+      {
+        expected.emplace_back(p[rays.axes[0]], p[rays.axes[1]], p[rays.axes[2]]);
+      }
+      crossed += expected.size();
+      check(expected == found, "pixel ", u, " ", v, " of view ", n, ", axis ",
+        image.principalAxis(), image.reversed() ? " reversed" : "",
+        ": the path differs from the traversal: ", found.size(), " voxels, not ", expected.size());
+    }
+  }
+  check(crossed > 10000, "rays cross only ", crossed, " voxels");
+}
+
 void testSymmetricViewsAreExact(Checks& check)
 {
   // A camera on a symmetry plane: rounding errors in its matrix must not leave traces.
@@ -219,6 +266,7 @@ int TestShearWarp(int, char*[])
   testShearThenWarpIsTheView(check, random);
   testPerspectiveShearThenWarpIsTheView(check, random);
   testRayPaths(check, random);
+  testPerspectiveRayPaths(check, random);
   testSymmetricViewsAreExact(check);
   testDegenerateViews(check);
   return check.result();

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// One mapper in several viewports, renderers and windows, beside other props, and at the rim of the
-// view.
+// One mapper, by itself and in the place of VTK's GPU mapper, in several viewports, renderers and
+// windows, beside other props, and at the rim of the view.
 #include "Stage.h"
 
+#include "vtkSplattingMIPGPUVolumeRayCastMapper.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include "vtkActor.h"
@@ -248,15 +249,21 @@ int TestViewports(int, char*[])
 {
   stage::Checks check;
   const auto image = blobs();
-  const auto mapper = stage::splatting(image);
+  vtkNew<vtkSplattingMIPGPUVolumeRayCastMapper> override;
+  override->SetInputData(image);
+  override->SetBlendModeToMaximumIntensity();
   // X servers may restart when their last client leaves, so one window stays throughout.
   stage::Stage keeper(10, 10);
   keeper.window->Render();
-  testTwoViewports(mapper, check);
-  testTwoWindows(mapper, check);
-  testReleasedWindow(mapper, check);
-  testGeometryBehind(mapper, image, check);
-  testPartlyOutside(mapper, check);
-  testOutside(mapper, check);
+  const auto splatting = stage::splatting(image);
+  for (vtkVolumeMapper* mapper : std::initializer_list<vtkVolumeMapper*>{ splatting, override })
+  {
+    testTwoViewports(mapper, check);
+    testTwoWindows(mapper, check);
+    testReleasedWindow(mapper, check);
+    testGeometryBehind(mapper, image, check);
+    testPartlyOutside(mapper, check);
+    testOutside(mapper, check);
+  }
   return check.exitCode();
 }

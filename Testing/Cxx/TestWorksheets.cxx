@@ -14,32 +14,6 @@ using splatting::Quality;
 
 namespace
 {
-struct Mode
-{
-  Quality quality;
-  splatting::Kernel kernel;
-  reference::Kernel reference;
-};
-
-std::vector<Mode> modes()
-{
-  using splatting::Reconstruction;
-  return { { Quality::Standard, {}, { reference::Kernel::Nearest, 1.0 } },
-    { Quality::High, { Reconstruction::Hat, 1.0 }, { reference::Kernel::Trilinear, 1.0 } },
-    { Quality::High, { Reconstruction::CosineBell, 1.0 }, { reference::Kernel::CosineBell, 1.0 } },
-    { Quality::High, { Reconstruction::CosineBell, 0.6 }, { reference::Kernel::CosineBell, 0.6 } },
-    { Quality::High, { Reconstruction::CosineBell, 1.5 },
-      { reference::Kernel::CosineBell, 1.5 } } };
-}
-
-splatting::ProjectionSettings settingsOf(const Mode& mode)
-{
-  splatting::ProjectionSettings settings;
-  settings.quality = mode.quality;
-  settings.kernel = mode.kernel;
-  return settings;
-}
-
 /// The largest error, relative to the bound; infinity where one image has a sample and one not.
 template <class T>
 double largestError(const reference::Volume<T>& volume, const splatting::ShearWarp& geometry,

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Projection.h"
 
+#include "Integration.h"
+#include "Traversal.h"
+
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 
@@ -17,216 +19,20 @@ namespace
 constexpr double Pi = 3.14159265358979323846;
 
 //------------------------------------------------------------------------------
-// Exact traversal: positions are integers in units of 2^-25 voxel. Shears are multiples of 2^-24,
-// and depths measured from the middle of the volume multiples of 1/2.
-
-constexpr std::int64_t Half = std::int64_t(1) << 24; // half a voxel
-constexpr std::int64_t Whole = 2 * Half;
-
-__extension__ typedef __int128 Wide;
-
-/**
- * The time num / den, or never for den = 0. Time runs from 0 where the ray enters the first slice
- * at z = -1/2 to n_k where it leaves the last: one per slice.
- */
-struct Time
-{
-  std::int64_t num;
-  std::int64_t den;
-};
-
-bool isBefore(const Time& a, const Time& b)
-{
-  if (a.den == 0 || b.den == 0)
-  {
-    return a.den != 0;
-  }
-  return static_cast<Wide>(a.num) * b.den < static_cast<Wide>(b.num) * a.den;
-}
-
-std::int64_t floorDivide(std::int64_t a, std::int64_t b)
-{
-  return a >= 0 ? a / b : -((-a + b - 1) / b);
-}
-
-/**
- * The ray's motion along one axis.
- */
-struct AxisMotion
-{
-  std::int64_t start;    // position at time 0
-  std::int64_t velocity; // change of position per slice
-  std::int64_t cell;     // the voxel index at present
-
-  AxisMotion(std::int64_t position, std::int64_t change)
-    : start(position),
-      velocity(change),
-      cell(floorDivide(position + Half, Whole))
-  {
-    // A ray that starts on a face and moves down leaves the upper cell at once.
-    if (change < 0 && (position + Half) % Whole == 0)
-    {
-      --this->cell;
-    }
-  }
-
-  Time nextCrossing() const
-  {
-    const std::int64_t face = this->cell * Whole + (this->velocity > 0 ? Half : -Half);
-    return { std::llabs(face - this->start), std::llabs(this->velocity) };
-  }
-
-  void step() { this->cell += this->velocity > 0 ? 1 : -1; }
-};
-
-std::int64_t shearAsInteger(double shear)
-{
-  return static_cast<std::int64_t>(shear * 0x1p24);
-}
+// Exact traversal. Time is depth, from 0 where the ray enters the first slice at z = -1/2 to n_k
+// where it leaves the last. Shears are multiples of 2^-24.
 
 /**
  * x(z) = pixel - margin - s (z - kc), where z - kc = -n_k / 2 at the start.
  */
 AxisMotion inSliceMotion(int pixel, int margin, double shear, int slices)
 {
-  const std::int64_t s = shearAsInteger(shear);
-  return { (pixel - margin) * Whole + s * slices, -2 * s };
+  const std::int64_t s = inUnits(shear);
+  return { (pixel - margin) * WholeVoxel + s / 2 * slices, -s };
 }
-
-//------------------------------------------------------------------------------
-// Numerical integration
-
-struct Node
-{
-  double position;
-  double weight;
-};
-
-struct Legendre
-{
-  double value;
-  double derivative;
-};
-
-Legendre legendrePolynomial(int degree, double x)
-{
-  double previous = 1.0;
-  double value = x;
-  for (int n = 2; n <= degree; ++n)
-  {
-    const double next = ((2 * n - 1) * x * value - (n - 1) * previous) / n;
-    previous = value;
-    value = next;
-  }
-  return { value, degree * (x * value - previous) / (x * x - 1.0) };
-}
-
-/**
- * The Gauss-Legendre rule on [-1, 1], its nodes by Newton's method.
- */
-std::vector<Node> gaussLegendre(int count)
-{
-  std::vector<Node> rule;
-  for (int n = 0; n < count; ++n)
-  {
-    double x = std::cos(Pi * (n + 0.75) / (count + 0.5));
-    for (int iteration = 0; iteration < 10; ++iteration)
-    {
-      const Legendre p = legendrePolynomial(count, x);
-      x -= p.value / p.derivative;
-    }
-    const double slope = legendrePolynomial(count, x).derivative;
-    rule.push_back({ x, 2.0 / ((1.0 - x * x) * slope * slope) });
-  }
-  return rule;
-}
-
-/**
- * The rule applied to each piece of [low, high] between kinks (in any order, inside or not).
- */
-std::vector<Node> compositeRule(
-  const std::vector<Node>& rule, double low, double high, std::vector<double> kinks)
-{
-  kinks.push_back(high);
-  std::sort(kinks.begin(), kinks.end());
-  std::vector<Node> nodes;
-  double begin = low;
-  for (double end : kinks)
-  {
-    if (end > begin && end <= high)
-    {
-      for (const Node& node : rule)
-      {
-        nodes.push_back({ 0.5 * (begin + end) + 0.5 * (end - begin) * node.position,
-          0.5 * (end - begin) * node.weight });
-      }
-      begin = end;
-    }
-  }
-  return nodes;
-}
-
-/**
- * A weighted sum of voxels and the sum of the weights.
- */
-struct WeightedSum
-{
-  double sum = 0.0;
-  double weight = 0.0;
-
-  // The weight 0 is left out as 0 times infinity is NaN.
-  void addVoxel(double factor, double voxel)
-  {
-    if (factor > 0.0 && !std::isnan(voxel))
-    {
-      this->sum += factor * voxel;
-      this->weight += factor;
-    }
-  }
-  void add(double factor, const WeightedSum& other)
-  {
-    if (factor > 0.0)
-    {
-      this->sum += factor * other.sum;
-      this->weight += factor * other.weight;
-    }
-  }
-};
 
 //------------------------------------------------------------------------------
 // The interpolated volume
-
-/**
- * The indices from first on whose kernels reach into some interval.
- */
-struct IndexRange
-{
-  int first;
-  int count;
-};
-
-IndexRange reachingIndices(const Kernel& kernel, double low, double high)
-{
-  const int first = static_cast<int>(std::ceil(low - kernel.support()));
-  const int last = static_cast<int>(std::floor(high + kernel.support()));
-  return { first, last - first + 1 };
-}
-
-/**
- * Where the field may have a kink or a step along one axis: where a voxel's kernel ends. (The hat's
- * kink at its own voxel is the end of the next voxel's.)
- */
-std::vector<double> fieldKinks(const Kernel& kernel, double low, double high)
-{
-  const IndexRange range = reachingIndices(kernel, low, high);
-  std::vector<double> kinks;
-  for (int index = range.first; index < range.first + range.count; ++index)
-  {
-    kinks.push_back(index - kernel.support());
-    kinks.push_back(index + kernel.support());
-  }
-  return kinks;
-}
 
 /**
  * The volume seen along the principal axis, continued by its outermost voxels.
@@ -501,33 +307,16 @@ std::vector<std::array<int, 3>> crossedVoxels(
   const std::array<int, 3>& volumeSize, const ShearView& view, int u, int v)
 {
   const ShearGrid grid = makeShearGrid(volumeSize, view);
-  std::array<AxisMotion, 3> motion = {
-    inSliceMotion(u, grid.margin[0], view.shear[0], grid.size[2]),
-    inSliceMotion(v, grid.margin[1], view.shear[1], grid.size[2]),
-    AxisMotion(-Half, Whole),
-  };
+  const std::array<AxisMotion, 3> ray = { inSliceMotion(
+                                            u, grid.margin[0], view.shear[0], grid.size[2]),
+    inSliceMotion(v, grid.margin[1], view.shear[1], grid.size[2]), { -HalfVoxel, WholeVoxel } };
   std::vector<std::array<int, 3>> crossed;
-  while (motion[2].cell < grid.size[2])
+  for (const std::array<int, 3>& ijk : traverse(ray, grid.size[2], grid.size))
   {
-    std::array<int, 3> position;
-    bool isWithin = true;
-    Time next = { 0, 0 };
+    std::array<int, 3>& position = crossed.emplace_back();
     for (int a = 0; a < 3; ++a)
     {
-      position[grid.axes[a]] = static_cast<int>(motion[a].cell);
-      isWithin = isWithin && motion[a].cell >= 0 && motion[a].cell < grid.size[a];
-      next = isBefore(motion[a].nextCrossing(), next) ? motion[a].nextCrossing() : next;
-    }
-    if (isWithin)
-    {
-      crossed.push_back(position);
-    }
-    for (AxisMotion& axis : motion)
-    {
-      if (!isBefore(next, axis.nextCrossing()))
-      {
-        axis.step();
-      }
+      position[grid.axes[a]] = ijk[a];
     }
   }
   return crossed;

@@ -97,13 +97,8 @@ ShearGrid makeShearGrid(const std::array<int, 3>& volumeSize, const ShearView& v
 
 /**
  * The voxels that the ray of pixel (u,v) crosses, in the order of ascending depth, as positions in
- * the volume. Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987, in
- * exact integer arithmetic.
- *
- * Ties: a voxel counts if and only if the ray crosses it over a positive length. Where a ray meets
- * several faces at once it steps along all those axes together. No ray lies within a face: the
- * position along an axis with shear 0 is u - m, an integer, and faces are half-way between
- * integers.
+ * the volume, by traverse() in Traversal.h. No ray lies within a face: the position along an axis
+ * with shear 0 is u - m, an integer, and faces are half-way between integers.
  */
 std::vector<std::array<int, 3>> crossedVoxels(
   const std::array<int, 3>& volumeSize, const ShearView& view, int u, int v);

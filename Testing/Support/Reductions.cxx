@@ -27,24 +27,46 @@ struct Integers
   {
   }
 };
+
+/**
+ * The rays of a parallel view as if they came from an eye.
+ */
+PerspectiveRays raysOf(const ShearGrid& grid, const ShearView& view)
+{
+  PerspectiveRays rays;
+  rays.axes = grid.axes;
+  rays.size = grid.size;
+  rays.start = grid.middle;
+  rays.eye = -std::numeric_limits<double>::infinity();
+  const int pixels[2] = { grid.width, grid.height };
+  for (int a = 0; a < 2; ++a)
+  {
+    for (int pixel = 0; pixel < pixels[a]; ++pixel)
+    {
+      rays.at[a].push_back(pixel - grid.margin[a]);
+      rays.slope[a].push_back(-view.shear[a]);
+    }
+  }
+  return rays;
+}
 } // namespace
 
 //------------------------------------------------------------------------------
 RayCutter::RayCutter(const ShearGrid& grid, const ShearView& view, const RayCuts& cuts)
-  : Grid(grid),
-    View(view),
-    Cuts(cuts)
+  : RayCutter(raysOf(grid, view), cuts)
 {
 }
+
+//------------------------------------------------------------------------------
+RayCutter::RayCutter(const PerspectiveRays& rays, const RayCuts& cuts) : Rays(rays), Cuts(cuts) {}
 
 //------------------------------------------------------------------------------
 std::array<double, 3> RayCutter::pointOfRay(int u, int v, double z) const
 {
   std::array<double, 3> point;
-  const double depth = z - this->Grid.middle;
-  point[this->Grid.axes[0]] = u - this->Grid.margin[0] - this->View.shear[0] * depth;
-  point[this->Grid.axes[1]] = v - this->Grid.margin[1] - this->View.shear[1] * depth;
-  point[this->Grid.axes[2]] = z;
+  point[this->Rays.axes[0]] = this->Rays.position(0, u, z);
+  point[this->Rays.axes[1]] = this->Rays.position(1, v, z);
+  point[this->Rays.axes[2]] = z;
   return point;
 }
 
@@ -56,17 +78,18 @@ RayCutter::Line RayCutter::alongRay(const std::array<double, 4>& halfSpace, int 
     const std::array<double, 3> p = this->pointOfRay(u, v, z);
     return halfSpace[0] * p[0] + halfSpace[1] * p[1] + halfSpace[2] * p[2] + halfSpace[3];
   };
-  const double slope = halfSpace[this->Grid.axes[2]] -
-    halfSpace[this->Grid.axes[0]] * this->View.shear[0] -
-    halfSpace[this->Grid.axes[1]] * this->View.shear[1];
+  const double slope = halfSpace[this->Rays.axes[2]] +
+    halfSpace[this->Rays.axes[0]] * this->Rays.slope[0][u] +
+    halfSpace[this->Rays.axes[1]] * this->Rays.slope[1][v];
   return { at(0.0), slope };
 }
 
 //------------------------------------------------------------------------------
 bool RayCutter::inHalfSpaces(int u, int v, int slice) const
 {
-  double near = -std::numeric_limits<double>::infinity();
-  double far = std::numeric_limits<double>::infinity();
+  const double infinity = std::numeric_limits<double>::infinity();
+  double near = this->Rays.reversed ? -infinity : this->Rays.eye;
+  double far = this->Rays.reversed ? this->Rays.eye : infinity;
   for (const std::array<double, 4>& halfSpace : this->Cuts.halfSpaces)
   {
     const Line line = this->alongRay(halfSpace, u, v);
@@ -93,7 +116,7 @@ int RayCutter::region(int axis, double position) const
   double low = this->Cuts.planes[axis][0], high = this->Cuts.planes[axis][1];
   low -= Rounding * (1.0 + std::abs(low));
   high += Rounding * (1.0 + std::abs(high));
-  if (axis == this->Grid.axes[2] && low <= high && !Integers(low, high).any)
+  if (axis == this->Rays.axes[2] && low <= high && !Integers(low, high).any)
   {
     low = high = Integers(low, high).nearest;
   }

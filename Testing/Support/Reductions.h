@@ -13,6 +13,7 @@
 #ifndef reference_Reductions_h
 #define reference_Reductions_h
 
+#include "PerspectiveProjection.h"
 #include "Projection.h"
 
 #include <array>
@@ -38,16 +39,17 @@ struct RayCuts
  * Which slices of a ray count: a slice's sample counts where the ray crosses the middle of the
  * slice inside the half-spaces and in a shown region.
  *
- * What is thinner than a slice takes one all the same. Where the half-spaces leave a ray an
- * interval of positive length that has no slice's middle, the slice nearest to the middle of the
- * interval counts. Where the middle region along the principal axis has no slice's middle, the
- * slice nearest to its middle is in it. Points within 1e-9 slices of a plane (relative to their
- * depth, or to the plane's position) are inside.
+ * What is thinner than a slice takes one all the same. Where the half-spaces leave a ray (which
+ * begins at the eye) an interval of positive length that has no slice's middle, the slice nearest
+ * to the middle of the interval counts. Where the middle region along the principal axis has no
+ * slice's middle, the slice nearest to its middle is in it. Points within 1e-9 slices of a plane
+ * (relative to their depth, or to the plane's position) are inside.
  */
 class RayCutter
 {
 public:
   RayCutter(const ShearGrid& grid, const ShearView& view, const RayCuts& cuts);
+  RayCutter(const PerspectiveRays& rays, const RayCuts& cuts);
 
   bool inHalfSpaces(int u, int v, int slice) const;
   bool inRegions(int u, int v, int slice) const;
@@ -63,8 +65,7 @@ private:
   std::array<double, 3> pointOfRay(int u, int v, double z) const;
   int region(int axis, double position) const;
 
-  const ShearGrid Grid;
-  const ShearView View;
+  const PerspectiveRays Rays; // or the like for parallel views
   const RayCuts Cuts;
 };
 

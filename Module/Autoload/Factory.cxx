@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Switches the override of vtkSplattingMIPGPUVolumeRayCastMapper on in programs that know nothing
+// of it, when VTK loads libraries from VTK_AUTOLOAD_PATH. The environment says what programs
+// otherwise say by calls:
+//
+// SPLATTINGMIP_QUALITY  preview, standard or high (the default)
+// SPLATTINGMIP_LOG      a file to which VTK's log of verbosity up to 1 is appended: which mapper
+//                       renders, beside all warnings and errors
+#include "vtkLogger.h"
+#include "vtkObjectFactory.h"
+#include "vtkSplattingMIPGPUVolumeRayCastMapper.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+#include "vtkVersion.h"
+
+#include <cstdlib>
+#include <string>
+
+namespace
+{
+/// VTK wants one of its own to register, last of all. By then this library has brought VTK's OpenGL
+/// classes with it, whose factory comes before; so the override has a factory that is put first.
+class EmptyFactory : public vtkObjectFactory
+{
+public:
+  static EmptyFactory* New();
+  vtkTypeMacro(EmptyFactory, vtkObjectFactory);
+  const char* GetVTKSourceVersion() override { return VTK_SOURCE_VERSION; }
+  const char* GetDescription() override { return "SplattingMIP for all programs"; }
+};
+vtkStandardNewMacro(EmptyFactory);
+
+std::string valueOf(const char* variable)
+{
+  const char* const value = std::getenv(variable);
+  return value ? value : "";
+}
+
+void setQuality(const std::string& quality)
+{
+  using Override = vtkSplattingMIPGPUVolumeRayCastMapper;
+  if (quality == "preview")
+  {
+    Override::SetGlobalQualityMode(vtkSplattingMIPVolumeMapper::PREVIEW);
+  }
+  else if (quality == "standard")
+  {
+    Override::SetGlobalQualityMode(vtkSplattingMIPVolumeMapper::STANDARD);
+  }
+  else if (!quality.empty() && quality != "high")
+  {
+    vtkGenericWarningMacro(<< "SPLATTINGMIP_QUALITY is \"" << quality
+                           << "\", which is taken as high: set it to preview, standard or high.");
+  }
+}
+}
+
+extern "C" VTK_ABI_EXPORT vtkObjectFactory* splattingmip_new_factory()
+{
+  const std::string file = valueOf("SPLATTINGMIP_LOG");
+  if (!file.empty())
+  {
+    vtkLogger::SetInternalVerbosityLevel(vtkLogger::VERBOSITY_1);
+    vtkLogger::LogToFile(file.c_str(), vtkLogger::APPEND, vtkLogger::VERBOSITY_1);
+  }
+  setQuality(valueOf("SPLATTINGMIP_QUALITY"));
+  vtkSplattingMIPGPUVolumeRayCastMapper::GlobalOverrideOn();
+  return EmptyFactory::New();
+}

@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSplattingMIPGPUVolumeRayCastMapper.h"
+
+#include "vtkOpenGLSplattingMIPVolumeMapper.h"
+
+#include "vtkCommand.h"
+#include "vtkDataSet.h"
+#include "vtkInformation.h"
+#include "vtkLogger.h"
+#include "vtkMultiVolume.h"
+#include "vtkObjectFactory.h"
+#include "vtkObjectFactoryCollection.h"
+#include "vtkOpenGLRenderPass.h"
+#include "vtkOutputWindow.h"
+#include "vtkShaderProperty.h"
+#include "vtkVersion.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+
+vtkStandardNewMacro(vtkSplattingMIPGPUVolumeRayCastMapper);
+
+namespace
+{
+const char* const Replaced = "vtkGPUVolumeRayCastMapper";
+const char* const Replacement = "vtkSplattingMIPGPUVolumeRayCastMapper";
+
+int globalQualityMode = vtkSplattingMIPVolumeMapper::HIGH;
+
+VTK_CREATE_CREATE_FUNCTION(vtkSplattingMIPGPUVolumeRayCastMapper);
+
+/// The factory that the module generates gives the mappers that a program asks for by name. This
+/// one takes the place of others, so that it is registered on request only.
+class OverrideFactory : public vtkObjectFactory
+{
+public:
+  static OverrideFactory* New();
+  vtkTypeMacro(OverrideFactory, vtkObjectFactory);
+  const char* GetVTKSourceVersion() override { return VTK_SOURCE_VERSION; }
+  const char* GetDescription() override { return "Splats intensity projections"; }
+
+protected:
+  OverrideFactory()
+  {
+    this->RegisterOverride(Replaced, Replacement, this->GetDescription(), 1,
+      vtkObjectFactoryCreatevtkSplattingMIPGPUVolumeRayCastMapper);
+  }
+};
+vtkStandardNewMacro(OverrideFactory);
+
+bool hasCode(vtkShaderProperty* shader)
+{
+  return shader &&
+    (shader->HasVertexShaderCode() || shader->HasFragmentShaderCode() ||
+      shader->HasGeometryShaderCode() || shader->GetNumberOfShaderReplacements() > 0);
+}
+
+/// The first of all registered factories that can give the replacement, or nullptr.
+vtkObjectFactory* registeredFactory()
+{
+  vtkObjectFactoryCollection* const factories = vtkObjectFactory::GetRegisteredFactories();
+  vtkCollectionSimpleIterator place;
+  factories->InitTraversal(place);
+  while (vtkObjectFactory* const factory = factories->GetNextObjectFactory(place))
+  {
+    if (factory->HasOverride(Replaced, Replacement))
+    {
+      return factory;
+    }
+  }
+  return nullptr;
+}
+
+/// The first factory wins, and that of VTK's OpenGL classes may be there already.
+void registerFirst(vtkObjectFactory* factory)
+{
+  vtkObjectFactory::RegisterFactory(factory);
+  vtkObjectFactoryCollection* const factories = vtkObjectFactory::GetRegisteredFactories();
+  if (factories->GetNumberOfItems() > 1)
+  {
+    factories->RemoveItem(factory);
+    factories->InsertItem(-1, factory);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPGPUVolumeRayCastMapper::SetGlobalOverride(bool on)
+{
+  if (on && !registeredFactory())
+  {
+    vtkNew<OverrideFactory> factory;
+    registerFirst(factory);
+  }
+  vtkObjectFactory::SetAllEnableFlags(on, Replaced, Replacement);
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPGPUVolumeRayCastMapper::GetGlobalOverride()
+{
+  vtkObjectFactory* const factory = registeredFactory();
+  return factory && factory->GetEnableFlag(Replaced, Replacement);
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPGPUVolumeRayCastMapper::SetGlobalQualityMode(int mode)
+{
+  globalQualityMode =
+    std::clamp<int>(mode, vtkSplattingMIPVolumeMapper::PREVIEW, vtkSplattingMIPVolumeMapper::HIGH);
+}
+
+//------------------------------------------------------------------------------
+int vtkSplattingMIPGPUVolumeRayCastMapper::GetGlobalQualityMode()
+{
+  return globalQualityMode;
+}
+
+//------------------------------------------------------------------------------
+vtkSplattingMIPGPUVolumeRayCastMapper::vtkSplattingMIPGPUVolumeRayCastMapper()
+  : LastRenderUsedSplatting(false),
+    LoggedReason("")
+{
+  this->SplattingMapper->SetQualityMode(globalQualityMode);
+  using Self = vtkSplattingMIPGPUVolumeRayCastMapper;
+  vtkObject* const splatting = this->SplattingMapper;
+  splatting->AddObserver(vtkCommand::ErrorEvent, this, &Self::ForwardMessage);
+  splatting->AddObserver(vtkCommand::WarningEvent, this, &Self::ForwardMessage);
+  splatting->AddObserver(vtkCommand::VolumeMapperRenderProgressEvent, this, &Self::ForwardProgress);
+}
+
+//------------------------------------------------------------------------------
+vtkSplattingMIPGPUVolumeRayCastMapper::~vtkSplattingMIPGPUVolumeRayCastMapper() = default;
+
+//------------------------------------------------------------------------------
+vtkSplattingMIPVolumeMapper* vtkSplattingMIPGPUVolumeRayCastMapper::GetSplattingMapper()
+{
+  return this->SplattingMapper;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSplattingMIPGPUVolumeRayCastMapper::ReasonNotToSplat(vtkVolume* vol)
+{
+  vtkInformation* const keys = vol->GetPropertyKeys();
+  const struct
+  {
+    bool holds;
+    const char* reason;
+  } reasons[] = {
+    { this->BlendMode != MAXIMUM_INTENSITY_BLEND && this->BlendMode != MINIMUM_INTENSITY_BLEND,
+      "the blend mode is neither maximum nor minimum intensity" },
+    { vol->IsA("vtkMultiVolume") || this->GetInputCount() > 1, "there are several inputs" },
+    { vol->GetProperty()->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D,
+      "the transfer functions are two-dimensional" },
+    { hasCode(vol->GetShaderProperty()), "the volume brings shader code" },
+    { keys && keys->Has(vtkOpenGLRenderPass::RenderPasses()), "a render pass brings shader code" },
+    { this->RenderToImage != 0, "it renders to an image" },
+  };
+  for (const auto& candidate : reasons)
+  {
+    if (candidate.holds)
+    {
+      return candidate.reason;
+    }
+  }
+  return nullptr;
+}
+
+//------------------------------------------------------------------------------
+// Setters that change nothing cost nothing, and the splatting mapper finds out by itself what of
+// its results a change touches.
+void vtkSplattingMIPGPUVolumeRayCastMapper::CopySettings()
+{
+  vtkSplattingMIPVolumeMapper* const to = this->SplattingMapper;
+  // Not by a connection: VTK's garbage collector does not see that two mappers in one share it.
+  to->SetInputDataObject(this->GetInput(0));
+  to->SetBlendMode(this->BlendMode);
+  to->SetCropping(this->Cropping);
+  to->SetCroppingRegionPlanes(this->CroppingRegionPlanes);
+  to->SetCroppingRegionFlags(this->CroppingRegionFlags);
+  to->SetClippingPlanes(this->ClippingPlanes);
+  to->SetScalarMode(this->ScalarMode);
+  if (this->ArrayAccessMode == VTK_GET_ARRAY_BY_NAME)
+  {
+    to->SelectScalarArray(this->ArrayName);
+  }
+  else
+  {
+    to->SelectScalarArray(this->ArrayId);
+  }
+  to->SetFinalColorWindow(this->FinalColorWindow);
+  to->SetFinalColorLevel(this->FinalColorLevel);
+  to->SetAutoAdjustSampleDistances(this->AutoAdjustSampleDistances);
+  to->SetMaskInput(this->MaskType == BinaryMaskType ? this->MaskInput : nullptr);
+}
+
+//------------------------------------------------------------------------------
+// The superclass's Render() has brought the input up to date and invokes the events.
+void vtkSplattingMIPGPUVolumeRayCastMapper::GPURender(vtkRenderer* ren, vtkVolume* vol)
+{
+  // In all modes, or the splatting mapper would hold on to data that are no longer rendered.
+  this->CopySettings();
+  const char* const reason = this->ReasonNotToSplat(vol);
+  if (reason != this->LoggedReason)
+  {
+    vtkVLogF(vtkLogger::VERBOSITY_1, "%s renders by %s%s%s.", vtkLogIdentifier(this),
+      reason ? "vtkOpenGLGPUVolumeRayCastMapper" : "vtkSplattingMIPVolumeMapper",
+      reason ? ", because " : "", reason ? reason : "");
+    this->LoggedReason = reason;
+  }
+  this->LastRenderUsedSplatting = !reason;
+  if (reason)
+  {
+    this->Superclass::GPURender(ren, vol);
+    return;
+  }
+  this->SplattingMapper->Render(ren, vol);
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPGPUVolumeRayCastMapper::ForwardMessage(
+  vtkObject*, unsigned long event, void* text)
+{
+  const char* const message = static_cast<const char*>(text);
+  if (this->HasObserver(event))
+  {
+    this->InvokeEvent(event, text);
+  }
+  else if (event == vtkCommand::ErrorEvent)
+  {
+    vtkOutputWindowDisplayErrorText(message);
+  }
+  else
+  {
+    vtkOutputWindowDisplayWarningText(message);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPGPUVolumeRayCastMapper::ForwardProgress(
+  vtkObject*, unsigned long event, void* done)
+{
+  if (this->ReportProgress)
+  {
+    this->InvokeEvent(event, done);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPGPUVolumeRayCastMapper::ReleaseGraphicsResources(vtkWindow* window)
+{
+  this->SplattingMapper->ReleaseGraphicsResources(window);
+  this->Superclass::ReleaseGraphicsResources(window);
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPGPUVolumeRayCastMapper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "GlobalOverride: " << (GetGlobalOverride() ? "On" : "Off") << "\n";
+  os << indent << "GlobalQualityMode: " << globalQualityMode << "\n";
+  os << indent << "LastRenderUsedSplatting: " << (this->LastRenderUsedSplatting ? "Yes" : "No")
+     << "\n";
+  os << indent << "SplattingMapper:\n";
+  this->SplattingMapper->PrintSelf(os, indent.GetNextIndent());
+}

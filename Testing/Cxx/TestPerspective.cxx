@@ -1,0 +1,358 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Projections along the rays of an eye. Preview mode equals the exact traversal bit for bit,
+// standard and high mode the averages of parts within their rounding; where the images of two axes
+// meet they show the same.
+#include "CoreTesting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace coretesting;
+using splatting::Acceleration;
+using splatting::Quality;
+
+namespace
+{
+/// What a view is, for messages.
+std::string nameOf(const splatting::ShearWarp& image)
+{
+  const glm::dvec3& eye = image.eye();
+  return "axis " + std::to_string(image.principalAxis()) + (image.reversed() ? " reversed" : "") +
+    ", size " + std::to_string(image.size().x) + " " + std::to_string(image.size().y) + " " +
+    std::to_string(image.size().z) + ", eye " + std::to_string(eye.x) + " " +
+    std::to_string(eye.y) + " " + std::to_string(eye.z);
+}
+
+/// Where two images differ first.
+template <class P>
+std::string difference(const reference::Image<P>& expected, const reference::Image<P>& found)
+{
+  if (expected.width != found.width || expected.height != found.height)
+  {
+    return "another size";
+  }
+  for (std::size_t p = 0; p < expected.value.size(); ++p)
+  {
+    if (expected.hit[p] != found.hit[p] || expected.value[p] != found.value[p])
+    {
+      return "pixel " + std::to_string(p % expected.width) + " " +
+        std::to_string(p / expected.width) + (found.hit[p] ? " is " : " has no sample, ") +
+        std::to_string(found.value[p]) + ", not " + (expected.hit[p] ? "" : "no sample, ") +
+        std::to_string(expected.value[p]);
+    }
+  }
+  return "equal";
+}
+
+template <class T>
+void testPreviewOf(Checks& check, const reference::Volume<T>& volume,
+  const splatting::ShearWarp& image, reference::Random& random, int& hits)
+{
+  splatting::ProjectionSettings settings;
+  settings.quality = Quality::Preview;
+  settings.instructionSet = static_cast<splatting::InstructionSet>(random.uniform(0, 2));
+  settings.acceleration = static_cast<Acceleration>(random.uniform(0, 5));
+  const auto expected = reference::exactTraversal(volume, referenceRays(image));
+  const auto found = toReference<T>(project(volume, image, settings));
+  hits += static_cast<int>(std::count(expected.hit.begin(), expected.hit.end(), 1));
+  check(sameBits(expected, found), "type ", int(splatting::scalarTypeOf<T>()),
+    ": the preview is not the traversal; ", nameOf(image), ", instruction set ",
+    int(settings.instructionSet), ", acceleration ", int(settings.acceleration), ": ",
+    difference(expected, found));
+}
+
+template <class T>
+void testPreviews(Checks& check, int views, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  std::vector<splatting::ShearWarp> images;
+  int hits = 0;
+  for (int n = 0; n < views; ++n)
+  {
+    const auto volume = volumeWithOddValues<T>(randomSize(random,
+                                                 n % 8 == 0 ? 40
+                                                   : n % 2  ? 12
+                                                            : 4),
+      random);
+    splatting::ShearWarp::factorise(randomPerspective(volume.size, random), images);
+    for (const splatting::ShearWarp& image : images)
+    {
+      testPreviewOf(check, volume, image, random, hits);
+    }
+  }
+  check(hits > 100 * views, "only ", hits, " pixels show the volume");
+}
+
+/// Volumes of several bands, blocks of registers and bricks.
+template <class T>
+void testLargePreviews(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  std::vector<splatting::ShearWarp> images;
+  int hits = 0;
+  for (int n = 0; n < 4; ++n)
+  {
+    const auto volume = wholeRangeNoise<T>({ 150, 70, 90 }, random.bits());
+    splatting::ShearWarp::factorise(randomPerspective(volume.size, random), images);
+    for (const splatting::ShearWarp& image : images)
+    {
+      testPreviewOf(check, volume, image, random, hits);
+    }
+  }
+}
+
+/// The oracle's picture in standard or high mode.
+reference::Image<double> averagePicture(const reference::Volume<double>& volume,
+  const splatting::ShearWarp& image, const reference::Kernel& kernel)
+{
+  const reference::PerspectiveRays rays = referenceRays(image);
+  return reference::maximumOf(
+    reference::slabSamples(volume, rays, kernel), rays.width(), rays.height());
+}
+
+template <class T>
+void testAverages(Checks& check, std::uint64_t seed)
+{
+  using A = splatting::Accumulator<T>;
+  reference::Random random(seed);
+  double worst = 0.0;
+  for (int n = 0; n < 12; ++n)
+  {
+    for (const Mode& mode : modes())
+    {
+      const auto volume = wholeRangeNoise<T>(randomSize(random, n % 3 ? 7 : 20), random.bits());
+      const splatting::ShearWarp image = randomPerspectiveImage(volume.size, random);
+      const double low = double(*std::min_element(volume.voxels.begin(), volume.voxels.end()));
+      const double high = double(*std::max_element(volume.voxels.begin(), volume.voxels.end()));
+      // The reference itself is good to some rounding errors of double.
+      const double bound =
+        perspectiveErrorBound<T>(referenceRays(image), mode.reference, low, high) +
+        2e-13 * std::max(std::abs(low), std::abs(high)) + 1e-300;
+      splatting::ProjectionSettings settings = settingsOf(mode);
+      settings.instructionSet = static_cast<splatting::InstructionSet>(random.uniform(0, 2));
+      settings.acceleration = static_cast<Acceleration>(random.uniform(0, 5));
+      const auto expected = averagePicture(reference::toDouble(volume), image, mode.reference);
+      const auto found = reference::toDouble(toReference<A>(project(volume, image, settings)));
+      const double error = largestDifference(expected, found) / bound;
+      worst = std::max(worst, error);
+      check(error <= 1.0, "type ", int(splatting::scalarTypeOf<T>()), ", mode ", int(mode.quality),
+        ", kernel ", int(mode.kernel.shape), " ", mode.kernel.radius, ": error of ", error,
+        " bounds; ", nameOf(image), ": ", difference(expected, found));
+    }
+  }
+  std::cout << "type " << int(splatting::scalarTypeOf<T>()) << ": largest error " << worst
+            << " of the bound" << std::endl;
+}
+
+/// NaN voxels are left out.
+void testNaN(Checks& check)
+{
+  reference::Random random(17);
+  for (int n = 1; n < 10; ++n)
+  {
+    for (const Mode& mode : modes())
+    {
+      auto volume = wholeRangeNoise<double>(randomSize(random, 6), random.bits());
+      for (double& voxel : volume.voxels)
+      {
+        voxel = random.uniform(0, 9) < n ? std::numeric_limits<double>::quiet_NaN() : voxel;
+      }
+      const splatting::ShearWarp image = randomPerspectiveImage(volume.size, random);
+      const reference::PerspectiveRays rays = referenceRays(image);
+      const auto samples = reference::slabSamples(volume, rays, mode.reference);
+      const double bound = perspectiveErrorBound<double>(rays, mode.reference, -1.0, 1.0);
+      const auto found = toReference<double>(project(volume, image, settingsOf(mode)));
+      for (std::size_t p = 0; p < samples.size() && p < found.value.size(); ++p)
+      {
+        // Dividing by the weight that is left magnifies what is rounded.
+        double least = 1.0, value = -std::numeric_limits<double>::infinity();
+        for (const auto& sample : samples[p])
+        {
+          least = std::min(least, sample.weight > 0.0 ? sample.weight : 1.0);
+          value = sample.weight > 0.0 ? std::max(value, sample.value) : value;
+        }
+        const bool sure = least > 100.0 * bound;
+        check(!sure || (found.hit[p] != 0) == std::isfinite(value), "a pixel of NaN, or not; ",
+          nameOf(image), ", weight ", least);
+        check(!sure || !found.hit[p] || std::abs(found.value[p] - value) <= 2.0 * bound / least,
+          "NaN volume, mode ", int(mode.quality), ": ", found.value[p], ", not ", value,
+          "; weight ", least, ", ", nameOf(image));
+      }
+      check(samples.size() == found.value.size(), "another size");
+    }
+  }
+}
+
+template <class T>
+void testConstant(Checks& check, std::uint64_t seed)
+{
+  using A = splatting::Accumulator<T>;
+  reference::Random random(seed);
+  using Limits = std::numeric_limits<T>;
+  for (int n = 0; n < 4; ++n)
+  {
+    for (const Mode& mode : modes())
+    {
+      const T value = random.uniform<T>(Limits::lowest() / 2, Limits::max() / 2);
+      const reference::Volume<T> volume(randomSize(random, 30), value);
+      const splatting::ShearWarp image = randomPerspectiveImage(volume.size, random);
+      const auto found = toReference<A>(project(volume, image, settingsOf(mode)));
+      for (std::size_t p = 0; p < found.value.size(); ++p)
+      {
+        check(!found.hit[p] || found.value[p] == static_cast<A>(value), "a constant volume of ",
+          double(value), " is ", double(found.value[p]), ", mode ", int(mode.quality));
+      }
+    }
+  }
+}
+
+/// Weights that add up to more than one would show in plateaus.
+template <class T>
+void testNeverAbove(Checks& check, std::uint64_t seed)
+{
+  using A = splatting::Accumulator<T>;
+  reference::Random random(seed);
+  for (const Mode& mode : modes())
+  {
+    reference::Volume<T> volume(randomSize(random, 30), T(101));
+    for (T& voxel : volume.voxels)
+    {
+      voxel = random.uniform(0, 99) ? voxel : T(random.uniform(0, 100));
+    }
+    const splatting::ShearWarp image = randomPerspectiveImage(volume.size, random);
+    const auto found = toReference<A>(project(volume, image, settingsOf(mode)));
+    const A largest = *std::max_element(found.value.begin(), found.value.end());
+    check(largest <= A(101), "a pixel is above all voxels by ", double(largest) - 101.0, ", mode ",
+      int(mode.quality));
+  }
+}
+
+/// A view of a cube from a point, of 120 degrees.
+splatting::View wideView(int size, const glm::dvec3& eye, const glm::dvec3& direction)
+{
+  splatting::View view;
+  view.dimensions = { size, size, size };
+  view.viewport = { 100, 100 };
+  view.indexToClip = glm::perspective(glm::radians(120.0), 1.0, 0.1, 1000.0) *
+    glm::lookAt(eye, eye + direction, glm::dvec3(0.1, 0.2, 0.9));
+  return view;
+}
+
+/// The direction of a ray, to be compared exactly, and its pixel.
+struct BorderRay
+{
+  std::array<double, 3> direction;
+  int u, v;
+};
+
+/// The rays of an image that run half-way to another axis and direction.
+std::vector<BorderRay> borderRays(const splatting::ShearWarp& image, int axis, double direction)
+{
+  const reference::PerspectiveRays rays = referenceRays(image);
+  const double along = image.reversed() ? -1.0 : 1.0;
+  std::vector<BorderRay> border;
+  for (int v = 0; v < rays.height(); ++v)
+  {
+    for (int u = 0; u < rays.width(); ++u)
+    {
+      BorderRay ray{ {}, u, v };
+      ray.direction[rays.axes[0]] = along * rays.slope[0][u];
+      ray.direction[rays.axes[1]] = along * rays.slope[1][v];
+      ray.direction[rays.axes[2]] = along;
+      if (ray.direction[axis] == direction)
+      {
+        border.push_back(ray);
+      }
+    }
+  }
+  return border;
+}
+
+/// Compares the pixels of rays that two images have in common; returns their number.
+template <class T>
+int compareBorders(Checks& check, const reference::Volume<T>& volume,
+  const splatting::ShearWarp& left, const splatting::ShearWarp& right)
+{
+  splatting::ProjectionSettings settings;
+  settings.quality = Quality::Preview;
+  const auto one = toReference<T>(project(volume, left, settings));
+  const auto other = toReference<T>(project(volume, right, settings));
+  int compared = 0;
+  for (const BorderRay& a : borderRays(left, right.principalAxis(), right.reversed() ? -1.0 : 1.0))
+  {
+    for (const BorderRay& b : borderRays(right, left.principalAxis(), left.reversed() ? -1.0 : 1.0))
+    {
+      if (a.direction == b.direction)
+      {
+        check(
+          one.isHit(a.u, a.v) == other.isHit(b.u, b.v) && one.at(a.u, a.v) == other.at(b.u, b.v),
+          "images that meet differ: ", nameOf(left), ", pixel ", a.u, " ", a.v, "; ", nameOf(right),
+          ", pixel ", b.u, " ", b.v);
+        compared += one.isHit(a.u, a.v);
+      }
+    }
+  }
+  return compared;
+}
+
+/// From a diagonal of a cube, and from its centre, the images of different axes have the same
+/// pitch: they share the rays where they meet, and what these show.
+template <class T>
+void testImagesThatMeet(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  std::vector<splatting::ShearWarp> images;
+  int compared = 0;
+  for (int n = 0; n < 60; ++n)
+  {
+    const int size = random.uniform(1, 30);
+    const auto volume = wholeRangeNoise<T>({ size, size, size }, random.bits());
+    // On one of the four diagonals; eyes are multiples of 2^-10.
+    const double distance =
+      n % 3 ? std::round(0x1p10 * random.uniform(0.0, 1.5) * size) * 0x1p-10 : 0.0;
+    glm::dvec3 eye, direction;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double side = random.uniform(0, 1) ? 1.0 : -1.0;
+      eye[a] = 0.5 * (size - 1) + side * distance;
+      direction[a] = random.uniform(-0.5, 0.5) - side;
+    }
+    splatting::ShearWarp::factorise(wideView(size, eye, direction), images);
+    for (std::size_t left = 0; left < images.size(); ++left)
+    {
+      for (std::size_t right = left + 1; right < images.size(); ++right)
+      {
+        if (images[left].pitch() == images[right].pitch())
+        {
+          compared += compareBorders(check, volume, images[left], images[right]);
+        }
+      }
+    }
+  }
+  check(compared > 1000, "only ", compared, " rays are shared");
+}
+}
+
+int TestPerspective(int, char*[])
+{
+  Checks check;
+  std::uint64_t seed = 2000;
+  forEachType(
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      testPreviews<T>(check, 150, ++seed);
+      testAverages<T>(check, seed);
+      testConstant<T>(check, seed);
+      testNeverAbove<T>(check, seed);
+      testImagesThatMeet<T>(check, seed);
+    });
+  testLargePreviews<std::uint8_t>(check, 1);
+  testLargePreviews<std::int16_t>(check, 2);
+  testLargePreviews<double>(check, 3);
+  testNaN(check);
+  return check.result();
+}

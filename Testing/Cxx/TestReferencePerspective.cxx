@@ -1,0 +1,456 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The oracle of perspective projections itself: by hand, by brute force, where rays become
+// parallel, and how far averages of parts are from what a pixel sees.
+#include "CoreTesting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+using namespace coretesting;
+using reference::Kernel;
+using reference::PerspectiveRays;
+
+namespace
+{
+const Kernel Box = { Kernel::Nearest, 0.5 };
+const Kernel Hat = { Kernel::Trilinear, 1.0 };
+const Kernel Bell = { Kernel::CosineBell, 1.0 };
+const Kernel kernels[] = { Box, Hat, Bell };
+
+/// Rays through an eye that pass whole numbers at some depth, with such slopes and so many rays
+/// before it.
+struct Pencil
+{
+  std::array<double, 2> slope{ 0.0, 0.0 }; ///< of the ray through the first voxel's column
+  double turn = 0.0;                       ///< slope from one ray to the next
+  double depth = 0.0;
+  std::array<int, 2> margin{ 0, 0 };
+  std::array<int, 2> pixels{ 1, 1 };
+};
+
+/// An eye at infinity where rays do not turn.
+PerspectiveRays raysOf(const std::array<int, 3>& size, const Pencil& pencil)
+{
+  PerspectiveRays rays;
+  rays.size = size;
+  rays.start = size[2] - 0.5;
+  rays.eye = pencil.turn > 0.0 ? pencil.depth - 1.0 / pencil.turn : -1e12;
+  rays.pitch = 1.0 + pencil.turn * (rays.start - pencil.depth);
+  for (int a = 0; a < 2; ++a)
+  {
+    for (int n = -pencil.margin[a]; n < pencil.pixels[a] - pencil.margin[a]; ++n)
+    {
+      rays.slope[a].push_back(pencil.slope[a] + n * pencil.turn);
+      rays.at[a].push_back(n + rays.slope[a].back() * (rays.start - pencil.depth));
+    }
+  }
+  return rays;
+}
+
+void testTraversalByHand(Checks& check)
+{
+  using Voxels = std::vector<std::array<int, 3>>;
+  // An eye in the middle of voxel (0, 0) of the slice before the first, looking along k.
+  PerspectiveRays rays;
+  rays.size = { 3, 3, 2 };
+  rays.start = 1.5;
+  rays.eye = -1.0;
+  rays.at = { { { 0.0, 1.25, 2.5 }, { 0.0, 2.5 } } };
+  rays.slope = { { { 0.0, 0.5, 1.0 }, { 0.0, 1.0 } } };
+  check(reference::crossedVoxels(rays, 0, 0) == Voxels{ { 0, 0, 0 }, { 0, 0, 1 } }, "straight on");
+  // It is in voxel 0 up to x = 1/2, which is at z = 0.
+  check(reference::crossedVoxels(rays, 1, 0) == Voxels{ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 0, 1 } },
+    "half a voxel per slice");
+  // The diagonal runs from z = -1/2 and x = 1/2 through voxels' corners.
+  check(reference::crossedVoxels(rays, 2, 1) == Voxels{ { 1, 1, 0 }, { 2, 2, 1 } }, "diagonal");
+  check(reference::crossedVoxels(rays, 2, 0) == Voxels{ { 1, 0, 0 }, { 2, 0, 1 } }, "edges");
+  // From within slice 0, whose middle is behind the eye; seen the other way, before it.
+  rays.eye = 0.25;
+  check(reference::crossedVoxels(rays, 1, 0) == Voxels{ { 1, 0, 1 } }, "a slice behind the eye");
+  rays.reversed = true;
+  check(reference::crossedVoxels(rays, 1, 0) == Voxels{ { 0, 0, 0 }, { 1, 0, 0 } }, "reversed");
+  // Within a face, all along.
+  rays.at[0] = { 0.5, 0.5, 0.5 };
+  rays.slope[0] = { 0.0, 0.0, 0.0 };
+  check(reference::crossedVoxels(rays, 0, 0) == Voxels{ { 1, 0, 0 } }, "a ray within a face");
+}
+
+/// Where the ray is in a voxel, in floating point.
+double lengthInVoxel(const PerspectiveRays& rays, int u, int v, const std::array<int, 3>& ijk)
+{
+  const auto faces = rays.faces(ijk[2], ijk[2]);
+  double low = faces[0], high = faces[1];
+  const int pixel[2] = { u, v };
+  for (int a = 0; a < 2; ++a)
+  {
+    const double slope = rays.slope[a][pixel[a]], at = rays.at[a][pixel[a]];
+    if (slope == 0.0)
+    {
+      high = at >= ijk[a] - 0.5 && at < ijk[a] + 0.5 ? high : low;
+    }
+    else
+    {
+      const double p = rays.start + (ijk[a] - 0.5 - at) / slope;
+      const double q = rays.start + (ijk[a] + 0.5 - at) / slope;
+      low = std::max(low, std::min(p, q));
+      high = std::min(high, std::max(p, q));
+    }
+  }
+  return high - low;
+}
+
+/// Every voxel by itself: is the ray in it over some length?
+void testTraversalByBruteForce(Checks& check, reference::Random& random)
+{
+  std::vector<splatting::ShearWarp> images;
+  int crossed = 0;
+  for (int n = 0; n < 300; ++n)
+  {
+    const auto size = randomSize(random, 6);
+    splatting::ShearWarp::factorise(randomPerspective(size, random), images);
+    for (const splatting::ShearWarp& image : images)
+    {
+      const PerspectiveRays rays = referenceRays(image);
+      const int u = random.uniform(0, image.rayCount().x - 1);
+      const int v = random.uniform(0, image.rayCount().y - 1);
+      const auto found = reference::crossedVoxels(rays, u, v);
+      std::array<int, 3> ijk, voxel;
+      for (ijk[2] = 0; ijk[2] < rays.size[2]; ++ijk[2])
+      {
+        for (ijk[1] = 0; ijk[1] < rays.size[1]; ++ijk[1])
+        {
+          for (ijk[0] = 0; ijk[0] < rays.size[0]; ++ijk[0])
+          {
+            for (int a = 0; a < 3; ++a)
+            {
+              voxel[rays.axes[a]] = ijk[a];
+            }
+            const double length = rays.sees(ijk[2]) ? lengthInVoxel(rays, u, v, ijk) : 0.0;
+            const bool isCrossed = std::find(found.begin(), found.end(), voxel) != found.end();
+            crossed += isCrossed;
+            // Slopes near 0 magnify what is rounded.
+            check(std::abs(length) < 1e-6 || isCrossed == (length > 0.0), "a voxel that is ",
+              length, " long on the ray is ", isCrossed ? "" : "not ", "crossed");
+          }
+        }
+      }
+    }
+  }
+  check(crossed > 500, "only ", crossed, " voxels are crossed");
+}
+
+/// Voxel (i, j, k) = f(i, j, k).
+template <class F>
+reference::Volume<double> volumeOf(const std::array<int, 3>& size, F&& f)
+{
+  reference::Volume<double> volume(size);
+  for (int k = 0; k < size[2]; ++k)
+  {
+    for (int j = 0; j < size[1]; ++j)
+    {
+      for (int i = 0; i < size[0]; ++i)
+      {
+        volume.at(i, j, k) = f(double(i), double(j), double(k));
+      }
+    }
+  }
+  return volume;
+}
+
+/// The hat continues i, j, k and their products as they are, so averages can be told.
+void testAveragesOfProducts(Checks& check)
+{
+  const std::array<int, 3> size{ 14, 14, 5 };
+  Pencil pencil;
+  pencil.slope = { 0.25, -0.75 };
+  pencil.turn = 0x1p-5;
+  pencil.depth = 2.0;
+  pencil.margin = { -6, -6 };
+  pencil.pixels = { 2, 2 };
+  const PerspectiveRays rays = raysOf(size, pencil);
+  const int parts = reference::partsPerSlice(rays, Hat);
+  check(parts == 2, "slices are cut into ", parts, " parts"); // 0.47 * 0.56 <= 0.48
+  for (int u = 0; u < 2; ++u)
+  {
+    for (int v = 0; v < 2; ++v)
+    {
+      const int pixel = 2 * v + u;
+      const double x = u + 6, y = v + 6, a = rays.slope[0][u], b = rays.slope[1][v];
+      const auto is = [&](const reference::Volume<double>& volume, double expected, double lost)
+      {
+        for (int exact = 0; exact < 2; ++exact)
+        {
+          const auto samples = exact ? reference::frustumSamples(volume, rays, Hat)
+                                     : reference::slabSamples(volume, rays, Hat);
+          const double value = samples[pixel][2].value;
+          check(std::abs(value - (exact ? expected : expected - lost)) < 1e-12,
+            exact ? "exact" : "parts", ", pixel ", pixel, ": ", value, ", not ", expected);
+          check(samples[pixel][2].slice == 2 && std::abs(samples[pixel][2].weight - 1.0) < 1e-13,
+            "another slice");
+        }
+      };
+      const double n = parts * parts;
+      is(volumeOf(size, [](double i, double, double) { return i; }), x, 0.0);
+      is(volumeOf(size, [](double, double j, double) { return j; }), y, 0.0);
+      is(volumeOf(size, [](double, double, double k) { return k; }), 2.0, 0.0);
+      // What is lost is the covariance within a part.
+      is(volumeOf(size, [](double i, double j, double) { return i * j; }), x * y + a * b / 12.0,
+        a * b / 12.0 / n);
+      is(volumeOf(size, [](double i, double, double k) { return i * k; }), x * 2.0 + a / 12.0,
+        a / 12.0 / n);
+      is(volumeOf(size, [](double, double j, double k) { return j * k; }), y * 2.0 + b / 12.0,
+        b / 12.0 / n);
+    }
+  }
+}
+
+void testBoxByHand(Checks& check)
+{
+  // One ray of slope 1/2 through x = 1 at z = 0 in the middle slice of three; the eye is 2 from it,
+  // so windows are 1/2 wide at z = 0: x = 1 + a / 2 + b / 2 has a triangular density on
+  // [1/2, 3/2], all of it in voxel 1.
+  PerspectiveRays rays;
+  rays.size = { 4, 1, 1 };
+  rays.start = 0.5;
+  rays.eye = -2.0;
+  rays.pitch = 0.625;
+  rays.at = { { { 1.25 }, { 0.0 } } };
+  rays.slope = { { { 0.5 }, { 0.0 } } };
+  reference::Volume<double> volume({ 4, 1, 1 });
+  volume.voxels = { 0.0, 8.0, 16.0, 0.0 };
+  check(reference::partsPerSlice(rays, Box) == 1, "a part");
+  check(reference::slabSamples(volume, rays, Box)[0][0].value == 8.0, "one voxel");
+  // Through x = 3/2 half of it is voxel 2's; through 5/4 a quarter of the width, squared and
+  // halved.
+  rays.at[0][0] = 1.75;
+  check(std::abs(reference::slabSamples(volume, rays, Box)[0][0].value - 12.0) < 1e-13, "half");
+  rays.at[0][0] = 1.5;
+  check(std::abs(reference::slabSamples(volume, rays, Box)[0][0].value - 9.0) < 1e-13, "an eighth");
+  // Without voxel 1 nothing but the eighth is left.
+  volume.voxels[1] = std::numeric_limits<double>::quiet_NaN();
+  const auto left = reference::slabSamples(volume, rays, Box)[0][0];
+  check(left.value == 16.0 && std::abs(left.weight - 0.125) < 1e-13, "NaN is left out");
+}
+
+/// The mean of h for voxels about the nearest one, by many points of a part.
+struct PointMeans
+{
+  static constexpr int Reach = 4, Count = 2 * Reach + 1;
+  int first = 0;
+  std::array<double, Count> mean{};
+
+  PointMeans(const Kernel& h, double centre, double path, double width)
+    : first(static_cast<int>(std::round(centre)) - Reach)
+  {
+    constexpr int points = 4096;
+    for (int p = 0; p < points; ++p)
+    {
+      // Points that fill the square evenly, by the plastic number.
+      const double a = 0.75487766624669276 * p, b = 0.56984029099805327 * p;
+      const double x =
+        centre + path * (a - std::floor(a) - 0.5) + width * (b - std::floor(b) - 0.5);
+      for (int n = 0; n < Count; ++n)
+      {
+        this->mean[n] += h(x - this->first - n) / points;
+      }
+    }
+  }
+};
+
+/// What the definition says, point by point.
+double bruteForceAverage(const reference::Volume<double>& volume, const PerspectiveRays& rays,
+  const Kernel& kernel, int u, int v, int slice)
+{
+  const int parts = reference::partsPerSlice(rays, kernel);
+  const auto faces = rays.faces(slice, slice);
+  const double t = (faces[1] - faces[0]) / parts;
+  double average = 0.0;
+  for (int q = 0; q < parts; ++q)
+  {
+    const double z = faces[0] + (q + 0.5) * t, w = rays.spacing(z);
+    const PointMeans means[3] = { { kernel, rays.position(0, u, z), rays.slope[0][u] * t, w },
+      { kernel, rays.position(1, v, z), rays.slope[1][v] * t, w }, { kernel, z, t, 0.0 } };
+    double sum = 0.0, weight = 0.0;
+    constexpr int Count = PointMeans::Count;
+    for (int n = 0; n < Count * Count * Count; ++n)
+    {
+      const int number[3] = { n % Count, n / Count % Count, n / Count / Count };
+      std::array<int, 3> voxel;
+      double product = 1.0;
+      for (int a = 0; a < 3; ++a)
+      {
+        product *= means[a].mean[number[a]];
+        voxel[rays.axes[a]] = std::clamp(means[a].first + number[a], 0, rays.size[a] - 1);
+      }
+      sum += product * volume.at(voxel);
+      weight += product;
+    }
+    average += sum / weight / parts;
+  }
+  return average;
+}
+
+void testAveragesByBruteForce(Checks& check, reference::Random& random)
+{
+  std::vector<splatting::ShearWarp> images;
+  int compared = 0;
+  for (int n = 0; n < 80; ++n)
+  {
+    const auto size = randomSize(random, 5);
+    const auto volume = wholeRangeNoise<double>(size, random.bits());
+    splatting::ShearWarp::factorise(randomPerspective(size, random), images);
+    for (const Kernel& kernel :
+      { Box, Hat, Bell, Kernel{ Kernel::CosineBell, 0.6 }, Kernel{ Kernel::CosineBell, 1.5 } })
+    {
+      for (const splatting::ShearWarp& image : images)
+      {
+        const PerspectiveRays rays = referenceRays(image);
+        const auto samples = reference::slabSamples(volume, rays, kernel);
+        const int u = random.uniform(0, image.rayCount().x - 1);
+        const int v = random.uniform(0, image.rayCount().y - 1);
+        for (const auto& sample : samples[std::size_t(v) * rays.width() + u])
+        {
+          const double expected = bruteForceAverage(volume, rays, kernel, u, v, sample.slice);
+          // Voxels are in [-1, 1]; the points' discrepancy is about log(N) / N.
+          check(std::abs(expected - sample.value) < 0.01, "an average is ", sample.value, ", not ",
+            expected, ", kernel ", int(kernel.shape), ", radius ", kernel.radius);
+          ++compared;
+        }
+      }
+    }
+  }
+  check(compared > 500, "only ", compared, " averages");
+}
+
+/// The sample of a slice, or none.
+const reference::Sample<double>* find(
+  const std::vector<reference::Sample<double>>& samples, int slice)
+{
+  const auto found = std::find_if(samples.begin(), samples.end(),
+    [slice](const reference::Sample<double>& sample) { return sample.slice == slice; });
+  return found == samples.end() ? nullptr : &*found;
+}
+
+/// Rays from an eye that goes away become those of a parallel view, and so do averages. Where a
+/// window moves by d and its width by e, weights change by as much as lostByParts() says.
+void testFarEyes(Checks& check, reference::Random& random)
+{
+  for (int n = 0; n < 120; ++n)
+  {
+    const std::array<int, 3> size = randomSize(random, 6);
+    auto volume = reference::uniformNoise<double>(size, random.bits(), 0.0, 1.0);
+    reference::ShearView view;
+    for (double& shear : view.shear)
+    {
+      shear = std::ldexp(random.uniform(-(1 << 14), 1 << 14), -14);
+    }
+    const auto grid = reference::makeShearGrid(size, view);
+    Pencil pencil;
+    pencil.slope = { -view.shear[0], -view.shear[1] };
+    pencil.depth = grid.middle;
+    pencil.margin = grid.margin;
+    pencil.pixels = { grid.width, grid.height };
+    const double turns[] = { 0.0, 0x1p-18, 0x1p-12, 0x1p-8 };
+    pencil.turn = turns[n % 4];
+    const PerspectiveRays rays = raysOf(size, pencil);
+    const Kernel& kernel = kernels[n % 3];
+    const auto parallel = reference::slabSamples(volume, view, kernel);
+    const auto exact = reference::frustumSamples(volume, rays, kernel);
+    const auto parts = reference::slabSamples(volume, rays, kernel);
+    const double reach = 0.5 * size[2] * pencil.turn, width = 1.0 - reach;
+    const double moves = kernel.shape == Kernel::Nearest ? 2.0 / width
+      : kernel.shape == Kernel::Trilinear                ? 2.0
+                                                         : 3.15;
+    const double widens = kernel.shape == Kernel::Nearest ? 1.0 / width : 0.25 * moves;
+    for (int v = 0; v < grid.height; ++v)
+    {
+      for (int u = 0; u < grid.width; ++u)
+      {
+        const std::size_t pixel = std::size_t(v) * grid.width + u;
+        check(pencil.turn > 0.0 ||
+            reference::crossedVoxels(rays, u, v) == reference::crossedVoxels(size, view, u, v),
+          "parallel rays cross other voxels");
+        const double offAxis = std::abs(u - grid.margin[0]) + std::abs(v - grid.margin[1]);
+        const double turned = 0.5 * reach * (moves * offAxis + 2.0 * widens) + 1e-11;
+        for (const auto& sample : parallel[pixel])
+        {
+          const auto* const e = find(exact[pixel], sample.slice);
+          const auto* const p = find(parts[pixel], sample.slice);
+          check(pencil.turn > 0.0 || (e && p), "no sample of slice ", sample.slice);
+          check(!e || std::abs(e->value - sample.value) <= turned, "eye ", rays.eye, ": ", e->value,
+            ", not ", sample.value, ", kernel ", int(kernel.shape));
+          check(!p ||
+              std::abs(p->value - sample.value) <=
+                turned + reference::lostByParts(rays, kernel, u, v, sample.slice),
+            "parts, eye ", rays.eye, ": ", p->value, ", not ", sample.value);
+        }
+      }
+    }
+  }
+}
+
+/// Cutting slices into parts costs no more than lostByParts() says.
+void testParts(Checks& check, reference::Random& random)
+{
+  std::vector<splatting::ShearWarp> images;
+  for (const Kernel& kernel : kernels)
+  {
+    double largest = 0.0, sum = 0.0, share = 0.0;
+    int samples = 0;
+    for (int n = 0; n < 60; ++n)
+    {
+      const auto size = randomSize(random, 5);
+      auto volume = reference::uniformNoise<double>(size, random.bits(), 0.0, 1.0);
+      for (double& voxel : volume.voxels)
+      {
+        voxel = n % 2 ? std::round(voxel) : voxel;
+      }
+      splatting::ShearWarp::factorise(randomPerspective(size, random), images);
+      for (const splatting::ShearWarp& image : images)
+      {
+        const PerspectiveRays rays = referenceRays(image);
+        const auto exact = reference::frustumSamples(volume, rays, kernel);
+        const auto parts = reference::slabSamples(volume, rays, kernel);
+        for (std::size_t pixel = 0; pixel < exact.size(); ++pixel)
+        {
+          const int u = int(pixel) % rays.width(), v = int(pixel) / rays.width();
+          for (std::size_t m = 0; m < exact[pixel].size(); ++m)
+          {
+            const auto& sample = parts[pixel][m];
+            const double off = std::abs(exact[pixel][m].value - sample.value);
+            const double bound = reference::lostByParts(rays, kernel, u, v, sample.slice);
+            check(off <= bound + 1e-11, "parts are off by ", off, ", not ", bound, ", kernel ",
+              int(kernel.shape));
+            largest = std::max(largest, off);
+            share = std::max(share, off / (bound + 1e-6));
+            sum += off;
+            ++samples;
+          }
+        }
+      }
+    }
+    std::cout << "kernel " << int(kernel.shape) << ": parts are off by up to " << largest << ", "
+              << sum / samples << " on average of " << samples << ", up to " << share
+              << " of the bound" << std::endl;
+    check(largest > 1e-4 && share > 0.05, "parts are the same: the test sees nothing");
+  }
+}
+}
+
+int TestReferencePerspective(int, char*[])
+{
+  Checks check;
+  reference::Random random(12);
+  testTraversalByHand(check);
+  testTraversalByBruteForce(check, random);
+  testAveragesOfProducts(check);
+  testBoxByHand(check);
+  testAveragesByBruteForce(check, random);
+  testFarEyes(check, random);
+  testParts(check, random);
+  return check.result();
+}

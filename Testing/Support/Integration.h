@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file    Integration.h
+ * @brief   numerical integration of a volume that is continued between its voxels
+ */
+#ifndef reference_Integration_h
+#define reference_Integration_h
+
+#include "Projection.h"
+
+#include <cmath>
+#include <vector>
+
+namespace reference
+{
+
+struct Node
+{
+  double position;
+  double weight;
+};
+
+/**
+ * The Gauss-Legendre rule on [-1, 1].
+ */
+std::vector<Node> gaussLegendre(int count);
+
+/**
+ * The rule applied to each piece of [low, high] between kinks (in any order, inside or not).
+ */
+std::vector<Node> compositeRule(
+  const std::vector<Node>& rule, double low, double high, std::vector<double> kinks);
+
+/**
+ * The indices from first on whose kernels reach into some interval.
+ */
+struct IndexRange
+{
+  int first;
+  int count;
+};
+
+IndexRange reachingIndices(const Kernel& kernel, double low, double high);
+
+/**
+ * Where the field may have a kink or a step along one axis: where a voxel's kernel ends. (The hat's
+ * kink at its own voxel is the end of the next voxel's.)
+ */
+std::vector<double> fieldKinks(const Kernel& kernel, double low, double high);
+
+/**
+ * A weighted sum of voxels and the sum of the weights.
+ */
+struct WeightedSum
+{
+  double sum = 0.0;
+  double weight = 0.0;
+
+  // The weight 0 is left out as 0 times infinity is NaN.
+  void addVoxel(double factor, double voxel)
+  {
+    if (factor > 0.0 && !std::isnan(voxel))
+    {
+      this->sum += factor * voxel;
+      this->weight += factor;
+    }
+  }
+  void add(double factor, const WeightedSum& other)
+  {
+    if (factor > 0.0)
+    {
+      this->sum += factor * other.sum;
+      this->weight += factor * other.weight;
+    }
+  }
+};
+
+} // namespace reference
+
+#endif

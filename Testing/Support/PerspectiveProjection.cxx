@@ -1,0 +1,353 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PerspectiveProjection.h"
+
+#include "Integration.h"
+#include "Traversal.h"
+
+#include <cmath>
+#include <limits>
+
+namespace reference
+{
+
+namespace
+{
+
+/**
+ * Weights of voxels along one axis.
+ */
+struct AxisWeights
+{
+  int first = 0;
+  std::vector<double> weights;
+
+  void divideBySum()
+  {
+    double sum = 0.0;
+    for (double weight : this->weights)
+    {
+      sum += weight;
+    }
+    for (double& weight : this->weights)
+    {
+      weight /= sum;
+    }
+  }
+};
+
+/**
+ * The mean of h(x - i) for each voxel i, where x lies in [low, high] with some density.
+ */
+template <class Density>
+AxisWeights meanKernel(const Kernel& h, double low, double high, std::vector<double> kinks,
+  const std::vector<Node>& rule, const Density& density)
+{
+  const IndexRange range = reachingIndices(h, low, high);
+  for (double kink : fieldKinks(h, low, high))
+  {
+    kinks.push_back(kink);
+  }
+  AxisWeights result;
+  result.first = range.first;
+  result.weights.assign(range.count, 0.0);
+  for (const Node& x : compositeRule(rule, low, high, kinks))
+  {
+    for (int n = 0; n < range.count; ++n)
+    {
+      result.weights[n] += x.weight * density(x.position) * h(x.position - (range.first + n));
+    }
+  }
+  return result;
+}
+
+AxisWeights meanOverInterval(
+  const Kernel& h, double low, double high, const std::vector<Node>& rule)
+{
+  return meanKernel(h, low, high, {}, rule, [=](double) { return 1.0 / (high - low); });
+}
+
+/**
+ * Where x = centre + path a + width b, a and b uniform in [-1/2, 1/2]: its density is the length of
+ * what two intervals have in common, a trapezium.
+ */
+AxisWeights meanOverPart(
+  const Kernel& h, double centre, double path, double width, const std::vector<Node>& rule)
+{
+  if (path == 0.0)
+  {
+    return meanOverInterval(h, centre - 0.5 * width, centre + 0.5 * width, rule);
+  }
+  const double outer = 0.5 * (path + width), inner = 0.5 * std::abs(path - width);
+  const auto density = [=](double x)
+  {
+    const double d = x - centre;
+    const double common =
+      std::min(d + 0.5 * width, 0.5 * path) - std::max(d - 0.5 * width, -0.5 * path);
+    return std::max(common, 0.0) / (path * width);
+  };
+  return meanKernel(
+    h, centre - outer, centre + outer, { centre - inner, centre + inner }, rule, density);
+}
+
+/**
+ * The volume seen along the rays, continued by its outermost voxels.
+ */
+struct SeenVolume
+{
+  const Volume<double>& volume;
+  const PerspectiveRays& rays;
+
+  double voxel(int i, int j, int k) const
+  {
+    const int indices[3] = { i, j, k };
+    std::array<int, 3> position;
+    for (int a = 0; a < 3; ++a)
+    {
+      position[this->rays.axes[a]] = std::clamp(indices[a], 0, this->rays.size[a] - 1);
+    }
+    return this->volume.at(position);
+  }
+
+  /**
+   * The sum of products of weights times voxels.
+   */
+  WeightedSum sum(const AxisWeights& x, const AxisWeights& y, const AxisWeights& z) const
+  {
+    WeightedSum result;
+    for (std::size_t k = 0; k < z.weights.size(); ++k)
+    {
+      for (std::size_t j = 0; j < y.weights.size(); ++j)
+      {
+        for (std::size_t i = 0; i < x.weights.size(); ++i)
+        {
+          result.addVoxel(x.weights[i] * y.weights[j] * z.weights[k],
+            this->voxel(x.first + int(i), y.first + int(j), z.first + int(k)));
+        }
+      }
+    }
+    return result;
+  }
+};
+
+std::vector<Node> ruleFor(const Kernel& kernel)
+{
+  return gaussLegendre(kernel.shape == Kernel::CosineBell ? 14 : 4);
+}
+
+/**
+ * The slices in which the pixel's ray crosses a voxel, ascending.
+ */
+std::vector<int> crossedSlices(const PerspectiveRays& rays, int u, int v)
+{
+  std::vector<int> slices;
+  for (const std::array<int, 3>& position : crossedVoxels(rays, u, v))
+  {
+    if (slices.empty() || slices.back() != position[rays.axes[2]])
+    {
+      slices.push_back(position[rays.axes[2]]);
+    }
+  }
+  return slices;
+}
+
+/**
+ * average(u, v, slice) of each slice that rays cross.
+ */
+template <class Average>
+RaySamples<double> averages(const PerspectiveRays& rays, const Average& average)
+{
+  RaySamples<double> samples;
+  for (int v = 0; v < rays.height(); ++v)
+  {
+    for (int u = 0; u < rays.width(); ++u)
+    {
+      samples.emplace_back();
+      for (int slice : crossedSlices(rays, u, v))
+      {
+        const WeightedSum slab = average(u, v, slice);
+        // No weight: 0 / 0, a NaN, no sample.
+        samples.back().push_back({ slice, slab.sum / slab.weight, slab.weight });
+      }
+    }
+  }
+  return samples;
+}
+
+double largestSlope(const std::vector<double>& slopes)
+{
+  double largest = 0.0;
+  for (double slope : slopes)
+  {
+    largest = std::max(largest, std::abs(slope));
+  }
+  return largest;
+}
+
+/**
+ * Between these depths within a slice, what a pixel's window adds to each voxel is smooth: where
+ * neither edge passes a kink of the field.
+ */
+std::vector<double> frustumKinks(const PerspectiveRays& rays, const Kernel& kernel, int u, int v,
+  const std::array<double, 2>& faces)
+{
+  std::vector<double> kinks = fieldKinks(kernel, faces[0], faces[1]);
+  const int pixel[2] = { u, v };
+  for (int a = 0; a < 2; ++a)
+  {
+    for (double side : { -0.5, 0.5 })
+    {
+      const auto edge = [&](double z)
+      { return rays.position(a, pixel[a], z) + side * rays.spacing(z); };
+      const double first = edge(faces[0]), last = edge(faces[1]);
+      if (first != last)
+      {
+        for (double kink : fieldKinks(kernel, std::min(first, last), std::max(first, last)))
+        {
+          // Edges are straight, as no slice is on both sides of the eye.
+          kinks.push_back(faces[0] + (faces[1] - faces[0]) * (kink - first) / (last - first));
+        }
+      }
+    }
+  }
+  return kinks;
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+std::array<double, 2> PerspectiveRays::faces(int first, int last) const
+{
+  const double low = first - 0.5, high = last + 0.5;
+  return this->reversed ? std::array<double, 2>{ low, std::min(high, this->eye) }
+                        : std::array<double, 2>{ std::max(low, this->eye), high };
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::array<int, 3>> crossedVoxels(const PerspectiveRays& rays, int u, int v)
+{
+  // Time is depth in units of 2^-10: slopes, multiples of 2^-24, are then multiples of 2^-34 per
+  // unit.
+  const std::array<double, 2> faces = rays.faces(0, rays.size[2] - 1);
+  const std::int64_t end = inUnits(faces[1] - faces[0]) >> 24;
+  const std::array<AxisMotion, 3> ray = { AxisMotion{ inUnits(rays.position(0, u, faces[0])),
+                                            inUnits(rays.slope[0][u]) >> 10 },
+    AxisMotion{ inUnits(rays.position(1, v, faces[0])), inUnits(rays.slope[1][v]) >> 10 },
+    AxisMotion{ inUnits(faces[0]), WholeVoxel >> 10 } };
+  std::vector<std::array<int, 3>> crossed;
+  for (const std::array<int, 3>& ijk : traverse(ray, end, rays.size))
+  {
+    if (rays.sees(ijk[2]))
+    {
+      std::array<int, 3>& position = crossed.emplace_back();
+      for (int a = 0; a < 3; ++a)
+      {
+        position[rays.axes[a]] = ijk[a];
+      }
+    }
+  }
+  return crossed;
+}
+
+//------------------------------------------------------------------------------
+int partsPerSlice(const PerspectiveRays& rays, const Kernel& kernel)
+{
+  const double product = largestSlope(rays.slope[0]) * largestSlope(rays.slope[1]);
+  int parts = kernel.shape == Kernel::Nearest ? 1 : 2;
+  while (product > 0.12 * parts * parts)
+  {
+    ++parts;
+  }
+  return parts;
+}
+
+//------------------------------------------------------------------------------
+RaySamples<double> slabSamples(
+  const Volume<double>& volume, const PerspectiveRays& rays, const Kernel& kernel)
+{
+  const SeenVolume source = { volume, rays };
+  const std::vector<Node> rule = ruleFor(kernel);
+  const int parts = partsPerSlice(rays, kernel);
+  return averages(rays,
+    [&](int u, int v, int slice)
+    {
+      const std::array<double, 2> faces = rays.faces(slice, slice);
+      const double thickness = (faces[1] - faces[0]) / parts;
+      WeightedSum slab;
+      for (int part = 0; part < parts; ++part)
+      {
+        const double low = faces[0] + part * thickness, middle = low + 0.5 * thickness;
+        AxisWeights x = meanOverPart(kernel, rays.position(0, u, middle),
+          std::abs(rays.slope[0][u]) * thickness, rays.spacing(middle), rule);
+        AxisWeights y = meanOverPart(kernel, rays.position(1, v, middle),
+          std::abs(rays.slope[1][v]) * thickness, rays.spacing(middle), rule);
+        AxisWeights z = meanOverInterval(kernel, low, low + thickness, rule);
+        x.divideBySum();
+        y.divideBySum();
+        z.divideBySum();
+        slab.add(1.0 / parts, source.sum(x, y, z));
+      }
+      return slab;
+    });
+}
+
+//------------------------------------------------------------------------------
+RaySamples<double> frustumSamples(
+  const Volume<double>& volume, const PerspectiveRays& rays, const Kernel& kernel)
+{
+  const SeenVolume source = { volume, rays };
+  const std::vector<Node> rule = ruleFor(kernel), depthRule = gaussLegendre(14);
+  return averages(rays,
+    [&](int u, int v, int slice)
+    {
+      const std::array<double, 2> faces = rays.faces(slice, slice);
+      const std::vector<double> kinks = frustumKinks(rays, kernel, u, v, faces);
+      WeightedSum slab;
+      for (const Node& node : compositeRule(depthRule, faces[0], faces[1], kinks))
+      {
+        const double z = node.position, half = 0.5 * rays.spacing(z);
+        const double x = rays.position(0, u, z), y = rays.position(1, v, z);
+        AxisWeights depth;
+        const IndexRange range = reachingIndices(kernel, z, z);
+        depth.first = range.first;
+        for (int n = 0; n < range.count; ++n)
+        {
+          depth.weights.push_back(kernel(z - (range.first + n)));
+        }
+        slab.add(node.weight / (faces[1] - faces[0]),
+          source.sum(meanOverInterval(kernel, x - half, x + half, rule),
+            meanOverInterval(kernel, y - half, y + half, rule), depth));
+      }
+      return slab;
+    });
+}
+
+//------------------------------------------------------------------------------
+double lostByParts(const PerspectiveRays& rays, const Kernel& kernel, int u, int v, int slice)
+{
+  const int parts = partsPerSlice(rays, kernel);
+  const std::array<double, 2> faces = rays.faces(slice, slice);
+  const double t = (faces[1] - faces[0]) / parts;
+  const double a = std::abs(rays.slope[0][u]), b = std::abs(rays.slope[1][v]);
+  const double drift = 0.25 * t * rays.pitch / std::abs(rays.start - rays.eye);
+  double lost = 0.0;
+  for (int part = 0; part < parts; ++part)
+  {
+    const double low = faces[0] + part * t;
+    const double narrowest = std::min(rays.spacing(low), rays.spacing(low + t));
+    double differences = 0.0;
+    if (kernel.shape == Kernel::Nearest)
+    {
+      differences = 4.0 / (narrowest * narrowest) * a * b * t * t / 12.0 + 2.0 * drift / narrowest;
+    }
+    else
+    {
+      const double steepest = kernel.shape == Kernel::Trilinear ? 2.0 : 3.14159265358979323846;
+      differences = steepest * steepest * (a * b + a + b) * t * t / 12.0 + 0.5 * steepest * drift;
+    }
+    lost += 0.5 * std::min(differences, 2.0) / parts;
+  }
+  return lost;
+}
+
+} // namespace reference
