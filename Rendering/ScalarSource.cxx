@@ -98,8 +98,7 @@ std::string problemOfInput(vtkDataSet* input)
 /// The voxels of one component of several, in an array of T. In place of NaN the least
 /// number. False if all are NaN.
 template <class T>
-bool interleave(
-  const splatting::VoxelArray& volume, int component, int components, T* out)
+bool interleave(const splatting::VoxelArray& volume, int component, int components, T* out)
 {
   const T* const in = static_cast<const T*>(volume.voxels);
   const std::ptrdiff_t n = count(volume.dimensions);

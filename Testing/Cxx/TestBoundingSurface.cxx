@@ -312,6 +312,7 @@ int TestBoundingSurface(int, char*[])
     testReuse(stage, mapper, check);
     testBadInput(stage, mapper, check);
   }
+  stage.viewAngle = 0.0;
   testSphere(stage, check);
   return check.exitCode();
 }

@@ -269,10 +269,10 @@ int TestDependentComponents(int, char*[])
 {
   stage::Checks check;
   stage::Stage stage(180, 170);
+  testTuples(stage, check);
   for (double viewAngle : { 0.0, 50.0 })
   {
     stage.viewAngle = viewAngle;
-    testTuples(stage, check);
     testMeans(stage, check);
     testRayCasters(stage, check);
     testChanges(stage, check);
