@@ -38,8 +38,8 @@ vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
 namespace
 {
 const char* const DegenerateCamera =
-  "The camera flattens the volume to a line or has no extent: give it a parallel scale above 0 and "
-  "a view-up that is not its direction.";
+  "The camera flattens the volume to a line or has no extent: give it a parallel scale, or a view "
+  "angle, above 0 and a view-up that is not its direction.";
 const char* const NoColors =
   "FinalColorWindow and FinalColorLevel give no colours: both must be finite and the window not 0.";
 

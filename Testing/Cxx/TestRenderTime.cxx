@@ -29,10 +29,11 @@ struct Scene
   vtkSmartPointer<vtkImageData> image;
   vtkSmartPointer<Mapper> mapper;
 
-  Scene()
+  explicit Scene(double viewAngle)
     : image(stage::toImageData(stage::blobsAndTubes({ 60, 64, 70 }, 9))),
       mapper(stage::splatting(image))
   {
+    this->stage.viewAngle = viewAngle;
     this->stage.show(this->mapper);
     this->stage.look({ 0.1, 0.2, 0.9 }, { 0.0, 1.0, 0.0 });
   }
@@ -140,10 +141,13 @@ void testOthers(Scene& scene, stage::Checks& check)
 int TestRenderTime(int, char*[])
 {
   stage::Checks check;
-  Scene scene;
-  testStepsDown(scene, check);
-  testComesBack(scene, check);
-  testWishes(scene, check);
-  testOthers(scene, check);
+  for (double viewAngle : { 0.0, 70.0 })
+  {
+    Scene scene(viewAngle);
+    testStepsDown(scene, check);
+    testComesBack(scene, check);
+    testWishes(scene, check);
+    testOthers(scene, check);
+  }
   return check.exitCode();
 }
