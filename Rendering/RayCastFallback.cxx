@@ -11,7 +11,6 @@
 #include "vtkMatrix4x4.h"
 #include "vtkOpenGLGPUVolumeRayCastMapper.h"
 #include "vtkVolume.h"
-#include "vtkVolumeProperty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +43,6 @@ RayCastFallback::RayCastFallback()
   this->Mapper->AutoAdjustSampleDistancesOff();
   this->Mapper->SetInputData(this->Image);
   this->Volume->SetMapper(this->Mapper);
-  this->Volume->SetProperty(this->Property);
   this->Volume->SetUserMatrix(this->Matrix);
 }
 
@@ -64,9 +62,7 @@ void RayCastFallback::Render(vtkSplattingMIPVolumeMapper* settings, vtkImageData
 
 bool RayCastFallback::IsForGpu(int blendMode)
 {
-  return blendMode != vtkVolumeMapper::COMPOSITE_BLEND &&
-    blendMode != vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND &&
-    blendMode != vtkVolumeMapper::MINIMUM_INTENSITY_BLEND;
+  return blendMode != vtkVolumeMapper::COMPOSITE_BLEND;
 }
 
 void RayCastFallback::RenderOnGpu(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image,
@@ -80,7 +76,6 @@ void RayCastFallback::RenderOnGpu(vtkSplattingMIPVolumeMapper* settings, vtkImag
   }
   copySettings(settings, image, this->GpuMapper.Get());
   this->GpuMapper->SetCroppingRegionPlanes(settings->GetCroppingRegionPlanes());
-  this->GpuMapper->SetAverageIPScalarRange(settings->GetAverageIPScalarRange());
   this->GpuMapper->SetInputData(image);
   this->GpuMapper->Render(renderer, volume);
 }
@@ -114,7 +109,7 @@ void RayCastFallback::Update(
 {
   this->UpdateImage(image);
   this->UpdateMatrix(image, volume);
-  this->UpdateProperty(settings->GetBlendMode(), volume->GetProperty());
+  this->Volume->SetProperty(volume->GetProperty());
   this->UpdateSettings(settings, image);
 }
 
@@ -157,21 +152,6 @@ void RayCastFallback::UpdateMatrix(vtkImageData* image, vtkVolume* volume)
   }
   vtkMatrix4x4::Multiply4x4(volume->GetMatrix(), turn, this->Matrix);
   this->Matrix->Modified(); // the product is written behind its back
-}
-
-void RayCastFallback::UpdateProperty(int blendMode, vtkVolumeProperty* property)
-{
-  if (this->PropertySource != property || this->PropertyTime != property->GetMTime())
-  {
-    this->Property->DeepCopy(property);
-    this->PropertySource = property;
-    this->PropertyTime = property->GetMTime();
-  }
-  // Its nearest interpolation truncates, which moves a projection by half a voxel: no mode asks for
-  // that.
-  this->Property->SetInterpolationType(blendMode == vtkVolumeMapper::COMPOSITE_BLEND
-      ? property->GetInterpolationType()
-      : VTK_LINEAR_INTERPOLATION);
 }
 
 void RayCastFallback::UpdateSettings(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image)

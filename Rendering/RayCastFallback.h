@@ -16,7 +16,6 @@ class vtkMatrix4x4;
 class vtkRenderer;
 class vtkSplattingMIPVolumeMapper;
 class vtkVolume;
-class vtkVolumeProperty;
 class vtkWindow;
 
 /**
@@ -48,7 +47,6 @@ private:
   void Update(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, vtkVolume* volume);
   void UpdateImage(vtkImageData* image);
   void UpdateMatrix(vtkImageData* image, vtkVolume* volume);
-  void UpdateProperty(int blendMode, vtkVolumeProperty* property);
   void UpdateSettings(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image);
 
   vtkNew<vtkFixedPointVolumeRayCastMapper> Mapper;
@@ -56,12 +54,9 @@ private:
   vtkNew<vtkImageData> Image;
   vtkNew<vtkMatrix4x4> Matrix;
   vtkNew<vtkVolume> Volume;
-  vtkNew<vtkVolumeProperty> Property;
-  // What Image and Property were copied from, and when: the ray caster prepares anew what changes.
+  // What Image was copied from, and when: the ray caster prepares anew what changes.
   vtkImageData* ImageSource = nullptr;
   vtkMTimeType ImageTime = 0;
-  vtkVolumeProperty* PropertySource = nullptr;
-  vtkMTimeType PropertyTime = 0;
 };
 
 #endif

@@ -95,11 +95,10 @@ std::string problemOfInput(vtkDataSet* input)
   return {};
 }
 
-/// The voxels of one component of several, in an array of T. In place of NaN what never wins: the
-/// least number, or the greatest where minima are projected. False if all are NaN.
+/// The voxels of one component of several, in an array of T. In place of NaN the least
+/// number. False if all are NaN.
 template <class T>
-bool interleave(
-  const splatting::VoxelArray& volume, int component, int components, bool forMinimum, T* out)
+bool interleave(const splatting::VoxelArray& volume, int component, int components, T* out)
 {
   const T* const in = static_cast<const T*>(volume.voxels);
   const std::ptrdiff_t n = count(volume.dimensions);
@@ -108,8 +107,7 @@ bool interleave(
   for (std::ptrdiff_t voxel = 0; voxel < n; ++voxel)
   {
     const T value = in[voxel];
-    const bool isFarther = forMinimum ? value > filler : value < filler;
-    if (value == value && (isFarther || !found))
+    if (value == value && (value < filler || !found))
     {
       filler = value;
       found = true;
@@ -424,7 +422,7 @@ bool ScalarSource::IsInputArray() const
 
 //------------------------------------------------------------------------------
 // Nothing if no voxel has a number.
-vtkSmartPointer<vtkDataArray> ScalarSource::InterleavedVolumes(bool forMinimum) const
+vtkSmartPointer<vtkDataArray> ScalarSource::InterleavedVolumes() const
 {
   const int components = static_cast<int>(this->Volumes.size());
   const auto array = vtkSmartPointer<vtkDataArray>::Take(
@@ -439,27 +437,25 @@ vtkSmartPointer<vtkDataArray> ScalarSource::InterleavedVolumes(bool forMinimum) 
       {
         using T = std::remove_pointer_t<decltype(null)>;
         T* const values = static_cast<T*>(array->GetVoidPointer(0));
-        found |= interleave(this->Volumes[c], c, components, forMinimum, values);
+        found |= interleave(this->Volumes[c], c, components, values);
       });
   }
   return found ? array : nullptr;
 }
 
 //------------------------------------------------------------------------------
-vtkImageData* ScalarSource::Image(bool forMinimum)
+vtkImageData* ScalarSource::Image()
 {
-  // Only copies have fillers.
-  if (!this->StandIn || !(this->Imaged == this->Examined) ||
-    (this->StandInCopy && this->ImagedForMinimum != forMinimum))
+  if (!this->StandIn || !(this->Imaged == this->Examined))
   {
-    this->MakeImage(forMinimum);
+    this->MakeImage();
   }
   return this->StandIn->GetPointData()->GetScalars() ? this->StandIn.Get() : nullptr;
 }
 
 //------------------------------------------------------------------------------
 // Without scalars if there is nothing to see, so that this, too, is found once.
-void ScalarSource::MakeImage(bool forMinimum)
+void ScalarSource::MakeImage()
 {
   const VolumeGrid& grid = this->Place.grid;
   const glm::ivec3 last = grid.dimensions - 1;
@@ -482,12 +478,11 @@ void ScalarSource::MakeImage(bool forMinimum)
   if (!this->IsInputArray())
   {
     this->Update();
-    this->StandInCopy = this->InterleavedVolumes(forMinimum);
+    this->StandInCopy = this->InterleavedVolumes();
     scalars = this->StandInCopy;
   }
   this->StandIn->GetPointData()->SetScalars(scalars);
   this->Imaged = this->Examined;
-  this->ImagedForMinimum = forMinimum;
 }
 
 //------------------------------------------------------------------------------

@@ -69,10 +69,10 @@ public:
 
   /**
    * The same voxels as point scalars of a vtkImageData, for mappers that know nothing else. Hidden
-   * voxels and NaN have the least value, or the greatest for minima. Shares the input's array if
-   * this holds voxel after voxel and all have a number. nullptr if no voxel has one.
+   * voxels and NaN have the least value. Shares the input's array if this holds voxel after voxel
+   * and all have a number. nullptr if no voxel has one.
    */
-  vtkImageData* Image(bool forMinimum);
+  vtkImageData* Image();
   /// Whether there is such an image, from before; none if the input changed since.
   bool HasImage() const { return this->StandIn != nullptr; }
 
@@ -114,13 +114,12 @@ private:
   splatting::VoxelArray MakeVolume(
     splatting::StridedVoxels voxels, const std::vector<unsigned char>& hidden, Copy& copy) const;
   bool IsInputArray() const;
-  vtkSmartPointer<vtkDataArray> InterleavedVolumes(bool forMinimum) const;
-  void MakeImage(bool forMinimum);
+  vtkSmartPointer<vtkDataArray> InterleavedVolumes() const;
+  void MakeImage();
 
-  Key Examined;                  // what passed the gate
-  Key Volumed;                   // what the volumes were made of
-  Key Imaged;                    // what the image was made of
-  bool ImagedForMinimum = false; // likewise
+  Key Examined; // what passed the gate
+  Key Volumed;  // what the volumes were made of
+  Key Imaged;   // what the image was made of
   GridOfDataSet Place;
   int NumberOfComponents = 1;
   bool Dependent = false;

@@ -38,10 +38,18 @@ vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
 namespace
 {
 const char* const DegenerateCamera =
-  "The camera flattens the volume to a line or has no extent: give it a parallel scale above 0 and "
-  "a view-up that is not its direction.";
+  "The camera flattens the volume to a line or has no extent: give it a parallel scale, or a view "
+  "angle, above 0 and a view-up that is not its direction.";
 const char* const NoColors =
   "FinalColorWindow and FinalColorLevel give no colours: both must be finite and the window not 0.";
+
+/// Whether a blend mode is splatted; others are ray cast.
+bool isProjection(int blendMode)
+{
+  return blendMode == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND ||
+    blendMode == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND ||
+    blendMode == vtkVolumeMapper::AVERAGE_INTENSITY_BLEND;
+}
 
 const char* nameOfMode(int mode)
 {
@@ -76,7 +84,6 @@ class vtkSplattingMIPVolumeMapper::Internals
 public:
   std::string Problem(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
   std::string ProblemOfSettings(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
-  const char* ReasonToRayCast(vtkSplattingMIPVolumeMapper* self);
   void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
   bool AreAsBefore(bool ordered) const;
@@ -182,18 +189,6 @@ std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
 }
 
 //------------------------------------------------------------------------------
-const char* vtkSplattingMIPVolumeMapper::Internals::ReasonToRayCast(
-  vtkSplattingMIPVolumeMapper* self)
-{
-  if (self->BlendMode != MAXIMUM_INTENSITY_BLEND && self->BlendMode != MINIMUM_INTENSITY_BLEND &&
-    self->BlendMode != AVERAGE_INTENSITY_BLEND)
-  {
-    return "the blend mode is no intensity projection";
-  }
-  return nullptr;
-}
-
-//------------------------------------------------------------------------------
 // Tells how much of the projection is done and whether the window wants the rest.
 bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* self, double done)
 {
@@ -275,13 +270,11 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper
 // What is set but means nothing where rays are cast.
 void vtkSplattingMIPVolumeMapper::Internals::WarnOfIgnored(vtkSplattingMIPVolumeMapper* self)
 {
-  const bool hasType =
-    self->MaximumType != GLOBAL && self->BlendMode == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND;
-  if ((self->Slab || self->BoundingSurface || hasType) && this->Announced.insert("ignored").second)
+  if ((self->Slab || self->BoundingSurface) && this->Announced.insert("ignored").second)
   {
     vtkWarningWithObjectMacro(self,
-      << "Slab, BoundingSurface and MaximumType mean nothing where a volume is ray cast: it is "
-         "shown without them.");
+      << "Slab and BoundingSurface mean nothing where a volume is ray cast: it is shown without "
+         "them.");
   }
 }
 
@@ -354,9 +347,9 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     vtkWarningMacro(<< "The rectilinear grid is resampled to larger steps than its least, which is "
                        "too small for that: small cells may be lost. Extract a part of it.");
   }
-  if (const char* reason = in.ReasonToRayCast(this))
+  if (!isProjection(this->BlendMode))
   {
-    this->RenderByRayCasting(ren, vol, reason);
+    this->RenderByRayCasting(ren, vol);
     return "";
   }
   if (this->Slab)
@@ -422,16 +415,15 @@ void vtkSplattingMIPVolumeMapper::DisplayPicture(vtkRenderer* ren)
 }
 
 //------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
-  vtkRenderer* ren, vtkVolume* vol, const char* reason)
+void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
   const bool isForGpu = RayCastFallback::IsForGpu(this->BlendMode);
-  if (in.Announced.insert(reason).second)
+  if (in.Announced.insert("ray casting").second)
   {
     vtkWarningMacro(<< "Rendering by "
                     << (isForGpu ? "vtkGPUVolumeRayCastMapper" : "vtkFixedPointVolumeRayCastMapper")
-                    << ", because " << reason << ".");
+                    << ", because the blend mode is no intensity projection.");
   }
   if (!in.RayCaster)
   {
@@ -439,9 +431,8 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
     if (!vtkSmartPointer<vtkRayCastImageDisplayHelper>::New())
     {
       vtkErrorMacro(<< "There is no OpenGL for vtkFixedPointVolumeRayCastMapper, which is needed "
-                       "because "
-                    << reason
-                    << ": initialise VTK::RenderingVolumeOpenGL2 with vtk_module_autoinit or "
+                       "because the blend mode is no intensity projection: initialise "
+                       "VTK::RenderingVolumeOpenGL2 with vtk_module_autoinit or "
                        "VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2).");
       return;
     }
@@ -449,7 +440,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(
   }
   in.WarnOfIgnored(this);
   this->LastRenderUsedRayCasting = true;
-  vtkImageData* const image = in.Source.Image(this->BlendMode == MINIMUM_INTENSITY_BLEND);
+  vtkImageData* const image = in.Source.Image();
   if (!image)
   {
     return; // no voxel is shown

@@ -13,16 +13,21 @@
  * the shear image to the viewport, where the interpolated scalar is looked up in the transfer
  * functions of the vtkVolumeProperty. Averages are taken within a slice, maxima between slices.
  *
+ * Perspective views have up to six shear images, one for each direction of an axis that some of
+ * their rays follow most; rays are those of the eye, slices are scaled as they are sheared, each
+ * pixel has weights of its own, and warps are projective. The eye may be anywhere, in the volume,
+ * too: slices count whose middle lies before it.
+ *
  * What is splatted: vtkImageData and vtkRectilinearGrid with point or cell scalars of any numeric
- * type, any extent, spacing, origin and direction matrix, any invertible prop matrix, any
- * orthographic view, in the blend modes MAXIMUM_INTENSITY (the default here), MINIMUM_INTENSITY and
+ * type, any extent, spacing, origin and direction matrix, any invertible prop matrix, any parallel
+ * or perspective view, in the blend modes MAXIMUM_INTENSITY (the default here), MINIMUM_INTENSITY and
  * AVERAGE_INTENSITY. Rays are cut by the camera's clipping range, ClippingPlanes, Cropping, the
  * slab, the bounding surface, and opaque geometry in the scene.
  *
- * Perspective cameras and other blend modes are passed, with the same settings but slab, bounding
- * surface and MaximumType, to an internal vtkFixedPointVolumeRayCastMapper, or to a
- * vtkGPUVolumeRayCastMapper if it alone has the blend mode; a warning says so once. Hidden voxels
- * and NaN have the lowest value there (the highest in minima), and cells end at their centres.
+ * Other blend modes are passed, with the same settings but slab and bounding surface, to an
+ * internal vtkFixedPointVolumeRayCastMapper (COMPOSITE) or vtkGPUVolumeRayCastMapper (the others);
+ * a warning says so once. Hidden voxels and NaN have the lowest value there, and cells end at their
+ * centres.
  *
  * Which scalars: those that ScalarMode, SelectScalarArray and VectorMode choose. Of 1 to 4
  * independent components (vtkVolumeProperty::IndependentComponents) each has a maximum of its own;
@@ -86,7 +91,10 @@
  * are rounded to multiples of 2^-16 for 8-bit voxels (all sums are then exact), 2^-24 and 2^-48
  * else, and always sum to exactly 1. For n weights (9 standard, 75 high) the error is at most
  * n 2^-17 (max-min) for 8 bits, n 2^-24 (max-min) + (n+1) 2^-24 max|v| for 16 bits and float, and
- * the same with 2^-48 and 2^-53 for double. No step depends on the number of threads or on the
+ * the same with 2^-48 and 2^-53 for double. In perspective slices are cut into up to three parts,
+ * whose weights are products of one for the column, one for the row and one for the slice and are
+ * rounded likewise, for all types; that x and y grow together along a ray within a part is left
+ * out, a covariance of no more than 0.01 square voxels. No step depends on the number of threads or on the
  * instruction set: the same input gives the same bits.
  *
  * NaN voxels are no samples: they never win and, in a worksheet, the average is taken over the
@@ -216,6 +224,9 @@ public:
    * thickness (3x3 weights).
    * HIGH: the average of the volume, interpolated with Kernel, over the same region (5x5 weights
    * from each of three slices).
+   *
+   * In perspective a pixel's area is as wide as rays are apart: nearly a voxel where the volume is
+   * farthest from the eye, and less in nearer slices.
    */
   vtkSetClampMacro(QualityMode, int, PREVIEW, HIGH);
   vtkGetMacro(QualityMode, int);
@@ -337,8 +348,8 @@ public:
   ///@{
   /**
    * Show only a slab across the view (thin-slab or sliding MIP): what lies within SlabThickness / 2
-   * of the plane through SlabCenter, a point of the world, that is orthogonal to the rays. Default
-   * off. Each new place of the slab is one projection of the slices in it; nothing is indexed anew.
+   * of the plane through SlabCenter, a point of the world, that is orthogonal to the rays, in
+   * perspective parallel to the plane of the picture. Default off. Each new place of the slab is one projection of the slices in it; nothing is indexed anew.
    * It cuts as ClippingPlanes do: a ray that has the middle of no slice inside shows the nearest
    * one, so that a thin slab shows one slice.
    */
@@ -399,7 +410,7 @@ public:
   /**
    * How the footprint weights are obtained. 0 (default): closed form. N in [1, 64]: from the
    * paper's general table, digitised at N x N sub-pixels per pixel [CS98, section 3], whose weights
-   * tend to the closed form as N grows.
+   * tend to the closed form as N grows. Perspective views always have the closed form.
    */
   vtkSetClampMacro(FootprintSampling, int, 0, 64);
   vtkGetMacro(FootprintSampling, int);
@@ -427,7 +438,7 @@ public:
    * chains, which are slower on all data that we measured (splatmip-paper reports it), but need
    * less memory than the volume.
    *
-   * Where rays are cut, BRICKS take the place of chains. Volumes with NaN or infinity are walked
+   * Where rays are cut and in perspective, BRICKS take the place of chains. Volumes with NaN or infinity are walked
    * densely, as are all when IndexMemoryBudget has no room for the index; GetAccelerationUsed()
    * tells.
    */
@@ -498,13 +509,16 @@ public:
   ///@}
 
   /**
-   * The last shear image, one pixel per voxel, or nullptr before the first native render. Scalars:
+   * The last shear image, one pixel per voxel, or nullptr before the first render. Scalars:
    * as many components as are projected, in the input's type in mode PREVIEW (that of the copy, if
    * voxels are hidden or resampled, or a magnitude), else, and for averages and depth shading,
    * float (double for 32- and 64-bit integers and double). The image's physical coordinates are
    * voxel indices, relative to the volume's first voxel, on the volume's middle slice along the
    * principal axis: the ray of pixel (u, v) at origin + (u, v) crosses slice k there at that point
-   * minus GetShear() * (k - (slices-1)/2). Pixels whose ray meets no sample of any component are
+   * minus GetShear() * (k - (slices-1)/2). In perspective it is the largest of the shear images, and
+   * the coordinates are voxel indices half a slice beyond the slice that is farthest from the eye;
+   * pixels are a little less than 1 apart there, and the last columns of a row may be none of the
+   * view's rays. Pixels whose ray meets no sample of any component are
    * marked hidden in the ghost array. Axes: for principal axis 2 the image's x and y are the
    * volume's first and second axis, for 1 first and third, for 0 second and third. Costs a copy of
    * the shear image; the caller must not change it.
@@ -512,15 +526,16 @@ public:
   vtkImageData* GetShearImage();
 
   /**
-   * The image axis (0, 1 or 2) along which the last native render projected; -1 before.
+   * The image axis (0, 1 or 2) along which the last render projected, in perspective for
+   * GetShearImage(); -1 before.
    */
   int GetPrincipalAxis();
 
   ///@{
   /**
-   * The shears of the last native render, in pixels per slice: slice k is moved by shear * k along
-   * the shear image's x and y. At most 1 in magnitude; rounded to multiples of 2^-24 so that equal
-   * views have equal bits.
+   * The shears of the last render, in pixels per slice: slice k is moved by shear * k along the
+   * shear image's x and y. At most 1 in magnitude; rounded to multiples of 2^-24 so that equal
+   * views have equal bits. In perspective rays differ; those of the image's middle pixel, in voxels.
    */
   void GetShear(double shear[2]);
   double* GetShear() VTK_SIZEHINT(2);
@@ -542,7 +557,8 @@ public:
    * the window, or the camera's position and zoom, or looks from the other side, re-uses the last
    * shear image and leaves the number as it is; unless what cuts the volume has moved with the
    * camera (its clipping range, geometry in the scene), CullBelowWindow finds another window, or
-   * depth shading and local maxima are seen from the other side.
+   * depth shading and local maxima are seen from the other side. In perspective the eye must stay
+   * where it is, and the whole volume in the window: it may then turn, roll and zoom.
    */
   vtkIdType GetNumberOfProjections();
 
@@ -577,7 +593,7 @@ protected:
   ~vtkSplattingMIPVolumeMapper() override;
 
   const char* RenderBySplatting(vtkRenderer* ren, vtkVolume* vol);
-  void RenderByRayCasting(vtkRenderer* ren, vtkVolume* vol, const char* reason);
+  void RenderByRayCasting(vtkRenderer* ren, vtkVolume* vol);
   void DisplayPicture(vtkRenderer* ren);
 
   /**

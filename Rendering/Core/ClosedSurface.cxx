@@ -158,7 +158,7 @@ private:
   Span pixels(const Side (&sides)[3], int v) const
   {
     const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
-    const int last = this->Geometry.width() - 1;
+    const int last = this->Geometry.rayCount().x - 1;
     double low = -Infinity, high = Infinity;
     for (const Side& s : sides)
     {

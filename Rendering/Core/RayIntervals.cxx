@@ -94,8 +94,9 @@ struct Depths
     const double start = h.y * geometry.rows().at[v] + h.z * reference + h.w;
     const double size = glm::length(glm::dvec3(h));
     const double level = 1e-14 * size, least = -Rounding * (size + std::abs(h.w));
-    // Most planes bound a whole row in the same sense; speeds change linearly along it.
-    const double speeds[] = { h.x * slope[0] + rest, h.x * slope[count - 1] + rest };
+    // Most planes bound a whole row in the same sense; speeds change linearly along its rays.
+    const int last = std::clamp(geometry.rayCount().x - 1 - u0, 0, count - 1);
+    const double speeds[] = { h.x * slope[0] + rest, h.x * slope[last] + rest };
     const bool begins = std::min(speeds[0], speeds[1]) > level;
     if (begins || std::max(speeds[0], speeds[1]) < -level)
     {

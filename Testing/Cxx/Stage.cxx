@@ -110,7 +110,11 @@ void Stage::look(const Vector& direction, const Vector& up, double scale)
   this->volume->GetBounds(bounds);
   const Vector size = { bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4] };
   const double diagonal = vtkMath::Norm(size.data());
-  const double far = 2.0 * diagonal / vtkMath::Norm(direction.data());
+  const double height = 0.5 * scale * diagonal;
+  const double distance = this->viewAngle > 0.0
+    ? height / std::tan(0.5 * vtkMath::RadiansFromDegrees(this->viewAngle))
+    : 2.0 * diagonal;
+  const double far = distance / vtkMath::Norm(direction.data());
   vtkCamera* const camera = this->renderer->GetActiveCamera();
   Vector middle;
   Vector position;
@@ -119,11 +123,12 @@ void Stage::look(const Vector& direction, const Vector& up, double scale)
     middle[a] = 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);
     position[a] = middle[a] - far * direction[a];
   }
-  camera->ParallelProjectionOn();
+  camera->SetParallelProjection(this->viewAngle <= 0.0);
+  camera->SetViewAngle(this->viewAngle > 0.0 ? this->viewAngle : 30.0);
   camera->SetFocalPoint(middle.data());
   camera->SetPosition(position.data());
   camera->SetViewUp(up.data());
-  camera->SetParallelScale(0.5 * scale * diagonal);
+  camera->SetParallelScale(height);
   this->renderer->ResetCameraClippingRange();
 }
 

@@ -89,8 +89,9 @@ public:
   void show(vtkVolumeMapper* mapper);
   void setGrayRamp(double black, double white);
   /**
-   * Looks along the direction from far enough, with a parallel projection. The height of the window
-   * is the scale times the diagonal of the volume's bounds.
+   * Looks along the direction at the middle of the volume's bounds, where the height of the window
+   * is the scale times their diagonal: with a parallel projection from far enough, or in
+   * perspective if viewAngle is above 0.
    */
   void look(const Vector& direction, const Vector& up, double scale = 1.0);
 
@@ -107,6 +108,8 @@ public:
   vtkNew<vtkRenderer> renderer;
   vtkNew<vtkVolume> volume;
   vtkNew<vtkVolumeProperty> property;
+  /// Of the views that look() sets, in degrees.
+  double viewAngle = 0.0;
 
 private:
   int Width;

@@ -284,12 +284,17 @@ int TestAbort(int, char*[])
 {
   stage::Checks check;
   Scene scene;
-  for (int mode = 0; mode < 3; ++mode)
+  for (double viewAngle : { 80.0, 0.0 })
   {
-    scene.mapper->SetQualityMode(mode);
-    const std::string what = scene.mapper->GetQualityModeAsString();
-    testProgress(scene, what, check);
-    testAborts(scene, what, check);
+    scene.stage.viewAngle = viewAngle;
+    scene.stage.look(Directions[0], Up);
+    for (int mode = 0; mode < 3; ++mode)
+    {
+      scene.mapper->SetQualityMode(mode);
+      const std::string what = scene.mapper->GetQualityModeAsString();
+      testProgress(scene, what, check);
+      testAborts(scene, what, check);
+    }
   }
   scene.mapper->SetBlendModeToAverageIntensity();
   testProgress(scene, "mean", check);

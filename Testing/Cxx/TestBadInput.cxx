@@ -394,6 +394,18 @@ void testCameras(Scene& scene, stage::Checks& check)
     { "without extent", [](vtkCamera* camera) { camera->SetParallelScale(0.0); } },
     { "with an extent that is not a number",
       [](vtkCamera* camera) { camera->SetParallelScale(vtkMath::Nan()); } },
+    { "with a view angle that is not a number",
+      [](vtkCamera* camera)
+      {
+        camera->ParallelProjectionOff();
+        camera->SetViewAngle(vtkMath::Nan());
+      } },
+    { "at no place in perspective",
+      [](vtkCamera* camera)
+      {
+        camera->ParallelProjectionOff();
+        camera->SetPosition(0.0, vtkMath::Nan(), 0.0);
+      } },
     { "at no place", [](vtkCamera* camera) { camera->SetPosition(0.0, vtkMath::Nan(), 0.0); } },
     { "at an infinite place",
       [](vtkCamera* camera) { camera->SetPosition(0.0, vtkMath::Inf(), 0.0); } },

@@ -46,7 +46,11 @@ void testMinimumAgainstRayCaster(stage::Stage& stage, stage::Checks& check)
     int value;
     double shift, psnr, ssim;
   };
-  const Mode modes[] = { { Mapper::PREVIEW, 0.15, 32.1, 0.9787 },
+  // In perspective voxels near the eye are seen twice as large, in the preview with their edges:
+  // 0.20 pixel, 31.7 dB and 0.9762 were measured.
+  const bool perspective = stage.viewAngle > 0.0;
+  const Mode modes[] = { { Mapper::PREVIEW, perspective ? 0.25 : 0.15, perspective ? 30.7 : 32.1,
+                           perspective ? 0.9742 : 0.9787 },
     { Mapper::STANDARD, 0.1, 41.4, 0.993 }, { Mapper::HIGH, 0.1, 38.1, 0.9913 } };
   const auto image = stage::toImageData(negative(stage::blobsAndTubes({ 72, 80, 88 }, 60)));
   stage.setGrayRamp(255.0, 0.0);
@@ -123,12 +127,13 @@ void testMinimumOfNegative(stage::Stage& stage, int type, double c, stage::Check
       stage.show(minimum);
       stage.look(direction, up);
       const std::vector<double> found = shearImageOf(stage, minimum);
-      std::vector<double> expected = shearImageOf(stage, maximum);
-      for (double& value : expected)
-      {
-        value = std::isinf(value) ? value : c - value;
-      }
-      check(found == expected,
+      const std::vector<double> expected = shearImageOf(stage, maximum);
+      // In perspective bytes have weights that are no multiples of 2^-16. Up to 3 parts with 75
+      // weights each are added up, in both projections.
+      const double rounding = stage.viewAngle > 0.0 ? 2.0 * 226.0 * 255.0 * 0x1p-24 : 0.0;
+      const auto isNegative = [=](double low, double high)
+      { return std::isinf(low) ? low == high : std::abs(low - (c - high)) <= rounding; };
+      check(std::equal(found.begin(), found.end(), expected.begin(), expected.end(), isNegative),
         std::string("The minimum is the negative's maximum, mode ") +
           minimum->GetQualityModeAsString() + ", type " + std::to_string(type) + ".");
     }
@@ -288,10 +293,16 @@ int TestBlendModes(int, char*[])
 {
   stage::Checks check;
   stage::Stage stage(Width, Height);
-  testMinimumAgainstRayCaster(stage, check);
-  testMinimumOfNegative<std::uint8_t>(stage, VTK_UNSIGNED_CHAR, 255.0, check);
-  testMinimumOfNegative<float>(stage, VTK_FLOAT, 0.0, check);
-  testAverageAgainstRayCaster(stage, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    testMinimumAgainstRayCaster(stage, check);
+    testMinimumOfNegative<std::uint8_t>(stage, VTK_UNSIGNED_CHAR, 255.0, check);
+    testMinimumOfNegative<float>(stage, VTK_FLOAT, 0.0, check);
+    testAverageAgainstRayCaster(stage, check);
+  }
+  testEmptyRange(stage, check);
+  stage.viewAngle = 0.0;
   testDefinitions(stage, check);
   testReuse(stage, check);
   testEmptyRange(stage, check);

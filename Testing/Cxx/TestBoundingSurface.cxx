@@ -304,10 +304,15 @@ int TestBoundingSurface(int, char*[])
   stage::Stage stage(Width, Height);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
   const auto mapper = stage::splatting(image);
-  stage.show(mapper);
-  testBox(stage, mapper, check);
-  testReuse(stage, mapper, check);
-  testBadInput(stage, mapper, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    stage.show(mapper);
+    testBox(stage, mapper, check);
+    testReuse(stage, mapper, check);
+    testBadInput(stage, mapper, check);
+  }
+  stage.viewAngle = 0.0;
   testSphere(stage, check);
   return check.exitCode();
 }

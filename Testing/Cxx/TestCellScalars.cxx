@@ -152,10 +152,14 @@ int TestCellScalars(int, char*[])
   {
     stage::Stage stage(120, 110);
     stage.setGrayRamp(0.0, 110.0);
-    testCellsAsPoints(stage, check);
-    testPictureOfCells(size, stage, check);
-    testPictureOfCells({ 15, 12, 1 }, stage, check);
-    testFlatCells(stage, check);
+    for (double viewAngle : { 0.0, 50.0 })
+    {
+      stage.viewAngle = viewAngle;
+      testCellsAsPoints(stage, check);
+      testPictureOfCells(size, stage, check);
+      testPictureOfCells({ 15, 12, 1 }, stage, check);
+      testFlatCells(stage, check);
+    }
   }
   testBoundsOfCells(check);
   testCellsAgainstGPU(check);

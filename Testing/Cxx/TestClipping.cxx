@@ -29,9 +29,13 @@ const stage::Vector directions[] = { { 0.3, 0.4, -0.8 }, { -0.8, 0.3, 0.4 }, { 0
 
 /// Along every principal axis the picture must be that of the ray caster, and not that without
 /// planes. A plane takes away whole slices' shares of a ray, so that pictures differ along the cut.
+/// Measured: 38.9 dB, 0.9916 and 0.14 pixel at worst.
 void compare(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
   const std::string& what, stage::Checks& check)
 {
+  // An eye in the volume sees voxels many pixels wide, and what averages take from them: 36.0 dB
+  // and 0.9855; VTK's ray casters have 44 dB and 0.995 to each other there.
+  const bool magnifies = stage.viewAngle > 0.0 && what == "Camera inside";
   const auto rayCaster = stage::fixedPointRayCaster(image, 0.25);
   rayCaster->SetClippingPlanes(mapper->GetClippingPlanes());
   stage.show(rayCaster);
@@ -39,8 +43,8 @@ void compare(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageD
   stage.show(mapper);
   const stage::Likeness likeness(truth, stage.gray());
   std::cout << what << ": " << likeness.text() << std::endl;
-  check(likeness.psnr > 37.0, what + ": PSNR.");
-  check(likeness.ssim > 0.99, what + ": SSIM.");
+  check(likeness.psnr > (magnifies ? 35.0 : 37.0), what + ": PSNR.");
+  check(likeness.ssim > (magnifies ? 0.9835 : 0.99), what + ": SSIM.");
   check(likeness.largestShift() < 0.2, what + ": shift.");
 }
 
@@ -64,13 +68,14 @@ void testClippingRange(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
     camera->SetClippingRange(middle - 2.3, middle + 1000.0);
     compare(stage, mapper, image, "Near plane", check);
     checkThatSomethingIsCut(whole, stage, check);
-    camera->SetClippingRange(1.0, middle + 1.7);
+    camera->SetClippingRange(1.0, middle - 1.7);
     compare(stage, mapper, image, "Far plane", check);
     checkThatSomethingIsCut(whole, stage, check);
   }
 }
 
-/// The camera in the middle of the volume sees what is before it.
+/// The camera in the middle of the volume sees what is before it. In perspective it is near a
+/// corner, where the volume is dark: what counts there is a matter of half a slice.
 void testCameraInside(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
   stage::Checks& check)
 {
@@ -79,9 +84,15 @@ void testCameraInside(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, 
     stage.show(mapper);
     stage.look(direction, up);
     vtkCamera* const camera = stage.renderer->GetActiveCamera();
-    camera->SetPosition(image->GetCenter());
-    double focus[3];
-    vtkMath::Add(image->GetCenter(), direction.data(), focus);
+    double focus[3], eye[3];
+    image->GetCenter(eye);
+    vtkMath::Add(eye, direction.data(), focus);
+    for (int a = 0; a < 3 && stage.viewAngle > 0.0; ++a)
+    {
+      eye[a] = direction[a] > 0.0 ? 3.0 : image->GetDimensions()[a] - 4.0;
+      focus[a] = image->GetCenter()[a];
+    }
+    camera->SetPosition(eye);
     camera->SetFocalPoint(focus);
     camera->SetClippingRange(0.1, 1000.0);
     compare(stage, mapper, image, "Camera inside", check);
@@ -183,9 +194,14 @@ int TestClipping(int, char*[])
   stage::Stage stage(Width, Height);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
   const auto mapper = stage::splatting(image);
-  testClippingRange(stage, mapper, image, check);
-  testCameraInside(stage, mapper, image, check);
-  testClippingPlanes(stage, mapper, image, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    testClippingRange(stage, mapper, image, check);
+    testCameraInside(stage, mapper, image, check);
+    testClippingPlanes(stage, mapper, image, check);
+  }
+  stage.viewAngle = 0.0;
   for (const std::array<int, 3>& size : { std::array<int, 3>{ 40, 40, 1 }, { 40, 1, 40 },
          { 1, 40, 40 }, { 1, 1, 40 }, { 1, 40, 1 }, { 40, 1, 1 }, { 1, 1, 1 }, { 2, 2, 2 } })
   {

@@ -55,7 +55,9 @@ double halfVoxel(stage::Stage& stage, vtkImageData* image)
 {
   const double* spacing = image->GetSpacing();
   const double pixels = 0.5 * Height / stage.renderer->GetActiveCamera()->GetParallelScale();
-  return 0.5 * pixels * *std::max_element(spacing, spacing + 3);
+  // In perspective, at the volume's corner that is nearest to the eye.
+  const double nearer = stage.viewAngle > 0.0 ? 1.9 : 1.0;
+  return 0.5 * pixels * nearer * *std::max_element(spacing, spacing + 3);
 }
 
 /**
@@ -86,15 +88,16 @@ reference::Image<double> truthOf(stage::Stage& stage, vtkVolumeMapper* rayCaster
 /**
  * Ray casters end rays at the planes, the mapper shows whole voxels or none: along a region's rim
  * pictures are up to half a voxel off. PSNR and SSIM: measured minimum less 1 dB and less 0.002;
- * the two ray casters have 35 dB and 0.983 to each other at least, and shifts up to 0.4 pixel.
+ * the two ray casters have 35 dB and 0.983 to each other at least, and shifts up to 0.4 pixel. In
+ * perspective what lies near the eye is seen nearly twice as large, and its rims are.
  */
 void compare(const reference::Image<double>& truth, const reference::Image<double>& picture,
-  double shift, const std::string& what, stage::Checks& check)
+  double shift, bool perspective, const std::string& what, stage::Checks& check)
 {
   const stage::Likeness likeness(truth, picture);
   std::cout << what << ": " << likeness.text() << std::endl;
-  check(likeness.psnr > 30.6, what + ": PSNR.");
-  check(likeness.ssim > 0.978, what + ": SSIM.");
+  check(likeness.psnr > (perspective ? 27.7 : 30.6), what + ": PSNR.");
+  check(likeness.ssim > (perspective ? 0.970 : 0.978), what + ": SSIM.");
   check(likeness.largestShift() < shift, what + ": shift.");
 }
 
@@ -127,9 +130,9 @@ void testAgainstRayCasters(stage::Stage& stage, stage::Checks& check)
       const double distance = 0.25 * *std::min_element(spacing, spacing + 3);
       const std::string what = "Flags " + std::to_string(region);
       compare(truthOf(stage, stage::fixedPointRayCaster(image, distance), mapper, image, true),
-        picture, halfVoxel(stage, image), what + ", fixed-point", check);
+        picture, halfVoxel(stage, image), stage.viewAngle > 0.0, what + ", fixed-point", check);
       compare(truthOf(stage, stage::gpuRayCaster(image, distance), mapper, image, false), picture,
-        halfVoxel(stage, image), what + ", GPU", check);
+        halfVoxel(stage, image), stage.viewAngle > 0.0, what + ", GPU", check);
     }
   }
 }
@@ -186,7 +189,7 @@ void testDefinition(stage::Stage& stage, stage::Checks& check)
 }
 
 /// What is ray cast is cropped at the same place, wherever the extent begins.
-void testPerspective(stage::Stage& stage, stage::Checks& check)
+void testRayCasting(stage::Stage& stage, stage::Checks& check)
 {
   reference::Random random(44);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
@@ -199,10 +202,10 @@ void testPerspective(stage::Stage& stage, stage::Checks& check)
   mapper->SetCroppingRegionFlagsToSubVolume();
   stage.show(mapper);
   stage.look(directions[0], up);
-  stage.renderer->GetActiveCamera()->ParallelProjectionOff();
+  mapper->SetBlendModeToComposite();
   stage::Messages warnings(mapper, vtkCommand::WarningEvent);
   const stage::Pixels cropped = stage.pixels();
-  check(mapper->GetLastRenderUsedRayCasting(), "Perspectives are ray cast.");
+  check(mapper->GetLastRenderUsedRayCasting(), "Composite is ray cast.");
   mapper->SetInputData(moved);
   check(stage.pixels() == cropped, "Ray casting crops where splatting does, whatever the extent.");
   mapper->CroppingOff();
@@ -270,9 +273,13 @@ int TestCroppingRegions(int, char*[])
 {
   stage::Checks check;
   stage::Stage stage(Width, Height);
-  testAgainstRayCasters(stage, check);
   testDefinition(stage, check);
-  testPerspective(stage, check);
-  testChanges(stage, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    testAgainstRayCasters(stage, check);
+    testChanges(stage, check);
+    testRayCasting(stage, check);
+  }
   return check.exitCode();
 }

@@ -270,9 +270,13 @@ int TestDependentComponents(int, char*[])
   stage::Checks check;
   stage::Stage stage(180, 170);
   testTuples(stage, check);
-  testMeans(stage, check);
-  testRayCasters(stage, check);
-  testChanges(stage, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    testMeans(stage, check);
+    testRayCasters(stage, check);
+    testChanges(stage, check);
+  }
   testBadInput(stage, check);
   return check.exitCode();
 }

@@ -7,7 +7,6 @@
 
 #include "vtkSplattingMIPVolumeMapper.h"
 
-#include "vtkCamera.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
@@ -98,12 +97,11 @@ void testMeaning(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
     }
   }
   const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
-  stage.renderer->GetActiveCamera()->ParallelProjectionOff();
-  setColors(stage, 0.5);
-  check(difference(stage, mapper.Get(), 0.5, FinalColors[2]) <= 2.0 &&
+  mapper->SetBlendModeToComposite();
+  setColors(stage, 1.0);
+  check(difference(stage, mapper.Get(), 1.0, FinalColors[2]) <= 2.0 &&
       mapper->GetLastRenderUsedRayCasting(),
     "Window and level apply where rays are cast, too.");
-  stage.renderer->GetActiveCamera()->ParallelProjectionOn();
 }
 
 void testReuse(stage::Stage& stage, vtkVolumeProperty* property, stage::Checks& check)
@@ -145,9 +143,13 @@ int TestFinalColor(int, char*[])
   stage::Stage stage(Size, Size);
   stage.renderer->SetBackground(Background.data());
   const auto image = stage::toImageData(reference::constant<std::uint8_t>({ 40, 40, 40 }, 100));
-  stage.show(stage::splatting(image));
-  stage.look({ 0.3, -0.45, 0.8 }, { 0.0, 1.0, 0.1 });
-  testMeaning(stage, image, check);
-  testReuse(stage, stage.property, check);
+  for (double viewAngle : { 0.0, 60.0 })
+  {
+    stage.viewAngle = viewAngle;
+    stage.show(stage::splatting(image));
+    stage.look({ 0.3, -0.45, 0.8 }, { 0.0, 1.0, 0.1 });
+    testMeaning(stage, image, check);
+    testReuse(stage, stage.property, check);
+  }
   return check.exitCode();
 }

@@ -177,11 +177,15 @@ int TestHiddenVoxels(int, char*[])
   stage::Checks check;
   stage::Stage stage(120, 110);
   stage.setGrayRamp(0.0, 110.0);
-  testHiddenPoints(stage, check);
-  testCellsThatHidePoints(stage, check);
-  testHiddenCells(stage, check);
-  testDuplicates(stage, check);
-  testBlankPoint(stage, check);
-  testHolesOfGrids(stage, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    testHiddenPoints(stage, check);
+    testCellsThatHidePoints(stage, check);
+    testHiddenCells(stage, check);
+    testDuplicates(stage, check);
+    testBlankPoint(stage, check);
+    testHolesOfGrids(stage, check);
+  }
   return check.exitCode();
 }

@@ -466,12 +466,20 @@ int TestIntermix(int, char*[])
   stage::Stage stage(Width, Height);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
   const auto mapper = stage::splatting(image);
-  stage.show(mapper);
-  testSpheres(stage, mapper, image, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    stage.show(mapper);
+    testSpheres(stage, mapper, image, check);
+  }
   testPasses(mapper, image, check);
   stage.setGrayRamp(-40.0, 255.0);
-  testBeforeAndBehind(stage, mapper, image, check);
-  testWall(stage, mapper, image, check);
+  for (double viewAngle : { 0.0, 50.0 })
+  {
+    stage.viewAngle = viewAngle;
+    testBeforeAndBehind(stage, mapper, image, check);
+    testWall(stage, mapper, image, check);
+  }
   testWindows(mapper, image, check);
   testMultiSamples(mapper, image, check);
   return check.exitCode();

@@ -346,11 +346,15 @@ int TestScalarGrids(int, char*[])
   {
     stage::Stage stage(120, 110);
     stage.setGrayRamp(0.0, 110.0);
-    testEqualSteps(stage, check);
-    testDescending(stage, check);
-    testUnequalSteps(true, stage, check);
-    testUnequalSteps(false, stage, check);
-    testModifiedCoordinates(stage, check);
+    for (double viewAngle : { 0.0, 50.0 })
+    {
+      stage.viewAngle = viewAngle;
+      testEqualSteps(stage, check);
+      testDescending(stage, check);
+      testUnequalSteps(true, stage, check);
+      testUnequalSteps(false, stage, check);
+      testModifiedCoordinates(stage, check);
+    }
     testLimit(stage, check);
     testLimitOfAxis(stage, check);
   }

@@ -325,11 +325,15 @@ int TestScalars(int, char*[])
   {
     stage::Stage stage(120, 110);
     stage.setGrayRamp(0.0, 110.0);
-    testArrays(stage, check);
-    testComponentsOfTypes(stage, check);
-    testMagnitude(stage, check);
-    testMagnitudeOfVTK(stage, check);
-    testSeparateComponents(stage, check);
+    for (double viewAngle : { 0.0, 50.0 })
+    {
+      stage.viewAngle = viewAngle;
+      testArrays(stage, check);
+      testComponentsOfTypes(stage, check);
+      testMagnitude(stage, check);
+      testMagnitudeOfVTK(stage, check);
+      testSeparateComponents(stage, check);
+    }
   }
   for (int components = 1; components <= 4; ++components)
   {

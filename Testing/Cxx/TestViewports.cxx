@@ -55,9 +55,10 @@ stage::Pixels quarter(const stage::Pixels& pixels, int left, int bottom)
   return result;
 }
 
-stage::Pixels alone(vtkVolumeMapper* mapper, const stage::Vector& direction)
+stage::Pixels alone(double viewAngle, vtkVolumeMapper* mapper, const stage::Vector& direction)
 {
   stage::Stage stage(Width, Height);
+  stage.viewAngle = viewAngle;
   stage.show(mapper);
   stage.look(direction, up);
   stage::Pixels pixels = stage.pixels();
@@ -66,15 +67,17 @@ stage::Pixels alone(vtkVolumeMapper* mapper, const stage::Vector& direction)
 }
 
 /// The lower left and the upper right quarter of a window.
-void testTwoViewports(vtkVolumeMapper* mapper, stage::Checks& check)
+void testTwoViewports(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
 {
-  const stage::Pixels left = alone(mapper, leftDirection);
-  const stage::Pixels right = alone(mapper, rightDirection);
+  const stage::Pixels left = alone(viewAngle, mapper, leftDirection);
+  const stage::Pixels right = alone(viewAngle, mapper, rightDirection);
   stage::Stage stage(2 * Width, 2 * Height);
+  stage.viewAngle = viewAngle;
   stage.show(mapper);
   stage.look(leftDirection, up);
   stage.renderer->SetViewport(0.0, 0.0, 0.5, 0.5);
-  stage::Stage other(Width, Height); // only its camera is used
+  stage::Stage other(Width, Height);
+  other.viewAngle = viewAngle; // only its camera is used
   other.show(mapper);
   other.look(rightDirection, up);
   vtkNew<vtkRenderer> second;
@@ -92,14 +95,16 @@ void testTwoViewports(vtkVolumeMapper* mapper, stage::Checks& check)
   }
 }
 
-void testTwoWindows(vtkVolumeMapper* mapper, stage::Checks& check)
+void testTwoWindows(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
 {
-  const stage::Pixels expectedLeft = alone(mapper, leftDirection);
-  const stage::Pixels expectedRight = alone(mapper, rightDirection);
+  const stage::Pixels expectedLeft = alone(viewAngle, mapper, leftDirection);
+  const stage::Pixels expectedRight = alone(viewAngle, mapper, rightDirection);
   stage::Stage left(Width, Height);
+  left.viewAngle = viewAngle;
   left.show(mapper);
   left.look(leftDirection, up);
   stage::Stage right(Width, Height);
+  right.viewAngle = viewAngle;
   right.show(mapper);
   right.look(rightDirection, up);
   for (int time = 0; time < 2; ++time)
@@ -112,11 +117,12 @@ void testTwoWindows(vtkVolumeMapper* mapper, stage::Checks& check)
   check(left.pixels() == expectedLeft, "The first window gets new resources.");
 }
 
-void testReleasedWindow(vtkVolumeMapper* mapper, stage::Checks& check)
+void testReleasedWindow(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
 {
   stage::Pixels first;
   {
     stage::Stage stage(Width, Height);
+  stage.viewAngle = viewAngle;
     stage.show(mapper);
     stage.look(leftDirection, up);
     first = stage.pixels();
@@ -124,7 +130,7 @@ void testReleasedWindow(vtkVolumeMapper* mapper, stage::Checks& check)
     check(stage.pixels() == first, "A window is used again after its resources were released.");
     stage.window->Finalize();
   }
-  check(alone(mapper, leftDirection) == first, "The mapper goes on to another window.");
+  check(alone(viewAngle, mapper, leftDirection) == first, "The mapper goes on to another window.");
 }
 
 vtkSmartPointer<vtkActor> sphereBehind(vtkImageData* image)
@@ -167,9 +173,10 @@ Counts compare(
   return counts;
 }
 
-void testGeometryBehind(vtkVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
+void testGeometryBehind(double viewAngle, vtkVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
 {
   stage::Stage stage(Width, Height);
+  stage.viewAngle = viewAngle;
   vtkNew<vtkPiecewiseFunction> opacity;
   opacity->AddPoint(80.0, 0.0);
   opacity->AddPoint(80.000001, 1.0);
@@ -209,9 +216,10 @@ bool isMoved(const stage::Pixels& from, const stage::Pixels& to, int dx, int dy)
   return true;
 }
 
-void testPartlyOutside(vtkVolumeMapper* mapper, stage::Checks& check)
+void testPartlyOutside(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
 {
   stage::Stage stage(Width, Height);
+  stage.viewAngle = viewAngle;
   stage.show(mapper);
   stage.look(leftDirection, up);
   const stage::Pixels middle = stage.pixels();
@@ -225,9 +233,10 @@ void testPartlyOutside(vtkVolumeMapper* mapper, stage::Checks& check)
   }
 }
 
-void testOutside(vtkVolumeMapper* mapper, stage::Checks& check)
+void testOutside(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
 {
   stage::Stage stage(Width, Height);
+  stage.viewAngle = viewAngle;
   stage.show(mapper);
   stage.look(leftDirection, up);
   const stage::Messages errors(mapper, vtkCommand::ErrorEvent);
@@ -258,12 +267,15 @@ int TestViewports(int, char*[])
   const auto splatting = stage::splatting(image);
   for (vtkVolumeMapper* mapper : std::initializer_list<vtkVolumeMapper*>{ splatting, override })
   {
-    testTwoViewports(mapper, check);
-    testTwoWindows(mapper, check);
-    testReleasedWindow(mapper, check);
-    testGeometryBehind(mapper, image, check);
-    testPartlyOutside(mapper, check);
-    testOutside(mapper, check);
+    for (double viewAngle : { 0.0, 50.0 })
+  {
+    testTwoViewports(viewAngle, mapper, check);
+      testTwoWindows(viewAngle, mapper, check);
+      testReleasedWindow(viewAngle, mapper, check);
+      testGeometryBehind(viewAngle, mapper, image, check);
+      testPartlyOutside(viewAngle, mapper, check);
+      testOutside(viewAngle, mapper, check);
+    }
   }
   return check.exitCode();
 }
