@@ -7,7 +7,6 @@
 #include "vtkColorTransferFunction.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
-#include "vtkDataObjectTree.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -34,37 +33,20 @@ namespace
 {
 constexpr int largestComponent = 3; // of vtkSplattingMIPVolumeMapper::SetVectorComponent()
 
-bool isVolume(vtkDataObject* data)
-{
-  return vtkImageData::SafeDownCast(data) || vtkRectilinearGrid::SafeDownCast(data);
-}
-
 // The one volume in the input, or nullptr and why there is none.
 vtkDataSet* findVolume(vtkDataObject* input, std::string& problem)
 {
-  if (isVolume(input))
-  {
-    return vtkDataSet::SafeDownCast(input);
-  }
-  auto tree = vtkDataObjectTree::SafeDownCast(input);
-  if (!tree)
-  {
-    problem =
-      std::string("Splatting MIP shows vtkImageData and vtkRectilinearGrid, but its input is ") +
-      (input ? input->GetClassName() : "missing") + ": choose another representation, or resample.";
-    return nullptr;
-  }
   std::vector<vtkDataSet*> volumes;
-  for (vtkDataSet* leaf : vtkCompositeDataSet::GetDataSets(tree))
+  for (vtkDataSet* part : vtkCompositeDataSet::GetDataSets(input))
   {
-    if (isVolume(leaf))
+    if (vtkImageData::SafeDownCast(part) || vtkRectilinearGrid::SafeDownCast(part))
     {
-      volumes.push_back(leaf);
+      volumes.push_back(part);
     }
   }
   if (volumes.size() != 1)
   {
-    problem = "Splatting MIP shows one image at a time, but its composite input has " +
+    problem = "Splatting MIP shows one image at a time, but its input has " +
       std::to_string(volumes.size()) + ": extract one block, or resample all to one image.";
     return nullptr;
   }
