@@ -99,13 +99,15 @@ class TestState(Stage.Test):
     def test_trace(self):
         smtrace.start_trace()
         view, display = self.scene()
-        # What the panel for a display's properties records.
+        colors = simple.GetColorTransferFunction("scalars")
+        opacity = simple.GetOpacityTransferFunction("scalars")
+        # What the panel of a display's properties and the editor of its colours record.
         modified = [
-            smtrace.PropertiesModified(proxy.SMProxy)
-            for proxy in (display, simple.GetColorTransferFunction("scalars"))
+            smtrace.PropertiesModified(proxy.SMProxy) for proxy in (display, colors, opacity)
         ]
-        Stage.gray("scalars")
         self.change(view, display)
+        colors.RGBPoints = [0, 0, 0, 0.25, 200, 1, 1, 0]
+        opacity.Points = [0, 0.5, 0.5, 0, 200, 1, 0.5, 0]
         for item in modified:
             item.finalize()
         text = smtrace.stop_trace()
