@@ -106,6 +106,7 @@ class TestState(Stage.Test):
             smtrace.PropertiesModified(proxy.SMProxy) for proxy in (display, colors, opacity)
         ]
         self.change(view, display)
+        colors.ColorSpace = "HSV"
         colors.RGBPoints = [0, 0, 0, 0.25, 200, 1, 1, 0]
         opacity.Points = [0, 0.5, 0.5, 0, 200, 1, 0.5, 0]
         for item in modified:
