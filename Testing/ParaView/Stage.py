@@ -89,6 +89,7 @@ def new_view(size=WINDOW):
     view.OrientationAxesVisibility = 0
     view.UseColorPaletteForBackground = 0
     view.Background = [0, 0, 0]
+    view.UseFXAA = 0  # would smooth what comes from a server
     view.CameraParallelProjection = 1
     return view
 
