@@ -67,4 +67,4 @@ in_root cmake -S /work/source -B /work/build -G Ninja -Wno-dev \
   -DSPLATTINGMIP_BUILD_PARAVIEW_PLUGIN=ON -DSPLATTINGMIP_STRICT=ON
 in_root cmake --build /work/build
 in_root xvfb-run -a --server-args "-screen 0 1280x1024x24 -noreset" \
-  ctest --test-dir /work/build --output-on-failure --timeout 300 "$@"
+  ctest --test-dir /work/build -j2 --output-on-failure --timeout 300 "$@"
