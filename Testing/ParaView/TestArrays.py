@@ -96,19 +96,23 @@ class TestArrays(Stage.Test):
         # Of two dependent components the last one, the opacity, wins and takes the colour along.
         opacity = numpy.random.default_rng(7).permutation(self.volume.size) % 256
         opacity = opacity.astype(numpy.uint8).reshape(self.volume.shape)
-        self.open(scalars=self.volume, opacity=opacity)
-        points = simple.GetOpacityTransferFunction("scalars")
-        points.Points = [0, 0, 0.5, 0, 255, 1, 0.5, 0]
+        other = Stage.noise(3)
+        self.open(scalars=self.volume, opacity=opacity, other=other)
         self.display.MIPOpacityArrayName = ["POINTS", "opacity"]
         self.display.MIPUseSeparateOpacityArray = 1
-        lines = Stage.seen(self.volume, "from +z")
         alphas = Stage.seen(opacity, "from +z")
         winner = alphas.argmax(axis=0)[None]
-        color = numpy.take_along_axis(lines, winner, axis=0)[0]
         alpha = numpy.take_along_axis(alphas, winner, axis=0)[0]
-        self.assertShows(color * (alpha / 255.0), self.view, 1)
+        for name, values in dict(scalars=self.volume, other=other).items():
+            simple.ColorBy(self.display, ("POINTS", name))
+            Stage.gray(name)
+            simple.GetOpacityTransferFunction(name).Points = [0, 0, 0.5, 0, 255, 1, 0.5, 0]
+            color = numpy.take_along_axis(Stage.seen(values, "from +z"), winner, axis=0)[0]
+            # Rounded when it is multiplied, and when it is drawn.
+            self.assertShows(color * (alpha / 255.0), self.view, 1)
+        simple.ColorBy(self.display, ("POINTS", "scalars"))
         self.display.MIPUseSeparateOpacityArray = 0
-        points.Points = [0, 1, 0.5, 0, 255, 1, 0.5, 0]
+        Stage.gray("scalars")
         self.assertShowsMaximum(self.volume)
 
     def test_cropping(self):

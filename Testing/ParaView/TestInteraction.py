@@ -87,6 +87,12 @@ class TestInteraction(Stage.Test):
         for type in ["Outline", "Surface", "Volume", "Slice"]:
             self.assertTrue(self.display.SetRepresentationType(type))
             self.assertTrue((self.still() != before).any())
+        # What has been set for Volume stays there.
+        self.display.BlendMode = "Isosurface"
+        self.display.UseTransfer2D = 1
+        self.display.UseSeparateOpacityArray = 1
+        self.display.UseCropping = 1
+        self.display.CroppingScale = [0.5, 0.5, 0.5]
         self.assertTrue(self.display.SetRepresentationType("Splatting MIP"))
         numpy.testing.assert_array_equal(self.still(), before)
 

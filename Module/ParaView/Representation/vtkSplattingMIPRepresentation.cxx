@@ -254,16 +254,6 @@ int vtkSplattingMIPRepresentation::RequestData(
   return result;
 }
 
-void vtkSplattingMIPRepresentation::SetInputArrayToProcess(
-  int idx, int port, int connection, int fieldAssociation, const char* name)
-{
-  this->Superclass::SetInputArrayToProcess(idx, port, connection, fieldAssociation, name);
-  if (this->UseSeparateOpacityArray)
-  {
-    this->MarkModified(); // colour and opacity are combined when data is requested
-  }
-}
-
 // The array that the mapper has been told to show, or, where there is none to colour by, the active
 // scalars or else the first array; which the mapper is told then.
 vtkDataArray* vtkSplattingMIPRepresentation::FindScalars(vtkDataSet* volume, bool isColored)

@@ -93,10 +93,6 @@ public:
    */
   void SetIndexMemoryBudget(int mebibytes);
 
-  using vtkImageVolumeRepresentation::SetInputArrayToProcess;
-  void SetInputArrayToProcess(
-    int idx, int port, int connection, int fieldAssociation, const char* name) override;
-
   int ProcessViewRequest(
     vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
 
