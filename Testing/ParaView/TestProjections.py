@@ -67,16 +67,17 @@ class TestProjections(Stage.Test):
         self.expect(lambda lines: local_maximum(lines, 254))
 
     def test_slab(self):
-        # Voxels 10 to 15 along the view have their centres in the slab.
+        # Six voxels along the view have their centres in the slab.
         self.display.MIPSlab = 1
         self.display.MIPSlabThickness = 6
-        center = [12.5, 12.5, 12.5]
+        center = [12.5, 20.5, 15.5]
         self.display.MIPSlabCenter = center
         for direction, (_, _, forward) in Stage.VIEWS.items():
             with self.subTest(direction):
                 Stage.look(self.view, direction)
                 lines = Stage.seen(self.volume, direction)
-                part = lines[10:16] if sum(forward) > 0 else lines[::-1][10:16]
+                first = int(abs(numpy.dot(center, forward)) - 2.5)
+                part = (lines if sum(forward) > 0 else lines[::-1])[first : first + 6]
                 self.assertShows(part.max(axis=0), self.view)
 
     def test_accelerations_and_memory_leave_the_picture(self):
