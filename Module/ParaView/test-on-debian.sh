@@ -47,6 +47,7 @@ if [[ $(cat "$root/installed-packages" 2>/dev/null || true) != "$list" ]]; then
   mkdir -p "$root"
   touch "$root/unfinished"
   mmdebstrap --quiet --mode=root --format=directory --variant=apt --skip=check/empty \
+    --dpkgopt=force-unsafe-io \
     --include="$list" bookworm "$root"
   echo "$list" >"$root/installed-packages"
   rm "$root/unfinished"
