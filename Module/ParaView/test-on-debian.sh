@@ -57,7 +57,7 @@ fi
 rm -rf "$root/work/source"
 mkdir -p "$root/work/source"
 tar -C "$source_dir" -c CMakeLists.txt LICENSE Rendering Module/ParaView \
-  Testing/ParaView Testing/Data Examples/Data | tar -C "$root/work/source" -x
+  Testing/ParaView Testing/Data | tar -C "$root/work/source" -x
 
 in_root() {
   env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 VTK_TESTING=1 \
