@@ -1,0 +1,388 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSplattingMIPRepresentation.h"
+
+#include "vtkAbstractMapper.h"
+#include "vtkCellData.h"
+#include "vtkColorTransferFunction.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPVLODVolume.h"
+#include "vtkPVRenderView.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkPointData.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkRenderWindow.h"
+#include "vtkScalarsToColors.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVolumeProperty.h"
+
+#include <utility>
+#include <vector>
+
+// ParaView initialises no modules of plugins: this tells the object factory of the mapper's
+// drawing.
+VTK_MODULE_INIT(vtkRenderingSplattingMIP)
+
+namespace
+{
+constexpr int largestComponent = 3; // of vtkSplattingMIPVolumeMapper::SetVectorComponent()
+
+// The one volume in the input, or nullptr and why there is none.
+vtkDataSet* findVolume(vtkDataObject* input, std::string& problem)
+{
+  std::vector<vtkDataSet*> volumes;
+  for (vtkDataSet* part : vtkCompositeDataSet::GetDataSets(input))
+  {
+    if (vtkImageData::SafeDownCast(part) || vtkRectilinearGrid::SafeDownCast(part))
+    {
+      volumes.push_back(part);
+    }
+  }
+  if (volumes.size() != 1)
+  {
+    problem = "Splatting MIP shows one image at a time, but its input has " +
+      std::to_string(volumes.size()) + ": extract one block, or resample all to one image.";
+    return nullptr;
+  }
+  return volumes.front();
+}
+
+bool isInteractive(vtkInformation* request)
+{
+  // ParaView asks for 5 frames a second in interactive renders, and for 0.002 in still ones.
+  auto view = vtkPVRenderView::SafeDownCast(request->Get(vtkPVView::VIEW()));
+  return view && view->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
+}
+}
+
+vtkStandardNewMacro(vtkSplattingMIPRepresentation);
+
+vtkSplattingMIPRepresentation::vtkSplattingMIPRepresentation()
+  : QualityMode(vtkSplattingMIPVolumeMapper::HIGH),
+    InteractiveQualityMode(AUTOMATIC)
+{
+  this->VolumeMapper.TakeReference(vtkSplattingMIPVolumeMapper::New());
+}
+
+vtkSplattingMIPRepresentation::~vtkSplattingMIPRepresentation() = default;
+
+void vtkSplattingMIPRepresentation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "QualityMode: " << this->QualityMode << "\n";
+  os << indent << "InteractiveQualityMode: " << this->InteractiveQualityMode << "\n";
+  os << indent << "InteractiveRender: " << this->InteractiveRender << "\n";
+  os << indent << "OpacityArrayIsUsable: " << this->OpacityArrayIsUsable << "\n";
+  os << indent << "InputProblem: " << this->InputProblem << "\n";
+  os << indent << "ArrayProblem: " << this->ArrayProblem << "\n";
+  os << indent << "GrayProperty:\n";
+  this->GrayProperty->PrintSelf(os, indent.GetNextIndent());
+  os << indent << "VolumeMapper:\n";
+  this->VolumeMapper->PrintSelf(os, indent.GetNextIndent());
+}
+
+vtkSplattingMIPVolumeMapper* vtkSplattingMIPRepresentation::GetSplattingMapper()
+{
+  return static_cast<vtkSplattingMIPVolumeMapper*>(this->VolumeMapper.Get());
+}
+
+void vtkSplattingMIPRepresentation::SetProjection(int projection)
+{
+  vtkSplattingMIPVolumeMapper* mapper = this->GetSplattingMapper();
+  mapper->SetBlendMode(projection == MINIMUM ? vtkVolumeMapper::MINIMUM_INTENSITY_BLEND
+      : projection == AVERAGE                ? vtkVolumeMapper::AVERAGE_INTENSITY_BLEND
+                                             : vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND);
+  mapper->SetMaximumType(projection == DEPTH_SHADED ? vtkSplattingMIPVolumeMapper::DEPTH_SHADED
+      : projection == LOCAL                         ? vtkSplattingMIPVolumeMapper::LOCAL
+                                                    : vtkSplattingMIPVolumeMapper::GLOBAL);
+}
+
+void vtkSplattingMIPRepresentation::SetKernel(int kernel)
+{
+  this->GetSplattingMapper()->SetKernel(kernel);
+}
+
+void vtkSplattingMIPRepresentation::SetKernelRadius(double radius)
+{
+  this->GetSplattingMapper()->SetKernelRadius(radius);
+}
+
+void vtkSplattingMIPRepresentation::SetDepthShadingAmbient(double ambient)
+{
+  this->GetSplattingMapper()->SetDepthShadingAmbient(ambient);
+}
+
+void vtkSplattingMIPRepresentation::SetDepthShadingChangeRate(double rate)
+{
+  this->GetSplattingMapper()->SetDepthShadingChangeRate(rate);
+}
+
+void vtkSplattingMIPRepresentation::SetLocalMaximumThreshold(double threshold)
+{
+  this->GetSplattingMapper()->SetLocalMaximumThreshold(threshold);
+}
+
+void vtkSplattingMIPRepresentation::SetSlab(bool slab)
+{
+  this->GetSplattingMapper()->SetSlab(slab);
+}
+
+void vtkSplattingMIPRepresentation::SetSlabThickness(double thickness)
+{
+  this->GetSplattingMapper()->SetSlabThickness(thickness);
+}
+
+void vtkSplattingMIPRepresentation::SetSlabCenter(double x, double y, double z)
+{
+  this->GetSplattingMapper()->SetSlabCenter(x, y, z);
+}
+
+void vtkSplattingMIPRepresentation::SetAcceleration(int acceleration)
+{
+  this->GetSplattingMapper()->SetAcceleration(acceleration);
+}
+
+void vtkSplattingMIPRepresentation::SetLineTolerance(double tolerance)
+{
+  this->GetSplattingMapper()->SetLineTolerance(tolerance);
+}
+
+void vtkSplattingMIPRepresentation::SetEliminateInvisible(bool eliminate)
+{
+  this->GetSplattingMapper()->SetEliminateInvisible(eliminate);
+}
+
+void vtkSplattingMIPRepresentation::SetCullBelowWindow(bool cull)
+{
+  this->GetSplattingMapper()->SetCullBelowWindow(cull);
+}
+
+void vtkSplattingMIPRepresentation::SetIndexMemoryBudget(int mebibytes)
+{
+  this->GetSplattingMapper()->SetIndexMemoryBudget(vtkTypeInt64(mebibytes) << 20);
+}
+
+// A problem is told when it appears, not in every frame.
+void vtkSplattingMIPRepresentation::Complain(std::string& last, const std::string& problem)
+{
+  if (!problem.empty() && problem != last)
+  {
+    vtkErrorMacro(<< problem);
+  }
+  last = problem;
+}
+
+int vtkSplattingMIPRepresentation::ProcessViewRequest(
+  vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  if (request == vtkPVView::REQUEST_RENDER())
+  {
+    this->InteractiveRender = isInteractive(inInfo);
+  }
+  return this->Superclass::ProcessViewRequest(request, inInfo, outInfo);
+}
+
+// Why there is no separate opacity; empty if there is. The superclass relies on all of this.
+std::string vtkSplattingMIPRepresentation::CheckOpacityArray(vtkDataSet* volume)
+{
+  const int association = this->OpacityArrayFieldAssociation;
+  const bool isOfGrid = association == vtkDataObject::POINT || association == vtkDataObject::CELL;
+  vtkDataArray* opacity = isOfGrid
+    ? volume->GetAttributes(association)->GetArray(this->OpacityArrayName.c_str())
+    : nullptr;
+  if (!opacity)
+  {
+    return "There is no array \"" + this->OpacityArrayName +
+      "\" to take opacity from: choose one of the input's point or cell arrays.";
+  }
+  vtkDataArray* color = this->GetInputArrayToProcess(0, volume);
+  if (!color)
+  {
+    return "Opacity from an array of its own needs an array to colour by: choose one.";
+  }
+  if (color->GetNumberOfTuples() != opacity->GetNumberOfTuples())
+  {
+    return "The arrays for colour and for opacity must both belong to points, or both to cells.";
+  }
+  if (color->GetNumberOfComponents() != 1 && color->GetNumberOfComponents() != 3)
+  {
+    return "Opacity from an array of its own goes with colour from 1 or 3 components, not from " +
+      std::to_string(color->GetNumberOfComponents()) + ".";
+  }
+  return {};
+}
+
+int vtkSplattingMIPRepresentation::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (inputVector[0]->GetNumberOfInformationObjects() != 1)
+  {
+    return this->Superclass::RequestData(request, inputVector, outputVector);
+  }
+  std::string problem;
+  vtkInformation* inputInfo = inputVector[0]->GetInformationObject(0);
+  vtkSmartPointer<vtkDataSet> volume =
+    findVolume(inputInfo->Get(vtkDataObject::DATA_OBJECT()), problem);
+  if (!volume)
+  {
+    volume = vtkSmartPointer<vtkImageData>::New();
+  }
+  const bool wantsOpacityArray = this->UseSeparateOpacityArray;
+  if (wantsOpacityArray && problem.empty())
+  {
+    problem = this->CheckOpacityArray(volume);
+  }
+  this->Complain(this->InputProblem, problem);
+
+  // The superclass sees the volume itself, whatever it was part of.
+  vtkNew<vtkInformation> volumeInfo;
+  volumeInfo->Copy(inputInfo);
+  volumeInfo->Set(vtkDataObject::DATA_OBJECT(), volume);
+  vtkNew<vtkInformationVector> volumes;
+  volumes->Append(volumeInfo);
+  vtkInformationVector* volumeVector[] = { volumes };
+  this->OpacityArrayIsUsable = wantsOpacityArray && problem.empty();
+  this->UseSeparateOpacityArray = this->OpacityArrayIsUsable;
+  const int result = this->Superclass::RequestData(request, volumeVector, outputVector);
+  this->UseSeparateOpacityArray = wantsOpacityArray;
+  return result;
+}
+
+// The array that the mapper has been told to show, or, where there is none to colour by, the active
+// scalars or else the first array; which the mapper is told then.
+vtkDataArray* vtkSplattingMIPRepresentation::FindScalars(vtkDataSet* volume, bool isColored)
+{
+  vtkVolumeMapper* mapper = this->VolumeMapper;
+  if (isColored)
+  {
+    int cellFlag = 0;
+    return vtkAbstractMapper::GetScalars(volume, mapper->GetScalarMode(),
+      mapper->GetArrayAccessMode(), mapper->GetArrayId(), mapper->GetArrayName(), cellFlag);
+  }
+  const std::pair<vtkDataSetAttributes*, int> attributes[] = {
+    { volume->GetPointData(), VTK_SCALAR_MODE_USE_POINT_FIELD_DATA },
+    { volume->GetCellData(), VTK_SCALAR_MODE_USE_CELL_FIELD_DATA }
+  };
+  for (const bool active : { true, false })
+  {
+    for (const auto& [data, mode] : attributes)
+    {
+      for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+      {
+        vtkDataArray* array = data->GetArray(i);
+        const bool isGhosts = array == data->GetGhostArray();
+        if (array && !isGhosts && (!active || array == data->GetScalars()))
+        {
+          mapper->SetScalarMode(mode);
+          mapper->SelectScalarArray(i);
+          return array;
+        }
+      }
+    }
+  }
+  return nullptr;
+}
+
+// Opaque gray over the range of the scalars.
+void vtkSplattingMIPRepresentation::ShowInGray(vtkDataArray* scalars)
+{
+  const int components = scalars->GetNumberOfComponents();
+  double range[2];
+  scalars->GetFiniteRange(range, components == 1 ? 0 : -1);
+  if (!(range[0] < range[1]))
+  {
+    range[0] = range[0] <= range[1] ? range[0] : 0.0; // one value, or none at all
+    range[1] = range[0] + 1.0;
+  }
+  vtkColorTransferFunction* colors = this->GrayProperty->GetRGBTransferFunction();
+  if (colors->GetSize() != 2 || colors->GetRange()[0] != range[0] ||
+    colors->GetRange()[1] != range[1])
+  {
+    colors->RemoveAllPoints();
+    colors->AddRGBPoint(range[0], 0.0, 0.0, 0.0);
+    colors->AddRGBPoint(range[1], 1.0, 1.0, 1.0);
+    vtkPiecewiseFunction* opacity = this->GrayProperty->GetScalarOpacity();
+    opacity->RemoveAllPoints();
+    opacity->AddPoint(range[0], 1.0);
+  }
+  this->GetSplattingMapper()->SetVectorMode(components == 1
+      ? vtkSplattingMIPVolumeMapper::DISABLED
+      : vtkSplattingMIPVolumeMapper::MAGNITUDE);
+}
+
+// The component or magnitude that the colour map is for. Returns what is wrong with it, if
+// anything.
+std::string vtkSplattingMIPRepresentation::SelectComponents(vtkDataArray* scalars)
+{
+  vtkSplattingMIPVolumeMapper* mapper = this->GetSplattingMapper();
+  if (scalars->GetNumberOfComponents() == 1 || !this->Property->GetIndependentComponents())
+  {
+    mapper->SetVectorMode(vtkSplattingMIPVolumeMapper::DISABLED);
+    return {};
+  }
+  vtkColorTransferFunction* colors = this->Property->GetRGBTransferFunction();
+  if (colors->GetVectorMode() != vtkScalarsToColors::COMPONENT)
+  {
+    mapper->SetVectorMode(vtkSplattingMIPVolumeMapper::MAGNITUDE);
+    return {};
+  }
+  mapper->SetVectorMode(vtkSplattingMIPVolumeMapper::COMPONENT);
+  mapper->SetVectorComponent(colors->GetVectorComponent());
+  if (colors->GetVectorComponent() > largestComponent)
+  {
+    return "Splatting MIP shows one of the first four components: choose one of these, or the "
+           "magnitude.";
+  }
+  return {};
+}
+
+void vtkSplattingMIPRepresentation::UpdateMapperParameters()
+{
+  // The superclass relies on arrays for opacity and colour that may not be there.
+  const bool wantsOpacityArray = this->UseSeparateOpacityArray;
+  this->UseSeparateOpacityArray = this->OpacityArrayIsUsable;
+  this->Superclass::UpdateMapperParameters();
+  this->UseSeparateOpacityArray = wantsOpacityArray;
+
+  vtkSplattingMIPVolumeMapper* mapper = this->GetSplattingMapper();
+  const bool isAutomatic = this->InteractiveQualityMode == AUTOMATIC;
+  mapper->SetAutoAdjustSampleDistances(isAutomatic);
+  mapper->SetQualityMode(
+    this->InteractiveRender && !isAutomatic ? this->InteractiveQualityMode : this->QualityMode);
+
+  auto volume = vtkDataSet::SafeDownCast(mapper->GetDataSetInput());
+  if (!volume)
+  {
+    // A client, whose server has the data: it gets a stand-in, and draws the outline at most.
+    mapper->RemoveAllInputs();
+    this->Actor->SetVisibility(true);
+    return;
+  }
+  const char* name = mapper->GetArrayName();
+  const bool isColored = name && name[0];
+  vtkDataArray* scalars = this->FindScalars(volume, isColored);
+  this->Actor->SetProperty(isColored ? this->Property : this->GrayProperty);
+  std::string problem;
+  if (scalars && isColored)
+  {
+    problem = this->SelectComponents(scalars);
+  }
+  else if (scalars)
+  {
+    this->ShowInGray(scalars);
+  }
+  else if (volume->GetNumberOfPoints() > 0)
+  {
+    problem = isColored
+      ? "The input has no array \"" + std::string(name) + "\": choose another one."
+      : "The input has no array that Splatting MIP could show.";
+  }
+  this->Complain(this->ArrayProblem, problem);
+  this->Actor->SetVisibility(scalars && problem.empty());
+}
