@@ -219,12 +219,16 @@ void BenchmarkStage::LookFrom(int view)
   double bounds[6];
   this->Mapper->GetBounds(bounds);
   vtkCamera* camera = this->Renderer->GetActiveCamera();
-  camera->ParallelProjectionOn();
+  camera->SetParallelProjection(this->ViewAngle <= 0.0);
   camera->SetFocalPoint(0.0, 0.0, 0.0);
   camera->SetPosition(turn->TransformDoubleVector(0.0, 0.0, 1.0));
   camera->SetViewUp(turn->TransformDoubleVector(0.0, 1.0, 0.0));
+  camera->SetViewAngle(this->ViewAngle > 0.0 ? this->ViewAngle : 30.0);
   this->Renderer->ResetCamera(bounds); // a sphere around the volume fits ...
-  camera->Zoom(1.5);                   // ... and now the volume fills the window
+  if (this->ViewAngle <= 0.0)
+  {
+    camera->Zoom(1.5); // ... and now the volume fills the window
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -95,6 +95,13 @@ public:
    */
   static const int ViewsOfAxes[3];
 
+  /**
+   * Perspective views with this view angle in degrees, the volume in a sphere that fits the window;
+   * or parallel ones (0, the default), half as large again.
+   */
+  void SetViewAngle(double degrees) { this->ViewAngle = degrees; }
+  double GetViewAngle() const { return this->ViewAngle; }
+
   void LookFrom(int view);
 
   /**
@@ -121,6 +128,7 @@ public:
 private:
   BenchmarkStage();
 
+  double ViewAngle = 0.0;
   double Range[2] = { 0.0, 1.0 }; // of the image's scalars
   vtkNew<vtkVolumeProperty> Property;
   vtkNew<vtkVolume> Prop;

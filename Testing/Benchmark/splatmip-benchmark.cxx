@@ -18,6 +18,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,7 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 struct Options
 {
   std::string Data = SPLATTINGMIP_TEST_DATA;
+  double ViewAngle = 0.0;
   int Threads = 0;
   bool Quick = false;
   bool IsConsole = true; // what Google Benchmark prints is meant for people
@@ -65,6 +67,7 @@ so there is none with --benchmark_report_aggregates_only.
   --quick        64^3 voxels, 100 pixels, few views: whether it works, in a few seconds
   --data=DIR     where lidc-idri-0314.nrrd lies
   --threads=N    threads of vtkSMPTools and of the ray caster on the CPU
+  --perspective=DEGREES  perspective cameras with this view angle, for all but floor and index
 
   For JSON, too: --benchmark_out=FILE. The rows that matter most:
     splatmip-benchmark --benchmark_filter='frame/vessels256-uint8/[0-9]+/[^g]'
@@ -105,6 +108,10 @@ Options TakeOptions(int& argc, char** argv)
     {
       options.Threads = std::atoi(value.c_str());
     }
+    else if (Starts(argv[i], "--perspective=", value))
+    {
+      options.ViewAngle = std::atof(value.c_str());
+    }
     else
     {
       if (Starts(argv[i], "--benchmark_format=", value))
@@ -118,6 +125,14 @@ Options TakeOptions(int& argc, char** argv)
   return options;
 }
 
+std::string DescribeCamera()
+{
+  const double angle = BenchmarkStage::GetInstance().GetViewAngle();
+  std::ostringstream text;
+  text << "perspective, " << angle << " degrees";
+  return angle > 0.0 ? text.str() : "parallel";
+}
+
 /// What the numbers depend on, besides the program.
 Facts DescribeMachine()
 {
@@ -126,7 +141,7 @@ Facts DescribeMachine()
     { "threads",
       std::to_string(vtkSMPTools::GetEstimatedNumberOfThreads()) + " (vtkSMPTools, " +
         vtkSMPTools::GetBackend() + ")" },
-    { "instruction set", mapper->GetInstructionSet() },
+    { "instruction set", mapper->GetInstructionSet() }, { "camera", DescribeCamera() },
     { "OpenGL renderer", BenchmarkStage::GetInstance().GetDeviceName() },
     { "VTK", vtkVersion::GetVTKVersion() } };
 }
@@ -248,6 +263,7 @@ int main(int argc, char** argv)
   {
     vtkSMPTools::Initialize(options.Threads);
   }
+  BenchmarkStage::GetInstance().SetViewAngle(options.ViewAngle);
   RegisterAll(options);
   const Facts machine = DescribeMachine();
   for (const auto& fact : machine)
