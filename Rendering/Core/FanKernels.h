@@ -664,7 +664,9 @@ inline void weighBoxes(const FanWeights<A>& w, std::ptrdiff_t n)
         const double d = t + 0.5 - place[x]; // of the voxel's end
         const double a = positive(d + p), b = positive(d + m), c = positive(d - m),
                      e = positive(d - p);
-        const double share = (a * a - b * b - c * c + e * e) / (2.0 * pitch * spread[x]);
+        // Beyond the pixel's points nothing may be left to voxels that these do not meet.
+        const double inside = (a * a - b * b - c * c + e * e) / (2.0 * pitch * spread[x]);
+        const double share = d < p ? inside : 1.0;
         const double now = isLast ? 1.0 : clamped(share, below[x], 1.0);
         out[x] = static_cast<A>(now - below[x]);
         below[x] = now;
