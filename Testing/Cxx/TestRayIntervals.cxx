@@ -161,7 +161,7 @@ struct Lattice
 Lattice randomLattice(const Oracle& oracle, const ShearWarp& image, Random& random)
 {
   Lattice lattice;
-  const glm::ivec2 end(image.width() - 1, image.height() - 1);
+  const glm::ivec2 end = image.rayCount() - 1;
   lattice.first = { random.uniform(0, end.x / 2), random.uniform(0, end.y / 2) };
   lattice.last = { random.uniform(end.x / 2 + 1, end.x), random.uniform(end.y / 2 + 1, end.y) };
   const splatting::Span& slices = image.slices();
@@ -237,7 +237,7 @@ void testWatertight(Checks& check)
     ShearWarp::factorise(scene.view, images);
     for (const ShearWarp& image : images)
     {
-      if (image.width() < 2 || image.height() < 2)
+      if (image.rayCount().x < 2 || image.rayCount().y < 2)
       {
         continue;
       }
