@@ -584,8 +584,8 @@ template <class A>
 inline double placePixels(const FanWeights<A>& w, std::ptrdiff_t begin, std::ptrdiff_t count,
   double* __restrict place, double* __restrict spread)
 {
-  // What spreads over nothing would be divided by it. These are small enough for no pixel to tell:
-  // nearer to the eye no ray is a thousandth of a voxel from the next.
+  // What spreads over nothing would be divided by it. These widen what a pixel sees by no more than
+  // a thousandth of a voxel, and only right before the eye.
   constexpr double leastPitch = 1e-3, leastSpread = 1e-6;
   const double pitch = w.pitch > leastPitch ? w.pitch : leastPitch;
   for (std::ptrdiff_t x = 0; x < count; ++x)

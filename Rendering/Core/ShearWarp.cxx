@@ -67,7 +67,8 @@ RayPath path(const glm::dvec2& entry, const glm::dvec2& exit, const glm::dvec2& 
   add(x.first, y.first);
   if (x.first != x.last && y.first != y.last)
   {
-    // Which face comes first? distance / speed, multiplied out: products of 25 and 24 bits, exact.
+    // Which face comes first? distance / speed, multiplied out: products of 25 and 24 bits, exact;
+    // in the slice with the eye of 34 and 24 bits, rounded.
     const double timeX = x.faceDistance * speed.y;
     const double timeY = y.faceDistance * speed.x;
     if (timeX < timeY)

@@ -99,6 +99,13 @@ bool isSame(const stage::Pixels& a, const stage::Pixels& b, std::size_t pixel)
   return std::equal(a.begin() + 3 * pixel, a.begin() + 3 * pixel + 3, b.begin() + 3 * pixel);
 }
 
+/// The same but for so many levels.
+bool isNearly(const stage::Pixels& a, const stage::Pixels& b, std::size_t pixel, int levels)
+{
+  return std::equal(a.begin() + 3 * pixel, a.begin() + 3 * pixel + 3, b.begin() + 3 * pixel,
+    [=](unsigned char x, unsigned char y) { return std::abs(x - y) <= levels; });
+}
+
 bool isBlack(const stage::Pixels& a, std::size_t pixel)
 {
   return a[3 * pixel] == 0 && a[3 * pixel + 1] == 0 && a[3 * pixel + 2] == 0;
@@ -299,13 +306,15 @@ vtkSmartPointer<vtkRenderPass> sequencePass()
 
 /// Render passes draw what the renderer draws without: pixel by pixel, and within what
 /// testSpheres() allows as VTK's GPU ray caster does under the same passes.
-void testPasses(vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
+void testPasses(
+  double viewAngle, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
 {
   const auto rayCaster = stage::gpuRayCaster(image, 0.25);
   for (double distance : { -80.0, -20.0, 5.0 })
   {
     const auto actor = sphere(along(image, directions[0], distance), 14.0);
     stage::Stage plain(Width, Height);
+    plain.viewAngle = viewAngle;
     plain.show(mapper);
     plain.look(directions[0], up);
     const Pictures expected = pictures(plain, mapper, actor);
@@ -315,6 +324,7 @@ void testPasses(vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage:
     {
       // A stage of its own: what renderers have counted before a pass is set does not change.
       stage::Stage stage(Width, Height);
+      stage.viewAngle = viewAngle;
       stage.renderer->SetPass(pass);
       stage.show(mapper);
       stage.look(directions[0], up);
@@ -364,11 +374,13 @@ struct Crowd
   stage::Stage stage;
   vtkSmartPointer<vtkActor> before, inside;
 
-  Crowd(int width, int height, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image)
+  Crowd(int width, int height, double viewAngle, vtkSplattingMIPVolumeMapper* mapper,
+    vtkImageData* image)
     : stage(width, height),
       before(sphere(beside(along(image, directions[0], -80.0)), 12.0)),
       inside(sphere(along(image, directions[1], 10.0), 15.0))
   {
+    this->stage.viewAngle = viewAngle;
     this->stage.setGrayRamp(-40.0, 255.0);
     this->stage.show(mapper);
     this->stage.look(directions[0], up);
@@ -378,14 +390,15 @@ struct Crowd
   }
 };
 
-void testWindows(vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
+void testWindows(
+  double viewAngle, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
 {
-  Crowd alone(Width, Height, mapper, image);
+  Crowd alone(Width, Height, viewAngle, mapper, image);
   const stage::Pixels expected = alone.stage.pixels();
   alone.stage.volume->VisibilityOff();
   const stage::Pixels actors = alone.stage.pixels();
   {
-    Crowd viewport(2 * Width, 2 * Height, mapper, image);
+    Crowd viewport(2 * Width, 2 * Height, viewAngle, mapper, image);
     viewport.stage.renderer->SetViewport(0.5, 0.5, 1.0, 1.0);
     check(part(viewport.stage.pixels(), 2 * Width, Width, Height) == expected,
       "A viewport shows what a window does.");
@@ -404,19 +417,22 @@ void testWindows(vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage
       vtkUnsignedCharArray::SafeDownCast(filter->GetOutput()->GetPointData()->GetScalars());
     const stage::Pixels tiles(
       bytes->GetPointer(0), bytes->GetPointer(0) + bytes->GetNumberOfValues());
-    Crowd large(2 * Width, 2 * Height, mapper, image);
+    Crowd large(2 * Width, 2 * Height, viewAngle, mapper, image);
     const stage::Pixels whole = large.stage.pixels();
+    // In perspective coordinates are rounded in another way: a ray that passes between two pixels
+    // of the depth buffer at a rim may end at either. It is seen in up to 5 x 5 pixels.
+    const int most = viewAngle > 0.0 ? 1 : 0;
     int wrong = 0;
     for (int pixel = 0; pixel < 4 * Width * Height; ++pixel)
     {
       const int x = pixel % (2 * Width), y = pixel / (2 * Width);
       const bool isAtSeam = std::abs(x - Width) <= 4 || std::abs(y - Height) <= 4;
-      wrong += !isAtSeam && !isSame(whole, tiles, pixel);
+      wrong += !isAtSeam && !isNearly(whole, tiles, pixel, most);
     }
-    check(wrong == 0, "Tiles make up the large picture.");
+    check(wrong <= 25 * most, "Tiles make up the large picture.");
   }
   {
-    Crowd layered(Width, Height, mapper, image);
+    Crowd layered(Width, Height, viewAngle, mapper, image);
     vtkNew<vtkRenderer> upper;
     layered.stage.window->SetNumberOfLayers(2);
     layered.stage.window->AddRenderer(upper);
@@ -434,9 +450,10 @@ void testWindows(vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage
 /// With multisampling only pixels at the rims of geometry may differ, if it has the same depth at
 /// all samples.
 void testMultiSamples(
-  vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
+  double viewAngle, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
 {
-  Crowd plain(Width, Height, mapper, image), samples(Width, Height, mapper, image);
+  Crowd plain(Width, Height, viewAngle, mapper, image),
+    samples(Width, Height, viewAngle, mapper, image);
   for (Crowd* crowd : { &plain, &samples })
   {
     crowd->stage.renderer->RemoveActor(crowd->inside);
@@ -471,16 +488,16 @@ int TestIntermix(int, char*[])
     stage.viewAngle = viewAngle;
     stage.show(mapper);
     testSpheres(stage, mapper, image, check);
+    testPasses(viewAngle, mapper, image, check);
   }
-  testPasses(mapper, image, check);
   stage.setGrayRamp(-40.0, 255.0);
   for (double viewAngle : { 0.0, 50.0 })
   {
     stage.viewAngle = viewAngle;
     testBeforeAndBehind(stage, mapper, image, check);
     testWall(stage, mapper, image, check);
+    testWindows(viewAngle, mapper, image, check);
+    testMultiSamples(viewAngle, mapper, image, check);
   }
-  testWindows(mapper, image, check);
-  testMultiSamples(mapper, image, check);
   return check.exitCode();
 }
