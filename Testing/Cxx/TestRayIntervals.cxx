@@ -161,11 +161,7 @@ struct Lattice
 Lattice randomLattice(const Oracle& oracle, const ShearWarp& image, Random& random)
 {
   Lattice lattice;
-<<<<<<< HEAD
   const glm::ivec2 end(image.rayCount() - 1);
-=======
-  const glm::ivec2 end = image.rayCount() - 1;
->>>>>>> views
   lattice.first = { random.uniform(0, end.x / 2), random.uniform(0, end.y / 2) };
   lattice.last = { random.uniform(end.x / 2 + 1, end.x), random.uniform(end.y / 2 + 1, end.y) };
   const splatting::Span& slices = image.slices();
