@@ -10,6 +10,7 @@
 #include "FanKernels.h"
 #include "RayKernels.h"
 #include "Registers.h"
+#include "ResamplingKernels.h"
 
 namespace splatting
 {

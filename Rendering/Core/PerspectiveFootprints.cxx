@@ -55,7 +55,8 @@ int partsOf(const ShearWarp& geometry, const Kernel& kernel)
 {
   const double product = steepest(geometry.columns()) * steepest(geometry.rows());
   const int least = kernel.shape == Reconstruction::Box ? 1 : 2;
-  return std::clamp(static_cast<int>(std::ceil(std::sqrt(product / MostProduct))), least, MostParts);
+  return std::clamp(
+    static_cast<int>(std::ceil(std::sqrt(product / MostProduct))), least, MostParts);
 }
 
 template <class A>
