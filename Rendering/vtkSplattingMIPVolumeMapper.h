@@ -20,8 +20,8 @@
  *
  * What is splatted: vtkImageData and vtkRectilinearGrid with point or cell scalars of any numeric
  * type, any extent, spacing, origin and direction matrix, any invertible prop matrix, any parallel
- * or perspective view, in the blend modes MAXIMUM_INTENSITY (the default here), MINIMUM_INTENSITY and
- * AVERAGE_INTENSITY. Rays are cut by the camera's clipping range, ClippingPlanes, Cropping, the
+ * or perspective view, in the blend modes MAXIMUM_INTENSITY (the default here), MINIMUM_INTENSITY
+ * and AVERAGE_INTENSITY. Rays are cut by the camera's clipping range, ClippingPlanes, Cropping, the
  * slab, the bounding surface, and opaque geometry in the scene.
  *
  * Other blend modes are passed, with the same settings but slab and bounding surface, to an
@@ -94,8 +94,8 @@
  * the same with 2^-48 and 2^-53 for double. In perspective slices are cut into up to three parts,
  * whose weights are products of one for the column, one for the row and one for the slice and are
  * rounded likewise, for all types; that x and y grow together along a ray within a part is left
- * out, a covariance of no more than 0.01 square voxels. No step depends on the number of threads or on the
- * instruction set: the same input gives the same bits.
+ * out, a covariance of no more than 0.01 square voxels. No step depends on the number of threads or
+ * on the instruction set: the same input gives the same bits.
  *
  * NaN voxels are no samples: they never win and, in a worksheet, the average is taken over the
  * other voxels. Infinities are ordinary values. A ray without a sample is transparent.
@@ -349,9 +349,10 @@ public:
   /**
    * Show only a slab across the view (thin-slab or sliding MIP): what lies within SlabThickness / 2
    * of the plane through SlabCenter, a point of the world, that is orthogonal to the rays, in
-   * perspective parallel to the plane of the picture. Default off. Each new place of the slab is one projection of the slices in it; nothing is indexed anew.
-   * It cuts as ClippingPlanes do: a ray that has the middle of no slice inside shows the nearest
-   * one, so that a thin slab shows one slice.
+   * perspective parallel to the plane of the picture. Default off. Each new place of the slab is
+   * one projection of the slices in it; nothing is indexed anew. It cuts as ClippingPlanes do: a
+   * ray that has the middle of no slice inside shows the nearest one, so that a thin slab shows one
+   * slice.
    */
   vtkSetMacro(Slab, bool);
   vtkGetMacro(Slab, bool);
@@ -438,9 +439,9 @@ public:
    * chains, which are slower on all data that we measured (splatmip-paper reports it), but need
    * less memory than the volume.
    *
-   * Where rays are cut and in perspective, BRICKS take the place of chains. Volumes with NaN or infinity are walked
-   * densely, as are all when IndexMemoryBudget has no room for the index; GetAccelerationUsed()
-   * tells.
+   * Where rays are cut and in perspective, BRICKS take the place of chains. Volumes with NaN or
+   * infinity are walked densely, as are all when IndexMemoryBudget has no room for the index;
+   * GetAccelerationUsed() tells.
    */
   vtkSetClampMacro(Acceleration, int, AUTO, SORTED_VOLUME);
   vtkGetMacro(Acceleration, int);
@@ -515,13 +516,13 @@ public:
    * float (double for 32- and 64-bit integers and double). The image's physical coordinates are
    * voxel indices, relative to the volume's first voxel, on the volume's middle slice along the
    * principal axis: the ray of pixel (u, v) at origin + (u, v) crosses slice k there at that point
-   * minus GetShear() * (k - (slices-1)/2). In perspective it is the largest of the shear images, and
-   * the coordinates are voxel indices half a slice beyond the slice that is farthest from the eye;
-   * pixels are a little less than 1 apart there, and the last columns of a row may be none of the
-   * view's rays. Pixels whose ray meets no sample of any component are
-   * marked hidden in the ghost array. Axes: for principal axis 2 the image's x and y are the
-   * volume's first and second axis, for 1 first and third, for 0 second and third. Costs a copy of
-   * the shear image; the caller must not change it.
+   * minus GetShear() * (k - (slices-1)/2). In perspective it is the largest of the shear images,
+   * and the coordinates are voxel indices half a slice beyond the slice that is farthest from the
+   * eye; pixels are a little less than 1 apart there, and the last columns of a row may be none of
+   * the view's rays. Pixels whose ray meets no sample of any component are marked hidden in the
+   * ghost array. Axes: for principal axis 2 the image's x and y are the volume's first and second
+   * axis, for 1 first and third, for 0 second and third. Costs a copy of the shear image; the
+   * caller must not change it.
    */
   vtkImageData* GetShearImage();
 
@@ -535,7 +536,8 @@ public:
   /**
    * The shears of the last render, in pixels per slice: slice k is moved by shear * k along the
    * shear image's x and y. At most 1 in magnitude; rounded to multiples of 2^-24 so that equal
-   * views have equal bits. In perspective rays differ; those of the image's middle pixel, in voxels.
+   * views have equal bits. In perspective rays differ; those of the image's middle pixel, in
+   * voxels.
    */
   void GetShear(double shear[2]);
   double* GetShear() VTK_SIZEHINT(2);

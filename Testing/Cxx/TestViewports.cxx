@@ -122,7 +122,7 @@ void testReleasedWindow(double viewAngle, vtkVolumeMapper* mapper, stage::Checks
   stage::Pixels first;
   {
     stage::Stage stage(Width, Height);
-  stage.viewAngle = viewAngle;
+    stage.viewAngle = viewAngle;
     stage.show(mapper);
     stage.look(leftDirection, up);
     first = stage.pixels();
@@ -173,7 +173,8 @@ Counts compare(
   return counts;
 }
 
-void testGeometryBehind(double viewAngle, vtkVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
+void testGeometryBehind(
+  double viewAngle, vtkVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
 {
   stage::Stage stage(Width, Height);
   stage.viewAngle = viewAngle;
@@ -268,8 +269,8 @@ int TestViewports(int, char*[])
   for (vtkVolumeMapper* mapper : std::initializer_list<vtkVolumeMapper*>{ splatting, override })
   {
     for (double viewAngle : { 0.0, 50.0 })
-  {
-    testTwoViewports(viewAngle, mapper, check);
+    {
+      testTwoViewports(viewAngle, mapper, check);
       testTwoWindows(viewAngle, mapper, check);
       testReleasedWindow(viewAngle, mapper, check);
       testGeometryBehind(viewAngle, mapper, image, check);
