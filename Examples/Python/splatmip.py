@@ -46,7 +46,7 @@ volume.GetProperty().SetInterpolationTypeToLinear()
 renderer = vtkRenderer()
 renderer.AddVolume(volume)
 camera = renderer.GetActiveCamera()
-camera.ParallelProjectionOn()  # other views are left to VTK's ray caster
+camera.ParallelProjectionOn()
 camera.SetPosition(0.0, -1.0, 0.0)  # the patient's front, ...
 camera.SetViewUp(0.0, 0.0, 1.0)  # ... head up
 renderer.ResetCamera()
