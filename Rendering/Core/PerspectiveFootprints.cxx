@@ -11,8 +11,8 @@ namespace splatting
 {
 namespace
 {
-/// Of slopes within a part: the covariance of 0.25 / 12 that is lost then moves weights by no more
-/// than the general tables of [CS98] with 16 x 16 sub-pixels do.
+/// Of slopes within a part: where pixels are about a voxel wide, the covariance of 0.25 / 12 that
+/// is lost then moves weights by less than the general tables of [CS98] with 16 x 16 sub-pixels do.
 constexpr double MostProduct = 0.25;
 
 double steepest(const Fan& fan)
