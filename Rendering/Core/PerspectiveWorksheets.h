@@ -56,8 +56,8 @@ public:
     : WorksheetLayers<T>(frame, noFootprints<A>(), reach, depth),
       Own(footprints)
   {
-    // Each sample is written and read once more, in the first-level cache.
-    this->PieceWidth = 1024;
+    // Rows of voxels that two pieces need are widened, blended and weighed twice.
+    this->PieceHeight = 32;
   }
 
   /// The voxels of a layer that some columns (or rows) of pixels read, from first to last; they may

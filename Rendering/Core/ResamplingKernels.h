@@ -13,17 +13,7 @@ namespace splatting
 {
 namespace
 {
-/// Reconstruction kernels, integrated twice from -infinity.
-struct TwiceHat
-{
-  inline double operator()(double t) const
-  {
-    const double a = t < -1.0 ? 0.0 : t > 1.0 ? 2.0 : t + 1.0; // from the left end
-    const double b = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;        // from the middle
-    return (a * a * a - 2.0 * b * b * b) * (1.0 / 6.0) + (t > 1.0 ? t - 1.0 : 0.0);
-  }
-};
-
+/// The cosine bell, integrated twice from -infinity.
 struct TwiceBell
 {
   double radius;
@@ -80,9 +70,11 @@ inline double placePixels(const FanWeights<A>& w, std::ptrdiff_t begin, std::ptr
   return pitch;
 }
 
-template <class A, class Twice>
-inline void weigh(const FanWeights<A>& w, const Twice& twice, std::ptrdiff_t n)
+/// Weights as PerspectiveFootprints.h has them.
+template <class A>
+inline void weighBells(const FanWeights<A>& w, std::ptrdiff_t n)
 {
+  const TwiceBell twice{ w.support };
   constexpr std::ptrdiff_t chunk = 64;
   for (std::ptrdiff_t begin = 0; begin < n; begin += chunk)
   {
@@ -152,6 +144,42 @@ inline void weighBoxes(const FanWeights<A>& w, std::ptrdiff_t n)
   }
 }
 
+/// The same for hats, the second differences of what lies below a voxel's centre, times how far.
+template <class A>
+inline void weighHats(const FanWeights<A>& w, std::ptrdiff_t n)
+{
+  constexpr std::ptrdiff_t chunk = 64;
+  for (std::ptrdiff_t begin = 0; begin < n; begin += chunk)
+  {
+    const std::ptrdiff_t count = begin + chunk < n ? chunk : n - begin;
+    double place[chunk], spread[chunk], own[chunk], before[chunk];
+    const double pitch = placePixels(w, begin, count, place, spread);
+    for (std::ptrdiff_t x = 0; x < count; ++x)
+    {
+      own[x] = before[x] = 0.0; // at the first voxel's centre, and before
+    }
+    for (int t = 0; t < w.taps; ++t)
+    {
+      A* const out = w.weights + t * w.stride + begin;
+      for (std::ptrdiff_t x = 0; x < count; ++x)
+      {
+        const double p = 0.5 * (pitch + spread[x]), m = 0.5 * (pitch - spread[x]);
+        const double d = t + 1.0 - place[x]; // of the next voxel
+        const double a = positive(d + p), b = positive(d + m), c = positive(d - m),
+                     e = positive(d - p);
+        const double sum =
+          (a * a * a - b * b * b - c * c * c + e * e * e) / (6.0 * pitch * spread[x]);
+        const double next = d < p ? sum : d;
+        const double weight = next - own[x] - (own[x] - before[x]);
+        // Voxels that the pixel's points do not meet have nothing.
+        out[x] = static_cast<A>(d < p + 2.0 ? positive(weight) : 0.0);
+        before[x] = own[x];
+        own[x] = next;
+      }
+    }
+  }
+}
+
 template <class A>
 void fanWeights(const FanWeights<A>& w, std::ptrdiff_t n)
 {
@@ -161,10 +189,10 @@ void fanWeights(const FanWeights<A>& w, std::ptrdiff_t n)
       weighBoxes(w, n);
       break;
     case 1:
-      weigh(w, TwiceHat{}, n);
+      weighHats(w, n);
       break;
     default:
-      weigh(w, TwiceBell{ w.support }, n);
+      weighBells(w, n);
   }
 }
 

@@ -245,12 +245,12 @@ private:
   template <class F>
   void forPieces(int v0, int v1, const Span& columns, F&& f) const
   {
-    constexpr int height = RowsTogether;
-    for (int v = v0; v < v1; v += height)
+    for (int v = v0; v < v1; v += this->PieceHeight)
     {
       for (int u = columns.begin; u < columns.end; u += this->PieceWidth)
       {
-        f(v, std::min(v + height, v1), Span{ u, std::min(u + this->PieceWidth, columns.end) });
+        f(v, std::min(v + this->PieceHeight, v1),
+          Span{ u, std::min(u + this->PieceWidth, columns.end) });
       }
     }
   }
@@ -463,7 +463,7 @@ protected:
   const std::vector<SliceFootprint<A>>& Footprints;
   const WorksheetReach<A>& Reach;
   int Depth;
-  int PieceWidth = 1024; ///< pixels; for the second-level cache
+  int PieceWidth = 1024, PieceHeight = RowsTogether; ///< pixels; for the second-level cache
   A Base;
 };
 }
