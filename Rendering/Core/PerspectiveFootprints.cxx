@@ -42,6 +42,12 @@ double integral(const Kernel& kernel, double t)
   }
 }
 
+/// Voxels that a stretch can meet.
+int tapsOf(double length)
+{
+  return static_cast<int>(std::ceil(length + 1e-6));
+}
+
 /// The depths at which part q of slice k begins and ends.
 glm::dvec2 depthsOf(const ShearWarp& geometry, int k, int q, int parts)
 {
@@ -75,7 +81,9 @@ void FanFootprints<A>::find(
   const std::size_t all = std::size_t(this->Slices.end - this->Slices.begin) * parts;
   this->Taps.resize(all);
   this->First.resize(all * this->Padded);
-  this->Weights.resize(all * MostTaps * this->Padded);
+  this->Room =
+    std::min(tapsOf(geometry.pitch() + this->Steepest / parts + 2.0 * kernel.support()), MostTaps);
+  this->Weights.resize(all * this->Room * this->Padded);
   this->Bases.resize(all * this->Padded / this->Group);
   this->Lanes.resize(all * this->Padded * sizeof(A));
   vtkSMPTools::For(this->Slices.begin, this->Slices.end, 8,
@@ -110,9 +118,9 @@ void FanFootprints<A>::findPart(const ShearWarp& geometry, const Fan& fan, int k
   weights.high = this->Size + Margin;
   const double reach = weights.pitch + this->Steepest * weights.thickness + 2.0 * weights.support;
   const std::size_t n = this->at(k, q);
-  weights.taps = std::min(static_cast<int>(std::ceil(reach + 1e-6)), MostTaps);
+  weights.taps = std::min(tapsOf(reach), this->Room);
   weights.first = &this->First[n * this->Padded];
-  weights.weights = &this->Weights[n * MostTaps * this->Padded];
+  weights.weights = &this->Weights[n * this->Room * this->Padded];
   weights.stride = this->Padded;
   loops.fanWeights(weights, this->Count);
   this->Taps[n] = weights.taps;
@@ -139,7 +147,7 @@ template <class A>
 typename FanFootprints<A>::Part FanFootprints<A>::part(int k, int q) const
 {
   const std::size_t n = this->at(k, q);
-  return { &this->First[n * this->Padded], &this->Weights[n * MostTaps * this->Padded],
+  return { &this->First[n * this->Padded], &this->Weights[n * this->Room * this->Padded],
     this->Padded, this->Taps[n], &this->Bases[n * this->Padded / this->Group],
     &this->Lanes[n * this->Padded * sizeof(A)] };
 }

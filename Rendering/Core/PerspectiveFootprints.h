@@ -78,6 +78,7 @@ private:
 
   Span Slices;
   int Count = 0, Size = 0, Parts = 1, Group = 1;
+  int Room = MostTaps; // for the taps of a part
   std::ptrdiff_t Padded = 0;
   double Steepest = 0.0;
   std::vector<int> Taps;
