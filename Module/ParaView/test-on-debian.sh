@@ -54,18 +54,18 @@ if [[ $(cat "$root/installed-packages" 2>/dev/null || true) != "$list" ]]; then
 fi
 
 # A copy of what the plugin is made of; files keep their times, so that only what changed is built.
-rm -rf "$root/work/source"
-mkdir -p "$root/work/source"
+rm -rf "$root/splattingmip/source"
+mkdir -p "$root/splattingmip/source"
 tar -C "$source_dir" -c CMakeLists.txt LICENSE Rendering Module/ParaView \
-  Testing/ParaView Testing/Data | tar -C "$root/work/source" -x
+  Testing/ParaView Testing/Data | tar -C "$root/splattingmip/source" -x
 
 in_root() {
   env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 VTK_TESTING=1 \
     HWLOC_HIDE_ERRORS=2 chroot "$root" "$@"
 }
-in_root cmake -S /work/source -B /work/build -G Ninja -Wno-dev \
+in_root cmake -S /splattingmip/source -B /splattingmip/build -G Ninja -Wno-dev \
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache \
   -DSPLATTINGMIP_BUILD_PARAVIEW_PLUGIN=ON -DSPLATTINGMIP_STRICT=ON
-in_root cmake --build /work/build
+in_root cmake --build /splattingmip/build
 in_root xvfb-run -a --server-args "-screen 0 1280x1024x24 -noreset" \
-  ctest --test-dir /work/build -j2 --output-on-failure --timeout 300 "$@"
+  ctest --test-dir /splattingmip/build -j2 --output-on-failure --timeout 300 "$@"
