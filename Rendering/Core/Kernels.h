@@ -76,7 +76,6 @@ struct Crossing
 {
   T* image; ///< the row's first pixel
   std::ptrdiff_t imageStride;
-  std::ptrdiff_t width; ///< pixels in a row
   int height;
   const T* voxels; ///< the slice's first
   std::ptrdiff_t rowStride;

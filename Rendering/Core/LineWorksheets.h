@@ -15,16 +15,16 @@
 namespace splatting
 {
 template <class T>
-class LineWorksheets : public WorksheetLayers<T>
+class LineWorksheets : public ParallelWorksheets<T>
 {
 public:
-  using typename WorksheetLayers<T>::A;
-  using typename WorksheetLayers<T>::Target;
+  using typename ParallelWorksheets<T>::A;
+  using typename ParallelWorksheets<T>::Target;
 
   /// @param index  in rows, of all voxels
   LineWorksheets(const Frame<T>& frame, const std::vector<SliceFootprint<A>>& footprints,
     const WorksheetReach<A>& reach, int depth, const LineIndex& index)
-    : WorksheetLayers<T>(frame, footprints, reach, depth),
+    : ParallelWorksheets<T>(frame, footprints, reach, depth),
       Index(index)
   {
   }
@@ -169,7 +169,7 @@ private:
     {
       pixels.end = std::min(std::max(pixels.end, pixels.begin + Register), span.end);
       pixels.begin = std::max(std::min(pixels.begin, pixels.end - Register), span.begin);
-      WorksheetLayers<T>::splatRows(k, v0, v1, pixels, target, patch);
+      ParallelWorksheets<T>::splatRows(k, v0, v1, pixels, target, patch);
     }
   }
 

@@ -152,7 +152,7 @@ private:
     const FanWindows::Picks entry = steps.windows.entering(k), exit = steps.windows.leaving(k);
     Crossing<T> c;
     c.image = this->Shared.image.template row<T>(v0);
-    c.imageStride = c.width = this->Shared.image.width;
+    c.imageStride = this->Shared.image.width;
     c.height = v1 - v0;
     c.voxels = this->Shared.voxelRow(0, k);
     c.rowStride = this->Shared.slices.rowStride;

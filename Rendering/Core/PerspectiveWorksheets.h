@@ -36,13 +36,6 @@ void findReach(
   reach.columns = reach.rows = 16;
 }
 
-template <class A>
-const std::vector<SliceFootprint<A>>& noFootprints()
-{
-  static const std::vector<SliceFootprint<A>> none;
-  return none;
-}
-
 template <class T>
 class PerspectiveWorksheets : public WorksheetLayers<T>
 {
@@ -53,7 +46,7 @@ public:
   /// @param depth  how many slices beyond its own a footprint reads
   PerspectiveWorksheets(const Frame<T>& frame, const PerspectiveFootprints<A>& footprints,
     const WorksheetReach<A>& reach, int depth)
-    : WorksheetLayers<T>(frame, noFootprints<A>(), reach, depth),
+    : WorksheetLayers<T>(frame, reach, depth),
       Own(footprints)
   {
     // Rows of voxels that two pieces need are widened, blended and weighed twice.
@@ -71,7 +64,7 @@ public:
     return this->Own.rows.voxels(this->readers(this->slicesOf(z)), pixels);
   }
 
-  /// As in WorksheetLayers, of up to 3 + 5 + 15 products and sums and the weights' own rounding.
+  /// As in ParallelWorksheets, of up to 3 + 5 + 15 products and sums and the weights' own rounding.
   A slack() const { return 60 * std::numeric_limits<A>::epsilon() / 2; }
 
 private:

@@ -338,7 +338,7 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   }
   else
   {
-    splat(WorksheetLayers<T>(frame, footprints, reach, depth));
+    splat(ParallelWorksheets<T>(frame, footprints, reach, depth));
   }
 }
 

@@ -66,6 +66,8 @@ template <class A>
 void findReach(const std::vector<SliceGeometry>& slices,
   const std::vector<SliceFootprint<A>>& footprints, WorksheetReach<A>& reach);
 
+/// What the worksheets of all projections share: how layers, pieces and rows are walked, and how
+/// voxels come into the patch.
 template <class T>
 class WorksheetLayers
 {
@@ -73,7 +75,6 @@ public:
   using A = Accumulator<T>;
   using Voxel = T;
   using Pixel = A;
-  static constexpr bool Perspective = false;
   /// How many slices beyond its own a layer reads.
   static constexpr int Beyond = 1;
   /// Rows that cut layers are walked for at a time: those of a piece.
@@ -83,10 +84,8 @@ public:
   static constexpr int RunUnit = 2 * TileWidth;
 
   /// @param depth  how many slices beyond its own a footprint reads
-  WorksheetLayers(const Frame<T>& frame, const std::vector<SliceFootprint<A>>& footprints,
-    const WorksheetReach<A>& reach, int depth)
+  WorksheetLayers(const Frame<T>& frame, const WorksheetReach<A>& reach, int depth)
     : Shared(frame),
-      Footprints(footprints),
       Reach(reach),
       Depth(depth),
       Base(baseOf(frame.range))
@@ -94,17 +93,13 @@ public:
   }
   virtual ~WorksheetLayers() = default;
 
-  const Window& window(int layer) const { return this->Reach.layers[layer].window; }
   A share(int layer) const { return this->Reach.layers[layer].share; }
 
   /// What is subtracted from voxels before they are weighed, so that a flat background of the
   /// lowest value is 0 and its sums are exact.
   A base() const { return this->Base; }
 
-  /// Rounding can take a worksheet beyond its largest voxel by slack() times the larger of that and
-  /// magnitude(): 75 products and sums, and a few operations for the bound itself. Sums of 8-bit
-  /// voxels are exact.
-  A slack() const { return sizeof(T) == 1 ? A(0) : 90 * std::numeric_limits<A>::epsilon() / 2; }
+  /// Of what rounding is relative to: see slack() of the derived classes.
   A magnitude() const { return std::abs(static_cast<A>(this->Shared.range.low) - this->Base); }
 
   /// Splats a layer's worksheets into the pixels of some rows and runs of columns, as far as the
@@ -345,13 +340,7 @@ private:
 
 protected:
   /// The voxels of slice s that worksheets need for some pixels.
-  virtual Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const
-  {
-    const Window& window = this->Reach.slices[s];
-    return { s, columns.begin + window.iMin, v0 + window.jMin,
-      columns.end - columns.begin + window.iMax - window.iMin,
-      v1 - v0 + window.jMax - window.jMin };
-  }
+  virtual Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const = 0;
 
   virtual void loadSheet(const Patch::Sheet& sheet, Patch& patch) const
   {
@@ -396,8 +385,51 @@ protected:
     }
   }
 
+  /// Raises pixels of some rows to the worksheet of slice k, whose voxels have been loaded.
   virtual void splatRows(
-    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const = 0;
+
+  const Frame<T>& Shared;
+  const WorksheetReach<A>& Reach;
+  int Depth;
+  int PieceWidth = 1024, PieceHeight = RowsTogether; ///< pixels; for the second-level cache
+  A Base;
+};
+
+/// In parallel views all pixels have the footprints of their slices.
+template <class T>
+class ParallelWorksheets : public WorksheetLayers<T>
+{
+public:
+  using typename WorksheetLayers<T>::A;
+  using typename WorksheetLayers<T>::Target;
+  static constexpr bool Perspective = false;
+
+  ParallelWorksheets(const Frame<T>& frame, const std::vector<SliceFootprint<A>>& footprints,
+    const WorksheetReach<A>& reach, int depth)
+    : WorksheetLayers<T>(frame, reach, depth),
+      Footprints(footprints)
+  {
+  }
+
+  const Window& window(int layer) const { return this->Reach.layers[layer].window; }
+
+  /// Rounding can take a worksheet beyond its largest voxel by slack() times the larger of that and
+  /// magnitude(): 75 products and sums, and a few operations for the bound itself. Sums of 8-bit
+  /// voxels are exact.
+  A slack() const { return sizeof(T) == 1 ? A(0) : 90 * std::numeric_limits<A>::epsilon() / 2; }
+
+protected:
+  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
+  {
+    const Window& window = this->Reach.slices[s];
+    return { s, columns.begin + window.iMin, v0 + window.jMin,
+      columns.end - columns.begin + window.iMax - window.iMin,
+      v1 - v0 + window.jMax - window.jMin };
+  }
+
+  void splatRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
   {
     if (this->Shared.range.special)
     {
@@ -459,12 +491,7 @@ private:
   }
 
 protected:
-  const Frame<T>& Shared;
   const std::vector<SliceFootprint<A>>& Footprints;
-  const WorksheetReach<A>& Reach;
-  int Depth;
-  int PieceWidth = 1024, PieceHeight = RowsTogether; ///< pixels; for the second-level cache
-  A Base;
 };
 }
 

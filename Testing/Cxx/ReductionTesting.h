@@ -330,6 +330,23 @@ struct Count
   int all = 0, open = 0, skipped = 0;
 };
 
+/// Previews must be exact, and nearly all pixels of averages compared.
+template <class T>
+void judgeCounts(Checks& check, const Count (&previews)[5], const Count (&averages)[5])
+{
+  std::cout << "type " << int(splatting::scalarTypeOf<T>()) << ", pixels of averages:";
+  for (Reduction reduction : reductions)
+  {
+    const Count& preview = previews[int(reduction)];
+    const Count& count = averages[int(reduction)];
+    std::cout << " " << count.all << " (" << count.open << " open, " << count.skipped
+              << " skipped)";
+    check(preview.open + preview.skipped == 0, "the preview is not exact");
+    check(count.open + count.skipped < 0.02 * count.all, "nearly all pixels are compared");
+  }
+  std::cout << std::endl;
+}
+
 /// Compares all pixels of one picture; returns how many are none of their outcomes.
 template <class S>
 int wrongPixels(const splatting::ShearImage& image, const reference::RaySamples<S>& rays,

@@ -37,17 +37,7 @@ void testType(Checks& check, std::uint64_t seed)
     testReductions(check, volume, reference::toDouble(volume), randomCase(volume.size, random),
       quality, random, averages);
   }
-  std::cout << "type " << int(splatting::scalarTypeOf<T>()) << ", pixels of averages:";
-  for (Reduction reduction : reductions)
-  {
-    const Count& count = averages[int(reduction)];
-    std::cout << " " << count.all << " (" << count.open << " open, " << count.skipped
-              << " skipped)";
-    check(preview[int(reduction)].open + preview[int(reduction)].skipped == 0,
-      "the preview is not exact");
-    check(count.open + count.skipped < 0.02 * count.all, "nearly all pixels are compared");
-  }
-  std::cout << std::endl;
+  judgeCounts<T>(check, preview, averages);
 }
 
 /// Volumes of several bands, blocks of registers and bricks; threads.

@@ -60,9 +60,11 @@ int main()
   window->SetOffScreenRendering(1);
   window->SetSize(64, 64);
   window->AddRenderer(renderer);
-  const bool splatted = showsVolume(window) && !mapper->GetLastRenderUsedRayCasting();
+  bool splatted = showsVolume(window) && !mapper->GetLastRenderUsedRayCasting();
   renderer->GetActiveCamera()->ParallelProjectionOff();
   renderer->ResetCamera();
+  splatted = splatted && showsVolume(window) && !mapper->GetLastRenderUsedRayCasting();
+  mapper->SetBlendModeToComposite();
   const bool rayCast = showsVolume(window) && mapper->GetLastRenderUsedRayCasting();
   if (!splatted || !rayCast)
   {
