@@ -7,6 +7,7 @@
 // it might be the one that only the newest processors can run. For the same reason all is in an
 // anonymous namespace, but the table.
 #include "Kernels.h"
+#include "ExactKernels.h"
 #include "FanKernels.h"
 #include "RayKernels.h"
 #include "Registers.h"
@@ -640,7 +641,8 @@ constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::note)>(&note<P>) };
 template <class A>
 constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>, &resample<A>,
-  &blend<A>, &raiseBlend<A>, &splat<A>, &splatValid<A>,
+  &blend<A>, &raiseBlend<A>, &splat<A>, &raiseCubics<A>,
+  &splatValid<A>,
   static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
   static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
   &interpolateProjective<A>, &lookUp<A> };

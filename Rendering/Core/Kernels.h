@@ -257,6 +257,33 @@ struct Resampling
   int taps;
 };
 
+/// Most pieces of a ray's path in a slice: cut in its middle, and twice along i and j.
+constexpr int MostPieces = 6;
+
+/// A piece of the path of all rays in a slice, as in ExactPieces.h, for one row of pixels.
+template <class A>
+struct CubicPiece
+{
+  const A *low, *high;     ///< the first voxel of pixel 0's cell in its two slices
+  const A* weights;        ///< as in ExactPiece
+  bool curved;             ///< likewise
+  Span inField, inBoxes;   ///< the pixels that it counts for
+};
+
+template <class A>
+struct CubicRow
+{
+  A* image;                    ///< pixel 0, which need not exist
+  Span pixels;                 ///< those that are raised
+  Span field;                  ///< those that see the field, others see boxes
+  std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
+  CubicPiece<A> pieces[MostPieces];
+  int count;
+  bool special;              ///< whether there are NaN or infinities
+  const unsigned char* bits; ///< pixel x changes if bits[x] & bit; or nullptr
+  unsigned char bit;
+};
+
 /// Loops over worksheets and images of type A (float or double).
 template <class A>
 struct WorksheetLoops
@@ -276,6 +303,9 @@ struct WorksheetLoops
   /// Every pixel of the rectangle: the maximum of it and the weighted sum of its voxels, which must
   /// be finite.
   void (*splat)(const Splat<A>& splat);
+  /// Pixels become the largest of themselves and the cubics that their rays meet. A cubic with a
+  /// NaN coefficient is left out but for its ends.
+  void (*raiseCubics)(const CubicRow<A>& row);
   /// image[x] = max(image[x], average of rows[0..count)[x], NaN left out, weighted and divided by
   /// the weights that remain). image[x] = NaN is "no sample yet". Rows may hold infinities.
   void (*splatValid)(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);

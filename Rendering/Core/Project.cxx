@@ -4,6 +4,7 @@
 
 #include "BandWalk.h"
 #include "Carry.h"
+#include "ExactWorksheets.h"
 #include "LineWalk.h"
 #include "LineWorksheets.h"
 #include "PerspectivePreview.h"
@@ -123,6 +124,8 @@ struct Projector::Scratch
   std::vector<PreviewLayer> previewLayers;
   std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> footprints;
   std::tuple<PerspectiveFootprints<float>, PerspectiveFootprints<double>> perspectiveFootprints;
+  std::tuple<std::vector<ExactPath<float>>, std::vector<ExactPath<double>>> paths;
+  std::vector<Span> field;
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> reach;
   PerspectiveSteps steps;
   std::vector<unsigned char> none;
@@ -280,6 +283,7 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   ShearImage& image = frame.image;
   const bool preview = settings.quality == Quality::Preview;
   const bool standard = settings.quality == Quality::Standard;
+  const bool exact = settings.quality == Quality::Exact;
   const bool samples = preview && !RayWalk<PreviewLayers<T>>::computes(settings.reduction);
   image.type = samples ? scalarTypeOf<T>() : scalarTypeOf<A>();
   image.bytes.resize(std::size_t(image.width) * image.height * (samples ? sizeof(T) : sizeof(A)));
@@ -288,7 +292,14 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   const Kernel kernel = standard ? Kernel{ Reconstruction::Box } : settings.kernel;
   const bool perspective = frame.geometry.isPerspective();
   auto& own = std::get<PerspectiveFootprints<A>>(this->Memory->perspectiveFootprints);
-  if (!preview && perspective)
+  auto& paths = std::get<std::vector<ExactPath<A>>>(this->Memory->paths);
+  if (exact && !perspective)
+  {
+    findExactPaths(frame.geometry, paths);
+    findFieldSpans(frame.geometry, this->Memory->field);
+    findReach(paths, reach);
+  }
+  else if (!preview && perspective)
   {
     own.find(frame.geometry, kernel, frame.kernels);
     findReach(frame.geometry, own, reach);
@@ -331,6 +342,10 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   else if (preview)
   {
     splat(PreviewLayers<T>(frame, this->Memory->previewLayers));
+  }
+  else if (exact && !perspective)
+  {
+    splat(ExactWorksheets<T>(frame, paths, this->Memory->field, reach));
   }
   else if (perspective)
   {
@@ -412,7 +427,8 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   {
     return Acceleration::Dense;
   }
-  if (wanted >= Acceleration::Lines && cuts.none() && !geometry.isPerspective() && !this->stopped())
+  if (wanted >= Acceleration::Lines && cuts.none() && !geometry.isPerspective() &&
+    settings.quality != Quality::Exact && !this->stopped())
   {
     lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),
       [this](double share)

@@ -23,7 +23,8 @@ enum class Quality
 {
   Preview,
   Standard,
-  High
+  High,
+  Exact
 };
 
 /// What is left out and in which order the rest is walked; see

@@ -16,6 +16,8 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #endif
+#elif defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 
 namespace splatting

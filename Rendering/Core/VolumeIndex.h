@@ -149,7 +149,7 @@ private:
   bool BricksMade = false;
   bool Exceeded = false;
   double Seconds = 0.0;
-  std::array<std::array<Experience, 3>, 3> Experiences;
+  std::array<std::array<Experience, 4>, 3> Experiences; // of axes and qualities
 };
 }
 

@@ -1,0 +1,327 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The loops of exact mode: maxima of cubics. For Kernels.cxx only, which says why all of this is in
+ * an anonymous namespace.
+ */
+#ifndef splattingExactKernels_h
+#define splattingExactKernels_h
+
+#include "Kernels.h"
+#include "Registers.h"
+
+#include <limits>
+
+namespace splatting
+{
+namespace
+{
+/// Whether any element of a comparison's result is true.
+template <class M>
+inline bool anyOf(const M& mask)
+{
+  if constexpr (std::is_arithmetic_v<M>)
+  {
+    return mask != 0;
+  }
+  else
+  {
+#if defined(__AVX512F__)
+    return _mm512_test_epi32_mask(reinterpret_cast<const __m512i&>(mask),
+             reinterpret_cast<const __m512i&>(mask)) != 0;
+#elif defined(__AVX2__)
+    return _mm256_movemask_epi8(reinterpret_cast<const __m256i&>(mask)) != 0;
+#elif defined(__SSE2__)
+    return _mm_movemask_epi8(reinterpret_cast<const __m128i&>(mask)) != 0;
+#else
+    bool any = false;
+    for (std::size_t n = 0; n < sizeof(M) / sizeof(mask[0]); ++n)
+    {
+      any = any || mask[n] != 0;
+    }
+    return any;
+#endif
+  }
+}
+
+/// Correctly rounded, as IEEE 754 has it, whatever the instruction set.
+inline float squareRoot(float x)
+{
+  return __builtin_sqrtf(x);
+}
+inline double squareRoot(double x)
+{
+  return __builtin_sqrt(x);
+}
+#if defined(__AVX512F__)
+inline Pack<float> squareRoot(Pack<float> x)
+{
+  return _mm512_sqrt_ps(x);
+}
+inline Pack<double> squareRoot(Pack<double> x)
+{
+  return _mm512_sqrt_pd(x);
+}
+#elif defined(__AVX2__)
+inline Pack<float> squareRoot(Pack<float> x)
+{
+  return _mm256_sqrt_ps(x);
+}
+inline Pack<double> squareRoot(Pack<double> x)
+{
+  return _mm256_sqrt_pd(x);
+}
+#elif defined(__SSE2__)
+inline Pack<float> squareRoot(Pack<float> x)
+{
+  return _mm_sqrt_ps(x);
+}
+inline Pack<double> squareRoot(Pack<double> x)
+{
+  return _mm_sqrt_pd(x);
+}
+#elif defined(__GNUC__)
+template <class R>
+inline R squareRoot(R x)
+{
+  for (std::size_t n = 0; n < sizeof(R) / sizeof(x[0]); ++n)
+  {
+    x[n] = squareRoot(x[n]);
+  }
+  return x;
+}
+#endif
+
+/// The largest value of cubics between their ends where that is a local maximum, else `none`. No
+/// more than their largest coefficient, or rounding would tell which pixels looked.
+template <class A, class R>
+inline R peakOf(const R (&b)[4], R inner, R none)
+{
+  // The derivative, d0 (1 - t)^2 + 2 d1 t (1 - t) + d2 t^2, from positive to negative.
+  const R d0 = b[1] - b[0], d1 = b[2] - b[1], d2 = b[3] - b[2];
+  const R half = d1 - d0, square = (d2 - d1) - half;
+  const R discriminant = d1 * d1 - d0 * d2;
+  const R zero = d0 - d0;
+  const R root = squareRoot(discriminant > zero ? discriminant : zero);
+  // Of the two forms of the same root the one that does not cancel.
+  const R t = half >= zero ? (-half - root) / square : d0 / (root - half);
+  const R s = A(1) - t;
+  const R b01 = s * b[0] + t * b[1], b12 = s * b[1] + t * b[2], b23 = s * b[2] + t * b[3];
+  const R value = s * (s * b01 + t * b12) + t * (s * b12 + t * b23);
+  // What is no number compares with nothing.
+  return (t > zero) & (t < A(1)) ? smaller(value, inner) : none;
+}
+
+/// A register of pixels, or one pixel, of type R.
+template <class A, class R, bool Special>
+struct CubicLoop
+{
+  using M = decltype(R{} > R{});
+  using I = Integer<A>;
+  const CubicRow<A>& row;
+
+  static R all(A value)
+  {
+    if constexpr (std::is_same_v<R, A>)
+    {
+      return value;
+    }
+    else
+    {
+      return Pack<A>{} + value;
+    }
+  }
+  static R loadFrom(const A* p)
+  {
+    if constexpr (std::is_same_v<R, A>)
+    {
+      return *p;
+    }
+    else
+    {
+      return load<A>(p);
+    }
+  }
+  static void storeTo(A* p, R value)
+  {
+    if constexpr (std::is_same_v<R, A>)
+    {
+      *p = value;
+    }
+    else
+    {
+      store<A>(p, value);
+    }
+  }
+
+  inline void loadCorners(const CubicPiece<A>& piece, std::ptrdiff_t x, R (&corners)[8]) const
+  {
+    const A* const rows[4] = { piece.low + x, piece.low + x + this->row.sourceStride,
+      piece.high + x, piece.high + x + this->row.sourceStride };
+#pragma GCC unroll 8
+    for (int n = 0; n < 8; ++n)
+    {
+      corners[n] = loadFrom(rows[n / 2] + n % 2);
+    }
+  }
+
+  static inline R combine(const A* weights, const R (&corners)[8])
+  {
+    R sum = all(A(0));
+    if constexpr (Special)
+    {
+      // What does not count may be no number.
+      for (int n = 0; n < 8; ++n)
+      {
+        sum = weights[n] != 0 ? sum + weights[n] * corners[n] : sum;
+      }
+    }
+    else
+    {
+      sum = weights[0] * corners[0];
+#pragma GCC unroll 8
+      for (int n = 1; n < 8; ++n)
+      {
+        sum = sum + weights[n] * corners[n];
+      }
+    }
+    return sum;
+  }
+
+  /// The field at the start of piece p, which is the end of the one before.
+  inline R startOf(int p, const R (&corners)[8], std::ptrdiff_t x) const
+  {
+    if (p == 0)
+    {
+      return combine(this->row.pieces[0].weights, corners);
+    }
+    const CubicPiece<A>& before = this->row.pieces[p - 1];
+    R others[8];
+    this->loadCorners(before, x, others);
+    return combine(before.weights + 24, others);
+  }
+
+  static inline R largestOf(const R (&corners)[8])
+  {
+    return larger(larger(larger(corners[0], corners[1]), larger(corners[2], corners[3])),
+      larger(larger(corners[4], corners[5]), larger(corners[6], corners[7])));
+  }
+
+  /// The pixels from x on that a piece counts for.
+  inline M counting(const CubicPiece<A>& piece, std::ptrdiff_t x) const
+  {
+    M lane;
+    if constexpr (std::is_same_v<R, A>)
+    {
+      const bool inField = x >= this->row.field.begin && x < this->row.field.end;
+      const Span& span = inField ? piece.inField : piece.inBoxes;
+      lane = x >= span.begin && x < span.end;
+      return lane;
+    }
+    else
+    {
+      for (std::ptrdiff_t n = 0; n < width<A>; ++n)
+      {
+        lane[n] = static_cast<I>(x + n);
+      }
+      const Span &field = this->row.field, &own = piece.inField, &boxes = piece.inBoxes;
+      const auto inSpan = [&lane](const Span& span)
+      { return (lane >= static_cast<I>(span.begin)) & (lane < static_cast<I>(span.end)); };
+      const M inField = inSpan(field);
+      return (inField & inSpan(own)) | (~inField & inSpan(boxes));
+    }
+  }
+
+  template <bool Masked>
+  inline void run(std::ptrdiff_t x) const
+  {
+    const R before = loadFrom(this->row.image + x);
+    const R none = all(-std::numeric_limits<A>::infinity());
+    R best = Special ? (before == before ? before : none) : before; // NaN has had no sample
+    R b[4], corners[8];
+    bool follows = false; // whether b[3] is where this piece starts
+    for (int p = 0; p < this->row.count; ++p)
+    {
+      const CubicPiece<A>& piece = this->row.pieces[p];
+      this->loadCorners(piece, x, corners);
+      if (!Special && !anyOf(largestOf(corners) > best))
+      {
+        follows = false;
+        continue;
+      }
+      b[0] = follows ? b[3] : this->startOf(p, corners, x);
+      b[3] = combine(piece.weights + 24, corners);
+      follows = true;
+      R raised = larger(b[3], larger(b[0], best));
+      if (piece.curved)
+      {
+        b[1] = combine(piece.weights + 8, corners);
+        b[2] = combine(piece.weights + 16, corners);
+        const R inner = larger(b[1], b[2]);
+        if (anyOf(inner > raised))
+        {
+          raised = larger(peakOf<A>(b, inner, raised), raised);
+        }
+      }
+      if constexpr (Masked)
+      {
+        raised = this->counting(piece, x) ? raised : best;
+      }
+      best = raised;
+    }
+    if (this->row.bits)
+    {
+      if constexpr (std::is_same_v<R, A>)
+      {
+        best = this->row.bits[x] & this->row.bit ? best : before;
+      }
+      else
+      {
+        const Pack<I> bits = loadBits<A>(this->row.bits + x);
+        best = (bits & static_cast<I>(this->row.bit)) != 0 ? best : before;
+      }
+    }
+    storeTo(this->row.image + x, Special ? (best > none ? best : before) : best);
+  }
+};
+
+template <class A, bool Special>
+inline void raiseCubicRow(const CubicRow<A>& row)
+{
+  constexpr std::ptrdiff_t w = width<A>;
+  const CubicLoop<A, Pack<A>, Special> loop{ row };
+  const std::ptrdiff_t begin = row.pixels.begin, end = row.pixels.end;
+  if (end - begin < w)
+  {
+    for (std::ptrdiff_t x = begin; x < end; ++x)
+    {
+      CubicLoop<A, A, Special>{ row }.template run<true>(x);
+    }
+    return;
+  }
+  // Pixels for which all pieces count.
+  std::ptrdiff_t first = begin > row.field.begin ? begin : row.field.begin;
+  std::ptrdiff_t last = end < row.field.end ? end : row.field.end;
+  for (int p = 0; p < row.count; ++p)
+  {
+    first = first > row.pieces[p].inField.begin ? first : row.pieces[p].inField.begin;
+    last = last < row.pieces[p].inField.end ? last : row.pieces[p].inField.end;
+  }
+  // A maximum may be taken twice, so the last register overlaps the one before.
+  for (std::ptrdiff_t x = begin; x < end; x += w)
+  {
+    const std::ptrdiff_t at = x + w <= end ? x : end - w;
+    at >= first && at + w <= last ? loop.template run<false>(at) : loop.template run<true>(at);
+  }
+}
+
+/// One pixel's maximum is the same in a register and by itself.
+template <class A>
+void raiseCubics(const CubicRow<A>& row)
+{
+  row.special ? raiseCubicRow<A, true>(row) : raiseCubicRow<A, false>(row);
+}
+}
+}
+
+#endif

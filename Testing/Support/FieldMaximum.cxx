@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FieldMaximum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace reference
+{
+namespace
+{
+double fieldOnRay(const Volume<double>& volume, const FieldRay& ray, double z)
+{
+  std::array<double, 3> point;
+  point[ray.axes[2]] = z;
+  for (int a = 0; a < 2; ++a)
+  {
+    point[ray.axes[a]] = ray.at[a] + ray.slope[a] * (z - ray.start);
+  }
+  return fieldAt(volume, point);
+}
+}
+
+std::array<double, 2> depthsInField(const std::array<int, 3>& volumeSize, const FieldRay& ray,
+  FieldDomain domain, double near, double far)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    const int n = volumeSize[ray.axes[a]];
+    const double low = domain == FieldDomain::Boxes || n == 1 ? -0.5 : 0.0, high = n - 1 - low;
+    if (a == 2)
+    {
+      near = std::max(near, low);
+      far = std::min(far, high);
+    }
+    else if (ray.slope[a] == 0.0)
+    {
+      far = ray.at[a] >= low && ray.at[a] <= high ? far : near - 1.0;
+    }
+    else
+    {
+      const double p = ray.start + (low - ray.at[a]) / ray.slope[a];
+      const double q = ray.start + (high - ray.at[a]) / ray.slope[a];
+      near = std::max(near, std::min(p, q));
+      far = std::min(far, std::max(p, q));
+    }
+  }
+  return { near, far };
+}
+
+double fieldAt(const Volume<double>& volume, const std::array<double, 3>& point)
+{
+  double sum = 0.0;
+  for (int n = 0; n < 8; ++n)
+  {
+    double weight = 1.0;
+    std::array<int, 3> voxel;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double below = std::floor(point[a]), fraction = point[a] - below;
+      const int next = n >> a & 1;
+      weight *= next ? fraction : 1.0 - fraction;
+      voxel[a] = std::clamp(static_cast<int>(below) + next, 0, volume.size[a] - 1);
+    }
+    sum += weight > 0.0 ? weight * volume.at(voxel) : 0.0;
+  }
+  return sum;
+}
+
+namespace
+{
+/// The same where no coordinate of the ray passes a whole number on its way.
+double maximumInCell(const Volume<double>& volume, const FieldRay& ray, double near, double far)
+{
+  constexpr int steps = 64;
+  const auto depth = [&](double n) { return near + (far - near) * n / steps; };
+  std::array<double, steps + 1> values;
+  for (int n = 0; n <= steps; ++n)
+  {
+    values[n] = fieldOnRay(volume, ray, depth(n));
+  }
+  double largest = values.front();
+  for (int n = 0; n <= steps; ++n)
+  {
+    const int before = std::max(n - 1, 0), after = std::min(n + 1, steps);
+    if (values[n] < values[before] || values[n] < values[after])
+    {
+      continue;
+    }
+    // Thirds that cannot hold the maximum are given up.
+    double low = depth(before), high = depth(after);
+    for (int turn = 0; turn < 60; ++turn)
+    {
+      const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
+      const bool rises = fieldOnRay(volume, ray, a) < fieldOnRay(volume, ray, b);
+      (rises ? low : high) = rises ? a : b;
+    }
+    largest = std::max({ largest, values[n], fieldOnRay(volume, ray, 0.5 * (low + high)) });
+  }
+  return largest;
+}
+}
+
+double fieldMaximum(const Volume<double>& volume, const FieldRay& ray, double near, double far)
+{
+  std::vector<double> depths{ near, far };
+  for (int k = static_cast<int>(std::ceil(near)); k < far; ++k)
+  {
+    depths.push_back(k);
+  }
+  for (int a = 0; a < 2; ++a)
+  {
+    const double p = ray.at[a] + ray.slope[a] * (near - ray.start);
+    const double q = ray.at[a] + ray.slope[a] * (far - ray.start);
+    for (int n = static_cast<int>(std::ceil(std::min(p, q))); n < std::max(p, q); ++n)
+    {
+      depths.push_back(std::clamp(ray.start + (n - ray.at[a]) / ray.slope[a], near, far));
+    }
+  }
+  std::sort(depths.begin(), depths.end());
+  double largest = fieldOnRay(volume, ray, near);
+  for (std::size_t n = 0; n + 1 < depths.size(); ++n)
+  {
+    largest = std::max(largest, maximumInCell(volume, ray, depths[n], depths[n + 1]));
+  }
+  return largest;
+}
+
+FieldRay fieldRay(const std::array<int, 3>& volumeSize, const ShearView& view, int u, int v)
+{
+  const ShearGrid grid = makeShearGrid(volumeSize, view);
+  return { grid.axes, { double(u - grid.margin[0]), double(v - grid.margin[1]) },
+    { -view.shear[0], -view.shear[1] }, grid.middle };
+}
+
+FieldRay fieldRay(const PerspectiveRays& rays, int u, int v)
+{
+  return { rays.axes, { rays.at[0][u], rays.at[1][v] }, { rays.slope[0][u], rays.slope[1][v] },
+    rays.start };
+}
+}
