@@ -7,8 +7,7 @@
 #ifndef splattingExactKernels_h
 #define splattingExactKernels_h
 
-#include "Kernels.h"
-#include "Registers.h"
+#include "ResamplingKernels.h"
 
 #include <limits>
 
@@ -27,8 +26,8 @@ inline bool anyOf(const M& mask)
   else
   {
 #if defined(__AVX512F__)
-    return _mm512_test_epi32_mask(reinterpret_cast<const __m512i&>(mask),
-             reinterpret_cast<const __m512i&>(mask)) != 0;
+    return _mm512_test_epi32_mask(
+             reinterpret_cast<const __m512i&>(mask), reinterpret_cast<const __m512i&>(mask)) != 0;
 #elif defined(__AVX2__)
     return _mm256_movemask_epi8(reinterpret_cast<const __m256i&>(mask)) != 0;
 #elif defined(__SSE2__)
@@ -112,17 +111,17 @@ inline R peakOf(const R (&b)[4], R inner, R none)
   return (t > zero) & (t < A(1)) ? smaller(value, inner) : none;
 }
 
-/// A register of pixels, or one pixel, of type R.
-template <class A, class R, bool Special>
-struct CubicLoop
+/// A register of elements of type A, or one of them, of type R.
+template <class A, class R>
+struct Lanes
 {
   using M = decltype(R{} > R{});
   using I = Integer<A>;
-  const CubicRow<A>& row;
+  static constexpr bool single = std::is_same_v<R, A>;
 
   static R all(A value)
   {
-    if constexpr (std::is_same_v<R, A>)
+    if constexpr (single)
     {
       return value;
     }
@@ -133,7 +132,7 @@ struct CubicLoop
   }
   static R loadFrom(const A* p)
   {
-    if constexpr (std::is_same_v<R, A>)
+    if constexpr (single)
     {
       return *p;
     }
@@ -144,7 +143,7 @@ struct CubicLoop
   }
   static void storeTo(A* p, R value)
   {
-    if constexpr (std::is_same_v<R, A>)
+    if constexpr (single)
     {
       *p = value;
     }
@@ -153,6 +152,51 @@ struct CubicLoop
       store<A>(p, value);
     }
   }
+  static inline R largestOf(const R (&corners)[8])
+  {
+    return larger(larger(larger(corners[0], corners[1]), larger(corners[2], corners[3])),
+      larger(larger(corners[4], corners[5]), larger(corners[6], corners[7])));
+  }
+
+  /// What pixels start from: those without a sample, if there are, from less than all.
+  template <bool Special>
+  static inline R opened(R before)
+  {
+    return Special ? (before == before ? before : all(-std::numeric_limits<A>::infinity()))
+                   : before;
+  }
+  /// Stores what has been raised, as far as bits say.
+  template <bool Special, class Row>
+  static inline void close(const Row& row, std::ptrdiff_t x, R before, R best)
+  {
+    if (row.bits)
+    {
+      if constexpr (single)
+      {
+        best = row.bits[x] & row.bit ? best : before;
+      }
+      else
+      {
+        const Pack<I> bits = loadBits<A>(row.bits + x);
+        best = (bits & static_cast<I>(row.bit)) != 0 ? best : before;
+      }
+    }
+    const R none = all(-std::numeric_limits<A>::infinity());
+    storeTo(row.image + x, Special ? (best > none ? best : before) : best);
+  }
+};
+
+/// The cubics of a parallel view.
+template <class A, class R, bool Special>
+struct CubicLoop : Lanes<A, R>
+{
+  using typename Lanes<A, R>::M;
+  using typename Lanes<A, R>::I;
+  using Lanes<A, R>::all;
+  using Lanes<A, R>::loadFrom;
+  const CubicRow<A>& row;
+
+  explicit CubicLoop(const CubicRow<A>& own) : row(own) {}
 
   inline void loadCorners(const CubicPiece<A>& piece, std::ptrdiff_t x, R (&corners)[8]) const
   {
@@ -201,12 +245,6 @@ struct CubicLoop
     return combine(before.weights + 24, others);
   }
 
-  static inline R largestOf(const R (&corners)[8])
-  {
-    return larger(larger(larger(corners[0], corners[1]), larger(corners[2], corners[3])),
-      larger(larger(corners[4], corners[5]), larger(corners[6], corners[7])));
-  }
-
   /// The pixels from x on that a piece counts for.
   inline M counting(const CubicPiece<A>& piece, std::ptrdiff_t x) const
   {
@@ -236,15 +274,14 @@ struct CubicLoop
   inline void run(std::ptrdiff_t x) const
   {
     const R before = loadFrom(this->row.image + x);
-    const R none = all(-std::numeric_limits<A>::infinity());
-    R best = Special ? (before == before ? before : none) : before; // NaN has had no sample
+    R best = Lanes<A, R>::template opened<Special>(before);
     R b[4], corners[8];
     bool follows = false; // whether b[3] is where this piece starts
     for (int p = 0; p < this->row.count; ++p)
     {
       const CubicPiece<A>& piece = this->row.pieces[p];
       this->loadCorners(piece, x, corners);
-      if (!Special && !anyOf(largestOf(corners) > best))
+      if (!Special && !anyOf(Lanes<A, R>::largestOf(corners) > best))
       {
         follows = false;
         continue;
@@ -269,19 +306,7 @@ struct CubicLoop
       }
       best = raised;
     }
-    if (this->row.bits)
-    {
-      if constexpr (std::is_same_v<R, A>)
-      {
-        best = this->row.bits[x] & this->row.bit ? best : before;
-      }
-      else
-      {
-        const Pack<I> bits = loadBits<A>(this->row.bits + x);
-        best = (bits & static_cast<I>(this->row.bit)) != 0 ? best : before;
-      }
-    }
-    storeTo(this->row.image + x, Special ? (best > none ? best : before) : best);
+    Lanes<A, R>::template close<Special>(this->row, x, before, best);
   }
 };
 
@@ -289,13 +314,13 @@ template <class A, bool Special>
 inline void raiseCubicRow(const CubicRow<A>& row)
 {
   constexpr std::ptrdiff_t w = width<A>;
-  const CubicLoop<A, Pack<A>, Special> loop{ row };
+  const CubicLoop<A, Pack<A>, Special> loop(row);
   const std::ptrdiff_t begin = row.pixels.begin, end = row.pixels.end;
   if (end - begin < w)
   {
     for (std::ptrdiff_t x = begin; x < end; ++x)
     {
-      CubicLoop<A, A, Special>{ row }.template run<true>(x);
+      CubicLoop<A, A, Special>(row).template run<true>(x);
     }
     return;
   }
@@ -311,7 +336,7 @@ inline void raiseCubicRow(const CubicRow<A>& row)
   for (std::ptrdiff_t x = begin; x < end; x += w)
   {
     const std::ptrdiff_t at = x + w <= end ? x : end - w;
-    at >= first && at + w <= last ? loop.template run<false>(at) : loop.template run<true>(at);
+    at >= first&& at + w <= last ? loop.template run<false>(at) : loop.template run<true>(at);
   }
 }
 
@@ -320,6 +345,199 @@ template <class A>
 void raiseCubics(const CubicRow<A>& row)
 {
   row.special ? raiseCubicRow<A, true>(row) : raiseCubicRow<A, false>(row);
+}
+
+/// The cubics of a perspective view: each pixel has a place of its own in the cells, that of a row
+/// of cells goes for all.
+template <class A, class R, bool Special>
+struct FanCubicLoop : Lanes<A, R>
+{
+  using typename Lanes<A, R>::M;
+  using typename Lanes<A, R>::I;
+  using Lanes<A, R>::all;
+  using Lanes<A, R>::loadFrom;
+  static constexpr bool single = Lanes<A, R>::single;
+  const FanCubicRow<A>& row;
+
+  explicit FanCubicLoop(const FanCubicRow<A>& own) : row(own) {}
+
+  static inline R between(R a, R b, R share) { return a + share * (b - a); }
+  static inline R clampedShare(R x) { return smaller(larger(x, all(A(0))), all(A(1))); }
+
+  /// The pixels' cells, as the least of them and how far the others are from it.
+  struct Cells
+  {
+    std::int32_t least;
+    LaneOf<A> lanes[single ? 1 : width<A>];
+
+    explicit Cells(const std::int32_t* cells) : least(cells[0])
+    {
+      constexpr std::ptrdiff_t count = single ? 1 : width<A>;
+      // They ascend, but for the rounding of rays that meet in the eye.
+      for (std::ptrdiff_t n = 1; n < count; ++n)
+      {
+        this->least = smaller(cells[n], this->least);
+      }
+      for (std::ptrdiff_t n = 0; n < count; ++n)
+      {
+        this->lanes[n] = cells[n] - this->least;
+      }
+    }
+
+    inline R pick(const A* voxels) const
+    {
+      const A* const first = voxels + this->least;
+      if constexpr (single)
+      {
+        return *first;
+      }
+      else
+      {
+#if defined(__AVX2__)
+        if constexpr (Resampler<A>::picks)
+        {
+          return Resampler<A>::pick(first, loadRegister(this->lanes));
+        }
+#endif
+        R picked;
+        for (std::ptrdiff_t n = 0; n < width<A>; ++n)
+        {
+          picked[n] = first[this->lanes[n]];
+        }
+        return picked;
+      }
+    }
+  };
+
+  /// The largest of the cubics from one depth to another.
+  inline R largestFrom(const FanCubicPart<A>& part, const R (&corners)[8], R x, R slope, R from,
+    R to, R best, M counts) const
+  {
+    const R x0 = clampedShare(x + slope * from), x1 = clampedShare(x + slope * to);
+    const R y0 = clampedShare(part.y + this->row.slope * from),
+            y1 = clampedShare(part.y + this->row.slope * to);
+    const R z0 = clampedShare(part.z + from), z1 = clampedShare(part.z + to);
+    R near[4], far[4]; // along x, at either end
+#pragma GCC unroll 4
+    for (int n = 0; n < 4; ++n)
+    {
+      near[n] = between(corners[2 * n], corners[2 * n + 1], x0);
+      far[n] = between(corners[2 * n], corners[2 * n + 1], x1);
+    }
+    const R near0[2] = { between(near[0], near[1], y0), between(near[2], near[3], y0) };
+    const R near1[2] = { between(near[0], near[1], y1), between(near[2], near[3], y1) };
+    const R far0[2] = { between(far[0], far[1], y0), between(far[2], far[3], y0) };
+    const R far1[2] = { between(far[0], far[1], y1), between(far[2], far[3], y1) };
+    const A third = A(1) / A(3);
+    // The blossom: the coordinates of one end mixed with those of the other in all ways.
+    const R b[4] = { between(near0[0], near0[1], z0),
+      third *
+        (between(far0[0], far0[1], z0) + between(near1[0], near1[1], z0) +
+          between(near0[0], near0[1], z1)),
+      third *
+        (between(far1[0], far1[1], z0) + between(far0[0], far0[1], z1) +
+          between(near1[0], near1[1], z1)),
+      between(far1[0], far1[1], z1) };
+    const R ends = larger(b[3], larger(b[0], best));
+    R raised = ends;
+    const R inner = larger(b[1], b[2]);
+    if (anyOf(inner > raised))
+    {
+      raised = larger(peakOf<A>(b, inner, raised), raised);
+    }
+    return counts ? raised : best;
+  }
+
+  inline void run(std::ptrdiff_t x) const
+  {
+    const FanCellArrays<A>& c = this->row.columns;
+    const R before = loadFrom(this->row.image + x);
+    R best = Lanes<A, R>::template opened<Special>(before);
+    // Rays beside the field see boxes.
+    const R near = larger(loadFrom(c.fieldNear + x), all(this->row.fieldNear));
+    const R far = smaller(loadFrom(c.fieldFar + x), all(this->row.fieldFar));
+    const M inField = far - near > this->row.shortest;
+    const R begin = inField ? larger(loadFrom(c.fieldBegin + x), all(this->row.fieldBegin))
+                            : larger(loadFrom(c.boxesBegin + x), all(this->row.boxesBegin));
+    const R end = inField ? smaller(loadFrom(c.fieldEnd + x), all(this->row.fieldEnd))
+                          : smaller(loadFrom(c.boxesEnd + x), all(this->row.boxesEnd));
+    const R at = loadFrom(c.at + x), slope = loadFrom(c.slope + x),
+            crossing = loadFrom(c.crossing + x);
+    const R zero = all(A(0)), one = all(A(1));
+    const Cells cells(c.cell + x);
+    // Rays that fall begin in the upper of their two cells.
+    const M falls = (slope < zero) & (crossing < one);
+    for (int p = 0; p < this->row.count; ++p)
+    {
+      const FanCubicPart<A>& part = this->row.parts[p];
+      const R from = larger(begin, all(part.from)), to = smaller(end, all(part.to));
+      const R change = larger(from, smaller(crossing, to));
+      const M first = from < change, second = change < to;
+      if (!anyOf(first | second))
+      {
+        continue;
+      }
+      R voxels[4][3];
+      R most = zero;
+      for (int n = 0; n < 4; ++n)
+      {
+        for (int t = 0; t < 3; ++t)
+        {
+          voxels[n][t] = cells.pick(part.rows[n] + t);
+          most = n + t == 0 ? voxels[0][0] : larger(voxels[n][t], most);
+        }
+      }
+      if (!Special && !anyOf(most > best))
+      {
+        continue;
+      }
+      R corners[8];
+      if (anyOf(first))
+      {
+        choose(voxels, falls, corners);
+        const R start = at - (falls ? one : zero);
+        best = this->largestFrom(part, corners, start, slope, from, change, best, first);
+      }
+      if (anyOf(second))
+      {
+        choose(voxels, slope > zero, corners);
+        const R start = at - (slope > zero ? one : zero);
+        best = this->largestFrom(part, corners, start, slope, change, to, best, second);
+      }
+    }
+    Lanes<A, R>::template close<Special>(this->row, x, before, best);
+  }
+
+  /// The voxels of the upper or the lower cell.
+  static inline void choose(const R (&voxels)[4][3], const M& upper, R (&corners)[8])
+  {
+#pragma GCC unroll 4
+    for (int n = 0; n < 4; ++n)
+    {
+      corners[2 * n] = upper ? voxels[n][1] : voxels[n][0];
+      corners[2 * n + 1] = upper ? voxels[n][2] : voxels[n][1];
+    }
+  }
+};
+
+template <class A, bool Special>
+inline void raiseFanCubicRow(const FanCubicRow<A>& row)
+{
+  const std::ptrdiff_t begin = row.pixels.begin, end = row.pixels.end;
+  for (std::ptrdiff_t x = begin; end - begin >= width<A> && x < end; x += width<A>)
+  {
+    FanCubicLoop<A, Pack<A>, Special>(row).run(x + width<A> <= end ? x : end - width<A>);
+  }
+  for (std::ptrdiff_t x = begin; end - begin < width<A> && x < end; ++x)
+  {
+    FanCubicLoop<A, A, Special>(row).run(x);
+  }
+}
+
+template <class A>
+void raiseFanCubics(const FanCubicRow<A>& row)
+{
+  row.special ? raiseFanCubicRow<A, true>(row) : raiseFanCubicRow<A, false>(row);
 }
 }
 }

@@ -70,8 +70,7 @@ ExactPiece<A> pieceBetween(
   piece.di = static_cast<int>(cell.x);
   piece.dj = static_cast<int>(cell.y);
   piece.dk = static_cast<int>(cell.z) - k;
-  const auto weights = coefficients(
-    glm::clamp(from - cell, glm::dvec3(0.0), glm::dvec3(1.0)),
+  const auto weights = coefficients(glm::clamp(from - cell, glm::dvec3(0.0), glm::dvec3(1.0)),
     glm::clamp(to - cell, glm::dvec3(0.0), glm::dvec3(1.0)));
   for (int b = 0; b < 4; ++b)
   {

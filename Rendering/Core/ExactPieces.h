@@ -45,7 +45,8 @@ struct ExactPiece
   /// Of Bernstein coefficient b for the cell's voxels, along i first: weights[8 b + n].
   std::array<A, 32> weights;
   bool curved; ///< whether the cubic is more than a line
-  /// The pixels for which the piece lies in the field, and those for which it lies in voxels' boxes.
+  /// The pixels for which the piece lies in the field, and those for which it lies in voxels'
+  /// boxes.
   std::array<Span, 2> inField, inBoxes; ///< columns and rows
 };
 

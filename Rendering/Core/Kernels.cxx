@@ -642,7 +642,7 @@ constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
 template <class A>
 constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>, &resample<A>,
   &blend<A>, &raiseBlend<A>, &splat<A>, &raiseCubics<A>,
-  &splatValid<A>,
+  &raiseFanCubics<A>, &splatValid<A>,
   static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
   static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
   &interpolateProjective<A>, &lookUp<A> };

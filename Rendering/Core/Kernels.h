@@ -264,10 +264,10 @@ constexpr int MostPieces = 6;
 template <class A>
 struct CubicPiece
 {
-  const A *low, *high;     ///< the first voxel of pixel 0's cell in its two slices
-  const A* weights;        ///< as in ExactPiece
-  bool curved;             ///< likewise
-  Span inField, inBoxes;   ///< the pixels that it counts for
+  const A *low, *high;   ///< the first voxel of pixel 0's cell in its two slices
+  const A* weights;      ///< as in ExactPiece
+  bool curved;           ///< likewise
+  Span inField, inBoxes; ///< the pixels that it counts for
 };
 
 template <class A>
@@ -279,6 +279,46 @@ struct CubicRow
   std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
   CubicPiece<A> pieces[MostPieces];
   int count;
+  bool special;              ///< whether there are NaN or infinities
+  const unsigned char* bits; ///< pixel x changes if bits[x] & bit; or nullptr
+  unsigned char bit;
+};
+
+/// What FanCells knows of all columns (or rows) in a slice, depths relative to its middle.
+template <class A>
+struct FanCellArrays
+{
+  const std::int32_t* cell;       ///< the lower of the cells that the ray is in
+  const A *at, *slope;            ///< its place in that cell: at + slope z
+  const A* crossing;              ///< where it leaves one cell for the other; 2 if it does not
+  const A *fieldBegin, *fieldEnd; ///< where it is in the field
+  const A *boxesBegin, *boxesEnd; ///< and in voxels' boxes
+  const A *fieldNear, *fieldFar;  ///< as fieldBegin and fieldEnd, relative to slice 0
+};
+
+/// The depths in a slice in which rays stay in one row of cells and on one side of its middle.
+template <class A>
+struct FanCubicPart
+{
+  A from, to;
+  /// Column 0 of the cell's rows of voxels: two of the lower slice, then two of the upper one.
+  const A* rows[4];
+  A y, z; ///< places in the cell at depth 0
+};
+
+/// One row of pixels in one slice of a perspective image.
+template <class A>
+struct FanCubicRow
+{
+  A* image;    ///< pixel 0, which need not exist
+  Span pixels; ///< those that are raised
+  FanCellArrays<A> columns;
+  A slope; ///< of the row
+  FanCubicPart<A> parts[3];
+  int count;
+  A fieldBegin, fieldEnd, boxesBegin, boxesEnd; ///< of the row, as in FanCellArrays
+  A fieldNear, fieldFar;
+  A shortest;                ///< way through the field that counts as seeing it
   bool special;              ///< whether there are NaN or infinities
   const unsigned char* bits; ///< pixel x changes if bits[x] & bit; or nullptr
   unsigned char bit;
@@ -306,6 +346,8 @@ struct WorksheetLoops
   /// Pixels become the largest of themselves and the cubics that their rays meet. A cubic with a
   /// NaN coefficient is left out but for its ends.
   void (*raiseCubics)(const CubicRow<A>& row);
+  /// The same in perspective views, where each pixel has cubics of its own.
+  void (*raiseFanCubics)(const FanCubicRow<A>& row);
   /// image[x] = max(image[x], average of rows[0..count)[x], NaN left out, weighted and divided by
   /// the weights that remain). image[x] = NaN is "no sample yet". Rows may hold infinities.
   void (*splatValid)(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);

@@ -4,9 +4,9 @@
 
 #include "BandWalk.h"
 #include "Carry.h"
-#include "ExactWorksheets.h"
 #include "LineWalk.h"
 #include "LineWorksheets.h"
+#include "PerspectiveExact.h"
 #include "PerspectivePreview.h"
 #include "PerspectiveWorksheets.h"
 #include "RayWalk.h"
@@ -126,6 +126,7 @@ struct Projector::Scratch
   std::tuple<PerspectiveFootprints<float>, PerspectiveFootprints<double>> perspectiveFootprints;
   std::tuple<std::vector<ExactPath<float>>, std::vector<ExactPath<double>>> paths;
   std::vector<Span> field;
+  std::tuple<std::array<FanCells<float>, 2>, std::array<FanCells<double>, 2>> cells;
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> reach;
   PerspectiveSteps steps;
   std::vector<unsigned char> none;
@@ -293,7 +294,14 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   const bool perspective = frame.geometry.isPerspective();
   auto& own = std::get<PerspectiveFootprints<A>>(this->Memory->perspectiveFootprints);
   auto& paths = std::get<std::vector<ExactPath<A>>>(this->Memory->paths);
-  if (exact && !perspective)
+  auto& cells = std::get<std::array<FanCells<A>, 2>>(this->Memory->cells);
+  if (exact && perspective)
+  {
+    cells[0].find(frame.geometry, 0);
+    cells[1].find(frame.geometry, 1);
+    findExactReach(frame.geometry, reach);
+  }
+  else if (exact)
   {
     findExactPaths(frame.geometry, paths);
     findFieldSpans(frame.geometry, this->Memory->field);
@@ -343,7 +351,11 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   {
     splat(PreviewLayers<T>(frame, this->Memory->previewLayers));
   }
-  else if (exact && !perspective)
+  else if (exact && perspective)
+  {
+    splat(PerspectiveExact<T>(frame, cells[0], cells[1], reach));
+  }
+  else if (exact)
   {
     splat(ExactWorksheets<T>(frame, paths, this->Memory->field, reach));
   }
