@@ -168,6 +168,10 @@ splatting::ProjectionSettings ComponentProjector::SettingsOf(
   const Channel& channel, splatting::ProjectionSettings settings) const
 {
   settings.keepWinners = this->Carries(settings);
+  if (settings.keepWinners && settings.quality == splatting::Quality::Exact)
+  {
+    settings.quality = splatting::Quality::High; // what is carried is an average
+  }
   // Colours that are carried matter below the window, too.
   if (this->Cull && !this->Dependent && settings.reduction == splatting::Reduction::Maximum)
   {

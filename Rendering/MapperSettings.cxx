@@ -108,8 +108,14 @@ splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* ma
 {
   // What has no effect stays as it is by default, so that a change of it projects nothing.
   splatting::ProjectionSettings settings;
-  settings.quality = static_cast<splatting::Quality>(mode);
   settings.reduction = reductionOf(mapper);
+  const bool hasMaxima = settings.reduction != splatting::Reduction::Minimum &&
+    settings.reduction != splatting::Reduction::Mean;
+  if (mode == vtkSplattingMIPVolumeMapper::EXACT && !hasMaxima)
+  {
+    mode = vtkSplattingMIPVolumeMapper::HIGH;
+  }
+  settings.quality = static_cast<splatting::Quality>(mode);
   switch (settings.reduction)
   {
     case splatting::Reduction::DepthShaded:
@@ -140,7 +146,7 @@ splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* ma
   {
     settings.kernel = { splatting::Reconstruction::CosineBell, mapper->GetKernelRadius() };
   }
-  if (mode != vtkSplattingMIPVolumeMapper::PREVIEW)
+  if (mode == vtkSplattingMIPVolumeMapper::STANDARD || mode == vtkSplattingMIPVolumeMapper::HIGH)
   {
     settings.footprintSampling = mapper->GetFootprintSampling();
   }

@@ -107,7 +107,7 @@ bool vtkSplattingMIPGPUVolumeRayCastMapper::GetGlobalOverride()
 void vtkSplattingMIPGPUVolumeRayCastMapper::SetGlobalQualityMode(int mode)
 {
   globalQualityMode =
-    std::clamp<int>(mode, vtkSplattingMIPVolumeMapper::PREVIEW, vtkSplattingMIPVolumeMapper::HIGH);
+    std::clamp<int>(mode, vtkSplattingMIPVolumeMapper::PREVIEW, vtkSplattingMIPVolumeMapper::EXACT);
 }
 
 //------------------------------------------------------------------------------

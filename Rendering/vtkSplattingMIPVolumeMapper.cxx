@@ -53,7 +53,7 @@ bool isProjection(int blendMode)
 
 const char* nameOfMode(int mode)
 {
-  static const char* const names[] = { "preview", "standard", "high" };
+  static const char* const names[] = { "preview", "standard", "high", "exact" };
   return names[mode];
 }
 

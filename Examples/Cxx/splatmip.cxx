@@ -34,7 +34,7 @@
 
 namespace
 {
-const std::vector<std::string> ModeNames = { "preview", "standard", "high" }; // as QualityModes
+const std::vector<std::string> ModeNames = { "preview", "standard", "high", "exact" }; // as QualityModes
 
 struct Options
 {
@@ -94,7 +94,7 @@ void DeclareImageOptions(CLI::App& app, Options& options)
       "series; without it, a built-in CT of a stented aorta")
     ->type_name("FILE");
   app.add_option("--mode", options.Mode, "Quality mode, or all three side by side")
-    ->check(CLI::IsMember({ "preview", "standard", "high", "all" }))
+    ->check(CLI::IsMember({ "preview", "standard", "high", "exact", "all" }))
     ->type_name("MODE")
     ->capture_default_str();
   app.add_option("--kernel", options.Kernel, "Reconstruction kernel of mode high")

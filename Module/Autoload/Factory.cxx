@@ -5,7 +5,7 @@
 // of it, when VTK loads libraries from VTK_AUTOLOAD_PATH. The environment says what programs
 // otherwise say by calls:
 //
-// SPLATTINGMIP_QUALITY  preview, standard or high (the default)
+// SPLATTINGMIP_QUALITY  preview, standard, high (the default) or exact
 // SPLATTINGMIP_LOG      a file to which VTK's log of verbosity up to 1 is appended: which mapper
 //                       renders, beside all warnings and errors
 #include "vtkLogger.h"
@@ -48,10 +48,14 @@ void setQuality(const std::string& quality)
   {
     Override::SetGlobalQualityMode(vtkSplattingMIPVolumeMapper::STANDARD);
   }
+  else if (quality == "exact")
+  {
+    Override::SetGlobalQualityMode(vtkSplattingMIPVolumeMapper::EXACT);
+  }
   else if (!quality.empty() && quality != "high")
   {
     vtkGenericWarningMacro(<< "SPLATTINGMIP_QUALITY is \"" << quality
-                           << "\", which is taken as high: set it to preview, standard or high.");
+                           << "\", which is taken as high: set it to preview, standard, high or exact.");
   }
 }
 }

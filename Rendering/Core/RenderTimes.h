@@ -16,7 +16,7 @@ namespace splatting
 class RenderTimes
 {
 public:
-  static constexpr int Modes = 3;
+  static constexpr int Modes = 4;
   /// So many views are remembered; beyond them the one that was added first is forgotten.
   static constexpr std::size_t MostViews = 64;
 

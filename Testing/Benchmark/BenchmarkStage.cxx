@@ -96,6 +96,7 @@ const std::vector<BenchmarkMapper>& GetBenchmarkMappers()
     { "preview", Mapper::SPLATTING, Splatting::PREVIEW, automatic, linear, "raycast-nearest" },
     { "standard", Mapper::SPLATTING, Splatting::STANDARD, automatic, linear, "raycast-linear" },
     { "high", Mapper::SPLATTING, Splatting::HIGH, automatic, linear, "raycast-linear" },
+    { "exact", Mapper::SPLATTING, Splatting::EXACT, automatic, linear, "raycast-linear" },
     { "raycast-nearest", Mapper::CPU_RAY_CASTING, 0, 0, nearest, "" },
     { "raycast-linear", Mapper::CPU_RAY_CASTING, 0, 0, linear, "" },
     { "gpu", Mapper::GPU_RAY_CASTING, 0, 0, linear, "" },

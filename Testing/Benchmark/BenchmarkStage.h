@@ -38,12 +38,12 @@ struct BenchmarkMapper
 };
 
 /**
- * preview, standard, high; raycast-nearest, raycast-linear; gpu.
+ * preview, standard, high, exact; raycast-nearest, raycast-linear; gpu.
  */
 const std::vector<BenchmarkMapper>& GetBenchmarkMappers();
 
 /**
- * The three modes by the mapper's own choice, and forced: preview-dense, preview-bricks, ...
+ * The modes by the mapper's own choice, and forced: preview-dense, preview-bricks, ...
  */
 const std::vector<BenchmarkMapper>& GetBenchmarkAccelerations();
 

@@ -55,7 +55,7 @@ VOLUME   vessels128-uint8, vessels256-uint8, -int16, -float, vessels512-uint8 (n
 WINDOW   300 or 1024 pixels along each side
 ACCELERATION  dense or bricks; without it the mapper chooses
 CUT      none; around: planes that leave nothing out; plane: through the middle; box: six planes
-MAPPER   preview, standard, high: the modes of vtkSplattingMIPVolumeMapper
+MAPPER   preview, standard, high, exact: the modes of vtkSplattingMIPVolumeMapper
          raycast-nearest, raycast-linear: vtkFixedPointVolumeRayCastMapper
          gpu: vtkOpenGLGPUVolumeRayCastMapper, linear
 

@@ -64,9 +64,9 @@ public:
    * interactive renders AUTOMATIC is the best mode up to the still one that is expected to fit into
    * the time that ParaView allows for a frame.
    */
-  vtkSetClampMacro(QualityMode, int, 0, 2);
+  vtkSetClampMacro(QualityMode, int, 0, 3);
   vtkGetMacro(QualityMode, int);
-  vtkSetClampMacro(InteractiveQualityMode, int, AUTOMATIC, 2);
+  vtkSetClampMacro(InteractiveQualityMode, int, AUTOMATIC, 3);
   vtkGetMacro(InteractiveQualityMode, int);
   ///@}
 
