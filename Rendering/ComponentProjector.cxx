@@ -190,13 +190,13 @@ bool ComponentProjector::Shows(const splatting::ProjectionSettings& settings) co
 }
 
 //------------------------------------------------------------------------------
-bool ComponentProjector::ProjectChannel(Channel& channel, std::size_t n,
+bool ComponentProjector::ProjectChannel(Channel& channel, splatting::ShearImage& image,
   const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
   const splatting::Cuts& cuts)
 {
   channel.Settings = this->SettingsOf(channel, settings);
   const splatting::Acceleration used =
-    this->Projector.project(channel.Index, geometry, channel.Settings, cuts, channel.Images[n]);
+    this->Projector.project(channel.Index, geometry, channel.Settings, cuts, image);
   if (this->Projector.stopped())
   {
     return false;
@@ -208,16 +208,19 @@ bool ComponentProjector::ProjectChannel(Channel& channel, std::size_t n,
 
 //------------------------------------------------------------------------------
 // One image of all channels: what is carried needs the projector as the projection has left it.
-bool ComponentProjector::ProjectImage(std::size_t n, const splatting::ShearWarp& geometry,
-  const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts)
+bool ComponentProjector::ProjectPart(std::size_t n, Place place,
+  const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
+  const splatting::Cuts& cuts)
 {
   if (!this->Carries(settings))
   {
     return std::all_of(this->Channels.begin(), this->Channels.end(),
-      [&](Channel& channel) { return this->ProjectChannel(channel, n, geometry, settings, cuts); });
+      [&](Channel& channel)
+      { return this->ProjectChannel(channel, place(channel, n), geometry, settings, cuts); });
   }
   Channel& last = this->Channels.back();
-  if (!this->ProjectChannel(last, n, geometry, settings, cuts))
+  const splatting::ShearImage& winners = place(last, n);
+  if (!this->ProjectChannel(last, place(last, n), geometry, settings, cuts))
   {
     return false;
   }
@@ -228,7 +231,43 @@ bool ComponentProjector::ProjectImage(std::size_t n, const splatting::ShearWarp&
       channel.Settings = last.Settings;
       channel.Used = last.Used;
       this->Projector.carry(
-        channel.Index.volume(), geometry, last.Settings, last.Images[n], channel.Images[n]);
+        channel.Index.volume(), geometry, last.Settings, winners, place(channel, n));
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// As it is, or phase by phase.
+bool ComponentProjector::ProjectImage(std::size_t n, const splatting::ShearWarp& geometry,
+  const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts)
+{
+  const int phases = geometry.phases();
+  if (phases == 1)
+  {
+    const Place whole = [](Channel& channel, std::size_t image) -> splatting::ShearImage&
+    { return channel.Images[image]; };
+    return this->ProjectPart(n, whole, geometry, settings, cuts);
+  }
+  const Place part = [](Channel& channel, std::size_t) -> splatting::ShearImage&
+  { return channel.Phase; };
+  this->PhaseCuts.cropping = cuts.cropping;
+  this->PhaseCuts.intervals.clear();
+  for (int p = 0; p < phases * phases; ++p)
+  {
+    const glm::ivec2 phase(p % phases, p / phases);
+    geometry.takePhase(phase, this->PhaseGeometry);
+    if (!cuts.intervals.empty())
+    {
+      this->PhaseCuts.intervals.takePhase(cuts.intervals, phases, phase);
+    }
+    if (!this->ProjectPart(n, part, this->PhaseGeometry, settings, this->PhaseCuts))
+    {
+      return false;
+    }
+    for (Channel& channel : this->Channels)
+    {
+      splatting::interleave(channel.Phase, phases, phase, channel.Images[n]);
     }
   }
   return true;
@@ -240,13 +279,17 @@ bool ComponentProjector::Project(const std::vector<splatting::ShearWarp>& geomet
 {
   this->Projected = false;
   this->Done = 0;
-  this->Images = geometries.size();
+  this->Parts = 0;
+  for (const splatting::ShearWarp& geometry : geometries)
+  {
+    this->Parts += static_cast<std::size_t>(geometry.phases()) * geometry.phases();
+  }
   for (Channel& channel : this->Channels)
   {
-    channel.Images.resize(std::max(channel.Images.size(), this->Images));
+    channel.Images.resize(std::max(channel.Images.size(), geometries.size()));
     channel.Settings = this->SettingsOf(channel, settings); // there may be no image
   }
-  for (std::size_t n = 0; n < this->Images; ++n)
+  for (std::size_t n = 0; n < geometries.size(); ++n)
   {
     if (!this->ProjectImage(n, geometries[n], settings, cuts[n]))
     {
@@ -262,7 +305,7 @@ double ComponentProjector::ShareOfAll(double done) const
 {
   const std::size_t channels = this->Carries(this->Settings()) ? 1 : this->Channels.size();
   return (this->Done + done) /
-    static_cast<double>(channels * std::max<std::size_t>(this->Images, 1));
+    static_cast<double>(channels * std::max<std::size_t>(this->Parts, 1));
 }
 
 //------------------------------------------------------------------------------

@@ -88,6 +88,7 @@ private:
     splatting::ColorTable Colors;
     splatting::ProjectionSettings Settings;
     std::vector<splatting::ShearImage> Images; // at least as many as the view has
+    splatting::ShearImage Phase;               // the present part of one of them
     splatting::Acceleration Used = splatting::Acceleration::Dense;
 
     double FloorOfWindow() const;
@@ -98,8 +99,13 @@ private:
   bool Carries(const splatting::ProjectionSettings& settings) const;
   bool ProjectImage(std::size_t n, const splatting::ShearWarp& geometry,
     const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
-  bool ProjectChannel(Channel& channel, std::size_t n, const splatting::ShearWarp& geometry,
+  /// Where a channel's image belongs.
+  using Place = splatting::ShearImage& (*)(Channel&, std::size_t n);
+  bool ProjectPart(std::size_t n, Place place, const splatting::ShearWarp& geometry,
     const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
+  bool ProjectChannel(Channel& channel, splatting::ShearImage& image,
+    const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
+    const splatting::Cuts& cuts);
   ScalarRange RangeOf(Channel& channel) const;
   splatting::ColorTable ColorsOf(
     int channel, vtkVolumeProperty* property, const FinalColor& finalColor);
@@ -108,9 +114,9 @@ private:
   bool Dependent = false;
   bool Cull = false;
   bool Projected = false;
-  int Done = 0;           // of the present projection's images of channels
-  std::size_t Images = 1; // of a channel
-  vtkIdType Version = 0;  // of the source
+  int Done = 0;          // of the present projection's images of channels
+  std::size_t Parts = 1; // of a channel: images, or phases of them
+  vtkIdType Version = 0; // of the source
 
   vtkVolumeProperty* ColoredBy = nullptr; // only compared
   vtkMTimeType ColorTime = 0;
@@ -118,6 +124,8 @@ private:
   double Shading[2] = { 0.0, 1.0 }; // of all samples, the least and the greatest factor
   bool Colored = false;
 
+  splatting::ShearWarp PhaseGeometry;
+  splatting::Cuts PhaseCuts;
   splatting::Projector Projector;
   splatting::Warper Warper;
   splatting::Picture Layer; // of one component

@@ -70,6 +70,17 @@ private:
   vtkRenderWindow*& Pointer;
 };
 
+/// As ShearWarp::factorise() takes it.
+int samplingOf(vtkSplattingMIPVolumeMapper* mapper, splatting::Quality quality)
+{
+  const int sampling = mapper->GetShearImageSampling();
+  if (sampling == vtkSplattingMIPVolumeMapper::AUTOMATIC_SAMPLING)
+  {
+    return quality == splatting::Quality::Exact ? splatting::ShearWarp::Automatic : 1;
+  }
+  return sampling == 3 ? 2 : sampling;
+}
+
 const char* nameOf(int acceleration)
 {
   static const char* const names[] = { "auto", "dense", "bricks", "lines", "sorted lines",
@@ -90,6 +101,8 @@ public:
   std::size_t MainImage() const;
   bool HasImage() const { return this->Components.IsProjected() && !this->Images.empty(); }
   double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
+  bool Factorise(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
+    const splatting::View& view, splatting::Quality quality);
   bool Project(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
     const splatting::View& view, int mode);
 
@@ -108,6 +121,7 @@ public:
   vtkIdType Projections = 0;
   int QualityModeUsed = HIGH; // in the last projection that was not aborted
   double ProjectionTime = 0.0;
+  double CutTime = 0.0; // of it, to find what cuts the present images
   splatting::RenderTimes Times;
   double IndexTimeBefore = 0.0; // before what the present frame makes of the index
   double Shear[2] = { 0.0, 0.0 };
@@ -134,6 +148,7 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     BoundingSurface(nullptr),
     IntermixIntersectingGeometry(1),
     FootprintSampling(0),
+    ShearImageSampling(AUTOMATIC_SAMPLING),
     Acceleration(AUTO),
     LineTolerance(0.0),
     EliminateInvisible(false),
@@ -233,33 +248,52 @@ std::size_t vtkSplattingMIPVolumeMapper::Internals::MainImage() const
 }
 
 //------------------------------------------------------------------------------
+// The images of a view and what cuts them; false if it has no meaning.
+bool vtkSplattingMIPVolumeMapper::Internals::Factorise(vtkSplattingMIPVolumeMapper* self,
+  vtkRenderer* ren, vtkVolume* vol, const splatting::View& view, splatting::Quality quality)
+{
+  const double start = vtkTimerLog::GetUniversalTime();
+  if (!splatting::ShearWarp::factorise(view, this->Images, samplingOf(self, quality)))
+  {
+    return false;
+  }
+  this->Cuts.Find(view, this->Images, ren, vol, self->IntermixIntersectingGeometry != 0,
+    [=](const int origin[2], const int size[2], float* depths)
+    { return self->ReadDepth(ren, origin, size, depths); });
+  this->CutTime = vtkTimerLog::GetUniversalTime() - start;
+  return true;
+}
+
+//------------------------------------------------------------------------------
 // Projects in this mode, unless the last shear image shows the same, or better within what is
 // wanted. False if the view has no meaning. There is no image after an abort.
 bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper* self,
   vtkRenderer* ren, vtkVolume* vol, const splatting::View& view, int mode)
 {
+  const int usable =
+    std::clamp(static_cast<int>(this->Components.Settings().quality), mode, self->QualityMode);
+  const splatting::ProjectionSettings best = projectionSettings(self, usable);
   std::swap(this->Images, this->ImagesBefore);
-  if (!splatting::ShearWarp::factorise(view, this->Images))
+  if (!this->Factorise(self, ren, vol, view, best.quality))
   {
     return false;
   }
-  const double start = vtkTimerLog::GetUniversalTime();
-  this->Cuts.Find(view, this->Images, ren, vol, self->IntermixIntersectingGeometry != 0,
-    [=](const int origin[2], const int size[2], float* depths)
-    { return self->ReadDepth(ren, origin, size, depths); });
-  const int usable =
-    std::clamp(static_cast<int>(this->Components.Settings().quality), mode, self->QualityMode);
-  const splatting::ProjectionSettings wanted = projectionSettings(self, usable);
-  if (this->AreAsBefore(splatting::isOrdered(wanted.reduction)) && this->Cuts.AreKept() &&
-    this->Components.Shows(wanted))
+  if (this->AreAsBefore(splatting::isOrdered(best.reduction)) && this->Cuts.AreKept() &&
+    this->Components.Shows(best))
   {
     return true;
   }
+  const splatting::ProjectionSettings wanted = projectionSettings(self, mode);
+  if (samplingOf(self, wanted.quality) != samplingOf(self, best.quality))
+  {
+    this->Factorise(self, ren, vol, view, wanted.quality);
+  }
+  const double start = vtkTimerLog::GetUniversalTime();
   this->ShearImageOutput = nullptr;
-  if (this->Components.Project(this->Images, projectionSettings(self, mode), this->Cuts.Get()))
+  if (this->Components.Project(this->Images, wanted, this->Cuts.Get()))
   {
     this->Cuts.Keep();
-    this->ProjectionTime = vtkTimerLog::GetUniversalTime() - start;
+    this->ProjectionTime = this->CutTime + vtkTimerLog::GetUniversalTime() - start;
     ++this->Projections;
     this->QualityModeUsed = mode;
   }
@@ -648,6 +682,15 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << "IntermixIntersectingGeometry: " << (this->IntermixIntersectingGeometry ? "On" : "Off")
      << "\n";
   os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";
+  os << indent << "ShearImageSampling: ";
+  if (this->ShearImageSampling == AUTOMATIC_SAMPLING)
+  {
+    os << "automatic\n";
+  }
+  else
+  {
+    os << this->ShearImageSampling << "\n";
+  }
   os << indent << "Acceleration: " << this->GetAccelerationAsString() << "\n";
   os << indent << "AccelerationUsed: " << nameOf(this->GetAccelerationUsed()) << "\n";
   os << indent << "LineTolerance: " << this->LineTolerance << "\n";

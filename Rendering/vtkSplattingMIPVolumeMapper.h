@@ -95,8 +95,8 @@
  * whose weights are products of one for the column, one for the row and one for the slice and are
  * rounded likewise, for all types; that x and y grow together along a ray within a part is left
  * out, a covariance of no more than 0.01 square voxels. Exact maxima have up to 24 roundings of
- * max|v| (of (max-min) for integers of up to 32 bits), in perspective up to 80. No step depends on the number of threads or
- * on the instruction set: the same input gives the same bits.
+ * max|v| (of (max-min) for integers of up to 32 bits), in perspective up to 80. No step depends on
+ * the number of threads or on the instruction set: the same input gives the same bits.
  *
  * NaN voxels are no samples: they never win and, in a worksheet, the average is taken over the
  * other voxels. Infinities are ordinary values. A ray without a sample is transparent.
@@ -155,6 +155,8 @@ public:
     HIGH = 2,
     EXACT = 3
   };
+
+  static constexpr int AUTOMATIC_SAMPLING = 0;
 
   enum Kernels
   {
@@ -227,11 +229,11 @@ public:
    * HIGH: the average of the volume, interpolated with Kernel, over the same region (5x5 weights
    * from each of three slices).
    * EXACT: the largest value that the trilinearly interpolated volume takes along the pixel's ray,
-   * found analytically, cell by cell [Sakas et al. 1995]: no sample distance can miss it, and nothing
-   * is averaged. The interpolated volume ends at the centres of the outermost voxels (at the ends of
-   * their boxes for cell data); a cell with a NaN voxel is left out. For maxima of all MaximumTypes;
-   * minima, averages and dependent components are those of HIGH. Costs about twice HIGH in parallel
-   * views.
+   * found analytically, cell by cell [Sakas et al. 1995]: no sample distance can miss it, and
+   * nothing is averaged. The interpolated volume ends at the centres of the outermost voxels (at
+   * the ends of their boxes for cell data); a cell with a NaN voxel is left out. For maxima of all
+   * MaximumTypes; minima, averages and dependent components are those of HIGH. Costs about twice
+   * HIGH in parallel views.
    *
    * In perspective a pixel's area is as wide as rays are apart: nearly a voxel where the volume is
    * farthest from the eye, and less in nearer slices.
@@ -251,12 +253,12 @@ public:
    * longer than the volume's allocated render time, which follows from the render window's desired
    * update rate; interactor styles change that during interaction. Each mode is timed, for each
    * renderer and volume, by frames that project (but the first one, and less what is made once per
-   * data set): EXACT gives way to HIGH, HIGH to STANDARD, STANDARD to PREVIEW, and back once a better
-   * mode is expected to take no more than 80 % of the time. A mode that was not measured yet is
-   * taken to fit. So the first frame, and a still one with its hours to spare, is in QualityMode. A
-   * shear image in a better mode (up to QualityMode) that shows the view already is kept. The
-   * picture's resolution is never reduced. GetQualityModeUsed() tells. Off: always QualityMode.
-   * Views that are ray cast ignore it. Default on.
+   * data set): EXACT gives way to HIGH, HIGH to STANDARD, STANDARD to PREVIEW, and back once a
+   * better mode is expected to take no more than 80 % of the time. A mode that was not measured yet
+   * is taken to fit. So the first frame, and a still one with its hours to spare, is in
+   * QualityMode. A shear image in a better mode (up to QualityMode) that shows the view already is
+   * kept. The picture's resolution is never reduced. GetQualityModeUsed() tells. Off: always
+   * QualityMode. Views that are ray cast ignore it. Default on.
    */
   vtkSetClampMacro(AutoAdjustSampleDistances, vtkTypeBool, 0, 1);
   vtkGetMacro(AutoAdjustSampleDistances, vtkTypeBool);
@@ -428,6 +430,18 @@ public:
 
   ///@{
   /**
+   * How many pixels the shear image has along the side of a voxel (in perspective, where the volume
+   * is farthest from the eye): 1, 2 or 4; 3 is taken as 2. What STANDARD and HIGH average over
+   * shrinks with the pixels. The time of a projection grows with their number. AUTOMATIC_SAMPLING
+   * (0, the default): 1 as in [CS98]; in EXACT as fine as the screen, the largest of the three with
+   * which a pixel of the shear image is at least as large as one of the screen.
+   */
+  vtkSetClampMacro(ShearImageSampling, int, AUTOMATIC_SAMPLING, 4);
+  vtkGetMacro(ShearImageSampling, int);
+  ///@}
+
+  ///@{
+  /**
    * What the projection leaves out and in which order it meets the rest. All give the same picture,
    * bit for bit (but for LineTolerance, CullBelowWindow and the sign of zeros). Default AUTO.
    *
@@ -519,15 +533,15 @@ public:
   ///@}
 
   /**
-   * The last shear image, one pixel per voxel, or nullptr before the first render. Scalars:
+   * The last shear image, its spacing 1 / ShearImageSampling, or nullptr before the first render. Scalars:
    * as many components as are projected, in the input's type in mode PREVIEW (that of the copy, if
    * voxels are hidden or resampled, or a magnitude), else, and for averages and depth shading,
    * float (double for 32- and 64-bit integers and double). The image's physical coordinates are
    * voxel indices, relative to the volume's first voxel, on the volume's middle slice along the
-   * principal axis: the ray of pixel (u, v) at origin + (u, v) crosses slice k there at that point
+   * principal axis: the ray of pixel (u, v) at origin + spacing * (u, v) crosses slice k there at that point
    * minus GetShear() * (k - (slices-1)/2). In perspective it is the largest of the shear images,
    * and the coordinates are voxel indices half a slice beyond the slice that is farthest from the
-   * eye; pixels are a little less than 1 apart there, and the last columns of a row may be none of
+   * eye; pixels are a little less than that apart, and the last columns of a row may be none of
    * the view's rays. Pixels whose ray meets no sample of any component are marked hidden in the
    * ghost array. Axes: for principal axis 2 the image's x and y are the volume's first and second
    * axis, for 1 first and third, for 0 second and third. Costs a copy of the shear image; the
@@ -636,6 +650,7 @@ protected:
   vtkPolyData* BoundingSurface;
   vtkTypeBool IntermixIntersectingGeometry;
   int FootprintSampling;
+  int ShearImageSampling;
   int Acceleration;
   double LineTolerance;
   bool EliminateInvisible;

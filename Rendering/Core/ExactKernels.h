@@ -281,7 +281,8 @@ struct CubicLoop : Lanes<A, R>
     {
       const CubicPiece<A>& piece = this->row.pieces[p];
       this->loadCorners(piece, x, corners);
-      if (!Special && !anyOf(Lanes<A, R>::largestOf(corners) > best))
+      const R most = Special ? best : larger(Lanes<A, R>::largestOf(corners), best);
+      if (!Special && !anyOf(most > best))
       {
         follows = false;
         continue;
@@ -299,6 +300,10 @@ struct CubicLoop : Lanes<A, R>
         {
           raised = larger(peakOf<A>(b, inner, raised), raised);
         }
+      }
+      if constexpr (!Special)
+      {
+        raised = smaller(raised, most); // or rounding would tell which pixels looked
       }
       if constexpr (Masked)
       {
@@ -491,6 +496,7 @@ struct FanCubicLoop : Lanes<A, R>
       {
         continue;
       }
+      const R atMost = larger(most, best);
       R corners[8];
       if (anyOf(first))
       {
@@ -503,6 +509,10 @@ struct FanCubicLoop : Lanes<A, R>
         choose(voxels, slope > zero, corners);
         const R start = at - (slope > zero ? one : zero);
         best = this->largestFrom(part, corners, start, slope, change, to, best, second);
+      }
+      if constexpr (!Special)
+      {
+        best = smaller(best, atMost); // as in parallel views
       }
     }
     Lanes<A, R>::template close<Special>(this->row, x, before, best);

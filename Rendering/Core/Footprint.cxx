@@ -83,9 +83,11 @@ public:
   void forEachPiece(F&& f)
   {
     std::sort(this->Places.begin(), this->Places.begin() + this->Count);
+    // Kinks that coincide but for rounding have nothing between them.
+    constexpr double least = 1e-14;
     for (int p = 1; p < this->Count; ++p)
     {
-      if (this->Places[p] > this->Places[p - 1])
+      if (this->Places[p] - this->Places[p - 1] > least)
       {
         f(this->Places[p - 1], this->Places[p]);
       }
@@ -94,7 +96,7 @@ public:
 
 private:
   double From, To;
-  std::array<double, 24> Places; // 2 ends, 5 of h, at most 2 for each of 4 periodic ones
+  std::array<double, 32> Places; // 2 ends, 5 of h, at most 2 for each of 12 periodic ones
   int Count = 2;
 };
 
@@ -124,12 +126,13 @@ void normalise(WeightTable& weights)
 }
 
 /// H of the five voxels around a pixel, at depth z.
-std::array<double, 5> profile(const Kernel& kernel, double fraction, double shear, double z)
+std::array<double, 5> profile(
+  const Kernel& kernel, double fraction, double shear, double width, double z)
 {
   std::array<double, 5> values;
   for (int d = -2; d <= 2; ++d)
   {
-    values[d + 2] = kernel.overPixel(-d - fraction - shear * z);
+    values[d + 2] = kernel.overPixel(-d - fraction - shear * z, width);
   }
   return values;
 }
@@ -165,41 +168,45 @@ double Kernel::operator()(double t) const
                                             : 0.5 * (1.0 + std::cos(Pi * t / this->radius));
 }
 
-double Kernel::overPixel(double t) const
+double Kernel::overPixel(double t, double width) const
 {
   t = std::abs(t);
-  if (t >= this->support() + 0.5)
+  const double half = 0.5 * width, support = this->support();
+  if (t >= support + half)
   {
     return 0.0;
   }
-  switch (this->shape)
+  // The integral of h, from 0 on.
+  const auto integral = [this, support](double x)
   {
-    case Reconstruction::Box: // box * box, the hat
-      return 1.0 - t;
-    case Reconstruction::Hat: // box * hat, the quadratic B-spline
-      return t <= 0.5 ? 0.75 - t * t : 0.5 * (1.5 - t) * (1.5 - t);
-    case Reconstruction::CosineBell:
-      break;
-  }
-  const double r = this->radius;
-  const auto integral = [r](double x)
-  {
-    x = std::clamp(x, -r, r);
-    return 0.5 * (x + r / Pi * std::sin(Pi * x / r));
+    x = std::clamp(x, -support, support);
+    switch (this->shape)
+    {
+      case Reconstruction::Box:
+        return x;
+      case Reconstruction::Hat:
+        return x - 0.5 * x * std::abs(x);
+      case Reconstruction::CosineBell:
+        break;
+    }
+    return 0.5 * (x + this->radius / Pi * std::sin(Pi * x / this->radius));
   };
-  return std::max(0.0, integral(t + 0.5) - integral(t - 0.5));
+  return std::max(0.0, (integral(t + half) - integral(t - half)) / width);
 }
 
 WeightTable closedFormWeights(
-  const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction)
+  const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction, double width)
 {
-  const double support = kernel.support();
+  const double support = kernel.support(), half = 0.5 * width;
   Breaks breaks(-0.5, 0.5);
-  // H has kinks where an end of the box meets an end of h, or its tip: there, too, for the hat.
-  for (double kink : { support + 0.5, -support - 0.5 })
+  // H has kinks where an end of the pixel meets an end of h, or its tip. Those of pixels as wide as
+  // a voxel coincide.
+  const std::array<double, 6> kinks{ support + half, -support - half, support - half,
+    half - support, half, -half };
+  for (int n = 0; n < (width < 1.0 ? 6 : 2); ++n)
   {
-    breaks.addPeriodic(-fraction.x, shear.x, kink);
-    breaks.addPeriodic(-fraction.y, shear.y, kink);
+    breaks.addPeriodic(-fraction.x, shear.x, kinks[n]);
+    breaks.addPeriodic(-fraction.y, shear.y, kinks[n]);
   }
   for (double kink : { 0.0, 1.0 - support, support - 1.0, support, -support })
   {
@@ -209,8 +216,8 @@ WeightTable closedFormWeights(
   WeightTable weights{};
   const auto add = [&](double z, double share)
   {
-    const auto x = profile(kernel, fraction.x, shear.x, z);
-    const auto y = profile(kernel, fraction.y, shear.y, z);
+    const auto x = profile(kernel, fraction.x, shear.x, width, z);
+    const auto y = profile(kernel, fraction.y, shear.y, width, z);
     for (int c = -1; c <= 1; ++c)
     {
       const double depth = share * kernel(z - c);
@@ -233,16 +240,18 @@ WeightTable closedFormWeights(
   return weights;
 }
 
-GeneralTable::GeneralTable(const Kernel& kernel, const glm::dvec2& shear, int sampling)
+GeneralTable::GeneralTable(
+  const Kernel& kernel, const glm::dvec2& shear, int sampling, int perVoxel)
   : Shear(shear),
-    Sampling(sampling)
+    Sampling(sampling * perVoxel),
+    Half(0.5 / perVoxel)
 {
   // The sheared voxel covers support * (1 + |shear|) on either side: 2 x 2 pixels for a box, 4 x 4
   // for the trilinear kernel [CS98, section 3].
   const double s = kernel.support();
   const double reach = s * (1.0 + std::max(std::abs(shear.x), std::abs(shear.y)));
-  this->Pixels = 2 * static_cast<int>(std::ceil(reach));
-  const int n = this->Pixels * sampling;
+  this->Voxels = 2 * static_cast<int>(std::ceil(reach));
+  const int n = this->Voxels * this->Sampling;
   for (int part = -1; part <= 1; ++part)
   {
     auto& entries = this->Entries[part + 1];
@@ -251,7 +260,7 @@ GeneralTable::GeneralTable(const Kernel& kernel, const glm::dvec2& shear, int sa
     {
       for (int x = 0; x < n; ++x)
       {
-        const glm::dvec2 p = (glm::dvec2(x, y) + 0.5) / double(sampling) - 0.5 * this->Pixels;
+        const glm::dvec2 p = (glm::dvec2(x, y) + 0.5) / double(this->Sampling) - 0.5 * this->Voxels;
         entries[static_cast<std::size_t>(y) * n + x] = this->entry(kernel, part, p);
       }
     }
@@ -291,15 +300,19 @@ double GeneralTable::entry(const Kernel& kernel, int part, const glm::dvec2& p) 
 WeightTable GeneralTable::weights(const glm::dvec2& fraction) const
 {
   WeightTable weights{};
-  const int n = this->Pixels * this->Sampling;
+  const int n = this->Voxels * this->Sampling;
   for (int c = -1; c <= 1; ++c)
   {
-    // The voxel lies at pixel d + fraction of slice k's frame, and c shears away in its own.
+    // The voxel lies at d + fraction of slice k's frame, and c shears away in its own. Pixels are a
+    // voxel apart; between them there is room where they are narrower.
+    constexpr int none = 3;
     const glm::dvec2 centre = fraction + double(c) * this->Shear;
     const auto pixel = [&](int index, int axis)
     {
-      const double p = (index + 0.5) / this->Sampling - 0.5 * this->Pixels;
-      return static_cast<int>(std::floor(p + centre[axis] + 0.5));
+      const double p = (index + 0.5) / this->Sampling - 0.5 * this->Voxels + centre[axis];
+      const double nearest = std::floor(p + 0.5);
+      const bool inside = p - nearest >= -this->Half && p - nearest < this->Half;
+      return inside ? static_cast<int>(nearest) : none;
     };
     for (int y = 0; y < n; ++y)
     {

@@ -42,8 +42,8 @@ struct Kernel
   double support() const;
   /// h(t).
   double operator()(double t) const;
-  /// H(t) = integral of h over [t - 1/2, t + 1/2].
-  double overPixel(double t) const;
+  /// H(t): the average of h over a pixel about t, `width` voxels wide.
+  double overPixel(double t, double width) const;
 
   bool operator==(const Kernel& other) const
   {
@@ -62,29 +62,32 @@ using WeightTable = std::array<std::array<std::array<double, 5>, 5>, 3>;
  * Weights in closed form: the integrand is smooth between the kinks of h and H, where
  * Gauss-Legendre quadrature is exact for the polynomial kernels (3 nodes) and accurate to 1e-13 for
  * the cosine bell (10 nodes).
- * `fraction` is where the nearest voxel lies, relative to the pixel, in [-1/2, 1/2].
+ * `fraction` is where the nearest voxel lies, relative to the pixel, in [-1/2, 1/2] voxels. The
+ * pixel is `width` voxels wide, 1 or less.
  */
 WeightTable closedFormWeights(
-  const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction);
+  const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction, double width);
 
 /**
  * The paper's way: a general table of the sheared voxel's thickness, weighted by h, at the
- * mid-points of N x N sub-pixels, made once per view; a slice's weights are sums over the
- * sub-pixels that fall into a pixel.
+ * mid-points of sub-pixels, N x N for each pixel, made once per view; a slice's weights are sums
+ * over the sub-pixels that fall into a pixel.
  */
 class GeneralTable
 {
 public:
   GeneralTable() = default;
-  GeneralTable(const Kernel& kernel, const glm::dvec2& shear, int sampling);
+  /// For pixels 1 / perVoxel voxels wide.
+  GeneralTable(const Kernel& kernel, const glm::dvec2& shear, int sampling, int perVoxel);
   WeightTable weights(const glm::dvec2& fraction) const;
 
 private:
   double entry(const Kernel& kernel, int part, const glm::dvec2& p) const;
 
   glm::dvec2 Shear{ 0.0 };
-  int Sampling = 0;
-  int Pixels = 0;                             // the table covers Pixels x Pixels pixels
+  int Sampling = 0;                           // sub-pixels along the side of a voxel
+  double Half = 0.5;                          // a pixel, in voxels
+  int Voxels = 0;                             // the table covers Voxels x Voxels voxels
   std::array<std::vector<double>, 3> Entries; // "up", "middle" and "down" footprint
 };
 

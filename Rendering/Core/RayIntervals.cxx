@@ -316,6 +316,29 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
   }
 }
 
+void RayIntervals::takePhase(const RayIntervals& whole, int phases, const glm::ivec2& phase)
+{
+  this->Width = whole.Width / phases;
+  const int height = static_cast<int>(whole.First.size()) / whole.Width / phases;
+  this->First.resize(std::size_t(this->Width) * height);
+  this->Last.resize(this->First.size());
+  vtkSMPTools::For(0, height, 16,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (int v = static_cast<int>(begin); v < end; ++v)
+      {
+        const std::int16_t* const first = whole.first(v * phases + phase.y) + phase.x;
+        const std::int16_t* const last = whole.last(v * phases + phase.y) + phase.x;
+        const std::size_t row = std::size_t(v) * this->Width;
+        for (int u = 0; u < this->Width; ++u)
+        {
+          this->First[row + u] = first[u * phases];
+          this->Last[row + u] = last[u * phases];
+        }
+      }
+    });
+}
+
 void RayIntervals::findCrossed(
   const CrossedSlices& crossed, int width, int height, const RayIntervals& within)
 {

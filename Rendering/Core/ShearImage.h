@@ -14,7 +14,7 @@ namespace splatting
 constexpr int StepsPerSlice = 3;
 
 /**
- * The projection before the warp, one pixel per voxel.
+ * The projection before the warp.
  */
 struct ShearImage
 {
@@ -23,7 +23,9 @@ struct ShearImage
   int height = 0;
   /// width * height scalars of `type`, row after row. The buffer only grows, frames re-use it.
   std::vector<unsigned char> bytes;
-  /// Per row, the pixels whose ray crosses the volume; what lies outside has no meaning.
+  /// Per row, the pixels whose ray crosses the volume; what lies outside has no meaning. Rays that
+  /// miss an edge of the volume by no more than they are rounded by can be among them if such rays
+  /// beside them hit it.
   std::vector<Span> spans;
   /// If half-spaces cut the volume: per pixel, whether a sample is left. Else empty.
   std::vector<unsigned char> mask;
@@ -55,6 +57,11 @@ struct ShearImage
       (this->mask.empty() || this->mask[std::ptrdiff_t(v) * this->width + u]);
   }
 };
+
+/**
+ * Puts the image of one phase into its place. What the whole image was is lost with phase (0, 0).
+ */
+void interleave(const ShearImage& part, int phases, const glm::ivec2& phase, ShearImage& whole);
 }
 
 #endif

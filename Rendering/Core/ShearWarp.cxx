@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace splatting
 {
@@ -30,6 +29,24 @@ double quantised(double x, int bits)
 constexpr int RowUnit = 64;
 
 constexpr int SlopeBits = 24, PositionBits = 20, EyeBits = 10;
+
+/// The largest power of two by which a pixel can be divided whose area is given in pixels of the
+/// screen.
+int finestSampling(double area)
+{
+  int sampling = 1;
+  while (sampling < ShearWarp::MostSampling && area >= 4.0 * sampling * sampling)
+  {
+    sampling *= 2;
+  }
+  return sampling;
+}
+
+/// Enlarges both coordinates.
+glm::dmat3 scaled(double factor)
+{
+  return { factor, 0.0, 0.0, 0.0, factor, 0.0, 0.0, 0.0, 1.0 };
+}
 
 /// One coordinate of a ray while it crosses a slice, relative to its pixel.
 struct Crossing
@@ -108,7 +125,7 @@ std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm:
   return result;
 }
 
-ShearWarp::ShearWarp(const View& view)
+ShearWarp::ShearWarp(const View& view, int sampling)
 {
   const glm::dmat4& m = view.indexToClip;
   const glm::dvec3 centre = 0.5 * glm::dvec3(view.dimensions - 1);
@@ -133,16 +150,17 @@ ShearWarp::ShearWarp(const View& view)
   const double deeper = glm::dot(glm::dvec3(row(m, 2)) / w, direction);
   this->Reversed = deeper * direction[this->Axes[2]] < 0.0;
   this->computeWarp(rowX, rowY);
+  this->refine(sampling == Automatic ? finestSampling(this->screenArea({})) : sampling);
   this->setParallelFans();
   this->Valid = true;
 }
 
-bool ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images)
+bool ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images, int sampling)
 {
   if (isParallel(view))
   {
     images.resize(1);
-    images.front() = ShearWarp(view);
+    images.front() = ShearWarp(view, sampling);
     images.resize(images.front().valid() ? 1 : 0);
     return !images.empty();
   }
@@ -152,7 +170,7 @@ bool ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images)
   for (int direction = 0; valid && direction < 6; ++direction)
   {
     images.resize(std::max(images.size(), count + 1));
-    count += images[count].lookAlong(direction / 2, direction % 2 == 1, view, rays);
+    count += images[count].lookAlong(direction / 2, direction % 2 == 1, view, rays, sampling);
   }
   images.resize(count);
   return valid;
@@ -201,7 +219,10 @@ void ShearWarp::setParallelFans()
   {
     Fan& fan = a == 0 ? this->Columns : this->Rows;
     fan.at.resize(this->ImageSize[a]);
-    std::iota(fan.at.begin(), fan.at.end(), -this->Margin[a]);
+    for (int n = 0; n < this->ImageSize[a]; ++n)
+    {
+      fan.at[n] = n * this->Pitch + this->Offset[a] - this->Margin[a];
+    }
     fan.slope.assign(this->ImageSize[a], -this->Shear[a]);
   }
 }
@@ -230,7 +251,7 @@ bool ShearWarp::findRays(const View& view, Rays& rays)
   return std::isfinite(glm::length(rays.eye)) && std::isfinite(glm::determinant(rays.directions));
 }
 
-bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays& rays)
+bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays& rays, int sampling)
 {
   this->permute(axis, view.dimensions);
   this->Perspective = true;
@@ -259,19 +280,34 @@ bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays&
   {
     return false;
   }
+  if (!this->placeRays(view, directions, farthest, std::max(sampling, 1)))
+  {
+    return false;
+  }
+  if (sampling == Automatic)
+  {
+    const glm::dvec2 middle = 0.5 * glm::dvec2(this->RayCount - 1);
+    this->placeRays(view, directions, farthest, finestSampling(this->screenArea(middle)));
+  }
+  this->setFan(0, this->Columns);
+  this->setFan(1, this->Rows);
+  this->Valid = true;
+  return true;
+}
+
+bool ShearWarp::placeRays(
+  const View& view, const glm::dmat3& directions, double farthest, int sampling)
+{
   // An odd number of steps has no ray along the axis, which could run between voxels.
   constexpr double narrower = 1.0 + 0x1p-10;
-  this->Steps = static_cast<std::int64_t>(std::ceil(2.0 * farthest * narrower)) | 1;
-  this->Pitch = 2.0 * farthest / static_cast<double>(this->Steps);
+  this->Steps = (static_cast<std::int64_t>(std::ceil(2.0 * farthest * narrower)) * sampling) | 1;
+  this->Pitch = this->PixelSize = 2.0 * farthest / static_cast<double>(this->Steps);
   if (!this->placeImage(view, directions))
   {
     return false;
   }
-  this->setFan(0, this->Columns);
-  this->setFan(1, this->Rows);
   this->ScreenToShear = this->directionToPixel() * directions;
   this->ShearToScreen = glm::inverse(this->ScreenToShear);
-  this->Valid = true;
   return true;
 }
 
@@ -288,7 +324,7 @@ glm::dvec3 ShearWarp::pixelOf(const glm::dvec3& point) const
 {
   if (!this->Perspective)
   {
-    return { glm::dvec2(point) + this->position(point.z), 1.0 };
+    return { glm::dvec2(point) / this->Pitch + this->position(point.z), 1.0 };
   }
   const glm::dvec3 d = point - this->Eye;
   return this->directionToPixel() * glm::dvec3(d.x, d.y, this->Reversed ? -d.z : d.z);
@@ -368,6 +404,38 @@ void ShearWarp::computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY)
     glm::dvec3(inverse[0], 0.0), glm::dvec3(inverse[1], 0.0), glm::dvec3(-(inverse * offset), 1.0));
 }
 
+/// The image's pixels are cut into sampling^2 each, the first in the place of the whole one.
+void ShearWarp::refine(int sampling)
+{
+  this->ImageSize *= sampling;
+  this->RayCount *= sampling;
+  this->Pitch = this->PixelSize = 1.0 / sampling;
+  this->ShearToScreen = this->ShearToScreen * scaled(this->Pitch);
+  this->ScreenToShear = scaled(sampling) * this->ScreenToShear;
+}
+
+void ShearWarp::takePhase(const glm::ivec2& phase, ShearWarp& part) const
+{
+  part = *this;
+  const int count = this->phases();
+  part.ImageSize /= count;
+  part.RayCount /= count;
+  part.Pitch = 1.0;
+  part.Offset = glm::dvec2(phase) * this->Pitch;
+  part.setParallelFans();
+  const glm::dvec3 first(phase, 0.0);
+  part.ShearToScreen = this->ShearToScreen * scaled(count);
+  part.ShearToScreen[2] += this->ShearToScreen * first;
+  part.ScreenToShear = glm::inverse(part.ShearToScreen);
+}
+
+/// How many pixels of the screen one of the image covers.
+double ShearWarp::screenArea(const glm::dvec2& pixel) const
+{
+  const double w = (this->ShearToScreen * glm::dvec3(pixel, 1.0)).z;
+  return std::abs(glm::determinant(this->ShearToScreen) / (w * w * w));
+}
+
 RayPath ShearWarp::rayPath(int k) const
 {
   return path(-this->position(k - 0.5), -this->position(k + 0.5), glm::abs(this->Shear));
@@ -398,19 +466,19 @@ Span ShearWarp::coverage(const RayPath& path, int v) const
 
 glm::dvec4 ShearWarp::inPixels(const glm::dvec4& halfSpace) const
 {
-  const double a = halfSpace[this->Axes[0]];
-  const double b = halfSpace[this->Axes[1]];
+  const double a = halfSpace[this->Axes[0]] * this->Pitch;
+  const double b = halfSpace[this->Axes[1]] * this->Pitch;
   const double c = halfSpace[this->Axes[2]];
-  const glm::dvec2 origin = this->position(0.0);
-  return { a, b, c - a * this->Shear.x - b * this->Shear.y,
-    halfSpace.w - a * origin.x - b * origin.y };
+  const glm::dvec2 origin = this->position(0.0), shear = this->Shear / this->Pitch;
+  return { a, b, c - a * shear.x - b * shear.y, halfSpace.w - a * origin.x - b * origin.y };
 }
 
 bool ShearWarp::sameShear(const ShearWarp& other) const
 {
   // Fans hold the shears.
   return this->Valid == other.Valid && this->Axes == other.Axes && this->Size == other.Size &&
-    this->Reference == other.Reference && this->DepthRange == other.DepthRange &&
-    this->Columns == other.Columns && this->Rows == other.Rows;
+    this->PixelSize == other.PixelSize && this->Reference == other.Reference &&
+    this->DepthRange == other.DepthRange && this->Columns == other.Columns &&
+    this->Rows == other.Rows;
 }
 }

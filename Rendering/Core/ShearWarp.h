@@ -66,6 +66,9 @@ std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm:
  * rounding. That turns rays by at most 2^-25 and moves no voxel of a 4096-slice volume by more than
  * 1/16000 pixel.
  *
+ * Shear images can be sampled finer, by a power of two: the s^2 images whose rays are offset by
+ * multiples of 1/s, the phases, are projected one by one and interleaved.
+ *
  * In perspective views the image holds rays through the eye that follow the principal axis most, in
  * one of its two directions. Their slopes are equidistant, from -1 to 1, where the images of two
  * axes meet. Pixels are a voxel wide (0.1 % less, and as much as makes their number odd) where
@@ -83,18 +86,25 @@ public:
    */
   ShearWarp() = default;
 
+  /// As fine as the screen: pixels are no smaller than the screen's, on average over the image (in
+  /// perspective views in its middle), and no smaller than a voxel by more than MostSampling.
+  static constexpr int Automatic = 0;
+  static constexpr int MostSampling = 4;
+
   /**
    * Factorises a parallel view. valid() is false when the view flattens the volume to a line or a
    * point.
+   * @param sampling  pixels along the side of a voxel: 1, 2, 4 or Automatic
    */
-  explicit ShearWarp(const View& view);
+  explicit ShearWarp(const View& view, int sampling = 1);
 
   /**
    * Factorises any view: one image for a parallel view, up to six for a perspective one, those that
    * show some of the volume; none if nothing of it can be seen.
+   * @param sampling  as above; in perspective views where the volume is farthest from the eye
    * @return  false if the view flattens the volume to a line or a point; there are no images then
    */
-  static bool factorise(const View& view, std::vector<ShearWarp>& images);
+  static bool factorise(const View& view, std::vector<ShearWarp>& images, int sampling = 1);
 
   bool valid() const { return this->Valid; }
   /// The volume axis along which slices are stacked, 0, 1 or 2.
@@ -120,6 +130,15 @@ public:
   double reference() const { return this->Reference; }
   /// Voxels from one pixel to the next at that depth.
   double pitch() const { return this->Pitch; }
+  /// The side of a pixel's area there, in voxels: the pitch, but of a phase that of its image.
+  double pixelSize() const { return this->PixelSize; }
+
+  /// How many images, along each side, this one is interleaved from; 1: it is projected as it is.
+  int phases() const { return this->Perspective ? 1 : static_cast<int>(1.0 / this->Pitch); }
+  /**
+   * The geometry of the pixels (phases() u + phase.x, phases() v + phase.y): a voxel apart.
+   */
+  void takePhase(const glm::ivec2& phase, ShearWarp& part) const;
   /// Index coordinates where the ray of pixel (u, v) is at depth z.
   glm::dvec2 onRay(int u, int v, double z) const
   {
@@ -140,13 +159,14 @@ public:
 
   /// Of parallel views: pixels per slice, at most 1 in magnitude.
   const glm::dvec2& shear() const { return this->Shear; }
-  /// Of parallel views: voxel (0, 0) of the middle slice lies at this pixel.
+  /// Of parallel views: voxels from the image's first pixel to voxel (0, 0) of the middle slice.
   const glm::ivec2& margin() const { return this->Margin; }
 
   /// Of parallel views: where voxel (0, 0) of slice (or depth) z lies in the image.
   glm::dvec2 position(double z) const
   {
-    return glm::dvec2(this->Margin) + this->Shear * (z - this->Middle);
+    return (glm::dvec2(this->Margin) - this->Offset + this->Shear * (z - this->Middle)) /
+      this->Pitch;
   }
 
   /**
@@ -200,7 +220,9 @@ private:
   void chooseAxes(const glm::dvec3& direction);
   void permute(int principalAxis, const glm::ivec3& dimensions);
   void computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY);
+  void refine(int sampling);
   void setParallelFans();
+  double screenArea(const glm::dvec2& pixel) const;
 
   /// The rays of a perspective view: through the eye, of viewport pixel (x, y) along
   /// directions (x, y, 1), in index space.
@@ -210,7 +232,8 @@ private:
     glm::dmat3 directions;
   };
   static bool findRays(const View& view, Rays& rays);
-  bool lookAlong(int axis, bool reversed, const View& view, const Rays& rays);
+  bool lookAlong(int axis, bool reversed, const View& view, const Rays& rays, int sampling);
+  bool placeRays(const View& view, const glm::dmat3& directions, double farthest, int sampling);
   bool placeImage(const View& view, const glm::dmat3& directions);
   void setFan(int a, Fan& fan) const;
   glm::dmat3 directionToPixel() const;
@@ -223,12 +246,13 @@ private:
   glm::ivec2 ImageSize{ 0 }, RayCount{ 0 };
   glm::dvec2 Shear{ 0.0 };
   glm::ivec2 Margin{ 0 };
+  glm::dvec2 Offset{ 0.0 }; // of a phase, in voxels
   double Middle = 0.0;
   bool Perspective = false;
   glm::dvec3 Eye{ 0.0 };
   std::int64_t Steps = 0;              // of slopes from -1 to 1
   std::array<std::int64_t, 2> First{}; // the steps of pixel (0, 0)
-  double Reference = 0.0, Pitch = 1.0;
+  double Reference = 0.0, Pitch = 1.0, PixelSize = 1.0;
   glm::dvec2 DepthRange{ 0.0 }; // of the volume, as far as it lies before the eye
   Span SlicesSeen;
   Fan Columns, Rows;

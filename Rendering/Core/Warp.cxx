@@ -366,14 +366,14 @@ Rectangle boundsOf(const ShearWarp& geometry, const glm::dvec2& viewport)
 {
   if (!geometry.isPerspective())
   {
-    // The image is symmetric about its middle.
+    // What the image shows is symmetric about the middle of the volume.
     const Box box = shownBox(geometry);
     const glm::dvec3 size = box.high - box.low;
     const glm::dvec2 s = glm::abs(geometry.shear());
-    const glm::dvec2 half = 0.5 * (glm::dvec2(size) + s * size.z);
-    const glm::dvec2 centre(0.5 * (geometry.width() - 1), 0.5 * (geometry.height() - 1));
+    const glm::dvec2 half = 0.5 * (glm::dvec2(size) + s * size.z) / geometry.pitch();
+    const glm::dvec3 centre = 0.5 * glm::dvec3(geometry.size() - 1);
     const glm::dmat3& m = geometry.shearToScreen();
-    const glm::dvec2 middle(m * glm::dvec3(centre, 1.0));
+    const glm::dvec2 middle(m * geometry.pixelOf(centre));
     const glm::dvec2 reach = glm::dvec2(glm::abs(m[0]) * half.x + glm::abs(m[1]) * half.y);
     return { middle - reach, middle + reach };
   }

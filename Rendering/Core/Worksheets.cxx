@@ -64,7 +64,8 @@ void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int samplin
   GeneralTable table;
   if (sampling > 0)
   {
-    table = GeneralTable(kernel, shear, sampling);
+    table = GeneralTable(
+      kernel, shear, sampling, static_cast<int>(std::lround(1.0 / geometry.pixelSize())));
   }
   footprints.resize(geometry.size().z);
   vtkSMPTools::For(0, geometry.size().z, 8,
@@ -77,8 +78,9 @@ void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int samplin
         footprint.nearest = { static_cast<int>(std::floor(position.x + 0.5)),
           static_cast<int>(std::floor(position.y + 0.5)) };
         const glm::dvec2 fraction = position - glm::dvec2(footprint.nearest);
-        const WeightTable weights =
-          sampling > 0 ? table.weights(fraction) : closedFormWeights(kernel, shear, fraction);
+        const WeightTable weights = sampling > 0
+          ? table.weights(fraction)
+          : closedFormWeights(kernel, shear, fraction, geometry.pixelSize());
         setTaps(footprint, quantisedTaps(weights, weightBits));
       }
     });

@@ -146,6 +146,12 @@ inline splatting::View transformedView(
   return result;
 }
 
+/// Mostly one pixel per voxel.
+inline int anySampling(reference::Random& random)
+{
+  return random.uniform(0, 2) ? 1 : 2 << random.uniform(0, 1);
+}
+
 /// One of the images of a perspective view.
 inline splatting::ShearWarp randomPerspectiveImage(
   const std::array<int, 3>& size, reference::Random& random)
@@ -153,7 +159,7 @@ inline splatting::ShearWarp randomPerspectiveImage(
   std::vector<splatting::ShearWarp> images;
   while (images.empty())
   {
-    splatting::ShearWarp::factorise(randomPerspective(size, random), images);
+    splatting::ShearWarp::factorise(randomPerspective(size, random), images, anySampling(random));
   }
   return images[random.uniform(0, static_cast<int>(images.size()) - 1)];
 }
@@ -211,7 +217,8 @@ reference::Volume<T> volumeWithOddValues(const std::array<int, 3>& size, referen
 
 inline reference::ShearView referenceView(const splatting::ShearWarp& geometry)
 {
-  return { geometry.principalAxis(), { geometry.shear().x, geometry.shear().y } };
+  return { geometry.principalAxis(), { geometry.shear().x, geometry.shear().y },
+    geometry.phases() };
 }
 
 /// The rays of a perspective image.
@@ -239,6 +246,35 @@ inline splatting::Cuts cutsBy(const splatting::ShearWarp& geometry,
   return cuts;
 }
 
+/// As a mapper does: phase by phase, if there are several.
+inline splatting::ShearImage project(splatting::VolumeIndex& index,
+  const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
+  splatting::Cuts cuts)
+{
+  splatting::Projector projector;
+  splatting::ShearImage image, part;
+  const int phases = geometry.phases();
+  if (phases == 1)
+  {
+    projector.project(index, geometry, settings, cuts, image);
+    return image;
+  }
+  const splatting::RayIntervals intervals = cuts.intervals;
+  splatting::ShearWarp partGeometry;
+  for (int p = 0; p < phases * phases; ++p)
+  {
+    const glm::ivec2 phase(p % phases, p / phases);
+    geometry.takePhase(phase, partGeometry);
+    if (!intervals.empty())
+    {
+      cuts.intervals.takePhase(intervals, phases, phase);
+    }
+    projector.project(index, partGeometry, settings, cuts, part);
+    splatting::interleave(part, phases, phase, image);
+  }
+  return image;
+}
+
 template <class T>
 splatting::ShearImage project(const reference::Volume<T>& volume,
   const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
@@ -246,10 +282,7 @@ splatting::ShearImage project(const reference::Volume<T>& volume,
 {
   splatting::VolumeIndex index;
   index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
-  splatting::Projector projector;
-  splatting::ShearImage image;
-  projector.project(index, geometry, settings, cutsBy(geometry, halfSpaces, cropping), image);
-  return image;
+  return project(index, geometry, settings, cutsBy(geometry, halfSpaces, cropping));
 }
 
 /// The pixels of an image of type P in the reference's form.

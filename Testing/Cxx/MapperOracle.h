@@ -86,15 +86,25 @@ inline reference::Outcome<double> reduced(
 }
 
 /**
+ * The last render's view, if it was parallel.
+ */
+inline reference::ShearView viewOf(vtkSplattingMIPVolumeMapper* mapper)
+{
+  reference::ShearView view;
+  view.axis = mapper->GetPrincipalAxis();
+  mapper->GetShear(view.shear);
+  view.sampling = static_cast<int>(std::lround(1.0 / mapper->GetShearImage()->GetSpacing()[0]));
+  return view;
+}
+
+/**
  * After a render in mode PREVIEW, the largest difference of the mapper's shear image to the
  * reference; infinity where one has a sample and the other has not.
  */
 inline double shearImageError(Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
   vtkImageData* image, const reference::Volume<std::uint8_t>& volume)
 {
-  reference::ShearView view;
-  view.axis = mapper->GetPrincipalAxis();
-  mapper->GetShear(view.shear);
+  const reference::ShearView view = viewOf(mapper);
   const reference::ShearGrid grid = reference::makeShearGrid(volume.size, view);
   const reference::RayCutter cutter(grid, view, croppingOf(mapper, image));
   const auto rays = reference::voxelSamples(volume, view);

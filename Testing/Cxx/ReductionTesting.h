@@ -157,14 +157,10 @@ splatting::ShearImage projected(const reference::Volume<T>& volume, const Case& 
   {
     halfSpaces.emplace_back(h[0], h[1], h[2], h[3]);
   }
-  const splatting::Cuts cuts = cutsBy(c.geometry, halfSpaces, croppingOf(c.cuts));
   splatting::VolumeIndex index;
   index.setBudget(c.budget);
   index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
-  splatting::Projector projector;
-  splatting::ShearImage image;
-  projector.project(index, c.geometry, c.settings, cuts, image);
-  return image;
+  return project(index, c.geometry, c.settings, cutsBy(c.geometry, halfSpaces, croppingOf(c.cuts)));
 }
 
 inline reference::Kernel kernelOf(Quality quality)

@@ -52,9 +52,7 @@ bool carriesTuples(stage::Stage& stage, Mapper* mapper, vtkImageData* image)
   const int* const n = image->GetDimensions();
   vtkDataArray* const scalars = image->GetPointData()->GetScalars();
   const int components = scalars->GetNumberOfComponents();
-  reference::ShearView view;
-  view.axis = mapper->GetPrincipalAxis();
-  mapper->GetShear(view.shear);
+  const reference::ShearView view = stage::viewOf(mapper);
   const bool reversed = stage::looksBackwards(stage, image, view.axis);
   vtkImageData* const shear = mapper->GetShearImage();
   bool same = shear->GetNumberOfScalarComponents() == components;
@@ -98,6 +96,7 @@ void testTuples(stage::Stage& stage, stage::Checks& check)
           { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::MINIMUM_INTENSITY_BLEND })
         {
           mapper->SetBlendMode(blendMode);
+          mapper->SetShearImageSampling(side > 0.0 ? 1 : 2);
           stage.window->Render();
           check(!mapper->GetLastRenderUsedRayCasting() && carriesTuples(stage, mapper, image),
             std::to_string(components) + " components, blend mode " + std::to_string(blendMode) +

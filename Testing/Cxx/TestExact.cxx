@@ -68,6 +68,15 @@ reference::FieldRay rayOf(const splatting::ShearWarp& geometry, int u, int v)
                                   : reference::fieldRay(volumeSize, referenceView(geometry), u, v);
 }
 
+/// Within a face that a ray runs in it belongs to the higher voxels, of which there are none behind
+/// the last one.
+bool runsAlongLastFace(const splatting::ShearWarp& geometry, const reference::FieldRay& ray)
+{
+  const auto runs = [&](int a)
+  { return ray.slope[a] == 0.0 && ray.at[a] == geometry.size()[a] - 0.5; };
+  return runs(0) || runs(1);
+}
+
 struct Worst
 {
   double error = 0.0;
@@ -98,7 +107,8 @@ void comparePixels(Checks& check, const reference::Volume<T>& volume,
       const splatting::Span& slices = geometry.slices();
       const glm::dvec2 faces(geometry.faces(slices.begin).x, geometry.faces(slices.end - 1).y);
       const auto depths = reference::depthsInField(volume.size, ray, domain, faces.x, faces.y);
-      if (depths[1] - depths[0] < (geometry.isPerspective() ? 2e-3 : 1e-6))
+      if (depths[1] - depths[0] < (geometry.isPerspective() ? 2e-3 : 1e-6) ||
+        runsAlongLastFace(geometry, ray))
       {
         continue;
       }
@@ -130,7 +140,8 @@ void testType(Checks& check, std::uint64_t seed)
   for (int n = 0; n < 25; ++n)
   {
     const auto volume = wholeRangeNoise<T>(randomSize(random, 7), random.bits());
-    const splatting::ShearWarp geometry(anyDomain(anyView(volume.size, random), random));
+    const splatting::ShearWarp geometry(
+      anyDomain(anyView(volume.size, random), random), anySampling(random));
     comparePixels(check, volume, geometry, project(volume, geometry, exactSettings()), worst);
   }
   Worst perspective;
@@ -139,7 +150,7 @@ void testType(Checks& check, std::uint64_t seed)
   {
     const auto volume = wholeRangeNoise<T>(randomSize(random, 7), random.bits());
     splatting::ShearWarp::factorise(
-      anyDomain(randomPerspective(volume.size, random), random), images);
+      anyDomain(randomPerspective(volume.size, random), random), images, anySampling(random));
     for (const splatting::ShearWarp& geometry : images)
     {
       comparePixels(
@@ -172,7 +183,7 @@ void testAccelerations(Checks& check, std::uint64_t seed)
     }
     const splatting::ShearWarp geometry = n % 2
       ? randomPerspectiveImage(size, random)
-      : splatting::ShearWarp(anyDomain(randomView(size, random), random));
+      : splatting::ShearWarp(anyDomain(randomView(size, random), random), anySampling(random));
     const std::vector<glm::dvec4> halfSpaces = n % 3 == 0
       ? std::vector<glm::dvec4>{ { 0.7, 0.5, -0.4, -0.1 * size[0] } }
       : std::vector<glm::dvec4>{};

@@ -67,7 +67,8 @@ bool sets(Mapper* mapper, Set set, Get get, Value value, Value expected)
 
 void testClamping(Mapper* mapper, stage::Checks& check)
 {
-  for (const auto& [value, expected] : { std::pair(0, 0), { 1, 1 }, { 2, 2 }, { -3, 0 }, { 7, 2 } })
+  for (const auto& [value, expected] :
+    { std::pair(0, 0), { 1, 1 }, { 2, 2 }, { 3, 3 }, { -3, 0 }, { 7, 3 } })
   {
     check(sets(mapper, &Mapper::SetQualityMode, &Mapper::GetQualityMode, value, expected),
       "SetQualityMode " + std::to_string(value));
@@ -89,6 +90,13 @@ void testClamping(Mapper* mapper, stage::Checks& check)
     check(
       sets(mapper, &Mapper::SetFootprintSampling, &Mapper::GetFootprintSampling, value, expected),
       "SetFootprintSampling " + std::to_string(value));
+  }
+  for (const auto& [value, expected] :
+    { std::pair(1, 1), { 4, 4 }, { -1, 0 }, { 5, 4 }, { 2, 2 }, { 0, 0 } })
+  {
+    check(
+      sets(mapper, &Mapper::SetShearImageSampling, &Mapper::GetShearImageSampling, value, expected),
+      "SetShearImageSampling " + std::to_string(value));
   }
 }
 
@@ -146,6 +154,8 @@ void testNames(Mapper* mapper, stage::Checks& check)
   check(modeIs(Mapper::STANDARD, "standard"), "SetQualityModeToStandard");
   mapper->SetQualityModeToHigh();
   check(modeIs(Mapper::HIGH, "high"), "SetQualityModeToHigh");
+  mapper->SetQualityModeToExact();
+  check(modeIs(Mapper::EXACT, "exact"), "SetQualityModeToExact");
   mapper->SetKernelToCosineBell();
   check(mapper->GetKernel() == Mapper::COSINE_BELL &&
       std::string("cosine bell") == mapper->GetKernelAsString(),
@@ -167,14 +177,14 @@ void testPrinting(Mapper* mapper, stage::Checks& check)
   std::ostringstream stream;
   mapper->Print(stream);
   const std::string text = stream.str();
-  for (const char* variable :
-    { "QualityMode: high", "Kernel: trilinear", "KernelRadius: ", "FootprintSampling: ",
-      "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ", "IndexMemorySize: ",
-      "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ", "Acceleration: auto",
-      "AccelerationUsed: dense", "LineTolerance: ", "EliminateInvisible: ", "QualityModeUsed: high",
-      "AutoAdjustSampleDistances: On", "FinalColorWindow: 1", "FinalColorLevel: 0.5",
-      "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend", "VectorMode: disabled",
-      "VectorComponent: ", "MaskInput: ", "Cropping" })
+  for (const char* variable : { "QualityMode: high", "Kernel: trilinear",
+         "KernelRadius: ", "FootprintSampling: ", "ShearImageSampling: automatic",
+         "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ", "IndexMemorySize: ",
+         "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ", "Acceleration: auto",
+         "AccelerationUsed: dense", "LineTolerance: ", "EliminateInvisible: ",
+         "QualityModeUsed: high", "AutoAdjustSampleDistances: On", "FinalColorWindow: 1",
+         "FinalColorLevel: 0.5", "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend",
+         "VectorMode: disabled", "VectorComponent: ", "MaskInput: ", "Cropping" })
   {
     check(text.find(variable) != std::string::npos, std::string("PrintSelf names ") + variable);
   }

@@ -47,6 +47,43 @@ std::string difference(const reference::Image<P>& expected, const reference::Ima
   return "equal";
 }
 
+/// Whether a ray passes the volume, but within a few roundings of it.
+bool grazes(const splatting::ShearWarp& image, int u, int v)
+{
+  constexpr double rounding = 1e-5;
+  double near = image.faces(image.slices().begin).x, far = image.faces(image.slices().end - 1).y;
+  for (int a = 0; a < 2; ++a)
+  {
+    const splatting::Fan& fan = a == 0 ? image.columns() : image.rows();
+    const int n = a == 0 ? u : v;
+    const double low = -0.5 - rounding - fan.at[n];
+    const double high = image.size()[a] - 0.5 + rounding - fan.at[n];
+    const double first = low / fan.slope[n], second = high / fan.slope[n];
+    near = std::max(near, image.reference() + std::min(first, second));
+    far = std::min(far, image.reference() + std::max(first, second));
+  }
+  return near <= far;
+}
+
+/// The pixels beside an edge of the volume that an image may count to it, see ShearImage::spans.
+template <class T>
+void forgetGrazes(const splatting::ShearWarp& image, const reference::Image<T>& expected,
+  reference::Image<T>& found)
+{
+  for (int v = 0; v < image.rayCount().y; ++v)
+  {
+    for (int u = 1; u + 1 < image.rayCount().x; ++u)
+    {
+      if (!expected.isHit(u, v) && found.isHit(u, v) && found.isHit(u - 1, v) &&
+        grazes(image, u, v))
+      {
+        found.at(u, v) = T();
+        found.hit[found.index(u, v)] = 0;
+      }
+    }
+  }
+}
+
 template <class T>
 void testPreviewOf(Checks& check, const reference::Volume<T>& volume,
   const splatting::ShearWarp& image, reference::Random& random, int& hits)
@@ -56,7 +93,8 @@ void testPreviewOf(Checks& check, const reference::Volume<T>& volume,
   settings.instructionSet = static_cast<splatting::InstructionSet>(random.uniform(0, 2));
   settings.acceleration = static_cast<Acceleration>(random.uniform(0, 5));
   const auto expected = reference::exactTraversal(volume, referenceRays(image));
-  const auto found = toReference<T>(project(volume, image, settings));
+  auto found = toReference<T>(project(volume, image, settings));
+  forgetGrazes(image, expected, found);
   hits += static_cast<int>(std::count(expected.hit.begin(), expected.hit.end(), 1));
   check(sameBits(expected, found), "type ", int(splatting::scalarTypeOf<T>()),
     ": the preview is not the traversal; ", nameOf(image), ", instruction set ",
@@ -77,7 +115,8 @@ void testPreviews(Checks& check, int views, std::uint64_t seed)
                                                    : n % 2  ? 12
                                                             : 4),
       random);
-    splatting::ShearWarp::factorise(randomPerspective(volume.size, random), images);
+    splatting::ShearWarp::factorise(
+      randomPerspective(volume.size, random), images, anySampling(random));
     for (const splatting::ShearWarp& image : images)
     {
       testPreviewOf(check, volume, image, random, hits);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Preview mode equals an exact voxel traversal along the same rays, bit for bit: every scalar type,
-// 2500 views, half of them through edges and corners of voxels.
+// 2500 views, half of them through edges and corners of voxels, a third sampled finer.
 #include "CoreTesting.h"
 
 using namespace coretesting;
@@ -16,7 +16,7 @@ void testViews(Checks& check, int views, std::uint64_t seed)
   for (int n = 0; n < views; ++n)
   {
     const reference::Volume<T> volume = volumeWithOddValues<T>(randomSize(random, 12), random);
-    const splatting::ShearWarp geometry(anyView(volume.size, random));
+    const splatting::ShearWarp geometry(anyView(volume.size, random), anySampling(random));
     splatting::ProjectionSettings settings;
     settings.quality = splatting::Quality::Preview;
     settings.instructionSet = static_cast<splatting::InstructionSet>(random.uniform(0, 2));

@@ -36,10 +36,10 @@ bool isReversed(const splatting::View& view, const splatting::ShearWarp& geometr
   return (view.indexToClip * ray).z / view.indexToClip[3][3] < 0.0;
 }
 
-Case caseOf(const splatting::View& view)
+Case caseOf(const splatting::View& view, int sampling = 1)
 {
   Case c;
-  c.geometry = splatting::ShearWarp(view);
+  c.geometry = splatting::ShearWarp(view, sampling);
   c.reversed = isReversed(view, c.geometry);
   return c;
 }
@@ -47,7 +47,7 @@ Case caseOf(const splatting::View& view)
 /// Of a view from any side.
 Case randomCase(Checks& check, const std::array<int, 3>& size, reference::Random& random)
 {
-  const Case c = caseOf(viewFromAnySide(size, random));
+  const Case c = caseOf(viewFromAnySide(size, random), anySampling(random));
   check(c.geometry.reversed() == c.reversed, "the viewer is on another side");
   return c;
 }

@@ -48,7 +48,7 @@ void testType(Checks& check, std::uint64_t seed)
     for (const Mode& mode : modes())
     {
       const auto volume = wholeRangeNoise<T>(randomSize(random, 6), random.bits());
-      const splatting::ShearWarp geometry(anyView(volume.size, random));
+      const splatting::ShearWarp geometry(anyView(volume.size, random), anySampling(random));
       const double low = double(*std::min_element(volume.voxels.begin(), volume.voxels.end()));
       const double high = double(*std::max_element(volume.voxels.begin(), volume.voxels.end()));
       // The reference itself is good to some rounding errors of double.

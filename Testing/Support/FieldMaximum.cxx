@@ -130,7 +130,8 @@ double fieldMaximum(const Volume<double>& volume, const FieldRay& ray, double ne
 FieldRay fieldRay(const std::array<int, 3>& volumeSize, const ShearView& view, int u, int v)
 {
   const ShearGrid grid = makeShearGrid(volumeSize, view);
-  return { grid.axes, { double(u - grid.margin[0]), double(v - grid.margin[1]) },
+  return { grid.axes,
+    { double(u) / view.sampling - grid.margin[0], double(v) / view.sampling - grid.margin[1] },
     { -view.shear[0], -view.shear[1] }, grid.middle };
 }
 

@@ -25,10 +25,12 @@ constexpr double Pi = 3.14159265358979323846;
 /**
  * x(z) = pixel - margin - s (z - kc), where z - kc = -n_k / 2 at the start.
  */
-AxisMotion inSliceMotion(int pixel, int margin, double shear, int slices)
+AxisMotion inSliceMotion(int pixel, int axis, const ShearGrid& grid, const ShearView& view)
 {
-  const std::int64_t s = inUnits(shear);
-  return { (pixel - margin) * WholeVoxel + s / 2 * slices, -s };
+  const std::int64_t s = inUnits(view.shear[axis]);
+  return {
+    pixel * (WholeVoxel / view.sampling) - grid.margin[axis] * WholeVoxel + s / 2 * grid.size[2], -s
+  };
 }
 
 //------------------------------------------------------------------------------
@@ -56,7 +58,7 @@ struct ShearedVolume
 
   double rayPosition(int inSliceAxis, int pixel, double z) const
   {
-    return pixel - this->grid.margin[inSliceAxis] -
+    return static_cast<double>(pixel) / this->view.sampling - this->grid.margin[inSliceAxis] -
       this->view.shear[inSliceAxis] * (z - this->grid.middle);
   }
 };
@@ -69,6 +71,7 @@ class SlabIntegral
 public:
   SlabIntegral(const ShearedVolume& source, const Kernel& kernel)
     : Source(source),
+      Half(0.5 / source.view.sampling),
       H(kernel),
       InSliceRule(gaussLegendre(kernel.shape == Kernel::CosineBell ? 10 : 4)),
       DepthRule(gaussLegendre(kernel.shape == Kernel::CosineBell ? 16 : 4))
@@ -116,20 +119,20 @@ private:
     }
     const double a = this->Source.rayPosition(axis, pixel, low);
     const double b = this->Source.rayPosition(axis, pixel, high);
-    const double left = std::min(a, b) - 0.5;
-    const double right = std::max(a, b) + 0.5;
+    const double left = std::min(a, b) - this->Half;
+    const double right = std::max(a, b) + this->Half;
     for (double kink : fieldKinks(this->H, left, right))
     {
-      kinks.push_back(low + (a - 0.5 - kink) / shear);
-      kinks.push_back(low + (a + 0.5 - kink) / shear);
+      kinks.push_back(low + (a - this->Half - kink) / shear);
+      kinks.push_back(low + (a + this->Half - kink) / shear);
     }
   }
 
   Samples samplePixel(int axis, int pixel, double z) const
   {
     const double centre = this->Source.rayPosition(axis, pixel, z);
-    const double low = centre - 0.5;
-    const double high = centre + 0.5;
+    const double low = centre - this->Half;
+    const double high = centre + this->Half;
     Samples samples;
     samples.range = reachingIndices(this->H, low, high);
     for (const Node& x :
@@ -140,7 +143,7 @@ private:
       {
         kernel[n] = this->H(x.position - (samples.range.first + n));
       }
-      samples.weights.push_back(x.weight);
+      samples.weights.push_back(x.weight / (2.0 * this->Half));
       samples.kernel.push_back(kernel);
     }
     return samples;
@@ -208,6 +211,7 @@ private:
   }
 
   const ShearedVolume& Source;
+  const double Half; // a pixel
   const Kernel H;
   const std::vector<Node> InSliceRule;
   const std::vector<Node> DepthRule;
@@ -296,8 +300,12 @@ ShearGrid makeShearGrid(const std::array<int, 3>& volumeSize, const ShearView& v
     }
     grid.margin[a] = static_cast<int>(std::ceil(std::abs(shear) * grid.size[2] / 2.0)) + 1;
   }
-  grid.width = grid.size[0] + 2 * grid.margin[0];
-  grid.height = grid.size[1] + 2 * grid.margin[1];
+  if (view.sampling != 1 && view.sampling != 2 && view.sampling != 4)
+  {
+    throw std::invalid_argument("The sampling must be 1, 2 or 4.");
+  }
+  grid.width = (grid.size[0] + 2 * grid.margin[0]) * view.sampling;
+  grid.height = (grid.size[1] + 2 * grid.margin[1]) * view.sampling;
   grid.middle = (grid.size[2] - 1) / 2.0;
   return grid;
 }
@@ -307,9 +315,8 @@ std::vector<std::array<int, 3>> crossedVoxels(
   const std::array<int, 3>& volumeSize, const ShearView& view, int u, int v)
 {
   const ShearGrid grid = makeShearGrid(volumeSize, view);
-  const std::array<AxisMotion, 3> ray = { inSliceMotion(
-                                            u, grid.margin[0], view.shear[0], grid.size[2]),
-    inSliceMotion(v, grid.margin[1], view.shear[1], grid.size[2]), { -HalfVoxel, WholeVoxel } };
+  const std::array<AxisMotion, 3> ray = { inSliceMotion(u, 0, grid, view),
+    inSliceMotion(v, 1, grid, view), { -HalfVoxel, WholeVoxel } };
   std::vector<std::array<int, 3>> crossed;
   for (const std::array<int, 3>& ijk : traverse(ray, grid.size[2], grid.size))
   {

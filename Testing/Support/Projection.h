@@ -13,7 +13,9 @@
  *   (u - m_x - s_x (z - kc), v - m_y - s_y (z - kc))
  * at depth z; u, v, z and positions are in voxels, a voxel is the box of half-width 1/2 about its
  * integer centre. The margins m = ceil(|s| n_k / 2) + 1 let the shear image, n_i + 2 m_x by
- * n_j + 2 m_y pixels, hold every ray that meets the volume.
+ * n_j + 2 m_y pixels, hold every ray that meets the volume. With S samples along the side of a
+ * voxel there are S times as many pixels each way, 1/S voxels wide, and u and v above are pixels
+ * divided by S.
  */
 #ifndef reference_Projection_h
 #define reference_Projection_h
@@ -69,12 +71,13 @@ struct Image
 
 /**
  * A parallel view of a volume. The principal axis is 0, 1 or 2; the shears, in pixels per slice
- * along the image's x and y, are multiples of 2^-24 of magnitude 1 at most.
+ * along the image's x and y, are multiples of 2^-24 of magnitude 1 at most. Sampling is 1, 2 or 4.
  */
 struct ShearView
 {
   int axis = 2;
   double shear[2] = { 0.0, 0.0 };
+  int sampling = 1;
 };
 
 /**
@@ -97,8 +100,9 @@ ShearGrid makeShearGrid(const std::array<int, 3>& volumeSize, const ShearView& v
 
 /**
  * The voxels that the ray of pixel (u,v) crosses, in the order of ascending depth, as positions in
- * the volume, by traverse() in Traversal.h. No ray lies within a face: the position along an axis
- * with shear 0 is u - m, an integer, and faces are half-way between integers.
+ * the volume, by traverse() in Traversal.h. With a sample per voxel no ray lies within a face: the
+ * position along an axis with shear 0 is u - m, an integer, and faces are half-way between
+ * integers.
  */
 std::vector<std::array<int, 3>> crossedVoxels(
   const std::array<int, 3>& volumeSize, const ShearView& view, int u, int v);
@@ -188,11 +192,12 @@ struct Kernel
  * Modes standard (Kernel::Nearest) and high (the other kernels): the maximum over slices of the
  * slice's average over the pixel's area and the slice's thickness.
  *
- * The average of slice k is the integral, over all points that a ray with u' in [u-1/2, u+1/2] and
- * v' in [v-1/2, v+1/2] passes at z in [k-1/2, k+1/2], of the sum of weights times voxels, divided
- * by the integral of the weights. Only slices take part in which the pixel's own ray crosses a
- * voxel (as in crossedVoxels). Outside the volume the outermost voxels are repeated. NaN voxels
- * are left out of both integrals; a slice where no weight remains gives no sample.
+ * The average of slice k is the integral, over all points that a ray through the pixel's area, with
+ * u' in [u-1/2, u+1/2] and v' in [v-1/2, v+1/2], passes at z in [k-1/2, k+1/2], of the sum of
+ * weights times voxels, divided by the integral of the weights. Only slices take part in which the
+ * pixel's own ray crosses a voxel (as in crossedVoxels). Outside the volume the outermost voxels
+ * are repeated. NaN voxels are left out of both integrals; a slice where no weight remains gives no
+ * sample.
  *
  * The integrals are Gauss-Legendre sums of the field itself, between its kinks: exact but for
  * rounding for the nearest and the trilinear kernel, error below 1e-13 of the largest voxel for
