@@ -10,6 +10,7 @@
 #include "ScalarSource.h"
 #include "SceneCuts.h"
 #include "Selection.h"
+#include "TurnOfViews.h"
 #include "View.h"
 #include "ViewOfVolume.h"
 
@@ -37,9 +38,6 @@ vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
 
 namespace
 {
-const char* const DegenerateCamera =
-  "The camera flattens the volume to a line or has no extent: give it a parallel scale, or a view "
-  "angle, above 0 and a view-up that is not its direction.";
 const char* const NoColors =
   "FinalColorWindow and FinalColorLevel give no colours: both must be finite and the window not 0.";
 
@@ -87,7 +85,6 @@ public:
   void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
   bool AreAsBefore(bool ordered) const;
-  std::size_t MainImage() const;
   bool HasImage() const { return this->Components.IsProjected() && !this->Images.empty(); }
   double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
   bool Project(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
@@ -223,16 +220,6 @@ bool vtkSplattingMIPVolumeMapper::Internals::AreAsBefore(bool ordered) const
 }
 
 //------------------------------------------------------------------------------
-// The largest image; there is one.
-std::size_t vtkSplattingMIPVolumeMapper::Internals::MainImage() const
-{
-  const auto largest = std::max_element(this->Images.begin(), this->Images.end(),
-    [](const splatting::ShearWarp& a, const splatting::ShearWarp& b)
-    { return a.rayCount().x * a.rayCount().y < b.rayCount().x * b.rayCount().y; });
-  return static_cast<std::size_t>(largest - this->Images.begin());
-}
-
-//------------------------------------------------------------------------------
 // Projects in this mode, unless the last shear image shows the same, or better within what is
 // wanted. False if the view has no meaning. There is no image after an abort.
 bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper* self,
@@ -340,7 +327,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   }
   if (!splatting::isFinite(view))
   {
-    return DegenerateCamera;
+    return TurnOfViews::Degenerate;
   }
   if (in.Source.IsCoarse() && in.Announced.insert("coarse").second)
   {
@@ -379,7 +366,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     : in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime());
   if (!in.Project(this, ren, vol, view, mode))
   {
-    return DegenerateCamera;
+    return TurnOfViews::Degenerate;
   }
   const bool exceeds = in.Components.ExceedsBudget();
   if (exceeds && !in.BudgetReported)
@@ -496,7 +483,7 @@ vtkImageData* vtkSplattingMIPVolumeMapper::GetShearImage()
   else if (!in.ShearImageOutput)
   {
     in.ShearImageOutput = vtkSmartPointer<vtkImageData>::New();
-    const std::size_t n = in.MainImage();
+    const std::size_t n = mainImage(in.Images);
     in.Components.CopyImage(
       n, in.Images[n], in.Source.VtkTypeOf(in.Components.ImageType()), in.ShearImageOutput);
   }
@@ -507,7 +494,7 @@ vtkImageData* vtkSplattingMIPVolumeMapper::GetShearImage()
 int vtkSplattingMIPVolumeMapper::GetPrincipalAxis()
 {
   const Internals& in = *this->Internal;
-  return in.HasImage() ? in.Images[in.MainImage()].principalAxis() : -1;
+  return in.HasImage() ? in.Images[mainImage(in.Images)].principalAxis() : -1;
 }
 
 //------------------------------------------------------------------------------
@@ -517,7 +504,7 @@ void vtkSplattingMIPVolumeMapper::GetShear(double shear[2])
   shear[0] = shear[1] = 0.0;
   if (in.HasImage())
   {
-    const splatting::ShearWarp& image = in.Images[in.MainImage()];
+    const splatting::ShearWarp& image = in.Images[mainImage(in.Images)];
     shear[0] = -image.columns().slope[image.rayCount().x / 2];
     shear[1] = -image.rows().slope[image.rayCount().y / 2];
   }

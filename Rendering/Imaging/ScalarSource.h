@@ -23,11 +23,19 @@ class vtkImageData;
  */
 struct ScalarChoice
 {
+  /// The values of vtkSmartVolumeMapper's VectorMode.
+  enum VectorModes
+  {
+    Disabled = -1,
+    Magnitude = 0,
+    Component = 1
+  };
+
   int scalarMode = 0;
   int arrayAccessMode = 0;
   int arrayId = -1;
   const char* arrayName = nullptr;
-  int vectorMode = -1;
+  int vectorMode = Disabled;
   int vectorComponent = 0;
   bool independentComponents = true;
   vtkImageData* mask = nullptr;
@@ -66,6 +74,8 @@ public:
   const splatting::VoxelArray& Volume(int component) const { return this->Volumes[component]; }
   /// VTK's name for the type of a volume, or of what is projected from it.
   int VtkTypeOf(splatting::ScalarType type) const;
+  /// VTK_FLOAT or VTK_DOUBLE, whichever holds averages of scalars of a VTK type.
+  static int AverageVtkType(int vtkType);
 
   /**
    * The same voxels as point scalars of a vtkImageData, for mappers that know nothing else. Hidden
