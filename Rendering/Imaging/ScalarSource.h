@@ -59,6 +59,8 @@ public:
   std::string Examine(vtkDataSet* input, const ScalarChoice& choice);
 
   const VolumeGrid& Grid() const { return this->Place.grid; }
+  /// The array that is projected, or has the components that are.
+  vtkDataArray* Scalars() const { return this->Examined.scalars; }
   /// Whether small cells of a rectilinear grid may be missing, because the grid got larger steps.
   bool IsCoarse() const { return this->Place.coarse; }
   /// What is projected: 1 to 4.

@@ -25,6 +25,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,6 +45,7 @@ public:
     vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input);
   bool GoOn(vtkSplattingMIPProjection* self, double done);
   bool ProjectView(vtkSplattingMIPProjection* self, const splatting::View& view);
+  bool PlaceOutput(vtkImageData* output) const;
   std::string ProjectViews(vtkSplattingMIPProjection* self, vtkImageData* output);
 
   ScalarSource Source;
@@ -193,6 +195,12 @@ TurnSettings vtkSplattingMIPProjection::Internals::TurnOf(
 std::string vtkSplattingMIPProjection::Internals::Problem(
   vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input)
 {
+  vtkInformation* const wanted = self->GetInputArrayInformation(0);
+  if (!array && wanted->Has(vtkDataObject::FIELD_NAME()))
+  {
+    return std::string("The input has no numeric array \"") +
+      wanted->Get(vtkDataObject::FIELD_NAME()) + "\": choose another with SetInputArrayToProcess.";
+  }
   std::string problem =
     this->Source.Examine(input, this->ScalarsOf(self, array, association, input));
   if (problem.empty() && isSingular(this->Source.Grid().indexToPhysical))
@@ -252,6 +260,31 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(
   }
   std::swap(this->Cuts, this->CutsBefore);
   ++self->NumberOfProjections;
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// Where the output's points lie, and the arrays that views are written to. False if there is no
+// memory for them.
+bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output) const
+{
+  vtkDataArray* const scalars = this->Source.Scalars();
+  const int type = ScalarSource::AverageVtkType(scalars->GetDataType());
+  const int components = this->Source.Components();
+  const glm::ivec2& size = this->Turn.Size();
+  const glm::dvec2& spacing = this->Turn.Spacing();
+  output->SetExtent(0, size.x - 1, 0, size.y - 1, 0, this->Turn.Views() - 1);
+  output->SetSpacing(spacing.x, spacing.y, this->Turn.AngleStep());
+  output->SetOrigin(-0.5 * (size.x - 1) * spacing.x, -0.5 * (size.y - 1) * spacing.y, 0.0);
+  // VTK would say it in several sentences, or throw.
+  const std::size_t bytes = std::size_t(vtkDataArray::GetDataTypeSize(type)) * components *
+    static_cast<std::size_t>(output->GetNumberOfPoints());
+  if (!std::unique_ptr<char[]>(new (std::nothrow) char[bytes]))
+  {
+    return false;
+  }
+  output->AllocateScalars(type, components);
+  output->GetPointData()->GetScalars()->SetName(scalars->GetName());
   return true;
 }
 
@@ -350,15 +383,9 @@ int vtkSplattingMIPProjection::RequestData(
   {
     in.Components.LookAt(in.Source);
     in.Components.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget));
-    const glm::ivec2& size = in.Turn.Size();
-    const glm::dvec2& spacing = in.Turn.Spacing();
-    output->SetExtent(0, size.x - 1, 0, size.y - 1, 0, in.Turn.Views() - 1);
-    output->SetSpacing(spacing.x, spacing.y, in.Turn.AngleStep());
-    output->SetOrigin(-0.5 * (size.x - 1) * spacing.x, -0.5 * (size.y - 1) * spacing.y, 0.0);
-    output->AllocateScalars(
-      ScalarSource::AverageVtkType(array->GetDataType()), in.Source.Components());
-    output->GetPointData()->GetScalars()->SetName(array->GetName());
-    problem = in.ProjectViews(this, output);
+    problem = in.PlaceOutput(output)
+      ? in.ProjectViews(this, output)
+      : "There is no memory for the output: choose fewer pixels or views.";
   }
   if (!problem.empty())
   {

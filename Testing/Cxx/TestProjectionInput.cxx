@@ -7,6 +7,7 @@
 
 #include "vtkBitArray.h"
 #include "vtkCamera.h"
+#include "vtkDataSetAttributes.h"
 
 #include <cmath>
 #include <functional>
@@ -176,6 +177,41 @@ void testInputs(Checks& check)
   testRefusal(check, "components", replace(five), mend);
 }
 
+void testArrays(Checks& check)
+{
+  testRefusal(
+    check, "nowhere",
+    [](Filter* f)
+    { f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "nowhere"); },
+    [](Filter* f)
+    {
+      f->SetInputArrayToProcess(
+        0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+    });
+}
+
+/// More than 2^47 bytes.
+void testMemory(Checks& check)
+{
+  vtkNew<vtkImageData> wide;
+  wide->SetDimensions(2, 2, 2);
+  wide->AllocateScalars(VTK_DOUBLE, 4);
+  wide->GetPointData()->GetScalars()->Fill(1.0);
+  const auto filter = projectiontesting::projectionOf(wide);
+  const projectiontesting::Errors errors(filter);
+  filter->SetOutputSize(16384, 16384);
+  filter->SetNumberOfViews(36000);
+  filter->Update();
+  check(errors.texts.size() == 1 && errors.texts.front().find("memory") != std::string::npos,
+    errors.texts.size(), " errors where there is no memory");
+  check(filter->GetOutput()->GetNumberOfPoints() == 0, "there is an output");
+  filter->SetOutputSize(4, 4);
+  filter->SetNumberOfViews(2);
+  filter->Update();
+  check(filter->GetOutput()->GetNumberOfPoints() == 32 && errors.texts.size() == 1,
+    "a small one is made");
+}
+
 /// Extreme settings that have a meaning: no errors.
 void testExtremes(Checks& check)
 {
@@ -217,6 +253,8 @@ int TestProjectionInput(int, char*[])
   testSettings(check);
   testCameras(check);
   testInputs(check);
+  testArrays(check);
+  testMemory(check);
   testExtremes(check);
   return check.result();
 }

@@ -6,6 +6,7 @@
 #include "ProjectionTesting.h"
 
 #include "vtkCamera.h"
+#include "vtkCellData.h"
 #include "vtkFloatArray.h"
 
 #include <algorithm>
@@ -315,6 +316,22 @@ void testComponents(Checks& check)
   check(filter->GetOutput()->GetScalarComponentAsDouble(10, 11, 0, 0) == 3.5 &&
       filter->GetOutput()->GetNumberOfScalarComponents() == 1,
     "the array to process is projected");
+  // Cells are voxels about their centres: those of one less along each axis.
+  const auto cells = vtkSmartPointer<vtkImageData>::New();
+  cells->SetDimensions(14, 12, 13);
+  cells->SetOrigin(-0.5, -0.5, -0.5);
+  cells->GetCellData()->SetScalars(one->GetPointData()->GetScalars());
+  const auto ofCells = projectiontesting::projectionOf(cells);
+  const auto ofPoints = projectiontesting::projectionOf(one);
+  for (const auto& each : { ofCells, ofPoints })
+  {
+    each->SetViewDirection(0.2, -0.3, 1.0);
+    each->SetOutputSize(9, 8);
+    each->SetOutputSpacing(1.0, 1.0);
+    each->Update();
+  }
+  check(projectiontesting::sameScalars(ofCells->GetOutput(), ofPoints->GetOutput()),
+    "cells are voxels");
 }
 }
 
