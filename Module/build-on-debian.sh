@@ -16,7 +16,9 @@ packages=(
   cmake ninja-build g++ ccache xz-utils
   libvtk9-dev python3-vtk9 libglm-dev          # the module and its Python package
   libcli11-dev libvtk-dicom-dev                # splatmip
+  libgif-dev                                   # its turns as GIF
   libbenchmark-dev                             # the benchmark
+  python3-numpy                                # tests and examples in Python
   python3-vedo python3-vedo-examples           # programs of others, for the tests
   xvfb xauth libgl1-mesa-dri                   # OpenGL without a display
 )

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MapperSettings.h"
 
+#include "ProjectionChoice.h"
+#include "vtkSplattingMIPProjection.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include "vtkMath.h"
@@ -14,26 +16,46 @@
 
 namespace
 {
-splatting::Reduction reductionOf(vtkSplattingMIPVolumeMapper* mapper)
+using Mapper = vtkSplattingMIPVolumeMapper;
+using Filter = vtkSplattingMIPProjection;
+constexpr bool same(int mapper, int filter)
 {
-  switch (mapper->GetBlendMode())
-  {
-    case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
-      return splatting::Reduction::Minimum;
-    case vtkVolumeMapper::AVERAGE_INTENSITY_BLEND:
-      return splatting::Reduction::Mean;
-    default:
-      break;
-  }
-  switch (mapper->GetMaximumType())
-  {
-    case vtkSplattingMIPVolumeMapper::DEPTH_SHADED:
-      return splatting::Reduction::DepthShaded;
-    case vtkSplattingMIPVolumeMapper::LOCAL:
-      return splatting::Reduction::Local;
-    default:
-      return splatting::Reduction::Maximum;
-  }
+  return mapper == filter;
+}
+static_assert(same(Mapper::MAXIMUM_INTENSITY_BLEND, Filter::MAXIMUM_INTENSITY_BLEND) &&
+    same(Mapper::MINIMUM_INTENSITY_BLEND, Filter::MINIMUM_INTENSITY_BLEND) &&
+    same(Mapper::AVERAGE_INTENSITY_BLEND, Filter::AVERAGE_INTENSITY_BLEND) &&
+    same(Mapper::DEPTH_SHADED, Filter::DEPTH_SHADED) && same(Mapper::LOCAL, Filter::LOCAL) &&
+    same(Mapper::PREVIEW, Filter::PREVIEW) && same(Mapper::STANDARD, Filter::STANDARD) &&
+    same(Mapper::HIGH, Filter::HIGH) && same(Mapper::EXACT, Filter::EXACT) &&
+    same(Mapper::AUTOMATIC_SAMPLING, Filter::AUTOMATIC_SAMPLING) &&
+    same(Mapper::COSINE_BELL, Filter::COSINE_BELL) && same(Mapper::LINES, Filter::LINES) &&
+    same(Mapper::SORTED_VOLUME, Filter::SORTED_VOLUME) &&
+    same(Mapper::MAGNITUDE, Filter::MAGNITUDE) && same(Mapper::COMPONENT, Filter::COMPONENT),
+  "The mapper's choices are those of the filter.");
+
+ProjectionChoice choiceOf(Mapper* mapper)
+{
+  ProjectionChoice choice;
+  choice.blendMode = mapper->GetBlendMode();
+  choice.maximumType = mapper->GetMaximumType();
+  choice.depthShadingAmbient = mapper->GetDepthShadingAmbient();
+  choice.depthShadingChangeRate = mapper->GetDepthShadingChangeRate();
+  choice.localMaximumThreshold = mapper->GetLocalMaximumThreshold();
+  std::copy_n(mapper->GetAverageIPScalarRange(), 2, choice.averageRange);
+  choice.kernel = mapper->GetKernel();
+  choice.kernelRadius = mapper->GetKernelRadius();
+  choice.footprintSampling = mapper->GetFootprintSampling();
+  choice.shearImageSampling = mapper->GetShearImageSampling();
+  choice.acceleration = mapper->GetAcceleration();
+  choice.lineTolerance = mapper->GetLineTolerance();
+  choice.eliminateInvisible = mapper->GetEliminateInvisible();
+  choice.slab = mapper->GetSlab();
+  choice.slabThickness = mapper->GetSlabThickness();
+  std::copy_n(mapper->GetSlabCenter(), 3, choice.slabCenter);
+  choice.cropping = mapper->GetCropping() != 0;
+  std::copy_n(mapper->GetCroppingRegionPlanes(), 6, choice.croppingPlanes);
+  return choice;
 }
 
 /// What is wrong with clipping planes, or nullptr.
@@ -57,48 +79,13 @@ const char* faultOfPlanes(vtkPlaneCollection* planes)
 //------------------------------------------------------------------------------
 const char* faultOfSettings(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* property)
 {
-  const auto finite = [](const double* values, int count)
-  { return std::all_of(values, values + count, [](double x) { return std::isfinite(x); }); };
-  const bool isMaximum = mapper->GetBlendMode() == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND;
-  // Beyond that, the differences of shaded floats are no longer finite.
-  constexpr double mostShading = 1e6;
-  const struct
+  if (const char* const fault = faultOfChoice(choiceOf(mapper)))
   {
-    bool holds;
-    const char* sentence;
-  } problems[] = {
-    { mapper->GetSlab() && !(mapper->GetSlabThickness() > 0.0),
-      "The slab is not thicker than 0: give it a SlabThickness in world units." },
-    { mapper->GetSlab() && !finite(mapper->GetSlabCenter(), 3),
-      "The slab's centre is not finite: set SlabCenter to a point of the world." },
-    { mapper->GetCropping() && !finite(mapper->GetCroppingRegionPlanes(), 6),
-      "CroppingRegionPlanes are not finite: set them to places along the image's axes." },
-    { !std::isfinite(mapper->GetKernelRadius()),
-      "KernelRadius is not a number: set it to 0.5 to 1.5." },
-    { !std::isfinite(mapper->GetLineTolerance()),
-      "LineTolerance is not a number: set it to 0 to 64." },
-    { isMaximum && mapper->GetMaximumType() == vtkSplattingMIPVolumeMapper::LOCAL &&
-        std::isnan(mapper->GetLocalMaximumThreshold()),
-      "LocalMaximumThreshold is not a number: set it to the scalar from which on local maxima "
-      "count." },
-    { isMaximum && mapper->GetMaximumType() == vtkSplattingMIPVolumeMapper::DEPTH_SHADED &&
-        !(std::abs(mapper->GetDepthShadingAmbient()) +
-            std::abs(mapper->GetDepthShadingChangeRate()) <=
-          mostShading),
-      "DepthShadingAmbient and DepthShadingChangeRate must be numbers whose magnitudes sum to no "
-      "more than a million." },
-    { mapper->GetBlendMode() == vtkVolumeMapper::AVERAGE_INTENSITY_BLEND &&
-        !(mapper->GetAverageIPScalarRange()[0] <= mapper->GetAverageIPScalarRange()[1]),
-      "AverageIPScalarRange holds no scalars: its first value must not be above its second." },
-    { mapper->GetBlendMode() == vtkVolumeMapper::SLICE_BLEND && !property->GetSliceFunction(),
-      "There is no slice to show: give the vtkVolumeProperty a plane with SetSliceFunction." },
-  };
-  for (const auto& problem : problems)
+    return fault;
+  }
+  if (mapper->GetBlendMode() == vtkVolumeMapper::SLICE_BLEND && !property->GetSliceFunction())
   {
-    if (problem.holds)
-    {
-      return problem.sentence;
-    }
+    return "There is no slice to show: give the vtkVolumeProperty a plane with SetSliceFunction.";
   }
   return faultOfPlanes(mapper->GetClippingPlanes());
 }
@@ -106,49 +93,11 @@ const char* faultOfSettings(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProper
 //------------------------------------------------------------------------------
 splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* mapper, int mode)
 {
-  // What has no effect stays as it is by default, so that a change of it projects nothing.
-  splatting::ProjectionSettings settings;
-  settings.reduction = reductionOf(mapper);
-  const bool hasMaxima = settings.reduction != splatting::Reduction::Minimum &&
-    settings.reduction != splatting::Reduction::Mean;
-  if (mode == vtkSplattingMIPVolumeMapper::EXACT && !hasMaxima)
-  {
-    mode = vtkSplattingMIPVolumeMapper::HIGH;
-  }
-  settings.quality = static_cast<splatting::Quality>(mode);
-  switch (settings.reduction)
-  {
-    case splatting::Reduction::DepthShaded:
-      settings.ambient = mapper->GetDepthShadingAmbient();
-      settings.changeRate = mapper->GetDepthShadingChangeRate();
-      break;
-    case splatting::Reduction::Local:
-      settings.threshold = mapper->GetLocalMaximumThreshold();
-      break;
-    case splatting::Reduction::Mean:
-      settings.meanLow = mapper->GetAverageIPScalarRange()[0];
-      settings.meanHigh = mapper->GetAverageIPScalarRange()[1];
-      break;
-    case splatting::Reduction::Maximum:
-      settings.acceleration = static_cast<splatting::Acceleration>(mapper->GetAcceleration());
-      if (mapper->GetAcceleration() >= vtkSplattingMIPVolumeMapper::LINES)
-      {
-        settings.lineTolerance = mapper->GetLineTolerance();
-        settings.eliminateInvisible =
-          mapper->GetEliminateInvisible() && mode == vtkSplattingMIPVolumeMapper::PREVIEW;
-      }
-      break;
-    case splatting::Reduction::Minimum:
-      break;
-  }
-  if (mode == vtkSplattingMIPVolumeMapper::HIGH &&
-    mapper->GetKernel() == vtkSplattingMIPVolumeMapper::COSINE_BELL)
-  {
-    settings.kernel = { splatting::Reconstruction::CosineBell, mapper->GetKernelRadius() };
-  }
-  if (mode == vtkSplattingMIPVolumeMapper::STANDARD || mode == vtkSplattingMIPVolumeMapper::HIGH)
-  {
-    settings.footprintSampling = mapper->GetFootprintSampling();
-  }
-  return settings;
+  return settingsOfChoice(choiceOf(mapper), mode);
+}
+
+//------------------------------------------------------------------------------
+int samplingOf(vtkSplattingMIPVolumeMapper* mapper, splatting::Quality quality)
+{
+  return samplingOfChoice(choiceOf(mapper), quality);
 }

@@ -20,4 +20,9 @@ const char* faultOfSettings(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProper
  */
 splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* mapper, int mode);
 
+/**
+ * The sampling of shear images in a quality, as ShearWarp::factorise() takes it.
+ */
+int samplingOf(vtkSplattingMIPVolumeMapper* mapper, splatting::Quality quality);
+
 #endif

@@ -2,136 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ViewOfVolume.h"
 
+#include "WorldView.h"
+
 #include "vtkCamera.h"
 #include "vtkMatrix4x4.h"
-#include "vtkPlane.h"
-#include "vtkPlaneCollection.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 #include "vtkVolumeMapper.h"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
 
 namespace
 {
-glm::dmat4 toGlm(const double* rowMajor)
-{
-  glm::dmat4 m;
-  for (int r = 0; r < 4; ++r)
-  {
-    for (int c = 0; c < 4; ++c)
-    {
-      m[c][r] = rowMajor[4 * r + c];
-    }
-  }
-  return m;
-}
-
-glm::dmat4 toGlm(const vtkMatrix4x4* matrix)
-{
-  return toGlm(matrix->GetData());
-}
-
-glm::dvec4 row(const glm::dmat4& m, int r)
-{
-  return { m[0][r], m[1][r], m[2][r], m[3][r] };
-}
-
 /// Index space (first voxel at 0) to world.
 glm::dmat4 indexToWorld(const VolumeGrid& grid, vtkVolume* volume)
 {
   return toGlm(volume->GetMatrix()) * grid.indexToPhysical;
-}
-
-/// Whether a matrix flattens the volume, or has no meaning (NaN).
-bool isSingular(const glm::dmat4& m)
-{
-  const glm::dmat3 linear(m);
-  const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
-  return !(std::abs(glm::determinant(linear)) > 1e-10 * lengths) || !std::isfinite(lengths) ||
-    !std::isfinite(glm::length(m[3]));
-}
-
-/// Flags of cropping regions with the lowest and the highest along an axis exchanged.
-unsigned mirrored(unsigned flags, int stride)
-{
-  unsigned result = 0;
-  for (int bit = 0; bit < 27; ++bit)
-  {
-    const int region = bit / stride % 3;
-    result |= (flags >> bit & 1u) << (bit + (2 - 2 * region) * stride);
-  }
-  return result;
-}
-
-/// VTK's planes lie across the axes of the image, wherever its direction matrix turns these.
-splatting::Cropping croppingOf(const VolumeGrid& grid, vtkVolumeMapper* mapper)
-{
-  splatting::Cropping cropping;
-  const double* const planes = mapper->GetCroppingRegionPlanes();
-  unsigned flags = static_cast<unsigned>(mapper->GetCroppingRegionFlags());
-  for (int a = 0, stride = 1; a < 3; ++a, stride *= 3)
-  {
-    const double spacing = grid.spacing[a], first = grid.first[a];
-    cropping.planes[a] = { (planes[2 * a] - first) / spacing,
-      (planes[2 * a + 1] - first) / spacing };
-    if (spacing < 0.0)
-    {
-      std::swap(cropping.planes[a][0], cropping.planes[a][1]);
-      flags = mirrored(flags, stride);
-    }
-  }
-  cropping.flags = flags & splatting::Cropping::All;
-  return cropping;
-}
-
-/// The direction of projection in the world, and how far at most rays go along it from one slice to
-/// the next.
-struct Projection
-{
-  glm::dvec3 normal;
-  double slice;
-};
-
-Projection projectionOf(const splatting::View& view, const glm::dmat4& world)
-{
-  const glm::dmat3 linear(world);
-  if (splatting::isParallel(view))
-  {
-    // Rays run where neither coordinate on the screen changes.
-    const glm::dvec3 ray =
-      glm::cross(glm::dvec3(row(view.indexToClip, 0)), glm::dvec3(row(view.indexToClip, 1)));
-    const glm::dvec3 across = linear * ray, steps = glm::abs(ray);
-    return { glm::normalize(across),
-      glm::length(across) / std::max({ steps.x, steps.y, steps.z }) };
-  }
-  // Where w grows; a plane is a row vector. From slice to slice rays go by one step along one axis
-  // and at most one along the others.
-  const glm::dvec3 w(row(view.indexToClip, 3));
-  const glm::dvec3 normal = glm::normalize(w * glm::inverse(linear));
-  const glm::dvec3 steps = glm::abs(normal * linear);
-  return { normal, steps.x + steps.y + steps.z };
-}
-
-/// Keeps a half-space of index space if it cuts into the volume's voxels at all.
-void addHalfSpace(splatting::View& view, const glm::dvec4& h)
-{
-  double least = h.w;
-  for (int a = 0; a < 3; ++a)
-  {
-    least += std::min(-0.5 * h[a], (view.dimensions[a] - 0.5) * h[a]);
-  }
-  if (least < 0.0)
-  {
-    view.halfSpaces.push_back(h);
-  }
 }
 }
 
@@ -145,36 +31,23 @@ bool isFlat(const VolumeGrid& grid, vtkVolume* volume)
 splatting::View makeView(
   const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper)
 {
-  splatting::View view;
-  view.dimensions = grid.dimensions;
-  view.showsBoxes = grid.cells;
-  int left, bottom;
-  renderer->GetTiledSizeAndOrigin(&view.viewport.x, &view.viewport.y, &left, &bottom);
-  const glm::dmat4 world = indexToWorld(grid, volume);
+  int width, height, left, bottom;
+  renderer->GetTiledSizeAndOrigin(&width, &height, &left, &bottom);
   // The camera's composite matrix leaves stereo out.
   vtkCamera* const camera = renderer->GetActiveCamera();
-  view.indexToClip =
+  const glm::dmat4 worldToClip =
     toGlm(camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0)) *
-    toGlm(camera->GetViewTransformMatrix()) * world;
-  // Near and far plane: -w <= z <= w.
-  const glm::dvec4 z = row(view.indexToClip, 2), w = row(view.indexToClip, 3);
-  addHalfSpace(view, w + z);
-  addHalfSpace(view, w - z);
+    toGlm(camera->GetViewTransformMatrix());
+  const glm::dmat4 world = indexToWorld(grid, volume);
+  splatting::View view = viewOf(grid, world, worldToClip, { width, height });
   if (vtkPlaneCollection* const planes = mapper->GetClippingPlanes())
   {
-    vtkCollectionSimpleIterator it;
-    planes->InitTraversal(it);
-    while (vtkPlane* plane = planes->GetNextPlane(it))
-    {
-      const glm::dvec3 normal(plane->GetNormal()[0], plane->GetNormal()[1], plane->GetNormal()[2]);
-      const glm::dvec3 origin(plane->GetOrigin()[0], plane->GetOrigin()[1], plane->GetOrigin()[2]);
-      // A plane is a row vector: it transforms from the right.
-      addHalfSpace(view, glm::dvec4(normal, -glm::dot(normal, origin)) * world);
-    }
+    addPlanes(view, world, planes);
   }
   if (mapper->GetCropping())
   {
-    view.cropping = croppingOf(grid, mapper);
+    view.cropping =
+      croppingOf(grid, mapper->GetCroppingRegionPlanes(), mapper->GetCroppingRegionFlags());
   }
   return view;
 }
@@ -189,12 +62,5 @@ glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume)
 void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
   const double centre[3], double thickness)
 {
-  const glm::dmat4 world = indexToWorld(grid, volume);
-  const Projection projection = projectionOf(view, world);
-  const double place = glm::dot(projection.normal, glm::dvec3(centre[0], centre[1], centre[2]));
-  // What is thinner than a slice shows the nearest one, however thin: it must not drown in
-  // rounding.
-  const double half = 0.5 * std::max(thickness, 1e-3 * projection.slice);
-  addHalfSpace(view, glm::dvec4(projection.normal, half - place) * world);
-  addHalfSpace(view, glm::dvec4(-projection.normal, half + place) * world);
+  addSlab(view, indexToWorld(grid, volume), centre, thickness);
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * How a renderer sees a volume, from VTK's objects to numbers.
+ * How a renderer sees a volume: WorldView.h for VTK's scene.
  */
 #ifndef ViewOfVolume_h
 #define ViewOfVolume_h
@@ -31,9 +31,7 @@ splatting::View makeView(
 glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume);
 
 /**
- * Adds the two half-spaces of a slab across the direction of projection: that of the rays of a
- * parallel view; in perspective that in which w, the fourth coordinate of clip space, grows. Centre
- * and thickness are in the world.
+ * As in WorldView.h.
  */
 void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
   const double centre[3], double thickness);

@@ -10,6 +10,7 @@
 #include "ScalarSource.h"
 #include "SceneCuts.h"
 #include "Selection.h"
+#include "TurnOfViews.h"
 #include "View.h"
 #include "ViewOfVolume.h"
 
@@ -37,9 +38,6 @@ vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
 
 namespace
 {
-const char* const DegenerateCamera =
-  "The camera flattens the volume to a line or has no extent: give it a parallel scale, or a view "
-  "angle, above 0 and a view-up that is not its direction.";
 const char* const NoColors =
   "FinalColorWindow and FinalColorLevel give no colours: both must be finite and the window not 0.";
 
@@ -70,17 +68,6 @@ private:
   vtkRenderWindow*& Pointer;
 };
 
-/// As ShearWarp::factorise() takes it.
-int samplingOf(vtkSplattingMIPVolumeMapper* mapper, splatting::Quality quality)
-{
-  const int sampling = mapper->GetShearImageSampling();
-  if (sampling == vtkSplattingMIPVolumeMapper::AUTOMATIC_SAMPLING)
-  {
-    return quality == splatting::Quality::Exact ? splatting::ShearWarp::Automatic : 1;
-  }
-  return sampling == 3 ? 2 : sampling;
-}
-
 const char* nameOf(int acceleration)
 {
   static const char* const names[] = { "auto", "dense", "bricks", "lines", "sorted lines",
@@ -98,7 +85,6 @@ public:
   void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
   bool AreAsBefore(bool ordered) const;
-  std::size_t MainImage() const;
   bool HasImage() const { return this->Components.IsProjected() && !this->Images.empty(); }
   double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
   bool Factorise(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
@@ -238,16 +224,6 @@ bool vtkSplattingMIPVolumeMapper::Internals::AreAsBefore(bool ordered) const
 }
 
 //------------------------------------------------------------------------------
-// The largest image; there is one.
-std::size_t vtkSplattingMIPVolumeMapper::Internals::MainImage() const
-{
-  const auto largest = std::max_element(this->Images.begin(), this->Images.end(),
-    [](const splatting::ShearWarp& a, const splatting::ShearWarp& b)
-    { return a.rayCount().x * a.rayCount().y < b.rayCount().x * b.rayCount().y; });
-  return static_cast<std::size_t>(largest - this->Images.begin());
-}
-
-//------------------------------------------------------------------------------
 // The images of a view and what cuts them; false if it has no meaning.
 bool vtkSplattingMIPVolumeMapper::Internals::Factorise(vtkSplattingMIPVolumeMapper* self,
   vtkRenderer* ren, vtkVolume* vol, const splatting::View& view, splatting::Quality quality)
@@ -374,7 +350,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   }
   if (!splatting::isFinite(view))
   {
-    return DegenerateCamera;
+    return TurnOfViews::Degenerate;
   }
   if (in.Source.IsCoarse() && in.Announced.insert("coarse").second)
   {
@@ -413,7 +389,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     : in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime());
   if (!in.Project(this, ren, vol, view, mode))
   {
-    return DegenerateCamera;
+    return TurnOfViews::Degenerate;
   }
   const bool exceeds = in.Components.ExceedsBudget();
   if (exceeds && !in.BudgetReported)
@@ -530,7 +506,7 @@ vtkImageData* vtkSplattingMIPVolumeMapper::GetShearImage()
   else if (!in.ShearImageOutput)
   {
     in.ShearImageOutput = vtkSmartPointer<vtkImageData>::New();
-    const std::size_t n = in.MainImage();
+    const std::size_t n = mainImage(in.Images);
     in.Components.CopyImage(
       n, in.Images[n], in.Source.VtkTypeOf(in.Components.ImageType()), in.ShearImageOutput);
   }
@@ -541,7 +517,7 @@ vtkImageData* vtkSplattingMIPVolumeMapper::GetShearImage()
 int vtkSplattingMIPVolumeMapper::GetPrincipalAxis()
 {
   const Internals& in = *this->Internal;
-  return in.HasImage() ? in.Images[in.MainImage()].principalAxis() : -1;
+  return in.HasImage() ? in.Images[mainImage(in.Images)].principalAxis() : -1;
 }
 
 //------------------------------------------------------------------------------
@@ -551,7 +527,7 @@ void vtkSplattingMIPVolumeMapper::GetShear(double shear[2])
   shear[0] = shear[1] = 0.0;
   if (in.HasImage())
   {
-    const splatting::ShearWarp& image = in.Images[in.MainImage()];
+    const splatting::ShearWarp& image = in.Images[mainImage(in.Images)];
     shear[0] = -image.columns().slope[image.rayCount().x / 2];
     shear[1] = -image.rows().slope[image.rayCount().y / 2];
   }

@@ -533,19 +533,19 @@ public:
   ///@}
 
   /**
-   * The last shear image, its spacing 1 / ShearImageSampling, or nullptr before the first render. Scalars:
-   * as many components as are projected, in the input's type in mode PREVIEW (that of the copy, if
-   * voxels are hidden or resampled, or a magnitude), else, and for averages and depth shading,
-   * float (double for 32- and 64-bit integers and double). The image's physical coordinates are
-   * voxel indices, relative to the volume's first voxel, on the volume's middle slice along the
-   * principal axis: the ray of pixel (u, v) at origin + spacing * (u, v) crosses slice k there at that point
-   * minus GetShear() * (k - (slices-1)/2). In perspective it is the largest of the shear images,
-   * and the coordinates are voxel indices half a slice beyond the slice that is farthest from the
-   * eye; pixels are a little less than that apart, and the last columns of a row may be none of
-   * the view's rays. Pixels whose ray meets no sample of any component are marked hidden in the
-   * ghost array. Axes: for principal axis 2 the image's x and y are the volume's first and second
-   * axis, for 1 first and third, for 0 second and third. Costs a copy of the shear image; the
-   * caller must not change it.
+   * The last shear image, its spacing 1 / ShearImageSampling, or nullptr before the first render.
+   * Scalars: as many components as are projected, in the input's type in mode PREVIEW (that of the
+   * copy, if voxels are hidden or resampled, or a magnitude), else, and for averages and depth
+   * shading, float (double for 32- and 64-bit integers and double). The image's physical
+   * coordinates are voxel indices, relative to the volume's first voxel, on the volume's middle
+   * slice along the principal axis: the ray of pixel (u, v) at origin + spacing * (u, v) crosses
+   * slice k there at that point minus GetShear() * (k - (slices-1)/2). In perspective it is the
+   * largest of the shear images, and the coordinates are voxel indices half a slice beyond the
+   * slice that is farthest from the eye; pixels are a little less than that apart, and the last
+   * columns of a row may be none of the view's rays. Pixels whose ray meets no sample of any
+   * component are marked hidden in the ghost array. Axes: for principal axis 2 the image's x and y
+   * are the volume's first and second axis, for 1 first and third, for 0 second and third. Costs a
+   * copy of the shear image; the caller must not change it.
    */
   vtkImageData* GetShearImage();
 

@@ -58,15 +58,9 @@ const NamedColormap& FindColormap(const std::string& name)
 
 void SetColors(vtkVolumeProperty* property, const LookSettings& look)
 {
-  const double low = look.Level - 0.5 * look.Window;
-  vtkNew<vtkColorTransferFunction> colors;
-  for (const ColorPoint& point : FindColormap(look.Colormap).Points)
-  {
-    colors->AddRGBPoint(low + point.Position * look.Window, point.Red, point.Green, point.Blue);
-  }
   vtkNew<vtkPiecewiseFunction> opaque;
-  opaque->AddPoint(low, 1.0);
-  property->SetColor(colors);
+  opaque->AddPoint(look.Level - 0.5 * look.Window, 1.0);
+  property->SetColor(MakeColors(look));
   property->SetScalarOpacity(opaque);
 }
 
@@ -109,6 +103,17 @@ void CheckDisplay(vtkRenderWindow* window)
       "there is no display (DISPLAY is not set); run it on a desktop, or as xvfb-run -a splatmip.");
   }
 }
+}
+
+vtkSmartPointer<vtkColorTransferFunction> MakeColors(const LookSettings& look)
+{
+  const double low = look.Level - 0.5 * look.Window;
+  auto colors = vtkSmartPointer<vtkColorTransferFunction>::New();
+  for (const ColorPoint& point : FindColormap(look.Colormap).Points)
+  {
+    colors->AddRGBPoint(low + point.Position * look.Window, point.Red, point.Green, point.Blue);
+  }
+  return colors;
 }
 
 std::vector<std::string> GetColormapNames()
@@ -190,14 +195,18 @@ void MIPScene::UseRayCasting(int interpolation)
   this->Prop->SetMapper(this->RayCasting);
 }
 
+vtkSmartPointer<vtkTransform> MakeViewTurn(const ViewSettings& view, double azimuth)
+{
+  auto turn = vtkSmartPointer<vtkTransform>::New();
+  turn->RotateZ(azimuth);
+  turn->RotateX(-view.Elevation);
+  turn->RotateY(view.Roll);
+  return turn;
+}
+
 void MIPScene::FitCamera(double azimuth)
 {
-  // The camera's frame as a turn of the front view's frame: x to the right, y away, z up.
-  vtkNew<vtkTransform> turn;
-  turn->RotateZ(azimuth);
-  turn->RotateX(-this->View.Elevation);
-  turn->RotateY(this->View.Roll);
-
+  const auto turn = MakeViewTurn(this->View, azimuth);
   const double* bounds = this->Prop->GetBounds();
   const double center[3] = { 0.5 * (bounds[0] + bounds[1]), 0.5 * (bounds[2] + bounds[3]),
     0.5 * (bounds[4] + bounds[5]) };
@@ -208,16 +217,17 @@ void MIPScene::FitCamera(double azimuth)
   camera->SetPosition(center[0] - away[0], center[1] - away[1], center[2] - away[2]);
   camera->SetViewUp(turn->TransformDoubleVector(0.0, 0.0, 1.0));
   this->Renderer->ResetCamera(bounds); // for the distance
-  camera->SetParallelScale(this->GetFittingScale(turn) / this->View.Zoom);
+  double box[6];
+  this->Prop->GetMapper()->GetBounds(box);
+  camera->SetParallelScale(
+    GetFittingScale(box, this->Prop->GetUserMatrix(), this->View, turn) / this->View.Zoom);
   this->Renderer->ResetCameraClippingRange(bounds);
 }
 
-double MIPScene::GetFittingScale(vtkTransform* turn)
+double GetFittingScale(
+  const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view, vtkTransform* turn)
 {
-  double box[6];
-  this->Prop->GetMapper()->GetBounds(box);
-  vtkMatrix4x4* orientation = this->Prop->GetUserMatrix();
-  const double aspect = double(this->View.Size[0]) / this->View.Size[1];
+  const double aspect = double(view.Size[0]) / view.Size[1];
   double scale = 0.0;
   for (int edge = 0; edge < 4; ++edge)
   {

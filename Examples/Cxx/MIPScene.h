@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+class vtkColorTransferFunction;
 class vtkTransform;
 
 /**
@@ -41,6 +42,22 @@ struct LookSettings
   double Level = 0.5;
   std::string Colormap = "gray";
 };
+
+/**
+ * The colours of values.
+ */
+vtkSmartPointer<vtkColorTransferFunction> MakeColors(const LookSettings& look);
+
+/**
+ * The camera's frame as a turn of the front view's: x to the right, y away, z up.
+ */
+vtkSmartPointer<vtkTransform> MakeViewTurn(const ViewSettings& view, double azimuth);
+
+/**
+ * The parallel scale with which a box, oriented as the volume is, fits into the view.
+ */
+double GetFittingScale(
+  const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view, vtkTransform* turn);
 
 /**
  * The names that LookSettings::Colormap may have.
@@ -94,7 +111,6 @@ public:
 
 private:
   void FitCamera(double azimuth);
-  double GetFittingScale(vtkTransform* turn);
 
   ViewSettings View;
   vtkNew<vtkSplattingMIPVolumeMapper> Splatting;

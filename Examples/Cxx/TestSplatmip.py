@@ -193,6 +193,68 @@ class TestPictures(SplatmipTest):
         self.assertRegex(result.stdout, r"^splatmip \d+\.\d+\.\d+, VTK \d+\.\d+\.\d+\n$")
 
 
+class TestTurns(SplatmipTest):
+    def turn(self, *arguments):
+        """Without a display; returns what was printed."""
+        environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
+        result = subprocess.run([PROGRAM, *arguments], cwd=self.scratch.name, capture_output=True,
+                                text=True, timeout=300, check=False, env=environment)
+        self.assertEqual((result.returncode, result.stderr), (0, ""), result.stdout)
+        self.assertTrue(result.stdout.splitlines()[-1].startswith("turn: "), result.stdout)
+        return result.stdout
+
+    def read(self, name):
+        reader = vtk.vtkPNGReader()
+        reader.SetFileName(self.path(name))
+        reader.Update()
+        return get_bytes(reader.GetOutput())
+
+    def test_pictures(self):
+        options = ("--size", "60x90", "--mode", "standard", "--azimuth", "0", "--elevation", "0")
+        text = self.turn("--rotate", "8", "--out", "turn.png", *options)
+        self.assertRegex(text, r"8 views of 60 x 90 in .* per second")
+        names = sorted(os.listdir(self.scratch.name))
+        self.assertEqual(names, [f"turn-{n:05}.png" for n in range(8)])
+        pictures = [self.read(name) for name in names]
+        self.assertEqual(len(set(pictures)), 8)
+        # The view from behind is the mirror image of the front.
+        width = 3 * 60
+        rows = [pictures[0][n:n + width] for n in range(0, len(pictures[0]), width)]
+        mirrored = b"".join(row[::-1] for row in rows)  # gray
+        differences = [abs(a - b) for a, b in zip(mirrored, pictures[4])]
+        self.assertLessEqual(max(differences), 1)
+        # The first view is what the mapper shows; the turn is as large as fits from all sides.
+        self.assertGreater(max(pictures[0]), 250)
+
+    def test_gif(self):
+        text = self.turn("--rotate", "4", "--size", "50x40", "--rate", "10", "--out", "turn.gif",
+                         "--mode", "preview", "--colormap", "hot", "--no-timing")
+        self.assertNotIn("per second", text)
+        with open(self.path("turn.gif"), "rb") as file:
+            data = file.read()
+        self.assertTrue(data.startswith(b"GIF89a" + bytes([50, 0, 40, 0])))
+        self.assertTrue(data.endswith(b";"))
+        self.assertIn(b"NETSCAPE2.0", data)
+        self.assertEqual(data.count(bytes([0x21, 0xF9, 4, 4, 10, 0])), 4)
+
+    def test_film(self):
+        self.turn("--rotate", "4", "--size", "64x48", "--output", "turn.ogv", "--mode", "preview")
+        with open(self.path("turn.ogv"), "rb") as file:
+            data = file.read()
+        self.assertTrue(data.startswith(b"OggS"))
+        self.assertIn(b"theora", data[:200])
+
+    def test_refusals(self):
+        self.assert_refused("--rotate", "4", "--out", "turn.avi", word=".avi", code=2)
+        self.assert_refused("--rotate", "4", "--out", "turn.jpg", word=".gif", code=2)
+        self.assert_refused("--rotate", "1", "--out", "turn.gif", code=2)
+        self.assert_refused("--rotate", "4", "--interactive", word="--interactive", code=2)
+        self.assert_refused("--out", "turn.gif", word=".png", code=2)
+        result = self.run_program("--rotate", "2", "--size", "16x16", "--out", "no/turn.gif")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("folder", result.stderr)
+
+
 class TestFormats(SplatmipTest):
     def check(self, path):
         """Seen from the front, left is right and the feet are at the bottom."""

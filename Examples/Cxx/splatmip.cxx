@@ -3,19 +3,20 @@
 //
 // splatmip: maximum intensity projections of a volume by vtkSplattingMIPVolumeMapper. Without an
 // argument it shows the volume that it carries, in the three quality modes side by side, and how
-// long each mode takes beside vtkFixedPointVolumeRayCastMapper.
+// long each mode takes beside vtkFixedPointVolumeRayCastMapper. With --rotate it writes a turn by
+// vtkSplattingMIPProjection.
 #include "MIPScene.h"
+#include "PictureSeries.h"
+#include "Turn.h"
 #include "VolumeReader.h"
 
 #include "vtkCommand.h"
 #include "vtkImageAppend.h"
 #include "vtkInteractorStyleTrackballCamera.h"
 #include "vtkObjectFactory.h"
-#include "vtkPNGWriter.h"
 #include "vtkPointData.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkSMPTools.h"
-#include "vtkUnsignedCharArray.h"
 #include "vtkVersion.h"
 
 #include <CLI/CLI.hpp>
@@ -24,7 +25,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -50,6 +50,8 @@ struct Options
   std::string Output = "splatmip.png";
   bool NoTiming = false;
   bool Interactive = false;
+  int Rotate = 0; // views, or 0
+  int Rate = 12;
 };
 
 /**
@@ -65,9 +67,20 @@ std::string CheckSize(const std::string& text)
     : "not a size such as 400x600, each between 16 and 8192";
 }
 
-std::string CheckPNGName(const std::string& text)
+void CheckOutputName(const Options& options)
 {
-  return std::filesystem::path(text).extension() == ".png" ? "" : "not a name that ends in .png";
+  const bool isPNG = std::filesystem::path(options.Output).extension() == ".png";
+  const std::string fault = options.Rotate > 0 ? CheckSeriesName(options.Output)
+    : isPNG                                    ? ""
+                                               : "not a name that ends in .png";
+  if (!fault.empty())
+  {
+    throw CLI::ValidationError("--output", fault);
+  }
+  if (options.Rotate > 0 && options.Interactive)
+  {
+    throw CLI::ValidationError("--rotate", "a turn has no window: leave --interactive out");
+  }
 }
 
 /**
@@ -147,9 +160,20 @@ void DeclareViewOptions(CLI::App& app, Options& options)
     ->check(CLI::Validator(CheckSize, ""))
     ->type_name("WxH")
     ->capture_default_str();
-  app.add_option("--output", options.Output, "The picture to write")
-    ->check(CLI::Validator(CheckPNGName, ""))
-    ->type_name("FILE.png")
+  app
+    .add_option("--output,--out", options.Output,
+      "The picture to write, .png; with --rotate .gif, .ogv (a film) or .png (numbered pictures)")
+    ->type_name("FILE")
+    ->capture_default_str();
+  app
+    .add_option("--rotate", options.Rotate,
+      "Once round the patient in so many views, 2 to 3600, from --azimuth on, in one mode (high "
+      "unless --mode names one); needs no display")
+    ->check(CLI::Range(2, 3600))
+    ->type_name("VIEWS");
+  app.add_option("--rate", options.Rate, "Views per second of a GIF or film")
+    ->check(CLI::Range(1, 50))
+    ->type_name("VIEWS")
     ->capture_default_str();
   app.add_flag("--no-timing", options.NoTiming, "Only draw");
   app.add_flag("--interactive", options.Interactive,
@@ -164,6 +188,7 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
   DeclareImageOptions(app, options);
   DeclareViewOptions(app, options);
   app.parse(argc, argv);
+  CheckOutputName(options);
   options.HasWindow = app.count("--window") > 0;
   options.HasLevel = app.count("--level") > 0;
   std::sscanf(options.Size.c_str(), "%5dx%5d", &options.View.Size[0], &options.View.Size[1]);
@@ -240,26 +265,6 @@ private:
   double RayCasting[2] = { 0.0, 0.0 };
 };
 
-/**
- * Encode in memory and write by hand, so that a failure is one sentence and not VTK's report.
- */
-void WritePNG(vtkImageData* image, const std::filesystem::path& path)
-{
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetInputData(image);
-  writer->WriteToMemoryOn();
-  writer->Write();
-  vtkUnsignedCharArray* bytes = writer->GetResult();
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes->GetPointer(0)), bytes->GetNumberOfValues());
-  file.close();
-  if (!file)
-  {
-    throw std::runtime_error(path.string() +
-      ": the picture cannot be written; give a file in a folder that you may write to (--output).");
-  }
-}
-
 void WritePictures(MIPScene& scene, const Options& options)
 {
   std::vector<int> modes;
@@ -285,7 +290,7 @@ void WritePictures(MIPScene& scene, const Options& options)
   }
   row->Update();
   const std::filesystem::path path = std::filesystem::absolute(options.Output);
-  WritePNG(row->GetOutput(), path);
+  WritePNG(row->GetOutput(), path.string());
   std::printf("\npicture: %s\n", path.string().c_str());
 }
 
@@ -371,11 +376,40 @@ void Interact(MIPScene& scene, const Options& options)
   scene.GetWindow()->RemoveObserver(label);
 }
 
+void WriteTurn(const Volume& volume, const LookSettings& look, const Options& options)
+{
+  Turn turn(volume, look, options.View, options.Rotate);
+  const auto mode = std::find(ModeNames.begin(), ModeNames.end(), options.Mode);
+  turn.GetProjection()->SetQualityMode(mode == ModeNames.end()
+      ? vtkSplattingMIPProjection::HIGH
+      : static_cast<int>(mode - ModeNames.begin()));
+  turn.GetProjection()->SetKernel(options.Kernel == "cosine-bell"
+      ? vtkSplattingMIPProjection::COSINE_BELL
+      : vtkSplattingMIPProjection::TRILINEAR);
+  turn.GetProjection()->SetKernelRadius(options.KernelRadius);
+  const auto views = turn.Project();
+  if (!options.NoTiming)
+  {
+    std::printf("\n%d views of %d x %d in %.2f s, %.0f per second; %d threads, %s\n",
+      options.Rotate, options.View.Size[0], options.View.Size[1], turn.GetSeconds(),
+      options.Rotate / turn.GetSeconds(), vtkSMPTools::GetEstimatedNumberOfThreads(),
+      turn.GetProjection()->GetInstructionSet());
+  }
+  const std::filesystem::path path = std::filesystem::absolute(options.Output);
+  WriteSeries(views, turn.GetPalette(), options.Rate, path.string());
+  std::printf("\nturn: %s\n", path.string().c_str());
+}
+
 void Run(const Options& options)
 {
   const Volume volume = options.Input.empty() ? ReadBuiltInVolume() : ReadVolume(options.Input);
   const LookSettings look = CompleteLook(options, volume.Image);
   PrintVolume(volume, look);
+  if (options.Rotate > 0)
+  {
+    WriteTurn(volume, look, options);
+    return;
+  }
   MIPScene scene(volume, look, options.View, !options.Interactive);
   scene.GetSplatting()->SetKernel(options.Kernel == "cosine-bell"
       ? vtkSplattingMIPVolumeMapper::COSINE_BELL

@@ -185,34 +185,58 @@ Outline withinSamples(const ShearWarp& geometry)
   return inside;
 }
 
-/// Everything that the rows of one picture share.
+/// What becomes of the rows' scalars: their colours, ...
 template <class A>
-struct WarpFrame
+struct ColorSink
 {
+  using Pixel = std::uint32_t;
+  static constexpr Pixel empty = 0;
+
   const WorksheetLoops<A>& loops;
   const ColorTable& table;
   A low, scale;
   std::int32_t last;
 
-  void lookUp(const A* values, std::uint32_t* out, std::ptrdiff_t n) const
+  ColorSink(const WorksheetLoops<A>& l, const ColorTable& t)
+    : loops(l),
+      table(t),
+      low(static_cast<A>(t.low)),
+      scale(0),
+      last(static_cast<std::int32_t>(t.colors.size()) - 1)
+  {
+    this->scale = static_cast<A>(t.high > t.low ? this->last / (t.high - t.low) : 0.0);
+  }
+  void put(const A* values, Pixel* out, std::ptrdiff_t n) const
   {
     this->loops.lookUp(
       values, this->low, this->scale, this->last, this->table.colors.data(), out, n);
   }
 };
 
-/// Everything that they share of one image.
+/// ... or they themselves.
 template <class A>
+struct ScalarSink
+{
+  using Pixel = A;
+
+  const WorksheetLoops<A>& loops;
+  A empty;
+
+  void put(const A* values, Pixel* out, std::ptrdiff_t n) const { std::copy_n(values, n, out); }
+};
+
+/// Everything that they share of one image.
+template <class A, class Sink>
 struct WarpSource
 {
-  const WarpFrame<A>& frame;
+  const Sink& sink;
   const ShearImage& image;
   const A* pixels;
   const ShearWarp& geometry;
   Outline shown, inside;
 
-  WarpSource(const WarpFrame<A>& f, const ShearImage& i, const A* p, const ShearWarp& g)
-    : frame(f),
+  WarpSource(const Sink& s, const ShearImage& i, const A* p, const ShearWarp& g)
+    : sink(s),
       image(i),
       pixels(p),
       geometry(g),
@@ -224,13 +248,13 @@ struct WarpSource
 };
 
 /// Where all four neighbours of all points are samples.
-template <class A>
-void warpInside(const WarpSource<A>& source, const glm::dvec3& start, const glm::dvec3& step,
-  std::uint32_t* out, int n)
+template <class A, class Sink>
+void warpInside(const WarpSource<A, Sink>& source, const glm::dvec3& start, const glm::dvec3& step,
+  typename Sink::Pixel* out, int n)
 {
   constexpr int chunk = 256; // stays in the first-level cache
   A values[chunk];
-  const WorksheetLoops<A>& loops = source.frame.loops;
+  const WorksheetLoops<A>& loops = source.sink.loops;
   const auto interpolate =
     source.geometry.isPerspective() ? loops.interpolateProjective : loops.interpolate;
   for (int x = 0; x < n; x += chunk)
@@ -238,13 +262,13 @@ void warpInside(const WarpSource<A>& source, const glm::dvec3& start, const glm:
     const int count = std::min(chunk, n - x);
     const glm::dvec3 p = start + double(x) * step;
     interpolate(source.pixels, source.image.width, &p.x, &step.x, values, count);
-    source.frame.lookUp(values, out + x, count);
+    source.sink.put(values, out + x, count);
   }
 }
 
 /// Where a neighbour may be missing, NaN or infinite: interpolates between those that count.
-template <class A>
-std::uint32_t warpPoint(const WarpSource<A>& source, const glm::dvec3& homogeneous)
+template <class A, class Sink>
+typename Sink::Pixel warpPoint(const WarpSource<A, Sink>& source, const glm::dvec3& homogeneous)
 {
   const ShearImage& image = source.image;
   const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
@@ -279,19 +303,19 @@ std::uint32_t warpPoint(const WarpSource<A>& source, const glm::dvec3& homogeneo
   // volume's rim it ends with the silhouette.
   if (weight <= 0.0 || lost > 0.5)
   {
-    return 0;
+    return source.sink.empty;
   }
   const double average = sum / weight;
   const A value = std::isfinite(average) ? static_cast<A>(average) : nearest;
-  std::uint32_t color;
-  source.frame.lookUp(&value, &color, 1);
-  return color;
+  typename Sink::Pixel pixel;
+  source.sink.put(&value, &pixel, 1);
+  return pixel;
 }
 
 /// The pixels of a row, `start` being the first, that one image shows.
-template <class A>
-void warpSpan(
-  const WarpSource<A>& source, const glm::dvec3& start, const Span& row, std::uint32_t* out)
+template <class A, class Sink>
+void warpSpan(const WarpSource<A, Sink>& source, const glm::dvec3& start, const Span& row,
+  typename Sink::Pixel* out)
 {
   const glm::dmat3& m = source.geometry.screenToShear();
   const glm::dvec3 first = m * start, step = m[0];
@@ -313,10 +337,11 @@ void warpSpan(
 /// Of a view: one for each direction of each axis.
 constexpr std::size_t MostImages = 6;
 
-template <class A>
-void warpRow(
-  const std::vector<WarpSource<A>>& sources, const glm::dvec3& start, int width, std::uint32_t* out)
+template <class A, class Sink>
+void warpRow(const std::vector<WarpSource<A, Sink>>& sources, const glm::dvec3& start, int width,
+  typename Sink::Pixel* out)
 {
+  const auto empty = sources.front().sink.empty;
   // Images meet at lines: the one that begins first has the pixels that two show.
   std::array<std::pair<int, std::size_t>, MostImages> order;
   std::array<Span, MostImages> spans;
@@ -333,24 +358,27 @@ void warpRow(
     const Span row{ std::max(spans[which].begin, done), spans[which].end };
     if (!row.empty())
     {
-      std::fill(out + done, out + row.begin, 0u);
+      std::fill(out + done, out + row.begin, empty);
       warpSpan(sources[which], start, row, out);
       done = row.end;
     }
   }
-  std::fill(out + done, out + width, 0u);
+  std::fill(out + done, out + width, empty);
 }
 
-template <class A>
-void warpRows(const std::vector<WarpSource<A>>& sources, Picture& picture)
+/// The pixels of a part of a viewport, of which `pixels` is the first and the next row lies a
+/// stride further.
+template <class A, class Sink>
+void warpRows(const std::vector<WarpSource<A, Sink>>& sources, const Picture& place,
+  typename Sink::Pixel* pixels, std::ptrdiff_t stride)
 {
-  vtkSMPTools::For(0, picture.size.y, 16,
+  vtkSMPTools::For(0, place.size.y, 16,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType y = first; y < last; ++y)
       {
-        const glm::dvec3 start(picture.origin.x, picture.origin.y + static_cast<double>(y), 1.0);
-        warpRow(sources, start, picture.size.x, picture.pixels.data() + y * picture.size.x);
+        const glm::dvec3 start(place.origin.x, place.origin.y + static_cast<double>(y), 1.0);
+        warpRow(sources, start, place.size.x, pixels + y * stride);
       }
     });
 }
@@ -453,6 +481,22 @@ const Accumulator<T>* widenedPixels(
     return pixels;
   }
 }
+
+/// Warps images of voxels of type T, which are widened in `widened`.
+template <class T, class Sink>
+void warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+  const Kernels& kernels, const Sink& sink, std::vector<std::vector<unsigned char>>& widened,
+  const Picture& place, typename Sink::Pixel* pixels, std::ptrdiff_t stride)
+{
+  using A = Accumulator<T>;
+  std::vector<WarpSource<A, Sink>> sources;
+  for (std::size_t n = 0; n < geometries.size(); ++n)
+  {
+    const A* const own = widenedPixels<T>(images[n], kernels, widened[n]);
+    sources.emplace_back(sink, images[n], own, geometries[n]);
+  }
+  warpRows(sources, place, pixels, stride);
+}
 }
 
 void Warper::warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
@@ -471,18 +515,33 @@ void Warper::warp(const std::vector<ShearImage>& images, const std::vector<Shear
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
+      const ColorSink<Accumulator<T>> sink(kernels, table);
+      warpImages<T>(images, geometries, kernels, sink, this->Widened, picture,
+        picture.pixels.data(), picture.size.x);
+    });
+}
+
+void Warper::warpScalars(const std::vector<ShearImage>& images,
+  const std::vector<ShearWarp>& geometries, const glm::ivec2& viewport,
+  InstructionSet instructionSet, double background, void* scalars)
+{
+  Picture place;
+  placePicture(geometries, viewport, place);
+  if (place.size.x < 1 || place.size.y < 1)
+  {
+    return;
+  }
+  this->Widened.resize(std::max(this->Widened.size(), geometries.size()));
+  const Kernels& kernels = kernelsFor(instructionSet);
+  dispatch(images.front().type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
       using A = Accumulator<T>;
-      const std::int32_t last = static_cast<std::int32_t>(table.colors.size()) - 1;
-      const double scale = table.high > table.low ? last / (table.high - table.low) : 0.0;
-      const WarpFrame<A> frame{ kernels, table, static_cast<A>(table.low), static_cast<A>(scale),
-        last };
-      std::vector<WarpSource<A>> sources;
-      for (std::size_t n = 0; n < geometries.size(); ++n)
-      {
-        const A* const pixels = widenedPixels<T>(images[n], kernels, this->Widened[n]);
-        sources.emplace_back(frame, images[n], pixels, geometries[n]);
-      }
-      warpRows(sources, picture);
+      const ScalarSink<A> sink{ kernels, static_cast<A>(background) };
+      A* const first =
+        static_cast<A*>(scalars) + std::ptrdiff_t(place.origin.y) * viewport.x + place.origin.x;
+      warpImages<T>(images, geometries, kernels, sink, this->Widened, place, first, viewport.x);
     });
 }
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Shear image to viewport: the scalar is interpolated, then its colour looked up.
+ * Shear image to viewport: the scalar is interpolated, then its colour looked up, if wanted.
  */
 #ifndef splattingWarp_h
 #define splattingWarp_h
@@ -72,6 +72,14 @@ public:
   void warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
     const ColorTable& table, const glm::ivec2& viewport, InstructionSet instructionSet,
     Picture& picture);
+
+  /**
+   * The same as scalars, to a whole viewport's, row after row from the bottom. Pixels that would be
+   * transparent are left alone or get the background.
+   * @param scalars  of type averageType() of the images' type
+   */
+  void warpScalars(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+    const glm::ivec2& viewport, InstructionSet instructionSet, double background, void* scalars);
 
 private:
   /// Preview images in the accumulator's type.

@@ -10,6 +10,7 @@
 #include "vtkNew.h"
 #include "vtkPlane.h"
 #include "vtkPointData.h"
+#include "vtkSplattingMIPProjection.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include <algorithm>
@@ -366,6 +367,39 @@ void MeasureFloor(benchmark::State& state, const BenchmarkVolume& volume)
   const double median = Median(times);
   state.counters["median_ms"] = 1e3 * median;
   state.counters["GB_per_s"] = 1e-9 * static_cast<double>(count) / median;
+}
+
+//------------------------------------------------------------------------------
+void MeasureTurns(
+  benchmark::State& state, const BenchmarkVolume& volume, const BenchmarkMapper& mapper, int views)
+{
+  vtkImageData* image = LoadOrFail(state, volume);
+  if (!image)
+  {
+    return;
+  }
+  std::vector<double> times;
+  for (auto _ : state)
+  {
+    vtkNew<vtkSplattingMIPProjection> projection;
+    projection->SetInputData(image);
+    projection->SetQualityMode(mapper.QualityMode);
+    projection->SetNumberOfViews(views);
+    const auto start = std::chrono::steady_clock::now();
+    projection->Update();
+    const auto end = std::chrono::steady_clock::now();
+    times.push_back(std::chrono::duration<double>(end - start).count());
+    state.SetIterationTime(times.back());
+    if (projection->GetOutput()->GetDimensions()[2] != views)
+    {
+      Fail(state, "the turn is not complete");
+      return;
+    }
+  }
+  const double median = Median(times);
+  state.counters["median_ms"] = 1e3 * median;
+  state.counters["views"] = views;
+  state.counters["views_per_s"] = views / median;
 }
 
 //------------------------------------------------------------------------------

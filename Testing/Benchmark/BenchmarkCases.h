@@ -75,6 +75,14 @@ void MeasureFirst(
 void MeasureFloor(benchmark::State& state, const BenchmarkVolume& volume);
 
 /**
+ * A turn of vtkSplattingMIPProjection about the vertical axis, pictures of 256 x 256 pixels, by a
+ * fresh filter that has to make its index, too: Update() from the volume to all pictures. Counters
+ * median_ms of the turns, views of each, and views_per_s.
+ */
+void MeasureTurns(
+  benchmark::State& state, const BenchmarkVolume& volume, const BenchmarkMapper& mapper, int views);
+
+/**
  * Whether a benchmark has failed so far.
  */
 bool HasFailedBenchmark();

@@ -284,6 +284,22 @@ void SummaryReporter::PrintIndexes(std::ostream& os) const
 }
 
 //------------------------------------------------------------------------------
+void SummaryReporter::PrintTurns(std::ostream& os) const
+{
+  MarkdownTable table({ "volume", "mode", "views", "ms", "views / s" }, 2);
+  for (const Result& result : this->Results)
+  {
+    if (result.Name[0] == "turn")
+    {
+      table.Add({ result.Name[1], result.Name[2], Format(Get(&result, "views"), 0),
+        Format(Get(&result, "median_ms"), 1), Format(Get(&result, "views_per_s"), 0) });
+    }
+  }
+  os << "\nTurns without OpenGL, 256 x 256 pixels, the index included.\n\n";
+  table.Print(os);
+}
+
+//------------------------------------------------------------------------------
 void SummaryReporter::PrintSummary(
   std::ostream& os, const std::vector<std::pair<std::string, std::string>>& machine) const
 {
@@ -320,6 +336,10 @@ void SummaryReporter::PrintSummary(
   if (has("index"))
   {
     this->PrintIndexes(os);
+  }
+  if (has("turn"))
+  {
+    this->PrintTurns(os);
   }
   os.flush();
 }

@@ -48,6 +48,7 @@ private:
   void PrintProjections(std::ostream& os) const;
   void PrintCuts(std::ostream& os) const;
   void PrintIndexes(std::ostream& os) const;
+  void PrintTurns(std::ostream& os) const;
 
   benchmark::BenchmarkReporter* Display;
   std::vector<Result> Results; // in the order of the runs

@@ -47,6 +47,7 @@ void PrintHelp()
   cut/VOLUME/MODE/CUT         the projection alone, cut by clipping planes
   first/VOLUME/MODE[-ACCELERATION]       the slowest of the first frames along the three axes, 300^2
   index/VOLUME                making the bricks: one survey of the voxels
+  turn/VOLUME/MODE            a turn of 360 views without OpenGL, 256^2 pixels, the index included
   floor/VOLUME                the largest byte of the volume, read once by all threads
 
 VOLUME   vessels128-uint8, vessels256-uint8, -int16, -float, vessels512-uint8 (noise and vessels),
@@ -67,7 +68,7 @@ so there is none with --benchmark_report_aggregates_only.
   --quick        64^3 voxels, 100 pixels, few views: whether it works, in a few seconds
   --data=DIR     where lidc-idri-0314.nrrd lies
   --threads=N    threads of vtkSMPTools and of the ray caster on the CPU
-  --perspective=DEGREES  perspective cameras with this view angle, for all but floor and index
+  --perspective=DEGREES  perspective cameras with this view angle, for all but floor, index and turn
 
   For JSON, too: --benchmark_out=FILE. The rows that matter most:
     splatmip-benchmark --benchmark_filter='frame/vessels256-uint8/[0-9]+/[^g]'
@@ -214,6 +215,19 @@ void RegisterCuts(const BenchmarkVolume& volume, bool isQuick)
   }
 }
 
+void RegisterTurns(const BenchmarkVolume& volume, bool isQuick)
+{
+  const int views = isQuick ? 8 : 360;
+  for (const BenchmarkMapper& mapper : GetBenchmarkMappers())
+  {
+    if (mapper.Kind == BenchmarkMapper::SPLATTING)
+    {
+      Register("turn/" + volume.Name + "/" + mapper.Name, isQuick ? 1 : 3,
+        [=](benchmark::State& state) { MeasureTurns(state, volume, mapper, views); });
+    }
+  }
+}
+
 void RegisterVolume(const BenchmarkVolume& volume, bool isQuick)
 {
   Register(
@@ -229,6 +243,7 @@ void RegisterVolume(const BenchmarkVolume& volume, bool isQuick)
       [=](benchmark::State& state) { MeasureFirst(state, volume, mapper); });
   }
   RegisterCuts(volume, isQuick);
+  RegisterTurns(volume, isQuick);
   for (int window : isQuick ? std::vector<int>{ 100 } : std::vector<int>{ 300, 1024 })
   {
     RegisterFrames(volume, window, isQuick);

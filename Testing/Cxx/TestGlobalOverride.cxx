@@ -90,7 +90,8 @@ void testGlobalQualityMode(stage::Checks& check)
   const auto qualityOfNew = []()
   { return vtkSmartPointer<Override>::New()->GetSplattingMapper()->GetQualityMode(); };
   check(qualityOfNew() == vtkSplattingMIPVolumeMapper::HIGH, "High quality by default.");
-  for (const auto& [mode, expected] : { std::pair(1, 1), { 0, 0 }, { -1, 0 }, { 3, 2 } })
+  for (const auto& [mode, expected] :
+    { std::pair(1, 1), { 0, 0 }, { -1, 0 }, { 3, 3 }, { 4, 3 }, { 2, 2 } })
   {
     Override::SetGlobalQualityMode(mode);
     check(Override::GetGlobalQualityMode() == expected && qualityOfNew() == expected,

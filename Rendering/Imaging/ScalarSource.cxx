@@ -3,8 +3,8 @@
 #include "ScalarSource.h"
 
 #include "Blanking.h"
-#include "vtkSplattingMIPVolumeMapper.h"
 
+#include "vtkAbstractMapper.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
@@ -174,8 +174,8 @@ bool ScalarSource::Key::operator==(const Key& other) const
 // Choices that make no difference are made equal, so that a change of them changes nothing.
 void ScalarSource::Key::DropIdle()
 {
-  constexpr int all = vtkSplattingMIPVolumeMapper::DISABLED;
-  constexpr int one = vtkSplattingMIPVolumeMapper::COMPONENT;
+  constexpr int all = ScalarChoice::Disabled;
+  constexpr int one = ScalarChoice::Component;
   const bool isSingle = this->scalars->GetNumberOfComponents() == 1;
   if (isSingle && !(this->vectorMode == one && this->vectorComponent > 0)) // which is a fault
   {
@@ -273,12 +273,12 @@ std::string ScalarSource::CheckComponents(const Key& key)
   }
   this->Dependent = false;
   this->NumberOfComponents = 1;
-  if (key.vectorMode == vtkSplattingMIPVolumeMapper::COMPONENT && key.vectorComponent >= available)
+  if (key.vectorMode == ScalarChoice::Component && key.vectorComponent >= available)
   {
     return "VectorComponent is " + std::to_string(key.vectorComponent) + ", but the scalars have " +
       std::to_string(available) + " components: choose one that is less.";
   }
-  if (key.vectorMode != vtkSplattingMIPVolumeMapper::DISABLED || available == 1)
+  if (key.vectorMode != ScalarChoice::Disabled || available == 1)
   {
     return {};
   }
@@ -301,7 +301,7 @@ std::string ScalarSource::CheckComponents(const Key& key)
 //------------------------------------------------------------------------------
 bool ScalarSource::IsMagnitude() const
 {
-  return this->Examined.vectorMode == vtkSplattingMIPVolumeMapper::MAGNITUDE &&
+  return this->Examined.vectorMode == ScalarChoice::Magnitude &&
     this->Examined.scalars->GetNumberOfComponents() > 1;
 }
 
@@ -318,7 +318,7 @@ std::vector<splatting::StridedVoxels> ScalarSource::ChosenComponents()
     scalars = this->Packed;
   }
   const int available = scalars->GetNumberOfComponents();
-  const bool one = this->Examined.vectorMode == vtkSplattingMIPVolumeMapper::COMPONENT;
+  const bool one = this->Examined.vectorMode == ScalarChoice::Component;
   const int first = one ? this->Examined.vectorComponent : 0;
   std::vector<splatting::StridedVoxels> components;
   for (int c = first; c < (one ? first + 1 : available); ++c)
@@ -407,12 +407,19 @@ int ScalarSource::VtkTypeOf(splatting::ScalarType type) const
 }
 
 //------------------------------------------------------------------------------
+int ScalarSource::AverageVtkType(int vtkType)
+{
+  const splatting::ScalarType type = splatting::averageType(scalarTypeOfVtk(vtkType));
+  return type == splatting::ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
+}
+
+//------------------------------------------------------------------------------
 // Whether the chosen array is what is projected, one voxel after the other and without holes: ray
 // casters take NaN for a number, and read the buffer from several threads, while an array that is
 // stored otherwise makes one only then.
 bool ScalarSource::IsInputArray() const
 {
-  const bool isPart = this->Examined.vectorMode == vtkSplattingMIPVolumeMapper::COMPONENT &&
+  const bool isPart = this->Examined.vectorMode == ScalarChoice::Component &&
     this->Examined.scalars->GetNumberOfComponents() > 1;
   return !isPart && !this->IsMagnitude() && !this->Place.resampled &&
     this->Examined.scalars->HasStandardMemoryLayout() &&

@@ -3,6 +3,7 @@
 #include "ComponentProjector.h"
 
 #include "ScalarSource.h"
+#include "VoxelCopies.h"
 
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
@@ -15,6 +16,16 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <type_traits>
+
+//------------------------------------------------------------------------------
+std::size_t mainImage(const std::vector<splatting::ShearWarp>& images)
+{
+  const auto largest = std::max_element(images.begin(), images.end(),
+    [](const splatting::ShearWarp& a, const splatting::ShearWarp& b)
+    { return a.rayCount().x * a.rayCount().y < b.rayCount().x * b.rayCount().y; });
+  return static_cast<std::size_t>(largest - images.begin());
+}
 
 //------------------------------------------------------------------------------
 bool ComponentProjector::LookAt(ScalarSource& source)
@@ -329,6 +340,44 @@ void ComponentProjector::Warp(const std::vector<splatting::ShearWarp>& geometrie
     {
       splatting::addSaturated(this->Layer, picture);
     }
+  }
+}
+
+//------------------------------------------------------------------------------
+void ComponentProjector::WarpScalars(const std::vector<splatting::ShearWarp>& geometries,
+  const splatting::View& view, double background, void* scalars)
+{
+  const std::size_t components = this->Channels.size();
+  const std::size_t pixels = std::size_t(view.viewport.x) * view.viewport.y;
+  const auto warp = [&](Channel& channel, auto* values)
+  {
+    using A = std::remove_pointer_t<decltype(values)>;
+    std::fill_n(values, pixels, static_cast<A>(background));
+    this->Warper.warpScalars(channel.Images, geometries, view.viewport,
+      channel.Settings.instructionSet, background, values);
+  };
+  const auto interleave = [&](auto* to)
+  {
+    using A = std::remove_pointer_t<decltype(to)>;
+    this->Plane.resize(components > 1 ? pixels * sizeof(A) : 0);
+    A* const plane = components > 1 ? reinterpret_cast<A*>(this->Plane.data()) : to;
+    for (std::size_t c = 0; c < components; ++c)
+    {
+      warp(this->Channels[c], plane);
+      for (std::size_t n = 0; components > 1 && n < pixels; ++n)
+      {
+        to[n * components + c] = plane[n];
+      }
+    }
+  };
+  const splatting::ScalarType type = this->Channels.front().Index.volume().type;
+  if (splatting::averageType(type) == splatting::ScalarType::Float32)
+  {
+    interleave(static_cast<float*>(scalars));
+  }
+  else
+  {
+    interleave(static_cast<double*>(scalars));
   }
 }
 

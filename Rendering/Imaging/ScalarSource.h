@@ -23,11 +23,19 @@ class vtkImageData;
  */
 struct ScalarChoice
 {
+  /// The values of vtkSmartVolumeMapper's VectorMode.
+  enum VectorModes
+  {
+    Disabled = -1,
+    Magnitude = 0,
+    Component = 1
+  };
+
   int scalarMode = 0;
   int arrayAccessMode = 0;
   int arrayId = -1;
   const char* arrayName = nullptr;
-  int vectorMode = -1;
+  int vectorMode = Disabled;
   int vectorComponent = 0;
   bool independentComponents = true;
   vtkImageData* mask = nullptr;
@@ -51,6 +59,8 @@ public:
   std::string Examine(vtkDataSet* input, const ScalarChoice& choice);
 
   const VolumeGrid& Grid() const { return this->Place.grid; }
+  /// The array that is projected, or has the components that are.
+  vtkDataArray* Scalars() const { return this->Examined.scalars; }
   /// Whether small cells of a rectilinear grid may be missing, because the grid got larger steps.
   bool IsCoarse() const { return this->Place.coarse; }
   /// What is projected: 1 to 4.
@@ -66,6 +76,8 @@ public:
   const splatting::VoxelArray& Volume(int component) const { return this->Volumes[component]; }
   /// VTK's name for the type of a volume, or of what is projected from it.
   int VtkTypeOf(splatting::ScalarType type) const;
+  /// VTK_FLOAT or VTK_DOUBLE, whichever holds averages of scalars of a VTK type.
+  static int AverageVtkType(int vtkType);
 
   /**
    * The same voxels as point scalars of a vtkImageData, for mappers that know nothing else. Hidden

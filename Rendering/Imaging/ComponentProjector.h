@@ -14,6 +14,9 @@
 
 class ScalarSource;
 class vtkImageData;
+
+/// The largest of a view's images, of which there is at least one.
+std::size_t mainImage(const std::vector<splatting::ShearWarp>& images);
 class vtkVolumeProperty;
 
 /**
@@ -65,6 +68,15 @@ public:
   /// The picture of the images in a view with these geometries.
   void Warp(const std::vector<splatting::ShearWarp>& geometries, const splatting::View& view,
     splatting::Picture& picture);
+
+  /**
+   * The same as scalars, component after component of each pixel, row after row of the whole
+   * viewport from the bottom.
+   * @param background  of pixels without a sample
+   * @param scalars     of type averageType() of the images' type
+   */
+  void WarpScalars(const std::vector<splatting::ShearWarp>& geometries, const splatting::View& view,
+    double background, void* scalars);
 
   /// One image of all components as one with as many components, and which pixels have no sample in
   /// its ghost array.
@@ -128,7 +140,8 @@ private:
   splatting::Cuts PhaseCuts;
   splatting::Projector Projector;
   splatting::Warper Warper;
-  splatting::Picture Layer; // of one component
+  splatting::Picture Layer;         // of one component
+  std::vector<unsigned char> Plane; // likewise, scalars
 };
 
 #endif

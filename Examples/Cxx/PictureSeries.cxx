@@ -1,0 +1,245 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PictureSeries.h"
+
+#include "vtkNew.h"
+#include "vtkPNGWriter.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
+#ifdef SPLATMIP_HAS_THEORA
+#include "vtkOggTheoraWriter.h"
+#endif
+#ifdef SPLATMIP_HAS_GIF
+#include <gif_lib.h>
+#endif
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+
+namespace
+{
+std::runtime_error CannotWrite(const std::string& path)
+{
+  return std::runtime_error(
+    path + ": this cannot be written; give a file in a folder that you may write to (--output).");
+}
+
+/// One slice in colours.
+vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette, int n)
+{
+  const int* const size = slices->GetDimensions();
+  auto picture = vtkSmartPointer<vtkImageData>::New();
+  picture->SetDimensions(size[0], size[1], 1);
+  picture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  const auto* const from = static_cast<unsigned char*>(slices->GetScalarPointer(0, 0, n));
+  auto* const to = static_cast<unsigned char*>(picture->GetScalarPointer());
+  for (vtkIdType p = 0; p < picture->GetNumberOfPoints(); ++p)
+  {
+    std::copy_n(palette[from[p]].data(), 3, to + 3 * p);
+  }
+  return picture;
+}
+
+void WritePNGs(vtkImageData* slices, const Palette& palette, const std::string& path)
+{
+  const std::filesystem::path name(path);
+  for (int n = 0; n < slices->GetDimensions()[2]; ++n)
+  {
+    char number[16];
+    std::snprintf(number, sizeof(number), "-%05d", n);
+    const auto file =
+      name.parent_path() / (name.stem().string() + number + name.extension().string());
+    WritePNG(Paint(slices, palette, n), file.string());
+  }
+}
+
+#ifdef SPLATMIP_HAS_THEORA
+void WriteTheora(vtkImageData* slices, const Palette& palette, int rate, const std::string& path)
+{
+  if (!std::ofstream(path, std::ios::binary))
+  {
+    throw CannotWrite(path);
+  }
+  vtkNew<vtkOggTheoraWriter> writer;
+  writer->SetFileName(path.c_str());
+  writer->SetRate(rate);
+  writer->SetQuality(2);
+  writer->SubsamplingOff();
+  for (int n = 0; n < slices->GetDimensions()[2]; ++n)
+  {
+    writer->SetInputData(Paint(slices, palette, n));
+    if (n == 0)
+    {
+      writer->Start();
+    }
+    writer->Write();
+  }
+  writer->End();
+  if (writer->GetError())
+  {
+    throw CannotWrite(path);
+  }
+}
+#endif
+
+#ifdef SPLATMIP_HAS_GIF
+/// Written by giflib, 256 colours for all pictures.
+class GIFFile
+{
+public:
+  GIFFile(const std::string& path, const int size[2], const Palette& palette) : Path(path)
+  {
+    // A file that giflib creates is for its owner alone.
+    const std::ofstream usual(path, std::ios::binary);
+    this->File = EGifOpenFileName(path.c_str(), false, nullptr);
+    Size[0] = size[0];
+    Size[1] = size[1];
+    if (!this->File)
+    {
+      throw CannotWrite(path);
+    }
+    EGifSetGifVersion(this->File, true);
+    const std::unique_ptr<ColorMapObject, decltype(&GifFreeMapObject)> colors(
+      GifMakeMapObject(256, nullptr), &GifFreeMapObject);
+    for (int n = 0; n < 256; ++n)
+    {
+      colors->Colors[n] = { palette[n][0], palette[n][1], palette[n][2] };
+    }
+    this->Check(EGifPutScreenDesc(this->File, size[0], size[1], 8, 0, colors.get()));
+    // For ever, as browsers know it.
+    const unsigned char times[3] = { 1, 0, 0 };
+    this->Check(EGifPutExtensionLeader(this->File, APPLICATION_EXT_FUNC_CODE));
+    this->Check(EGifPutExtensionBlock(this->File, 11, "NETSCAPE2.0"));
+    this->Check(EGifPutExtensionBlock(this->File, 3, times));
+    this->Check(EGifPutExtensionTrailer(this->File));
+  }
+  ~GIFFile()
+  {
+    if (this->File)
+    {
+      EGifCloseFile(this->File, nullptr);
+    }
+  }
+  GIFFile(const GIFFile&) = delete;
+  GIFFile& operator=(const GIFFile&) = delete;
+
+  /// Bottom row first; the delay is in 1/100 s.
+  void Add(const unsigned char* pixels, int delay)
+  {
+    GraphicsControlBlock control = { DISPOSE_DO_NOT, false, delay, NO_TRANSPARENT_COLOR };
+    GifByteType bytes[4];
+    this->Check(EGifPutExtension(this->File, GRAPHICS_EXT_FUNC_CODE,
+      static_cast<int>(EGifGCBToExtension(&control, bytes)), bytes));
+    this->Check(EGifPutImageDesc(this->File, 0, 0, this->Size[0], this->Size[1], false, nullptr));
+    std::vector<GifPixelType> row(this->Size[0]); // giflib wants to write to it
+    for (int y = this->Size[1] - 1; y >= 0; --y)
+    {
+      std::copy_n(pixels + std::ptrdiff_t(y) * this->Size[0], this->Size[0], row.begin());
+      this->Check(EGifPutLine(this->File, row.data(), this->Size[0]));
+    }
+  }
+
+  void Close()
+  {
+    GifFileType* const file = this->File;
+    this->File = nullptr;
+    this->Check(EGifCloseFile(file, nullptr));
+  }
+
+private:
+  void Check(int result) const
+  {
+    if (result != GIF_OK)
+    {
+      throw CannotWrite(this->Path);
+    }
+  }
+
+  std::string Path;
+  GifFileType* File = nullptr;
+  int Size[2];
+};
+
+void WriteGIF(vtkImageData* slices, const Palette& palette, int rate, const std::string& path)
+{
+  GIFFile file(path, slices->GetDimensions(), palette);
+  for (int n = 0; n < slices->GetDimensions()[2]; ++n)
+  {
+    file.Add(static_cast<unsigned char*>(slices->GetScalarPointer(0, 0, n)),
+      std::max(2, (100 + rate / 2) / rate)); // browsers take less for more
+  }
+  file.Close();
+}
+#endif
+
+std::string EndingOf(const std::string& path)
+{
+  return std::filesystem::path(path).extension().string();
+}
+}
+
+void WritePNG(vtkImageData* image, const std::string& path)
+{
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetInputData(image);
+  writer->WriteToMemoryOn();
+  writer->Write();
+  vtkUnsignedCharArray* bytes = writer->GetResult();
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes->GetPointer(0)), bytes->GetNumberOfValues());
+  file.close();
+  if (!file)
+  {
+    throw CannotWrite(path);
+  }
+}
+
+std::string CheckSeriesName(const std::string& path)
+{
+  const std::string ending = EndingOf(path);
+  if (ending == ".png")
+  {
+    return "";
+  }
+  if (ending == ".gif")
+  {
+#ifdef SPLATMIP_HAS_GIF
+    return "";
+#else
+    return "this build has no giflib to write .gif with: take .png";
+#endif
+  }
+  if (ending == ".ogv")
+  {
+#ifdef SPLATMIP_HAS_THEORA
+    return "";
+#else
+    return "this VTK has no Ogg Theora to write .ogv with: take .png";
+#endif
+  }
+  return ending == ".avi" ? "VTK writes .avi on Windows only: take .gif, .ogv or .png"
+                          : "a turn is written as .gif, .ogv (a film) or .png (numbered pictures)";
+}
+
+void WriteSeries(
+  vtkImageData* slices, const Palette& palette, [[maybe_unused]] int rate, const std::string& path)
+{
+  const std::string ending = EndingOf(path);
+#ifdef SPLATMIP_HAS_GIF
+  if (ending == ".gif")
+  {
+    return WriteGIF(slices, palette, rate, path);
+  }
+#endif
+#ifdef SPLATMIP_HAS_THEORA
+  if (ending == ".ogv")
+  {
+    return WriteTheora(slices, palette, rate, path);
+  }
+#endif
+  WritePNGs(slices, palette, path);
+}

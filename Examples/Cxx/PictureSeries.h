@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef PictureSeries_h
+#define PictureSeries_h
+
+#include "vtkImageData.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+using Palette = std::array<std::array<unsigned char, 3>, 256>;
+
+/**
+ * Encode in memory and write by hand, so that a failure is one sentence and not VTK's report.
+ * Throws std::runtime_error.
+ */
+void WritePNG(vtkImageData* image, const std::string& path);
+
+/**
+ * What is wrong with the name of a series, or nothing: by its ending it is a GIF or an Ogg Theora
+ * film, if this build has their libraries, or PNG pictures, of which each gets its number before
+ * the ending.
+ */
+std::string CheckSeriesName(const std::string& path);
+
+/**
+ * Writes the slices of an image of bytes, which are places in the palette, bottom row first, to be
+ * shown at a rate per second. Throws std::runtime_error with one sentence.
+ */
+void WriteSeries(vtkImageData* slices, const Palette& palette, int rate, const std::string& path);
+
+#endif

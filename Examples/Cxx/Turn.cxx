@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Turn.h"
+
+#include "ProgressLine.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkColorTransferFunction.h"
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkMatrix3x3.h"
+#include "vtkPointData.h"
+#include "vtkTransform.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+namespace
+{
+/// The image in the patient's coordinates, which a projection takes from the image alone.
+vtkSmartPointer<vtkImageData> Orient(const Volume& volume)
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->ShallowCopy(volume.Image);
+  double origin[4] = { 0.0, 0.0, 0.0, 1.0 };
+  std::copy_n(volume.Image->GetOrigin(), 3, origin);
+  volume.Orientation->MultiplyPoint(origin, origin);
+  image->SetOrigin(origin);
+  vtkNew<vtkMatrix3x3> direction;
+  for (int r = 0; r < 3; ++r)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      direction->SetElement(r, c, volume.Orientation->GetElement(r, c));
+    }
+  }
+  image->SetDirectionMatrix(direction);
+  return image;
+}
+
+/// What the volume fits into from all sides.
+double LargestScale(const Volume& volume, const ViewSettings& view, int views)
+{
+  double scale = 0.0;
+  for (int n = 0; n < views; ++n)
+  {
+    const auto turn = MakeViewTurn(view, view.Azimuth + 360.0 * n / views);
+    scale =
+      std::max(scale, GetFittingScale(volume.Image->GetBounds(), volume.Orientation, view, turn));
+  }
+  return scale / view.Zoom;
+}
+}
+
+Turn::Turn(const Volume& volume, const LookSettings& look, const ViewSettings& view, int views)
+  : Look(look)
+{
+  this->Projection->SetInputData(Orient(volume));
+  const auto turn = MakeViewTurn(view, view.Azimuth);
+  this->Projection->SetViewDirection(turn->TransformDoubleVector(0.0, 1.0, 0.0));
+  this->Projection->SetViewUp(turn->TransformDoubleVector(0.0, 0.0, 1.0));
+  this->Projection->SetRotationAxis(0.0, 0.0, 1.0);
+  this->Projection->SetNumberOfViews(views);
+  this->Projection->SetOutputSize(view.Size[0], view.Size[1]);
+  const double spacing = 2.0 * LargestScale(volume, view, views) / view.Size[1];
+  this->Projection->SetOutputSpacing(spacing, spacing);
+  this->Projection->SetBackgroundValue(look.Level - look.Window);
+}
+
+vtkSmartPointer<vtkImageData> Turn::Project()
+{
+  using Clock = std::chrono::steady_clock;
+  ProgressLine line("projecting");
+  vtkNew<vtkCallbackCommand> tell;
+  tell->SetClientData(&line);
+  tell->SetCallback([](vtkObject*, unsigned long, void* client, void* data)
+    { static_cast<ProgressLine*>(client)->Show(*static_cast<double*>(data)); });
+  const unsigned long tag = this->Projection->AddObserver(vtkCommand::ProgressEvent, tell);
+  const auto start = Clock::now();
+  this->Projection->Update();
+  this->Seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  this->Projection->RemoveObserver(tag);
+  vtkImageData* const found = this->Projection->GetOutput();
+  if (found->GetNumberOfPoints() == 0)
+  {
+    throw std::runtime_error("the volume cannot be projected.");
+  }
+  auto bytes = vtkSmartPointer<vtkImageData>::New();
+  bytes->CopyStructure(found);
+  bytes->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  auto* const to = static_cast<unsigned char*>(bytes->GetScalarPointer());
+  vtkDataArray* const scalars = found->GetPointData()->GetScalars();
+  const double low = this->Look.Level - 0.5 * this->Look.Window;
+  for (vtkIdType p = 0; p < found->GetNumberOfPoints(); ++p)
+  {
+    const double place = 255.0 * (scalars->GetComponent(p, 0) - low) / this->Look.Window;
+    to[p] = static_cast<unsigned char>(std::lround(std::clamp(place, 0.0, 255.0)));
+  }
+  return bytes;
+}
+
+Palette Turn::GetPalette() const
+{
+  const auto colors = MakeColors(this->Look);
+  Palette palette;
+  for (int n = 0; n < 256; ++n)
+  {
+    const double value = this->Look.Level + this->Look.Window * (n / 255.0 - 0.5);
+    double rgb[3];
+    colors->GetColor(value, rgb);
+    std::transform(rgb, rgb + 3, palette[n].begin(),
+      [](double c) { return static_cast<unsigned char>(std::lround(255.0 * c)); });
+  }
+  return palette;
+}

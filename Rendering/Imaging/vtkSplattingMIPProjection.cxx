@@ -1,0 +1,500 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSplattingMIPProjection.h"
+
+#include "ComponentProjector.h"
+#include "ProjectionChoice.h"
+#include "ScalarSource.h"
+#include "TurnOfViews.h"
+#include "WorldView.h"
+
+#include "vtkAbstractMapper.h"
+#include "vtkCamera.h"
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMapper.h" // for VTK_GET_ARRAY_BY_ID
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+vtkStandardNewMacro(vtkSplattingMIPProjection);
+vtkCxxSetObjectMacro(vtkSplattingMIPProjection, Camera, vtkCamera);
+
+//------------------------------------------------------------------------------
+class vtkSplattingMIPProjection::Internals
+{
+public:
+  ProjectionChoice ChoiceOf(vtkSplattingMIPProjection* self) const;
+  ScalarChoice ScalarsOf(vtkSplattingMIPProjection* self, vtkDataArray* array, int association,
+    vtkImageData* input) const;
+  TurnSettings TurnOf(vtkSplattingMIPProjection* self, vtkImageData* input) const;
+  std::string Problem(
+    vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input);
+  bool GoOn(vtkSplattingMIPProjection* self, double done);
+  bool ProjectView(vtkSplattingMIPProjection* self, const splatting::View& view);
+  bool PlaceOutput(vtkImageData* output) const;
+  std::string ProjectViews(vtkSplattingMIPProjection* self, vtkImageData* output);
+
+  ScalarSource Source;
+  ComponentProjector Components;
+  ProjectionChoice Choice;
+  TurnOfViews Turn;
+  std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last view and the one before
+  std::vector<splatting::Cuts> Cuts, CutsBefore;          // likewise
+  int ViewsDone = 0;
+  double Told = 0.0; // progress
+  vtkSmartPointer<vtkImageData> ShearImageOutput;
+};
+
+//------------------------------------------------------------------------------
+vtkSplattingMIPProjection::vtkSplattingMIPProjection()
+  : Camera(nullptr),
+    ViewDirection{ 0.0, 1.0, 0.0 },
+    ViewUp{ 0.0, 0.0, 1.0 },
+    CenterOnVolume(true),
+    FocalPoint{ 0.0, 0.0, 0.0 },
+    OutputSize{ 256, 256 },
+    OutputSpacing{ 0.0, 0.0 },
+    NumberOfViews(1),
+    RotationAxis{ 0.0, 0.0, 0.0 },
+    TotalAngle(360.0),
+    BackgroundValue(0.0),
+    BlendMode(MAXIMUM_INTENSITY_BLEND),
+    AverageIPScalarRange{ VTK_FLOAT_MIN, VTK_FLOAT_MAX },
+    QualityMode(HIGH),
+    Kernel(TRILINEAR),
+    KernelRadius(1.0),
+    FootprintSampling(0),
+    ShearImageSampling(AUTOMATIC_SAMPLING),
+    MaximumType(GLOBAL),
+    DepthShadingAmbient(0.3),
+    DepthShadingChangeRate(0.7),
+    LocalMaximumThreshold(0.0),
+    VectorMode(DISABLED),
+    VectorComponent(0),
+    Slab(false),
+    SlabThickness(10.0),
+    SlabCenter{ 0.0, 0.0, 0.0 },
+    Cropping(0),
+    CroppingRegionPlanes{ 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 },
+    CroppingRegionFlags(1 << 13),
+    Acceleration(AUTO),
+    LineTolerance(0.0),
+    EliminateInvisible(false),
+    IndexMemoryBudget(vtkTypeInt64(1) << 32),
+    NumberOfProjections(0),
+    Internal(new Internals)
+{
+  this->Internal->Components.GetProjector().setWatch(
+    [this](double done) { return this->Internal->GoOn(this, done); });
+}
+
+//------------------------------------------------------------------------------
+vtkSplattingMIPProjection::~vtkSplattingMIPProjection()
+{
+  this->SetCamera(nullptr);
+}
+
+//------------------------------------------------------------------------------
+vtkMTimeType vtkSplattingMIPProjection::GetMTime()
+{
+  const vtkMTimeType own = this->Superclass::GetMTime();
+  return this->Camera ? std::max(own, this->Camera->GetMTime()) : own;
+}
+
+//------------------------------------------------------------------------------
+ProjectionChoice vtkSplattingMIPProjection::Internals::ChoiceOf(
+  vtkSplattingMIPProjection* self) const
+{
+  ProjectionChoice choice;
+  choice.blendMode = self->BlendMode;
+  choice.maximumType = self->MaximumType;
+  choice.depthShadingAmbient = self->DepthShadingAmbient;
+  choice.depthShadingChangeRate = self->DepthShadingChangeRate;
+  choice.localMaximumThreshold = self->LocalMaximumThreshold;
+  std::copy_n(self->AverageIPScalarRange, 2, choice.averageRange);
+  choice.kernel = self->Kernel;
+  choice.kernelRadius = self->KernelRadius;
+  choice.footprintSampling = self->FootprintSampling;
+  choice.shearImageSampling = self->ShearImageSampling;
+  choice.acceleration = self->Acceleration;
+  choice.lineTolerance = self->LineTolerance;
+  choice.eliminateInvisible = self->EliminateInvisible;
+  choice.slab = self->Slab;
+  choice.slabThickness = self->SlabThickness;
+  std::copy_n(self->SlabCenter, 3, choice.slabCenter);
+  choice.cropping = self->Cropping != 0;
+  std::copy_n(self->CroppingRegionPlanes, 6, choice.croppingPlanes);
+  return choice;
+}
+
+//------------------------------------------------------------------------------
+// The array to process, as a mapper's ScalarMode names it.
+ScalarChoice vtkSplattingMIPProjection::Internals::ScalarsOf(
+  vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input) const
+{
+  ScalarChoice choice;
+  choice.vectorMode = self->VectorMode;
+  choice.vectorComponent = self->VectorComponent;
+  const bool ofCells = association == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  vtkDataSetAttributes* const arrays =
+    input->GetAttributes(ofCells ? vtkDataObject::CELL : vtkDataObject::POINT);
+  for (int n = 0; arrays && n < arrays->GetNumberOfArrays(); ++n)
+  {
+    if (arrays->GetArray(n) == array)
+    {
+      choice.scalarMode =
+        ofCells ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA;
+      choice.arrayAccessMode = VTK_GET_ARRAY_BY_ID;
+      choice.arrayId = n;
+    }
+  }
+  return choice;
+}
+
+//------------------------------------------------------------------------------
+TurnSettings vtkSplattingMIPProjection::Internals::TurnOf(
+  vtkSplattingMIPProjection* self, vtkImageData* input) const
+{
+  TurnSettings turn;
+  turn.camera = self->Camera;
+  turn.direction = { self->ViewDirection[0], self->ViewDirection[1], self->ViewDirection[2] };
+  turn.up = { self->ViewUp[0], self->ViewUp[1], self->ViewUp[2] };
+  turn.size = { self->OutputSize[0], self->OutputSize[1] };
+  turn.spacing = { self->OutputSpacing[0], self->OutputSpacing[1] };
+  turn.views = self->NumberOfViews;
+  turn.axis = { self->RotationAxis[0], self->RotationAxis[1], self->RotationAxis[2] };
+  turn.angle = self->TotalAngle;
+  const double* const bounds = input->GetBounds();
+  const glm::dvec3 low(bounds[0], bounds[2], bounds[4]), high(bounds[1], bounds[3], bounds[5]);
+  turn.focalPoint = self->CenterOnVolume
+    ? 0.5 * (low + high)
+    : glm::dvec3(self->FocalPoint[0], self->FocalPoint[1], self->FocalPoint[2]);
+  turn.diagonal = glm::length(high - low);
+  if (!(turn.diagonal > 0.0)) // one voxel
+  {
+    const double* const spacing = input->GetSpacing();
+    turn.diagonal = std::abs(spacing[0]) + std::abs(spacing[1]) + std::abs(spacing[2]);
+  }
+  return turn;
+}
+
+//------------------------------------------------------------------------------
+// The gate: a sentence that says what is wrong and what to do, or nothing.
+std::string vtkSplattingMIPProjection::Internals::Problem(
+  vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input)
+{
+  vtkInformation* const wanted = self->GetInputArrayInformation(0);
+  if (!array && wanted->Has(vtkDataObject::FIELD_NAME()))
+  {
+    return std::string("The input has no numeric array \"") +
+      wanted->Get(vtkDataObject::FIELD_NAME()) + "\": choose another with SetInputArrayToProcess.";
+  }
+  std::string problem =
+    this->Source.Examine(input, this->ScalarsOf(self, array, association, input));
+  if (problem.empty() && isSingular(this->Source.Grid().indexToPhysical))
+  {
+    problem = "Spacing and direction matrix flatten the volume: neither may be singular.";
+  }
+  this->Choice = this->ChoiceOf(self);
+  const char* fault = problem.empty() ? faultOfChoice(this->Choice) : nullptr;
+  if (problem.empty() && !fault)
+  {
+    fault = this->Turn.Set(this->TurnOf(self, input));
+  }
+  return fault ? fault : problem;
+}
+
+//------------------------------------------------------------------------------
+// Tells how much of all views is done and whether the rest is wanted.
+bool vtkSplattingMIPProjection::Internals::GoOn(vtkSplattingMIPProjection* self, double done)
+{
+  const double share =
+    (this->ViewsDone + this->Components.ShareOfAll(done)) / std::max(1, this->Turn.Views());
+  // Observers need not see every band of every view.
+  if (share >= this->Told + 0.01)
+  {
+    this->Told = share;
+    self->UpdateProgress(std::min(share, 1.0));
+  }
+  return !self->GetAbortExecute();
+}
+
+//------------------------------------------------------------------------------
+// Projects a view, unless the last one had the same rays. False if it was given up.
+bool vtkSplattingMIPProjection::Internals::ProjectView(
+  vtkSplattingMIPProjection* self, const splatting::View& view)
+{
+  this->Cuts.resize(this->Images.size());
+  for (std::size_t n = 0; n < this->Images.size(); ++n)
+  {
+    this->Cuts[n].cropping = view.cropping;
+    this->Cuts[n].intervals.find(this->Images[n], view.halfSpaces);
+  }
+  const splatting::ProjectionSettings settings = settingsOfChoice(this->Choice, self->QualityMode);
+  const bool ordered = splatting::isOrdered(settings.reduction);
+  const bool sameRays = std::equal(this->Images.begin(), this->Images.end(),
+    this->ImagesBefore.begin(), this->ImagesBefore.end(),
+    [=](const splatting::ShearWarp& a, const splatting::ShearWarp& b)
+    { return a.sameShear(b) && (!ordered || a.reversed() == b.reversed()); });
+  if (sameRays && this->Cuts == this->CutsBefore && this->Components.Shows(settings))
+  {
+    return true;
+  }
+  if (!this->Components.Project(this->Images, settings, this->Cuts))
+  {
+    return false;
+  }
+  std::swap(this->Cuts, this->CutsBefore);
+  ++self->NumberOfProjections;
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// Where the output's points lie, and the arrays that views are written to. False if there is no
+// memory for them.
+bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output) const
+{
+  vtkDataArray* const scalars = this->Source.Scalars();
+  const int type = ScalarSource::AverageVtkType(scalars->GetDataType());
+  const int components = this->Source.Components();
+  const glm::ivec2& size = this->Turn.Size();
+  const glm::dvec2& spacing = this->Turn.Spacing();
+  output->SetExtent(0, size.x - 1, 0, size.y - 1, 0, this->Turn.Views() - 1);
+  output->SetSpacing(spacing.x, spacing.y, this->Turn.AngleStep());
+  output->SetOrigin(-0.5 * (size.x - 1) * spacing.x, -0.5 * (size.y - 1) * spacing.y, 0.0);
+  // VTK would say it in several sentences, or throw.
+  const std::size_t bytes = std::size_t(vtkDataArray::GetDataTypeSize(type)) * components *
+    static_cast<std::size_t>(output->GetNumberOfPoints());
+  if (!std::unique_ptr<char[]>(new (std::nothrow) char[bytes]))
+  {
+    return false;
+  }
+  output->AllocateScalars(type, components);
+  output->GetPointData()->GetScalars()->SetName(scalars->GetName());
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// Fills the slices of the output. Returns what is wrong, or nothing; not all are filled after an
+// abort.
+std::string vtkSplattingMIPProjection::Internals::ProjectViews(
+  vtkSplattingMIPProjection* self, vtkImageData* output)
+{
+  const glm::dmat4& toWorld = this->Source.Grid().indexToPhysical;
+  const int sampling =
+    samplingOfChoice(this->Choice, settingsOfChoice(this->Choice, self->QualityMode).quality);
+  this->ViewsDone = 0;
+  this->Told = 0.0;
+  for (const int n : this->Turn.Order())
+  {
+    splatting::View view =
+      viewOf(this->Source.Grid(), toWorld, this->Turn.WorldToClip(n), this->Turn.Size());
+    view.halfSpaces.clear(); // the camera's clipping range
+    if (!splatting::isFinite(view))
+    {
+      return TurnOfViews::Degenerate;
+    }
+    if (this->Choice.slab)
+    {
+      addSlab(view, toWorld, this->Choice.slabCenter, this->Choice.slabThickness);
+    }
+    if (this->Choice.cropping)
+    {
+      view.cropping =
+        croppingOf(this->Source.Grid(), this->Choice.croppingPlanes, self->CroppingRegionFlags);
+    }
+    std::swap(this->Images, this->ImagesBefore);
+    if (!splatting::ShearWarp::factorise(view, this->Images, sampling))
+    {
+      return TurnOfViews::Degenerate;
+    }
+    if (!this->ProjectView(self, view) || !this->GoOn(self, 0.0))
+    {
+      return {};
+    }
+    this->Components.WarpScalars(
+      this->Images, view, self->BackgroundValue, output->GetScalarPointer(0, 0, n));
+    ++this->ViewsDone;
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+int vtkSplattingMIPProjection::RequestInformation(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  vtkInformation* const info = output->GetInformationObject(0);
+  const int whole[6] = { 0, std::clamp(this->OutputSize[0], 1, TurnOfViews::MostPixels) - 1, 0,
+    std::clamp(this->OutputSize[1], 1, TurnOfViews::MostPixels) - 1, 0, this->NumberOfViews - 1 };
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole, 6);
+  // Spacing and origin need the volume: the output has them.
+  vtkInformation* const array = this->GetInputArrayFieldInformation(0, input);
+  int type = VTK_FLOAT, components = 1;
+  if (array && array->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
+  {
+    type = ScalarSource::AverageVtkType(array->Get(vtkDataObject::FIELD_ARRAY_TYPE()));
+  }
+  if (array && array->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()) &&
+    this->VectorMode == DISABLED)
+  {
+    components = array->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS());
+  }
+  vtkDataObject::SetPointDataActiveScalarInfo(info, type, components);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSplattingMIPProjection::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
+{
+  // Every pixel may see every voxel.
+  vtkInformation* const info = input[0]->GetInformationObject(0);
+  int whole[6] = { 0, -1, 0, -1, 0, -1 };
+  info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), whole, 6);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSplattingMIPProjection::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  Internals& in = *this->Internal;
+  vtkImageData* const input = vtkImageData::GetData(inputs[0]);
+  vtkImageData* const output = vtkImageData::GetData(outputs);
+  int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  vtkDataArray* const array = this->GetInputArrayToProcess(0, inputs, association);
+  in.ShearImageOutput = nullptr;
+  this->NumberOfProjections = 0;
+  std::string problem = in.Problem(this, array, association, input);
+  if (problem.empty())
+  {
+    in.Components.LookAt(in.Source);
+    in.Components.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget));
+    problem = in.PlaceOutput(output)
+      ? in.ProjectViews(this, output)
+      : "There is no memory for the output: choose fewer pixels or views.";
+  }
+  if (!problem.empty())
+  {
+    vtkErrorMacro(<< problem);
+  }
+  if (!problem.empty() || in.ViewsDone < in.Turn.Views())
+  {
+    in.Components.Forget();
+    output->Initialize();
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkSplattingMIPProjection::GetIndexMemorySize()
+{
+  return static_cast<vtkIdType>(
+    this->Internal->Source.MemorySize() + this->Internal->Components.MemorySize());
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSplattingMIPProjection::GetInstructionSet()
+{
+  return splatting::nameOf(this->Internal->Components.Settings().instructionSet);
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPProjection::GetViewCamera(int view, vtkCamera* camera)
+{
+  const TurnOfViews& turn = this->Internal->Turn;
+  if (!camera || view < 0 || view >= turn.Views() || !this->Internal->Components.IsProjected())
+  {
+    return false;
+  }
+  turn.SetCamera(view, camera);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* vtkSplattingMIPProjection::GetShearImage()
+{
+  Internals& in = *this->Internal;
+  if (!in.Components.IsProjected() || in.Images.empty())
+  {
+    in.ShearImageOutput = nullptr;
+  }
+  else if (!in.ShearImageOutput)
+  {
+    const std::size_t n = mainImage(in.Images);
+    in.ShearImageOutput = vtkSmartPointer<vtkImageData>::New();
+    in.Components.CopyImage(
+      n, in.Images[n], in.Source.VtkTypeOf(in.Components.ImageType()), in.ShearImageOutput);
+  }
+  return in.ShearImageOutput;
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPProjection::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  const auto list = [&os, indent](const char* name, const auto* values, int count)
+  {
+    os << indent << name << ":";
+    for (int n = 0; n < count; ++n)
+    {
+      os << (n ? ", " : " ") << values[n];
+    }
+    os << "\n";
+  };
+  const auto line = [&os, indent](const char* name, const auto& value)
+  { os << indent << name << ": " << value << "\n"; };
+  os << indent << "Camera: ";
+  this->Camera ? os << this->Camera << "\n" : os << "(none)\n";
+  list("ViewDirection", this->ViewDirection, 3);
+  list("ViewUp", this->ViewUp, 3);
+  line("CenterOnVolume", this->CenterOnVolume ? "On" : "Off");
+  list("FocalPoint", this->FocalPoint, 3);
+  list("OutputSize", this->OutputSize, 2);
+  list("OutputSpacing", this->OutputSpacing, 2);
+  line("NumberOfViews", this->NumberOfViews);
+  list("RotationAxis", this->RotationAxis, 3);
+  line("TotalAngle", this->TotalAngle);
+  line("BackgroundValue", this->BackgroundValue);
+  line("BlendMode", this->BlendMode);
+  list("AverageIPScalarRange", this->AverageIPScalarRange, 2);
+  line("QualityMode", this->QualityMode);
+  line("Kernel", this->Kernel);
+  line("KernelRadius", this->KernelRadius);
+  line("FootprintSampling", this->FootprintSampling);
+  line("ShearImageSampling", this->ShearImageSampling);
+  line("MaximumType", this->MaximumType);
+  line("DepthShadingAmbient", this->DepthShadingAmbient);
+  line("DepthShadingChangeRate", this->DepthShadingChangeRate);
+  line("LocalMaximumThreshold", this->LocalMaximumThreshold);
+  line("VectorMode", this->VectorMode);
+  line("VectorComponent", this->VectorComponent);
+  line("Slab", this->Slab ? "On" : "Off");
+  line("SlabThickness", this->SlabThickness);
+  list("SlabCenter", this->SlabCenter, 3);
+  line("Cropping", this->Cropping ? "On" : "Off");
+  list("CroppingRegionPlanes", this->CroppingRegionPlanes, 6);
+  line("CroppingRegionFlags", this->CroppingRegionFlags);
+  line("Acceleration", this->Acceleration);
+  line("LineTolerance", this->LineTolerance);
+  line("EliminateInvisible", this->EliminateInvisible ? "On" : "Off");
+  line("IndexMemoryBudget", this->IndexMemoryBudget);
+  line("NumberOfProjections", this->NumberOfProjections);
+  line("IndexMemorySize", this->GetIndexMemorySize());
+  line("InstructionSet", this->GetInstructionSet());
+}

@@ -1,0 +1,439 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSplattingMIPProjection
+ * @brief   maximum intensity projection of image data to image data, without OpenGL
+ *
+ * Projects a vtkImageData as vtkSplattingMIPVolumeMapper does [W. Cai and G. Sakas, "Maximum
+ * Intensity Projection Using Splatting in Sheared Object Space", Computer Graphics Forum 17(3),
+ * 1998], with the same code below it, but gives the maxima themselves, in the input's unit
+ * (Hounsfield units stay Hounsfield units), and needs no display, no render window and no OpenGL.
+ * One view, or in one call all views of a turn, which share what is made once per data set.
+ *
+ * Input: points or cells, 1 to 4 components, any numeric type but bits, any extent, spacing, origin
+ * and direction matrix; the array of SetInputArrayToProcess(), by default the scalars. NaN and
+ * voxels that ghost arrays hide are no samples.
+ *
+ * Output: a vtkImageData of OutputSize[0] x OutputSize[1] x NumberOfViews points, one slice per
+ * view, with as many components as are projected, each projected for itself. Scalars are float, for
+ * 32- and 64-bit integers and double double: pictures are interpolated between the pixels of shear
+ * images, so that even a preview's pixels lie between voxels. Pixels that no sample is seen at have
+ * BackgroundValue. x goes right and y up in the picture, in world units from the focal point;
+ * perspective views are as large as they are at the focal point. The third coordinate is the angle
+ * of the view in degrees: spacing TotalAngle / NumberOfViews, 1 for a single view. Rows are the
+ * picture's from the bottom to the top.
+ *
+ * Rays are parallel, or those of a perspective Camera. They end with the volume: a camera's
+ * clipping range means nothing here. Slab and Cropping leave out parts of the volume.
+ *
+ * Progress goes from 0 to 1 over all views. AbortExecute is looked at between bands of image rows;
+ * the output is empty then, and Modified() makes the next Update() project again. What cannot be
+ * projected gives one error, a sentence that says what to do, and an empty output.
+ *
+ * The same input gives the same bits, whatever the number of threads or the instruction set; each
+ * slice of a turn has those of the single view by the camera of GetViewCamera(). Opposite views of
+ * a whole turn with an even number of views share a projection, unless MaximumType depends on the
+ * viewer's side.
+ *
+ * Memory besides input and output: see GetIndexMemorySize() and vtkSplattingMIPVolumeMapper. It is
+ * kept for the next Update().
+ *
+ * @sa vtkSplattingMIPVolumeMapper vtkImageSlabReslice
+ */
+#ifndef vtkSplattingMIPProjection_h
+#define vtkSplattingMIPProjection_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkImagingSplattingMIPModule.h" // for the export macro
+
+#include <memory> // for the hidden implementation
+
+class vtkCamera;
+
+class VTKIMAGINGSPLATTINGMIP_EXPORT vtkSplattingMIPProjection : public vtkImageAlgorithm
+{
+public:
+  static vtkSplattingMIPProjection* New();
+  vtkTypeMacro(vtkSplattingMIPProjection, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The values of vtkVolumeMapper's BlendMode.
+   */
+  enum BlendModes
+  {
+    MAXIMUM_INTENSITY_BLEND = 1,
+    MINIMUM_INTENSITY_BLEND = 2,
+    AVERAGE_INTENSITY_BLEND = 3
+  };
+
+  /**
+   * The values of vtkSmartVolumeMapper's VectorMode.
+   */
+  enum VectorModes
+  {
+    DISABLED = -1,
+    MAGNITUDE = 0,
+    COMPONENT = 1
+  };
+
+  enum QualityModes
+  {
+    PREVIEW = 0,
+    STANDARD = 1,
+    HIGH = 2,
+    EXACT = 3
+  };
+
+  static constexpr int AUTOMATIC_SAMPLING = 0;
+
+  enum Kernels
+  {
+    TRILINEAR = 0,
+    COSINE_BELL = 1
+  };
+
+  enum MaximumTypes
+  {
+    GLOBAL = 0,
+    DEPTH_SHADED = 1,
+    LOCAL = 2
+  };
+
+  enum Accelerations
+  {
+    AUTO = 0,
+    DENSE = 1,
+    BRICKS = 2,
+    LINES = 3,
+    SORTED_LINES = 4,
+    SORTED_VOLUME = 5
+  };
+
+  ///@{
+  /**
+   * Looks through a camera of the world, parallel or perspective, in place of ViewDirection, ViewUp
+   * and FocalPoint. Default none. The camera's clipping range means nothing; its scale (or view
+   * angle) does unless OutputSpacing is set. A camera with an explicit projection matrix is
+   * refused.
+   */
+  virtual void SetCamera(vtkCamera* camera);
+  vtkGetObjectMacro(Camera, vtkCamera);
+  ///@}
+
+  ///@{
+  /**
+   * Without a Camera: the direction from the viewer into the world, of any length above 0, and what
+   * is up in the picture, not along the direction. Defaults (0, 1, 0) and (0, 0, 1): in DICOM's
+   * coordinates the patient's front, head up. Views are parallel.
+   */
+  vtkSetVector3Macro(ViewDirection, double);
+  vtkGetVector3Macro(ViewDirection, double);
+  vtkSetVector3Macro(ViewUp, double);
+  vtkGetVector3Macro(ViewUp, double);
+  ///@}
+
+  ///@{
+  /**
+   * Without a Camera: whether the middle of the picture, about which turns go, is the middle of the
+   * volume's bounds, whatever FocalPoint is. Default on.
+   */
+  vtkSetMacro(CenterOnVolume, bool);
+  vtkGetMacro(CenterOnVolume, bool);
+  vtkBooleanMacro(CenterOnVolume, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Without a Camera and with CenterOnVolume off: the point of the world in the middle of the
+   * picture. Default (0, 0, 0).
+   */
+  vtkSetVector3Macro(FocalPoint, double);
+  vtkGetVector3Macro(FocalPoint, double);
+  ///@}
+
+  ///@{
+  /**
+   * Pixels of a view, to the right and up. Default 256 x 256; each from 1 to 16384.
+   */
+  vtkSetVector2Macro(OutputSize, int);
+  vtkGetVector2Macro(OutputSize, int);
+  ///@}
+
+  ///@{
+  /**
+   * World units from pixel to pixel, in perspective at the focal point, above 0; by default 0 and
+   * 0, which means automatic: as the Camera's parallel scale (or view angle) has it, without a
+   * Camera so that the volume fits into the picture from all directions: the diagonal of its bounds
+   * over the lesser of OutputSize. The output tells what it is.
+   */
+  vtkSetVector2Macro(OutputSpacing, double);
+  vtkGetVector2Macro(OutputSpacing, double);
+  ///@}
+
+  ///@{
+  /**
+   * How many views a turn has, by default 1, clamped to [1, 36000]. View n is turned by n *
+   * TotalAngle / NumberOfViews.
+   */
+  vtkSetClampMacro(NumberOfViews, int, 1, 36000);
+  vtkGetMacro(NumberOfViews, int);
+  ///@}
+
+  ///@{
+  /**
+   * The direction of the line through the focal point that the viewer goes round, in the world;
+   * (0, 0, 0), the default, for view-up. The sense is that of vtkCamera::Azimuth():
+   * counterclockwise where the axis points to the eye.
+   */
+  vtkSetVector3Macro(RotationAxis, double);
+  vtkGetVector3Macro(RotationAxis, double);
+  ///@}
+
+  ///@{
+  /**
+   * How far all views go round in degrees, any number but 0. Default 360. The last view is one step
+   * before that, so that a whole turn can be repeated.
+   */
+  vtkSetMacro(TotalAngle, double);
+  vtkGetMacro(TotalAngle, double);
+  ///@}
+
+  ///@{
+  /**
+   * The value of pixels that no sample is seen at; NaN is possible. Default 0.
+   */
+  vtkSetMacro(BackgroundValue, double);
+  vtkGetMacro(BackgroundValue, double);
+  ///@}
+
+  ///@{
+  /**
+   * Maximum (the default), minimum or average along rays, as in
+   * vtkSplattingMIPVolumeMapper::SetBlendMode. Of averages, samples outside AverageIPScalarRange
+   * (default: that of float) do not count; both limits do.
+   */
+  vtkSetClampMacro(BlendMode, int, MAXIMUM_INTENSITY_BLEND, AVERAGE_INTENSITY_BLEND);
+  vtkGetMacro(BlendMode, int);
+  void SetBlendModeToMaximumIntensity() { this->SetBlendMode(MAXIMUM_INTENSITY_BLEND); }
+  void SetBlendModeToMinimumIntensity() { this->SetBlendMode(MINIMUM_INTENSITY_BLEND); }
+  void SetBlendModeToAverageIntensity() { this->SetBlendMode(AVERAGE_INTENSITY_BLEND); }
+  vtkSetVector2Macro(AverageIPScalarRange, double);
+  vtkGetVector2Macro(AverageIPScalarRange, double);
+  ///@}
+
+  ///@{
+  /**
+   * What a slice contributes to a pixel. Default HIGH. PREVIEW, STANDARD, HIGH: see
+   * vtkSplattingMIPVolumeMapper::SetQualityMode. EXACT: the maximum of the trilinearly interpolated
+   * volume along each ray of the shear image, which is as fine as the output; minima and averages
+   * are those of HIGH.
+   */
+  vtkSetClampMacro(QualityMode, int, PREVIEW, EXACT);
+  vtkGetMacro(QualityMode, int);
+  void SetQualityModeToPreview() { this->SetQualityMode(PREVIEW); }
+  void SetQualityModeToStandard() { this->SetQualityMode(STANDARD); }
+  void SetQualityModeToHigh() { this->SetQualityMode(HIGH); }
+  void SetQualityModeToExact() { this->SetQualityMode(EXACT); }
+  ///@}
+
+  ///@{
+  /**
+   * As of the mapper: the reconstruction kernel of mode HIGH, default TRILINEAR; the radius of the
+   * cosine bell in voxels, default 1, clamped to [0.5, 1.5]; how footprints are sampled, default 0
+   * (closed form), clamped to [0, 64]; how many pixels the shear image has along the side of a
+   * voxel, default AUTOMATIC_SAMPLING (as fine as the output in EXACT, else 1), or 1, 2 or 4.
+   */
+  vtkSetClampMacro(Kernel, int, TRILINEAR, COSINE_BELL);
+  vtkGetMacro(Kernel, int);
+  void SetKernelToTrilinear() { this->SetKernel(TRILINEAR); }
+  void SetKernelToCosineBell() { this->SetKernel(COSINE_BELL); }
+  vtkSetClampMacro(KernelRadius, double, 0.5, 1.5);
+  vtkGetMacro(KernelRadius, double);
+  vtkSetClampMacro(FootprintSampling, int, 0, 64);
+  vtkGetMacro(FootprintSampling, int);
+  vtkSetClampMacro(ShearImageSampling, int, AUTOMATIC_SAMPLING, 4);
+  vtkGetMacro(ShearImageSampling, int);
+  ///@}
+
+  ///@{
+  /**
+   * Which maximum along a ray, as of the mapper: the largest (GLOBAL, the default), the largest
+   * after dimming by depth (DEPTH_SHADED, with DepthShadingAmbient 0.3 and DepthShadingChangeRate
+   * 0.7 by default), or the first local one from LocalMaximumThreshold on (LOCAL, default 0).
+   */
+  vtkSetClampMacro(MaximumType, int, GLOBAL, LOCAL);
+  vtkGetMacro(MaximumType, int);
+  void SetMaximumTypeToGlobal() { this->SetMaximumType(GLOBAL); }
+  void SetMaximumTypeToDepthShaded() { this->SetMaximumType(DEPTH_SHADED); }
+  void SetMaximumTypeToLocal() { this->SetMaximumType(LOCAL); }
+  vtkSetMacro(DepthShadingAmbient, double);
+  vtkGetMacro(DepthShadingAmbient, double);
+  vtkSetMacro(DepthShadingChangeRate, double);
+  vtkGetMacro(DepthShadingChangeRate, double);
+  vtkSetMacro(LocalMaximumThreshold, double);
+  vtkGetMacro(LocalMaximumThreshold, double);
+  ///@}
+
+  ///@{
+  /**
+   * What is projected of several components, as of the mapper: all (DISABLED, the default), their
+   * Euclidean length, or the one that VectorComponent names (default 0, clamped to [0, 3]).
+   */
+  vtkSetClampMacro(VectorMode, int, DISABLED, COMPONENT);
+  vtkGetMacro(VectorMode, int);
+  void SetVectorModeToDisabled() { this->SetVectorMode(DISABLED); }
+  void SetVectorModeToMagnitude() { this->SetVectorMode(MAGNITUDE); }
+  void SetVectorModeToComponent() { this->SetVectorMode(COMPONENT); }
+  vtkSetClampMacro(VectorComponent, int, 0, 3);
+  vtkGetMacro(VectorComponent, int);
+  ///@}
+
+  ///@{
+  /**
+   * Project only a slab across the view, as of the mapper: what lies within SlabThickness / 2
+   * (default 10, in world units, above 0) of the plane through SlabCenter, a point of the world, by
+   * default (0, 0, 0). Default off. In a turn the slab turns with the view.
+   */
+  vtkSetMacro(Slab, bool);
+  vtkGetMacro(Slab, bool);
+  vtkBooleanMacro(Slab, bool);
+  vtkSetMacro(SlabThickness, double);
+  vtkGetMacro(SlabThickness, double);
+  vtkSetVector3Macro(SlabCenter, double);
+  vtkGetVector3Macro(SlabCenter, double);
+  ///@}
+
+  ///@{
+  /**
+   * VTK's cropping, as of vtkVolumeMapper: which of the 27 regions between six planes, in the
+   * coordinates of the input along its axes, are projected. Default off, all planes 0 and 1, flags
+   * VTK_CROP_SUBVOLUME (the middle region), clamped to [0, 0x7ffffff].
+   */
+  vtkSetMacro(Cropping, vtkTypeBool);
+  vtkGetMacro(Cropping, vtkTypeBool);
+  vtkBooleanMacro(Cropping, vtkTypeBool);
+  vtkSetVector6Macro(CroppingRegionPlanes, double);
+  vtkGetVector6Macro(CroppingRegionPlanes, double);
+  vtkSetClampMacro(CroppingRegionFlags, int, 0, 0x7ffffff);
+  vtkGetMacro(CroppingRegionFlags, int);
+  ///@}
+
+  ///@{
+  /**
+   * What the projection leaves out and in which order it meets the rest, as of the mapper. The
+   * picture is the same but for LineTolerance (default 0, clamped to [0, 64]), the difference that
+   * the chains of LINES and its kin may neglect. Default AUTO; EliminateInvisible default off.
+   */
+  vtkSetClampMacro(Acceleration, int, AUTO, SORTED_VOLUME);
+  vtkGetMacro(Acceleration, int);
+  void SetAccelerationToAuto() { this->SetAcceleration(AUTO); }
+  void SetAccelerationToDense() { this->SetAcceleration(DENSE); }
+  void SetAccelerationToBricks() { this->SetAcceleration(BRICKS); }
+  void SetAccelerationToLines() { this->SetAcceleration(LINES); }
+  void SetAccelerationToSortedLines() { this->SetAcceleration(SORTED_LINES); }
+  void SetAccelerationToSortedVolume() { this->SetAcceleration(SORTED_VOLUME); }
+  vtkSetClampMacro(LineTolerance, double, 0.0, 64.0);
+  vtkGetMacro(LineTolerance, double);
+  vtkSetMacro(EliminateInvisible, bool);
+  vtkGetMacro(EliminateInvisible, bool);
+  vtkBooleanMacro(EliminateInvisible, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Bytes that the index may hold besides the input. Default 4 GiB. What would exceed them is not
+   * made: projections are slower then, and the same.
+   */
+  vtkSetClampMacro(IndexMemoryBudget, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
+  vtkGetMacro(IndexMemoryBudget, vtkTypeInt64);
+  ///@}
+
+  /**
+   * Bytes held for the input of the last Update(): bricks, chains, copies.
+   */
+  vtkIdType GetIndexMemorySize();
+
+  /**
+   * How often the last Update() has projected the volume: NumberOfViews or, where opposite views
+   * share projections, half of it.
+   */
+  vtkGetMacro(NumberOfProjections, vtkIdType);
+
+  /**
+   * The instruction set of the loops in use: "baseline", "AVX2", "AVX-512" or "AVX-512 VBMI".
+   */
+  const char* GetInstructionSet();
+
+  /**
+   * Sets a camera to that of a view of the last Update(), 0 to NumberOfViews - 1, for what is to be
+   * drawn over its slice; its parallel scale or view angle is half the height of the slice. False,
+   * and the camera stays as it is, if there is no such view.
+   */
+  bool GetViewCamera(int view, vtkCamera* camera);
+
+  /**
+   * The last shear image of the last Update(), as vtkSplattingMIPVolumeMapper::GetShearImage() has
+   * it, or nullptr. The last view is the last slice, in whole turns with an even number of views,
+   * too. Costs a copy of the shear image.
+   */
+  vtkImageData* GetShearImage();
+
+  vtkMTimeType GetMTime() override;
+
+protected:
+  vtkSplattingMIPProjection();
+  ~vtkSplattingMIPProjection() override;
+
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+
+  vtkCamera* Camera;
+  double ViewDirection[3];
+  double ViewUp[3];
+  bool CenterOnVolume;
+  double FocalPoint[3];
+  int OutputSize[2];
+  double OutputSpacing[2];
+  int NumberOfViews;
+  double RotationAxis[3];
+  double TotalAngle;
+  double BackgroundValue;
+  int BlendMode;
+  double AverageIPScalarRange[2];
+  int QualityMode;
+  int Kernel;
+  double KernelRadius;
+  int FootprintSampling;
+  int ShearImageSampling;
+  int MaximumType;
+  double DepthShadingAmbient;
+  double DepthShadingChangeRate;
+  double LocalMaximumThreshold;
+  int VectorMode;
+  int VectorComponent;
+  bool Slab;
+  double SlabThickness;
+  double SlabCenter[3];
+  vtkTypeBool Cropping;
+  double CroppingRegionPlanes[6];
+  int CroppingRegionFlags;
+  int Acceleration;
+  double LineTolerance;
+  bool EliminateInvisible;
+  vtkTypeInt64 IndexMemoryBudget;
+  vtkIdType NumberOfProjections;
+
+private:
+  vtkSplattingMIPProjection(const vtkSplattingMIPProjection&) = delete;
+  void operator=(const vtkSplattingMIPProjection&) = delete;
+
+  class Internals;
+  std::unique_ptr<Internals> Internal;
+};
+
+#endif

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// vtkSplattingMIPProjection through the camera of a renderer shows what the mapper renders there:
+// shear images bit for bit, pictures to half a gray level.
+#include "Stage.h"
+
+#include "vtkSplattingMIPProjection.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkCamera.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+#include "vtkRenderer.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+namespace
+{
+constexpr int Width = 90;
+constexpr int Height = 70;
+
+/// Whether pixels with a sample are the same, and the others, too.
+bool sameShearImages(vtkImageData* a, vtkImageData* b)
+{
+  if (!a || !b || a->GetNumberOfPoints() != b->GetNumberOfPoints() ||
+    a->GetScalarType() != b->GetScalarType())
+  {
+    return false;
+  }
+  for (vtkIdType p = 0; p < a->GetNumberOfPoints(); ++p)
+  {
+    const bool hidden = a->GetPointGhostArray()->GetValue(p) != 0;
+    if (hidden != (b->GetPointGhostArray()->GetValue(p) != 0) ||
+      (!hidden &&
+        a->GetPointData()->GetScalars()->GetComponent(p, 0) !=
+          b->GetPointData()->GetScalars()->GetComponent(p, 0)))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The largest difference in gray levels; the stage shows background as 0.
+double largestDifference(stage::Stage& stage, vtkImageData* projection)
+{
+  const auto gray = stage.gray();
+  double largest = 0.0;
+  for (int y = 0; y < Height; ++y)
+  {
+    for (int x = 0; x < Width; ++x)
+    {
+      const double value = projection->GetScalarComponentAsDouble(x, y, 0, 0);
+      largest = std::max(largest, std::abs(value - gray.at(x, y)));
+    }
+  }
+  return largest;
+}
+
+/// The same choices, which the mapper has.
+void copyChoices(vtkSplattingMIPVolumeMapper* mapper, vtkSplattingMIPProjection* filter)
+{
+  filter->SetQualityMode(mapper->GetQualityMode());
+  filter->SetKernel(mapper->GetKernel());
+  filter->SetBlendMode(mapper->GetBlendMode());
+  filter->SetMaximumType(mapper->GetMaximumType());
+  filter->SetLocalMaximumThreshold(mapper->GetLocalMaximumThreshold());
+  filter->SetSlab(mapper->GetSlab());
+  filter->SetSlabCenter(mapper->GetSlabCenter());
+  filter->SetSlabThickness(mapper->GetSlabThickness());
+  filter->SetCropping(mapper->GetCropping());
+  filter->SetCroppingRegionFlags(mapper->GetCroppingRegionFlags());
+  filter->SetCroppingRegionPlanes(mapper->GetCroppingRegionPlanes());
+}
+}
+
+int TestProjectionAndMapper(int, char*[])
+{
+  stage::Checks check;
+  reference::Random random(11);
+  const auto image = stage::toImageData(stage::blobsAndTubes({ 40, 36, 44 }, 12));
+  stage::placeAtRandom(image, random);
+  const auto mapper = stage::splatting(image);
+  mapper->AutoAdjustSampleDistancesOff();
+  stage::Stage stage(Width, Height);
+  stage.setGrayRamp(0.0, 255.0);
+  stage.show(mapper);
+  vtkNew<vtkSplattingMIPProjection> filter;
+  filter->SetInputData(image);
+  filter->SetOutputSize(Width, Height);
+  double worst = 0.0;
+  for (int n = 0; n < 48; ++n)
+  {
+    stage.viewAngle = n % 3 == 2 ? 35.0 : 0.0;
+    stage.look({ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(0.1, 1.0) },
+      { 0.1, 1.0, 0.2 }, random.uniform(0.6, 1.2));
+    mapper->SetQualityMode(n % 3);
+    mapper->SetKernel(n / 3 % 2);
+    mapper->SetBlendMode(random.uniform(1, 3));
+    mapper->SetMaximumType(random.uniform(0, 2));
+    mapper->SetLocalMaximumThreshold(100.0);
+    mapper->SetSlab(random.uniform(0, 2) == 0);
+    mapper->SetSlabCenter(image->GetCenter());
+    mapper->SetSlabThickness(20.0);
+    mapper->SetCropping(random.uniform(0, 2) == 0);
+    mapper->SetCroppingRegionFlags(VTK_CROP_INVERTED_CROSS);
+    const double* const b = image->GetBounds();
+    mapper->SetCroppingRegionPlanes(0.7 * b[0] + 0.3 * b[1], 0.2 * b[0] + 0.8 * b[1],
+      0.6 * b[2] + 0.4 * b[3], 0.3 * b[2] + 0.7 * b[3], 0.6 * b[4] + 0.4 * b[5],
+      0.3 * b[4] + 0.7 * b[5]);
+    copyChoices(mapper, filter);
+    filter->SetCamera(stage.renderer->GetActiveCamera());
+    filter->Update();
+    const double difference = largestDifference(stage, filter->GetOutput());
+    worst = std::max(worst, difference);
+    const std::string view = " of view " + std::to_string(n) + ", mode " +
+      std::to_string(mapper->GetQualityMode()) + ", blend " +
+      std::to_string(mapper->GetBlendMode()) + ", type " + std::to_string(mapper->GetMaximumType());
+    // Half a level, 1/16 of one that the table has, and what places in the picture are rounded by.
+    check(difference < 0.6, "pictures" + view + " differ by " + std::to_string(difference));
+    check(sameShearImages(filter->GetShearImage(), mapper->GetShearImage()),
+      "shear images" + view + " are the same");
+  }
+  std::cout << "largest difference " << worst << " gray levels\n";
+  return check.exitCode();
+}

@@ -1,0 +1,348 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Turns of vtkSplattingMIPProjection: each slice is the single view, bit for bit; geometry, shared
+// projections, progress, aborts, and what an update re-uses.
+#include "ProjectionTesting.h"
+
+#include "vtkCamera.h"
+#include "vtkCellData.h"
+#include "vtkFloatArray.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+using coretesting::Checks;
+using Filter = vtkSplattingMIPProjection;
+
+vtkSmartPointer<vtkImageData> someImage(reference::Random& random)
+{
+  auto image = projectiontesting::imageOf(
+    reference::uniformNoise<std::int16_t>({ 23, 31, 27 }, random.bits(), -1000, 3000));
+  projectiontesting::placeAtRandom(image, random);
+  return image;
+}
+
+/// Another filter's view through one camera.
+vtkSmartPointer<vtkImageData> singleView(Filter* turn, vtkImageData* image, vtkCamera* camera)
+{
+  const auto single = projectiontesting::projectionOf(image);
+  single->SetCamera(camera);
+  single->SetOutputSize(turn->GetOutputSize());
+  single->SetOutputSpacing(turn->GetOutputSpacing());
+  single->SetQualityMode(turn->GetQualityMode());
+  single->SetBlendMode(turn->GetBlendMode());
+  single->SetMaximumType(turn->GetMaximumType());
+  single->SetSlab(turn->GetSlab());
+  single->SetSlabCenter(turn->GetSlabCenter());
+  single->SetSlabThickness(turn->GetSlabThickness());
+  single->SetBackgroundValue(turn->GetBackgroundValue());
+  single->Update();
+  return single->GetOutput();
+}
+
+void testSlices(Checks& check, Filter* turn, vtkImageData* image, vtkIdType projections)
+{
+  turn->Update();
+  vtkImageData* const output = turn->GetOutput();
+  const int views = turn->GetNumberOfViews();
+  check(output->GetDimensions()[2] == views, "one slice per view");
+  check(turn->GetNumberOfProjections() == projections, turn->GetNumberOfProjections(),
+    " projections, not ", projections);
+  for (int n = 0; n < views; ++n)
+  {
+    vtkNew<vtkCamera> camera;
+    check(turn->GetViewCamera(n, camera), "view ", n, " has a camera");
+    check(projectiontesting::sameScalars(
+            projectiontesting::sliceOf(output, n), singleView(turn, image, camera)),
+      "slice ", n, " of ", views, " is the single view");
+  }
+  vtkNew<vtkCamera> camera;
+  check(!turn->GetViewCamera(views, camera) && !turn->GetViewCamera(-1, camera), "no other views");
+}
+
+void testViews(Checks& check)
+{
+  reference::Random random(5);
+  for (int n = 0; n < 4; ++n)
+  {
+    const auto image = someImage(random);
+    const auto turn = projectiontesting::projectionOf(image);
+    turn->SetOutputSize(40, 32);
+    turn->SetQualityMode(n);
+    turn->SetNumberOfViews(9);
+    turn->SetBackgroundValue(-1024.0);
+    testSlices(check, turn, image, 9);
+    turn->SetNumberOfViews(12); // opposite views share projections
+    testSlices(check, turn, image, 6);
+    turn->SlabOn();
+    turn->SetSlabThickness(5.0);
+    turn->SetSlabCenter(image->GetCenter());
+    testSlices(check, turn, image, 6);
+    turn->SlabOff();
+    turn->SetMaximumTypeToDepthShaded(); // but not where the viewer's side matters
+    testSlices(check, turn, image, 12);
+    turn->SetMaximumTypeToGlobal();
+    turn->SetTotalAngle(-90.0);
+    turn->SetRotationAxis(0.3, -0.2, 1.0);
+    turn->SetOutputSpacing(0.7, 1.1);
+    testSlices(check, turn, image, 12);
+  }
+}
+
+void testPerspective(Checks& check)
+{
+  reference::Random random(6);
+  const auto image = someImage(random);
+  const auto turn = projectiontesting::projectionOf(image);
+  vtkNew<vtkCamera> camera;
+  const double* const centre = image->GetCenter();
+  camera->SetFocalPoint(centre);
+  camera->SetPosition(centre[0] + 70.0, centre[1] - 60.0, centre[2] + 20.0);
+  camera->SetViewUp(0.1, 0.2, 1.0);
+  turn->SetCamera(camera);
+  turn->SetOutputSize(36, 30);
+  turn->SetNumberOfViews(4);
+  turn->SetQualityModeToStandard();
+  testSlices(check, turn, image, 4);
+  const double height = 2.0 * std::tan(0.5 * vtkMath::RadiansFromDegrees(camera->GetViewAngle())) *
+    camera->GetDistance();
+  check(std::abs(turn->GetOutput()->GetSpacing()[1] * 30.0 - height) < 1e-9 * height,
+    "the view angle tells the spacing");
+  // The same pixels by a spacing that is set.
+  const auto before = projectiontesting::sliceOf(turn->GetOutput(), 0);
+  double spacing[3];
+  turn->GetOutput()->GetSpacing(spacing);
+  camera->SetViewAngle(3.0);
+  turn->SetOutputSpacing(spacing[0], spacing[1]);
+  turn->Update();
+  double largest = 0.0;
+  for (vtkIdType p = 0; p < before->GetNumberOfPoints(); ++p)
+  {
+    largest = std::max(largest,
+      std::abs(before->GetPointData()->GetScalars()->GetComponent(p, 0) -
+        turn->GetOutput()->GetPointData()->GetScalars()->GetComponent(p, 0)));
+  }
+  check(largest < 1e-6 * 4000.0, "spacing takes the view angle's place: ", largest);
+  testSlices(check, turn, image, 4);
+}
+
+/// As vtkCamera turns, and as the output says it.
+void testGeometry(Checks& check)
+{
+  reference::Random random(7);
+  const auto image = someImage(random);
+  const auto turn = projectiontesting::projectionOf(image);
+  turn->SetOutputSize(50, 20);
+  turn->SetNumberOfViews(8);
+  turn->Update();
+  vtkImageData* const output = turn->GetOutput();
+  const double* const spacing = output->GetSpacing();
+  check(spacing[0] == spacing[1] && std::abs(spacing[0] * 20.0 - image->GetLength()) < 1e-9,
+    "the diagonal fits into the lesser size: ", spacing[0]);
+  check(spacing[2] == 45.0 && output->GetOrigin()[2] == 0.0, "the third axis is the angle");
+  check(output->GetOrigin()[0] == -24.5 * spacing[0] && output->GetOrigin()[1] == -9.5 * spacing[1],
+    "the focal point is the origin");
+  vtkNew<vtkCamera> camera, turned;
+  turn->GetViewCamera(0, camera);
+  check(camera->GetParallelProjection() && camera->GetDirectionOfProjection()[1] == 1.0 &&
+      camera->GetViewUp()[2] == 1.0,
+    "the first view is the patient's front");
+  for (int n = 0; n < 8; ++n)
+  {
+    turn->GetViewCamera(n, turned);
+    for (int a = 0; a < 3; ++a)
+    {
+      check(
+        std::abs(camera->GetPosition()[a] - turned->GetPosition()[a]) < 1e-9 * image->GetLength(),
+        "view ", n, " is turned as by Azimuth");
+    }
+    camera->Azimuth(45.0);
+  }
+  // A lone voxel right of the middle wanders over the picture as its place says.
+  const int size = 21;
+  reference::Volume<float> volume({ size, size, size });
+  volume.at(15, 10, 10) = 1.0f;
+  const auto dot = projectiontesting::imageOf(volume);
+  const auto around = projectiontesting::projectionOf(dot);
+  around->SetOutputSize(41, 41);
+  around->SetOutputSpacing(0.5, 0.5);
+  around->SetNumberOfViews(4);
+  around->Update();
+  const int places[] = { 30, 20, 10, 20 }; // right, behind, left, before
+  for (int n = 0; n < 4; ++n)
+  {
+    int brightest = 0;
+    for (int x = 0; x < 41; ++x)
+    {
+      const auto value = [&](int at)
+      { return around->GetOutput()->GetScalarComponentAsDouble(at, 20, n, 0); };
+      brightest = value(x) > value(brightest) ? x : brightest;
+    }
+    check(brightest == places[n], "view ", n, " shows the voxel at ", brightest);
+  }
+}
+
+void testProgress(Checks& check)
+{
+  reference::Random random(8);
+  const auto image = someImage(random);
+  const auto turn = projectiontesting::projectionOf(image);
+  turn->SetNumberOfViews(20);
+  turn->SetOutputSize(16, 16);
+  struct Log
+  {
+    std::vector<double> progress;
+    double abortAt = 2.0;
+    void note(vtkObject* filter, unsigned long, void* data)
+    {
+      this->progress.push_back(*static_cast<double*>(data));
+      if (this->progress.back() >= this->abortAt)
+      {
+        static_cast<vtkAlgorithm*>(filter)->AbortExecuteOn();
+      }
+    }
+  } log;
+  turn->AddObserver(vtkCommand::ProgressEvent, &log, &Log::note);
+  turn->Update();
+  check(std::is_sorted(log.progress.begin(), log.progress.end()), "progress never goes back");
+  check(log.progress.size() >= 20 && log.progress.size() < 130 && log.progress.back() == 1.0,
+    log.progress.size(), " steps of progress");
+  const auto whole = vtkSmartPointer<vtkImageData>::New();
+  whole->DeepCopy(turn->GetOutput());
+  log.progress.clear();
+  log.abortAt = 0.5;
+  turn->Modified();
+  turn->Update();
+  check(turn->GetOutput()->GetNumberOfPoints() == 0, "nothing is left after an abort");
+  check(!log.progress.empty() && log.progress.back() < 0.6,
+    "an abort is soon: ", log.progress.empty() ? 0.0 : log.progress.back());
+  log.abortAt = 2.0;
+  turn->Modified();
+  turn->Update();
+  check(projectiontesting::sameScalars(turn->GetOutput(), whole), "and all is there again");
+}
+
+void testReuse(Checks& check)
+{
+  reference::Random random(9);
+  const auto image = someImage(random);
+  const auto filter = projectiontesting::projectionOf(image);
+  filter->SetOutputSize(30, 30);
+  filter->Update();
+  check(filter->GetNumberOfProjections() == 1, "the first view is projected");
+  const vtkIdType memory = filter->GetIndexMemorySize();
+  check(memory > 0, "there is an index");
+  filter->SetBackgroundValue(-7.0);
+  filter->Update();
+  check(filter->GetNumberOfProjections() == 0, "the same rays are not projected again");
+  filter->SetOutputSpacing(0.1, 0.2);
+  filter->Update();
+  check(filter->GetNumberOfProjections() == 0, "nor for other pixels");
+  filter->SetViewDirection(0.1, 1.0, 0.2);
+  filter->Update();
+  check(filter->GetNumberOfProjections() == 1, "other views are");
+  auto* const voxels = static_cast<std::int16_t*>(image->GetScalarPointer());
+  std::fill_n(voxels, image->GetNumberOfPoints(), std::int16_t(55));
+  image->Modified();
+  image->GetPointData()->GetScalars()->Modified();
+  filter->SetOutputSpacing(1.0, 1.0);
+  filter->Update();
+  check(filter->GetOutput()->GetScalarComponentAsDouble(15, 15, 0, 0) == 55.0, "as are other data");
+  vtkNew<vtkCamera> camera;
+  filter->GetViewCamera(0, camera);
+  filter->SetCamera(camera);
+  filter->Update();
+  const vtkMTimeType time = filter->GetOutput()->GetMTime();
+  camera->SetViewUp(1.0, 0.0, 0.0);
+  filter->Update();
+  check(filter->GetOutput()->GetMTime() > time, "a camera that moves is noticed");
+}
+
+/// Independent components are what each is by itself; magnitudes and names are kept.
+void testComponents(Checks& check)
+{
+  reference::Random random(10);
+  const auto one = projectiontesting::imageOf(
+    reference::uniformNoise<std::uint8_t>({ 13, 11, 12 }, random.bits()));
+  const auto two = projectiontesting::imageOf(
+    reference::uniformNoise<std::uint8_t>({ 13, 11, 12 }, random.bits()));
+  vtkNew<vtkImageData> both;
+  both->CopyStructure(one);
+  both->AllocateScalars(VTK_UNSIGNED_CHAR, 2);
+  vtkDataArray* const scalars = both->GetPointData()->GetScalars();
+  scalars->CopyComponent(0, one->GetPointData()->GetScalars(), 0);
+  scalars->CopyComponent(1, two->GetPointData()->GetScalars(), 0);
+  scalars->SetName("both");
+  vtkNew<vtkFloatArray> other;
+  other->SetName("other");
+  other->SetNumberOfTuples(both->GetNumberOfPoints());
+  other->Fill(3.5);
+  both->GetPointData()->AddArray(other);
+  const auto filter = projectiontesting::projectionOf(both);
+  filter->SetViewDirection(0.3, 1.0, -0.2);
+  filter->SetBackgroundValue(-1.0);
+  filter->SetOutputSize(20, 22);
+  filter->Update();
+  vtkDataArray* const found = filter->GetOutput()->GetPointData()->GetScalars();
+  check(found->GetNumberOfComponents() == 2 && std::string(found->GetName()) == "both",
+    "two components under their name");
+  for (int c = 0; c < 2; ++c)
+  {
+    const auto single = projectiontesting::projectionOf(c ? two : one);
+    single->SetViewDirection(0.3, 1.0, -0.2);
+    single->SetBackgroundValue(-1.0);
+    single->SetOutputSize(20, 22);
+    single->Update();
+    vtkDataArray* const expected = single->GetOutput()->GetPointData()->GetScalars();
+    int wrong = 0;
+    for (vtkIdType p = 0; p < found->GetNumberOfTuples(); ++p)
+    {
+      wrong += found->GetComponent(p, c) != expected->GetComponent(p, 0);
+    }
+    check(wrong == 0, wrong, " pixels of component ", c);
+    filter->SetVectorModeToComponent();
+    filter->SetVectorComponent(c);
+    filter->Update();
+    check(
+      projectiontesting::sameScalars(filter->GetOutput(), single->GetOutput()), "component ", c);
+    filter->SetVectorModeToDisabled();
+    filter->Update();
+  }
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "other");
+  filter->Update();
+  check(filter->GetOutput()->GetScalarComponentAsDouble(10, 11, 0, 0) == 3.5 &&
+      filter->GetOutput()->GetNumberOfScalarComponents() == 1,
+    "the array to process is projected");
+  // Cells are voxels about their centres: those of one less along each axis.
+  const auto cells = vtkSmartPointer<vtkImageData>::New();
+  cells->SetDimensions(14, 12, 13);
+  cells->SetOrigin(-0.5, -0.5, -0.5);
+  cells->GetCellData()->SetScalars(one->GetPointData()->GetScalars());
+  const auto ofCells = projectiontesting::projectionOf(cells);
+  const auto ofPoints = projectiontesting::projectionOf(one);
+  for (const auto& each : { ofCells, ofPoints })
+  {
+    each->SetViewDirection(0.2, -0.3, 1.0);
+    each->SetOutputSize(9, 8);
+    each->SetOutputSpacing(1.0, 1.0);
+    each->Update();
+  }
+  check(projectiontesting::sameScalars(ofCells->GetOutput(), ofPoints->GetOutput()),
+    "cells are voxels");
+}
+}
+
+int TestTurn(int, char*[])
+{
+  Checks check;
+  testViews(check);
+  testPerspective(check);
+  testGeometry(check);
+  testProgress(check);
+  testReuse(check);
+  testComponents(check);
+  return check.result();
+}
