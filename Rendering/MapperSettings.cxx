@@ -135,6 +135,8 @@ splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* ma
     case splatting::Reduction::Minimum:
       break;
   }
+  settings.keepWinners = settings.reduction != splatting::Reduction::Mean &&
+    (mapper->GetRecordLocations() || mapper->GetDepthCoding() || mapper->GetWriteDepth());
   if (mode == vtkSplattingMIPVolumeMapper::HIGH &&
     mapper->GetKernel() == vtkSplattingMIPVolumeMapper::COSINE_BELL)
   {

@@ -44,12 +44,6 @@ glm::dvec4 row(const glm::dmat4& m, int r)
   return { m[0][r], m[1][r], m[2][r], m[3][r] };
 }
 
-/// Index space (first voxel at 0) to world.
-glm::dmat4 indexToWorld(const VolumeGrid& grid, vtkVolume* volume)
-{
-  return toGlm(volume->GetMatrix()) * grid.indexToPhysical;
-}
-
 /// Whether a matrix flattens the volume, or has no meaning (NaN).
 bool isSingular(const glm::dmat4& m)
 {
@@ -133,6 +127,12 @@ void addHalfSpace(splatting::View& view, const glm::dvec4& h)
     view.halfSpaces.push_back(h);
   }
 }
+}
+
+//------------------------------------------------------------------------------
+glm::dmat4 indexToWorld(const VolumeGrid& grid, vtkVolume* volume)
+{
+  return toGlm(volume->GetMatrix()) * grid.indexToPhysical;
 }
 
 //------------------------------------------------------------------------------

@@ -12,6 +12,7 @@
 #include "Selection.h"
 #include "View.h"
 #include "ViewOfVolume.h"
+#include "WinnerLocations.h"
 
 #include "vtkCommand.h"
 #include "vtkDataSet.h"
@@ -22,6 +23,7 @@
 #include "vtkRayCastImageDisplayHelper.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkScalarsToColors.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimerLog.h"
 #include "vtkVolume.h"
@@ -103,6 +105,7 @@ public:
   ComponentProjector Components;
   SceneCuts Cuts;
   std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last frame and the one before
+  WinnerLocations Locations{ Components, Cuts, Images };
   splatting::Picture Picture;
 
   vtkIdType Projections = 0;
@@ -143,6 +146,12 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     FinalColorWindow(1.0f),
     FinalColorLevel(0.5f),
     LastRenderUsedRayCasting(false),
+    RecordLocations(false),
+    DepthCoding(false),
+    DepthCodingColors(nullptr),
+    DepthCodingRange{ 0.0, 0.0 },
+    WriteDepth(false),
+    WriteDepthOpacity(0.5),
     Internal(new Internals)
 {
   splatting::Projector& projector = this->Internal->Components.GetProjector();
@@ -154,12 +163,14 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
 //------------------------------------------------------------------------------
 vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper()
 {
+  this->SetDepthCodingColors(nullptr);
   this->SetBoundingSurface(nullptr);
   this->SetMaskInput(nullptr);
 }
 
 //------------------------------------------------------------------------------
 vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, BoundingSurface, vtkPolyData);
+vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, DepthCodingColors, vtkScalarsToColors);
 
 //------------------------------------------------------------------------------
 // The gate: a sentence that says why this input cannot be rendered and what to do, or nothing.
@@ -250,8 +261,9 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper
   const int usable =
     std::clamp(static_cast<int>(this->Components.Settings().quality), mode, self->QualityMode);
   const splatting::ProjectionSettings wanted = projectionSettings(self, usable);
-  if (this->AreAsBefore(splatting::isOrdered(wanted.reduction)) && this->Cuts.AreKept() &&
-    this->Components.Shows(wanted))
+  const bool ordered = splatting::isOrdered(wanted.reduction) || wanted.keepWinners ||
+    this->Source.AreDependent(); // the nearest of equal samples wins
+  if (this->AreAsBefore(ordered) && this->Cuts.AreKept() && this->Components.Shows(wanted))
   {
     return true;
   }
@@ -292,6 +304,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
+  in.Locations.Forget();
   std::string problem = in.Problem(this, vol);
   if (problem.empty())
   {
@@ -393,9 +406,33 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     in.Components.Warp(in.Images, view, in.Picture);
     in.Cuts.Hide(in.Picture);
-    this->DisplayPicture(ren);
+    in.Locations.Remember(view, in.Source.Grid(), vol, ren);
+    this->DisplayLocated(ren);
   }
   return "";
+}
+
+//------------------------------------------------------------------------------
+// The picture, in the colours of depths if they are wanted, and depths.
+void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
+{
+  Internals& in = *this->Internal;
+  const bool wanted = this->RecordLocations || this->DepthCoding || this->WriteDepth;
+  if (wanted && this->BlendMode == AVERAGE_INTENSITY_BLEND && in.Announced.insert("mean").second)
+  {
+    vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
+                       "one, no depth coding and no depths: choose another blend mode.");
+  }
+  if (this->DepthCoding)
+  {
+    in.Locations.ColorByDepth(in.Picture, this->DepthCodingColors, this->DepthCodingRange);
+  }
+  this->DisplayPicture(ren);
+  if (this->WriteDepth && !in.Picture.pixels.empty())
+  {
+    this->DisplayDepths(ren, &in.Picture.origin.x, &in.Picture.size.x,
+      in.Locations.ClipDepths(in.Picture, this->WriteDepthOpacity).data());
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -465,6 +502,12 @@ void vtkSplattingMIPVolumeMapper::DisplayImage(
 }
 
 //------------------------------------------------------------------------------
+// DisplayImage() has said that there is nothing to draw with.
+void vtkSplattingMIPVolumeMapper::DisplayDepths(vtkRenderer*, const int*, const int*, const float*)
+{
+}
+
+//------------------------------------------------------------------------------
 bool vtkSplattingMIPVolumeMapper::ReadDepth(
   vtkRenderer* ren, const int origin[2], const int size[2], float* depths)
 {
@@ -483,6 +526,28 @@ void vtkSplattingMIPVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
     this->Internal->RayCaster->ReleaseGraphicsResources(window);
   }
   this->Superclass::ReleaseGraphicsResources(window);
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* vtkSplattingMIPVolumeMapper::GetLocations()
+{
+  if (!this->RecordLocations)
+  {
+    vtkErrorMacro(<< "There are no locations: call RecordLocationsOn() before the render.");
+    return nullptr;
+  }
+  return this->Internal->Locations.Image();
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPVolumeMapper::PickWorldPosition(int x, int y, double position[3])
+{
+  if (!this->RecordLocations)
+  {
+    vtkErrorMacro(<< "Nothing can be picked: call RecordLocationsOn() before the render.");
+    return false;
+  }
+  return this->Internal->Locations.Pick(x, y, position);
 }
 
 //------------------------------------------------------------------------------
@@ -656,6 +721,13 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "IndexMemoryBudget: " << this->IndexMemoryBudget << "\n";
   os << indent << "LastRenderUsedRayCasting: " << (this->LastRenderUsedRayCasting ? "Yes" : "No")
      << "\n";
+  os << indent << "RecordLocations: " << (this->RecordLocations ? "On" : "Off") << "\n";
+  os << indent << "DepthCoding: " << (this->DepthCoding ? "On" : "Off") << "\n";
+  os << indent << "DepthCodingColors: " << this->DepthCodingColors << "\n";
+  os << indent << "DepthCodingRange: " << this->DepthCodingRange[0] << ", "
+     << this->DepthCodingRange[1] << "\n";
+  os << indent << "WriteDepth: " << (this->WriteDepth ? "On" : "Off") << "\n";
+  os << indent << "WriteDepthOpacity: " << this->WriteDepthOpacity << "\n";
   os << indent << "PrincipalAxis: " << this->GetPrincipalAxis() << "\n";
   os << indent << "Shear: " << this->GetShear()[0] << ", " << this->GetShear()[1] << "\n";
   os << indent << "IndexMemorySize: " << this->GetIndexMemorySize() << "\n";

@@ -638,11 +638,11 @@ constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P> };
 template <class P>
 constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::climb)>(&climb<P>),
-  static_cast<decltype(RayLoops<P>::note)>(&note<P>) };
+  static_cast<decltype(RayLoops<P>::note)>(&note<P>),
+  static_cast<decltype(RayLoops<P>::raiseNoting)>(&raiseNoting<P>) };
 template <class A>
 constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>, &resample<A>,
-  &blend<A>, &raiseBlend<A>, &splat<A>, &raiseCubics<A>,
-  &raiseFanCubics<A>, &splatValid<A>,
+  &blend<A>, &raiseBlend<A>, &splat<A>, &raiseCubics<A>, &raiseFanCubics<A>, &splatValid<A>,
   static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
   static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
   &interpolateProjective<A>, &lookUp<A> };
