@@ -20,14 +20,16 @@ vtkStandardNewMacro(vtkOpenGLSplattingMIPVolumeMapper);
 
 namespace
 {
-/// Texels on the pixels from `corner` on; above 1 there is no depth.
+/// Texels on the viewport's pixels from `corner` on; above 1 there is no depth.
 const char* const DepthShader = R"(//VTK::System::Dec
 //VTK::Output::Dec
+in vec2 texCoord;
 uniform sampler2D depths;
+uniform ivec2 viewport;
 uniform ivec2 corner;
 void main()
 {
-  ivec2 texel = ivec2(gl_FragCoord.xy) - corner;
+  ivec2 texel = ivec2(texCoord * vec2(viewport)) - corner;
   ivec2 size = textureSize(depths, 0);
   if (texel.x < 0 || texel.y < 0 || texel.x >= size.x || texel.y >= size.y)
   {
@@ -141,12 +143,12 @@ void vtkOpenGLSplattingMIPVolumeMapper::DisplayDepths(
   state->vtkglDisable(GL_BLEND);
   state->vtkglDepthMask(GL_TRUE);
   state->vtkglColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  int width, height, left, bottom;
-  ren->GetTiledSizeAndOrigin(&width, &height, &left, &bottom);
-  const int corner[2] = { left + origin[0], bottom + origin[1] };
+  int viewport[2], left, bottom;
+  ren->GetTiledSizeAndOrigin(viewport, viewport + 1, &left, &bottom);
   this->DepthTexture->Activate();
   program->SetUniformi("depths", this->DepthTexture->GetTextureUnit());
-  program->SetUniform2i("corner", corner);
+  program->SetUniform2i("viewport", viewport);
+  program->SetUniform2i("corner", origin);
   this->DepthQuad->Render();
   this->DepthTexture->Deactivate();
 }

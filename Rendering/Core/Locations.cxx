@@ -253,6 +253,8 @@ public:
   }
 
 private:
+  static constexpr int MostReach = 3; ///< of a footprint, from its nearest voxel
+
   glm::ivec3 onPath(int u, int v, int k, int t) const
   {
     if (this->Geometry.isPerspective())
@@ -276,6 +278,17 @@ private:
   glm::ivec2 inFootprint(int u, int v, int k) const
   {
     const glm::ivec2 last = glm::ivec2(this->Geometry.size()) - 1;
+    const double from =
+      this->Source.settings.reduction == Reduction::Minimum ? this->Source.high : this->Source.low;
+    if (!this->Geometry.isPerspective())
+    {
+      const glm::ivec2 low = glm::ivec2(u, v) - this->Footprints[k].nearest - MostReach;
+      const glm::ivec2 high = low + 2 * MostReach;
+      if (low.x >= 0 && low.y >= 0 && high.x <= last.x && high.y <= last.y)
+      {
+        return this->inWholeFootprint(u, v, k, from);
+      }
+    }
     LargestShare shares;
     const auto add = [&](int i, int j, double weight)
     {
@@ -304,8 +317,34 @@ private:
         }
       }
     }
-    const bool least = this->Source.settings.reduction == Reduction::Minimum;
-    return shares.voxel(least ? this->Source.high : this->Source.low);
+    return shares.voxel(from);
+  }
+
+  /// Of a parallel view's footprint that does not stick out of the volume: each voxel is met once.
+  glm::ivec2 inWholeFootprint(int u, int v, int k, double from) const
+  {
+    const SliceFootprint<A>& footprint = this->Footprints[k];
+    const glm::ivec2 middle = glm::ivec2(u, v) - footprint.nearest;
+    const T* const voxels = this->Voxels.pointer(middle.x, middle.y, k);
+    glm::ivec2 best(-1);
+    double most = -1.0, heaviest = -1.0;
+    for (int t = 0; t < footprint.taps.size(); ++t)
+    {
+      const Tap& tap = footprint.taps[t];
+      if (tap.slice != 0)
+      {
+        continue;
+      }
+      const double value = static_cast<double>(voxels[this->Voxels.place(tap.di, tap.dj, 0)]);
+      const double weight = footprint.weights[t], share = weight * std::abs(value - from);
+      if (share > most || (share == most && weight > heaviest))
+      {
+        best = middle + glm::ivec2(tap.di, tap.dj);
+        most = share;
+        heaviest = weight;
+      }
+    }
+    return best;
   }
 
   const Located& Source;

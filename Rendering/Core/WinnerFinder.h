@@ -43,17 +43,17 @@ void openOrders(const Frame<T>& frame, int v0, int v1)
   }
 }
 
-template <class Layers>
+template <class Stack>
 class WinnerFinder
 {
 public:
-  using T = typename Layers::Voxel;
-  using P = typename Layers::Pixel;
+  using T = typename Stack::Voxel;
+  using P = typename Stack::Pixel;
 
   /// @param volume   where the frame's slices come from
   /// @param crossed  for the frame's slices
   /// @param preview  whether samples are voxels
-  WinnerFinder(const Frame<T>& frame, const Layers& layers, const VoxelArray& volume,
+  WinnerFinder(const Frame<T>& frame, const Stack& layers, const VoxelArray& volume,
     const CrossedSlices& crossed, bool preview)
     : Shared(frame),
       Voxels(volume, frame.geometry),
@@ -61,6 +61,10 @@ public:
       Floor(layers.floor()),
       Preview(preview)
   {
+    if (preview && !frame.geometry.isPerspective())
+    {
+      this->findTaps();
+    }
   }
 
   /// Before Layers::finish().
@@ -91,6 +95,60 @@ public:
 private:
   static constexpr std::int32_t Unknown = -2;
 
+  /// What all pixels cross in a layer of a parallel preview, from the viewer on.
+  struct Taps
+  {
+    struct Tap
+    {
+      std::ptrdiff_t place; // from voxel (u, v, 0)
+      std::int32_t step;
+    };
+    std::array<Tap, MostRows> taps;
+    int count = 0;
+    Span columns, rows; // the pixels that have voxels at all of them
+
+    bool isWithin(int u, int v) const
+    {
+      return u >= this->columns.begin && u < this->columns.end && v >= this->rows.begin &&
+        v < this->rows.end;
+    }
+    std::int32_t stepOf(const T* voxels, std::ptrdiff_t at, P value) const
+    {
+      for (int n = 0; n < this->count; ++n)
+      {
+        if (static_cast<P>(voxels[at + this->taps[n].place]) == value)
+        {
+          return this->taps[n].step;
+        }
+      }
+      return -1;
+    }
+  };
+
+  void findTaps()
+  {
+    const glm::ivec3& size = this->Shared.geometry.size();
+    this->Layers.resize((size.z + BrickDepth - 1) / BrickDepth);
+    for (int n = 0; n < size.z; ++n)
+    {
+      const int k = this->reversed() ? size.z - 1 - n : n;
+      const RayPath& path = this->Shared.sliceGeometry[k].path;
+      Taps& layer = this->Layers[k / BrickDepth];
+      if (layer.count == 0)
+      {
+        layer.columns = { std::numeric_limits<int>::lowest(), std::numeric_limits<int>::max() };
+        layer.rows = layer.columns;
+      }
+      for (int m = 0; m < path.count; ++m)
+      {
+        const int t = this->reversed() ? path.count - 1 - m : m, di = path.di[t], dj = path.dj[t];
+        layer.taps[layer.count++] = { this->Voxels.place(di, dj, k), StepsPerSlice * k + t };
+        layer.columns = common(layer.columns, { -di, size.x - di });
+        layer.rows = common(layer.rows, { -dj, size.y - dj });
+      }
+    }
+  }
+
   bool reversed() const { return this->Shared.geometry.reversed(); }
 
   std::int32_t noted(int u, int v, std::int16_t order, P value) const
@@ -101,8 +159,13 @@ private:
       return StepsPerSlice * (this->reversed() ? depth - 1 - order : order);
     }
     const int layers = (depth + BrickDepth - 1) / BrickDepth;
-    const Span slices =
-      slicesOfLayer(this->reversed() ? layers - 1 - order : order, this->Shared.geometry.size());
+    const int layer = this->reversed() ? layers - 1 - order : order;
+    if (!this->Layers.empty() && this->Shared.cuts.none() && this->Layers[layer].isWithin(u, v))
+    {
+      return this->Layers[layer].stepOf(
+        this->Voxels.pointer(0, 0, 0), this->Voxels.place(u, v, 0), value);
+    }
+    const Span slices = slicesOfLayer(layer, this->Shared.geometry.size());
     for (int n = 0; n < slices.end - slices.begin; ++n)
     {
       const int k = this->reversed() ? slices.end - 1 - n : slices.begin + n;
@@ -131,7 +194,12 @@ private:
       return StepsPerSlice * k;
     }
     const bool own = this->Shared.geometry.isPerspective();
-    const RayPath path = own ? this->Shared.geometry.voxelsOnRay(u, v, k) : slice.path;
+    RayPath ofRay;
+    if (own)
+    {
+      ofRay = this->Shared.geometry.voxelsOnRay(u, v, k);
+    }
+    const RayPath& path = own ? ofRay : slice.path;
     const glm::ivec3& size = this->Shared.geometry.size();
     for (int n = 0; n < path.count; ++n)
     {
@@ -198,6 +266,7 @@ private:
   const CrossedSlices& Crossed;
   P Floor;
   bool Preview;
+  std::vector<Taps> Layers;
 };
 }
 
