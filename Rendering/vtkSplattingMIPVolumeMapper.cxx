@@ -423,7 +423,7 @@ void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
     vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
                        "one, no depth coding and no depths: choose another blend mode.");
   }
-  if (this->DepthCoding)
+  if (this->DepthCoding && !ren->GetSelector())
   {
     in.Locations.ColorByDepth(in.Picture, this->DepthCodingColors, this->DepthCodingRange);
   }

@@ -166,9 +166,9 @@ void note(std::int32_t* winners, std::int32_t place, const P* before, const P* i
 }
 
 template <bool Masked, class P>
-inline void raiseNotingSome(P* __restrict image, std::int16_t* __restrict orders,
-  std::int16_t order, const P* __restrict samples, const unsigned char* __restrict bits,
-  unsigned char bit, std::ptrdiff_t n)
+void raiseNoting(P* __restrict image, std::int16_t* __restrict orders, std::int16_t order,
+  const P* __restrict samples, const unsigned char* __restrict bits, unsigned char bit,
+  std::ptrdiff_t n)
 {
   for (std::ptrdiff_t x = 0; x < n; ++x)
   {
@@ -178,41 +178,6 @@ inline void raiseNotingSome(P* __restrict image, std::int16_t* __restrict orders
     image[x] = wins ? samples[x] : image[x];
     orders[x] = wins ? order : orders[x];
   }
-}
-
-/// Whether any sample is no less than its pixel.
-template <class P>
-inline bool reachesAny(const P* __restrict image, const P* __restrict samples, std::ptrdiff_t n)
-{
-  // As wide as pixels, so that compilers need not convert.
-  using Flag = std::conditional_t<sizeof(P) == 1, std::int8_t,
-    std::conditional_t<sizeof(P) == 2, std::int16_t,
-      std::conditional_t<sizeof(P) == 4, std::int32_t, std::int64_t>>>;
-  Flag any = 0;
-  for (std::ptrdiff_t x = 0; x < n; ++x)
-  {
-    any = static_cast<Flag>(any | static_cast<Flag>(samples[x] >= image[x] ? 1 : 0));
-  }
-  return any != 0;
-}
-
-template <bool Masked, class P>
-void raiseNoting(P* image, std::int16_t* orders, std::int16_t order, const P* samples,
-  const unsigned char* bits, unsigned char bit, std::ptrdiff_t n)
-{
-  // Most samples are too small: the rest of the work is for few blocks.
-  constexpr std::ptrdiff_t block = sizeof(P) == 1 ? 64 : 32;
-  std::ptrdiff_t x = 0;
-  for (; x + block <= n; x += block)
-  {
-    if (reachesAny(image + x, samples + x, block))
-    {
-      raiseNotingSome<Masked>(
-        image + x, orders + x, order, samples + x, Masked ? bits + x : nullptr, bit, block);
-    }
-  }
-  raiseNotingSome<Masked>(
-    image + x, orders + x, order, samples + x, Masked ? bits + x : nullptr, bit, n - x);
 }
 
 template <class P>
