@@ -514,7 +514,7 @@ public:
   /**
    * Find out where the samples lie that the picture shows, for GetLocations() and
    * PickWorldPosition(). Default off; DepthCoding and WriteDepth need it and do it by themselves.
-   * It takes up to half as long again to project, and six bytes per pixel of the shear image.
+   * Projections take longer, previews most, and six bytes more per pixel of the shear image.
    *
    * The sample of a ray is the one that its value comes from; of equal ones the nearest to the
    * viewer, whatever the acceleration and the number of threads. In mode PREVIEW it is a voxel, in
