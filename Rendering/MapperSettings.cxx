@@ -93,7 +93,10 @@ const char* faultOfSettings(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProper
 //------------------------------------------------------------------------------
 splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* mapper, int mode)
 {
-  return settingsOfChoice(choiceOf(mapper), mode);
+  splatting::ProjectionSettings settings = settingsOfChoice(choiceOf(mapper), mode);
+  settings.keepWinners = settings.reduction != splatting::Reduction::Mean &&
+    (mapper->GetRecordLocations() || mapper->GetDepthCoding() || mapper->GetWriteDepth());
+  return settings;
 }
 
 //------------------------------------------------------------------------------

@@ -12,13 +12,10 @@
 
 #include <glm/matrix.hpp>
 
-namespace
-{
-/// Index space (first voxel at 0) to world.
+//------------------------------------------------------------------------------
 glm::dmat4 indexToWorld(const VolumeGrid& grid, vtkVolume* volume)
 {
   return toGlm(volume->GetMatrix()) * grid.indexToPhysical;
-}
 }
 
 //------------------------------------------------------------------------------

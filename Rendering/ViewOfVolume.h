@@ -26,6 +26,11 @@ splatting::View makeView(
   const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper);
 
 /**
+ * Index space (first voxel at 0) to world space.
+ */
+glm::dmat4 indexToWorld(const VolumeGrid& grid, vtkVolume* volume);
+
+/**
  * World space to index space, of a volume that is not flat.
  */
 glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume);

@@ -3,9 +3,12 @@
 #include "vtkOpenGLSplattingMIPVolumeMapper.h"
 
 #include "vtkObjectFactory.h"
+#include "vtkOpenGLQuadHelper.h"
 #include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLShaderCache.h"
 #include "vtkOpenGLState.h"
 #include "vtkRenderer.h"
+#include "vtkShaderProgram.h"
 #include "vtkTextureObject.h"
 #if __has_include("vtk_glad.h") // since VTK 9.4
 #include "vtk_glad.h"
@@ -14,6 +17,48 @@
 #endif
 
 vtkStandardNewMacro(vtkOpenGLSplattingMIPVolumeMapper);
+
+namespace
+{
+/// Texels on the viewport's pixels from `corner` on; above 1 there is no depth.
+const char* const DepthShader = R"(//VTK::System::Dec
+//VTK::Output::Dec
+in vec2 texCoord;
+uniform sampler2D depths;
+uniform ivec2 viewport;
+uniform ivec2 corner;
+void main()
+{
+  ivec2 texel = ivec2(texCoord * vec2(viewport)) - corner;
+  ivec2 size = textureSize(depths, 0);
+  if (texel.x < 0 || texel.y < 0 || texel.x >= size.x || texel.y >= size.y)
+  {
+    discard;
+  }
+  float depth = texelFetch(depths, texel, 0).r;
+  if (depth > 1.0)
+  {
+    discard;
+  }
+  gl_FragDepth = depth;
+  gl_FragData[0] = vec4(0.0);
+}
+)";
+
+/// A texture of this window, texel by texel.
+void prepare(vtkTextureObject* texture, vtkOpenGLRenderWindow* window)
+{
+  vtkOpenGLRenderWindow* const before = texture->GetContext();
+  if (before && before != window)
+  {
+    texture->ReleaseGraphicsResources(before);
+  }
+  texture->SetContext(window);
+  // Texels lie exactly on pixels; linear filtering would only add rounding.
+  texture->SetMinificationFilter(vtkTextureObject::Nearest);
+  texture->SetMagnificationFilter(vtkTextureObject::Nearest);
+}
+}
 
 //------------------------------------------------------------------------------
 vtkOpenGLSplattingMIPVolumeMapper::vtkOpenGLSplattingMIPVolumeMapper() = default;
@@ -31,15 +76,7 @@ void vtkOpenGLSplattingMIPVolumeMapper::DisplayImage(
     this->Superclass::DisplayImage(ren, origin, size, rgba);
     return;
   }
-  vtkOpenGLRenderWindow* const before = this->Texture->GetContext();
-  if (before && before != window)
-  {
-    this->Texture->ReleaseGraphicsResources(before);
-  }
-  this->Texture->SetContext(window);
-  // Texels lie exactly on pixels; linear filtering would only add rounding.
-  this->Texture->SetMinificationFilter(vtkTextureObject::Nearest);
-  this->Texture->SetMagnificationFilter(vtkTextureObject::Nearest);
+  prepare(this->Texture, window);
   this->Texture->Create2DFromRaw(static_cast<unsigned int>(size[0]),
     static_cast<unsigned int>(size[1]), 4, VTK_UNSIGNED_CHAR, const_cast<unsigned char*>(rgba));
 
@@ -68,8 +105,59 @@ void vtkOpenGLSplattingMIPVolumeMapper::DisplayImage(
 }
 
 //------------------------------------------------------------------------------
+void vtkOpenGLSplattingMIPVolumeMapper::DisplayDepths(
+  vtkRenderer* ren, const int origin[2], const int size[2], const float* depths)
+{
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(ren->GetRenderWindow());
+  if (!window)
+  {
+    return;
+  }
+  if (this->DepthTexture->GetContext() != window)
+  {
+    this->DepthQuad = nullptr;
+  }
+  prepare(this->DepthTexture, window);
+  this->DepthTexture->Create2DFromRaw(static_cast<unsigned int>(size[0]),
+    static_cast<unsigned int>(size[1]), 1, VTK_FLOAT, const_cast<float*>(depths));
+  if (!this->DepthQuad)
+  {
+    this->DepthQuad = std::make_unique<vtkOpenGLQuadHelper>(window, nullptr, DepthShader, nullptr);
+  }
+  else
+  {
+    window->GetShaderCache()->ReadyShaderProgram(this->DepthQuad->Program);
+  }
+  vtkShaderProgram* const program = this->DepthQuad->Program;
+  if (!program)
+  {
+    vtkErrorMacro(<< "This OpenGL cannot write depths: turn WriteDepth off.");
+    return;
+  }
+  vtkOpenGLState* const state = window->GetState();
+  vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
+  vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
+  vtkOpenGLState::ScopedglDepthMask depthMask(state);
+  vtkOpenGLState::ScopedglColorMask colorMask(state);
+  state->vtkglEnable(GL_DEPTH_TEST);
+  state->vtkglDisable(GL_BLEND);
+  state->vtkglDepthMask(GL_TRUE);
+  state->vtkglColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  int viewport[2], left, bottom;
+  ren->GetTiledSizeAndOrigin(viewport, viewport + 1, &left, &bottom);
+  this->DepthTexture->Activate();
+  program->SetUniformi("depths", this->DepthTexture->GetTextureUnit());
+  program->SetUniform2i("viewport", viewport);
+  program->SetUniform2i("corner", origin);
+  this->DepthQuad->Render();
+  this->DepthTexture->Deactivate();
+}
+
+//------------------------------------------------------------------------------
 void vtkOpenGLSplattingMIPVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
+  this->DepthQuad = nullptr;
+  this->DepthTexture->ReleaseGraphicsResources(window);
   this->Texture->ReleaseGraphicsResources(window);
   this->Superclass::ReleaseGraphicsResources(window);
 }

@@ -5,8 +5,8 @@
  * @brief   draws the pictures of vtkSplattingMIPVolumeMapper with OpenGL
  *
  * The class that the object factory gives for vtkSplattingMIPVolumeMapper. All it adds is the
- * display: one texture, texel on pixel, blended over what the renderer has drawn before. It neither
- * reads nor writes depth.
+ * display: one texture, texel on pixel, blended over what the renderer has drawn before. It writes
+ * depth only where the mapper wants it, by a second texture.
  */
 #ifndef vtkOpenGLSplattingMIPVolumeMapper_h
 #define vtkOpenGLSplattingMIPVolumeMapper_h
@@ -15,6 +15,9 @@
 #include "vtkRenderingSplattingMIPModule.h" // for the export macro
 #include "vtkSplattingMIPVolumeMapper.h"
 
+#include <memory> // for the quad
+
+class vtkOpenGLQuadHelper;
 class vtkTextureObject;
 
 class VTKRENDERINGSPLATTINGMIP_EXPORT vtkOpenGLSplattingMIPVolumeMapper
@@ -36,12 +39,15 @@ protected:
 
   void DisplayImage(
     vtkRenderer* ren, const int origin[2], const int size[2], const unsigned char* rgba) override;
+  void DisplayDepths(
+    vtkRenderer* ren, const int origin[2], const int size[2], const float* depths) override;
 
 private:
   vtkOpenGLSplattingMIPVolumeMapper(const vtkOpenGLSplattingMIPVolumeMapper&) = delete;
   void operator=(const vtkOpenGLSplattingMIPVolumeMapper&) = delete;
 
-  vtkNew<vtkTextureObject> Texture;
+  vtkNew<vtkTextureObject> Texture, DepthTexture;
+  std::unique_ptr<vtkOpenGLQuadHelper> DepthQuad;
 };
 
 #endif

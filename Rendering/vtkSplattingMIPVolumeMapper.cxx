@@ -13,6 +13,7 @@
 #include "TurnOfViews.h"
 #include "View.h"
 #include "ViewOfVolume.h"
+#include "WinnerLocations.h"
 
 #include "vtkCommand.h"
 #include "vtkDataSet.h"
@@ -23,6 +24,7 @@
 #include "vtkRayCastImageDisplayHelper.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkScalarsToColors.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimerLog.h"
 #include "vtkVolume.h"
@@ -102,6 +104,7 @@ public:
   ComponentProjector Components;
   SceneCuts Cuts;
   std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last frame and the one before
+  WinnerLocations Locations{ Components, Cuts, Images };
   splatting::Picture Picture;
 
   vtkIdType Projections = 0;
@@ -144,6 +147,12 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     FinalColorWindow(1.0f),
     FinalColorLevel(0.5f),
     LastRenderUsedRayCasting(false),
+    RecordLocations(false),
+    DepthCoding(false),
+    DepthCodingColors(nullptr),
+    DepthCodingRange{ 0.0, 0.0 },
+    WriteDepth(false),
+    WriteDepthOpacity(0.5),
     Internal(new Internals)
 {
   splatting::Projector& projector = this->Internal->Components.GetProjector();
@@ -155,12 +164,14 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
 //------------------------------------------------------------------------------
 vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper()
 {
+  this->SetDepthCodingColors(nullptr);
   this->SetBoundingSurface(nullptr);
   this->SetMaskInput(nullptr);
 }
 
 //------------------------------------------------------------------------------
 vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, BoundingSurface, vtkPolyData);
+vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, DepthCodingColors, vtkScalarsToColors);
 
 //------------------------------------------------------------------------------
 // The gate: a sentence that says why this input cannot be rendered and what to do, or nothing.
@@ -254,8 +265,9 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper
   {
     return false;
   }
-  if (this->AreAsBefore(splatting::isOrdered(best.reduction)) && this->Cuts.AreKept() &&
-    this->Components.Shows(best))
+  const bool ordered = splatting::isOrdered(best.reduction) || best.keepWinners ||
+    this->Source.AreDependent(); // the nearest of equal samples wins
+  if (this->AreAsBefore(ordered) && this->Cuts.AreKept() && this->Components.Shows(best))
   {
     return true;
   }
@@ -302,6 +314,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
+  in.Locations.Forget();
   std::string problem = in.Problem(this, vol);
   if (problem.empty())
   {
@@ -403,9 +416,33 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     in.Components.Warp(in.Images, view, in.Picture);
     in.Cuts.Hide(in.Picture);
-    this->DisplayPicture(ren);
+    in.Locations.Remember(view, in.Source.Grid(), vol, ren);
+    this->DisplayLocated(ren);
   }
   return "";
+}
+
+//------------------------------------------------------------------------------
+// The picture, in the colours of depths if they are wanted, and depths.
+void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
+{
+  Internals& in = *this->Internal;
+  const bool wanted = this->RecordLocations || this->DepthCoding || this->WriteDepth;
+  if (wanted && this->BlendMode == AVERAGE_INTENSITY_BLEND && in.Announced.insert("mean").second)
+  {
+    vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
+                       "one, no depth coding and no depths: choose another blend mode.");
+  }
+  if (this->DepthCoding && !ren->GetSelector())
+  {
+    in.Locations.ColorByDepth(in.Picture, this->DepthCodingColors, this->DepthCodingRange);
+  }
+  this->DisplayPicture(ren);
+  if (this->WriteDepth && !in.Picture.pixels.empty())
+  {
+    this->DisplayDepths(ren, &in.Picture.origin.x, &in.Picture.size.x,
+      in.Locations.ClipDepths(in.Picture, this->WriteDepthOpacity).data());
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -475,6 +512,12 @@ void vtkSplattingMIPVolumeMapper::DisplayImage(
 }
 
 //------------------------------------------------------------------------------
+// DisplayImage() has said that there is nothing to draw with.
+void vtkSplattingMIPVolumeMapper::DisplayDepths(vtkRenderer*, const int*, const int*, const float*)
+{
+}
+
+//------------------------------------------------------------------------------
 bool vtkSplattingMIPVolumeMapper::ReadDepth(
   vtkRenderer* ren, const int origin[2], const int size[2], float* depths)
 {
@@ -493,6 +536,28 @@ void vtkSplattingMIPVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
     this->Internal->RayCaster->ReleaseGraphicsResources(window);
   }
   this->Superclass::ReleaseGraphicsResources(window);
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* vtkSplattingMIPVolumeMapper::GetLocations()
+{
+  if (!this->RecordLocations)
+  {
+    vtkErrorMacro(<< "There are no locations: call RecordLocationsOn() before the render.");
+    return nullptr;
+  }
+  return this->Internal->Locations.Image();
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPVolumeMapper::PickWorldPosition(int x, int y, double position[3])
+{
+  if (!this->RecordLocations)
+  {
+    vtkErrorMacro(<< "Nothing can be picked: call RecordLocationsOn() before the render.");
+    return false;
+  }
+  return this->Internal->Locations.Pick(x, y, position);
 }
 
 //------------------------------------------------------------------------------
@@ -675,6 +740,13 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "IndexMemoryBudget: " << this->IndexMemoryBudget << "\n";
   os << indent << "LastRenderUsedRayCasting: " << (this->LastRenderUsedRayCasting ? "Yes" : "No")
      << "\n";
+  os << indent << "RecordLocations: " << (this->RecordLocations ? "On" : "Off") << "\n";
+  os << indent << "DepthCoding: " << (this->DepthCoding ? "On" : "Off") << "\n";
+  os << indent << "DepthCodingColors: " << this->DepthCodingColors << "\n";
+  os << indent << "DepthCodingRange: " << this->DepthCodingRange[0] << ", "
+     << this->DepthCodingRange[1] << "\n";
+  os << indent << "WriteDepth: " << (this->WriteDepth ? "On" : "Off") << "\n";
+  os << indent << "WriteDepthOpacity: " << this->WriteDepthOpacity << "\n";
   os << indent << "PrincipalAxis: " << this->GetPrincipalAxis() << "\n";
   os << indent << "Shear: " << this->GetShear()[0] << ", " << this->GetShear()[1] << "\n";
   os << indent << "IndexMemorySize: " << this->GetIndexMemorySize() << "\n";

@@ -77,7 +77,7 @@
  * Selection by vtkHardwareSelector, and all that uses it (vtkRenderer::PickProp, vtkPropPicker),
  * finds the volume where its picture is not transparent. A volume is one thing there: composite
  * index 1, point and cell 0. A pass costs a frame with the last shear image, or a ray cast frame
- * where rays are cast. For the voxel behind a pixel use vtkVolumePicker (image data only).
+ * where rays are cast. For the voxel that a pixel shows see SetRecordLocations().
  *
  * Aborting. While it projects, and while it makes chains, the mapper asks the render window's
  * CheckAbortStatus() between bands of image rows, on the thread that renders. An aborted render
@@ -129,6 +129,7 @@
 
 class vtkImageData;
 class vtkPolyData;
+class vtkScalarsToColors;
 class vtkVolumeProperty;
 
 class VTKRENDERINGSPLATTINGMIP_EXPORT vtkSplattingMIPVolumeMapper : public vtkVolumeMapper
@@ -532,6 +533,103 @@ public:
   vtkGetMacro(IndexMemoryBudget, vtkTypeInt64);
   ///@}
 
+  ///@{
+  /**
+   * Find out where the samples lie that the picture shows, for GetLocations() and
+   * PickWorldPosition(). Default off; DepthCoding and WriteDepth need it and do it by themselves.
+   * Projections take longer, previews most, and six bytes more per pixel of the shear image.
+   *
+   * The sample of a ray is the one that its value comes from; of equal ones the nearest to the
+   * viewer, whatever the acceleration and the number of threads. In mode PREVIEW it is a voxel, in
+   * the other modes the average of a slice. A pixel of the picture has the sample of the shear
+   * pixel nearest to it, of those that its value is interpolated between. Averages have none: a
+   * warning says so, once. Of independent components the first one is located, of dependent ones
+   * the last. Blend modes that are ray cast have no locations.
+   */
+  vtkSetMacro(RecordLocations, bool);
+  vtkGetMacro(RecordLocations, bool);
+  vtkBooleanMacro(RecordLocations, bool);
+  ///@}
+
+  /**
+   * Where the samples of the last render lie: point arrays for the pixels of the renderer's part of
+   * the window, whose pixels the image's extent (and, with origin 0 and spacing 1, its coordinates)
+   * count; of a tiled window that of the last tile.
+   * - "Voxel", three ints: the image's i, j, k relative to its first voxel. In PREVIEW the voxel
+   *   that wins; in STANDARD and HIGH the voxel of the slice that adds most to the average: largest
+   *   weight times its height above the lowest scalar (for minima below the highest).
+   * - "Depth", float: the distance in world units, from the plane through the camera's position
+   *   across the direction of projection, in perspective from the eye.
+   * - "Position", three doubles: the point of the world. It lies on the ray of the pixel, where
+   *   this crosses the middle of the slice that the sample is of.
+   *
+   * Pixels without a sample, or hidden by other things, have voxel -1 and NaN. nullptr, with an
+   * error message, unless RecordLocations is on; nullptr where nothing has been splatted. Computed
+   * when first asked for after a render, in some milliseconds; the input must not have changed by
+   * then.
+   */
+  vtkImageData* GetLocations();
+
+  /**
+   * The point of the world that a pixel of the window shows, as "Position" of GetLocations(), but
+   * for one pixel and at once. False, and position stays as it is, where the last render of this
+   * mapper has no sample. Whether the sample is opaque does not matter. Display coordinates, as
+   * vtkRenderWindowInteractor::GetEventPosition() gives them. Needs RecordLocations.
+   */
+  bool PickWorldPosition(int x, int y, double position[3]);
+
+  ///@{
+  /**
+   * Colour by depth: the hue says how far the sample is from the viewer, the brightness is that of
+   * the picture as it would be otherwise: the largest of its red, green and blue. Opacity stays.
+   * With a white ramp from black, that is the depth coding of microscopy. Default off. Costs some
+   * milliseconds more per frame than RecordLocations.
+   */
+  vtkSetMacro(DepthCoding, bool);
+  vtkGetMacro(DepthCoding, bool);
+  vtkBooleanMacro(DepthCoding, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The colours of DepthCoding: the range of this look-up table or transfer function is stretched
+   * over DepthCodingRange. Default nullptr: from red, the nearest, over green to blue.
+   */
+  virtual void SetDepthCodingColors(vtkScalarsToColors* colors);
+  vtkGetObjectMacro(DepthCodingColors, vtkScalarsToColors);
+  ///@}
+
+  ///@{
+  /**
+   * The depths, as in GetLocations(), that have the first and the last colour. Default (0, 0): as
+   * for all ranges whose first value is not below the second, those of the nearest and the farthest
+   * voxel of the whole volume, which change with the view.
+   */
+  vtkSetVector2Macro(DepthCodingRange, double);
+  vtkGetVector2Macro(DepthCodingRange, double);
+  ///@}
+
+  ///@{
+  /**
+   * Write the depth of samples to the depth buffer, so that what is rendered later (other volumes,
+   * overlays, renderers that preserve the depth buffer) is hidden by what is seen of this volume:
+   * pixels whose opacity is WriteDepthOpacity or more. Where the buffer has less depth already it
+   * stays. Default off.
+   */
+  vtkSetMacro(WriteDepth, bool);
+  vtkGetMacro(WriteDepth, bool);
+  vtkBooleanMacro(WriteDepth, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The least opacity of a pixel whose depth is written. Default 0.5, clamped to [0, 1]; fully
+   * transparent pixels have none.
+   */
+  vtkSetClampMacro(WriteDepthOpacity, double, 0.0, 1.0);
+  vtkGetMacro(WriteDepthOpacity, double);
+  ///@}
+
   /**
    * The last shear image, its spacing 1 / ShearImageSampling, or nullptr before the first render.
    * Scalars: as many components as are projected, in the input's type in mode PREVIEW (that of the
@@ -619,6 +717,7 @@ protected:
 
   const char* RenderBySplatting(vtkRenderer* ren, vtkVolume* vol);
   void RenderByRayCasting(vtkRenderer* ren, vtkVolume* vol);
+  void DisplayLocated(vtkRenderer* ren);
   void DisplayPicture(vtkRenderer* ren);
 
   /**
@@ -627,6 +726,13 @@ protected:
    */
   virtual void DisplayImage(
     vtkRenderer* ren, const int origin[2], const int size[2], const unsigned char* rgba);
+
+  /**
+   * Write depths, from 0 to 1, where they are less than what is there; above 1 there is none. The
+   * same order as in DisplayImage. The rendering backend's subclass does it.
+   */
+  virtual void DisplayDepths(
+    vtkRenderer* ren, const int origin[2], const int size[2], const float* depths);
 
   /**
    * The depths, from 0 to 1, that have been rendered so far at pixels of the renderer's viewport.
@@ -660,6 +766,12 @@ protected:
   float FinalColorWindow;
   float FinalColorLevel;
   bool LastRenderUsedRayCasting;
+  bool RecordLocations;
+  bool DepthCoding;
+  vtkScalarsToColors* DepthCodingColors;
+  double DepthCodingRange[2];
+  bool WriteDepth;
+  double WriteDepthOpacity;
 
 private:
   vtkSplattingMIPVolumeMapper(const vtkSplattingMIPVolumeMapper&) = delete;

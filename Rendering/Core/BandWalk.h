@@ -6,7 +6,8 @@
  * Densely: all of them, in storage order. With bricks: for tiles of TileWidth x TileHeight pixels
  * and each layer, the largest brick that the tile's rays can meet bounds what the layer can add.
  * Layers with high bounds come first, and a tile whose bound is no more than its least pixel is
- * left out: it could not change a pixel. What remains is walked row by row, several tiles at a
+ * left out: it could not change a pixel. (Where winners are noted, a tile whose bound is its least
+ * pixel may still change the winner.) What remains is walked row by row, several tiles at a
  * time, because memory is fastest where it is read in order.
  *
  * Where rays are cut, bits say which slices of a layer count for a pixel, and tiles that have none
@@ -45,6 +46,7 @@ struct BandScratch
   BandCuts cuts;
   std::vector<unsigned char> mask;
   std::vector<unsigned char> brickRow;
+  std::vector<std::int16_t> farthest;
   std::vector<Span> tileWindows;
   TileCount count;
 };
@@ -92,6 +94,8 @@ public:
     this->orderLayers();
     this->Scratch.minima.resize(std::size_t(this->Groups) * this->Tiles * sizeof(P));
     std::fill_n(this->minimaOf(0), this->Groups * this->Tiles, this->Stack.floor());
+    this->Scratch.farthest.assign(this->Shared.orders ? this->Groups * this->Tiles : 0,
+      std::numeric_limits<std::int16_t>::max());
     this->openCuts();
     int walked = 0;
     for (int z : this->Scratch.order)
@@ -413,6 +417,46 @@ private:
         }
         out[whole] = least;
       }
+      if (this->Shared.orders)
+      {
+        this->findFarthest(g);
+      }
+    }
+  }
+
+  /// The farthest slice that any pixel of each tile has its value from, but for pixels at the
+  /// floor.
+  void findFarthest(int group)
+  {
+    const P floor = this->Stack.floor();
+    std::int16_t* const out = &this->Scratch.farthest[std::size_t(group) * this->Tiles];
+    std::fill_n(out, this->Tiles, std::int16_t(-1));
+    for (int v = this->firstRow(group); v < this->firstRow(group) + this->rowsOf(group); ++v)
+    {
+      const P* const row = this->Shared.image.template row<P>(v);
+      const std::int16_t* const orders = this->Shared.ordersOfRow(v);
+      for (int u = 0; u < this->Shared.image.width; ++u)
+      {
+        const std::int16_t order = row[u] > floor ? orders[u] : std::int16_t(-1);
+        out[u / TileWidth] = std::max(out[u / TileWidth], order);
+      }
+    }
+  }
+
+  /// Flags tiles, too, of which a layer can take no more than a tie: pixels show the nearest of
+  /// equal samples. At the floor all samples are equal, and the first one is known without a walk.
+  void flagTies(int z, int group)
+  {
+    const P floor = this->Stack.floor();
+    const P* const bounds = this->bounds(z, group);
+    const P* const minima = this->minimaOf(group);
+    const std::int16_t* const farthest = &this->Scratch.farthest[std::size_t(group) * this->Tiles];
+    unsigned char* const flags = this->Scratch.flags.data();
+    const std::int16_t order = this->Stack.orderOf(z);
+    for (int t = 0; t < this->Tiles; ++t)
+    {
+      const bool ties = (bounds[t] == minima[t]) & (bounds[t] > floor) & (order < farthest[t]);
+      flags[t] = static_cast<unsigned char>(flags[t] | static_cast<unsigned char>(ties));
     }
   }
 
@@ -421,6 +465,10 @@ private:
   {
     const TileLoops<P>& loops = this->Shared.kernels;
     loops.exceeds(this->bounds(z, group), this->minimaOf(group), this->openFlags(), this->Tiles);
+    if (this->Shared.orders)
+    {
+      this->flagTies(z, group);
+    }
     this->splatFlagged(z, group);
   }
 

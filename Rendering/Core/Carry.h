@@ -37,6 +37,13 @@ public:
       std::clamp(k, 0, this->Size.z - 1) * this->Strides[2]];
   }
 
+  /// The same of voxels that exist.
+  std::ptrdiff_t place(int i, int j, int k) const
+  {
+    return i * this->Strides[0] + j * this->Strides[1] + k * this->Strides[2];
+  }
+  const T* pointer(int i, int j, int k) const { return this->Voxels + this->place(i, j, k); }
+
 private:
   const T* Voxels;
   glm::ivec3 Size;

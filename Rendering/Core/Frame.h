@@ -108,11 +108,34 @@ struct Frame
   const CutMap& cuts;
   double floor; // as in ProjectionSettings
   ShearImage& image;
+  /// If the image tells its winners: where each pixel's value comes from, counted from the viewer
+  /// on; of worksheets the slice, of previews the layer. See WinnerFinder.
+  std::int16_t* orders = nullptr;
 
   const T* voxelRow(int j, int k) const
   {
     return static_cast<const T*>(this->slices.voxels) + j * this->slices.rowStride +
       k * this->slices.sliceStride;
+  }
+
+  std::int16_t* ordersOfRow(int v) const
+  {
+    return this->orders + std::ptrdiff_t(v) * this->image.width;
+  }
+  std::int16_t orderOf(int n, int count) const
+  {
+    return static_cast<std::int16_t>(this->geometry.reversed() ? count - 1 - n : n);
+  }
+  std::int16_t orderOfSlice(int k) const { return this->orderOf(k, this->geometry.size().z); }
+  std::int16_t orderOfLayer(int z) const
+  {
+    return this->orderOf(z, (this->geometry.size().z + BrickDepth - 1) / BrickDepth);
+  }
+  /// Of a layer's slices, that of the nearest one.
+  std::int16_t nearestOrder(int z) const
+  {
+    const int first = z * BrickDepth, end = std::min(first + BrickDepth, this->geometry.size().z);
+    return this->orderOfSlice(this->geometry.reversed() ? end - 1 : first);
   }
 
   /// The pixels of row v in [vBegin, vEnd) whose rays cross slice k.

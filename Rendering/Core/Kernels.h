@@ -150,6 +150,11 @@ struct RayLoops
   /// is not what it was `before` the samples were taken.
   void (*note)(std::int32_t* winners, std::int32_t place, const P* before, const P* image,
     const P* samples, const unsigned char* mask, std::ptrdiff_t n);
+  /// `raise` where samples may come in any order of slices, and no NaN does: image[x] = samples[x]
+  /// and orders[x] = order where the sample is larger, or as large and order < orders[x]. Where
+  /// there are bits, if bits[x] & bit.
+  void (*raiseNoting)(P* image, std::int16_t* orders, std::int16_t order, const P* samples,
+    const unsigned char* bits, unsigned char bit, std::ptrdiff_t n);
 };
 
 /// How depth shading dims the samples of slice k in a row of pixels whose rays have slices first[x]

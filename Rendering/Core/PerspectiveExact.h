@@ -40,6 +40,7 @@ public:
       Rows(rows),
       Depths(frame.geometry, 2)
   {
+    this->RaisesBest = true;
   }
 
   /// As in PerspectiveWorksheets.

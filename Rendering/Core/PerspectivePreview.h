@@ -8,7 +8,7 @@
 
 #include "Cuts.h"
 #include "Frame.h"
-#include "Patch.h"
+#include "PreviewLayers.h"
 
 namespace splatting
 {
@@ -46,14 +46,18 @@ public:
     return this->Shared.steps.rows.voxels(this->slices(z), pixels);
   }
 
+  std::int16_t orderOf(int z) const { return this->Shared.orderOfLayer(z); }
+
   void splat(
     int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
-    const Span slices = this->slices(z);
-    for (int k = slices.begin; k < slices.end; ++k)
+    if (!this->Shared.orders)
     {
-      this->splatSlice(k, v0, v1, runs, bits, patch);
+      this->splatInto(this->Shared.image.template row<T>(0), z, v0, v1, runs, bits, patch);
+      return;
     }
+    noteLayer(this->Shared, this->orderOf(z), v0, v1, runs, patch,
+      [&](T* pixels) { this->splatInto(pixels, z, v0, v1, runs, bits, patch); });
   }
 
   void open(int, int, const Span&, Patch&) const {}
@@ -113,8 +117,19 @@ private:
     return common(slicesOfLayer(z, this->Shared.geometry.size()), this->Shared.geometry.slices());
   }
 
-  void splatSlice(
-    int k, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  /// @param pixels  pixel (0, 0) of what has the image's rows
+  void splatInto(T* pixels, int z, int v0, int v1, const std::vector<Span>& runs,
+    const SliceBits& bits, Patch& patch) const
+  {
+    const Span slices = this->slices(z);
+    for (int k = slices.begin; k < slices.end; ++k)
+    {
+      this->splatSlice(pixels, k, v0, v1, runs, bits, patch);
+    }
+  }
+
+  void splatSlice(T* pixels, int k, int v0, int v1, const std::vector<Span>& runs,
+    const SliceBits& bits, Patch& patch) const
   {
     const SliceGeometry& slice = this->Shared.sliceGeometry[k];
     v0 = std::max(v0, slice.vBegin);
@@ -142,17 +157,18 @@ private:
       return;
     }
     const VoxelLoops<T>& loops = this->Shared.kernels;
-    loops.cross(this->crossingOf(k, v0, v1, bits, patch));
+    loops.cross(this->crossingOf(pixels, k, v0, v1, bits, patch));
   }
 
-  Crossing<T> crossingOf(int k, int v0, int v1, const SliceBits& bits, const Patch& patch) const
+  Crossing<T> crossingOf(
+    T* pixels, int k, int v0, int v1, const SliceBits& bits, const Patch& patch) const
   {
     const PerspectiveSteps& steps = this->Shared.steps;
     const FanSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
     const FanWindows::Picks entry = steps.windows.entering(k), exit = steps.windows.leaving(k);
     Crossing<T> c;
-    c.image = this->Shared.image.template row<T>(v0);
     c.imageStride = this->Shared.image.width;
+    c.image = pixels + v0 * c.imageStride;
     c.height = v1 - v0;
     c.voxels = this->Shared.voxelRow(0, k);
     c.rowStride = this->Shared.slices.rowStride;

@@ -30,6 +30,33 @@ struct PreviewLayer
 };
 static_assert(MostRows == 3 * BrickDepth);
 
+/**
+ * Raises runs of rows of the image to what splat(pixels) makes of a layer in an empty image of the
+ * same rows, and notes which pixels it has won. What is no sample there is the least value, as
+ * such pixels are that have had none: a layer that does not meet them may be noted for these.
+ */
+template <class T, class SplatLayer>
+void noteLayer(const Frame<T>& frame, std::int16_t order, int v0, int v1,
+  const std::vector<Span>& runs, Patch& patch, SplatLayer&& splat)
+{
+  const std::ptrdiff_t width = frame.image.width;
+  patch.noted.resize((v1 - v0) * width * sizeof(T));
+  T* const pixels = reinterpret_cast<T*>(patch.noted.data()) - v0 * width;
+  // Registers write beside their runs.
+  std::fill(pixels + v0 * width, pixels + v1 * width, leastValue<T>());
+  splat(pixels);
+  const RayLoops<T>& loops = frame.kernels;
+  for (int v = v0; v < v1; ++v)
+  {
+    for (const Span& run : runs)
+    {
+      loops.raiseNoting(frame.image.template row<T>(v) + run.begin,
+        frame.ordersOfRow(v) + run.begin, order, pixels + v * width + run.begin, nullptr, 0,
+        run.end - run.begin);
+    }
+  }
+}
+
 template <class T>
 class PreviewLayers
 {
@@ -68,6 +95,9 @@ public:
   }
 
   const Window& window(int layer) const { return this->Layers[layer].window; }
+
+  /// Of Frame::orders, what a layer gives.
+  std::int16_t orderOf(int z) const { return this->Shared.orderOfLayer(z); }
 
   /// Takes a layer's voxels into the pixels of some rows and runs of columns, as far as the bits
   /// (if there are any) say.
@@ -161,9 +191,22 @@ public:
 private:
   using Layer = PreviewLayer;
 
-  const ShearImage& image() const { return this->Shared.image; }
+  ShearImage& image() const { return this->Shared.image; }
 
   void splatLayer(int z, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
+    const SliceBits& bits, Patch& patch) const
+  {
+    if (!this->Shared.orders)
+    {
+      this->splatInto(this->image().template row<T>(0), z, v0, v1, runs, sideBySide, bits, patch);
+      return;
+    }
+    noteLayer(this->Shared, this->orderOf(z), v0, v1, runs, patch,
+      [&](T* pixels) { this->splatInto(pixels, z, v0, v1, runs, sideBySide, bits, patch); });
+  }
+
+  /// @param pixels  pixel (0, 0) of what has the image's rows
+  void splatInto(T* pixels, int z, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
     const SliceBits& bits, Patch& patch) const
   {
     const Layer& layer = this->Layers[z];
@@ -172,12 +215,12 @@ private:
     const bool plain = layer.rimsFit && !this->Shared.range.special;
     const int first = plain ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
     const int last = std::clamp(this->Shared.geometry.size().y - 1 - layer.window.jMax, first, v1);
-    this->splatSlices(z, v0, first, runs, bits, patch);
+    this->splatSlices(pixels, z, v0, first, runs, bits, patch);
     if (first < last)
     {
-      this->sweep(layer, first, last, runs, sideBySide, bits);
+      this->sweep(pixels, layer, first, last, runs, sideBySide, bits);
     }
-    this->splatSlices(z, last, v1, runs, bits, patch);
+    this->splatSlices(pixels, z, last, v1, runs, bits, patch);
   }
 
   void findRims(Layer& layer) const
@@ -207,8 +250,8 @@ private:
 
   /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns. So many slices
   /// are read side by side.
-  void sweep(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
-    const SliceBits& bits) const
+  void sweep(T* pixels, const Layer& layer, int v0, int v1, const std::vector<Span>& runs,
+    int sideBySide, const SliceBits& bits) const
   {
     for (int first = 0, end = 0; first < layer.tapCount; first = end)
     {
@@ -216,18 +259,18 @@ private:
       {
         ++end;
       }
-      this->sweepTaps(layer, first, end, v0, v1, runs, bits);
+      this->sweepTaps(pixels, layer, first, end, v0, v1, runs, bits);
     }
   }
 
-  void sweepTaps(const Layer& layer, int firstTap, int endTap, int v0, int v1,
+  void sweepTaps(T* pixels, const Layer& layer, int firstTap, int endTap, int v0, int v1,
     const std::vector<Span>& runs, const SliceBits& bits) const
   {
     Sweep<T> sweep;
     sweep.bits = bits.origin ? bits.at(0, v0) : nullptr;
     sweep.bitsStride = bits.stride;
-    sweep.image = this->Shared.image.template row<T>(v0);
     sweep.imageStride = this->Shared.image.width;
+    sweep.image = pixels + v0 * sweep.imageStride;
     sweep.height = v1 - v0;
     sweep.count = endTap - firstTap;
     sweep.rowStride = this->Shared.slices.rowStride;
@@ -269,8 +312,8 @@ private:
   }
 
   /// Any rows, slice by slice.
-  void splatSlices(
-    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  void splatSlices(T* pixels, int z, int v0, int v1, const std::vector<Span>& runs,
+    const SliceBits& bits, Patch& patch) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
     for (int k = slices.begin; k < slices.end; ++k)
@@ -280,13 +323,14 @@ private:
       {
         for (const Span& run : runs)
         {
-          this->splatSlice(k, v, common(run, this->Shared.pixels(v, k)), bits, patch);
+          T* const row = pixels + std::ptrdiff_t(v) * this->Shared.image.width;
+          this->splatSlice(row, k, v, common(run, this->Shared.pixels(v, k)), bits, patch);
         }
       }
     }
   }
 
-  void splatSlice(int k, int v, const Span& span, const SliceBits& bits, Patch& patch) const
+  void splatSlice(T* row, int k, int v, const Span& span, const SliceBits& bits, Patch& patch) const
   {
     const unsigned char* mask = nullptr;
     if (bits.origin && !span.empty())
@@ -301,7 +345,7 @@ private:
     this->forVoxels(k, v, span, false,
       [&](int, const Span& pixels, const T* voxels)
       {
-        T* const image = this->Shared.image.template row<T>(v) + pixels.begin;
+        T* const image = row + pixels.begin;
         const std::ptrdiff_t n = pixels.end - pixels.begin;
         if (mask || this->Shared.range.special)
         {

@@ -10,6 +10,7 @@
 #include "PerspectivePreview.h"
 #include "PerspectiveWorksheets.h"
 #include "RayWalk.h"
+#include "WinnerFinder.h"
 
 #include <vtkSMPThreadLocal.h>
 #include <vtkSMPTools.h>
@@ -83,9 +84,9 @@ Acceleration choose(const Experience& experience, Quality quality)
 }
 
 /// Whether each sample has to be looked at by itself.
-bool looksAtAll(const ProjectionSettings& settings)
+bool looksAtAll(const ProjectionSettings& settings, const VolumeIndex::Range& range)
 {
-  return settings.reduction != Reduction::Maximum || settings.keepWinners;
+  return settings.reduction != Reduction::Maximum || (settings.keepWinners && range.special);
 }
 
 /// Room for what a reduction keeps of each pixel.
@@ -134,6 +135,8 @@ struct Projector::Scratch
   OutlineSpace outline;
   RayState rays;
   vtkSMPThreadLocal<RayScratch> rayBands;
+  std::vector<std::int16_t> orders;
+  vtkSMPThreadLocal<WinnerScratch> winners;
   std::vector<unsigned char> chunk;
   std::vector<LineReach> lineReaches;
   vtkSMPThreadLocal<LineScratch> lines;
@@ -173,6 +176,14 @@ void Projector::walk(
   VolumeIndex& index, Frame<T>& frame, const Layers& layers, Acceleration used, TileCount& count)
 {
   using P = typename Layers::Pixel;
+  const bool notes = frame.image.keepsWinners();
+  if (notes)
+  {
+    this->openNotes(frame);
+  }
+  const bool preview = std::is_same_v<P, T> && Layers::Beyond == 0;
+  const WinnerFinder<Layers> finder(
+    frame, layers, index.volume(), this->Memory->outline.crossed, preview);
   const BrickMaxima* const bricks =
     used == Acceleration::Bricks ? &index.bricks(frame.geometry.principalAxis()) : nullptr;
   this->forSlices(index, frame, Layers::Beyond, false,
@@ -184,11 +195,19 @@ void Projector::walk(
           if (isFirst)
           {
             openRows<P>(frame.image, layers.floor(), v0, v1);
+            if (notes)
+            {
+              openOrders(frame, v0, v1);
+            }
           }
           BandWalk<Layers> band(frame, layers, this->Memory->bands.Local(), slices, v0, v1);
           bricks ? band.walkBricks(*bricks) : band.walkDensely();
           if (isLast)
           {
+            if (notes)
+            {
+              finder.find(v0, v1, this->Memory->winners.Local());
+            }
             layers.finish(v0, v1);
             closeRows<P>(frame.image, v0, v1);
           }
@@ -202,6 +221,15 @@ void Projector::walk(
   }
 }
 
+/// Room for what walks note of winners.
+template <class T>
+void Projector::openNotes(Frame<T>& frame)
+{
+  this->Memory->orders.resize(frame.image.winners.size());
+  frame.orders = this->Memory->orders.data();
+  this->Memory->outline.crossed.reset(frame.sliceGeometry, frame.image.width);
+}
+
 template <class T, class Layers>
 void Projector::walkRays(
   VolumeIndex& index, Frame<T>& frame, const Layers& layers, const ProjectionSettings& settings)
@@ -210,8 +238,6 @@ void Projector::walkRays(
   const bool computes = Walk::computes(settings.reduction);
   RayState& state = this->Memory->rays;
   openState(frame.image, settings.reduction, state);
-  frame.image.winners.resize(
-    settings.keepWinners ? std::size_t(frame.image.width) * frame.image.height : 0);
   if (settings.reduction == Reduction::DepthShaded)
   {
     this->Memory->outline.crossed.reset(frame.sliceGeometry, frame.image.width);
@@ -288,6 +314,7 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   const bool samples = preview && !RayWalk<PreviewLayers<T>>::computes(settings.reduction);
   image.type = samples ? scalarTypeOf<T>() : scalarTypeOf<A>();
   image.bytes.resize(std::size_t(image.width) * image.height * (samples ? sizeof(T) : sizeof(A)));
+  image.winners.resize(settings.keepWinners ? std::size_t(image.width) * image.height : 0);
   auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
   auto& reach = std::get<WorksheetReach<A>>(this->Memory->reach);
   const Kernel kernel = standard ? Kernel{ Reconstruction::Box } : settings.kernel;
@@ -324,7 +351,7 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   }
   const auto splat = [&](const auto& layers)
   {
-    if (looksAtAll(settings))
+    if (looksAtAll(settings, frame.range))
     {
       this->walkRays(index, frame, layers, settings);
       return;
@@ -435,12 +462,12 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   const ProjectionSettings& settings, const ShearWarp& geometry, const Cuts& cuts,
   const LineIndex*& lines)
 {
-  if (looksAtAll(settings) || index.range().special)
+  if (looksAtAll(settings, index.range()) || index.range().special)
   {
     return Acceleration::Dense;
   }
   if (wanted >= Acceleration::Lines && cuts.none() && !geometry.isPerspective() &&
-    settings.quality != Quality::Exact && !this->stopped())
+    !settings.keepWinners && settings.quality != Quality::Exact && !this->stopped())
   {
     lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),
       [this](double share)
@@ -462,7 +489,6 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
 {
   Scratch& memory = *this->Memory;
   this->Observer.start();
-  image.winners.clear();
   memory.cuts.reset(cuts, geometry);
   if (geometry.isPerspective())
   {

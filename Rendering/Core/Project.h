@@ -84,7 +84,8 @@ struct ProjectionSettings
   /// Lines without voxels that cannot be seen: the same bits, fewer chains. For Quality::Preview,
   /// else ignored.
   bool eliminateInvisible = false;
-  /// Whether the image tells its winners. Walks all samples. Not for Reduction::Mean.
+  /// Whether the image tells its winners: of equal samples the nearest to the viewer. Means have
+  /// none: not for Reduction::Mean. Lines and its sorted kin are Bricks then.
   bool keepWinners = false;
   /// Values at or below need not be told apart: the image is the larger of this (in preview rounded
   /// down to the scalar type) and what it would be otherwise.
@@ -154,6 +155,8 @@ private:
     VolumeIndex& index, Frame<T>& frame, const Layers& layers, Acceleration used, TileCount& count);
   template <class T, class Body>
   void forSlices(VolumeIndex& index, Frame<T>& frame, int beyond, bool reversed, Body&& body);
+  template <class T>
+  void openNotes(Frame<T>& frame);
   template <class T>
   void carryType(const VoxelArray& other, const ShearWarp& geometry,
     const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image);

@@ -165,6 +165,29 @@ void note(std::int32_t* winners, std::int32_t place, const P* before, const P* i
        : note<false>(winners, place, before, image, samples, mask, n);
 }
 
+template <bool Masked, class P>
+void raiseNoting(P* __restrict image, std::int16_t* __restrict orders, std::int16_t order,
+  const P* __restrict samples, const unsigned char* __restrict bits, unsigned char bit,
+  std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const bool counts = !Masked || (bits[x] & bit) != 0;
+    const bool wins =
+      counts & ((samples[x] > image[x]) | ((samples[x] == image[x]) & (order < orders[x])));
+    image[x] = wins ? samples[x] : image[x];
+    orders[x] = wins ? order : orders[x];
+  }
+}
+
+template <class P>
+void raiseNoting(P* image, std::int16_t* orders, std::int16_t order, const P* samples,
+  const unsigned char* bits, unsigned char bit, std::ptrdiff_t n)
+{
+  bits ? raiseNoting<true>(image, orders, order, samples, bits, bit, n)
+       : raiseNoting<false>(image, orders, order, samples, bits, bit, n);
+}
+
 template <bool Masked, class A>
 void shade(A* __restrict image, const Shade<A>& s, const A* __restrict samples,
   const unsigned char* __restrict mask, std::ptrdiff_t n)

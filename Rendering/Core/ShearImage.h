@@ -32,6 +32,7 @@ struct ShearImage
   /// If asked for: per pixel the step of the ray that its value comes from, StepsPerSlice * slice,
   /// in preview plus the voxel's number in RayPath; -1 without a sample. Else empty.
   std::vector<std::int32_t> winners;
+  bool keepsWinners() const { return !this->winners.empty(); }
   /// NaN pixels have no sample, infinities occur.
   bool special = false;
 

@@ -266,39 +266,48 @@ void warpInside(const WarpSource<A, Sink>& source, const glm::dvec3& start, cons
   }
 }
 
+/// Calls f(u, v, weight) for the pixels in the volume between which a point is interpolated.
+template <class F>
+void forNeighbours(const ShearImage& image, const glm::dvec2& p, F&& f)
+{
+  // Points on the line between two images may round out of theirs, where they have no neighbours.
+  const int u = static_cast<int>(std::floor(p.x)), v = static_cast<int>(std::floor(p.y));
+  const double fu = p.x - u, fv = p.y - v;
+  for (int n = 0; n < 4; ++n)
+  {
+    const int i = n & 1, j = n >> 1;
+    if (image.meetsVolume(u + i, v + j))
+    {
+      f(u + i, v + j, (i ? fu : 1.0 - fu) * (j ? fv : 1.0 - fv));
+    }
+  }
+}
+
 /// Where a neighbour may be missing, NaN or infinite: interpolates between those that count.
 template <class A, class Sink>
 typename Sink::Pixel warpPoint(const WarpSource<A, Sink>& source, const glm::dvec3& homogeneous)
 {
   const ShearImage& image = source.image;
   const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
-  // Points on the line between two images may round out of theirs, where they have no neighbours.
-  const int u = static_cast<int>(std::floor(p.x)), v = static_cast<int>(std::floor(p.y));
-  const double fu = p.x - u, fv = p.y - v;
   double sum = 0.0, weight = 0.0, lost = 0.0, largest = -1.0;
   A nearest = 0;
-  for (int n = 0; n < 4; ++n)
-  {
-    const int i = n & 1, j = n >> 1;
-    if (!image.meetsVolume(u + i, v + j))
+  forNeighbours(image, p,
+    [&](int u, int v, double w)
     {
-      continue;
-    }
-    const A value = source.pixels[std::ptrdiff_t(v + j) * image.width + u + i];
-    const double w = (i ? fu : 1.0 - fu) * (j ? fv : 1.0 - fv);
-    if (value != value || !image.covers(u + i, v + j))
-    {
-      lost += w;
-      continue;
-    }
-    sum += w * value;
-    weight += w;
-    if (w > largest)
-    {
-      largest = w;
-      nearest = value;
-    }
-  }
+      const A value = source.pixels[std::ptrdiff_t(v) * image.width + u];
+      if (value != value || !image.covers(u, v))
+      {
+        lost += w;
+        return;
+      }
+      sum += w * value;
+      weight += w;
+      if (w > largest)
+      {
+        largest = w;
+        nearest = value;
+      }
+    });
   // Where samples are missing inside the volume, the picture ends half-way to the last one; at the
   // volume's rim it ends with the silhouette.
   if (weight <= 0.0 || lost > 0.5)
@@ -337,33 +346,67 @@ void warpSpan(const WarpSource<A, Sink>& source, const glm::dvec3& start, const 
 /// Of a view: one for each direction of each axis.
 constexpr std::size_t MostImages = 6;
 
-template <class A, class Sink>
-void warpRow(const std::vector<WarpSource<A, Sink>>& sources, const glm::dvec3& start, int width,
-  typename Sink::Pixel* out)
+/// Calls show(n, row) for the pixels of a row, `start` being the first, that image n shows, and
+/// skip(row) for those that none does.
+template <class ShownOf, class Show, class Skip>
+void forSpans(std::size_t count, const glm::dvec3& start, int width, const ShownOf& shownOf,
+  const Show& show, const Skip& skip)
 {
-  const auto empty = sources.front().sink.empty;
   // Images meet at lines: the one that begins first has the pixels that two show.
   std::array<std::pair<int, std::size_t>, MostImages> order;
   std::array<Span, MostImages> spans;
-  for (std::size_t n = 0; n < sources.size(); ++n)
+  for (std::size_t n = 0; n < count; ++n)
   {
-    spans[n] = sources[n].shown.cut({ 0, width }, start);
+    spans[n] = shownOf(n).cut({ 0, width }, start);
     order[n] = { spans[n].begin, n };
   }
-  std::sort(order.begin(), order.begin() + sources.size());
+  std::sort(order.begin(), order.begin() + count);
   int done = 0;
-  for (std::size_t n = 0; n < sources.size(); ++n)
+  for (std::size_t n = 0; n < count; ++n)
   {
     const std::size_t which = order[n].second;
     const Span row{ std::max(spans[which].begin, done), spans[which].end };
     if (!row.empty())
     {
-      std::fill(out + done, out + row.begin, empty);
-      warpSpan(sources[which], start, row, out);
+      skip(Span{ done, row.begin });
+      show(which, row);
       done = row.end;
     }
   }
-  std::fill(out + done, out + width, empty);
+  skip(Span{ done, width });
+}
+
+template <class A, class Sink>
+void warpRow(const std::vector<WarpSource<A, Sink>>& sources, const glm::dvec3& start, int width,
+  typename Sink::Pixel* out)
+{
+  const auto empty = sources.front().sink.empty;
+  forSpans(
+    sources.size(), start, width, [&](std::size_t n) -> const Outline& { return sources[n].shown; },
+    [&](std::size_t n, const Span& row) { warpSpan(sources[n], start, row, out); },
+    [&](const Span& row) { std::fill(out + row.begin, out + row.end, empty); });
+}
+
+/// Of the shear pixels that a point's value is interpolated between, the nearest.
+ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& homogeneous)
+{
+  const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
+  ShearPixel nearest;
+  double lost = 0.0, largest = -1.0;
+  forNeighbours(image, p,
+    [&](int u, int v, double w)
+    {
+      if (image.winners[std::size_t(v) * image.width + u] < 0)
+      {
+        lost += w;
+      }
+      else if (w > largest)
+      {
+        largest = w;
+        nearest = { number, u, v };
+      }
+    });
+  return lost > 0.5 ? ShearPixel{} : nearest;
 }
 
 /// The pixels of a part of a viewport, of which `pixels` is the first and the next row lies a
@@ -542,6 +585,39 @@ void Warper::warpScalars(const std::vector<ShearImage>& images,
       A* const first =
         static_cast<A*>(scalars) + std::ptrdiff_t(place.origin.y) * viewport.x + place.origin.x;
       warpImages<T>(images, geometries, kernels, sink, this->Widened, place, first, viewport.x);
+    });
+}
+
+void findShearPixels(const std::vector<ShearImage>& images,
+  const std::vector<ShearWarp>& geometries, const glm::ivec2& origin, const glm::ivec2& size,
+  ShearPixel* out)
+{
+  std::vector<Outline> shown;
+  for (const ShearWarp& geometry : geometries)
+  {
+    shown.push_back(shownBy(geometry));
+  }
+  vtkSMPTools::For(0, size.y, 16,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType y = first; y < last; ++y)
+      {
+        const glm::dvec3 start(origin.x, origin.y + static_cast<double>(y), 1.0);
+        ShearPixel* const row = out + y * size.x;
+        forSpans(
+          geometries.size(), start, size.x,
+          [&](std::size_t n) -> const Outline& { return shown[n]; },
+          [&](std::size_t n, const Span& span)
+          {
+            const glm::dmat3& m = geometries[n].screenToShear();
+            for (int x = span.begin; x < span.end; ++x)
+            {
+              row[x] = nearestPixel(
+                images[n], static_cast<int>(n), m * glm::dvec3(origin.x + x, start.y, 1.0));
+            }
+          },
+          [&](const Span& span) { std::fill(row + span.begin, row + span.end, ShearPixel{}); });
+      }
     });
 }
 }

@@ -44,6 +44,25 @@ void placePicture(
   const std::vector<ShearWarp>& images, const glm::ivec2& viewport, Picture& picture);
 
 /**
+ * A pixel of one of a view's shear images; none by default.
+ */
+struct ShearPixel
+{
+  int image = -1;
+  int u = 0, v = 0;
+};
+
+/**
+ * For each pixel of a rectangle of the viewport, row by row from the bottom, the shear pixel whose
+ * location stands for it: the nearest of those that Warper interpolates its value between; none
+ * where the picture has no sample.
+ * @param images  with winners; as in Warper::warp()
+ */
+void findShearPixels(const std::vector<ShearImage>& images,
+  const std::vector<ShearWarp>& geometries, const glm::ivec2& origin, const glm::ivec2& size,
+  ShearPixel* out);
+
+/**
  * Adds a picture of the same size and place, byte by byte, no further than 255.
  */
 void addSaturated(const Picture& layer, Picture& sum);

@@ -95,6 +95,9 @@ public:
 
   A share(int layer) const { return this->Reach.layers[layer].share; }
 
+  /// Of Frame::orders, the least that a layer can give.
+  std::int16_t orderOf(int z) const { return this->Shared.nearestOrder(z); }
+
   /// What is subtracted from voxels before they are weighed, so that a flat background of the
   /// lowest value is 0 and its sums are exact.
   A base() const { return this->Base; }
@@ -154,10 +157,14 @@ public:
       {
         this->open(first, last, piece, patch);
         const Target worksheet = this->worksheetFor(first, last, piece, patch);
+        const A none =
+          this->Shared.range.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
         for (int n = 0; n < slices.end - slices.begin; ++n)
         {
           const int k = reversed ? slices.end - 1 - n : slices.begin + n;
-          this->splatSlice(k, first, last, piece, worksheet, patch,
+          this->splatSlice(
+            k, first, last, piece, worksheet, patch,
+            [&](int v, const Span& pixels) { this->put(none, v, pixels, worksheet); },
             [&](int v, const Span& pixels)
             { f(StepsPerSlice * k, v, pixels, worksheet.at(pixels.begin, v), nullptr); });
         }
@@ -258,6 +265,11 @@ private:
   void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const SliceBits& bits,
     Patch& patch) const
   {
+    if (this->Shared.orders)
+    {
+      this->notePiece(slices, v0, v1, columns, bits, patch);
+      return;
+    }
     for (int k = slices.begin; k < slices.end; ++k)
     {
       this->forRows(k, v0, v1, columns,
@@ -272,20 +284,63 @@ private:
     }
   }
 
-  /// The worksheet of slice k alone, then f(v, pixels) for its rows.
-  template <class F>
-  void splatSlice(
-    int k, int v0, int v1, const Span& columns, const Target& worksheet, Patch& patch, F&& f) const
+  /// The same where pixels remember which slice has won.
+  void notePiece(const Span& slices, int v0, int v1, const Span& columns, const SliceBits& bits,
+    Patch& patch) const
   {
-    const A none =
-      this->Shared.range.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
+    const RayLoops<A>& loops = this->Shared.kernels;
+    const Target worksheet = this->worksheetFor(v0, v1, columns, patch);
+    for (int k = slices.begin; k < slices.end; ++k)
+    {
+      const std::int16_t order = this->Shared.orderOfSlice(k);
+      const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
+      const auto open = [&](int v, const Span& pixels)
+      {
+        this->RaisesBest ? this->putBelowImage(v, pixels, worksheet)
+                         : this->put(leastValue<A>(), v, pixels, worksheet);
+      };
+      this->splatSlice(k, v0, v1, columns, worksheet, patch, open,
+        [&](int v, const Span& pixels)
+        {
+          loops.raiseNoting(this->Shared.image.template row<A>(v) + pixels.begin,
+            this->Shared.ordersOfRow(v) + pixels.begin, order, worksheet.at(pixels.begin, v),
+            bits.origin ? bits.at(pixels.begin, v) : nullptr, bit, pixels.end - pixels.begin);
+        });
+    }
+  }
+
+  void put(A value, int v, const Span& pixels, const Target& worksheet) const
+  {
+    std::fill(worksheet.at(pixels.begin, v), worksheet.at(pixels.end, v), value);
+  }
+
+  /// Values a little below those of the image, so that what is as large as the image shows, and no
+  /// more is found out about what is smaller.
+  void putBelowImage(int v, const Span& pixels, const Target& worksheet) const
+  {
+    const A* const image = this->Shared.image.template row<A>(v) + pixels.begin;
+    A* const out = worksheet.at(pixels.begin, v);
+    const std::ptrdiff_t count = pixels.end - pixels.begin;
+    for (std::ptrdiff_t x = 0; x < count; ++x)
+    {
+      out[x] = image[x] - std::abs(image[x]) * (4 * std::numeric_limits<A>::epsilon()) -
+        std::numeric_limits<A>::min();
+    }
+  }
+
+  /// The worksheet of slice k alone, in which pixels are as open(v, pixels) has set them or larger,
+  /// then f(v, pixels) for its rows.
+  template <class Open, class F>
+  void splatSlice(int k, int v0, int v1, const Span& columns, const Target& worksheet, Patch& patch,
+    Open&& open, F&& f) const
+  {
     this->forRows(k, v0, v1, columns,
       [&](int first, int end, const Span& span)
       {
         this->load(k, patch);
         for (int v = first; v < end; ++v)
         {
-          std::fill(worksheet.at(span.begin, v), worksheet.at(span.end, v), none);
+          open(v, span);
         }
         this->splatRows(k, first, end, span, worksheet, patch);
         for (int v = first; v < end; ++v)
@@ -392,6 +447,7 @@ protected:
   const Frame<T>& Shared;
   const WorksheetReach<A>& Reach;
   int Depth;
+  bool RaisesBest = false; ///< whether splatRows() does less where pixels are large already
   int PieceWidth = 1024, PieceHeight = RowsTogether; ///< pixels; for the second-level cache
   A Base;
 };

@@ -178,13 +178,15 @@ bool ComponentProjector::Carries(const splatting::ProjectionSettings& settings) 
 splatting::ProjectionSettings ComponentProjector::SettingsOf(
   const Channel& channel, splatting::ProjectionSettings settings) const
 {
-  settings.keepWinners = this->Carries(settings);
-  if (settings.keepWinners && settings.quality == splatting::Quality::Exact)
+  // Whether locations are wanted is the mapper's affair.
+  settings.keepWinners =
+    this->Carries(settings) || (settings.keepWinners && &channel == &this->LocatedChannel());
+  if (this->Carries(settings) && settings.quality == splatting::Quality::Exact)
   {
     settings.quality = splatting::Quality::High; // what is carried is an average
   }
-  // Colours that are carried matter below the window, too.
-  if (this->Cull && !this->Dependent && settings.reduction == splatting::Reduction::Maximum)
+  // Colours that are carried, and locations, matter below the window, too.
+  if (this->Cull && !settings.keepWinners && settings.reduction == splatting::Reduction::Maximum)
   {
     settings.floor = channel.FloorOfWindow();
   }
@@ -213,6 +215,7 @@ bool ComponentProjector::ProjectChannel(Channel& channel, splatting::ShearImage&
     return false;
   }
   channel.Used = used;
+  channel.Range = channel.Index.range();
   ++this->Done;
   return true;
 }
@@ -309,6 +312,23 @@ bool ComponentProjector::Project(const std::vector<splatting::ShearWarp>& geomet
   }
   this->Projected = true;
   return true;
+}
+
+//------------------------------------------------------------------------------
+bool ComponentProjector::HasWinners() const
+{
+  return this->Projected && this->LocatedChannel().Settings.keepWinners;
+}
+
+//------------------------------------------------------------------------------
+void ComponentProjector::Describe(splatting::Located& located) const
+{
+  const Channel& channel = this->LocatedChannel();
+  located.images = &channel.Images;
+  located.volume = channel.Index.volume();
+  located.settings = channel.Settings;
+  located.low = std::isfinite(channel.Range.low) ? channel.Range.low : 0.0;
+  located.high = std::isfinite(channel.Range.high) ? channel.Range.high : 0.0;
 }
 
 //------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 #ifndef ComponentProjector_h
 #define ComponentProjector_h
 
+#include "Locations.h"
 #include "Project.h"
 #include "TransferFunctions.h"
 #include "Warp.h"
@@ -83,6 +84,12 @@ public:
   void CopyImage(
     std::size_t n, const splatting::ShearWarp& geometry, int vtkType, vtkImageData* output) const;
 
+  /// Whether the images tell where their samples lie: those of the component that is located, the
+  /// last of dependent ones, else the first.
+  bool HasWinners() const;
+  /// Sets what is located: images, volume and its range, settings. There must be winners.
+  void Describe(splatting::Located& located) const;
+
   /// Of the last projection.
   const splatting::ProjectionSettings& Settings() const { return this->Channels.front().Settings; }
   splatting::Acceleration Used() const { return this->Channels.front().Used; }
@@ -101,6 +108,7 @@ private:
     splatting::ProjectionSettings Settings;
     std::vector<splatting::ShearImage> Images; // at least as many as the view has
     splatting::ShearImage Phase;               // the present part of one of them
+    splatting::VolumeIndex::Range Range;       // of what was projected
     splatting::Acceleration Used = splatting::Acceleration::Dense;
 
     double FloorOfWindow() const;
@@ -109,6 +117,10 @@ private:
   splatting::ProjectionSettings SettingsOf(
     const Channel& channel, splatting::ProjectionSettings settings) const;
   bool Carries(const splatting::ProjectionSettings& settings) const;
+  const Channel& LocatedChannel() const
+  {
+    return this->Dependent ? this->Channels.back() : this->Channels.front();
+  }
   bool ProjectImage(std::size_t n, const splatting::ShearWarp& geometry,
     const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
   /// Where a channel's image belongs.

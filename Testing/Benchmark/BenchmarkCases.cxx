@@ -299,6 +299,35 @@ void MeasureProjections(benchmark::State& state, const BenchmarkVolume& volume,
 }
 
 //------------------------------------------------------------------------------
+void MeasureLocations(benchmark::State& state, const BenchmarkVolume& volume,
+  const BenchmarkMapper& mapper, const BenchmarkRotation& rotation)
+{
+  vtkImageData* image = LoadOrFail(state, volume);
+  if (!image)
+  {
+    return;
+  }
+  BenchmarkStage& stage = BenchmarkStage::GetInstance();
+  stage.SetSize(64);
+  stage.SetMapper(mapper, image);
+  auto* splatting = vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper());
+  splatting->RecordLocationsOn();
+  ShowEachAxis();
+  std::vector<double> arrays;
+  Rotate(state, rotation,
+    [&](double)
+    {
+      const auto start = std::chrono::steady_clock::now();
+      benchmark::DoNotOptimize(splatting->GetLocations());
+      const auto end = std::chrono::steady_clock::now();
+      arrays.push_back(1e3 * std::chrono::duration<double>(end - start).count());
+      return splatting->GetProjectionTime();
+    });
+  state.counters["arrays_ms"] = Median(arrays);
+  stage.Clear();
+}
+
+//------------------------------------------------------------------------------
 void MeasureIndex(benchmark::State& state, const BenchmarkVolume& volume)
 {
   vtkImageData* image = LoadOrFail(state, volume);

@@ -59,6 +59,13 @@ void MeasureProjections(benchmark::State& state, const BenchmarkVolume& volume,
   BenchmarkCut cut = BenchmarkCut::NONE);
 
 /**
+ * The same with RecordLocations, and the samples' locations in a window of 64 x 64 pixels in
+ * counter arrays_ms, the median of the views, which is not in the projection's time.
+ */
+void MeasureLocations(benchmark::State& state, const BenchmarkVolume& volume,
+  const BenchmarkMapper& mapper, const BenchmarkRotation& rotation);
+
+/**
  * Makes the index of a volume, again and again: counter median_ms.
  */
 void MeasureIndex(benchmark::State& state, const BenchmarkVolume& volume);

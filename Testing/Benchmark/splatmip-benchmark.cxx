@@ -44,6 +44,7 @@ void PrintHelp()
   frame/VOLUME/WINDOW/MAPPER  a whole frame, render and read-back
   recolor/VOLUME/WINDOW/MODE  a whole frame of a view that is shown already, in another window/level
   projection/VOLUME/MODE[-ACCELERATION]  the projection alone, volume to shear image
+  where/VOLUME/MODE[-ACCELERATION]       the same with RecordLocations
   cut/VOLUME/MODE/CUT         the projection alone, cut by clipping planes
   first/VOLUME/MODE[-ACCELERATION]       the slowest of the first frames along the three axes, 300^2
   index/VOLUME                making the bricks: one survey of the voxels
@@ -239,6 +240,8 @@ void RegisterVolume(const BenchmarkVolume& volume, bool isQuick)
     const BenchmarkRotation rotation = ChooseRotation(mapper, volume.IsBig, isQuick);
     Register("projection/" + volume.Name + "/" + mapper.Name, rotation.Views * rotation.Passes,
       [=](benchmark::State& state) { MeasureProjections(state, volume, mapper, rotation); });
+    Register("where/" + volume.Name + "/" + mapper.Name, rotation.Views * rotation.Passes,
+      [=](benchmark::State& state) { MeasureLocations(state, volume, mapper, rotation); });
     Register("first/" + volume.Name + "/" + mapper.Name, isQuick ? 1 : 5,
       [=](benchmark::State& state) { MeasureFirst(state, volume, mapper); });
   }

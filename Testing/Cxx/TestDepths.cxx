@@ -1,0 +1,345 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is made of the depths of samples: the colours of depth coding, beside those that follow from
+// a brute-force search, and the depth buffer, which hides what is rendered later behind what is
+// seen.
+#include "Stage.h"
+
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkActor.h"
+#include "vtkCamera.h"
+#include "vtkColorTransferFunction.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkLookupTable.h"
+#include "vtkMath.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkPointData.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkProperty.h"
+#include "vtkRegressionTestImage.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkSphereSource.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+constexpr int Size = 128;
+using Rgb = std::array<int, 3>;
+
+/// Boxes of 9 x 9 voxels at three depths, in a background of 0, seen along z.
+struct Scene
+{
+  stage::Stage stage{ Size, Size };
+  vtkSmartPointer<vtkImageData> image;
+  vtkSmartPointer<vtkSplattingMIPVolumeMapper> mapper;
+  std::array<int, 3> depths = { { 4, 24, 44 } }; // of boxes at x = 8, 24, 40
+
+  Scene()
+  {
+    reference::Volume<std::uint8_t> volume({ 49, 49, 49 }, 0);
+    for (int n = 0; n < 3; ++n)
+    {
+      for (int j = 20; j < 29; ++j)
+      {
+        for (int i = 4 + 16 * n; i < 13 + 16 * n; ++i)
+        {
+          volume.at(std::array<int, 3>{ i, j, this->depths[n] }) = 200;
+        }
+      }
+    }
+    this->image = stage::toImageData(volume);
+    this->mapper = stage::splatting(this->image);
+    this->mapper->SetQualityModeToPreview();
+    this->stage.show(this->mapper);
+    this->stage.setGrayRamp(0.0, 200.0);
+  }
+
+  void look(double viewAngle)
+  {
+    this->stage.viewAngle = viewAngle;
+    this->stage.look({ 0.0, 0.0, 1.0 }, { 0.0, 1.0, 0.0 }, 0.7);
+  }
+
+  std::array<int, 2> pixelOf(double x, double y, double z)
+  {
+    this->stage.renderer->SetWorldPoint(x, y, z, 1.0);
+    this->stage.renderer->WorldToDisplay();
+    const double* const display = this->stage.renderer->GetDisplayPoint();
+    return { static_cast<int>(display[0]), static_cast<int>(display[1]) };
+  }
+  /// In the middle of box n.
+  std::array<int, 2> pixelOf(int n) { return this->pixelOf(8.0 + 16.0 * n, 24.0, this->depths[n]); }
+
+  Rgb colorAt(const stage::Pixels& pixels, const std::array<int, 2>& pixel) const
+  {
+    const unsigned char* const rgb = &pixels[3 * (std::size_t(pixel[1]) * Size + pixel[0])];
+    return { rgb[0], rgb[1], rgb[2] };
+  }
+};
+
+bool isNear(const Rgb& a, const Rgb& b, int tolerance)
+{
+  return std::abs(a[0] - b[0]) <= tolerance && std::abs(a[1] - b[1]) <= tolerance &&
+    std::abs(a[2] - b[2]) <= tolerance;
+}
+
+Rgb hueOf(double share, double value)
+{
+  const double hsv[3] = { share * 2.0 / 3.0, 1.0, value };
+  double rgb[3];
+  vtkMath::HSVToRGB(hsv, rgb);
+  return { static_cast<int>(std::lround(255.0 * rgb[0])),
+    static_cast<int>(std::lround(255.0 * rgb[1])), static_cast<int>(std::lround(255.0 * rgb[2])) };
+}
+
+std::string text(const Rgb& c)
+{
+  return std::to_string(c[0]) + " " + std::to_string(c[1]) + " " + std::to_string(c[2]);
+}
+
+void testColors(stage::Checks& check)
+{
+  Scene scene;
+  scene.mapper->DepthCodingOn();
+  scene.look(0.0);
+  const auto expect = [&](int n, const Rgb& color, const std::string& what)
+  {
+    const Rgb found = scene.colorAt(scene.stage.pixels(), scene.pixelOf(n));
+    check(isNear(found, color, 4),
+      what + ": box " + std::to_string(n) + " is " + text(found) + ", not " + text(color));
+  };
+  for (int n = 0; n < 3; ++n)
+  {
+    // The volume is 48 deep.
+    expect(n, hueOf(scene.depths[n] / 48.0, 1.0), "hues");
+  }
+  const Rgb background = scene.colorAt(scene.stage.pixels(), { { Size / 2, 20 } });
+  check(isNear(background, { 0, 0, 0 }, 0), "What is black stays black.");
+  scene.stage.setGrayRamp(0.0, 400.0);
+  expect(0, hueOf(scene.depths[0] / 48.0, 0.5), "half as bright");
+  scene.stage.setGrayRamp(0.0, 200.0);
+
+  double cameraZ[3];
+  scene.stage.renderer->GetActiveCamera()->GetPosition(cameraZ);
+  scene.mapper->SetDepthCodingRange(4.0 - cameraZ[2], 44.0 - cameraZ[2]);
+  expect(0, { 255, 0, 0 }, "range");
+  expect(1, hueOf(0.5, 1.0), "range");
+  expect(2, { 0, 0, 255 }, "range");
+  scene.mapper->SetDepthCodingRange(14.0 - cameraZ[2], 34.0 - cameraZ[2]);
+  expect(0, { 255, 0, 0 }, "before the range");
+  expect(2, { 0, 0, 255 }, "behind the range");
+  scene.mapper->SetDepthCodingRange(4.0 - cameraZ[2], 44.0 - cameraZ[2]);
+
+  vtkNew<vtkColorTransferFunction> colors;
+  colors->AddRGBPoint(-1.0, 0.0, 1.0, 0.0);
+  colors->AddRGBPoint(3.0, 1.0, 0.0, 1.0);
+  scene.mapper->SetDepthCodingColors(colors);
+  expect(0, { 0, 255, 0 }, "own colours");
+  expect(1, { 128, 128, 128 }, "own colours");
+  expect(2, { 255, 0, 255 }, "own colours");
+  vtkNew<vtkLookupTable> table;
+  table->SetNumberOfTableValues(2);
+  table->SetTableValue(0, 1.0, 1.0, 0.0);
+  table->SetTableValue(1, 0.0, 1.0, 1.0);
+  scene.mapper->SetDepthCodingColors(table);
+  expect(0, { 255, 255, 0 }, "look-up table");
+  expect(2, { 0, 255, 255 }, "look-up table");
+  scene.mapper->SetDepthCodingColors(nullptr);
+  scene.mapper->SetDepthCodingRange(0.0, 0.0);
+
+  scene.mapper->DepthCodingOff();
+  expect(2, { 255, 255, 255 }, "turned off");
+}
+
+/// Every pixel, of a volume of which no two voxels of a line are alike, by a search along lines.
+void testSearch(stage::Checks& check)
+{
+  const std::array<int, 3> size = { 40, 40, 40 };
+  auto volume = stage::blobsAndTubes(size, 6);
+  const auto image = stage::toImageData(volume);
+  const auto mapper = stage::splatting(image);
+  mapper->SetQualityModeToPreview();
+  mapper->DepthCodingOn();
+  stage::Stage stage(48, 48);
+  stage.show(mapper);
+  stage.look({ 0.0, 0.0, 1.0 }, { 0.0, 1.0, 0.0 });
+  vtkCamera* const camera = stage.renderer->GetActiveCamera();
+  camera->SetParallelScale(24.0); // a voxel is a pixel
+  camera->SetFocalPoint(20.0 - 0.5, 20.0 - 0.5, 20.0);
+  camera->SetPosition(20.0 - 0.5, 20.0 - 0.5, -100.0);
+  stage.renderer->ResetCameraClippingRange();
+  const stage::Pixels pixels = stage.pixels();
+  int wrong = 0;
+  for (int j = 0; j < size[1]; ++j)
+  {
+    for (int i = 0; i < size[0]; ++i)
+    {
+      int best = 0;
+      for (int k = 0; k < size[2]; ++k)
+      {
+        const bool larger =
+          volume.at(std::array<int, 3>{ i, j, k }) > volume.at(std::array<int, 3>{ i, j, best });
+        best = larger ? k : best;
+      }
+      const Rgb expected = hueOf(best / 39.0, volume.at(std::array<int, 3>{ i, j, best }) / 255.0);
+      // Voxel (0, 0) is at pixel (43, 4): x goes to the left.
+      const unsigned char* const rgb = &pixels[3 * ((j + 4) * 48 + 43 - i)];
+      wrong += !isNear({ rgb[0], rgb[1], rgb[2] }, expected, 4);
+    }
+  }
+  check(wrong == 0, std::to_string(wrong) + " pixels have other colours than a search gives.");
+}
+
+void testDepthBuffer(stage::Checks& check, double viewAngle)
+{
+  Scene scene;
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.0);
+  opacity->AddPoint(200.0, 1.0);
+  scene.stage.property->SetScalarOpacity(opacity);
+  scene.mapper->WriteDepthOn();
+  scene.mapper->RecordLocationsOn();
+  scene.look(viewAngle);
+  scene.stage.renderer->SetViewport(0.0, 0.0, 1.0, 1.0);
+  const std::string what = " at view angle " + std::to_string(viewAngle);
+
+  // The buffer itself.
+  scene.stage.window->Render();
+  std::vector<float> buffer(std::size_t(Size) * Size);
+  scene.stage.window->GetZbufferData(0, 0, Size - 1, Size - 1, buffer.data());
+  vtkDataArray* const positions =
+    scene.mapper->GetLocations()->GetPointData()->GetArray("Position");
+  int written = 0, wrong = 0;
+  for (int n = 0; n < Size * Size; ++n)
+  {
+    if (buffer[n] >= 1.0f)
+    {
+      continue;
+    }
+    ++written;
+    scene.stage.renderer->SetWorldPoint(positions->GetComponent(n, 0),
+      positions->GetComponent(n, 1), positions->GetComponent(n, 2), 1.0);
+    scene.stage.renderer->WorldToDisplay();
+    wrong += !(std::abs(scene.stage.renderer->GetDisplayPoint()[2] - buffer[n]) < 1e-5);
+  }
+  check(written > 200 && wrong == 0,
+    std::to_string(wrong) + " of " + std::to_string(written) + " depths are wrong" + what);
+  for (int n = 0; n < 3; ++n)
+  {
+    const auto pixel = scene.pixelOf(n);
+    check(buffer[pixel[1] * Size + pixel[0]] < 1.0f, "Boxes have depths" + what);
+  }
+  check(buffer[20 * Size + Size / 2] == 1.0f, "The background has none" + what);
+
+  // Later geometry: a layer above, which keeps depths.
+  vtkNew<vtkRenderer> later;
+  later->SetLayer(1);
+  later->PreserveDepthBufferOn();
+  later->SetActiveCamera(scene.stage.renderer->GetActiveCamera());
+  scene.stage.window->SetNumberOfLayers(2);
+  scene.stage.window->AddRenderer(later);
+  vtkNew<vtkSphereSource> source;
+  source->SetRadius(3.0);
+  vtkNew<vtkPolyDataMapper> polyMapper;
+  polyMapper->SetInputConnection(source->GetOutputPort());
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(polyMapper);
+  actor->GetProperty()->SetColor(0.0, 1.0, 0.0);
+  actor->GetProperty()->LightingOff();
+  later->AddActor(actor);
+  const Rgb green = { 0, 255, 0 }, white = { 255, 255, 255 };
+  const auto colorWithSphere = [&](int n, double z)
+  {
+    // On the ray of the box's middle.
+    const double* const eye = scene.stage.renderer->GetActiveCamera()->GetPosition();
+    const double x = 8.0 + 16.0 * n,
+                 t = viewAngle > 0.0 ? (z - eye[2]) / (scene.depths[n] - eye[2]) : 1.0;
+    actor->SetPosition(eye[0] + t * (x - eye[0]), eye[1] + t * (24.0 - eye[1]), z);
+    if (viewAngle <= 0.0)
+    {
+      actor->SetPosition(x, 24.0, z);
+    }
+    return scene.colorAt(scene.stage.pixels(), scene.pixelOf(n));
+  };
+  for (int n = 0; n < 3; ++n)
+  {
+    check(isNear(colorWithSphere(n, scene.depths[n] - 5.0), green, 0), "Before it is seen" + what);
+    check(
+      isNear(colorWithSphere(n, scene.depths[n] + 5.0), white, 0), "Behind it is hidden" + what);
+  }
+  actor->SetPosition(24.0, 40.0, 45.0);
+  check(isNear(scene.colorAt(scene.stage.pixels(), scene.pixelOf(24.0, 40.0, 45.0)), green, 0),
+    "Beside vessels nothing is hidden" + what);
+  scene.mapper->SetWriteDepthOpacity(1.0);
+  scene.stage.property->SetScalarOpacity(0);
+  opacity->RemoveAllPoints();
+  opacity->AddPoint(0.0, 0.0);
+  opacity->AddPoint(200.0, 0.6);
+  scene.stage.property->SetScalarOpacity(opacity);
+  check(isNear(colorWithSphere(1, scene.depths[1] + 5.0), green, 0),
+    "What is not opaque enough hides nothing" + what);
+  scene.mapper->SetWriteDepthOpacity(0.5);
+  check(!isNear(colorWithSphere(1, scene.depths[1] + 5.0), green, 0),
+    "What is opaque enough hides" + what);
+  scene.mapper->WriteDepthOff();
+  check(isNear(colorWithSphere(1, scene.depths[1] + 5.0), green, 0), "It can be turned off" + what);
+}
+
+/// Geometry that is there before keeps its depth.
+void testOpaqueBefore(stage::Checks& check)
+{
+  Scene scene;
+  scene.mapper->WriteDepthOn();
+  scene.mapper->SetWriteDepthOpacity(0.0);
+  scene.look(0.0);
+  vtkNew<vtkSphereSource> source;
+  source->SetRadius(3.0);
+  source->SetCenter(24.0, 24.0, 10.0);
+  vtkNew<vtkPolyDataMapper> polyMapper;
+  polyMapper->SetInputConnection(source->GetOutputPort());
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(polyMapper);
+  scene.stage.renderer->AddActor(actor);
+  scene.stage.renderer->ResetCameraClippingRange();
+  const auto pixel = scene.pixelOf(1);
+  const auto depth = [&]()
+  {
+    scene.stage.window->Render();
+    return scene.stage.window->GetZbufferDataAtPoint(pixel[0], pixel[1]);
+  };
+  const float with = depth();
+  scene.stage.volume->VisibilityOff();
+  const float alone = depth();
+  check(with <= alone && alone < 1.0f, "Depths are never raised.");
+}
+}
+
+//------------------------------------------------------------------------------
+int TestDepths(int argc, char* argv[])
+{
+  stage::Checks check;
+  testColors(check);
+  testSearch(check);
+  testDepthBuffer(check, 0.0);
+  testDepthBuffer(check, 40.0);
+  testOpaqueBefore(check);
+
+  stage::Stage stage(200, 200);
+  const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 64, 64 }, 12));
+  const auto mapper = stage::splatting(image);
+  mapper->DepthCodingOn();
+  stage.show(mapper);
+  stage.look({ 0.5, -0.3, 0.8 }, { 0.0, 1.0, 0.0 }, 0.8);
+  stage.window->Render();
+  check(vtkRegressionTestImage(stage.window) == vtkTesting::PASSED,
+    "The depth-coded picture is the baseline.");
+  return check.exitCode();
+}

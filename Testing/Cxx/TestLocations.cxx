@@ -1,0 +1,387 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Picks find what a brute-force search along the pixel's ray finds, in world coordinates; the
+// arrays of all pixels say the same; and what cannot be located is said in one sentence.
+#include "Stage.h"
+
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkActor.h"
+#include "vtkCamera.h"
+#include "vtkColorTransferFunction.h"
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkMath.h"
+#include "vtkMatrix4x4.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
+#include "vtkPointData.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkSphereSource.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+using Point = std::array<double, 3>;
+using Voxel = std::array<int, 3>;
+
+const char* const ModeNames[] = { "preview", "standard", "high" };
+
+Point worldOf(stage::Stage& stage, vtkImageData* image, const Point& index)
+{
+  const int* const extent = image->GetExtent();
+  Point point;
+  for (int a = 0; a < 3; ++a)
+  {
+    point[a] = index[a] + extent[2 * a];
+  }
+  image->TransformContinuousIndexToPhysicalPoint(point.data(), point.data());
+  double homogeneous[4] = { point[0], point[1], point[2], 1.0 };
+  stage.volume->GetMatrix()->MultiplyPoint(homogeneous, homogeneous);
+  return { homogeneous[0], homogeneous[1], homogeneous[2] };
+}
+
+/// In pixels whose centres are integers.
+Point shownAt(stage::Stage& stage, const Point& world)
+{
+  stage.renderer->SetWorldPoint(world[0], world[1], world[2], 1.0);
+  stage.renderer->WorldToDisplay();
+  const double* const display = stage.renderer->GetDisplayPoint();
+  return { display[0] - 0.5, display[1] - 0.5, display[2] };
+}
+
+double distance(const Point& a, const Point& b)
+{
+  return std::sqrt(vtkMath::Distance2BetweenPoints(a.data(), b.data()));
+}
+
+double depthOf(stage::Stage& stage, const Point& world)
+{
+  vtkCamera* const camera = stage.renderer->GetActiveCamera();
+  Point way, direction;
+  vtkMath::Subtract(world.data(), camera->GetPosition(), way.data());
+  camera->GetDirectionOfProjection(direction.data());
+  return camera->GetParallelProjection() ? vtkMath::Dot(way.data(), direction.data())
+                                         : vtkMath::Norm(way.data());
+}
+
+struct Arrays
+{
+  explicit Arrays(vtkImageData* locations)
+    : image(locations),
+      voxels(locations->GetPointData()->GetArray("Voxel")),
+      depths(locations->GetPointData()->GetArray("Depth")),
+      positions(locations->GetPointData()->GetArray("Position"))
+  {
+  }
+  vtkIdType at(int x, int y) const
+  {
+    int ijk[3] = { x, y, 0 };
+    return this->image->ComputePointId(ijk);
+  }
+  Voxel voxel(int x, int y) const
+  {
+    const vtkIdType n = this->at(x, y);
+    return { static_cast<int>(this->voxels->GetComponent(n, 0)),
+      static_cast<int>(this->voxels->GetComponent(n, 1)),
+      static_cast<int>(this->voxels->GetComponent(n, 2)) };
+  }
+
+  vtkImageData* image;
+  vtkDataArray *voxels, *depths, *positions;
+};
+
+/// Pixels on voxels, rays along an axis: the search is one along a line of voxels, from the viewer.
+void testSearch(stage::Checks& check, int axis, bool backwards)
+{
+  const std::array<int, 3> size = { 24, 31, 27 };
+  // Few values: ties are common.
+  const auto volume = reference::uniformNoise<std::uint8_t>(size, 5, 0, 9);
+  const auto image = stage::toImageData(volume);
+  image->SetSpacing(0.5, 0.5, 0.5);
+  image->SetOrigin(3.0, -2.0, 1.0);
+  const auto mapper = stage::splatting(image);
+  mapper->SetQualityModeToPreview();
+  mapper->RecordLocationsOn();
+  stage::Stage stage(64, 48);
+  stage.show(mapper);
+  stage.volume->SetPosition(1.0, 2.0, -3.0);
+  stage::Vector direction = { 0.0, 0.0, 0.0 }, up = { 0.0, 0.0, 0.0 };
+  direction[axis] = backwards ? -1.0 : 1.0;
+  up[(axis + 1) % 3] = 1.0;
+  stage.look(direction, up);
+  // Half a pixel off the middle, as windows have an even number of pixels.
+  vtkCamera* const camera = stage.renderer->GetActiveCamera();
+  const Point corner = worldOf(stage, image, { 0.0, 0.0, 0.0 });
+  camera->SetParallelScale(0.5 * 0.5 * 48);
+  Point focus, position;
+  camera->GetFocalPoint(focus.data());
+  camera->GetPosition(position.data());
+  for (int a = 0; a < 3; ++a)
+  {
+    const double onVoxel = corner[a] + 0.5 * std::floor((focus[a] - corner[a]) / 0.5) + 0.25;
+    position[a] += onVoxel - focus[a];
+    focus[a] = onVoxel;
+  }
+  camera->SetFocalPoint(focus.data());
+  camera->SetPosition(position.data());
+  stage.renderer->ResetCameraClippingRange();
+  stage.window->Render();
+  const Arrays arrays(mapper->GetLocations());
+  int found = 0;
+  bool same = true;
+  std::array<int, 3> at;
+  for (at[0] = 0; at[0] < (axis == 0 ? 1 : size[0]); ++at[0])
+  {
+    for (at[1] = 0; at[1] < (axis == 1 ? 1 : size[1]); ++at[1])
+    {
+      for (at[2] = 0; at[2] < (axis == 2 ? 1 : size[2]); ++at[2])
+      {
+        Voxel best = at;
+        best[axis] = backwards ? size[axis] - 1 : 0;
+        Voxel voxel = at;
+        for (int k = 0; k < size[axis]; ++k)
+        {
+          voxel[axis] = backwards ? size[axis] - 1 - k : k;
+          best = volume.at(voxel) > volume.at(best) ? voxel : best;
+        }
+        const Point world =
+          worldOf(stage, image, { double(best[0]), double(best[1]), double(best[2]) });
+        const Point shown = shownAt(stage, world);
+        const int x = static_cast<int>(std::lround(shown[0])),
+                  y = static_cast<int>(std::lround(shown[1]));
+        Point picked = { 0.0, 0.0, 0.0 };
+        same = same && mapper->PickWorldPosition(x, y, picked.data()) &&
+          distance(picked, world) < 1e-6 && arrays.voxel(x, y) == best &&
+          std::abs(arrays.depths->GetComponent(arrays.at(x, y), 0) - depthOf(stage, world)) < 1e-4;
+        ++found;
+      }
+    }
+  }
+  check(same,
+    "Along axis " + std::to_string(axis) + (backwards ? ", backwards," : "") +
+      " picks are what a search finds.");
+  check(found > 500, "All voxels are searched.");
+}
+
+/// Bright voxels in noise, seen from anywhere: they are picked where they are seen.
+void testBrightVoxels(stage::Checks& check, int mode, double viewAngle, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  auto volume = reference::uniformNoise<std::uint8_t>({ 40, 44, 48 }, seed, 0, 20);
+  std::vector<Voxel> bright;
+  for (int n = 0; n < 12; ++n)
+  {
+    bright.push_back({ random.uniform(4, 35), random.uniform(4, 39), random.uniform(4, 43) });
+    volume.at(bright.back()) = 255;
+  }
+  const auto image = stage::toImageData(volume);
+  stage::placeAtRandom(image, random);
+  const auto mapper = stage::splatting(image);
+  mapper->SetQualityMode(mode);
+  mapper->RecordLocationsOn();
+  mapper->AutoAdjustSampleDistancesOff();
+  stage::Stage stage(300, 260);
+  stage.show(mapper);
+  stage.volume->RotateX(30.0);
+  stage.volume->SetScale(1.3);
+  stage.viewAngle = viewAngle;
+  stage.look({ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(0.1, 1.0) },
+    { 0.1, 1.0, 0.2 });
+  stage.renderer->SetViewport(0.1, 0.05, 0.95, 1.0);
+  stage.window->Render();
+  const Arrays arrays(mapper->GetLocations());
+  const std::string what = std::string(ModeNames[mode]) + " at " + std::to_string(viewAngle);
+  const double* const spacing = image->GetSpacing();
+  const double voxelSize = 1.3 * std::max({ spacing[0], spacing[1], spacing[2] });
+  int right = 0;
+  for (const Voxel& voxel : bright)
+  {
+    const Point world =
+      worldOf(stage, image, { double(voxel[0]), double(voxel[1]), double(voxel[2]) });
+    const Point shown = shownAt(stage, world);
+    const int x = static_cast<int>(std::lround(shown[0])),
+              y = static_cast<int>(std::lround(shown[1]));
+    Point picked;
+    // One may hide another.
+    right += mapper->PickWorldPosition(x, y, picked.data()) &&
+      distance(picked, world) < 1.5 * voxelSize && arrays.voxel(x, y) == voxel;
+  }
+  check(right >= static_cast<int>(bright.size()) - 1,
+    what + ": " + std::to_string(right) + " of " + std::to_string(bright.size()) +
+      " bright voxels are picked.");
+  int samples = 0;
+  bool consistent = true;
+  for (int y = 13; y < 260; y += 3)
+  {
+    for (int x = 30; x < 285; x += 3)
+    {
+      Point picked;
+      const bool has = mapper->PickWorldPosition(x, y, picked.data());
+      const vtkIdType n = arrays.at(x, y);
+      Point position;
+      arrays.positions->GetTuple(n, position.data());
+      const double depth = arrays.depths->GetComponent(n, 0);
+      if (!has)
+      {
+        consistent =
+          consistent && arrays.voxel(x, y)[0] == -1 && std::isnan(position[0]) && std::isnan(depth);
+        continue;
+      }
+      ++samples;
+      const Point shown = shownAt(stage, picked);
+      consistent = consistent && position == picked && std::abs(shown[0] - x) < 1e-3 &&
+        std::abs(shown[1] - y) < 1e-3 &&
+        std::abs(depth - depthOf(stage, picked)) < 1e-4 * std::abs(depth);
+    }
+  }
+  check(consistent && samples > 500, what + ": arrays and picks agree, on the pixels' rays.");
+  const int* const extent = arrays.image->GetExtent();
+  check(extent[0] == 30 && extent[1] == 284 && extent[2] == 13 && extent[3] == 259,
+    what + ": the extent is the viewport.");
+  Point untouched = { 1.0, 2.0, 3.0 };
+  check(!mapper->PickWorldPosition(2, 2, untouched.data()) &&
+      !mapper->PickWorldPosition(-5, 9999, untouched.data()) && untouched[2] == 3.0,
+    what + ": there is nothing outside the viewport.");
+}
+
+/// Turned about, the nearest of equal voxels is another one, although the shear image is the same.
+void testOtherSide(stage::Checks& check)
+{
+  reference::Volume<std::uint8_t> volume({ 20, 20, 20 }, 0);
+  volume.at(Voxel{ 10, 10, 3 }) = volume.at(Voxel{ 10, 10, 16 }) = 200;
+  const auto image = stage::toImageData(volume);
+  const auto mapper = stage::splatting(image);
+  mapper->SetQualityModeToPreview();
+  mapper->RecordLocationsOn();
+  mapper->CullBelowWindowOn();
+  stage::Stage stage(101, 101);
+  stage.show(mapper);
+  for (int side = 0; side < 2; ++side)
+  {
+    stage.look({ 0.0, 0.0, side ? -1.0 : 1.0 }, { 0.0, 1.0, 0.0 });
+    stage.window->Render();
+    const Point shown = shownAt(stage, { 10.0, 10.0, 3.0 });
+    Point picked = { 0.0, 0.0, 0.0 };
+    mapper->PickWorldPosition(static_cast<int>(std::lround(shown[0])),
+      static_cast<int>(std::lround(shown[1])), picked.data());
+    check(std::abs(picked[2] - (side ? 16.0 : 3.0)) < 1e-6, "From each side the nearest one.");
+  }
+}
+
+/// Cuts, minima and what hides the volume.
+void testCuts(stage::Checks& check)
+{
+  auto volume = reference::uniformNoise<std::uint8_t>({ 30, 30, 30 }, 3, 50, 60);
+  volume.at(Voxel{ 15, 15, 5 }) = 250;
+  volume.at(Voxel{ 15, 15, 20 }) = 240;
+  volume.at(Voxel{ 15, 15, 12 }) = 1;
+  const auto image = stage::toImageData(volume);
+  const auto mapper = stage::splatting(image);
+  mapper->RecordLocationsOn();
+  stage::Stage stage(121, 121);
+  stage.show(mapper);
+  stage.look({ 0.0, 0.0, 1.0 }, { 0.0, 1.0, 0.0 }, 0.8);
+  const auto pick = [&]()
+  {
+    stage.window->Render();
+    const Point shown = shownAt(stage, { 15.0, 15.0, 5.0 });
+    Point picked = { 0.0, 0.0, -1.0 };
+    mapper->PickWorldPosition(static_cast<int>(std::lround(shown[0])),
+      static_cast<int>(std::lround(shown[1])), picked.data());
+    return picked[2];
+  };
+  for (int mode = 0; mode < 3; ++mode)
+  {
+    mapper->SetQualityMode(mode);
+    check(std::abs(pick() - 5.0) < 1e-6, "The largest is picked.");
+    vtkNew<vtkPlane> plane;
+    plane->SetOrigin(0.0, 0.0, 9.7);
+    plane->SetNormal(0.0, 0.0, 1.0);
+    mapper->AddClippingPlane(plane);
+    check(std::abs(pick() - 20.0) < 1e-6, "What is cut away is not picked.");
+    mapper->RemoveAllClippingPlanes();
+    mapper->SetBlendModeToMinimumIntensity();
+    check(std::abs(pick() - 12.0) < 1e-6, "The smallest is picked.");
+    mapper->SetBlendModeToMaximumIntensity();
+  }
+  vtkNew<vtkSphereSource> source;
+  source->SetCenter(15.0, 15.0, -4.0);
+  source->SetRadius(2.0);
+  vtkNew<vtkPolyDataMapper> polyMapper;
+  polyMapper->SetInputConnection(source->GetOutputPort());
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(polyMapper);
+  stage.renderer->AddActor(actor);
+  stage.renderer->ResetCameraClippingRange();
+  check(pick() == -1.0, "What is hidden is not picked.");
+  const Point shown = shownAt(stage, { 15.0, 15.0, 5.0 });
+  const Arrays arrays(mapper->GetLocations());
+  check(arrays.voxel(static_cast<int>(shown[0]), static_cast<int>(shown[1]))[0] == -1,
+    "Nor is it in the arrays.");
+}
+
+void testSentences(stage::Checks& check)
+{
+  const auto image = stage::toImageData(stage::blobsAndTubes({ 34, 34, 34 }, 3));
+  const auto mapper = stage::splatting(image);
+  stage::Stage stage(80, 80);
+  stage.show(mapper);
+  stage.look({ 0.0, 0.0, 1.0 }, { 0.0, 1.0, 0.0 });
+  stage.window->Render();
+  double position[3];
+  {
+    stage::Messages errors(mapper, vtkCommand::ErrorEvent);
+    check(!mapper->GetLocations() && !mapper->PickWorldPosition(40, 40, position) &&
+        errors.texts.size() == 2,
+      "Without RecordLocations there is a sentence each.");
+  }
+  mapper->RecordLocationsOn();
+  check(!mapper->PickWorldPosition(40, 40, position), "Nothing before the next render.");
+  stage.window->Render();
+  check(mapper->PickWorldPosition(40, 40, position), "It works once it is on.");
+  const vtkIdType projections = mapper->GetNumberOfProjections();
+  stage.window->Render();
+  check(mapper->GetNumberOfProjections() == projections, "Frames that show the same re-use it.");
+  mapper->SetBlendModeToAverageIntensity();
+  {
+    stage::Messages warnings(mapper, vtkCommand::WarningEvent);
+    stage.window->Render();
+    stage.window->Render();
+    check(warnings.texts.size() == 1, "Averages are warned of, once.");
+  }
+  check(!mapper->PickWorldPosition(40, 40, position), "Averages have no location.");
+  const Arrays arrays(mapper->GetLocations());
+  check(arrays.voxel(40, 40)[0] == -1, "Nor voxels.");
+  mapper->SetBlendModeToMaximumIntensity();
+  stage.window->Render();
+  check(mapper->PickWorldPosition(40, 40, position), "Maxima have one again.");
+}
+}
+
+//------------------------------------------------------------------------------
+int TestLocations(int, char*[])
+{
+  stage::Checks check;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    testSearch(check, axis, false);
+    testSearch(check, axis, true);
+  }
+  for (int n = 0; n < 12; ++n)
+  {
+    testBrightVoxels(check, n % 3, n % 2 ? 40.0 : 0.0, 20 + n);
+  }
+  testOtherSide(check);
+  testCuts(check);
+  testSentences(check);
+  return check.exitCode();
+}

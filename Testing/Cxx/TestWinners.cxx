@@ -1,0 +1,507 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where the samples lie that a projection shows: the voxel of previews, the slice of averages and
+// the place of the field's extremum are those that brute force finds; of equal samples the nearest
+// to the viewer wins, for any acceleration, instruction set and number of threads; and points of
+// the screen lie on the rays of their pixels.
+#include "CoreTesting.h"
+#include "FieldMaximum.h"
+#include "Locations.h"
+#include "Winners.h"
+
+#include <vtkSMPTools.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace coretesting;
+using splatting::Acceleration;
+using splatting::Quality;
+using splatting::Reduction;
+
+namespace
+{
+/// A view with one or more shear images, and what cuts it.
+struct Scene
+{
+  splatting::View view;
+  std::vector<splatting::ShearWarp> images;
+  reference::RayCuts cuts;
+};
+
+Scene anyScene(const std::array<int, 3>& size, bool perspective, reference::Random& random)
+{
+  Scene scene;
+  while (scene.images.empty())
+  {
+    scene.view = perspective ? randomPerspective(size, random) : anyView(size, random);
+    splatting::ShearWarp::factorise(scene.view, scene.images);
+  }
+  if (random.uniform(0, 2) == 0)
+  {
+    const glm::dvec3 normal(
+      random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+    const glm::dvec3 middle = 0.5 * glm::dvec3(scene.view.dimensions - 1);
+    scene.view.halfSpaces.emplace_back(normal, -glm::dot(normal, middle) + 0.1);
+  }
+  if (random.uniform(0, 2) == 0)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      const double low = random.uniform(0.0, size[a] - 1.0);
+      scene.view.cropping.planes[a] = { low, low + 1.0 + random.uniform(0.0, 4.0) };
+    }
+    scene.view.cropping.flags =
+      static_cast<std::uint32_t>(random.bits()) & splatting::Cropping::All;
+  }
+  for (const glm::dvec4& h : scene.view.halfSpaces)
+  {
+    scene.cuts.halfSpaces.push_back({ h.x, h.y, h.z, h.w });
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    scene.cuts.planes[a] = { scene.view.cropping.planes[a].x, scene.view.cropping.planes[a].y };
+  }
+  scene.cuts.regions = scene.view.cropping.flags;
+  return scene;
+}
+
+reference::RayCutter cutterOf(
+  const splatting::ShearWarp& geometry, const std::array<int, 3>& size, const Scene& scene)
+{
+  if (geometry.isPerspective())
+  {
+    return { referenceRays(geometry), scene.cuts };
+  }
+  const reference::ShearView view = referenceView(geometry);
+  return { reference::makeShearGrid(size, view), view, scene.cuts };
+}
+
+template <class T>
+splatting::VoxelArray arrayOf(const reference::Volume<T>& volume)
+{
+  return { volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) };
+}
+
+template <class T>
+std::vector<splatting::ShearImage> projectScene(
+  const reference::Volume<T>& volume, const Scene& scene, splatting::ProjectionSettings& settings)
+{
+  settings.keepWinners = true;
+  splatting::VolumeIndex index;
+  index.reset(arrayOf(volume));
+  splatting::Projector projector;
+  std::vector<splatting::ShearImage> result(scene.images.size());
+  for (std::size_t n = 0; n < result.size(); ++n)
+  {
+    projector.project(index, scene.images[n], settings,
+      cutsBy(scene.images[n], scene.view.halfSpaces, scene.view.cropping), result[n]);
+  }
+  return result;
+}
+
+template <class T>
+splatting::Located located(const reference::Volume<T>& volume, const Scene& scene,
+  const std::vector<splatting::ShearImage>& images, const splatting::ProjectionSettings& settings)
+{
+  splatting::Located located;
+  located.images = &images;
+  located.geometries = &scene.images;
+  located.volume = arrayOf(volume);
+  const auto range = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
+  located.low = static_cast<double>(*range.first);
+  located.high = static_cast<double>(*range.second);
+  located.settings = settings;
+  located.view = scene.view;
+  return located;
+}
+
+template <class T>
+reference::RaySamples<T> voxelsOf(
+  const reference::Volume<T>& volume, const splatting::ShearWarp& geometry)
+{
+  return geometry.isPerspective() ? reference::voxelSamples(volume, referenceRays(geometry))
+                                  : reference::voxelSamples(volume, referenceView(geometry));
+}
+
+std::vector<std::array<int, 3>> pathOf(
+  const std::array<int, 3>& size, const splatting::ShearWarp& geometry, int u, int v)
+{
+  return geometry.isPerspective() ? reference::crossedVoxels(referenceRays(geometry), u, v)
+                                  : reference::crossedVoxels(size, referenceView(geometry), u, v);
+}
+
+/// Few values, so that ties are common, on a background of the lowest; of any size so that there
+/// are several bricks.
+template <class T>
+reference::Volume<T> volumeWithTies(reference::Random& random)
+{
+  const auto size = randomSize(random, random.uniform(0, 1) ? 40 : 12);
+  auto volume = reference::uniformNoise<T>(size, random.bits(), T(0), T(3));
+  const int background = random.uniform(0, 3) * 100;
+  for (std::size_t n = 0; n < volume.voxels.size(); ++n)
+  {
+    // Whole stretches are empty.
+    volume.voxels[n] = static_cast<int>(n % 397) < background ? T(0) : volume.voxels[n];
+  }
+  return volume;
+}
+
+template <class T>
+void testPreview(Checks& check, bool perspective, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int n = 0; n < 40; ++n)
+  {
+    const auto volume = volumeWithTies<T>(random);
+    const Scene scene = anyScene(volume.size, perspective, random);
+    splatting::ProjectionSettings settings;
+    settings.quality = Quality::Preview;
+    settings.reduction = random.uniform(0, 3) ? Reduction::Maximum : Reduction::Minimum;
+    settings.acceleration = static_cast<Acceleration>(random.uniform(0, 5));
+    const auto images = projectScene(volume, scene, settings);
+    const splatting::Located where = located(volume, scene, images, settings);
+    for (std::size_t m = 0; m < images.size(); ++m)
+    {
+      const splatting::ShearWarp& geometry = scene.images[m];
+      std::vector<glm::ivec3> voxels;
+      splatting::findVoxels(where, m, voxels);
+      const auto rays = voxelsOf(volume, geometry);
+      const reference::RayCutter cutter = cutterOf(geometry, volume.size, scene);
+      bool same = true;
+      for (int v = 0; v < geometry.rayCount().y && same; ++v)
+      {
+        for (int u = 0; u < geometry.rayCount().x && same; ++u)
+        {
+          const std::size_t at = std::size_t(v) * geometry.width() + u;
+          const int winner = reference::winnerOf(
+            rays[at], cutter, u, v, geometry.reversed(), settings.reduction == Reduction::Minimum);
+          const glm::ivec3 expected =
+            winner < 0 ? glm::ivec3(-1) : toGlm(pathOf(volume.size, geometry, u, v)[winner]);
+          same = voxels[at] == expected;
+        }
+      }
+      check(same, "preview, view ", n, perspective ? " in perspective" : "", ", image ", m,
+        ": another voxel");
+    }
+  }
+}
+
+/// The voxels of slice k with their weights in an average, by averaging volumes of one voxel each.
+double shareOf(const std::array<int, 3>& size, const splatting::ShearWarp& geometry,
+  const reference::Kernel& kernel, const glm::ivec3& voxel, int u, int v, int k)
+{
+  reference::Volume<double> single(size, 0.0);
+  single.at(std::array<int, 3>{ voxel.x, voxel.y, voxel.z }) = 1.0;
+  const auto rays = geometry.isPerspective()
+    ? reference::slabSamples(single, referenceRays(geometry), kernel)
+    : reference::slabSamples(single, referenceView(geometry), kernel);
+  for (const auto& sample : rays[std::size_t(v) * geometry.width() + u])
+  {
+    if (sample.slice == k)
+    {
+      return sample.value;
+    }
+  }
+  return 0.0;
+}
+
+/// Of one pixel, the voxel that adds most to its average: none adds more.
+template <class T>
+void testShare(Checks& check, const reference::Volume<T>& volume, const Scene& scene,
+  const Mode& mode, const glm::ivec3& found, std::size_t m, int u, int v, int k)
+{
+  const splatting::ShearWarp& geometry = scene.images[m];
+  const double low =
+    static_cast<double>(*std::min_element(volume.voxels.begin(), volume.voxels.end()));
+  const auto share = [&](const glm::ivec3& voxel)
+  {
+    const double value =
+      static_cast<double>(volume.at(std::array<int, 3>{ voxel.x, voxel.y, voxel.z }));
+    return (value - low) * shareOf(volume.size, geometry, mode.reference, voxel, u, v, k);
+  };
+  const double own = share(found);
+  const int axis = geometry.principalAxis();
+  check(found[axis] == k, "the voxel is of slice ", found[axis], ", not ", k);
+  for (int di = -2; di <= 2; ++di)
+  {
+    for (int dj = -2; dj <= 2; ++dj)
+    {
+      glm::ivec3 other = found;
+      other[geometry.axes()[0]] += di;
+      other[geometry.axes()[1]] += dj;
+      if (glm::clamp(other, glm::ivec3(0), toGlm(volume.size) - 1) == other)
+      {
+        check(share(other) <= own + 0.02 * std::abs(own) + 1e-3, "another voxel adds more");
+      }
+    }
+  }
+}
+
+template <class T>
+void testAverages(Checks& check, bool perspective, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int n = 0; n < 12; ++n)
+  {
+    const auto volume = wholeRangeNoise<T>(randomSize(random, 9), random.bits());
+    const Scene scene = anyScene(volume.size, perspective, random);
+    const Mode mode = modes()[random.uniform(0, 2)];
+    splatting::ProjectionSettings settings = settingsOf(mode);
+    settings.reduction = random.uniform(0, 3) ? Reduction::Maximum : Reduction::Minimum;
+    settings.acceleration = static_cast<Acceleration>(random.uniform(0, 5));
+    const auto images = projectScene(volume, scene, settings);
+    const auto range = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
+    const double low = static_cast<double>(*range.first), high = static_cast<double>(*range.second);
+    for (std::size_t m = 0; m < images.size(); ++m)
+    {
+      const splatting::ShearWarp& geometry = scene.images[m];
+      const auto exact = reference::toDouble(volume);
+      const auto rays = perspective
+        ? reference::slabSamples(exact, referenceRays(geometry), mode.reference)
+        : reference::slabSamples(exact, referenceView(geometry), mode.reference);
+      const double bound = perspective
+        ? perspectiveErrorBound<T>(referenceRays(geometry), mode.reference, low, high)
+        : errorBound<T>(mode.quality, low, high);
+      const reference::RayCutter cutter = cutterOf(geometry, volume.size, scene);
+      const bool smallest = settings.reduction == Reduction::Minimum;
+      for (int v = 0; v < geometry.rayCount().y; ++v)
+      {
+        for (int u = 0; u < geometry.rayCount().x; ++u)
+        {
+          const std::size_t at = std::size_t(v) * geometry.width() + u;
+          const int winner =
+            reference::winnerOf(rays[at], cutter, u, v, geometry.reversed(), smallest);
+          const int step = images[m].winners[at];
+          if (!check((winner >= 0) == (step >= 0), "averages: one has a sample"))
+          {
+            return;
+          }
+          const auto own = std::find_if(rays[at].begin(), rays[at].end(),
+            [=](const auto& s) { return s.slice == step / splatting::StepsPerSlice; });
+          check(step < 0 ||
+              (own != rays[at].end() &&
+                std::abs(own->value - rays[at][winner].value) <= 2.0 * bound),
+            "averages, view ", n, ", pixel ", u, " ", v, ": slice ",
+            step / splatting::StepsPerSlice, " has not the extremum");
+        }
+      }
+      if (!smallest && n < 4 && sizeof(T) == 1)
+      {
+        std::vector<glm::ivec3> voxels;
+        splatting::findVoxels(located(volume, scene, images, settings), m, voxels);
+        const int u = geometry.rayCount().x / 2, v = geometry.rayCount().y / 2;
+        const std::size_t at = std::size_t(v) * geometry.width() + u;
+        if (images[m].winners[at] >= 0)
+        {
+          testShare(check, volume, scene, mode, voxels[at], m, u, v,
+            images[m].winners[at] / splatting::StepsPerSlice);
+        }
+      }
+    }
+  }
+}
+
+/// Slices that are all alike: the nearest one wins.
+void testEqualSlices(Checks& check)
+{
+  reference::Random random(77);
+  for (int n = 0; n < 48; ++n)
+  {
+    const int axis = n % 3;
+    const std::array<int, 3> size = { 21, 22, 23 };
+    const auto noise = reference::uniformNoise<std::uint8_t>(size, random.bits(), 0, 255);
+    auto volume = noise;
+    for (int k = 0; k < size[2]; ++k)
+    {
+      for (int j = 0; j < size[1]; ++j)
+      {
+        for (int i = 0; i < size[0]; ++i)
+        {
+          std::array<int, 3> at = { i, j, k }, first = at;
+          first[axis] = 0;
+          volume.at(at) = noise.at(first);
+        }
+      }
+    }
+    Scene scene;
+    scene.view = viewWithShear(size, axis, 0.0, 0.0);
+    scene.view.indexToClip[axis][2] = n % 2 ? 1e-3 : -1e-3;
+    splatting::ShearWarp::factorise(scene.view, scene.images);
+    splatting::ProjectionSettings settings;
+    settings.quality = static_cast<Quality>(n / 3 % 4);
+    settings.acceleration = n % 5 ? Acceleration::Bricks : Acceleration::Dense;
+    const auto images = projectScene(volume, scene, settings);
+    const int nearest = scene.images[0].reversed() ? size[axis] - 1 : 0;
+    check(std::all_of(images[0].winners.begin(), images[0].winners.end(),
+            [=](int step) { return step < 0 || step / splatting::StepsPerSlice == nearest; }),
+      "equal slices, view ", n, ": not the nearest one");
+  }
+}
+
+/// Where the exact mode's maximum lies: the field has it there.
+void testExact(Checks& check, bool perspective)
+{
+  reference::Random random(123);
+  for (int n = 0; n < 40; ++n)
+  {
+    const auto volume =
+      reference::uniformNoise<std::int16_t>(randomSize(random, 8), random.bits(), -500, 500);
+    Scene scene;
+    while (scene.images.empty())
+    {
+      scene.view =
+        perspective ? randomPerspective(volume.size, random) : anyView(volume.size, random);
+      splatting::ShearWarp::factorise(scene.view, scene.images);
+    }
+    splatting::ProjectionSettings settings;
+    settings.quality = Quality::Exact;
+    const auto images = projectScene(volume, scene, settings);
+    const auto exact = reference::toDouble(volume);
+    const splatting::Locator locator(located(volume, scene, images, settings));
+    for (std::size_t m = 0; m < images.size(); ++m)
+    {
+      const splatting::ShearWarp& geometry = scene.images[m];
+      for (int v = 0; v < geometry.rayCount().y; ++v)
+      {
+        for (int u = 0; u < geometry.rayCount().x; ++u)
+        {
+          const auto ray = perspective
+            ? reference::fieldRay(referenceRays(geometry), u, v)
+            : reference::fieldRay(volume.size, referenceView(geometry), u, v);
+          const splatting::Span& slices = geometry.slices();
+          const auto depths =
+            reference::depthsInField(volume.size, ray, reference::FieldDomain::Centres,
+              geometry.faces(slices.begin).x, geometry.faces(slices.end - 1).y);
+          if (depths[1] - depths[0] < 1e-2)
+          {
+            continue;
+          }
+          const double maximum = reference::fieldMaximum(exact, ray, depths[0], depths[1]);
+          // Off the screen's ray: at the shear pixel's own.
+          const double z = locator.depthOf({ static_cast<int>(m), u, v });
+          std::array<double, 3> point;
+          for (int a = 0; a < 2; ++a)
+          {
+            point[geometry.axes()[a]] = ray.at[a] + ray.slope[a] * (z - ray.start);
+          }
+          point[geometry.axes()[2]] = z;
+          check(reference::fieldAt(exact, point) >= maximum - 1e-2, "exact, view ", n, ", pixel ",
+            u, " ", v, ": ", reference::fieldAt(exact, point), " at ", z, ", not ", maximum);
+        }
+      }
+    }
+  }
+}
+
+template <class T>
+void testInvariance(Checks& check, bool perspective, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int n = 0; n < 8; ++n)
+  {
+    const auto volume = volumeWithTies<T>(random);
+    const Scene scene = anyScene(volume.size, perspective, random);
+    splatting::ProjectionSettings settings;
+    settings.quality = static_cast<Quality>(n % 4);
+    settings.acceleration = Acceleration::Dense;
+    const auto expected = projectScene(volume, scene, settings);
+    splatting::ProjectionSettings plain = settings;
+    for (int way = 0; way < 6; ++way)
+    {
+      settings.acceleration = way % 2 ? Acceleration::Bricks : Acceleration::Dense;
+      settings.instructionSet = static_cast<splatting::InstructionSet>(way / 2);
+      std::vector<splatting::ShearImage> found;
+      vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 + way % 3 },
+        [&]() { found = projectScene(volume, scene, settings); });
+      for (std::size_t m = 0; m < found.size(); ++m)
+      {
+        check(found[m].winners == expected[m].winners && sameImages(found[m], expected[m]),
+          "quality ", n % 4, ", view ", n, ", way ", way, ": other winners");
+        check(
+          sameImages(found[m],
+            project(volume, scene.images[m], plain, scene.view.halfSpaces, scene.view.cropping)),
+          "quality ", n % 4, ", view ", n, ", way ", way, ": winners change the image");
+      }
+    }
+  }
+}
+
+/// Points lie on the rays of their pixels, in their slices, and next to their voxels.
+void testPoints(Checks& check, bool perspective)
+{
+  reference::Random random(55);
+  for (int n = 0; n < 60; ++n)
+  {
+    const auto volume =
+      reference::uniformNoise<std::uint8_t>(randomSize(random, 12), random.bits(), 0, 255);
+    const Scene scene = anyScene(volume.size, perspective, random);
+    splatting::ProjectionSettings settings;
+    settings.quality = static_cast<Quality>(n % 4);
+    const auto images = projectScene(volume, scene, settings);
+    const splatting::Locator locator(located(volume, scene, images, settings));
+    const glm::ivec2& size = scene.view.viewport;
+    std::vector<int> voxels(std::size_t(3) * size.x * size.y);
+    std::vector<float> clipDepths(std::size_t(size.x) * size.y);
+    std::vector<double> positions(voxels.size());
+    splatting::Locator::Arrays arrays;
+    arrays.voxels = voxels.data();
+    arrays.positions = positions.data();
+    arrays.clipDepths = clipDepths.data();
+    locator.fill({ 0, 0 }, size, arrays);
+    // A square and its ray may be as far from the shear pixel's as half a pixel, and that half a
+    // voxel and a slice's drift from the voxel; footprints of high reach two voxels more.
+    const double reach = settings.quality == Quality::Preview ? 2.01 : 3.01;
+    for (int y = 0; y < size.y; ++y)
+    {
+      for (int x = 0; x < size.x; ++x)
+      {
+        const std::size_t at = std::size_t(y) * size.x + x;
+        const glm::dvec3 point(positions[3 * at], positions[3 * at + 1], positions[3 * at + 2]);
+        const glm::ivec3 voxel(voxels[3 * at], voxels[3 * at + 1], voxels[3 * at + 2]);
+        glm::dvec3 picked;
+        const bool has = locator.find({ x, y }, picked);
+        check(has == (voxel.x >= 0) && has == (point.x == point.x), "arrays differ");
+        if (!has)
+        {
+          continue;
+        }
+        const glm::dvec4 clip = scene.view.indexToClip * glm::dvec4(point, 1.0);
+        const glm::dvec2 shown = (glm::dvec2(clip) / clip.w + 1.0) * 0.5 * glm::dvec2(size) - 0.5;
+        // Points may be next to the eye, before any near plane.
+        const double rounding = 1e-6 / std::min(std::abs(clip.w), 1.0);
+        check(picked == point && glm::length(shown - glm::dvec2(x, y)) < 10.0 * rounding, "view ",
+          n, ": the point is not on the ray of pixel ", x, " ", y, ": ", shown.x, " ", shown.y);
+        const double depth = 0.5 * clip.z / clip.w + 0.5;
+        check(std::abs(clipDepths[at] - depth) < rounding * std::max(1.0, std::abs(depth)),
+          "another depth: ", clipDepths[at], ", not ", depth);
+        const glm::dvec3 way = glm::abs(point - glm::dvec3(voxel));
+        check(std::max({ way.x, way.y, way.z }) <= reach, "view ", n, ", pixel ", x, " ", y,
+          ": the point is ", way.x, " ", way.y, " ", way.z, " from its voxel");
+      }
+    }
+  }
+}
+}
+
+int TestWinners(int, char*[])
+{
+  Checks check;
+  for (bool perspective : { false, true })
+  {
+    testPreview<std::uint8_t>(check, perspective, 1);
+    testPreview<std::int16_t>(check, perspective, 2);
+    testPreview<std::uint64_t>(check, perspective, 3);
+    testPreview<float>(check, perspective, 4);
+    testAverages<std::uint8_t>(check, perspective, 5);
+    testAverages<std::int16_t>(check, perspective, 6);
+    testAverages<float>(check, perspective, 7);
+    testInvariance<std::uint8_t>(check, perspective, 9);
+    testInvariance<float>(check, perspective, 10);
+    testExact(check, perspective);
+    testPoints(check, perspective);
+  }
+  testEqualSlices(check);
+  return check.result();
+}
