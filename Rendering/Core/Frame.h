@@ -108,6 +108,7 @@ struct Frame
   const CutMap& cuts;
   double floor; // as in ProjectionSettings
   ShearImage& image;
+  const ShearWarp& whole; // of which `geometry` is a part, or the same
 
   const T* voxelRow(int j, int k) const
   {

@@ -47,6 +47,9 @@ public:
   /// The slices that each pixel's ray crosses, of those in other intervals, if these are not empty.
   void findCrossed(const CrossedSlices& crossed, int width, int height, const RayIntervals& within);
 
+  /// The same intervals with slices counted from another one.
+  void setShifted(const RayIntervals& other, int firstSlice);
+
   /// For each pixel of a row the first slice and the last one; first > last: none.
   const std::int16_t* first(int v) const { return &this->First[std::size_t(v) * this->Width]; }
   const std::int16_t* last(int v) const { return &this->Last[std::size_t(v) * this->Width]; }
