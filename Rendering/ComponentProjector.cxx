@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ComponentProjector.h"
 
+#include "RankAgreement.h"
 #include "ScalarSource.h"
 
 #include "vtkDataSetAttributes.h"
@@ -35,10 +36,84 @@ bool ComponentProjector::LookAt(ScalarSource& source)
   for (std::size_t c = 0; c < components; ++c)
   {
     this->Channels[c].Index.reset(source.Volume(static_cast<int>(c)));
+    this->Channels[c].Here.reset();
+    this->Channels[c].Whole.reset();
   }
   this->Projected = false;
   this->Colored = false;
   return differs;
+}
+
+//------------------------------------------------------------------------------
+void ComponentProjector::LookAtNothing(splatting::ScalarType type, std::size_t components)
+{
+  const splatting::VolumeIndex& before = this->Channels.front().Index;
+  if (before.volume().voxels || before.volume().type != type || this->Channels.size() != components)
+  {
+    this->Channels.resize(components);
+    for (Channel& channel : this->Channels)
+    {
+      channel.Index.reset({ nullptr, type, glm::ivec3(0) });
+      channel.Whole.reset();
+    }
+    this->Dependent = false;
+    this->Version = 0;
+    this->Projected = false;
+    this->Colored = false;
+  }
+}
+
+//------------------------------------------------------------------------------
+void ComponentProjector::Describe(const ScalarSource& source, RankReport& report)
+{
+  report.cells = source.Grid().cells;
+  report.vtkType = source.GetVtkType();
+  report.type = static_cast<std::int32_t>(this->Channels.front().Index.volume().type);
+  report.components = static_cast<std::int32_t>(this->Channels.size());
+  for (std::size_t c = 0; c < this->Channels.size(); ++c)
+  {
+    Channel& channel = this->Channels[c];
+    if (!channel.Here)
+    {
+      channel.Here = channel.Index.range();
+    }
+    report.ranges[c] = { channel.Here->low, channel.Here->high, channel.Here->special ? 1.0 : 0.0 };
+  }
+  if (this->Dependent)
+  {
+    report.setProblem(
+      "Several ranks do not project dependent components, which go with the place of "
+      "the maximum: set IndependentComponents of the vtkVolumeProperty.");
+  }
+}
+
+//------------------------------------------------------------------------------
+void ComponentProjector::SetRanks(RankAgreement* ranks)
+{
+  this->Projected = this->Projected && this->Ranks == ranks;
+  this->Ranks = ranks;
+  for (std::size_t c = 0; c < this->Channels.size(); ++c)
+  {
+    Channel& channel = this->Channels[c];
+    if (!ranks)
+    {
+      if (channel.Whole) // what the index knows is of that
+      {
+        channel.Index.reset(channel.Index.volume());
+        channel.Whole.reset();
+        this->Colored = this->Projected = false;
+      }
+      continue;
+    }
+    const auto& range = ranks->Common().ranges[c];
+    if (!channel.Whole || channel.Whole->low != range.low || channel.Whole->high != range.high ||
+      channel.Whole->special != (range.special != 0.0))
+    {
+      this->Colored = this->Projected = false;
+    }
+    channel.Whole = { range.low, range.high, range.special != 0.0 };
+    channel.Index.setRangeOfWhole(*channel.Whole); // again if the budget has changed
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -191,8 +266,15 @@ bool ComponentProjector::ProjectChannel(Channel& channel, std::size_t n,
   const splatting::Cuts& cuts)
 {
   channel.Settings = this->SettingsOf(channel, settings);
-  const splatting::Acceleration used =
-    this->Projector.project(channel.Index, geometry, channel.Settings, cuts, channel.Images[n]);
+  if (this->Ranks && !channel.Index.volume().voxels)
+  {
+    splatting::blank(geometry, channel.Index.volume().type, channel.Settings, channel.Images[n]);
+    channel.Images[n].special = channel.Index.range().special;
+    ++this->Done;
+    return true;
+  }
+  const splatting::Acceleration used = this->Projector.project(channel.Index, geometry,
+    channel.Settings, cuts, channel.Images[n], this->Ranks ? this->Ranks->First() : glm::ivec3(0));
   if (this->Projector.stopped())
   {
     return false;
@@ -242,15 +324,37 @@ bool ComponentProjector::Project(const std::vector<splatting::ShearWarp>& geomet
     channel.Images.resize(std::max(channel.Images.size(), this->Images));
     channel.Settings = this->SettingsOf(channel, settings); // there may be no image
   }
-  for (std::size_t n = 0; n < this->Images; ++n)
+  bool done = true;
+  for (std::size_t n = 0; n < this->Images && done; ++n)
   {
-    if (!this->ProjectImage(n, geometries[n], settings, cuts[n]))
-    {
-      return false;
-    }
+    done = this->ProjectImage(n, geometries[n], settings, cuts[n]);
+  }
+  // Where one rank has stopped all do.
+  if (this->Ranks ? this->Ranks->Any(!done) : !done)
+  {
+    return false;
+  }
+  if (this->Ranks)
+  {
+    this->Exchange(geometries, settings, cuts);
   }
   this->Projected = true;
   return true;
+}
+
+//------------------------------------------------------------------------------
+// From the images of pieces to those of the whole.
+void ComponentProjector::Exchange(const std::vector<splatting::ShearWarp>& geometries,
+  const splatting::ProjectionSettings& settings, const std::vector<splatting::Cuts>& cuts)
+{
+  for (std::size_t n = 0; n < this->Images; ++n)
+  {
+    for (Channel& channel : this->Channels)
+    {
+      this->Ranks->Reduce(channel.Images[n], settings.reduction);
+      this->Projector.outline(geometries[n], settings, cuts[n], channel.Images[n]);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------

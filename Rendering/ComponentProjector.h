@@ -10,8 +10,11 @@
 #include "vtkType.h"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
+class RankAgreement;
+struct RankReport;
 class ScalarSource;
 class vtkImageData;
 class vtkVolumeProperty;
@@ -29,6 +32,16 @@ public:
   /// Points the indices at the source's volumes, anew if these changed. Returns whether other times
   /// are to be expected now, because there are more voxels, larger ones or other components.
   bool LookAt(ScalarSource& source);
+
+  /// In place of LookAt() on a rank that holds nothing of a volume of this type.
+  void LookAtNothing(splatting::ScalarType type, std::size_t components);
+
+  /// Adds the scalars of a piece to what its rank reports.
+  void Describe(const ScalarSource& source, RankReport& report);
+
+  /// From now on the volumes are pieces, of which the images are exchanged; nullptr: they are
+  /// whole. Must outlive its use.
+  void SetRanks(RankAgreement* ranks);
 
   /// Every component gets the same share. A change gives up what is there; returns whether it is
   /// one.
@@ -85,6 +98,7 @@ private:
   struct Channel
   {
     splatting::VolumeIndex Index;
+    std::optional<splatting::VolumeIndex::Range> Here, Whole; // of pieces only
     splatting::ColorTable Colors;
     splatting::ProjectionSettings Settings;
     std::vector<splatting::ShearImage> Images; // at least as many as the view has
@@ -96,6 +110,8 @@ private:
   splatting::ProjectionSettings SettingsOf(
     const Channel& channel, splatting::ProjectionSettings settings) const;
   bool Carries(const splatting::ProjectionSettings& settings) const;
+  void Exchange(const std::vector<splatting::ShearWarp>& geometries,
+    const splatting::ProjectionSettings& settings, const std::vector<splatting::Cuts>& cuts);
   bool ProjectImage(std::size_t n, const splatting::ShearWarp& geometry,
     const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
   bool ProjectChannel(Channel& channel, std::size_t n, const splatting::ShearWarp& geometry,
@@ -111,6 +127,7 @@ private:
   int Done = 0;           // of the present projection's images of channels
   std::size_t Images = 1; // of a channel
   vtkIdType Version = 0;  // of the source
+  RankAgreement* Ranks = nullptr;
 
   vtkVolumeProperty* ColoredBy = nullptr; // only compared
   vtkMTimeType ColorTime = 0;
