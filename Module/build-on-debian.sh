@@ -21,6 +21,7 @@ packages=(
   python3-numpy                                # tests and examples in Python
   python3-vedo python3-vedo-examples           # programs of others, for the tests
   xvfb xauth libgl1-mesa-dri                   # OpenGL without a display
+  openmpi-bin                                  # mpiexec, for the tests of several ranks
 )
 missing=()
 for package in "${packages[@]}"; do

@@ -5,6 +5,7 @@
 #include "Complaints.h"
 #include "ComponentProjector.h"
 #include "MapperSettings.h"
+#include "RankAgreement.h"
 #include "RayCastFallback.h"
 #include "RenderTimes.h"
 #include "ScalarSource.h"
@@ -18,6 +19,7 @@
 #include "vtkCommand.h"
 #include "vtkDataSet.h"
 #include "vtkImageData.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
@@ -37,6 +39,7 @@
 
 vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
 vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
+vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, Controller, vtkMultiProcessController);
 
 namespace
 {
@@ -84,6 +87,12 @@ class vtkSplattingMIPVolumeMapper::Internals
 public:
   std::string Problem(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
   std::string ProblemOfSettings(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
+  std::string ProblemOfRanks(
+    vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* volume, std::string problem);
+  const VolumeGrid& Grid() const
+  {
+    return this->Ranks.AreMany() ? this->Ranks.Grid() : this->Source.Grid();
+  }
   void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
   bool AreAsBefore(bool ordered) const;
@@ -100,6 +109,7 @@ public:
   bool OpenSurfaceReported = false;  // likewise
   vtkRenderWindow* Window = nullptr; // which may abort, during a render
 
+  RankAgreement Ranks;
   ScalarSource Source;
   ComponentProjector Components;
   SceneCuts Cuts;
@@ -124,6 +134,8 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
   : VectorMode(DISABLED),
     VectorComponent(0),
     MaskInput(nullptr),
+    Controller(nullptr),
+    DisplayOnRootOnly(false),
     QualityMode(HIGH),
     Kernel(TRILINEAR),
     KernelRadius(1.0),
@@ -167,6 +179,7 @@ vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper()
   this->SetDepthCodingColors(nullptr);
   this->SetBoundingSurface(nullptr);
   this->SetMaskInput(nullptr);
+  this->SetController(nullptr);
 }
 
 //------------------------------------------------------------------------------
@@ -191,6 +204,10 @@ std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
   choice.vectorComponent = self->VectorComponent;
   choice.independentComponents = volume->GetProperty()->GetIndependentComponents() != 0;
   choice.mask = self->MaskInput;
+  if (this->Ranks.Use(self->Controller) && !pieceOf(self))
+  {
+    return ""; // a rank may hold nothing
+  }
   std::string problem = this->Source.Examine(self->GetInput(), choice);
   if (problem.empty() && isFlat(this->Source.Grid(), volume))
   {
@@ -198,6 +215,69 @@ std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
       "Spacing, direction and prop matrix flatten the volume: none of them may be singular.";
   }
   return problem;
+}
+
+//------------------------------------------------------------------------------
+// As Problem(), what any rank has to say, once each has looked at its piece. Collective.
+std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfRanks(
+  vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* volume, std::string problem)
+{
+  RankReport report = reportOf(self, problem);
+  if (!report.problem[0] && !report.isEmpty())
+  {
+    if (this->Components.LookAt(this->Source))
+    {
+      this->Times.clear();
+    }
+    describeScalars(this->Components, this->Source, report);
+  }
+  report.view = viewNumber(self, ren, volume);
+  problem = this->Ranks.Agree(report);
+  if (problem.empty() && report.isEmpty())
+  {
+    this->Source.HoldNothing(this->Ranks.Common().vtkType);
+    this->Components.LookAtNothing(static_cast<splatting::ScalarType>(this->Ranks.Common().type),
+      static_cast<std::size_t>(this->Ranks.Common().components));
+  }
+  return problem;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPVolumeMapper::UpdateWhole()
+{
+  RankAgreement& ranks = this->Internal->Ranks;
+  this->Update();
+  if (!ranks.Use(this->Controller))
+  {
+    return true;
+  }
+  RankReport report;
+  if (vtkImageData* const piece = pieceOf(this))
+  {
+    report.setGrid(piece);
+  }
+  const std::string problem = ranks.AgreeOnGrid(report);
+  if (!problem.empty())
+  {
+    vtkErrorMacro(<< problem);
+  }
+  return problem.empty();
+}
+
+//------------------------------------------------------------------------------
+double* vtkSplattingMIPVolumeMapper::GetBounds()
+{
+  RankAgreement& ranks = this->Internal->Ranks;
+  if (!ranks.Use(this->Controller))
+  {
+    return this->Superclass::GetBounds();
+  }
+  if (!ranks.Whole())
+  {
+    return nullptr; // what has no bounds is not culled
+  }
+  ranks.Whole()->GetBounds(this->Bounds);
+  return this->Bounds;
 }
 
 //------------------------------------------------------------------------------
@@ -219,7 +299,7 @@ std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfSettings(
     return fault;
   }
   const glm::dmat4 toIndex =
-    self->BoundingSurface ? worldToIndex(this->Source.Grid(), volume) : glm::dmat4(1.0);
+    self->BoundingSurface ? worldToIndex(this->Grid(), volume) : glm::dmat4(1.0);
   const char* const fault = this->Cuts.Surface().Update(self->BoundingSurface, toIndex);
   return fault ? fault : "";
 }
@@ -267,7 +347,10 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper
   }
   const bool ordered = splatting::isOrdered(best.reduction) || best.keepWinners ||
     this->Source.AreDependent(); // the nearest of equal samples wins
-  if (this->AreAsBefore(ordered) && this->Cuts.AreKept() && this->Components.Shows(best))
+  const bool isShown =
+    this->AreAsBefore(ordered) && this->Cuts.AreKept() && this->Components.Shows(best);
+  // Where one rank projects all do.
+  if (this->Ranks.AreMany() ? !this->Ranks.Any(!isShown) : isShown)
   {
     return true;
   }
@@ -316,6 +399,10 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   this->LastRenderUsedRayCasting = false;
   in.Locations.Forget();
   std::string problem = in.Problem(this, vol);
+  if (in.Ranks.AreMany())
+  {
+    problem = in.ProblemOfRanks(this, ren, vol, problem);
+  }
   if (problem.empty())
   {
     problem = in.ProblemOfSettings(this, vol);
@@ -350,7 +437,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
-  splatting::View view = makeView(in.Source.Grid(), vol, ren, this);
+  splatting::View view = makeView(in.Grid(), vol, ren, this);
   // Nothing can be seen in a window that is not shown yet.
   if (view.viewport.x < 1 || view.viewport.y < 1)
   {
@@ -377,7 +464,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   }
   if (this->Slab)
   {
-    addSlab(view, in.Source.Grid(), vol, this->SlabCenter, this->SlabThickness);
+    addSlab(view, in.Grid(), vol, this->SlabCenter, this->SlabThickness);
   }
   const bool isOpen = in.Cuts.Surface().IsOpen();
   if (isOpen && !in.OpenSurfaceReported)
@@ -387,19 +474,21 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   }
   in.OpenSurfaceReported = isOpen;
   const vtkIdType version = in.Source.Version();
-  if (in.Components.LookAt(in.Source))
+  if (!in.Ranks.AreMany() && in.Components.LookAt(in.Source))
   {
     in.Times.clear(); // changed data of the same kind take what the last ones took
   }
   in.Components.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget));
+  in.Components.SetRanks(in.Ranks.AreMany() ? &in.Ranks : nullptr);
   in.IndexTimeBefore = in.Source.Version() == version ? in.IndexTime() : 0.0;
   in.Components.UpdateColors(vol->GetProperty(), finalColor, projectionSettings(this, PREVIEW));
   in.Components.SetCullBelowWindow(this->CullBelowWindow);
   // Selection is by what is seen.
-  const int mode = !this->AutoAdjustSampleDistances ? this->QualityMode
+  int mode = !this->AutoAdjustSampleDistances ? this->QualityMode
     : ren->GetSelector()
     ? std::min(this->GetQualityModeUsed(), this->QualityMode)
     : in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime());
+  mode = in.Ranks.AreMany() ? in.Ranks.Least(mode) : mode;
   if (!in.Project(this, ren, vol, view, mode))
   {
     return TurnOfViews::Degenerate;
@@ -412,7 +501,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
                     << " bytes): this volume is projected without it. Raise the budget.");
   }
   in.BudgetReported = exceeds;
-  if (in.Components.IsProjected())
+  if (in.Components.IsProjected() && (!this->DisplayOnRootOnly || in.Ranks.IsRoot()))
   {
     in.Components.Warp(in.Images, view, in.Picture);
     in.Cuts.Hide(in.Picture);
@@ -702,6 +791,9 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "VectorComponent: " << this->VectorComponent << "\n";
   os << indent << "MaskInput: ";
   this->MaskInput ? os << this->MaskInput << "\n" : os << "(none)\n";
+  os << indent << "Controller: ";
+  this->Controller ? os << this->Controller << "\n" : os << "(none)\n";
+  os << indent << "DisplayOnRootOnly: " << (this->DisplayOnRootOnly ? "On" : "Off") << "\n";
   os << indent << "QualityMode: " << this->GetQualityModeAsString() << "\n";
   os << indent << "QualityModeUsed: " << nameOfMode(this->GetQualityModeUsed()) << "\n";
   os << indent << "AutoAdjustSampleDistances: " << (this->AutoAdjustSampleDistances ? "On" : "Off")

@@ -128,6 +128,7 @@
 #include <memory> // for the hidden implementation
 
 class vtkImageData;
+class vtkMultiProcessController;
 class vtkPolyData;
 class vtkScalarsToColors;
 class vtkVolumeProperty;
@@ -701,6 +702,56 @@ public:
    */
   vtkGetMacro(LastRenderUsedRayCasting, bool);
 
+  ///@{
+  /**
+   * The ranks among which the image is distributed. nullptr (the default), or a controller with one
+   * rank: the input is all of it.
+   *
+   * With several ranks each one has a mapper with the same settings, a renderer with the same
+   * camera and size, and as input its piece of one vtkImageData: the extent says where, origin,
+   * spacing, direction and type of scalars are common. Pieces may be of any size and overlap. Next
+   * to others they need ghost layers: none in preview, 1 voxel in standard, 2 in high mode, in all
+   * directions. A rank that has nothing has an empty vtkImageData. Each rank projects its piece
+   * onto the shear image of the whole, the images are reduced with MAX (MIN) over the controller,
+   * and each rank colours and shows the result: the picture has the same bits as one rank's, for
+   * any pieces.
+   *
+   * Render() is collective then: all ranks must render as often, or wait for each other for ever.
+   * GetBounds() are those of the whole, so that a frustum culls on all ranks or on none. What is
+   * wrong on one rank is told by all, and all skip the frame.
+   *
+   * Projected are global and depth-shaded maxima and minima of independent components; anything
+   * else is refused with a sentence, as are rectilinear grids. Chains are walked as bricks, without
+   * LineTolerance. Geometry that hides the volume must be the same on all ranks, or
+   * IntermixIntersectingGeometry be off.
+   *
+   * A frame costs three reductions of a few bytes and a gathering of some 700 from each rank; if it
+   * projects, a reduction of each shear image as well, with 1 to 8 bytes a pixel in preview, 4 (8
+   * for 32- and 64-bit integers and double) in the other modes, and the memory of one more shear
+   * image.
+   */
+  virtual void SetController(vtkMultiProcessController*);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
+  /**
+   * Updates the input, and with several ranks finds the bounds of the whole, which cameras can then
+   * be set by. Collective. Call it before the first frame and when the input moves; Render() does
+   * the same once it is under way, but a volume whose old bounds are out of sight is culled before.
+   * False, with an error, if the pieces are not of one image.
+   */
+  bool UpdateWhole();
+
+  ///@{
+  /**
+   * Whether only the first of several ranks shows the picture, as where a compositor such as IceT
+   * blends the ranks' pictures over each other. Off by default: all ranks show the same.
+   */
+  vtkSetMacro(DisplayOnRootOnly, bool);
+  vtkGetMacro(DisplayOnRootOnly, bool);
+  vtkBooleanMacro(DisplayOnRootOnly, bool);
+  ///@}
+
   /**
    * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
    */
@@ -710,6 +761,13 @@ public:
    * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
    */
   void ReleaseGraphicsResources(vtkWindow* window) override;
+
+  /**
+   * The bounds of the input; with several ranks those of the whole of all pieces, as of the last
+   * Render() or UpdateWhole(), and nullptr before the first of these.
+   */
+  double* GetBounds() override;
+  using Superclass::GetBounds;
 
 protected:
   vtkSplattingMIPVolumeMapper();
@@ -743,6 +801,8 @@ protected:
   int VectorMode;
   int VectorComponent;
   vtkImageData* MaskInput;
+  vtkMultiProcessController* Controller;
+  bool DisplayOnRootOnly;
   int QualityMode;
   int Kernel;
   double KernelRadius;

@@ -6,11 +6,11 @@
 
 namespace splatting
 {
-void CutMap::reset(const Cuts& cuts, const ShearWarp& geometry)
+void CutMap::reset(const Cuts& cuts, const ShearWarp& geometry, const Span& slices)
 {
   this->Source = &cuts;
   this->Regions.clear();
-  for (int k = 0; cuts.cropping.cuts() && k < geometry.size().z; ++k)
+  for (int k = slices.begin; cuts.cropping.cuts() && k < slices.end; ++k)
   {
     this->Regions.push_back(regionsOf(cuts.cropping, geometry, k));
   }

@@ -31,7 +31,9 @@ class CutMap
 {
 public:
   /// The cuts must outlive their use.
-  void reset(const Cuts& cuts, const ShearWarp& geometry);
+  /// @param geometry  of the whole volume
+  /// @param slices    of it, the first of which is slice 0 of the cuts' intervals and of the map
+  void reset(const Cuts& cuts, const ShearWarp& geometry, const Span& slices);
   bool none() const { return this->Source->none(); }
   const Cuts& source() const { return *this->Source; }
   bool crops() const { return !this->Regions.empty(); }

@@ -158,6 +158,14 @@ struct Lanes
       larger(larger(corners[4], corners[5]), larger(corners[6], corners[7])));
   }
 
+  /// Rounding can take sums beyond the largest corner. Where that is no more than the best so far a
+  /// pixel may have been left out, and must not change if it is not.
+  template <bool Special>
+  static inline R limitedTo(R raised, R most, R best)
+  {
+    return Special ? raised : larger(smaller(raised, most), best);
+  }
+
   /// What pixels start from: those without a sample, if there are, from less than all.
   template <bool Special>
   static inline R opened(R before)
@@ -281,7 +289,7 @@ struct CubicLoop : Lanes<A, R>
     {
       const CubicPiece<A>& piece = this->row.pieces[p];
       this->loadCorners(piece, x, corners);
-      const R most = Special ? best : larger(Lanes<A, R>::largestOf(corners), best);
+      const R most = Lanes<A, R>::largestOf(corners);
       if (!Special && !anyOf(most > best))
       {
         follows = false;
@@ -301,10 +309,7 @@ struct CubicLoop : Lanes<A, R>
           raised = larger(peakOf<A>(b, inner, raised), raised);
         }
       }
-      if constexpr (!Special)
-      {
-        raised = smaller(raised, most); // or rounding would tell which pixels looked
-      }
+      raised = Lanes<A, R>::template limitedTo<Special>(raised, most, best);
       if constexpr (Masked)
       {
         raised = this->counting(piece, x) ? raised : best;
@@ -450,6 +455,8 @@ struct FanCubicLoop : Lanes<A, R>
     {
       raised = larger(peakOf<A>(b, inner, raised), raised);
     }
+    raised =
+      Lanes<A, R>::template limitedTo<Special>(raised, Lanes<A, R>::largestOf(corners), best);
     return counts ? raised : best;
   }
 

@@ -92,12 +92,15 @@ ExactPiece<A> pieceBetween(
 }
 
 template <class A>
-void findExactPaths(const ShearWarp& geometry, std::vector<ExactPath<A>>& paths)
+void findExactPaths(
+  const ShearWarp& geometry, const ShearWarp& part, std::vector<ExactPath<A>>& paths)
 {
-  paths.resize(geometry.size().z);
+  const glm::ivec3& first = part.first();
+  paths.resize(part.size().z);
   std::vector<double> cuts;
-  for (int k = 0; k < geometry.size().z; ++k)
+  for (int own = 0; own < part.size().z; ++own)
   {
+    const int k = own + first.z;
     const glm::dvec3 from(-geometry.position(k - 0.5), k - 0.5);
     const glm::dvec3 to(-geometry.position(k + 0.5), k + 0.5);
     cuts = { 0.0, 0.5, 1.0 };
@@ -111,12 +114,14 @@ void findExactPaths(const ShearWarp& geometry, std::vector<ExactPath<A>>& paths)
     }
     std::sort(cuts.begin(), cuts.end());
     cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
-    paths[k].clear();
+    paths[own].clear();
     for (std::size_t n = 0; n + 1 < cuts.size(); ++n)
     {
       const glm::dvec3 way = to - from;
-      paths[k].push_back(
+      paths[own].push_back(
         pieceBetween<A>(geometry, k, from + cuts[n] * way, from + cuts[n + 1] * way));
+      paths[own].back().di -= first.x;
+      paths[own].back().dj -= first.y;
     }
   }
 }
@@ -158,6 +163,6 @@ void findFieldSpans(const ShearWarp& geometry, std::vector<Span>& spans)
   }
 }
 
-template void findExactPaths(const ShearWarp&, std::vector<ExactPath<float>>&);
-template void findExactPaths(const ShearWarp&, std::vector<ExactPath<double>>&);
+template void findExactPaths(const ShearWarp&, const ShearWarp&, std::vector<ExactPath<float>>&);
+template void findExactPaths(const ShearWarp&, const ShearWarp&, std::vector<ExactPath<double>>&);
 }

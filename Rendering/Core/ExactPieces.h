@@ -53,9 +53,11 @@ struct ExactPiece
 template <class A>
 using ExactPath = std::vector<ExactPiece<A>>; ///< one after the other, by ascending depth
 
-/// The paths of a parallel view, of all slices.
+/// The paths of a parallel view, of all slices of a part of it (or of the whole): the weights do
+/// not depend on where the part begins.
 template <class A>
-void findExactPaths(const ShearWarp& geometry, std::vector<ExactPath<A>>& paths);
+void findExactPaths(
+  const ShearWarp& whole, const ShearWarp& part, std::vector<ExactPath<A>>& paths);
 
 /**
  * For each row of a parallel image the pixels whose rays run through the field. The others, at the

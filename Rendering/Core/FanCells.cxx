@@ -32,13 +32,13 @@ typename FanCells<A>::Depths FanCells<A>::depthsIn(
 }
 
 template <class A>
-void FanCells<A>::find(const ShearWarp& geometry, int a)
+void FanCells<A>::find(const ShearWarp& whole, const ShearWarp& part, int a)
 {
   constexpr std::size_t unit = 64;
-  const Fan& fan = a == 0 ? geometry.columns() : geometry.rows();
-  this->Slices = geometry.slices();
-  this->Count = geometry.rayCount()[a];
-  this->Size = geometry.size()[a];
+  const Fan& fan = a == 0 ? whole.columns() : whole.rows();
+  this->Slices = part.slices();
+  this->Count = whole.rayCount()[a];
+  this->Size = part.size()[a];
   this->Padded = (this->Count + unit) / unit * unit + unit;
   const std::size_t slices = this->Slices.end - this->Slices.begin;
   this->Cells.resize(slices * this->Padded);
@@ -48,12 +48,12 @@ void FanCells<A>::find(const ShearWarp& geometry, int a)
   this->FieldFar.assign(this->Padded, -std::numeric_limits<A>::infinity());
   this->Field.resize(this->Count);
   this->Boxes.resize(this->Count);
-  const FieldRange range(geometry, a);
+  const FieldRange range(whole, a);
   for (int n = 0; n < this->Count; ++n)
   {
     const double at = fan.at[n], slope = fan.slope[n];
-    this->Field[n] = depthsIn(range.begin, range.end, at, slope, geometry.reference());
-    this->Boxes[n] = depthsIn(-0.5, this->Size - 0.5, at, slope, geometry.reference());
+    this->Field[n] = depthsIn(range.begin, range.end, at, slope, whole.reference());
+    this->Boxes[n] = depthsIn(-0.5, whole.size()[a] - 0.5, at, slope, whole.reference());
     this->Slopes[n] = static_cast<A>(slope);
     this->FieldNear[n] = static_cast<A>(this->Field[n][0]);
     this->FieldFar[n] = static_cast<A>(this->Field[n][1]);
@@ -63,25 +63,28 @@ void FanCells<A>::find(const ShearWarp& geometry, int a)
     {
       for (vtkIdType k = begin; k < end; ++k)
       {
-        this->findSlice(geometry, fan, static_cast<int>(k));
+        this->findSlice(whole, part, a, static_cast<int>(k));
       }
     });
 }
 
 template <class A>
-void FanCells<A>::findSlice(const ShearWarp& geometry, const Fan& fan, int k)
+void FanCells<A>::findSlice(const ShearWarp& whole, const ShearWarp& part, int a, int k)
 {
-  const glm::dvec2 faces = geometry.faces(k) - geometry.reference();
+  const Fan& fan = a == 0 ? whole.columns() : whole.rows();
+  const int slice = k + part.first().z, firstVoxel = part.first()[a];
+  const glm::dvec2 faces = whole.faces(slice) - whole.reference();
   std::int32_t* const cells = &this->Cells[std::size_t(k - this->Slices.begin) * this->Padded];
-  const auto relative = [k](double depth)
-  { return static_cast<A>(std::clamp(depth - k, -1.0, 1.0)); };
+  const auto relative = [slice](double depth)
+  { return static_cast<A>(std::clamp(depth - slice, -1.0, 1.0)); };
   for (int n = 0; n < this->Count; ++n)
   {
     const double at = fan.at[n], slope = fan.slope[n];
     const double p = at + slope * faces.x, q = at + slope * faces.y;
     const double low = std::min(p, q), high = std::max(p, q), cell = std::floor(low);
-    const double middle = at + slope * (k - geometry.reference());
-    cells[n] = static_cast<std::int32_t>(std::clamp<double>(cell, -Margin, this->Size + Margin));
+    const double middle = at + slope * (slice - whole.reference());
+    cells[n] = static_cast<std::int32_t>(
+      std::clamp<double>(cell - firstVoxel, -Margin, this->Size + Margin));
     this->array(k, At)[n] = static_cast<A>(middle - cell);
     // Rays move by a voxel or less: they pass one whole number at most.
     this->array(k, Crossing)[n] =

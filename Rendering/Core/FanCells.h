@@ -20,8 +20,10 @@ template <class A>
 class FanCells
 {
 public:
-  /// @param a  0 for columns, 1 for rows
-  void find(const ShearWarp& geometry, int a);
+  /// @param whole  the image's geometry: where rays are in their cells does not depend on parts
+  /// @param part   the part that is projected, from which voxels are counted; or the same
+  /// @param a      0 for columns, 1 for rows
+  void find(const ShearWarp& whole, const ShearWarp& part, int a);
 
   FanCellArrays<A> slice(int k) const;
 
@@ -43,7 +45,7 @@ private:
   /// The depths at which the rays of a column are somewhere.
   using Depths = std::array<double, 2>;
   static Depths depthsIn(double begin, double end, double at, double slope, double reference);
-  void findSlice(const ShearWarp& geometry, const Fan& fan, int k);
+  void findSlice(const ShearWarp& whole, const ShearWarp& part, int a, int k);
   A* array(int k, int which)
   {
     return &this->Values[(std::size_t(k - this->Slices.begin) * ArrayCount + which) * this->Padded];

@@ -108,6 +108,7 @@ struct Frame
   const CutMap& cuts;
   double floor; // as in ProjectionSettings
   ShearImage& image;
+  const ShearWarp& whole; // of which `geometry` is a part, or the same
   /// If the image tells its winners: where each pixel's value comes from, counted from the viewer
   /// on; of worksheets the slice, of previews the layer. See WinnerFinder.
   std::int16_t* orders = nullptr;

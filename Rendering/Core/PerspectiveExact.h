@@ -38,7 +38,7 @@ public:
     : WorksheetLayers<T>(frame, reach, 1),
       Columns(columns),
       Rows(rows),
-      Depths(frame.geometry, 2)
+      Depths(frame.whole, 2)
   {
     this->RaisesBest = true;
   }
@@ -71,7 +71,8 @@ protected:
   {
     const WorksheetLoops<A>& loops = this->Shared.kernels;
     const FanCellArrays<A> rows = this->Rows.slice(k);
-    const glm::dvec2 faces = this->Shared.geometry.faces(k);
+    const int slice = k + this->Shared.geometry.first().z;
+    const glm::dvec2 faces = this->Shared.whole.faces(slice);
     // Rays that touch the field have next to nothing of it.
     constexpr A shortest = A(1e-3);
     FanCubicRow<A> row;
@@ -85,13 +86,13 @@ protected:
       row.image = target.at(0, v);
       row.bits = target.bits.origin ? target.bits.at(0, v) : nullptr;
       row.slope = rows.slope[v];
-      row.fieldBegin = std::max(rows.fieldBegin[v], static_cast<A>(this->Depths.begin - k));
-      row.fieldEnd = std::min(rows.fieldEnd[v], static_cast<A>(this->Depths.end - k));
+      row.fieldBegin = std::max(rows.fieldBegin[v], static_cast<A>(this->Depths.begin - slice));
+      row.fieldEnd = std::min(rows.fieldEnd[v], static_cast<A>(this->Depths.end - slice));
       row.boxesBegin = rows.boxesBegin[v];
       row.boxesEnd = rows.boxesEnd[v];
       row.fieldNear = std::max(rows.fieldNear[v], this->nearest());
       row.fieldFar = std::min(rows.fieldFar[v], this->farthest());
-      this->findParts(k, v, faces - double(k), rows, patch, row);
+      this->findParts(k, v, faces - double(slice), rows, patch, row);
       loops.raiseFanCubics(row);
     }
   }
@@ -104,15 +105,13 @@ private:
   /// The depths of the field before the eye.
   A nearest() const
   {
-    const Span& slices = this->Shared.geometry.slices();
-    return static_cast<A>(
-      std::max(this->Depths.begin, this->Shared.geometry.faces(slices.begin).x));
+    const Span& slices = this->Shared.whole.slices();
+    return static_cast<A>(std::max(this->Depths.begin, this->Shared.whole.faces(slices.begin).x));
   }
   A farthest() const
   {
-    const Span& slices = this->Shared.geometry.slices();
-    return static_cast<A>(
-      std::min(this->Depths.end, this->Shared.geometry.faces(slices.end - 1).y));
+    const Span& slices = this->Shared.whole.slices();
+    return static_cast<A>(std::min(this->Depths.end, this->Shared.whole.faces(slices.end - 1).y));
   }
 
   /// Cuts the path of a row's rays in the slice's middle and where they leave a row of cells.

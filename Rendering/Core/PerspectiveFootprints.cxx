@@ -66,18 +66,17 @@ int partsOf(const ShearWarp& geometry, const Kernel& kernel)
 }
 
 template <class A>
-void FanFootprints<A>::find(
-  const ShearWarp& geometry, int a, const Kernel& kernel, int parts, const WorksheetLoops<A>& loops)
+void FanFootprints<A>::find(const ShearWarp& whole, const ShearWarp& geometry, int a,
+  const Kernel& kernel, int parts, const WorksheetLoops<A>& loops)
 {
   constexpr int unit = 64;
-  const Fan& fan = a == 0 ? geometry.columns() : geometry.rows();
   this->Slices = geometry.slices();
   this->Count = geometry.rayCount()[a];
   this->Padded = (this->Count + unit - 1) / unit * unit;
   this->Size = geometry.size()[a];
   this->Parts = parts;
   this->Group = loops.group;
-  this->Steepest = steepest(fan);
+  this->Steepest = steepest(a == 0 ? whole.columns() : whole.rows());
   const std::size_t all = std::size_t(this->Slices.end - this->Slices.begin) * parts;
   this->Taps.resize(all);
   this->First.resize(all * this->Padded);
@@ -93,29 +92,31 @@ void FanFootprints<A>::find(
       {
         for (int q = 0; q < parts; ++q)
         {
-          this->findPart(geometry, fan, k, q, kernel, loops);
+          this->findPart(whole, geometry, a, k, q, kernel, loops);
         }
       }
     });
 }
 
 template <class A>
-void FanFootprints<A>::findPart(const ShearWarp& geometry, const Fan& fan, int k, int q,
-  const Kernel& kernel, const WorksheetLoops<A>& loops)
+void FanFootprints<A>::findPart(const ShearWarp& whole, const ShearWarp& geometry, int a, int k,
+  int q, const Kernel& kernel, const WorksheetLoops<A>& loops)
 {
-  const glm::dvec2 depths = depthsOf(geometry, k, q, this->Parts);
+  const Fan& fan = a == 0 ? whole.columns() : whole.rows();
+  const int firstVoxel = geometry.first()[a];
+  const glm::dvec2 depths = depthsOf(whole, k + geometry.first().z, q, this->Parts);
   const double middle = 0.5 * (depths.x + depths.y);
-  const double share = (middle - geometry.eye().z) / (geometry.reference() - geometry.eye().z);
+  const double share = (middle - whole.eye().z) / (whole.reference() - whole.eye().z);
   FanWeights<A> weights;
   weights.shape = static_cast<int>(kernel.shape);
   weights.support = kernel.support();
   weights.at = fan.at.data();
   weights.slope = fan.slope.data();
-  weights.depth = middle - geometry.reference();
+  weights.depth = middle - whole.reference();
   weights.thickness = depths.y - depths.x;
-  weights.pitch = geometry.pitch() * share;
-  weights.low = -Margin;
-  weights.high = this->Size + Margin;
+  weights.pitch = whole.pitch() * share;
+  weights.low = firstVoxel - Margin;
+  weights.high = firstVoxel + this->Size + Margin;
   const double reach = weights.pitch + this->Steepest * weights.thickness + 2.0 * weights.support;
   const std::size_t n = this->at(k, q);
   weights.taps = std::min(tapsOf(reach), this->Room);
@@ -123,6 +124,10 @@ void FanFootprints<A>::findPart(const ShearWarp& geometry, const Fan& fan, int k
   weights.weights = &this->Weights[n * this->Room * this->Padded];
   weights.stride = this->Padded;
   loops.fanWeights(weights, this->Count);
+  for (int p = 0; p < this->Count; ++p)
+  {
+    weights.first[p] -= firstVoxel;
+  }
   this->Taps[n] = weights.taps;
   std::fill_n(weights.first + this->Count, this->Padded - this->Count,
     this->Count > 0 ? weights.first[this->Count - 1] : 0);
@@ -172,18 +177,19 @@ Span FanFootprints<A>::voxels(const Span& slices, const Span& pixels) const
 
 template <class A>
 void PerspectiveFootprints<A>::find(
-  const ShearWarp& geometry, const Kernel& kernel, const Kernels& kernels)
+  const ShearWarp& whole, const ShearWarp& geometry, const Kernel& kernel, const Kernels& kernels)
 {
-  this->parts = partsOf(geometry, kernel);
+  this->parts = partsOf(whole, kernel);
   const glm::ivec3& size = geometry.size();
-  this->columns.find(geometry, 0, kernel, this->parts, kernels);
-  this->rows.find(geometry, 1, kernel, this->parts, kernels);
+  this->columns.find(whole, geometry, 0, kernel, this->parts, kernels);
+  this->rows.find(whole, geometry, 1, kernel, this->parts, kernels);
   this->depth.assign(std::size_t(size.z) * this->parts, {});
   for (int k = geometry.slices().begin; k < geometry.slices().end; ++k)
   {
     for (int q = 0; q < this->parts; ++q)
     {
-      const glm::dvec2 depths = depthsOf(geometry, k, q, this->parts) - double(k);
+      const int slice = k + geometry.first().z;
+      const glm::dvec2 depths = depthsOf(whole, slice, q, this->parts) - double(slice);
       double shares[3], sum = 0.0;
       for (int c = -1; c <= 1; ++c)
       {

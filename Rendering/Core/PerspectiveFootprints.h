@@ -43,9 +43,11 @@ template <class A>
 class FanFootprints
 {
 public:
-  /// @param a  0 for columns, 1 for rows
-  void find(const ShearWarp& geometry, int a, const Kernel& kernel, int parts,
-    const WorksheetLoops<A>& loops);
+  /// @param whole     the image's geometry: weights do not depend on where a part of it begins
+  /// @param geometry  of the part that is projected, from which voxels are counted; or the same
+  /// @param a         0 for columns, 1 for rows
+  void find(const ShearWarp& whole, const ShearWarp& geometry, int a, const Kernel& kernel,
+    int parts, const WorksheetLoops<A>& loops);
 
   /// One part of one slice.
   struct Part
@@ -69,8 +71,8 @@ public:
   static constexpr int Margin = 8;
 
 private:
-  void findPart(const ShearWarp& geometry, const Fan& fan, int k, int q, const Kernel& kernel,
-    const WorksheetLoops<A>& loops);
+  void findPart(const ShearWarp& whole, const ShearWarp& geometry, int a, int k, int q,
+    const Kernel& kernel, const WorksheetLoops<A>& loops);
   std::size_t at(int k, int q) const
   {
     return std::size_t(k - this->Slices.begin) * this->Parts + q;
@@ -98,7 +100,9 @@ struct PerspectiveFootprints
   /// For each slice and part, how much of a voxel of slices k - 1, k and k + 1 counts.
   std::vector<std::array<A, 3>> depth;
 
-  void find(const ShearWarp& geometry, const Kernel& kernel, const Kernels& kernels);
+  /// As FanFootprints::find().
+  void find(const ShearWarp& whole, const ShearWarp& geometry, const Kernel& kernel,
+    const Kernels& kernels);
   const std::array<A, 3>& share(int k, int q) const { return this->depth[k * this->parts + q]; }
 
   /// Calls f(i, j, k, weight) for all voxels of a pixel in the worksheet of slice k; they may lie

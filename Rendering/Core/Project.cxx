@@ -9,6 +9,7 @@
 #include "PerspectiveExact.h"
 #include "PerspectivePreview.h"
 #include "PerspectiveWorksheets.h"
+#include "Piece.h"
 #include "RayWalk.h"
 #include "WinnerFinder.h"
 
@@ -140,6 +141,12 @@ struct Projector::Scratch
   std::vector<unsigned char> chunk;
   std::vector<LineReach> lineReaches;
   vtkSMPThreadLocal<LineScratch> lines;
+  // Of pieces only:
+  ShearWarp part;
+  Cuts partCuts;
+  std::vector<SliceGeometry> wholeSlices;
+  PerspectiveSteps wholeSteps;
+  CutMap wholeCuts;
 };
 
 Projector::Projector() : Memory(new Scratch) {}
@@ -238,12 +245,6 @@ void Projector::walkRays(
   const bool computes = Walk::computes(settings.reduction);
   RayState& state = this->Memory->rays;
   openState(frame.image, settings.reduction, state);
-  if (settings.reduction == Reduction::DepthShaded)
-  {
-    this->Memory->outline.crossed.reset(frame.sliceGeometry, frame.image.width);
-    state.crossed.findCrossed(this->Memory->outline.crossed, frame.image.width, frame.image.height,
-      frame.cuts.source().intervals);
-  }
   const Walk walk(frame, layers, settings, state);
   this->forSlices(index, frame, Layers::Beyond, walk.isReversed(),
     [&](const Span& slices, bool isFirst, bool isLast)
@@ -324,19 +325,19 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   auto& cells = std::get<std::array<FanCells<A>, 2>>(this->Memory->cells);
   if (exact && perspective)
   {
-    cells[0].find(frame.geometry, 0);
-    cells[1].find(frame.geometry, 1);
+    cells[0].find(frame.whole, frame.geometry, 0);
+    cells[1].find(frame.whole, frame.geometry, 1);
     findExactReach(frame.geometry, reach);
   }
   else if (exact)
   {
-    findExactPaths(frame.geometry, paths);
-    findFieldSpans(frame.geometry, this->Memory->field);
+    findExactPaths(frame.whole, frame.geometry, paths);
+    findFieldSpans(frame.whole, this->Memory->field);
     findReach(paths, reach);
   }
   else if (!preview && perspective)
   {
-    own.find(frame.geometry, kernel, frame.kernels);
+    own.find(frame.whole, frame.geometry, kernel, frame.kernels);
     findReach(frame.geometry, own, reach);
   }
   else if (!preview)
@@ -360,7 +361,8 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
     this->walk(index, frame, layers, used, count);
     if (!this->stopped())
     {
-      if (frame.cuts.none()) // what is left of a cut volume says nothing about the whole one
+      // What is left of a cut volume says nothing about the whole one.
+      if (frame.cuts.none())
       {
         learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality)),
           used, count);
@@ -467,7 +469,8 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
     return Acceleration::Dense;
   }
   if (wanted >= Acceleration::Lines && cuts.none() && !geometry.isPerspective() &&
-    !settings.keepWinners && settings.quality != Quality::Exact && !this->stopped())
+    !settings.keepWinners && settings.quality != Quality::Exact &&
+    &geometry != &this->Memory->part && !this->stopped())
   {
     lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),
       [this](double share)
@@ -484,12 +487,70 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
                                                             : Acceleration::Dense;
 }
 
-Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
-  const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image)
+/// How the rays of a whole volume run, where a piece of it is projected.
+void Projector::findWhole(const ShearWarp& geometry, const ProjectionSettings& settings)
+{
+  Scratch& memory = *this->Memory;
+  if (geometry.isPerspective())
+  {
+    const Kernels& kernels = kernelsFor(settings.instructionSet);
+    memory.wholeSteps.columns.find(geometry, 0, kernels);
+    memory.wholeSteps.rows.find(geometry, 1, kernels);
+  }
+  findSlices(geometry, memory.wholeSlices, memory.wholeSteps);
+}
+
+void Projector::outline(const ShearWarp& geometry, const ProjectionSettings& settings,
+  const Cuts& cuts, ShearImage& image)
+{
+  Scratch& memory = *this->Memory;
+  this->findWhole(geometry, settings);
+  memory.wholeCuts.reset(cuts, geometry, { 0, geometry.size().z });
+  outlineImage(geometry, memory.wholeSlices, memory.wholeCuts, memory.outline, image);
+}
+
+/// The geometry of a piece of a volume, and its cuts.
+const ShearWarp& Projector::findPart(
+  const ShearWarp& whole, const glm::ivec3& first, const glm::ivec3& dimensions, const Cuts& cuts)
+{
+  Scratch& memory = *this->Memory;
+  whole.findPart(first, dimensions, memory.part);
+  memory.partCuts.cropping = cuts.cropping;
+  memory.partCuts.intervals.setShifted(cuts.intervals, memory.part.first().z);
+  return memory.part;
+}
+
+/// Along each ray the slices that are samples of it, for shading by depth: those of the whole
+/// volume.
+void Projector::countSteps(const ShearWarp& whole, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const Cuts& cuts, int width, int height)
+{
+  Scratch& memory = *this->Memory;
+  const bool isPart = &whole != &geometry;
+  if (isPart)
+  {
+    this->findWhole(whole, settings);
+  }
+  memory.outline.crossed.reset(isPart ? memory.wholeSlices : memory.slices, width);
+  memory.rays.crossed.findCrossed(memory.outline.crossed, width, height, cuts.intervals);
+  if (isPart)
+  {
+    memory.rays.crossed.setShifted(memory.rays.crossed, geometry.first().z);
+  }
+}
+
+Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
+  const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image,
+  const glm::ivec3& firstVoxel)
 {
   Scratch& memory = *this->Memory;
   this->Observer.start();
-  memory.cuts.reset(cuts, geometry);
+  const glm::ivec3& held = index.volume().dimensions;
+  const std::array<int, 3>& axes = whole.axes();
+  const bool isPart = glm::ivec3(held[axes[0]], held[axes[1]], held[axes[2]]) != whole.size();
+  const ShearWarp& geometry = isPart ? this->findPart(whole, firstVoxel, held, cuts) : whole;
+  const int slice = geometry.first().z;
+  memory.cuts.reset(isPart ? memory.partCuts : cuts, whole, { slice, slice + geometry.size().z });
   if (geometry.isPerspective())
   {
     const Kernels& kernels = kernelsFor(settings.instructionSet);
@@ -497,7 +558,15 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
     memory.steps.rows.find(geometry, 1, kernels);
   }
   findSlices(geometry, memory.slices, memory.steps);
+  if (isPart)
+  {
+    keepInterior(whole, geometry, settings.quality, memory.slices);
+  }
   outlineImage(geometry, memory.slices, memory.cuts, memory.outline, image);
+  if (settings.reduction == Reduction::DepthShaded)
+  {
+    this->countSteps(whole, geometry, settings, cuts, image.width, image.height);
+  }
   const VolumeIndex::Range& range = index.range();
   // The mean of no sample is none.
   image.special = range.special || settings.reduction == Reduction::Mean;
@@ -512,7 +581,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
     {
       using T = std::remove_pointer_t<decltype(null)>;
       Frame<T> frame{ geometry, kernelsFor(settings.instructionSet), {}, range, memory.slices,
-        memory.steps, memory.cuts, settings.floor, image };
+        memory.steps, memory.cuts, settings.floor, image, whole };
       this->projectType(index, settings, used, lines, frame);
     });
   return used;

@@ -122,11 +122,19 @@ public:
   ~Projector();
 
   /**
+   * @param first  where the index' voxels begin in the volume that the geometry and the cuts are
+   * of, along the volume's axes. If they are a piece of it, the image holds the samples that can be
+   * computed from the piece alone: see Piece.h. Chains are not walked.
    * @return what has been used: never Auto, and Dense where there is no memory for what was asked.
    *         If stopped() the image is none.
    */
   Acceleration project(VolumeIndex& index, const ShearWarp& geometry,
-    const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image);
+    const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image,
+    const glm::ivec3& first = glm::ivec3(0));
+
+  /// The spans and the mask of an image of the whole volume, whose pixels came from pieces.
+  void outline(const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts,
+    ShearImage& image);
 
   /**
    * What another volume has where the last projected image found its winners: in preview the
@@ -145,6 +153,11 @@ public:
   bool stopped() const { return this->Observer.stopped(); }
 
 private:
+  void findWhole(const ShearWarp& geometry, const ProjectionSettings& settings);
+  const ShearWarp& findPart(const ShearWarp& whole, const glm::ivec3& first,
+    const glm::ivec3& dimensions, const Cuts& cuts);
+  void countSteps(const ShearWarp& whole, const ShearWarp& geometry,
+    const ProjectionSettings& settings, const Cuts& cuts, int width, int height);
   Acceleration possible(Acceleration wanted, VolumeIndex& index, const ProjectionSettings& settings,
     const ShearWarp& geometry, const Cuts& cuts, const LineIndex*& lines);
   template <class T>

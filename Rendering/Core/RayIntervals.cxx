@@ -361,4 +361,20 @@ void RayIntervals::findCrossed(
       }
     });
 }
+
+void RayIntervals::setShifted(const RayIntervals& other, int firstSlice)
+{
+  this->Width = other.Width;
+  this->First.resize(other.First.size());
+  this->Last.resize(other.Last.size());
+  vtkSMPTools::For(0, static_cast<vtkIdType>(this->First.size()), 1 << 14,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType n = begin; n < end; ++n)
+      {
+        this->First[n] = static_cast<std::int16_t>(other.First[n] - firstSlice);
+        this->Last[n] = static_cast<std::int16_t>(other.Last[n] - firstSlice);
+      }
+    });
+}
 }

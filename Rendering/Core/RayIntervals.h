@@ -50,6 +50,9 @@ public:
   /// Those of the pixels of one phase, of others' that are not empty: see ShearWarp::takePhase().
   void takePhase(const RayIntervals& whole, int phases, const glm::ivec2& phase);
 
+  /// The same intervals with slices counted from another one.
+  void setShifted(const RayIntervals& other, int firstSlice);
+
   /// For each pixel of a row the first slice and the last one; first > last: none.
   const std::int16_t* first(int v) const { return &this->First[std::size_t(v) * this->Width]; }
   const std::int16_t* last(int v) const { return &this->Last[std::size_t(v) * this->Width]; }

@@ -39,8 +39,6 @@ void begin(const ShearImage& part, int phases, ShearImage& whole)
   whole.height = part.height * phases;
   const std::size_t bytes = std::size_t(whole.width) * whole.height * sizeOf(part.type);
   whole.bytes.resize(std::max(whole.bytes.size(), bytes));
-  whole.spans.assign(whole.height, {});
-  whole.mask.clear();
   whole.winners.resize(part.winners.empty() ? 0 : std::size_t(whole.width) * whole.height);
   whole.special = false;
 }
@@ -63,6 +61,25 @@ void addSpans(const ShearImage& part, int phases, const glm::ivec2& phase, Shear
 }
 }
 
+void interleaveOutline(
+  const ShearImage& part, int phases, const glm::ivec2& phase, ShearImage& whole)
+{
+  if (phase == glm::ivec2(0))
+  {
+    whole.spans.assign(whole.height, {});
+    whole.mask.clear();
+  }
+  addSpans(part, phases, phase, whole);
+  if (!part.mask.empty())
+  {
+    if (whole.mask.empty())
+    {
+      whole.mask.assign(std::size_t(whole.width) * whole.height, 1);
+    }
+    scatter(part, part.mask.data(), phases, phase, whole.mask.data(), whole.width);
+  }
+}
+
 void interleave(const ShearImage& part, int phases, const glm::ivec2& phase, ShearImage& whole)
 {
   if (phase == glm::ivec2(0))
@@ -75,15 +92,7 @@ void interleave(const ShearImage& part, int phases, const glm::ivec2& phase, She
       using T = std::remove_pointer_t<decltype(null)>;
       scatter(part, part.row<T>(0), phases, phase, whole.row<T>(0), whole.width);
     });
-  addSpans(part, phases, phase, whole);
-  if (!part.mask.empty())
-  {
-    if (whole.mask.empty())
-    {
-      whole.mask.assign(std::size_t(whole.width) * whole.height, 1);
-    }
-    scatter(part, part.mask.data(), phases, phase, whole.mask.data(), whole.width);
-  }
+  interleaveOutline(part, phases, phase, whole);
   if (!part.winners.empty())
   {
     scatter(part, part.winners.data(), phases, phase, whole.winners.data(), whole.width);

@@ -389,6 +389,32 @@ void ShearWarp::setFan(int a, Fan& fan) const
   }
 }
 
+void ShearWarp::findPart(
+  const glm::ivec3& first, const glm::ivec3& dimensions, ShearWarp& part) const
+{
+  part = *this;
+  glm::ivec3& f = part.FirstVoxel;
+  for (int a = 0; a < 3; ++a)
+  {
+    f[a] = first[this->Axes[a]];
+    part.Size[a] = dimensions[this->Axes[a]];
+  }
+  part.Margin += glm::ivec2(f);
+  part.Middle -= f.z;
+  part.Reference -= f.z;
+  part.DepthRange -= double(f.z);
+  part.Eye -= glm::dvec3(f);
+  part.SlicesSeen.begin = std::clamp(this->SlicesSeen.begin - f.z, 0, part.Size.z);
+  part.SlicesSeen.end = std::clamp(this->SlicesSeen.end - f.z, 0, part.Size.z);
+  for (int a = 0; a < 2; ++a)
+  {
+    for (double& at : (a == 0 ? part.Columns : part.Rows).at)
+    {
+      at -= f[a];
+    }
+  }
+}
+
 void ShearWarp::computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY)
 {
   // A shear pixel shows the voxel of the middle slice that lies there.

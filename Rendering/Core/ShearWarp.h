@@ -106,6 +106,15 @@ public:
    */
   static bool factorise(const View& view, std::vector<ShearWarp>& images, int sampling = 1);
 
+  /**
+   * Sets `part` to the geometry of a box of this volume's voxels as a volume by itself: voxels,
+   * slices and depths are counted from the box on, pixels and rays are those of this image, and all
+   * of the box's positions are exact. The part has no warp of its own.
+   * @param first       the box's first voxel and
+   * @param dimensions  its voxels, along the axes of the volume
+   */
+  void findPart(const glm::ivec3& first, const glm::ivec3& dimensions, ShearWarp& part) const;
+
   bool valid() const { return this->Valid; }
   /// The volume axis along which slices are stacked, 0, 1 or 2.
   int principalAxis() const { return this->Axes[2]; }
@@ -113,6 +122,8 @@ public:
   const std::array<int, 3>& axes() const { return this->Axes; }
   /// Voxels along i, j and k.
   const glm::ivec3& size() const { return this->Size; }
+  /// Of a part, the voxel (i, j, k) of the whole that is its first one.
+  const glm::ivec3& first() const { return this->FirstVoxel; }
   /// See View.
   bool showsBoxes() const { return this->ShowsBoxes; }
   int width() const { return this->ImageSize.x; }
@@ -243,6 +254,7 @@ private:
   bool Reversed = false;
   std::array<int, 3> Axes{ 0, 1, 2 };
   glm::ivec3 Size{ 0 };
+  glm::ivec3 FirstVoxel{ 0 };
   glm::ivec2 ImageSize{ 0 }, RayCount{ 0 };
   glm::dvec2 Shear{ 0.0 };
   glm::ivec2 Margin{ 0 };

@@ -317,6 +317,17 @@ const VolumeIndex::Range& VolumeIndex::range()
   return this->ValueRange;
 }
 
+void VolumeIndex::setRangeOfWhole(const Range& range)
+{
+  if (this->Volume.voxels)
+  {
+    this->range(); // the pass makes the bricks
+  }
+  this->Surveyed = true;
+  this->ValueRange = range;
+  this->BricksMade = this->BricksMade && !range.special;
+}
+
 const BrickMaxima& VolumeIndex::bricks(int principalAxis)
 {
   this->range();

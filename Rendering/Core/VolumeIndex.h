@@ -106,6 +106,9 @@ public:
   };
   /// Made on first use: one pass over the voxels, which makes the bricks as well.
   const Range& range();
+  /// If the voxels are a piece of a volume: the range of that, which range() is from now on. It
+  /// holds the voxels' own.
+  void setRangeOfWhole(const Range& range);
 
   /// Whether there are bricks: the budget has room for them, and there are neither NaN nor
   /// infinities.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ComponentProjector.h"
 
+#include "PieceExchange.h"
 #include "ScalarSource.h"
 #include "VoxelCopies.h"
 
@@ -46,10 +47,71 @@ bool ComponentProjector::LookAt(ScalarSource& source)
   for (std::size_t c = 0; c < components; ++c)
   {
     this->Channels[c].Index.reset(source.Volume(static_cast<int>(c)));
+    this->Channels[c].Here.reset();
+    this->Channels[c].Whole.reset();
   }
   this->Projected = false;
   this->Colored = false;
   return differs;
+}
+
+//------------------------------------------------------------------------------
+void ComponentProjector::LookAtNothing(splatting::ScalarType type, std::size_t components)
+{
+  const splatting::VolumeIndex& before = this->Channels.front().Index;
+  if (before.volume().voxels || before.volume().type != type || this->Channels.size() != components)
+  {
+    this->Channels.resize(components);
+    for (Channel& channel : this->Channels)
+    {
+      channel.Index.reset({ nullptr, type, glm::ivec3(0) });
+      channel.Whole.reset();
+    }
+    this->Dependent = false;
+    this->Version = 0;
+    this->Projected = false;
+    this->Colored = false;
+  }
+}
+
+//------------------------------------------------------------------------------
+const splatting::VolumeIndex::Range& ComponentProjector::RangeOfPiece(std::size_t component)
+{
+  Channel& channel = this->Channels[component];
+  if (!channel.Here)
+  {
+    channel.Here = channel.Index.range();
+  }
+  return *channel.Here;
+}
+
+//------------------------------------------------------------------------------
+void ComponentProjector::SetRanks(PieceExchange* ranks)
+{
+  this->Projected = this->Projected && this->Ranks == ranks;
+  this->Ranks = ranks;
+  for (std::size_t c = 0; c < this->Channels.size(); ++c)
+  {
+    Channel& channel = this->Channels[c];
+    if (!ranks)
+    {
+      if (channel.Whole) // what the index knows is of that
+      {
+        channel.Index.reset(channel.Index.volume());
+        channel.Whole.reset();
+        this->Colored = this->Projected = false;
+      }
+      continue;
+    }
+    const splatting::VolumeIndex::Range range = ranks->RangeOfWhole(c);
+    if (!channel.Whole || channel.Whole->low != range.low || channel.Whole->high != range.high ||
+      channel.Whole->special != range.special)
+    {
+      this->Colored = this->Projected = false;
+    }
+    channel.Whole = range;
+    channel.Index.setRangeOfWhole(*channel.Whole); // again if the budget has changed
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -208,8 +270,15 @@ bool ComponentProjector::ProjectChannel(Channel& channel, splatting::ShearImage&
   const splatting::Cuts& cuts)
 {
   channel.Settings = this->SettingsOf(channel, settings);
-  const splatting::Acceleration used =
-    this->Projector.project(channel.Index, geometry, channel.Settings, cuts, image);
+  if (this->Ranks && !channel.Index.volume().voxels)
+  {
+    splatting::blank(geometry, channel.Index.volume().type, channel.Settings, image);
+    image.special = channel.Index.range().special;
+    ++this->Done;
+    return true;
+  }
+  const splatting::Acceleration used = this->Projector.project(channel.Index, geometry,
+    channel.Settings, cuts, image, this->Ranks ? this->Ranks->First() : glm::ivec3(0));
   if (this->Projector.stopped())
   {
     return false;
@@ -252,6 +321,20 @@ bool ComponentProjector::ProjectPart(std::size_t n, Place place,
 }
 
 //------------------------------------------------------------------------------
+// The geometry and the cuts of a phase.
+void ComponentProjector::LookAtPhase(
+  const splatting::ShearWarp& geometry, const splatting::Cuts& cuts, const glm::ivec2& phase)
+{
+  geometry.takePhase(phase, this->PhaseGeometry);
+  this->PhaseCuts.cropping = cuts.cropping;
+  this->PhaseCuts.intervals.clear();
+  if (!cuts.intervals.empty())
+  {
+    this->PhaseCuts.intervals.takePhase(cuts.intervals, geometry.phases(), phase);
+  }
+}
+
+//------------------------------------------------------------------------------
 // As it is, or phase by phase.
 bool ComponentProjector::ProjectImage(std::size_t n, const splatting::ShearWarp& geometry,
   const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts)
@@ -265,16 +348,10 @@ bool ComponentProjector::ProjectImage(std::size_t n, const splatting::ShearWarp&
   }
   const Place part = [](Channel& channel, std::size_t) -> splatting::ShearImage&
   { return channel.Phase; };
-  this->PhaseCuts.cropping = cuts.cropping;
-  this->PhaseCuts.intervals.clear();
   for (int p = 0; p < phases * phases; ++p)
   {
     const glm::ivec2 phase(p % phases, p / phases);
-    geometry.takePhase(phase, this->PhaseGeometry);
-    if (!cuts.intervals.empty())
-    {
-      this->PhaseCuts.intervals.takePhase(cuts.intervals, phases, phase);
-    }
+    this->LookAtPhase(geometry, cuts, phase);
     if (!this->ProjectPart(n, part, this->PhaseGeometry, settings, this->PhaseCuts))
     {
       return false;
@@ -303,12 +380,19 @@ bool ComponentProjector::Project(const std::vector<splatting::ShearWarp>& geomet
     channel.Images.resize(std::max(channel.Images.size(), geometries.size()));
     channel.Settings = this->SettingsOf(channel, settings); // there may be no image
   }
-  for (std::size_t n = 0; n < geometries.size(); ++n)
+  bool done = true;
+  for (std::size_t n = 0; n < geometries.size() && done; ++n)
   {
-    if (!this->ProjectImage(n, geometries[n], settings, cuts[n]))
-    {
-      return false;
-    }
+    done = this->ProjectImage(n, geometries[n], settings, cuts[n]);
+  }
+  // Where one rank has stopped all do.
+  if (this->Ranks ? this->Ranks->Any(!done) : !done)
+  {
+    return false;
+  }
+  if (this->Ranks)
+  {
+    this->Exchange(geometries, settings, cuts);
   }
   this->Projected = true;
   return true;
@@ -329,6 +413,42 @@ void ComponentProjector::Describe(splatting::Located& located) const
   located.settings = channel.Settings;
   located.low = std::isfinite(channel.Range.low) ? channel.Range.low : 0.0;
   located.high = std::isfinite(channel.Range.high) ? channel.Range.high : 0.0;
+}
+
+//------------------------------------------------------------------------------
+// From the images of pieces to those of the whole.
+void ComponentProjector::Exchange(const std::vector<splatting::ShearWarp>& geometries,
+  const splatting::ProjectionSettings& settings, const std::vector<splatting::Cuts>& cuts)
+{
+  for (std::size_t n = 0; n < geometries.size(); ++n)
+  {
+    for (Channel& channel : this->Channels)
+    {
+      this->Ranks->Reduce(channel.Images[n], settings.reduction);
+      this->OutlineWhole(channel, n, geometries[n], settings, cuts[n]);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Which pixels of an image of the whole have samples.
+void ComponentProjector::OutlineWhole(Channel& channel, std::size_t n,
+  const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
+  const splatting::Cuts& cuts)
+{
+  const int phases = geometry.phases();
+  if (phases == 1)
+  {
+    this->Projector.outline(geometry, settings, cuts, channel.Images[n]);
+    return;
+  }
+  for (int p = 0; p < phases * phases; ++p)
+  {
+    const glm::ivec2 phase(p % phases, p / phases);
+    this->LookAtPhase(geometry, cuts, phase);
+    this->Projector.outline(this->PhaseGeometry, settings, this->PhaseCuts, channel.Phase);
+    splatting::interleaveOutline(channel.Phase, phases, phase, channel.Images[n]);
+  }
 }
 
 //------------------------------------------------------------------------------

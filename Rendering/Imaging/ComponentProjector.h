@@ -11,8 +11,10 @@
 #include "vtkType.h"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
+class PieceExchange;
 class ScalarSource;
 class vtkImageData;
 
@@ -33,6 +35,19 @@ public:
   /// Points the indices at the source's volumes, anew if these changed. Returns whether other times
   /// are to be expected now, because there are more voxels, larger ones or other components.
   bool LookAt(ScalarSource& source);
+
+  /// In place of LookAt() on a rank that holds nothing of a volume of this type.
+  void LookAtNothing(splatting::ScalarType type, std::size_t components);
+
+  /// What volumes hold, and of a piece the range of its own voxels.
+  std::size_t NumberOfComponents() const { return this->Channels.size(); }
+  bool AreDependent() const { return this->Dependent; }
+  splatting::ScalarType VolumeType() const { return this->Channels.front().Index.volume().type; }
+  const splatting::VolumeIndex::Range& RangeOfPiece(std::size_t component);
+
+  /// From now on the volumes are pieces, of which the images are exchanged; nullptr: they are
+  /// whole. Must outlive its use.
+  void SetRanks(PieceExchange* ranks);
 
   /// Every component gets the same share. A change gives up what is there; returns whether it is
   /// one.
@@ -104,6 +119,7 @@ private:
   struct Channel
   {
     splatting::VolumeIndex Index;
+    std::optional<splatting::VolumeIndex::Range> Here, Whole; // of pieces only
     splatting::ColorTable Colors;
     splatting::ProjectionSettings Settings;
     std::vector<splatting::ShearImage> Images; // at least as many as the view has
@@ -121,6 +137,12 @@ private:
   {
     return this->Dependent ? this->Channels.back() : this->Channels.front();
   }
+  void Exchange(const std::vector<splatting::ShearWarp>& geometries,
+    const splatting::ProjectionSettings& settings, const std::vector<splatting::Cuts>& cuts);
+  void OutlineWhole(Channel& channel, std::size_t n, const splatting::ShearWarp& geometry,
+    const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
+  void LookAtPhase(
+    const splatting::ShearWarp& geometry, const splatting::Cuts& cuts, const glm::ivec2& phase);
   bool ProjectImage(std::size_t n, const splatting::ShearWarp& geometry,
     const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
   /// Where a channel's image belongs.
@@ -141,6 +163,7 @@ private:
   int Done = 0;          // of the present projection's images of channels
   std::size_t Parts = 1; // of a channel: images, or phases of them
   vtkIdType Version = 0; // of the source
+  PieceExchange* Ranks = nullptr;
 
   vtkVolumeProperty* ColoredBy = nullptr; // only compared
   vtkMTimeType ColorTime = 0;

@@ -397,6 +397,18 @@ void ScalarSource::Update()
 }
 
 //------------------------------------------------------------------------------
+void ScalarSource::HoldNothing(int vtkType)
+{
+  this->Examined = this->Volumed = this->Imaged = {};
+  this->Volumes.clear();
+  this->Copies.clear();
+  this->Packed = nullptr;
+  this->StandIn = nullptr;
+  this->StandInCopy = nullptr;
+  this->VtkType = vtkType;
+}
+
+//------------------------------------------------------------------------------
 int ScalarSource::VtkTypeOf(splatting::ScalarType type) const
 {
   if (type == scalarTypeOfVtk(this->VtkType))

@@ -74,10 +74,14 @@ public:
   vtkIdType Version() const { return this->NumberOfUpdates; }
   /// Valid after Update(), as long as the input.
   const splatting::VoxelArray& Volume(int component) const { return this->Volumes[component]; }
+  /// There is no volume here, but elsewhere, of this type.
+  void HoldNothing(int vtkType);
   /// VTK's name for the type of a volume, or of what is projected from it.
   int VtkTypeOf(splatting::ScalarType type) const;
   /// VTK_FLOAT or VTK_DOUBLE, whichever holds averages of scalars of a VTK type.
   static int AverageVtkType(int vtkType);
+  /// Of the scalars that the volumes are made of.
+  int GetVtkType() const { return this->VtkType; }
 
   /**
    * The same voxels as point scalars of a vtkImageData, for mappers that know nothing else. Hidden

@@ -5,11 +5,13 @@
 #include "vtkAbstractMapper.h"
 #include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
+#include "vtkCommunicator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVLODVolume.h"
 #include "vtkPVRenderView.h"
@@ -19,9 +21,11 @@
 #include "vtkRenderWindow.h"
 #include "vtkScalarsToColors.h"
 #include "vtkSplattingMIPVolumeMapper.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolumeProperty.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -68,6 +72,14 @@ vtkSplattingMIPRepresentation::vtkSplattingMIPRepresentation()
     InteractiveQualityMode(AUTOMATIC)
 {
   this->VolumeMapper.TakeReference(vtkSplattingMIPVolumeMapper::New());
+  if (vtkMultiProcessController* const ranks = this->GetSeveralRanks())
+  {
+    vtkSplattingMIPVolumeMapper* mapper = this->GetSplattingMapper();
+    mapper->SetController(ranks);
+    // A compositor blends what the ranks show.
+    mapper->DisplayOnRootOnlyOn();
+    mapper->IntermixIntersectingGeometryOff();
+  }
 }
 
 vtkSplattingMIPRepresentation::~vtkSplattingMIPRepresentation() = default;
@@ -90,6 +102,28 @@ void vtkSplattingMIPRepresentation::PrintSelf(ostream& os, vtkIndent indent)
 vtkSplattingMIPVolumeMapper* vtkSplattingMIPRepresentation::GetSplattingMapper()
 {
   return static_cast<vtkSplattingMIPVolumeMapper*>(this->VolumeMapper.Get());
+}
+
+// The ranks that this process is one of; nullptr if it is alone.
+vtkMultiProcessController* vtkSplattingMIPRepresentation::GetSeveralRanks()
+{
+  vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
+  return all && all->GetNumberOfProcesses() > 1 ? all : nullptr;
+}
+
+int vtkSplattingMIPRepresentation::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  const int result = this->Superclass::RequestUpdateExtent(request, inputVector, outputVector);
+  const auto ghosts = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS();
+  for (int i = 0; this->GetSeveralRanks() && i < inputVector[0]->GetNumberOfInformationObjects();
+       ++i)
+  {
+    // What high mode needs: a change of the mode does not ask again.
+    vtkInformation* const info = inputVector[0]->GetInformationObject(i);
+    info->Set(ghosts, std::max(info->Get(ghosts), 2));
+  }
+  return result;
 }
 
 void vtkSplattingMIPRepresentation::SetProjection(int projection)
@@ -290,11 +324,9 @@ vtkDataArray* vtkSplattingMIPRepresentation::FindScalars(vtkDataSet* volume, boo
 }
 
 // Opaque gray over the range of the scalars.
-void vtkSplattingMIPRepresentation::ShowInGray(vtkDataArray* scalars)
+void vtkSplattingMIPRepresentation::ShowInGray(const double rangeOfScalars[2], int components)
 {
-  const int components = scalars->GetNumberOfComponents();
-  double range[2];
-  scalars->GetFiniteRange(range, components == 1 ? 0 : -1);
+  double range[2] = { rangeOfScalars[0], rangeOfScalars[1] };
   if (!(range[0] < range[1]))
   {
     range[0] = range[0] <= range[1] ? range[0] : 0.0; // one value, or none at all
@@ -357,6 +389,12 @@ void vtkSplattingMIPRepresentation::UpdateMapperParameters()
     this->InteractiveRender && !isAutomatic ? this->InteractiveQualityMode : this->QualityMode);
 
   auto volume = vtkDataSet::SafeDownCast(mapper->GetDataSetInput());
+  if (!volume && this->GetSeveralRanks())
+  {
+    vtkNew<vtkImageData> nothing;
+    mapper->SetInputDataObject(nothing);
+    volume = nothing; // which the mapper keeps
+  }
   if (!volume)
   {
     // A client, whose server has the data: it gets a stand-in, and draws the outline at most.
@@ -373,11 +411,14 @@ void vtkSplattingMIPRepresentation::UpdateMapperParameters()
   {
     problem = this->SelectComponents(scalars);
   }
-  else if (scalars)
+  else if (scalars && !this->GetSeveralRanks())
   {
-    this->ShowInGray(scalars);
+    const int components = scalars->GetNumberOfComponents();
+    double range[2];
+    scalars->GetFiniteRange(range, components == 1 ? 0 : -1);
+    this->ShowInGray(range, components);
   }
-  else if (volume->GetNumberOfPoints() > 0)
+  else if (!scalars && volume->GetNumberOfPoints() > 0)
   {
     problem = isColored
       ? "The input has no array \"" + std::string(name) + "\": choose another one."
@@ -385,4 +426,39 @@ void vtkSplattingMIPRepresentation::UpdateMapperParameters()
   }
   this->Complain(this->ArrayProblem, problem);
   this->Actor->SetVisibility(scalars && problem.empty());
+  if (this->GetSeveralRanks())
+  {
+    this->ShowWithOthers(volume, scalars, isColored, !problem.empty());
+  }
+}
+
+// What all ranks must do alike: show the volume or not, its bounds, and its range in gray.
+void vtkSplattingMIPRepresentation::ShowWithOthers(
+  vtkDataSet* volume, vtkDataArray* scalars, bool isColored, bool isWrong)
+{
+  vtkMultiProcessController* const ranks = this->GetSeveralRanks();
+  constexpr double far = VTK_DOUBLE_MAX;
+  // Least range, negative greatest one, components of ranks with scalars, and whether all is well.
+  double here[4] = { far, far, -1.0, isWrong ? 0.0 : 1.0 }, all[4];
+  if (scalars && volume->GetNumberOfPoints() > 0)
+  {
+    const int components = scalars->GetNumberOfComponents();
+    double range[2];
+    scalars->GetFiniteRange(range, components == 1 ? 0 : -1);
+    here[0] = range[0];
+    here[1] = -range[1];
+    here[2] = -components;
+  }
+  ranks->AllReduce(here, all, 4, vtkCommunicator::MIN_OP);
+  const bool isShown = all[3] > 0.0 && all[0] < far;
+  this->Actor->SetVisibility(isShown);
+  if (isShown && !isColored)
+  {
+    const double range[2] = { all[0], -all[1] };
+    this->ShowInGray(range, static_cast<int>(-all[2]));
+  }
+  if (isShown)
+  {
+    this->GetSplattingMapper()->UpdateWhole();
+  }
 }

@@ -17,6 +17,11 @@
  *
  * As with all volumes in ParaView, the process that has the data renders it: with a server the
  * picture is made there, whatever the threshold for remote rendering.
+ *
+ * The ranks of a server project their pieces of the image with the ghost layers that this asks the
+ * pipeline for, and the first of them shows the picture of the whole (see
+ * vtkSplattingMIPVolumeMapper::SetController), which ParaView's compositor then finds on that rank
+ * alone. Opaque geometry, which is on other ranks as well, does not cut rays there.
  */
 #ifndef vtkSplattingMIPRepresentation_h
 #define vtkSplattingMIPRepresentation_h
@@ -28,6 +33,7 @@
 #include <string> // for members
 
 class vtkDataArray;
+class vtkMultiProcessController;
 class vtkSplattingMIPVolumeMapper;
 
 class VTKSPLATTINGMIPREPRESENTATIONS_EXPORT vtkSplattingMIPRepresentation
@@ -100,6 +106,8 @@ protected:
   vtkSplattingMIPRepresentation();
   ~vtkSplattingMIPRepresentation() override;
 
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   void UpdateMapperParameters() override;
@@ -107,9 +115,12 @@ protected:
   vtkSplattingMIPVolumeMapper* GetSplattingMapper();
   std::string CheckOpacityArray(vtkDataSet* volume);
   vtkDataArray* FindScalars(vtkDataSet* volume, bool isColored);
-  void ShowInGray(vtkDataArray* scalars);
+  void ShowInGray(const double range[2], int components);
+  void ShowWithOthers(vtkDataSet* volume, vtkDataArray* scalars, bool isColored, bool isWrong);
   std::string SelectComponents(vtkDataArray* scalars);
   void Complain(std::string& last, const std::string& problem);
+
+  vtkMultiProcessController* GetSeveralRanks();
 
   int QualityMode;
   int InteractiveQualityMode;

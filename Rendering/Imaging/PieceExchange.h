@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef PieceExchange_h
+#define PieceExchange_h
+
+#include "Project.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+
+/**
+ * What the projector of a piece of a volume needs of those that have the other pieces.
+ */
+class PieceExchange
+{
+public:
+  virtual ~PieceExchange() = default;
+
+  /// Where the piece's voxels begin in the whole.
+  virtual const glm::ivec3& First() const = 0;
+  virtual splatting::VolumeIndex::Range RangeOfWhole(std::size_t component) const = 0;
+
+  /// Collective: all must call it. Whether something is so with any of them.
+  virtual bool Any(bool here) const = 0;
+  /// Collective. From the image of a piece to that of the whole, but for its spans and mask.
+  virtual void Reduce(splatting::ShearImage& image, splatting::Reduction reduction) = 0;
+};
+
+#endif
