@@ -81,8 +81,14 @@ const char* faultOfChoice(const ProjectionChoice& choice)
 splatting::ProjectionSettings settingsOfChoice(const ProjectionChoice& choice, int mode)
 {
   splatting::ProjectionSettings settings;
-  settings.quality = static_cast<splatting::Quality>(mode);
   settings.reduction = reductionOf(choice);
+  const bool hasMaxima = settings.reduction != splatting::Reduction::Minimum &&
+    settings.reduction != splatting::Reduction::Mean;
+  if (mode == Names::EXACT && !hasMaxima)
+  {
+    mode = Names::HIGH;
+  }
+  settings.quality = static_cast<splatting::Quality>(mode);
   switch (settings.reduction)
   {
     case splatting::Reduction::DepthShaded:
@@ -111,7 +117,7 @@ splatting::ProjectionSettings settingsOfChoice(const ProjectionChoice& choice, i
   {
     settings.kernel = { splatting::Reconstruction::CosineBell, choice.kernelRadius };
   }
-  if (mode != Names::PREVIEW)
+  if (mode == Names::STANDARD || mode == Names::HIGH)
   {
     settings.footprintSampling = choice.footprintSampling;
   }

@@ -242,9 +242,7 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(
     this->Cuts[n].cropping = view.cropping;
     this->Cuts[n].intervals.find(this->Images[n], view.halfSpaces);
   }
-  const bool global = self->MaximumType == GLOBAL && self->BlendMode == MAXIMUM_INTENSITY_BLEND;
-  const int mode = self->QualityMode == EXACT && !global ? HIGH : self->QualityMode;
-  const splatting::ProjectionSettings settings = settingsOfChoice(this->Choice, mode);
+  const splatting::ProjectionSettings settings = settingsOfChoice(this->Choice, self->QualityMode);
   const bool ordered = splatting::isOrdered(settings.reduction);
   const bool sameRays = std::equal(this->Images.begin(), this->Images.end(),
     this->ImagesBefore.begin(), this->ImagesBefore.end(),
