@@ -225,9 +225,10 @@ public:
   ///@{
   /**
    * What a slice contributes to a pixel. Default HIGH. PREVIEW, STANDARD, HIGH: see
-   * vtkSplattingMIPVolumeMapper::SetQualityMode. EXACT: the maximum of the trilinearly interpolated
-   * volume along each ray of the shear image, which is as fine as the output; minima and averages
-   * are those of HIGH.
+   * vtkSplattingMIPVolumeMapper::SetQualityMode. EXACT: the largest value that the trilinearly
+   * interpolated volume takes along each ray of the shear image, which is as fine as the output,
+   * between the centres of the outermost voxels (the ends of their boxes for cells); for maxima of
+   * all MaximumTypes, minima and averages are those of HIGH.
    */
   vtkSetClampMacro(QualityMode, int, PREVIEW, EXACT);
   vtkGetMacro(QualityMode, int);

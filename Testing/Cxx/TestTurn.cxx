@@ -161,6 +161,12 @@ void testGeometry(Checks& check)
     }
     camera->Azimuth(45.0);
   }
+  turn->GetViewCamera(0, camera);
+  camera->SetParallelScale(31.0);
+  turn->SetCamera(camera);
+  turn->Update();
+  check(turn->GetOutput()->GetSpacing()[1] == 3.1 && turn->GetOutput()->GetSpacing()[0] == 3.1,
+    "a camera's scale is half the height");
   // A lone voxel right of the middle wanders over the picture as its place says.
   const int size = 21;
   reference::Volume<float> volume({ size, size, size });
