@@ -234,7 +234,7 @@ public:
     if (standard || settings.quality == Quality::High)
     {
       this->Geometry.isPerspective()
-        ? this->Own.find(this->Geometry, kernel, kernelsFor(settings.instructionSet))
+        ? this->Own.find(this->Geometry, this->Geometry, kernel, kernelsFor(settings.instructionSet))
         : findFootprints(
             this->Geometry, kernel, settings.footprintSampling, weightBits<T>, this->Footprints);
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ComponentProjector.h"
 
+#include "Piece.h"
 #include "PieceExchange.h"
 #include "ScalarSource.h"
 #include "VoxelCopies.h"
