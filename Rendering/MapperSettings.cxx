@@ -50,6 +50,8 @@ ProjectionChoice choiceOf(Mapper* mapper)
   choice.acceleration = mapper->GetAcceleration();
   choice.lineTolerance = mapper->GetLineTolerance();
   choice.eliminateInvisible = mapper->GetEliminateInvisible();
+  choice.locations =
+    mapper->GetRecordLocations() || mapper->GetDepthCoding() || mapper->GetWriteDepth();
   choice.slab = mapper->GetSlab();
   choice.slabThickness = mapper->GetSlabThickness();
   std::copy_n(mapper->GetSlabCenter(), 3, choice.slabCenter);
@@ -93,10 +95,7 @@ const char* faultOfSettings(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProper
 //------------------------------------------------------------------------------
 splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* mapper, int mode)
 {
-  splatting::ProjectionSettings settings = settingsOfChoice(choiceOf(mapper), mode);
-  settings.keepWinners = settings.reduction != splatting::Reduction::Mean &&
-    (mapper->GetRecordLocations() || mapper->GetDepthCoding() || mapper->GetWriteDepth());
-  return settings;
+  return settingsOfChoice(choiceOf(mapper), mode);
 }
 
 //------------------------------------------------------------------------------

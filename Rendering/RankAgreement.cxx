@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 static_assert(std::is_trivially_copyable<RankReport>::value, "reports are sent as bytes");
@@ -75,6 +76,8 @@ void addSettings(vtkSplattingMIPVolumeMapper* mapper, Number& number)
   number.add(mapper->GetFinalColorLevel());
   number.add(mapper->GetCullBelowWindow());
   number.add(mapper->GetAutoAdjustSampleDistances());
+  number.add(mapper->GetShearImageSampling());
+  number.add(mapper->GetRecordLocations() || mapper->GetDepthCoding() || mapper->GetWriteDepth());
 }
 
 void addCuts(vtkSplattingMIPVolumeMapper* mapper, Number& number)
@@ -167,8 +170,9 @@ RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& prob
 {
   RankReport report;
   report.setProblem(problem);
-  const auto quality = static_cast<splatting::Quality>(mapper->GetQualityMode());
-  report.layers = splatting::reachOf(quality).layers();
+  // EXACT gives way to HIGH, which reaches farther, where it takes too long or there are no maxima.
+  const int mode = std::min<int>(mapper->GetQualityMode(), vtkSplattingMIPVolumeMapper::HIGH);
+  report.layers = splatting::reachOf(static_cast<splatting::Quality>(mode)).layers();
   if (vtkImageData* const image = pieceOf(mapper))
   {
     report.setGrid(image);
@@ -392,15 +396,44 @@ int RankAgreement::Least(int here) const
 }
 
 //------------------------------------------------------------------------------
-void RankAgreement::Reduce(splatting::ShearImage& image, splatting::Reduction reduction)
+void RankAgreement::Reduce(splatting::ShearImage& image, const splatting::ShearWarp& geometry,
+  splatting::Reduction reduction)
 {
   const splatting::ScalarType type = image.type, keys = splatting::encode(image, reduction);
   this->Received.resize(image.bytes.size());
   this->Controller->GetCommunicator()->AllReduceVoidArray(image.bytes.data(), this->Received.data(),
     vtkIdType(image.width) * image.height, vtkTypeOf(keys),
     reduction == splatting::Reduction::Minimum ? vtkCommunicator::MIN_OP : vtkCommunicator::MAX_OP);
-  image.bytes.swap(this->Received);
+  image.bytes.swap(this->Received); // which is now what this rank had
+  if (!image.winners.empty())
+  {
+    this->ReduceWinners(image, geometry);
+  }
   splatting::decode(image, type, reduction);
+}
+
+//------------------------------------------------------------------------------
+// Steps are counted from the first slice of this rank's piece, and shall be from that of the whole.
+void RankAgreement::ReduceWinners(
+  splatting::ShearImage& image, const splatting::ShearWarp& geometry)
+{
+  constexpr std::int32_t behind = std::numeric_limits<std::int32_t>::max();
+  const std::int32_t none = geometry.reversed() ? -1 : behind;
+  const std::int32_t first = splatting::StepsPerSlice * this->FirstVoxel[geometry.principalAxis()];
+  const std::size_t size = splatting::sizeOf(image.type);
+  for (std::size_t pixel = 0; pixel < image.winners.size(); ++pixel)
+  {
+    std::int32_t& step = image.winners[pixel];
+    const bool wins = step >= 0 &&
+      std::memcmp(&image.bytes[pixel * size], &this->Received[pixel * size], size) == 0;
+    step = wins ? step + first : none;
+  }
+  this->ReceivedSteps.resize(image.winners.size());
+  this->Controller->AllReduce(image.winners.data(), this->ReceivedSteps.data(),
+    static_cast<vtkIdType>(image.winners.size()),
+    geometry.reversed() ? vtkCommunicator::MAX_OP : vtkCommunicator::MIN_OP);
+  image.winners.swap(this->ReceivedSteps);
+  std::replace(image.winners.begin(), image.winners.end(), behind, std::int32_t(-1));
 }
 
 //------------------------------------------------------------------------------

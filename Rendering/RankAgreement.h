@@ -83,11 +83,12 @@ public:
   /**
    * Collective. From the image of a piece to that of the whole, but for its spans and mask.
    *
-   * Each rank sends and gets the pixels once (vtkCommunicator::AllReduce). Winners
-   * (ShearImage::winners) are not exchanged yet; that would be a second reduction here, of the
-   * steps of those ranks whose pixel is the winner's, to the one nearest to the viewer.
+   * Each rank sends and gets the pixels once (vtkCommunicator::AllReduce), and once more four bytes
+   * of each if the image has winners: of the ranks whose pixel is the whole's, the step nearest to
+   * the viewer.
    */
-  void Reduce(splatting::ShearImage& image, splatting::Reduction reduction) override;
+  void Reduce(splatting::ShearImage& image, const splatting::ShearWarp& geometry,
+    splatting::Reduction reduction) override;
 
 private:
   std::vector<RankReport> Gather(const RankReport& own) const;
@@ -100,7 +101,10 @@ private:
   GridOfDataSet Place;
   glm::ivec3 FirstVoxel{ 0 };
   vtkSmartPointer<vtkImageData> Image;
+  void ReduceWinners(splatting::ShearImage& image, const splatting::ShearWarp& geometry);
+
   std::vector<unsigned char> Received;
+  std::vector<std::int32_t> ReceivedSteps;
 };
 
 /**

@@ -3,14 +3,13 @@
 #include "WinnerLocations.h"
 
 #include "ComponentProjector.h"
+#include "LocationArrays.h"
 #include "SceneCuts.h"
 #include "ViewOfVolume.h"
 
 #include "vtkCamera.h"
-#include "vtkDoubleArray.h"
-#include "vtkFloatArray.h"
+#include "vtkDataArray.h"
 #include "vtkImageData.h"
-#include "vtkIntArray.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -20,32 +19,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace
-{
-template <class Array, class T>
-T* addArray(vtkImageData* image, const char* name, int components, T none)
-{
-  vtkNew<Array> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(image->GetNumberOfPoints());
-  array->Fill(none);
-  image->GetPointData()->AddArray(array);
-  return array->GetPointer(0);
-}
-}
-
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> makeLocationImage(
   const splatting::Locator* locator, const int extent[6])
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetExtent(extent[0], extent[1], extent[2], extent[3], 0, 0);
-  const double none = std::nan("");
-  splatting::Locator::Arrays arrays;
-  arrays.voxels = addArray<vtkIntArray>(image, "Voxel", 3, -1);
-  arrays.depths = addArray<vtkFloatArray>(image, "Depth", 1, static_cast<float>(none));
-  arrays.positions = addArray<vtkDoubleArray>(image, "Position", 3, none);
+  const splatting::Locator::Arrays arrays = addLocationArrays(image);
   if (locator)
   {
     const int* const size = image->GetDimensions();

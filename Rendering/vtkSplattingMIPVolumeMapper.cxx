@@ -505,7 +505,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     in.Components.Warp(in.Images, view, in.Picture);
     in.Cuts.Hide(in.Picture);
-    in.Locations.Remember(view, in.Source.Grid(), vol, ren);
+    in.Locations.Remember(view, in.Grid(), vol, ren);
     this->DisplayLocated(ren);
   }
   return "";

@@ -710,9 +710,9 @@ public:
    * With several ranks each one has a mapper with the same settings, a renderer with the same
    * camera and size, and as input its piece of one vtkImageData: the extent says where, origin,
    * spacing, direction and type of scalars are common. Pieces may be of any size and overlap. Next
-   * to others they need ghost layers: none in preview, 1 voxel in standard, 2 in high mode, in all
-   * directions. A rank that has nothing has an empty vtkImageData. Each rank projects its piece
-   * onto the shear image of the whole, the images are reduced with MAX (MIN) over the controller,
+   * to others they need ghost layers: none in preview, 1 voxel in standard, 2 in high and exact
+   * mode, in all directions. A rank that has nothing has an empty vtkImageData. Each rank projects
+   * its piece onto the shear image of the whole, the images are reduced with MAX (MIN) over the controller,
    * and each rank colours and shows the result: the picture has the same bits as one rank's, for
    * any pieces.
    *
@@ -723,12 +723,13 @@ public:
    * Projected are global and depth-shaded maxima and minima of independent components; anything
    * else is refused with a sentence, as are rectilinear grids. Chains are walked as bricks, without
    * LineTolerance. Geometry that hides the volume must be the same on all ranks, or
-   * IntermixIntersectingGeometry be off.
+   * IntermixIntersectingGeometry be off. Of locations, voxels in modes other than PREVIEW are those
+   * that rays pass in the middle of the slice, as are points in EXACT.
    *
    * A frame costs three reductions of a few bytes and a gathering of some 700 from each rank; if it
    * projects, a reduction of each shear image as well, with 1 to 8 bytes a pixel in preview, 4 (8
-   * for 32- and 64-bit integers and double) in the other modes, and the memory of one more shear
-   * image.
+   * for 32- and 64-bit integers and double) in the other modes, 4 more where locations
+   * are wanted, and the memory of one more shear image.
    */
   virtual void SetController(vtkMultiProcessController*);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);

@@ -234,7 +234,8 @@ public:
     if (standard || settings.quality == Quality::High)
     {
       this->Geometry.isPerspective()
-        ? this->Own.find(this->Geometry, this->Geometry, kernel, kernelsFor(settings.instructionSet))
+        ? this->Own.find(
+            this->Geometry, this->Geometry, kernel, kernelsFor(settings.instructionSet))
         : findFootprints(
             this->Geometry, kernel, settings.footprintSampling, weightBits<T>, this->Footprints);
     }
@@ -243,6 +244,10 @@ public:
   glm::ivec3 find(int u, int v, int step) const
   {
     const int k = step / StepsPerSlice;
+    if (!this->Source.volume.voxels && this->Source.settings.quality != Quality::Preview)
+    {
+      return this->inMiddle(u, v, k);
+    }
     switch (this->Source.settings.quality)
     {
       case Quality::Preview:
@@ -252,6 +257,12 @@ public:
       default:
         return { this->inFootprint(u, v, k), k };
     }
+  }
+
+  glm::ivec3 inMiddle(int u, int v, int k) const
+  {
+    const glm::ivec2 voxel(glm::round(this->Geometry.onRay(u, v, k)));
+    return { glm::clamp(voxel, glm::ivec2(0), glm::ivec2(this->Geometry.size()) - 1), k };
   }
 
 private:
@@ -420,7 +431,7 @@ double Locator::depthOf(const ShearPixel& shown) const
   const ShearImage& image = (*this->Source.images)[shown.image];
   const ShearWarp& geometry = (*this->Source.geometries)[shown.image];
   const int k = image.winners[std::size_t(shown.v) * image.width + shown.u] / StepsPerSlice;
-  if (this->Source.settings.quality != Quality::Exact)
+  if (this->Source.settings.quality != Quality::Exact || !this->Source.volume.voxels)
   {
     return k;
   }

@@ -8,7 +8,8 @@
  * the field's extremum in the slice, on the ray of the nearest shear pixel. Its voxel is, in
  * preview, the one that wins; in standard and high the one of the slice that adds most to the
  * average: the largest weight times its distance from the volume's lowest value (of minima, from
- * the highest); in exact mode the nearest to the extremum.
+ * the highest); in exact mode the nearest to the extremum. Without voxels, in all but preview, it
+ * is the one that the ray passes in the middle of the slice, which takes the place of the extremum.
  */
 #ifndef splattingLocations_h
 #define splattingLocations_h
@@ -28,9 +29,9 @@ struct Located
 {
   const std::vector<ShearImage>* images = nullptr;
   const std::vector<ShearWarp>* geometries = nullptr; ///< as many as the view has
-  VoxelArray volume;                                  ///< what was projected
-  double low = 0.0, high = 0.0;                       ///< its range, infinities and NaN aside
-  ProjectionSettings settings;                        ///< of the projection
+  VoxelArray volume; ///< what was projected; without voxels if only a piece of it is here
+  double low = 0.0, high = 0.0; ///< its range, infinities and NaN aside
+  ProjectionSettings settings;  ///< of the projection
   View view;
   glm::dmat4 indexToWorld{ 1.0 };
   /// Depths are distances from here: in parallel views along the direction, of length 1.

@@ -411,6 +411,10 @@ void ComponentProjector::Describe(splatting::Located& located) const
   const Channel& channel = this->LocatedChannel();
   located.images = &channel.Images;
   located.volume = channel.Index.volume();
+  if (this->Ranks)
+  {
+    located.volume.voxels = nullptr; // a piece tells nothing of others' pixels
+  }
   located.settings = channel.Settings;
   located.low = std::isfinite(channel.Range.low) ? channel.Range.low : 0.0;
   located.high = std::isfinite(channel.Range.high) ? channel.Range.high : 0.0;
@@ -425,7 +429,7 @@ void ComponentProjector::Exchange(const std::vector<splatting::ShearWarp>& geome
   {
     for (Channel& channel : this->Channels)
     {
-      this->Ranks->Reduce(channel.Images[n], settings.reduction);
+      this->Ranks->Reduce(channel.Images[n], geometries[n], settings.reduction);
       this->OutlineWhole(channel, n, geometries[n], settings, cuts[n]);
     }
   }

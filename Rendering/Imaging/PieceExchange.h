@@ -24,7 +24,9 @@ public:
   /// Collective: all must call it. Whether something is so with any of them.
   virtual bool Any(bool here) const = 0;
   /// Collective. From the image of a piece to that of the whole, but for its spans and mask.
-  virtual void Reduce(splatting::ShearImage& image, splatting::Reduction reduction) = 0;
+  /// @param geometry  of the whole
+  virtual void Reduce(splatting::ShearImage& image, const splatting::ShearWarp& geometry,
+    splatting::Reduction reduction) = 0;
 };
 
 #endif

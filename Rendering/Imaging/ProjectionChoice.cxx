@@ -113,6 +113,7 @@ splatting::ProjectionSettings settingsOfChoice(const ProjectionChoice& choice, i
     case splatting::Reduction::Minimum:
       break;
   }
+  settings.keepWinners = choice.locations && settings.reduction != splatting::Reduction::Mean;
   if (mode == Names::HIGH && choice.kernel == Names::COSINE_BELL)
   {
     settings.kernel = { splatting::Reconstruction::CosineBell, choice.kernelRadius };

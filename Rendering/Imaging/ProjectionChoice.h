@@ -24,6 +24,7 @@ struct ProjectionChoice
   int acceleration = 0;
   double lineTolerance = 0.0;
   bool eliminateInvisible = false;
+  bool locations = false;
   bool slab = false;
   double slabThickness = 10.0;
   double slabCenter[3] = { 0.0, 0.0, 0.0 };

@@ -3,6 +3,7 @@
 #include "vtkSplattingMIPProjection.h"
 
 #include "ComponentProjector.h"
+#include "LocationArrays.h"
 #include "ProjectionChoice.h"
 #include "ScalarSource.h"
 #include "TurnOfViews.h"
@@ -45,13 +46,15 @@ public:
     vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input);
   bool GoOn(vtkSplattingMIPProjection* self, double done);
   bool ProjectView(vtkSplattingMIPProjection* self, const splatting::View& view);
-  bool PlaceOutput(vtkImageData* output) const;
+  bool PlaceOutput(vtkImageData* output);
+  void Locate(const splatting::View& view, int n);
   std::string ProjectViews(vtkSplattingMIPProjection* self, vtkImageData* output);
 
   ScalarSource Source;
   ComponentProjector Components;
   ProjectionChoice Choice;
   TurnOfViews Turn;
+  splatting::Locator::Arrays Places;                      // of locations, in the output
   std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last view and the one before
   std::vector<splatting::Cuts> Cuts, CutsBefore;          // likewise
   int ViewsDone = 0;
@@ -94,6 +97,7 @@ vtkSplattingMIPProjection::vtkSplattingMIPProjection()
     Acceleration(AUTO),
     LineTolerance(0.0),
     EliminateInvisible(false),
+    RecordLocations(false),
     IndexMemoryBudget(vtkTypeInt64(1) << 32),
     NumberOfProjections(0),
     Internal(new Internals)
@@ -133,6 +137,7 @@ ProjectionChoice vtkSplattingMIPProjection::Internals::ChoiceOf(
   choice.acceleration = self->Acceleration;
   choice.lineTolerance = self->LineTolerance;
   choice.eliminateInvisible = self->EliminateInvisible;
+  choice.locations = self->RecordLocations;
   choice.slab = self->Slab;
   choice.slabThickness = self->SlabThickness;
   std::copy_n(self->SlabCenter, 3, choice.slabCenter);
@@ -245,7 +250,8 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(
     this->Cuts[n].intervals.find(this->Images[n], view.halfSpaces);
   }
   const splatting::ProjectionSettings settings = settingsOfChoice(this->Choice, self->QualityMode);
-  const bool ordered = splatting::isOrdered(settings.reduction);
+  // Of equal samples the nearest wins.
+  const bool ordered = splatting::isOrdered(settings.reduction) || settings.keepWinners;
   const bool sameRays = std::equal(this->Images.begin(), this->Images.end(),
     this->ImagesBefore.begin(), this->ImagesBefore.end(),
     [=](const splatting::ShearWarp& a, const splatting::ShearWarp& b)
@@ -266,7 +272,7 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(
 //------------------------------------------------------------------------------
 // Where the output's points lie, and the arrays that views are written to. False if there is no
 // memory for them.
-bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output) const
+bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
 {
   vtkDataArray* const scalars = this->Source.Scalars();
   const int type = ScalarSource::AverageVtkType(scalars->GetDataType());
@@ -277,7 +283,9 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output) con
   output->SetSpacing(spacing.x, spacing.y, this->Turn.AngleStep());
   output->SetOrigin(-0.5 * (size.x - 1) * spacing.x, -0.5 * (size.y - 1) * spacing.y, 0.0);
   // VTK would say it in several sentences, or throw.
-  const std::size_t bytes = std::size_t(vtkDataArray::GetDataTypeSize(type)) * components *
+  constexpr std::size_t located = 3 * sizeof(int) + sizeof(float) + 3 * sizeof(double);
+  const std::size_t bytes = (std::size_t(vtkDataArray::GetDataTypeSize(type)) * components +
+                              (this->Choice.locations ? located : 0)) *
     static_cast<std::size_t>(output->GetNumberOfPoints());
   if (!std::unique_ptr<char[]>(new (std::nothrow) char[bytes]))
   {
@@ -285,6 +293,10 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output) con
   }
   output->AllocateScalars(type, components);
   output->GetPointData()->GetScalars()->SetName(scalars->GetName());
+  if (this->Choice.locations)
+  {
+    this->Places = addLocationArrays(output);
+  }
   return true;
 }
 
@@ -328,9 +340,39 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     }
     this->Components.WarpScalars(
       this->Images, view, self->BackgroundValue, output->GetScalarPointer(0, 0, n));
+    if (this->Components.HasWinners())
+    {
+      this->Locate(view, n);
+    }
     ++this->ViewsDone;
   }
   return {};
+}
+
+//------------------------------------------------------------------------------
+// Where the samples of view n lie, as the last projection shows them.
+void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, int n)
+{
+  if (this->Images.empty())
+  {
+    return;
+  }
+  splatting::Located located;
+  located.geometries = &this->Images;
+  located.view = view;
+  located.indexToWorld = this->Source.Grid().indexToPhysical;
+  this->Components.Describe(located);
+  vtkNew<vtkCamera> camera;
+  this->Turn.SetCamera(n, camera);
+  camera->GetPosition(&located.camera.x);
+  camera->GetDirectionOfProjection(&located.direction.x);
+  const glm::ivec2& size = this->Turn.Size();
+  const std::ptrdiff_t first = std::ptrdiff_t(n) * size.x * size.y;
+  splatting::Locator::Arrays places = this->Places;
+  places.voxels += 3 * first;
+  places.depths += first;
+  places.positions += 3 * first;
+  splatting::Locator(located).fill({ 0, 0 }, size, places);
 }
 
 //------------------------------------------------------------------------------
@@ -392,6 +434,11 @@ int vtkSplattingMIPProjection::RequestData(
   if (!problem.empty())
   {
     vtkErrorMacro(<< problem);
+  }
+  else if (this->RecordLocations && this->BlendMode == AVERAGE_INTENSITY_BLEND)
+  {
+    vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
+                       "them: choose maxima or minima, or turn RecordLocations off.");
   }
   if (!problem.empty() || in.ViewsDone < in.Turn.Views())
   {
@@ -493,6 +540,7 @@ void vtkSplattingMIPProjection::PrintSelf(ostream& os, vtkIndent indent)
   line("Acceleration", this->Acceleration);
   line("LineTolerance", this->LineTolerance);
   line("EliminateInvisible", this->EliminateInvisible ? "On" : "Off");
+  line("RecordLocations", this->RecordLocations ? "On" : "Off");
   line("IndexMemoryBudget", this->IndexMemoryBudget);
   line("NumberOfProjections", this->NumberOfProjections);
   line("IndexMemorySize", this->GetIndexMemorySize());

@@ -343,6 +343,21 @@ public:
 
   ///@{
   /**
+   * Whether the output also tells where the samples lie that it shows, as point arrays: "Voxel",
+   * three ints, the input's i, j, k relative to its first voxel, -1 without a sample; "Depth",
+   * float, the distance in world units from the camera's plane, in perspective from the eye;
+   * "Position", three doubles, the point of the world; NaN without a sample. All as of
+   * vtkSplattingMIPVolumeMapper::GetLocations(). Averages have none, which a warning says. Without
+   * a Camera the plane lies the diagonal of the volume's bounds before the focal point. Default
+   * off.
+   */
+  vtkSetMacro(RecordLocations, bool);
+  vtkGetMacro(RecordLocations, bool);
+  vtkBooleanMacro(RecordLocations, bool);
+  ///@}
+
+  ///@{
+  /**
    * Bytes that the index may hold besides the input. Default 4 GiB. What would exceed them is not
    * made: projections are slower then, and the same.
    */
@@ -426,6 +441,7 @@ protected:
   int Acceleration;
   double LineTolerance;
   bool EliminateInvisible;
+  bool RecordLocations;
   vtkTypeInt64 IndexMemoryBudget;
   vtkIdType NumberOfProjections;
 

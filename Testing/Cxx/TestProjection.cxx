@@ -149,6 +149,8 @@ Oracle oracleOf(
 {
   Oracle oracle;
   findView(rays, oracle.view);
+  oracle.view.sampling =
+    static_cast<int>(std::lround(1.0 / filter->GetShearImage()->GetSpacing()[0]));
   oracle.grid = reference::makeShearGrid(volume.size, oracle.view);
   const reference::Volume<double> exact = reference::toDouble(volume);
   const bool isExact = filter->GetQualityMode() == Filter::EXACT;
@@ -220,8 +222,10 @@ Expected expectedPixel(
   }
   const auto& axes = oracle.grid.axes;
   const double depth = point[axes[2]] - oracle.grid.middle;
-  const double pu = point[axes[0]] + oracle.grid.margin[0] + oracle.view.shear[0] * depth;
-  const double pv = point[axes[1]] + oracle.grid.margin[1] + oracle.view.shear[1] * depth;
+  const double pu =
+    oracle.view.sampling * (point[axes[0]] + oracle.grid.margin[0] + oracle.view.shear[0] * depth);
+  const double pv =
+    oracle.view.sampling * (point[axes[1]] + oracle.grid.margin[1] + oracle.view.shear[1] * depth);
   const int u = static_cast<int>(std::floor(pu)), v = static_cast<int>(std::floor(pv));
   double sum = 0.0, weight = 0.0, lost = 0.0;
   for (int n = 0; n < 4; ++n)
@@ -272,7 +276,7 @@ void compare(Checks& check, const reference::Volume<T>& volume, Filter* filter, 
   // Weights as the class documentation has them, shading and means, then rounded places in the
   // shear image (2^-24 of a pixel and, of shears, 2^-25 a slice) and a bilinear mean.
   const double bound = coretesting::errorBound<T>(splatting::Quality::High, low, high) +
-    1e-6 * (high - low) +
+    1e-6 * oracle.view.sampling * (high - low) +
     32.0 * (type == VTK_FLOAT ? 0x1p-24 : 0x1p-53) * std::max(std::abs(low), std::abs(high));
   const int* const size = filter->GetOutputSize();
   for (int y = 0; y < size[1]; ++y)
@@ -308,6 +312,7 @@ void chooseAtRandom(Filter* filter, vtkImageData* image, bool integers, referenc
   filter->SetKernel(random.uniform(0, 1));
   filter->SetKernelRadius(random.uniform(0.6, 1.5));
   filter->SetAcceleration(random.uniform(0, 2));
+  filter->SetShearImageSampling(random.uniform(0, 4));
   if (filter->GetQualityMode() == Filter::EXACT)
   {
     return;

@@ -76,6 +76,32 @@ void copyChoices(vtkSplattingMIPVolumeMapper* mapper, vtkSplattingMIPProjection*
   filter->SetCropping(mapper->GetCropping());
   filter->SetCroppingRegionFlags(mapper->GetCroppingRegionFlags());
   filter->SetCroppingRegionPlanes(mapper->GetCroppingRegionPlanes());
+  filter->SetRecordLocations(mapper->GetRecordLocations());
+}
+
+/// Voxels are the same, points and depths but for rounding.
+bool sameLocations(vtkImageData* a, vtkImageData* b)
+{
+  int wrong = 0, samples = 0;
+  for (vtkIdType pixel = 0; pixel < a->GetNumberOfPoints(); ++pixel)
+  {
+    for (const char* name : { "Voxel", "Depth", "Position" })
+    {
+      vtkDataArray *const x = a->GetPointData()->GetArray(name),
+                          *const y = b->GetPointData()->GetArray(name);
+      if (!x || !y)
+      {
+        return false;
+      }
+      for (int c = 0; c < x->GetNumberOfComponents(); ++c)
+      {
+        const double p = x->GetComponent(pixel, c), q = y->GetComponent(pixel, c);
+        wrong += !(std::abs(p - q) <= 1e-4) && !(std::isnan(p) && std::isnan(q));
+        samples += !std::isnan(p);
+      }
+    }
+  }
+  return wrong == 0 && samples > 0;
 }
 }
 
@@ -99,7 +125,7 @@ int TestProjectionAndMapper(int, char*[])
     stage.viewAngle = n % 3 == 2 ? 35.0 : 0.0;
     stage.look({ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(0.1, 1.0) },
       { 0.1, 1.0, 0.2 }, random.uniform(0.6, 1.2));
-    mapper->SetQualityMode(n % 3);
+    mapper->SetQualityMode(n % 4);
     mapper->SetKernel(n / 3 % 2);
     mapper->SetBlendMode(random.uniform(1, 3));
     mapper->SetMaximumType(random.uniform(0, 2));
@@ -113,6 +139,7 @@ int TestProjectionAndMapper(int, char*[])
     mapper->SetCroppingRegionPlanes(0.7 * b[0] + 0.3 * b[1], 0.2 * b[0] + 0.8 * b[1],
       0.6 * b[2] + 0.4 * b[3], 0.3 * b[2] + 0.7 * b[3], 0.6 * b[4] + 0.4 * b[5],
       0.3 * b[4] + 0.7 * b[5]);
+    mapper->SetRecordLocations(mapper->GetBlendMode() != vtkVolumeMapper::AVERAGE_INTENSITY_BLEND);
     copyChoices(mapper, filter);
     filter->SetCamera(stage.renderer->GetActiveCamera());
     filter->Update();
@@ -125,6 +152,9 @@ int TestProjectionAndMapper(int, char*[])
     check(difference < 0.6, "pictures" + view + " differ by " + std::to_string(difference));
     check(sameShearImages(filter->GetShearImage(), mapper->GetShearImage()),
       "shear images" + view + " are the same");
+    check(
+      !mapper->GetRecordLocations() || sameLocations(filter->GetOutput(), mapper->GetLocations()),
+      "locations" + view + " are the same");
   }
   std::cout << "largest difference " << worst << " gray levels\n";
   return check.exitCode();

@@ -29,6 +29,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <iostream>
 #include <limits>
@@ -246,6 +247,14 @@ std::vector<Way> ways()
         m->SetKernelRadius(1.5);
       },
       2 },
+    { "exact", [](Mapper* m) { m->SetQualityModeToExact(); }, 2 },
+    { "standard, two pixels per voxel",
+      [](Mapper* m)
+      {
+        m->SetQualityModeToStandard();
+        m->SetShearImageSampling(2);
+      },
+      1 },
     { "minimum",
       [](Mapper* m)
       {
@@ -322,6 +331,47 @@ void testPictures(Ranks& ranks, int vtkType, int components, bool holes)
     }
   }
   ranks.check(shown > 80 && different > 80, "pictures are empty: " + std::to_string(shown));
+}
+
+/// Where the samples lie is known on all ranks; which voxel of a slice adds most only where it is.
+void testLocations(Ranks& ranks)
+{
+  const auto whole = wholeImage(VTK_UNSIGNED_CHAR, 1, false);
+  for (int n = 0; n < 24; ++n)
+  {
+    Scene one(1), many(1);
+    one.mapper->SetInputDataObject(whole);
+    many.mapper->SetInputDataObject(
+      cropped(whole, withGhosts(extentOf(whole, ranks.own, ranks.count, n % 12), whole, 2)));
+    many.mapper->SetController(ranks.controller);
+    for (Scene* scene : { &one, &many })
+    {
+      scene->mapper->SetQualityMode(n % 3);
+      scene->mapper->SetBlendMode(n % 4 ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
+                                        : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
+      scene->mapper->SetShearImageSampling(n % 5 == 4 ? 2 : 1);
+      scene->mapper->RecordLocationsOn();
+      look(*scene, whole, n % 12);
+      scene->window->Render();
+    }
+    vtkImageData *const expected = one.mapper->GetLocations(),
+                        *const found = many.mapper->GetLocations();
+    if (!ranks.check(expected && found, "there are no locations"))
+    {
+      continue;
+    }
+    for (const char* name : { "Depth", "Position", "Voxel" })
+    {
+      vtkDataArray *const a = expected->GetPointData()->GetArray(name),
+                          *const b = found->GetPointData()->GetArray(name);
+      const bool isOwn = std::string(name) == "Voxel" && n % 3 != Mapper::PREVIEW;
+      const std::size_t bytes = std::size_t(a->GetNumberOfValues()) * a->GetDataTypeSize();
+      ranks.check(isOwn ||
+          (a->GetNumberOfValues() == b->GetNumberOfValues() &&
+            std::memcmp(a->GetVoidPointer(0), b->GetVoidPointer(0), bytes) == 0),
+        std::string(name) + " differs in view " + std::to_string(n));
+    }
+  }
 }
 
 /// Zoomed in, the pieces of most ranks are out of sight, from the first frame on.
@@ -486,6 +536,7 @@ int main(int argc, char* argv[])
   testPictures(ranks, VTK_SHORT, 1, false);
   testPictures(ranks, VTK_FLOAT, 1, true);
   testPictures(ranks, VTK_DOUBLE, 2, false);
+  testLocations(ranks);
   testCulling(ranks);
   testProblems(ranks);
   testAbort(ranks);
