@@ -289,7 +289,7 @@ void MeasureProjections(benchmark::State& state, const BenchmarkVolume& volume,
     return;
   }
   BenchmarkStage& stage = BenchmarkStage::GetInstance();
-  stage.SetSize(64); // projections do not depend on it
+  stage.SetSize(64); // exact projections depend on it: so small, they have a pixel per voxel
   stage.SetMapper(mapper, image);
   AddCut(stage.GetMapper(), image, cut);
   auto* splatting = vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper());

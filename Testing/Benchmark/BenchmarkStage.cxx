@@ -30,30 +30,30 @@ vtkSmartPointer<vtkVolumeMapper> MakeSplatting(const BenchmarkMapper& kind)
   return mapper;
 }
 
-vtkSmartPointer<vtkVolumeMapper> MakeCPURayCasting(double voxel)
+vtkSmartPointer<vtkVolumeMapper> MakeCPURayCasting(double distance)
 {
   auto mapper = vtkSmartPointer<vtkFixedPointVolumeRayCastMapper>::New();
   mapper->AutoAdjustSampleDistancesOff();
   mapper->SetImageSampleDistance(1.0f);
-  mapper->SetSampleDistance(static_cast<float>(voxel));
+  mapper->SetSampleDistance(static_cast<float>(distance));
   mapper->SetNumberOfThreads(vtkSMPTools::GetEstimatedNumberOfThreads());
   return mapper;
 }
 
-vtkSmartPointer<vtkVolumeMapper> MakeGPURayCasting(double voxel)
+vtkSmartPointer<vtkVolumeMapper> MakeGPURayCasting(double distance)
 {
   auto mapper = vtkSmartPointer<vtkOpenGLGPUVolumeRayCastMapper>::New();
   mapper->AutoAdjustSampleDistancesOff();
   mapper->UseJitteringOff();
   mapper->SetImageSampleDistance(1.0f);
-  mapper->SetSampleDistance(static_cast<float>(voxel));
+  mapper->SetSampleDistance(static_cast<float>(distance));
   return mapper;
 }
 
 vtkSmartPointer<vtkVolumeMapper> MakeMapper(const BenchmarkMapper& kind, vtkImageData* image)
 {
   const double* spacing = image->GetSpacing();
-  const double voxel = *std::min_element(spacing, spacing + 3);
+  const double distance = kind.SampleDistance * *std::min_element(spacing, spacing + 3);
   vtkSmartPointer<vtkVolumeMapper> mapper;
   switch (kind.Kind)
   {
@@ -61,10 +61,10 @@ vtkSmartPointer<vtkVolumeMapper> MakeMapper(const BenchmarkMapper& kind, vtkImag
       mapper = MakeSplatting(kind);
       break;
     case BenchmarkMapper::CPU_RAY_CASTING:
-      mapper = MakeCPURayCasting(voxel);
+      mapper = MakeCPURayCasting(distance);
       break;
     case BenchmarkMapper::GPU_RAY_CASTING:
-      mapper = MakeGPURayCasting(voxel);
+      mapper = MakeGPURayCasting(distance);
       break;
   }
   mapper->SetInputData(image);
@@ -99,6 +99,7 @@ const std::vector<BenchmarkMapper>& GetBenchmarkMappers()
     { "exact", Mapper::SPLATTING, Splatting::EXACT, automatic, linear, "raycast-linear" },
     { "raycast-nearest", Mapper::CPU_RAY_CASTING, 0, 0, nearest, "" },
     { "raycast-linear", Mapper::CPU_RAY_CASTING, 0, 0, linear, "" },
+    { "raycast-fine", Mapper::CPU_RAY_CASTING, 0, 0, linear, "", 0.05 },
     { "gpu", Mapper::GPU_RAY_CASTING, 0, 0, linear, "" },
   };
   return mappers;

@@ -31,14 +31,16 @@ struct BenchmarkMapper
 
   std::string Name;
   Kinds Kind;
-  int QualityMode;   // of the splatting mapper
-  int Acceleration;  // likewise
-  int Interpolation; // of the ray casters
-  std::string Rival; // the ray caster that shows the most similar picture, or ""
+  int QualityMode;             // of the splatting mapper
+  int Acceleration;            // likewise
+  int Interpolation;           // of the ray casters
+  std::string Rival;           // the ray caster that shows the most similar picture, or ""
+  double SampleDistance = 1.0; // of the ray casters, in voxels
 };
 
 /**
- * preview, standard, high, exact; raycast-nearest, raycast-linear; gpu.
+ * preview, standard, high, exact; raycast-nearest, raycast-linear; raycast-fine, which is linear with
+ * twenty samples per voxel; gpu.
  */
 const std::vector<BenchmarkMapper>& GetBenchmarkMappers();
 

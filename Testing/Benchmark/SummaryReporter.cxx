@@ -193,7 +193,7 @@ void SummaryReporter::PrintFrames(std::ostream& os) const
   }
   os << "\nWhole frames, render and read-back. Median and worst of the views; first: the slowest "
         "first frame\nof a fresh mapper along three axes; ray caster / it: raycast-nearest over "
-        "preview, raycast-linear\nover standard and high.\n\n";
+        "preview, raycast-linear\nover the others.\n\n";
   table.Print(os);
 }
 
