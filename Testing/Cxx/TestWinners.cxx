@@ -36,7 +36,7 @@ Scene anyScene(const std::array<int, 3>& size, bool perspective, reference::Rand
   while (scene.images.empty())
   {
     scene.view = perspective ? randomPerspective(size, random) : anyView(size, random);
-    splatting::ShearWarp::factorise(scene.view, scene.images);
+    splatting::ShearWarp::factorise(scene.view, scene.images, anySampling(random));
   }
   if (random.uniform(0, 2) == 0)
   {
@@ -91,12 +91,11 @@ std::vector<splatting::ShearImage> projectScene(
   settings.keepWinners = true;
   splatting::VolumeIndex index;
   index.reset(arrayOf(volume));
-  splatting::Projector projector;
-  std::vector<splatting::ShearImage> result(scene.images.size());
-  for (std::size_t n = 0; n < result.size(); ++n)
+  std::vector<splatting::ShearImage> result;
+  for (const splatting::ShearWarp& geometry : scene.images)
   {
-    projector.project(index, scene.images[n], settings,
-      cutsBy(scene.images[n], scene.view.halfSpaces, scene.view.cropping), result[n]);
+    result.push_back(project(
+      index, geometry, settings, cutsBy(geometry, scene.view.halfSpaces, scene.view.cropping)));
   }
   return result;
 }
@@ -303,6 +302,28 @@ void testAverages(Checks& check, bool perspective, std::uint64_t seed)
   }
 }
 
+/// Footprints in the midst of a volume, which are looked at in another way than those at its rim.
+void testWholeFootprints(Checks& check)
+{
+  reference::Random random(78);
+  for (int n = 0; n < 9; ++n)
+  {
+    const auto volume = reference::uniformNoise<std::uint8_t>({ 13, 13, 2 }, random.bits(), 0, 255);
+    Scene scene;
+    scene.view = viewWithShear(volume.size, 2, specialShear(random), specialShear(random));
+    scene.images.emplace_back(scene.view, n % 3 == 2 ? 2 : 1);
+    const Mode mode = modes()[n % 3];
+    splatting::ProjectionSettings settings = settingsOf(mode);
+    const auto images = projectScene(volume, scene, settings);
+    std::vector<glm::ivec3> voxels;
+    splatting::findVoxels(located(volume, scene, images, settings), 0, voxels);
+    const int u = scene.images[0].width() / 2, v = scene.images[0].height() / 2;
+    const std::size_t at = std::size_t(v) * scene.images[0].width() + u;
+    testShare(check, volume, scene, mode, voxels[at], 0, u, v,
+      images[0].winners[at] / splatting::StepsPerSlice);
+  }
+}
+
 /// Slices that are all alike: the nearest one wins.
 void testEqualSlices(Checks& check)
 {
@@ -502,6 +523,7 @@ int TestWinners(int, char*[])
     testExact(check, perspective);
     testPoints(check, perspective);
   }
+  testWholeFootprints(check);
   testEqualSlices(check);
   return check.result();
 }

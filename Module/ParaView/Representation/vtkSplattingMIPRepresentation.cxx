@@ -8,10 +8,12 @@
 #include "vtkCommunicator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVLODVolume.h"
 #include "vtkPVRenderView.h"
@@ -55,6 +57,40 @@ vtkDataSet* findVolume(vtkDataObject* input, std::string& problem)
     return nullptr;
   }
   return volumes.front();
+}
+
+// The same piece, of which no voxel says that it is another rank's, too: the superclass would cut
+// these off, which are there because they were asked for.
+vtkSmartPointer<vtkDataSet> keptWhole(vtkDataSet* piece)
+{
+  vtkSmartPointer<vtkDataSet> whole = vtk::TakeSmartPointer(piece->NewInstance());
+  whole->ShallowCopy(piece);
+  for (const int type : { vtkDataObject::POINT, vtkDataObject::CELL })
+  {
+    vtkDataSetAttributes* const attributes = whole->GetAttributes(type);
+    auto* const ghosts = vtkUnsignedCharArray::SafeDownCast(
+      attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+    if (!ghosts)
+    {
+      continue;
+    }
+    constexpr unsigned char duplicate = vtkDataSetAttributes::DUPLICATEPOINT;
+    static_assert(duplicate == static_cast<int>(vtkDataSetAttributes::DUPLICATECELL));
+    vtkNew<vtkUnsignedCharArray> kept;
+    kept->DeepCopy(ghosts);
+    unsigned char any = 0;
+    for (vtkIdType n = 0; n < kept->GetNumberOfValues(); ++n)
+    {
+      kept->SetValue(n, kept->GetValue(n) & static_cast<unsigned char>(~duplicate));
+      any |= kept->GetValue(n);
+    }
+    attributes->RemoveArray(ghosts->GetName());
+    if (any)
+    {
+      attributes->AddArray(kept);
+    }
+  }
+  return whole;
 }
 
 bool isInteractive(vtkInformation* request)
@@ -266,6 +302,10 @@ int vtkSplattingMIPRepresentation::RequestData(
   if (!volume)
   {
     volume = vtkSmartPointer<vtkImageData>::New();
+  }
+  if (this->GetSeveralRanks())
+  {
+    volume = keptWhole(volume);
   }
   const bool wantsOpacityArray = this->UseSeparateOpacityArray;
   if (wantsOpacityArray && problem.empty())
