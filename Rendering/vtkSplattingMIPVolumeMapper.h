@@ -712,9 +712,9 @@ public:
    * spacing, direction and type of scalars are common. Pieces may be of any size and overlap. Next
    * to others they need ghost layers: none in preview, 1 voxel in standard, 2 in high and exact
    * mode, in all directions. A rank that has nothing has an empty vtkImageData. Each rank projects
-   * its piece onto the shear image of the whole, the images are reduced with MAX (MIN) over the controller,
-   * and each rank colours and shows the result: the picture has the same bits as one rank's, for
-   * any pieces.
+   * its piece onto the shear image of the whole, the images are reduced with MAX (MIN) over the
+   * controller, and each rank colours and shows the result: the picture has the same bits as one
+   * rank's, for any pieces.
    *
    * Render() is collective then: all ranks must render as often, or wait for each other for ever.
    * GetBounds() are those of the whole, so that a frustum culls on all ranks or on none. What is

@@ -34,7 +34,8 @@
 
 namespace
 {
-const std::vector<std::string> ModeNames = { "preview", "standard", "high", "exact" }; // as QualityModes
+const std::vector<std::string> ModeNames = { "preview", "standard", "high",
+  "exact" }; // as QualityModes
 
 struct Options
 {

@@ -54,8 +54,9 @@ void setQuality(const std::string& quality)
   }
   else if (!quality.empty() && quality != "high")
   {
-    vtkGenericWarningMacro(<< "SPLATTINGMIP_QUALITY is \"" << quality
-                           << "\", which is taken as high: set it to preview, standard, high or exact.");
+    vtkGenericWarningMacro(
+      << "SPLATTINGMIP_QUALITY is \"" << quality
+      << "\", which is taken as high: set it to preview, standard, high or exact.");
   }
 }
 }

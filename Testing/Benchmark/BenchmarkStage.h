@@ -39,8 +39,8 @@ struct BenchmarkMapper
 };
 
 /**
- * preview, standard, high, exact; raycast-nearest, raycast-linear; raycast-fine, which is linear with
- * twenty samples per voxel; gpu.
+ * preview, standard, high, exact; raycast-nearest, raycast-linear; raycast-fine, which is linear
+ * with twenty samples per voxel; gpu.
  */
 const std::vector<BenchmarkMapper>& GetBenchmarkMappers();
 
