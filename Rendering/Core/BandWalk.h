@@ -148,8 +148,9 @@ private:
       const int end = std::min(first + together, this->Groups);
       this->Stack.open(this->firstRow(first), this->firstRow(end - 1) + this->rowsOf(end - 1),
         { 0, this->Shared.image.width }, this->Scratch.patch);
-      for (int z = this->Range.begin; z < this->Range.end; ++z)
+      for (int n = 0; n < this->Range.end - this->Range.begin; ++n)
       {
+        const int z = this->Shared.nth(this->Range, n);
         for (int g = first; g < end; ++g)
         {
           RowRuns& rows = this->Scratch.rows[g - first];

@@ -109,9 +109,10 @@ struct Frame
   double floor; // as in ProjectionSettings
   ShearImage& image;
   const ShearWarp& whole; // of which `geometry` is a part, or the same
-  /// If the image tells its winners: where each pixel's value comes from, counted from the viewer
-  /// on; of worksheets the slice, of previews the layer. See WinnerFinder.
+  /// If the image tells its winners: where each pixel's value comes from, see orderOfStep().
   std::int16_t* orders = nullptr;
+  /// Whether slices are walked from the viewer on: of equal samples the first one met wins.
+  bool nearestFirst = false;
 
   const T* voxelRow(int j, int k) const
   {
@@ -123,25 +124,30 @@ struct Frame
   {
     return this->orders + std::ptrdiff_t(v) * this->image.width;
   }
-  std::int16_t orderOf(int n, int count) const
+  /// Steps as in ShearImage::winners, counted from the viewer on; and back again.
+  int orderOfStep(int step) const
   {
-    return static_cast<std::int16_t>(this->geometry.reversed() ? count - 1 - n : n);
+    return this->geometry.reversed() ? StepsPerSlice * this->geometry.size().z - 1 - step : step;
   }
-  std::int16_t orderOfSlice(int k) const { return this->orderOf(k, this->geometry.size().z); }
-  std::int16_t orderOfLayer(int z) const
-  {
-    return this->orderOf(z, (this->geometry.size().z + BrickDepth - 1) / BrickDepth);
-  }
-  /// Of a layer's slices, that of the nearest one.
+  /// The least that the steps of a layer have.
   std::int16_t nearestOrder(int z) const
   {
     const int first = z * BrickDepth, end = std::min(first + BrickDepth, this->geometry.size().z);
-    return this->orderOfSlice(this->geometry.reversed() ? end - 1 : first);
+    const int step = this->geometry.reversed() ? StepsPerSlice * end - 1 : StepsPerSlice * first;
+    return static_cast<std::int16_t>(this->orderOfStep(step));
+  }
+  /// The n-th of some slices or layers, from the viewer on if winners are noted.
+  int nth(const Span& some, int n) const
+  {
+    return this->orders && this->geometry.reversed() ? some.end - 1 - n : some.begin + n;
   }
 
   /// The pixels of row v in [vBegin, vEnd) whose rays cross slice k.
   const Span& pixels(int v, int k) const { return this->sliceGeometry[k].span(v); }
 };
+
+/// Slices of a volume whose steps Frame::orders can hold.
+constexpr int MostNoted = std::numeric_limits<std::int16_t>::max() / StepsPerSlice;
 
 /// The voxels that the pixels of a layer read, relative to the pixel.
 struct Window

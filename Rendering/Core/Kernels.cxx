@@ -12,230 +12,12 @@
 #include "RayKernels.h"
 #include "Registers.h"
 #include "ResamplingKernels.h"
+#include "SweepKernels.h"
 
 namespace splatting
 {
 namespace
 {
-template <class T>
-struct MaximumBlock
-{
-  T* image;
-  const T* const* rows;
-  int count;
-  inline void single(std::ptrdiff_t x) const
-  {
-    for (int r = 0; r < this->count; ++r)
-    {
-      this->image[x] = larger(this->rows[r][x], this->image[x]);
-    }
-  }
-  template <int V>
-  inline void run(std::ptrdiff_t x) const
-  {
-    Pack<T> best[V];
-#pragma GCC unroll 4
-    for (int v = 0; v < V; ++v)
-    {
-      best[v] = load<T>(this->image + x + v * width<T>);
-    }
-    for (int r = 0; r < this->count; ++r)
-    {
-      const T* const row = this->rows[r] + x;
-#pragma GCC unroll 4
-      for (int v = 0; v < V; ++v)
-      {
-        best[v] = larger(load<T>(row + v * width<T>), best[v]);
-      }
-    }
-#pragma GCC unroll 4
-    for (int v = 0; v < V; ++v)
-    {
-      store<T>(this->image + x + v * width<T>, best[v]);
-    }
-  }
-};
-
-/// The same where bits say which rows count.
-template <class T>
-struct CutBlock
-{
-  T* image;
-  const T* const* rows;
-  int count;
-  const unsigned char* bits;
-  const unsigned char* bit;
-  template <int V>
-  inline void run(std::ptrdiff_t x) const
-  {
-    Pack<T> best[V];
-    Pack<Integer<T>> counts[V];
-#pragma GCC unroll 4
-    for (int v = 0; v < V; ++v)
-    {
-      best[v] = load<T>(this->image + x + v * width<T>);
-      counts[v] = loadBits<T>(this->bits + x + v * width<T>);
-    }
-    for (int r = 0; r < this->count; ++r)
-    {
-      const T* const row = this->rows[r] + x;
-      const Pack<Integer<T>> mine = Pack<Integer<T>>{} + static_cast<Integer<T>>(this->bit[r]);
-#pragma GCC unroll 4
-      for (int v = 0; v < V; ++v)
-      {
-        const Pack<T> value = (counts[v] & mine) != 0 ? load<T>(row + v * width<T>) : best[v];
-        best[v] = larger(value, best[v]);
-      }
-    }
-#pragma GCC unroll 4
-    for (int v = 0; v < V; ++v)
-    {
-      store<T>(this->image + x + v * width<T>, best[v]);
-    }
-  }
-  inline void single(std::ptrdiff_t x) const
-  {
-    for (int r = 0; r < this->count; ++r)
-    {
-      this->image[x] =
-        this->bits[x] & this->bit[r] ? larger(this->rows[r][x], this->image[x]) : this->image[x];
-    }
-  }
-};
-
-template <class T>
-void maximum(T* image, const T* const* rows, int count, std::ptrdiff_t n)
-{
-  const MaximumBlock<T> block{ image, rows, count };
-  blocks<T>(n, block, [&](std::ptrdiff_t x) { block.single(x); });
-}
-
-template <class T>
-void largest(const T* const* rows, int count, T* out, std::ptrdiff_t n)
-{
-  for (std::ptrdiff_t x = 0; x < n; x += width<T>)
-  {
-    Pack<T> best = load<T>(rows[0] + x);
-    for (int r = 1; r < count; ++r)
-    {
-      best = larger(load<T>(rows[r] + x), best);
-    }
-    store<T>(out + x, best);
-  }
-}
-
-/// The run's valid pixels, and as many beside them as fill a register.
-template <class T, class Block>
-inline void sweepRun(const Block& block, const Span& run, const Span& valid)
-{
-  const std::ptrdiff_t begin = run.begin > valid.begin ? run.begin : valid.begin;
-  const std::ptrdiff_t end = run.end < valid.end ? run.end : valid.end;
-  std::ptrdiff_t x = begin;
-  for (; end - x >= 4 * width<T>; x += 4 * width<T>)
-  {
-    block.template run<4>(x);
-  }
-  if (end - x > width<T> && valid.end - x >= 2 * width<T>)
-  {
-    block.template run<2>(x);
-    x += 2 * width<T>;
-  }
-  for (; x < end; x += width<T>)
-  {
-    if (valid.end - x < width<T>)
-    {
-      x = valid.end - width<T>;
-    }
-    if (x < valid.begin) // fewer valid pixels than a register has
-    {
-      for (x = begin; x < end; ++x)
-      {
-        block.single(x);
-      }
-      return;
-    }
-    block.template run<1>(x);
-  }
-}
-
-#if defined(__GNUC__)
-template <class T>
-inline void sweepRim(T* image, const T* const* rows, int count, const Rim& rim,
-  const unsigned char* bits, const unsigned char* bit)
-{
-  const Pack<Integer<T>> shown =
-    bits ? loadBits<T>(bits + rim.first) : Pack<Integer<T>>{} - static_cast<Integer<T>>(1);
-  Pack<T> lane;
-  for (int x = 0; x < width<T>; ++x)
-  {
-    lane[x] = static_cast<T>(x);
-  }
-  Pack<T> best = load<T>(image + rim.first);
-  for (int r = 0; r < count; ++r)
-  {
-    if (rim.begin[r] < rim.end[r])
-    {
-      const Pack<T> value = load<T>(rows[r] + rim.first);
-      const Pack<T> begin = Pack<T>{} + static_cast<T>(rim.begin[r]);
-      const Pack<T> last = Pack<T>{} + static_cast<T>(rim.end[r] - 1);
-      const Integer<T> mine = static_cast<Integer<T>>(bits ? bit[r] : 1);
-      const auto counts = (lane >= begin) & (lane <= last) & (value > best) & ((shown & mine) != 0);
-      best = counts ? value : best;
-    }
-  }
-  store<T>(image + rim.first, best);
-}
-#else
-template <class T>
-inline void sweepRim(T* image, const T* const* rows, int count, const Rim& rim,
-  const unsigned char* bits, const unsigned char* bit)
-{
-  for (int r = 0; r < count; ++r)
-  {
-    if (rim.begin[r] < rim.end[r] && (!bits || bits[rim.first] & bit[r])) // of one element
-    {
-      image[rim.first] = larger(rows[r][rim.first], image[rim.first]);
-    }
-  }
-}
-#endif
-
-template <class T>
-void sweep(const Sweep<T>& s)
-{
-  T* image = s.image;
-  const unsigned char* bits = s.bits;
-  const T* rows[MostRows];
-  for (int r = 0; r < s.count; ++r)
-  {
-    rows[r] = s.rows[r];
-  }
-  for (int v = 0; v < s.height; ++v)
-  {
-    for (int n = 0; n < s.runCount; ++n)
-    {
-      if (bits)
-      {
-        sweepRun<T>(CutBlock<T>{ image, rows, s.count, bits, s.bit }, s.runs[n], s.valid);
-      }
-      else
-      {
-        sweepRun<T>(MaximumBlock<T>{ image, rows, s.count }, s.runs[n], s.valid);
-      }
-    }
-    for (int n = 0; n < s.rimCount; ++n)
-    {
-      sweepRim(image, rows, s.count, *s.rims[n], bits, s.bit);
-    }
-    image += s.imageStride;
-    bits = bits ? bits + s.bitsStride : nullptr;
-    for (int r = 0; r < s.count; ++r)
-    {
-      rows[r] += s.rowStride;
-    }
-  }
-}
-
 template <class T>
 void widen(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
   Accumulator<T> base, std::ptrdiff_t n, int rows)
@@ -368,6 +150,17 @@ inline void addPart(
   }
 }
 
+/// Notes the slice where its sums are larger than what was before, or as large and nearer.
+template <class A>
+inline void noteSums(
+  const Splat<A>& s, std::ptrdiff_t at, Pack<A> sum, Pack<A> before, Pack<Integer<A>> counts)
+{
+  // Without a question, whose answer nobody could foretell.
+  const Pack<Integer<A>> tied = (sum == before) & counts;
+  keepNearest<A>(s.notes + at, 0, typename NotesOf<A>::type{} + s.order, sum > before,
+    s.nearestFirst ? Pack<Integer<A>>{} : tied);
+}
+
 /// Rows x V registers of pixels, from (x, y) of the rectangle.
 template <class A, int Rows, int V, bool Cut>
 inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
@@ -411,15 +204,21 @@ inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
 #pragma GCC unroll 4
     for (int v = 0; v < V; ++v)
     {
-      A* const pixels = s.image + (y + o) * s.imageStride + x + v * width<A>;
-      const Pack<A> before = load<A>(pixels);
+      const std::ptrdiff_t at = (y + o) * s.imageStride + x + v * width<A>;
+      const Pack<A> before = load<A>(s.image + at);
+      Pack<Integer<A>> counts = ~Pack<Integer<A>>{};
       if constexpr (Cut)
       {
         const Pack<Integer<A>> bits =
           loadBits<A>(s.bits + (y + o) * s.bitsStride + x + v * width<A>);
-        sum[o][v] = (bits & static_cast<Integer<A>>(s.bit)) != 0 ? sum[o][v] : before;
+        counts = (bits & static_cast<Integer<A>>(s.bit)) != 0;
+        sum[o][v] = counts ? sum[o][v] : before;
       }
-      store<A>(pixels, larger(sum[o][v], before));
+      if (s.notes)
+      {
+        noteSums(s, at, sum[o][v], before, counts);
+      }
+      store<A>(s.image + at, larger(sum[o][v], before));
     }
   }
 }
@@ -443,7 +242,12 @@ inline void splatPixel(const Splat<A>& s, std::ptrdiff_t x, int y)
       }
     }
   }
-  A& pixel = s.image[y * s.imageStride + x];
+  const std::ptrdiff_t at = y * s.imageStride + x;
+  A& pixel = s.image[at];
+  if (s.notes && (sum > pixel || (sum == pixel && s.order < s.notes[at])))
+  {
+    s.notes[at] = s.order;
+  }
   pixel = larger(sum, pixel);
 }
 

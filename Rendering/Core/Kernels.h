@@ -67,6 +67,13 @@ struct Sweep
   const unsigned char* bits;
   std::ptrdiff_t bitsStride;
   unsigned char bit[MostRows];
+  /// If winners are noted, the first pixel's note in rows as the image has them, else nullptr. A
+  /// voxel of row r has the note `order` + offsets[r], where offsets ascend; of equal ones the
+  /// least stays. All notes before are less where the nearest come first.
+  std::int16_t* notes;
+  std::int16_t order;
+  std::int8_t offsets[MostRows];
+  bool nearestFirst;
 };
 
 /// Rows of pixels of a perspective image and the voxels that their rays cross in one slice; see
@@ -194,6 +201,10 @@ struct Splat
   const unsigned char* bits;
   std::ptrdiff_t bitsStride;
   unsigned char bit;
+  /// As in Sweep, in rows as the image has them; all voxels have the same.
+  std::int16_t* notes;
+  std::int16_t order;
+  bool nearestFirst;
 };
 
 /// The least and greatest first and last slices that the rays of tiles are cut to.

@@ -228,6 +228,10 @@ public:
       Geometry(geometry),
       Voxels(located.volume, Geometry)
   {
+    for (int k = 0; k < geometry.size().z && !geometry.isPerspective(); ++k)
+    {
+      this->Paths.push_back(geometry.rayPath(k));
+    }
     const ProjectionSettings& settings = located.settings;
     const bool standard = settings.quality == Quality::Standard;
     const Kernel kernel = standard ? Kernel{ Reconstruction::Box } : settings.kernel;
@@ -275,7 +279,7 @@ private:
       const RayPath path = this->Geometry.voxelsOnRay(u, v, k);
       return { path.di[t], path.dj[t], k };
     }
-    const RayPath path = this->Geometry.rayPath(k);
+    const RayPath& path = this->Paths[k];
     return { u + path.di[t], v + path.dj[t], k };
   }
 
@@ -363,6 +367,7 @@ private:
   const Located& Source;
   const ShearWarp& Geometry;
   PermutedVoxels<T> Voxels;
+  std::vector<RayPath> Paths; ///< of parallel views
   std::vector<SliceFootprint<A>> Footprints;
   PerspectiveFootprints<A> Own;
 };

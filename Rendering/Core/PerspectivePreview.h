@@ -8,7 +8,7 @@
 
 #include "Cuts.h"
 #include "Frame.h"
-#include "PreviewLayers.h"
+#include "Patch.h"
 
 namespace splatting
 {
@@ -46,18 +46,18 @@ public:
     return this->Shared.steps.rows.voxels(this->slices(z), pixels);
   }
 
-  std::int16_t orderOf(int z) const { return this->Shared.orderOfLayer(z); }
+  std::int16_t orderOf(int z) const { return this->Shared.nearestOrder(z); }
 
   void splat(
     int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
-    if (!this->Shared.orders)
+    const Span slices = this->slices(z);
+    for (int k = slices.begin; k < slices.end; ++k)
     {
-      this->splatInto(this->Shared.image.template row<T>(0), z, v0, v1, runs, bits, patch);
-      return;
+      this->Shared.orders
+        ? this->noteSlice(k, v0, v1, runs, bits, patch)
+        : this->splatSlice(this->Shared.image.template row<T>(0), k, v0, v1, runs, bits, patch);
     }
-    noteLayer(this->Shared, this->orderOf(z), v0, v1, runs, patch,
-      [&](T* pixels) { this->splatInto(pixels, z, v0, v1, runs, bits, patch); });
   }
 
   void open(int, int, const Span&, Patch&) const {}
@@ -117,17 +117,37 @@ private:
     return common(slicesOfLayer(z, this->Shared.geometry.size()), this->Shared.geometry.slices());
   }
 
-  /// @param pixels  pixel (0, 0) of what has the image's rows
-  void splatInto(T* pixels, int z, int v0, int v1, const std::vector<Span>& runs,
-    const SliceBits& bits, Patch& patch) const
+  /// Raises the image to what the slice makes of an empty one, and notes which pixels it has won.
+  void noteSlice(
+    int k, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
-    const Span slices = this->slices(z);
-    for (int k = slices.begin; k < slices.end; ++k)
+    const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+    v0 = std::max(v0, slice.vBegin);
+    v1 = std::min(v1, slice.vEnd);
+    if (v0 >= v1)
     {
-      this->splatSlice(pixels, k, v0, v1, runs, bits, patch);
+      return;
+    }
+    const std::ptrdiff_t width = this->Shared.image.width;
+    patch.noted.resize((v1 - v0) * width * sizeof(T));
+    T* const pixels = reinterpret_cast<T*>(patch.noted.data()) - v0 * width;
+    // Registers write beside their runs.
+    std::fill(pixels + v0 * width, pixels + v1 * width, leastValue<T>());
+    this->splatSlice(pixels, k, v0, v1, runs, bits, patch);
+    const RayLoops<T>& loops = this->Shared.kernels;
+    const int order = this->Shared.orderOfStep(StepsPerSlice * k);
+    for (int v = v0; v < v1; ++v)
+    {
+      for (const Span& run : runs)
+      {
+        loops.raiseNoting(this->Shared.image.template row<T>(v) + run.begin,
+          this->Shared.ordersOfRow(v) + run.begin, static_cast<std::int16_t>(order),
+          pixels + v * width + run.begin, nullptr, 0, run.end - run.begin);
+      }
     }
   }
 
+  /// @param pixels  pixel (0, 0) of what has the image's rows
   void splatSlice(T* pixels, int k, int v0, int v1, const std::vector<Span>& runs,
     const SliceBits& bits, Patch& patch) const
   {

@@ -14,12 +14,12 @@
 
 namespace splatting
 {
-/// The paths of all slices of a layer.
+/// The paths of all slices of a layer; from the viewer on if winners are noted.
 struct PreviewLayer
 {
   struct Tap
   {
-    int k, di, dj;
+    int k, t, di, dj;
   };
   std::array<Tap, MostRows> taps;
   int tapCount = 0;
@@ -29,33 +29,6 @@ struct PreviewLayer
   bool rimsFit = false; ///< whether a register holds a rim
 };
 static_assert(MostRows == 3 * BrickDepth);
-
-/**
- * Raises runs of rows of the image to what splat(pixels) makes of a layer in an empty image of the
- * same rows, and notes which pixels it has won. What is no sample there is the least value, as
- * such pixels are that have had none: a layer that does not meet them may be noted for these.
- */
-template <class T, class SplatLayer>
-void noteLayer(const Frame<T>& frame, std::int16_t order, int v0, int v1,
-  const std::vector<Span>& runs, Patch& patch, SplatLayer&& splat)
-{
-  const std::ptrdiff_t width = frame.image.width;
-  patch.noted.resize((v1 - v0) * width * sizeof(T));
-  T* const pixels = reinterpret_cast<T*>(patch.noted.data()) - v0 * width;
-  // Registers write beside their runs.
-  std::fill(pixels + v0 * width, pixels + v1 * width, leastValue<T>());
-  splat(pixels);
-  const RayLoops<T>& loops = frame.kernels;
-  for (int v = v0; v < v1; ++v)
-  {
-    for (const Span& run : runs)
-    {
-      loops.raiseNoting(frame.image.template row<T>(v) + run.begin,
-        frame.ordersOfRow(v) + run.begin, order, pixels + v * width + run.begin, nullptr, 0,
-        run.end - run.begin);
-    }
-  }
-}
 
 template <class T>
 class PreviewLayers
@@ -78,13 +51,16 @@ public:
   {
     const glm::ivec3& size = frame.geometry.size();
     storage.assign((size.z + BrickDepth - 1) / BrickDepth, PreviewLayer{});
-    for (int k = 0; k < size.z; ++k)
+    const bool fromLast = frame.image.keepsWinners() && frame.geometry.reversed();
+    for (int n = 0; n < size.z; ++n)
     {
+      const int k = fromLast ? size.z - 1 - n : n;
       Layer& layer = storage[k / BrickDepth];
       const RayPath& path = frame.sliceGeometry[k].path;
-      for (int t = 0; t < path.count; ++t)
+      for (int m = 0; m < path.count; ++m)
       {
-        layer.taps[layer.tapCount++] = { k, path.di[t], path.dj[t] };
+        const int t = fromLast ? path.count - 1 - m : m;
+        layer.taps[layer.tapCount++] = { k, t, path.di[t], path.dj[t] };
         layer.window.add(path.di[t], path.dj[t]);
       }
     }
@@ -96,8 +72,8 @@ public:
 
   const Window& window(int layer) const { return this->Layers[layer].window; }
 
-  /// Of Frame::orders, what a layer gives.
-  std::int16_t orderOf(int z) const { return this->Shared.orderOfLayer(z); }
+  /// Of Frame::orders, the least that a layer gives.
+  std::int16_t orderOf(int z) const { return this->Shared.nearestOrder(z); }
 
   /// Takes a layer's voxels into the pixels of some rows and runs of columns, as far as the bits
   /// (if there are any) say.
@@ -171,12 +147,13 @@ public:
     // Long rows that lie side by side in a page of memory are read ahead if one comes after the
     // other.
     const bool longRows = slices.sliceStride * std::ptrdiff_t(sizeof(T)) >= 1024;
-    const int sideBySide = !slicesFirst && longRows ? 1 : BrickDepth;
+    const int sideBySide = !slicesFirst && longRows && !this->Shared.orders ? 1 : BrickDepth;
     for (int v = v0; v < v1; v += height)
     {
-      for (int z = layers.begin; z < layers.end; ++z)
+      for (int n = 0; n < layers.end - layers.begin; ++n)
       {
-        this->splatLayer(z, v, std::min(v + height, v1), all, sideBySide, {}, patch);
+        this->splatLayer(
+          this->Shared.nth(layers, n), v, std::min(v + height, v1), all, sideBySide, {}, patch);
       }
     }
   }
@@ -196,31 +173,18 @@ private:
   void splatLayer(int z, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
     const SliceBits& bits, Patch& patch) const
   {
-    if (!this->Shared.orders)
-    {
-      this->splatInto(this->image().template row<T>(0), z, v0, v1, runs, sideBySide, bits, patch);
-      return;
-    }
-    noteLayer(this->Shared, this->orderOf(z), v0, v1, runs, patch,
-      [&](T* pixels) { this->splatInto(pixels, z, v0, v1, runs, sideBySide, bits, patch); });
-  }
-
-  /// @param pixels  pixel (0, 0) of what has the image's rows
-  void splatInto(T* pixels, int z, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
-    const SliceBits& bits, Patch& patch) const
-  {
     const Layer& layer = this->Layers[z];
     // Rows whose voxels all exist, and beside which there are others: a rim reads a few voxels
     // beyond its row.
     const bool plain = layer.rimsFit && !this->Shared.range.special;
     const int first = plain ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
     const int last = std::clamp(this->Shared.geometry.size().y - 1 - layer.window.jMax, first, v1);
-    this->splatSlices(pixels, z, v0, first, runs, bits, patch);
+    this->splatSlices(z, v0, first, runs, bits, patch);
     if (first < last)
     {
-      this->sweep(pixels, layer, first, last, runs, sideBySide, bits);
+      this->sweep(layer, first, last, runs, sideBySide, bits);
     }
-    this->splatSlices(pixels, z, last, v1, runs, bits, patch);
+    this->splatSlices(z, last, v1, runs, bits, patch);
   }
 
   void findRims(Layer& layer) const
@@ -250,27 +214,30 @@ private:
 
   /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns. So many slices
   /// are read side by side.
-  void sweep(T* pixels, const Layer& layer, int v0, int v1, const std::vector<Span>& runs,
-    int sideBySide, const SliceBits& bits) const
+  void sweep(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
+    const SliceBits& bits) const
   {
     for (int first = 0, end = 0; first < layer.tapCount; first = end)
     {
-      while (end < layer.tapCount && layer.taps[end].k - layer.taps[first].k < sideBySide)
+      while (end < layer.tapCount && std::abs(layer.taps[end].k - layer.taps[first].k) < sideBySide)
       {
         ++end;
       }
-      this->sweepTaps(pixels, layer, first, end, v0, v1, runs, bits);
+      this->sweepTaps(layer, first, end, v0, v1, runs, bits);
     }
   }
 
-  void sweepTaps(T* pixels, const Layer& layer, int firstTap, int endTap, int v0, int v1,
+  void sweepTaps(const Layer& layer, int firstTap, int endTap, int v0, int v1,
     const std::vector<Span>& runs, const SliceBits& bits) const
   {
     Sweep<T> sweep;
     sweep.bits = bits.origin ? bits.at(0, v0) : nullptr;
     sweep.bitsStride = bits.stride;
     sweep.imageStride = this->Shared.image.width;
-    sweep.image = pixels + v0 * sweep.imageStride;
+    sweep.image = this->image().template row<T>(v0);
+    sweep.notes = this->Shared.orders ? this->Shared.ordersOfRow(v0) : nullptr;
+    sweep.order = this->orderOf(layer.taps[0].k / BrickDepth);
+    sweep.nearestFirst = this->Shared.nearestFirst;
     sweep.height = v1 - v0;
     sweep.count = endTap - firstTap;
     sweep.rowStride = this->Shared.slices.rowStride;
@@ -279,6 +246,8 @@ private:
       const Layer::Tap& tap = layer.taps[t];
       sweep.bit[t - firstTap] = static_cast<unsigned char>(1u << tap.k % BrickDepth);
       sweep.rows[t - firstTap] = this->Shared.voxelRow(v0 + tap.dj, tap.k) + tap.di;
+      sweep.offsets[t - firstTap] = static_cast<std::int8_t>(
+        this->Shared.orderOfStep(StepsPerSlice * tap.k + tap.t) - sweep.order);
     }
     sweep.runs = runs.data();
     sweep.runCount = static_cast<int>(runs.size());
@@ -312,8 +281,8 @@ private:
   }
 
   /// Any rows, slice by slice.
-  void splatSlices(T* pixels, int z, int v0, int v1, const std::vector<Span>& runs,
-    const SliceBits& bits, Patch& patch) const
+  void splatSlices(
+    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
     for (int k = slices.begin; k < slices.end; ++k)
@@ -323,14 +292,15 @@ private:
       {
         for (const Span& run : runs)
         {
-          T* const row = pixels + std::ptrdiff_t(v) * this->Shared.image.width;
-          this->splatSlice(row, k, v, common(run, this->Shared.pixels(v, k)), bits, patch);
+          const Span span = common(run, this->Shared.pixels(v, k));
+          this->Shared.orders ? this->noteSlice(k, v, span, bits)
+                              : this->splatSlice(k, v, span, bits, patch);
         }
       }
     }
   }
 
-  void splatSlice(T* row, int k, int v, const Span& span, const SliceBits& bits, Patch& patch) const
+  void splatSlice(int k, int v, const Span& span, const SliceBits& bits, Patch& patch) const
   {
     const unsigned char* mask = nullptr;
     if (bits.origin && !span.empty())
@@ -342,6 +312,7 @@ private:
         [bit](unsigned char b) { return static_cast<unsigned char>(b & bit); });
       mask = patch.worksheet.data();
     }
+    T* const row = this->image().template row<T>(v);
     this->forVoxels(k, v, span, false,
       [&](int, const Span& pixels, const T* voxels)
       {
@@ -357,6 +328,20 @@ private:
           const VoxelLoops<T>& loops = this->Shared.kernels;
           loops.maximum(image, &voxels, 1, n);
         }
+      });
+  }
+
+  void noteSlice(int k, int v, const Span& span, const SliceBits& bits) const
+  {
+    const RayLoops<T>& loops = this->Shared.kernels;
+    this->forVoxels(k, v, span, false,
+      [&](int t, const Span& pixels, const T* voxels)
+      {
+        const int order = this->Shared.orderOfStep(StepsPerSlice * k + t);
+        loops.raiseNoting(this->image().template row<T>(v) + pixels.begin,
+          this->Shared.ordersOfRow(v) + pixels.begin, static_cast<std::int16_t>(order), voxels,
+          bits.origin ? bits.at(pixels.begin, v) : nullptr,
+          static_cast<unsigned char>(1u << k % BrickDepth), pixels.end - pixels.begin);
       });
   }
 

@@ -85,9 +85,11 @@ Acceleration choose(const Experience& experience, Quality quality)
 }
 
 /// Whether each sample has to be looked at by itself.
-bool looksAtAll(const ProjectionSettings& settings, const VolumeIndex::Range& range)
+bool looksAtAll(
+  const ProjectionSettings& settings, const VolumeIndex::Range& range, const ShearWarp& geometry)
 {
-  return settings.reduction != Reduction::Maximum || (settings.keepWinners && range.special);
+  return settings.reduction != Reduction::Maximum ||
+    (settings.keepWinners && (range.special || geometry.size().z > MostNoted));
 }
 
 /// Room for what a reduction keeps of each pixel.
@@ -193,7 +195,8 @@ void Projector::walk(
     frame, layers, index.volume(), this->Memory->outline.crossed, preview);
   const BrickMaxima* const bricks =
     used == Acceleration::Bricks ? &index.bricks(frame.geometry.principalAxis()) : nullptr;
-  this->forSlices(index, frame, Layers::Beyond, false,
+  frame.nearestFirst = notes && !bricks;
+  this->forSlices(index, frame, Layers::Beyond, notes && frame.geometry.reversed(),
     [&](const Span& slices, bool isFirst, bool isLast)
     {
       forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
@@ -352,7 +355,7 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
   }
   const auto splat = [&](const auto& layers)
   {
-    if (looksAtAll(settings, frame.range))
+    if (looksAtAll(settings, frame.range, frame.geometry))
     {
       this->walkRays(index, frame, layers, settings);
       return;
@@ -464,7 +467,7 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   const ProjectionSettings& settings, const ShearWarp& geometry, const Cuts& cuts,
   const LineIndex*& lines)
 {
-  if (looksAtAll(settings, index.range()) || index.range().special)
+  if (looksAtAll(settings, index.range(), geometry) || index.range().special)
   {
     return Acceleration::Dense;
   }

@@ -166,7 +166,7 @@ void note(std::int32_t* winners, std::int32_t place, const P* before, const P* i
 }
 
 template <bool Masked, class P>
-void raiseNoting(P* __restrict image, std::int16_t* __restrict orders, std::int16_t order,
+inline void raiseNoting(P* __restrict image, std::int16_t* __restrict orders, std::int16_t order,
   const P* __restrict samples, const unsigned char* __restrict bits, unsigned char bit,
   std::ptrdiff_t n)
 {
@@ -184,8 +184,22 @@ template <class P>
 void raiseNoting(P* image, std::int16_t* orders, std::int16_t order, const P* samples,
   const unsigned char* bits, unsigned char bit, std::ptrdiff_t n)
 {
-  bits ? raiseNoting<true>(image, orders, order, samples, bits, bit, n)
-       : raiseNoting<false>(image, orders, order, samples, bits, bit, n);
+  // Where most samples are less, there is little to do.
+  constexpr std::ptrdiff_t chunk = 64;
+  for (std::ptrdiff_t x = 0; x < n; x += chunk)
+  {
+    const std::ptrdiff_t count = n - x < chunk ? n - x : chunk;
+    Integer<P> any = 0; // as wide as samples, for compilers
+    for (std::ptrdiff_t y = x; y < x + count; ++y)
+    {
+      any |= static_cast<Integer<P>>(samples[y] >= image[y]);
+    }
+    if (any != 0)
+    {
+      bits ? raiseNoting<true>(image + x, orders + x, order, samples + x, bits + x, bit, count)
+           : raiseNoting<false>(image + x, orders + x, order, samples + x, bits, bit, count);
+    }
+  }
 }
 
 template <bool Masked, class A>

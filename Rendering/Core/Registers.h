@@ -160,6 +160,34 @@ inline Pack<float> loadWidened(const std::int16_t* p)
 }
 #endif
 
+/// Whether any element of a comparison's result is true.
+template <class M>
+inline bool anyOf(const M& mask)
+{
+  if constexpr (std::is_arithmetic_v<M>)
+  {
+    return mask != 0;
+  }
+  else
+  {
+#if defined(__AVX512F__)
+    return _mm512_test_epi32_mask(
+             reinterpret_cast<const __m512i&>(mask), reinterpret_cast<const __m512i&>(mask)) != 0;
+#elif defined(__AVX2__)
+    return _mm256_movemask_epi8(reinterpret_cast<const __m256i&>(mask)) != 0;
+#elif defined(__SSE2__)
+    return _mm_movemask_epi8(reinterpret_cast<const __m128i&>(mask)) != 0;
+#else
+    bool any = false;
+    for (std::size_t n = 0; n < sizeof(M) / sizeof(mask[0]); ++n)
+    {
+      any = any || mask[n] != 0;
+    }
+    return any;
+#endif
+  }
+}
+
 /// The larger; the second if either is NaN.
 template <class P>
 inline P larger(P a, P b)

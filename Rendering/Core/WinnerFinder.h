@@ -4,9 +4,9 @@
  * From what a walk has noted of each pixel to ShearImage::winners.
  *
  * Of equal samples the nearest to the viewer wins, whatever the order of a walk: Frame::orders
- * tells the nearest slice whose worksheet is the pixel's value, or the nearest layer that has such
- * a voxel. Where the value is the floor, which no sample is below, that is the first sample of the
- * ray, and walks need not look for it.
+ * tells the nearest step whose sample is the pixel's value, or, in perspective previews, a step of
+ * the nearest slice that has such a voxel. Where the value is the floor, which no sample is
+ * below, that is the first sample of the ray, and walks need not look for it.
  */
 #ifndef splattingWinnerFinder_h
 #define splattingWinnerFinder_h
@@ -26,7 +26,8 @@ struct WinnerScratch
   std::vector<unsigned char> mask;
 };
 
-/// Before a walk: no pixel has won anything; those without samples never will.
+/// Before a walk: no pixel has won anything, and none takes what is no more than the floor; those
+/// without samples never will.
 template <class T>
 void openOrders(const Frame<T>& frame, int v0, int v1)
 {
@@ -36,9 +37,10 @@ void openOrders(const Frame<T>& frame, int v0, int v1)
     const Span& span = image.spans[v];
     std::int16_t* const row = frame.ordersOfRow(v);
     std::fill(row, row + image.width, std::int16_t(-1));
-    for (int u = span.begin; u < span.end; ++u)
+    std::fill(row + span.begin, row + std::max(span.begin, span.end), std::int16_t(0));
+    for (int u = span.begin; u < span.end && !image.mask.empty(); ++u)
     {
-      row[u] = image.covers(u, v) ? std::numeric_limits<std::int16_t>::max() : std::int16_t(-1);
+      row[u] = image.covers(u, v) ? std::int16_t(0) : std::int16_t(-1);
     }
   }
 }
@@ -61,30 +63,14 @@ public:
       Floor(layers.floor()),
       Preview(preview)
   {
-    if (preview && !frame.geometry.isPerspective())
-    {
-      this->findTaps();
-    }
   }
 
   /// Before Layers::finish().
   void find(int v0, int v1, WinnerScratch& scratch) const
   {
-    ShearImage& image = this->Shared.image;
     for (int v = v0; v < v1; ++v)
     {
-      const Span& span = image.spans[v];
-      std::int32_t* const winners = &image.winners[std::size_t(v) * image.width];
-      const std::int16_t* const orders = this->Shared.ordersOfRow(v);
-      const P* const row = image.row<P>(v);
-      std::fill(winners, winners + image.width, -1);
-      bool missing = false;
-      for (int u = span.begin; u < span.end; ++u)
-      {
-        const bool noted = row[u] > this->Floor && orders[u] >= 0;
-        winners[u] = noted ? this->noted(u, v, orders[u], row[u]) : orders[u] < 0 ? -1 : Unknown;
-        missing |= winners[u] == Unknown;
-      }
+      const bool missing = this->takeNotes(v);
       if (missing)
       {
         this->Shared.cuts.none() ? this->findFirst(v, scratch) : this->findFirstCounted(v, scratch);
@@ -95,90 +81,38 @@ public:
 private:
   static constexpr std::int32_t Unknown = -2;
 
-  /// What all pixels cross in a layer of a parallel preview, from the viewer on.
-  struct Taps
-  {
-    struct Tap
-    {
-      std::ptrdiff_t place; // from voxel (u, v, 0)
-      std::int32_t step;
-    };
-    std::array<Tap, MostRows> taps;
-    int count = 0;
-    Span columns, rows; // the pixels that have voxels at all of them
-
-    bool isWithin(int u, int v) const
-    {
-      return u >= this->columns.begin && u < this->columns.end && v >= this->rows.begin &&
-        v < this->rows.end;
-    }
-    std::int32_t stepOf(const T* voxels, std::ptrdiff_t at, P value) const
-    {
-      for (int n = 0; n < this->count; ++n)
-      {
-        if (static_cast<P>(voxels[at + this->taps[n].place]) == value)
-        {
-          return this->taps[n].step;
-        }
-      }
-      return -1;
-    }
-  };
-
-  void findTaps()
-  {
-    const glm::ivec3& size = this->Shared.geometry.size();
-    this->Layers.resize((size.z + BrickDepth - 1) / BrickDepth);
-    for (int n = 0; n < size.z; ++n)
-    {
-      const int k = this->reversed() ? size.z - 1 - n : n;
-      const RayPath& path = this->Shared.sliceGeometry[k].path;
-      Taps& layer = this->Layers[k / BrickDepth];
-      if (layer.count == 0)
-      {
-        layer.columns = { std::numeric_limits<int>::lowest(), std::numeric_limits<int>::max() };
-        layer.rows = layer.columns;
-      }
-      for (int m = 0; m < path.count; ++m)
-      {
-        const int t = this->reversed() ? path.count - 1 - m : m, di = path.di[t], dj = path.dj[t];
-        layer.taps[layer.count++] = { this->Voxels.place(di, dj, k), StepsPerSlice * k + t };
-        layer.columns = common(layer.columns, { -di, size.x - di });
-        layer.rows = common(layer.rows, { -dj, size.y - dj });
-      }
-    }
-  }
-
   bool reversed() const { return this->Shared.geometry.reversed(); }
 
-  std::int32_t noted(int u, int v, std::int16_t order, P value) const
+  /// What row v has notes of. Whether it has pixels without.
+  bool takeNotes(int v) const
   {
-    const int depth = this->Shared.geometry.size().z;
-    if (!this->Preview)
+    ShearImage& image = this->Shared.image;
+    const Span& span = image.spans[v];
+    std::int32_t* const winners = &image.winners[std::size_t(v) * image.width];
+    const std::int16_t* const orders = this->Shared.ordersOfRow(v);
+    const P* const row = image.row<P>(v);
+    std::fill(winners, winners + image.width, -1);
+    const P floor = this->Floor;
+    // Steps are orders, or these subtracted from the last one. Compilers make registers of it.
+    const std::int32_t last = this->reversed() ? this->Shared.orderOfStep(0) : 0;
+    const std::int32_t flip = this->reversed() ? -1 : 0;
+    std::int32_t missing = 0;
+    for (int u = span.begin; u < span.end; ++u)
     {
-      return StepsPerSlice * (this->reversed() ? depth - 1 - order : order);
+      const std::int32_t order = orders[u], step = last + ((order ^ flip) - flip);
+      const std::int32_t known = row[u] > floor ? step : Unknown;
+      winners[u] = order < 0 ? -1 : known;
+      missing |= static_cast<std::int32_t>(winners[u] == Unknown);
     }
-    const int layers = (depth + BrickDepth - 1) / BrickDepth;
-    const int layer = this->reversed() ? layers - 1 - order : order;
-    if (!this->Layers.empty() && this->Shared.cuts.none() && this->Layers[layer].isWithin(u, v))
+    if (this->Preview && this->Shared.geometry.isPerspective())
     {
-      return this->Layers[layer].stepOf(
-        this->Voxels.pointer(0, 0, 0), this->Voxels.place(u, v, 0), value);
-    }
-    const Span slices = slicesOfLayer(layer, this->Shared.geometry.size());
-    for (int n = 0; n < slices.end - slices.begin; ++n)
-    {
-      const int k = this->reversed() ? slices.end - 1 - n : slices.begin + n;
-      const std::int32_t step = this->stepIn(k, u, v, &value);
-      unsigned char counts = 1;
-      if (step >= 0 &&
-        (this->Shared.cuts.none() ||
-          (this->Shared.cuts.findMask(k, v, { u, u + 1 }, &counts) && counts)))
+      for (int u = span.begin; u < span.end; ++u)
       {
-        return step;
+        winners[u] =
+          winners[u] < 0 ? winners[u] : this->stepIn(winners[u] / StepsPerSlice, u, v, &row[u]);
       }
     }
-    return -1;
+    return missing != 0;
   }
 
   /// The first step of a ray in slice k, of this value if there is one; -1 if it has none.
@@ -266,7 +200,6 @@ private:
   const CrossedSlices& Crossed;
   P Floor;
   bool Preview;
-  std::vector<Taps> Layers;
 };
 }
 

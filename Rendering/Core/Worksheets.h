@@ -133,8 +133,9 @@ public:
   void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
-    for (int k = slices.begin; k < slices.end; ++k)
+    for (int n = 0; n < slices.end - slices.begin; ++n)
     {
+      const int k = this->Shared.nth(slices, n);
       for (int r = 0; r < count; ++r)
       {
         for (const Span& run : rows[r].runs)
@@ -218,13 +219,19 @@ protected:
     std::ptrdiff_t stride;
     SliceBits bits = {}; ///< which pixels change, by one of them; if there are any
     unsigned char bit = 0;
+    std::int16_t* orders = nullptr; ///< of pixel (0, 0), if splatRows() notes winners
+    std::int16_t order = 0;
 
     A* at(int u, int v) const { return this->origin + v * this->stride + u; }
   };
 
   Target image() const
   {
-    return { this->Shared.image.template row<A>(0), this->Shared.image.width, {}, 0 };
+    Target image;
+    image.origin = this->Shared.image.template row<A>(0);
+    image.stride = this->Shared.image.width;
+    image.orders = this->Shared.orders;
+    return image;
   }
 
 private:
@@ -234,7 +241,10 @@ private:
     const std::ptrdiff_t stride = columns.end - columns.begin;
     patch.worksheet.resize((v1 - v0) * stride * sizeof(A));
     A* const first = reinterpret_cast<A*>(patch.worksheet.data());
-    return { first - v0 * stride - columns.begin, stride, {}, 0 };
+    Target worksheet;
+    worksheet.origin = first - v0 * stride - columns.begin;
+    worksheet.stride = stride;
+    return worksheet;
   }
 
   static A baseOf(const VolumeIndex::Range& range)
@@ -265,18 +275,20 @@ private:
   void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const SliceBits& bits,
     Patch& patch) const
   {
-    if (this->Shared.orders)
+    if (this->Shared.orders && !this->NotesItself)
     {
       this->notePiece(slices, v0, v1, columns, bits, patch);
       return;
     }
-    for (int k = slices.begin; k < slices.end; ++k)
+    for (int n = 0; n < slices.end - slices.begin; ++n)
     {
+      const int k = this->Shared.nth(slices, n);
       this->forRows(k, v0, v1, columns,
         [&](int first, int end, const Span& span)
         {
           this->load(k, patch);
           Target target = this->image();
+          target.order = this->orderOfSlice(k);
           target.bits = bits;
           target.bit = static_cast<unsigned char>(1u << k % BrickDepth);
           this->splatRows(k, first, end, span, target, patch);
@@ -284,15 +296,21 @@ private:
     }
   }
 
-  /// The same where pixels remember which slice has won.
+  std::int16_t orderOfSlice(int k) const
+  {
+    return static_cast<std::int16_t>(this->Shared.orderOfStep(StepsPerSlice * k));
+  }
+
+  /// The same by way of worksheets of their own, where pixels remember which slice has won.
   void notePiece(const Span& slices, int v0, int v1, const Span& columns, const SliceBits& bits,
     Patch& patch) const
   {
     const RayLoops<A>& loops = this->Shared.kernels;
     const Target worksheet = this->worksheetFor(v0, v1, columns, patch);
-    for (int k = slices.begin; k < slices.end; ++k)
+    for (int n = 0; n < slices.end - slices.begin; ++n)
     {
-      const std::int16_t order = this->Shared.orderOfSlice(k);
+      const int k = this->Shared.nth(slices, n);
+      const std::int16_t order = this->orderOfSlice(k);
       const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
       const auto open = [&](int v, const Span& pixels)
       {
@@ -447,7 +465,8 @@ protected:
   const Frame<T>& Shared;
   const WorksheetReach<A>& Reach;
   int Depth;
-  bool RaisesBest = false; ///< whether splatRows() does less where pixels are large already
+  bool RaisesBest = false;  ///< whether splatRows() does less where pixels are large already
+  bool NotesItself = false; ///< whether it notes winners
   int PieceWidth = 1024, PieceHeight = RowsTogether; ///< pixels; for the second-level cache
   A Base;
 };
@@ -466,6 +485,7 @@ public:
     : WorksheetLayers<T>(frame, reach, depth),
       Footprints(footprints)
   {
+    this->NotesItself = true;
   }
 
   const Window& window(int layer) const { return this->Reach.layers[layer].window; }
@@ -509,6 +529,9 @@ protected:
     splat.bits = target.bits.origin ? target.bits.at(span.begin, first) : nullptr;
     splat.bitsStride = target.bits.stride;
     splat.bit = target.bit;
+    splat.notes = target.orders ? target.orders + first * target.stride + span.begin : nullptr;
+    splat.order = target.order;
+    splat.nearestFirst = this->Shared.nearestFirst;
     splat.width = span.end - span.begin;
     splat.height = end - first;
     splat.sourceStride = patch.rowLength;

@@ -1,0 +1,545 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The loops of previews: maxima of rows of voxels, and which voxels these are. For Kernels.cxx
+ * only, which says why all of this is in an anonymous namespace.
+ */
+#ifndef splattingSweepKernels_h
+#define splattingSweepKernels_h
+
+#include "Registers.h"
+
+#include <limits>
+
+namespace splatting
+{
+namespace
+{
+/// No element is less.
+template <class T>
+constexpr T Least = std::numeric_limits<T>::has_infinity ? -std::numeric_limits<T>::infinity()
+                                                         : std::numeric_limits<T>::lowest();
+
+/// Where the V registers of a block are: side by side, but for the last one, which may overlap.
+template <class T, int V>
+struct Registers
+{
+  std::ptrdiff_t x, last;
+  inline std::ptrdiff_t operator[](int v) const
+  {
+    return v + 1 < V ? this->x + v * width<T> : this->last;
+  }
+};
+
+template <class T>
+struct MaximumBlock
+{
+  T* image;
+  const T* const* rows;
+  int count;
+  inline void single(std::ptrdiff_t x) const
+  {
+    for (int r = 0; r < this->count; ++r)
+    {
+      this->image[x] = larger(this->rows[r][x], this->image[x]);
+    }
+  }
+  template <int V>
+  inline void run(const Registers<T, V>& at) const
+  {
+    Pack<T> best[V];
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      best[v] = load<T>(this->image + at[v]);
+    }
+    for (int r = 0; r < this->count; ++r)
+    {
+      const T* const row = this->rows[r];
+#pragma GCC unroll 4
+      for (int v = 0; v < V; ++v)
+      {
+        best[v] = larger(load<T>(row + at[v]), best[v]);
+      }
+    }
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      store<T>(this->image + at[v], best[v]);
+    }
+  }
+};
+
+/// The same where bits say which rows count.
+template <class T>
+struct CutBlock
+{
+  T* image;
+  const T* const* rows;
+  int count;
+  const unsigned char* bits;
+  const unsigned char* bit;
+  template <int V>
+  inline void run(const Registers<T, V>& at) const
+  {
+    Pack<T> best[V];
+    Pack<Integer<T>> counts[V];
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      best[v] = load<T>(this->image + at[v]);
+      counts[v] = loadBits<T>(this->bits + at[v]);
+    }
+    for (int r = 0; r < this->count; ++r)
+    {
+      const T* const row = this->rows[r];
+      const Pack<Integer<T>> mine = Pack<Integer<T>>{} + static_cast<Integer<T>>(this->bit[r]);
+#pragma GCC unroll 4
+      for (int v = 0; v < V; ++v)
+      {
+        const Pack<T> value = (counts[v] & mine) != 0 ? load<T>(row + at[v]) : best[v];
+        best[v] = larger(value, best[v]);
+      }
+    }
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      store<T>(this->image + at[v], best[v]);
+    }
+  }
+  inline void single(std::ptrdiff_t x) const
+  {
+    for (int r = 0; r < this->count; ++r)
+    {
+      this->image[x] =
+        this->bits[x] & this->bit[r] ? larger(this->rows[r][x], this->image[x]) : this->image[x];
+    }
+  }
+};
+
+/// The run's valid pixels, and perhaps some valid ones beside them.
+template <class T, class Block>
+inline void sweepRun(const Block& block, const Span& run, const Span& valid)
+{
+  constexpr std::ptrdiff_t w = width<T>;
+  const std::ptrdiff_t begin = run.begin > valid.begin ? run.begin : valid.begin;
+  const std::ptrdiff_t end = run.end < valid.end ? run.end : valid.end;
+  const std::ptrdiff_t lastRegister = valid.end - w;
+  if (lastRegister < valid.begin)
+  {
+    for (std::ptrdiff_t x = begin; x < end; ++x)
+    {
+      block.single(x);
+    }
+    return;
+  }
+  std::ptrdiff_t x = begin;
+  for (; end - x > 4 * w; x += 4 * w)
+  {
+    block.run(Registers<T, 4>{ x, x + 3 * w });
+  }
+  // What is left, in as few registers as it takes.
+  const auto last = [=](std::ptrdiff_t at) { return at < lastRegister ? at : lastRegister; };
+  switch (end > x ? (end - x + w - 1) / w : 0)
+  {
+    case 4:
+      block.run(Registers<T, 4>{ x, last(x + 3 * w) });
+      break;
+    case 3:
+      block.run(Registers<T, 3>{ x, last(x + 2 * w) });
+      break;
+    case 2:
+      block.run(Registers<T, 2>{ x, last(x + w) });
+      break;
+    case 1:
+      block.run(Registers<T, 1>{ x, last(x) });
+      break;
+    default:
+      break;
+  }
+}
+
+template <class T>
+void maximum(T* image, const T* const* rows, int count, std::ptrdiff_t n)
+{
+  sweepRun<T>(
+    MaximumBlock<T>{ image, rows, count }, { 0, static_cast<int>(n) }, { 0, static_cast<int>(n) });
+}
+
+template <class T>
+void largest(const T* const* rows, int count, T* out, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; x += width<T>)
+  {
+    Pack<T> best = load<T>(rows[0] + x);
+    for (int r = 1; r < count; ++r)
+    {
+      best = larger(load<T>(rows[r] + x), best);
+    }
+    store<T>(out + x, best);
+  }
+}
+
+/// Whether any of a register's pixels has a greater note.
+template <class T>
+inline bool anyBehind(const std::int16_t* notes, std::int16_t order)
+{
+  std::int16_t any = 0;
+  for (std::ptrdiff_t n = 0; n < width<T>; ++n)
+  {
+    any |= static_cast<std::int16_t>(notes[n] > order);
+  }
+  return any != 0;
+}
+
+#if defined(__GNUC__)
+/// As many notes as a register of T has elements, or as fit into one.
+template <class T>
+struct NotesOf
+{
+  static constexpr std::ptrdiff_t count =
+    width<T> < width<std::int16_t> ? width<T> : width<std::int16_t>;
+  typedef std::int16_t type __attribute__((vector_size(2 * count)));
+  typedef std::int16_t loose
+    __attribute__((vector_size(2 * count), aligned(sizeof(std::int16_t)), may_alias));
+  typedef Integer<T> wide __attribute__((vector_size(sizeof(T) * count), may_alias));
+
+  /// Part n of a register, narrowed or widened.
+  static inline type part(const Pack<Integer<T>>& pack, std::ptrdiff_t n)
+  {
+    // Compilers need to be told the instruction that widens bytes.
+#if defined(__AVX512F__)
+    if constexpr (sizeof(T) == 1)
+    {
+      return reinterpret_cast<type>(
+        _mm512_cvtepi8_epi16(reinterpret_cast<const __m256i*>(&pack)[n]));
+    }
+#elif defined(__AVX2__)
+    if constexpr (sizeof(T) == 1)
+    {
+      return reinterpret_cast<type>(
+        _mm256_cvtepi8_epi16(reinterpret_cast<const __m128i*>(&pack)[n]));
+    }
+#endif
+    return __builtin_convertvector(reinterpret_cast<const wide*>(&pack)[n], type);
+  }
+};
+#else
+template <class T>
+struct NotesOf
+{
+  static constexpr std::ptrdiff_t count = 1;
+  using type = std::int16_t;
+  using loose = std::int16_t;
+  static inline type part(Integer<T> element, std::ptrdiff_t) { return static_cast<type>(element); }
+};
+#endif
+
+/// Notes `own` where pixels win, or tie with what is farther.
+template <class T, class N>
+inline void keepNearest(
+  std::int16_t* notes, std::ptrdiff_t part, N own, Pack<Integer<T>> raised, Pack<Integer<T>> tied)
+{
+  using Notes = NotesOf<T>;
+  typename Notes::loose* const place = reinterpret_cast<typename Notes::loose*>(notes) + part;
+  const N old = *place;
+  const N wins = Notes::part(raised, part) | (Notes::part(tied, part) & (own < old));
+  *place = wins != 0 ? own : old;
+}
+
+/// Whether any of V registers can win or tie with what is farther. One question for all of them: in
+/// noise most registers are raised, elsewhere few are, so that the answer is easily foretold.
+template <int V, class T>
+inline bool mayWin(const Sweep<T>& s, const T* image, const std::int16_t* notes,
+  const Registers<T, V>& at, const Pack<T> (&best)[V])
+{
+  Pack<Integer<T>> raised{}, tied{};
+#pragma GCC unroll 4
+  for (int v = 0; v < V; ++v)
+  {
+    const Pack<T> before = load<T>(image + at[v]);
+    raised |= best[v] > before;
+    tied |= best[v] == before;
+  }
+  if (s.nearestFirst || anyOf(raised) || !anyOf(tied))
+  {
+    return anyOf(raised);
+  }
+  bool behind = false;
+  for (int v = 0; v < V; ++v)
+  {
+    behind = behind || anyBehind<T>(notes + at[v], s.order);
+  }
+  return behind;
+}
+
+#if defined(__AVX512F__)
+inline __mmask64 maskOfLarger(Pack<std::uint8_t> a, Pack<std::uint8_t> b)
+{
+  return _mm512_cmpgt_epu8_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b));
+}
+inline __mmask64 maskOfLarger(Pack<std::int8_t> a, Pack<std::int8_t> b)
+{
+  return _mm512_cmpgt_epi8_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b));
+}
+
+/// keepNearest() for bytes where the nearest come first: half of the instructions that compilers
+/// find, which do not see that masks need no widening.
+inline void keepRaised(std::int16_t* notes, std::int16_t order, __mmask64 raised, __m512i offset)
+{
+  const __m512i base = _mm512_set1_epi16(order);
+  _mm512_storeu_si512(notes,
+    _mm512_mask_add_epi16(_mm512_loadu_si512(notes), static_cast<__mmask32>(raised),
+      _mm512_cvtepi8_epi16(_mm512_castsi512_si256(offset)), base));
+  _mm512_storeu_si512(notes + 32,
+    _mm512_mask_add_epi16(_mm512_loadu_si512(notes + 32), static_cast<__mmask32>(raised >> 32),
+      _mm512_cvtepi8_epi16(_mm512_extracti64x4_epi64(offset, 1)), base));
+}
+#endif
+
+/// Raises a register of pixels, and notes which row that is.
+template <class T>
+inline void raiseRegister(
+  const Sweep<T>& s, T* image, std::int16_t* notes, Pack<T> best, Pack<Integer<T>> offset)
+{
+  const Pack<T> before = load<T>(image);
+  store<T>(image, larger(best, before));
+#if defined(__AVX512F__)
+  if constexpr (sizeof(T) == 1)
+  {
+    if (s.nearestFirst)
+    {
+      keepRaised(notes, s.order, maskOfLarger(best, before), reinterpret_cast<__m512i>(offset));
+      return;
+    }
+  }
+#endif
+  const Pack<Integer<T>> raised = best > before;
+  Pack<Integer<T>> tied{};
+  if (!s.nearestFirst)
+  {
+    tied = best == before;
+  }
+#pragma GCC unroll 2
+  for (std::ptrdiff_t n = 0; n < width<T> / NotesOf<T>::count; ++n)
+  {
+    keepNearest<T>(notes, n, NotesOf<T>::part(offset, n) + s.order, raised, tied);
+  }
+}
+
+/// Raises V registers of pixels to the best of the rows, and notes the first that has it;
+/// seen(v, r, is) is, of a comparison of register v with row r, what counts.
+template <int V, class T, class Seen>
+inline void raiseRegisters(const Sweep<T>& s, T* image, std::int16_t* notes, const T* const* rows,
+  const Registers<T, V>& at, const Pack<T> (&best)[V], Seen&& seen)
+{
+  if (!mayWin<V>(s, image, notes, at, best))
+  {
+    return;
+  }
+  Pack<Integer<T>> offset[V]{};
+  for (int r = s.count - 1; r >= 0; --r)
+  {
+    const Pack<Integer<T>> own = Pack<Integer<T>>{} + static_cast<Integer<T>>(s.offsets[r]);
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      const auto is = load<T>(rows[r] + at[v]) == best[v];
+      offset[v] = seen(v, r, is) ? own : offset[v];
+    }
+  }
+#pragma GCC unroll 4
+  for (int v = 0; v < V; ++v)
+  {
+    raiseRegister<T>(s, image + at[v], notes + at[v], best[v], offset[v]);
+  }
+}
+
+/// CutBlock, or without bits MaximumBlock, where winners are noted: the maxima come first, because
+/// most registers are not raised, and then the rows that have them. Samples that do not count are
+/// the least value, which raises nothing and ties with nothing that has a note.
+template <class T, bool Cut>
+struct NotingBlock
+{
+  const Sweep<T>& sweep;
+  T* image;
+  std::int16_t* notes;
+  const T* const* rows;
+  const unsigned char* bits;
+  template <int V>
+  inline void run(const Registers<T, V>& at) const
+  {
+    Pack<T> best[V];
+    Pack<Integer<T>> counts[V];
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      counts[v] = Cut ? loadBits<T>(this->bits + at[v]) : Pack<Integer<T>>{};
+      best[v] = Pack<T>{} + Least<T>;
+    }
+    for (int r = 0; r < this->sweep.count; ++r)
+    {
+      const T* const row = this->rows[r];
+#pragma GCC unroll 4
+      for (int v = 0; v < V; ++v)
+      {
+        Pack<T> sample = load<T>(row + at[v]);
+        if constexpr (Cut)
+        {
+          sample = (counts[v] & this->bit(r)) != 0 ? sample : best[v];
+        }
+        best[v] = larger(sample, best[v]);
+      }
+    }
+    raiseRegisters<V, T>(this->sweep, this->image, this->notes, this->rows, at, best,
+      [&](int v, int r, auto is)
+      {
+        if constexpr (Cut)
+        {
+          return is & ((counts[v] & this->bit(r)) != 0);
+        }
+        else
+        {
+          return is;
+        }
+      });
+  }
+  inline void single(std::ptrdiff_t x) const
+  {
+    for (int r = 0; r < this->sweep.count; ++r)
+    {
+      const T value = this->rows[r][x];
+      const std::int16_t own =
+        static_cast<std::int16_t>(this->sweep.order + this->sweep.offsets[r]);
+      const bool nearer = value == this->image[x] && own < this->notes[x];
+      if ((!Cut || this->bits[x] & this->sweep.bit[r]) && (value > this->image[x] || nearer))
+      {
+        this->image[x] = value;
+        this->notes[x] = own;
+      }
+    }
+  }
+
+private:
+  inline Pack<Integer<T>> bit(int r) const
+  {
+    return Pack<Integer<T>>{} + static_cast<Integer<T>>(this->sweep.bit[r]);
+  }
+};
+
+/// Which pixels of a rim see which rows.
+template <class T>
+struct RimMasks
+{
+  Pack<Integer<T>> rows[MostRows];
+
+  inline void find(const Rim& rim, int count)
+  {
+    Pack<T> lane;
+    for (int x = 0; x < width<T>; ++x)
+    {
+      reinterpret_cast<T*>(&lane)[x] = static_cast<T>(x);
+    }
+    for (int r = 0; r < count; ++r)
+    {
+      this->rows[r] = Pack<Integer<T>>{};
+      if (rim.begin[r] < rim.end[r])
+      {
+        const Pack<T> begin = Pack<T>{} + static_cast<T>(rim.begin[r]);
+        const Pack<T> last = Pack<T>{} + static_cast<T>(rim.end[r] - 1);
+        this->rows[r] = (lane >= begin) & (lane <= last);
+      }
+    }
+  }
+};
+
+template <class T>
+inline void sweepRim(const Sweep<T>& s, T* image, std::int16_t* notes, const T* const* rows,
+  const unsigned char* bits, int first, const RimMasks<T>& masks)
+{
+  const Pack<Integer<T>> shown =
+    bits ? loadBits<T>(bits + first) : Pack<Integer<T>>{} - static_cast<Integer<T>>(1);
+  const auto seen = [&](int r) -> Pack<Integer<T>>
+  {
+    const Integer<T> own = static_cast<Integer<T>>(bits ? s.bit[r] : 1);
+    return masks.rows[r] & ((shown & own) != 0);
+  };
+  const Pack<T> least = Pack<T>{} + Least<T>;
+  Pack<T> best[1] = { least };
+  if (!notes)
+  {
+    best[0] = load<T>(image + first);
+  }
+  for (int r = 0; r < s.count; ++r)
+  {
+    const Pack<T> sample = load<T>(rows[r] + first);
+    best[0] = larger(seen(r) != 0 ? sample : best[0], best[0]);
+  }
+  if (notes)
+  {
+    raiseRegisters<1, T>(s, image, notes, rows, Registers<T, 1>{ first, first }, best,
+      [&](int, int r, auto is) { return (is & seen(r)) != 0; });
+  }
+  else
+  {
+    store<T>(image + first, best[0]);
+  }
+}
+
+/// The runs and rims of one row of pixels.
+template <class T>
+inline void sweepRow(const Sweep<T>& s, T* image, std::int16_t* notes, const T* const* rows,
+  const unsigned char* bits, const RimMasks<T>* rims)
+{
+  for (int n = 0; n < s.runCount; ++n)
+  {
+    const Span& run = s.runs[n];
+    if (notes)
+    {
+      bits ? sweepRun<T>(NotingBlock<T, true>{ s, image, notes, rows, bits }, run, s.valid)
+           : sweepRun<T>(NotingBlock<T, false>{ s, image, notes, rows, bits }, run, s.valid);
+    }
+    else
+    {
+      bits ? sweepRun<T>(CutBlock<T>{ image, rows, s.count, bits, s.bit }, run, s.valid)
+           : sweepRun<T>(MaximumBlock<T>{ image, rows, s.count }, run, s.valid);
+    }
+  }
+  for (int n = 0; n < s.rimCount; ++n)
+  {
+    sweepRim(s, image, notes, rows, bits, s.rims[n]->first, rims[n]);
+  }
+}
+
+template <class T>
+void sweep(const Sweep<T>& s)
+{
+  T* image = s.image;
+  std::int16_t* notes = s.notes;
+  const unsigned char* bits = s.bits;
+  const T* rows[MostRows];
+  for (int r = 0; r < s.count; ++r)
+  {
+    rows[r] = s.rows[r];
+  }
+  RimMasks<T> rims[2];
+  for (int n = 0; n < s.rimCount; ++n)
+  {
+    rims[n].find(*s.rims[n], s.count);
+  }
+  for (int v = 0; v < s.height; ++v)
+  {
+    sweepRow(s, image, notes, rows, bits, rims);
+    image += s.imageStride;
+    notes = notes ? notes + s.imageStride : nullptr;
+    bits = bits ? bits + s.bitsStride : nullptr;
+    for (int r = 0; r < s.count; ++r)
+    {
+      rows[r] += s.rowStride;
+    }
+  }
+}
+}
+}
+
+#endif
