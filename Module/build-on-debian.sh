@@ -13,10 +13,11 @@ build_dir=$1
 shift
 
 packages=(
-  cmake ninja-build g++ ccache xz-utils
+  cmake ninja-build g++ pkgconf ccache xz-utils
   libvtk9-dev python3-vtk9 libglm-dev          # the module and its Python package
   libcli11-dev libvtk-dicom-dev                # splatmip
   libgif-dev                                   # its turns as GIF
+  libavformat-dev libavcodec-dev libavutil-dev # its turns as AVI
   libbenchmark-dev                             # the benchmark
   python3-numpy                                # tests and examples in Python
   python3-vedo python3-vedo-examples           # programs of others, for the tests

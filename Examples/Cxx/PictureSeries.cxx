@@ -6,6 +6,9 @@
 #include "vtkPNGWriter.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
+#ifdef SPLATMIP_HAS_AVI
+#include "AVIFilm.h"
+#endif
 #ifdef SPLATMIP_HAS_THEORA
 #include "vtkOggTheoraWriter.h"
 #endif
@@ -18,16 +21,9 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <stdexcept>
 
 namespace
 {
-std::runtime_error CannotWrite(const std::string& path)
-{
-  return std::runtime_error(
-    path + ": this cannot be written; give a file in a folder that you may write to (--output).");
-}
-
 /// One slice in colours.
 vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette, int n)
 {
@@ -182,6 +178,12 @@ std::string EndingOf(const std::string& path)
 }
 }
 
+std::runtime_error CannotWrite(const std::string& path)
+{
+  return std::runtime_error(
+    path + ": this cannot be written; give a file in a folder that you may write to (--output).");
+}
+
 void WritePNG(vtkImageData* image, const std::string& path)
 {
   vtkNew<vtkPNGWriter> writer;
@@ -213,6 +215,14 @@ std::string CheckSeriesName(const std::string& path)
     return "this build has no giflib to write .gif with: take .png";
 #endif
   }
+  if (ending == ".avi")
+  {
+#ifdef SPLATMIP_HAS_AVI
+    return "";
+#else
+    return "this build has no libavformat and libavcodec to write .avi with: take .png";
+#endif
+  }
   if (ending == ".ogv")
   {
 #ifdef SPLATMIP_HAS_THEORA
@@ -221,8 +231,7 @@ std::string CheckSeriesName(const std::string& path)
     return "this VTK has no Ogg Theora to write .ogv with: take .png";
 #endif
   }
-  return ending == ".avi" ? "VTK writes .avi on Windows only: take .gif, .ogv or .png"
-                          : "a turn is written as .gif, .ogv (a film) or .png (numbered pictures)";
+  return "a turn is written as .gif, .avi or .ogv (films), or .png (numbered pictures)";
 }
 
 void WriteSeries(
@@ -233,6 +242,12 @@ void WriteSeries(
   if (ending == ".gif")
   {
     return WriteGIF(slices, palette, rate, path);
+  }
+#endif
+#ifdef SPLATMIP_HAS_AVI
+  if (ending == ".avi")
+  {
+    return WriteAVI(slices, palette, rate, path);
   }
 #endif
 #ifdef SPLATMIP_HAS_THEORA

@@ -6,10 +6,14 @@
 #include "vtkImageData.h"
 
 #include <array>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 using Palette = std::array<std::array<unsigned char, 3>, 256>;
+
+/// What every writer throws whose file cannot be made or filled.
+std::runtime_error CannotWrite(const std::string& path);
 
 /**
  * Encode in memory and write by hand, so that a failure is one sentence and not VTK's report.
@@ -18,9 +22,9 @@ using Palette = std::array<std::array<unsigned char, 3>, 256>;
 void WritePNG(vtkImageData* image, const std::string& path);
 
 /**
- * What is wrong with the name of a series, or nothing: by its ending it is a GIF or an Ogg Theora
- * film, if this build has their libraries, or PNG pictures, of which each gets its number before
- * the ending.
+ * What is wrong with the name of a series, or nothing: by its ending it is a GIF or a film, AVI or
+ * Ogg Theora, if this build has their libraries, or PNG pictures, of which each gets its number
+ * before the ending.
  */
 std::string CheckSeriesName(const std::string& path);
 

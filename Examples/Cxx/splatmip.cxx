@@ -163,7 +163,8 @@ void DeclareViewOptions(CLI::App& app, Options& options)
     ->capture_default_str();
   app
     .add_option("--output,--out", options.Output,
-      "The picture to write, .png; with --rotate .gif, .ogv (a film) or .png (numbered pictures)")
+      "The picture to write, .png; with --rotate .gif, .avi or .ogv (films), or .png (numbered "
+      "pictures)")
     ->type_name("FILE")
     ->capture_default_str();
   app
