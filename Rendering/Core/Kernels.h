@@ -27,8 +27,8 @@ enum class InstructionSet
   AVX512VBMI ///< and instructions that pick bytes
 };
 
-/// Most rows of voxels that a row of pixels meets at a time: three in each of four slices.
-constexpr int MostRows = 12;
+/// Most rows of voxels that a row of pixels meets at a time: three in each of eight slices.
+constexpr int MostRows = 24;
 
 /// Half-open range of pixels.
 struct Span

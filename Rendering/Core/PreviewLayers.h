@@ -21,6 +21,7 @@ struct PreviewLayer
   {
     int k, t, di, dj;
   };
+  Span slices;
   std::array<Tap, MostRows> taps;
   int tapCount = 0;
   Window window;
@@ -28,7 +29,14 @@ struct PreviewLayer
   Rim left, right;
   bool rimsFit = false; ///< whether a register holds a rim
 };
-static_assert(MostRows == 3 * BrickDepth);
+static_assert(MostRows == 2 * StepsPerSlice * BrickDepth);
+
+/// All layers of a volume; for walks that note winners also pairs of layers, where these can be
+/// swept: what it costs to note is paid once for both.
+struct PreviewStorage
+{
+  std::vector<PreviewLayer> layers, pairs;
+};
 
 template <class T>
 class PreviewLayers
@@ -45,28 +53,21 @@ public:
   static constexpr int RunUnit = TileWidth;
 
   /// `storage` outlives this, and is kept for the next frame.
-  PreviewLayers(const Frame<T>& frame, std::vector<PreviewLayer>& storage)
+  PreviewLayers(const Frame<T>& frame, PreviewStorage& storage)
     : Shared(frame),
-      Layers(storage)
+      Layers(storage.layers),
+      Pairs(storage.pairs)
   {
-    const glm::ivec3& size = frame.geometry.size();
-    storage.assign((size.z + BrickDepth - 1) / BrickDepth, PreviewLayer{});
-    const bool fromLast = frame.image.keepsWinners() && frame.geometry.reversed();
-    for (int n = 0; n < size.z; ++n)
+    this->find(BrickDepth, storage.layers);
+    storage.pairs.clear();
+    if (frame.image.keepsWinners())
     {
-      const int k = fromLast ? size.z - 1 - n : n;
-      Layer& layer = storage[k / BrickDepth];
-      const RayPath& path = frame.sliceGeometry[k].path;
-      for (int m = 0; m < path.count; ++m)
-      {
-        const int t = fromLast ? path.count - 1 - m : m;
-        layer.taps[layer.tapCount++] = { k, t, path.di[t], path.dj[t] };
-        layer.window.add(path.di[t], path.dj[t]);
-      }
+      this->find(2 * BrickDepth, storage.pairs);
     }
-    for (Layer& layer : storage)
+    const auto fits = [](const Layer& pair) { return pair.rimsFit; };
+    if (!std::all_of(storage.pairs.begin(), storage.pairs.end(), fits))
     {
-      this->findRims(layer);
+      storage.pairs.clear();
     }
   }
 
@@ -80,7 +81,7 @@ public:
   void splat(
     int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
-    this->splatLayer(z, v0, v1, runs, BrickDepth, bits, patch);
+    this->splatLayer(this->Layers[z], v0, v1, runs, BrickDepth, bits, patch);
   }
 
   /// The same for all layers of some rows; to be opened once.
@@ -144,16 +145,20 @@ public:
     const Slices& slices = this->Shared.slices;
     const bool slicesFirst = slices.rowStride <= slices.sliceStride;
     const int height = slicesFirst ? v1 - v0 : BrickHeight;
+    const bool paired = !this->Pairs.empty();
+    const std::vector<Layer>& stack = paired ? this->Pairs : this->Layers;
+    const int share = paired ? 2 : 1;
+    const Span some{ layers.begin / share, (layers.end + share - 1) / share };
     // Long rows that lie side by side in a page of memory are read ahead if one comes after the
     // other.
     const bool longRows = slices.sliceStride * std::ptrdiff_t(sizeof(T)) >= 1024;
-    const int sideBySide = !slicesFirst && longRows && !this->Shared.orders ? 1 : BrickDepth;
+    const int sideBySide = !slicesFirst && longRows && !paired ? 1 : share * BrickDepth;
     for (int v = v0; v < v1; v += height)
     {
-      for (int n = 0; n < layers.end - layers.begin; ++n)
+      for (int n = 0; n < some.end - some.begin; ++n)
       {
-        this->splatLayer(
-          this->Shared.nth(layers, n), v, std::min(v + height, v1), all, sideBySide, {}, patch);
+        this->splatLayer(stack[this->Shared.nth(some, n)], v, std::min(v + height, v1), all,
+          sideBySide, {}, patch);
       }
     }
   }
@@ -170,21 +175,45 @@ private:
 
   ShearImage& image() const { return this->Shared.image; }
 
-  void splatLayer(int z, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
+  void splatLayer(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
     const SliceBits& bits, Patch& patch) const
   {
-    const Layer& layer = this->Layers[z];
     // Rows whose voxels all exist, and beside which there are others: a rim reads a few voxels
     // beyond its row.
     const bool plain = layer.rimsFit && !this->Shared.range.special;
     const int first = plain ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
     const int last = std::clamp(this->Shared.geometry.size().y - 1 - layer.window.jMax, first, v1);
-    this->splatSlices(z, v0, first, runs, bits, patch);
+    this->splatSlices(layer.slices, v0, first, runs, bits, patch);
     if (first < last)
     {
       this->sweep(layer, first, last, runs, sideBySide, bits);
     }
-    this->splatSlices(z, last, v1, runs, bits, patch);
+    this->splatSlices(layer.slices, last, v1, runs, bits, patch);
+  }
+
+  /// Layers of so many slices.
+  void find(int depth, std::vector<Layer>& layers) const
+  {
+    const glm::ivec3& size = this->Shared.geometry.size();
+    layers.assign((size.z + depth - 1) / depth, Layer{});
+    const bool fromLast = this->Shared.image.keepsWinners() && this->Shared.geometry.reversed();
+    for (int n = 0; n < size.z; ++n)
+    {
+      const int k = fromLast ? size.z - 1 - n : n;
+      Layer& layer = layers[k / depth];
+      layer.slices = { k / depth * depth, std::min((k / depth + 1) * depth, size.z) };
+      const RayPath& path = this->Shared.sliceGeometry[k].path;
+      for (int m = 0; m < path.count; ++m)
+      {
+        const int t = fromLast ? path.count - 1 - m : m;
+        layer.taps[layer.tapCount++] = { k, t, path.di[t], path.dj[t] };
+        layer.window.add(path.di[t], path.dj[t]);
+      }
+    }
+    for (Layer& layer : layers)
+    {
+      this->findRims(layer);
+    }
   }
 
   void findRims(Layer& layer) const
@@ -281,10 +310,9 @@ private:
   }
 
   /// Any rows, slice by slice.
-  void splatSlices(
-    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  void splatSlices(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
+    const SliceBits& bits, Patch& patch) const
   {
-    const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
     for (int k = slices.begin; k < slices.end; ++k)
     {
       const SliceGeometry& slice = this->Shared.sliceGeometry[k];
@@ -364,7 +392,7 @@ private:
   }
 
   const Frame<T>& Shared;
-  const std::vector<Layer>& Layers;
+  const std::vector<Layer>&Layers, &Pairs;
 };
 }
 

@@ -125,7 +125,7 @@ struct Projector::Scratch
 {
   vtkSMPThreadLocal<BandScratch> bands;
   std::vector<SliceGeometry> slices;
-  std::vector<PreviewLayer> previewLayers;
+  PreviewStorage previewLayers;
   std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> footprints;
   std::tuple<PerspectiveFootprints<float>, PerspectiveFootprints<double>> perspectiveFootprints;
   std::tuple<std::vector<ExactPath<float>>, std::vector<ExactPath<double>>> paths;
