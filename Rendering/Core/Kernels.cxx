@@ -443,7 +443,7 @@ template <class P>
 constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::climb)>(&climb<P>),
   static_cast<decltype(RayLoops<P>::note)>(&note<P>),
-  static_cast<decltype(RayLoops<P>::raiseNoting)>(&raiseNoting<P>) };
+  static_cast<decltype(RayLoops<P>::raiseNoting)>(&raiseNoting<P>), &settle<P> };
 template <class A>
 constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>, &resample<A>,
   &blend<A>, &raiseBlend<A>, &splat<A>, &raiseCubics<A>, &raiseFanCubics<A>, &splatValid<A>,

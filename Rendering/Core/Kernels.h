@@ -30,6 +30,9 @@ enum class InstructionSet
 /// Most rows of voxels that a row of pixels meets at a time: three in each of eight slices.
 constexpr int MostRows = 24;
 
+/// Among winners, what is still to be found.
+constexpr std::int32_t UnknownWinner = -2;
+
 /// Half-open range of pixels.
 struct Span
 {
@@ -162,6 +165,11 @@ struct RayLoops
   /// there are bits, if bits[x] & bit.
   void (*raiseNoting)(P* image, std::int16_t* orders, std::int16_t order, const P* samples,
     const unsigned char* bits, unsigned char bit, std::ptrdiff_t n);
+  /// winners[x] = orders[x], or `last` - orders[x] if reversed; -1 where orders[x] < 0, and
+  /// UnknownWinner where the image is no more than the floor, of which notes say nothing. Whether
+  /// there is one of these.
+  bool (*settle)(const P* image, const std::int16_t* orders, P floor, bool reversed,
+    std::int32_t last, std::int32_t* winners, std::ptrdiff_t n);
 };
 
 /// How depth shading dims the samples of slice k in a row of pixels whose rays have slices first[x]

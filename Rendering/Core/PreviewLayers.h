@@ -145,20 +145,19 @@ public:
     const Slices& slices = this->Shared.slices;
     const bool slicesFirst = slices.rowStride <= slices.sliceStride;
     const int height = slicesFirst ? v1 - v0 : BrickHeight;
-    const bool paired = !this->Pairs.empty();
-    const std::vector<Layer>& stack = paired ? this->Pairs : this->Layers;
-    const int share = paired ? 2 : 1;
-    const Span some{ layers.begin / share, (layers.end + share - 1) / share };
     // Long rows that lie side by side in a page of memory are read ahead if one comes after the
     // other.
     const bool longRows = slices.sliceStride * std::ptrdiff_t(sizeof(T)) >= 1024;
-    const int sideBySide = !slicesFirst && longRows && !paired ? 1 : share * BrickDepth;
+    const int sideBySide = !slicesFirst && longRows ? 1 : BrickDepth;
+    const bool paired = !this->Pairs.empty();
+    const Span some = paired ? Span{ layers.begin / 2, (layers.end + 1) / 2 } : layers;
     for (int v = v0; v < v1; v += height)
     {
       for (int n = 0; n < some.end - some.begin; ++n)
       {
-        this->splatLayer(stack[this->Shared.nth(some, n)], v, std::min(v + height, v1), all,
-          sideBySide, {}, patch);
+        const int z = this->Shared.nth(some, n), end = std::min(v + height, v1);
+        paired ? this->splatPair(z, v, end, all, patch)
+               : this->splatLayer(this->Layers[z], v, end, all, sideBySide, {}, patch);
       }
     }
   }
@@ -178,17 +177,44 @@ private:
   void splatLayer(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
     const SliceBits& bits, Patch& patch) const
   {
-    // Rows whose voxels all exist, and beside which there are others: a rim reads a few voxels
-    // beyond its row.
+    const Span plain = this->plainRows(layer, v0, v1);
+    this->splatSlices(layer.slices, v0, plain.begin, runs, bits, patch);
+    if (!plain.empty())
+    {
+      this->sweep(layer, plain.begin, plain.end, runs, sideBySide, bits);
+    }
+    this->splatSlices(layer.slices, plain.end, v1, runs, bits, patch);
+  }
+
+  /// The rows of pixels, of some, whose voxels all exist in a layer, and beside which there are
+  /// others: a rim reads a few voxels beyond its row.
+  Span plainRows(const Layer& layer, int v0, int v1) const
+  {
     const bool plain = layer.rimsFit && !this->Shared.range.special;
     const int first = plain ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
-    const int last = std::clamp(this->Shared.geometry.size().y - 1 - layer.window.jMax, first, v1);
-    this->splatSlices(layer.slices, v0, first, runs, bits, patch);
-    if (first < last)
+    const int last = this->Shared.geometry.size().y - 1 - layer.window.jMax;
+    return { first, std::clamp(last, first, v1) };
+  }
+
+  void splatPair(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
+  {
+    const Layer& pair = this->Pairs[z];
+    const Span plain = this->plainRows(pair, v0, v1);
+    const auto splatEach = [&](int begin, int end)
     {
-      this->sweep(layer, first, last, runs, sideBySide, bits);
+      const Span two{ 2 * z, std::min(2 * z + 2, static_cast<int>(this->Layers.size())) };
+      for (int n = 0; n < two.end - two.begin && begin < end; ++n)
+      {
+        const Layer& layer = this->Layers[this->Shared.nth(two, n)];
+        this->splatLayer(layer, begin, end, runs, BrickDepth, {}, patch);
+      }
+    };
+    splatEach(v0, plain.begin);
+    if (!plain.empty())
+    {
+      this->sweep(pair, plain.begin, plain.end, runs, 2 * BrickDepth, {});
     }
-    this->splatSlices(layer.slices, last, v1, runs, bits, patch);
+    splatEach(plain.end, v1);
   }
 
   /// Layers of so many slices.

@@ -202,6 +202,22 @@ void raiseNoting(P* image, std::int16_t* orders, std::int16_t order, const P* sa
   }
 }
 
+template <class P>
+bool settle(const P* __restrict image, const std::int16_t* __restrict orders, P floor,
+  bool reversed, std::int32_t last, std::int32_t* __restrict winners, std::ptrdiff_t n)
+{
+  const std::int32_t first = reversed ? last : 0, sign = reversed ? -1 : 1;
+  std::int32_t missing = 0;
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    const std::int32_t order = orders[x];
+    const std::int32_t known = image[x] > floor ? first + sign * order : UnknownWinner;
+    winners[x] = order < 0 ? -1 : known;
+    missing |= static_cast<std::int32_t>(winners[x] == UnknownWinner);
+  }
+  return missing != 0;
+}
+
 template <bool Masked, class A>
 void shade(A* __restrict image, const Shade<A>& s, const A* __restrict samples,
   const unsigned char* __restrict mask, std::ptrdiff_t n)

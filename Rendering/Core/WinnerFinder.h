@@ -79,8 +79,6 @@ public:
   }
 
 private:
-  static constexpr std::int32_t Unknown = -2;
-
   bool reversed() const { return this->Shared.geometry.reversed(); }
 
   /// What row v has notes of. Whether it has pixels without.
@@ -92,18 +90,13 @@ private:
     const std::int16_t* const orders = this->Shared.ordersOfRow(v);
     const P* const row = image.row<P>(v);
     std::fill(winners, winners + image.width, -1);
-    const P floor = this->Floor;
-    // Steps are orders, or these subtracted from the last one. Compilers make registers of it.
-    const std::int32_t last = this->reversed() ? this->Shared.orderOfStep(0) : 0;
-    const std::int32_t flip = this->reversed() ? -1 : 0;
-    std::int32_t missing = 0;
-    for (int u = span.begin; u < span.end; ++u)
+    if (span.empty())
     {
-      const std::int32_t order = orders[u], step = last + ((order ^ flip) - flip);
-      const std::int32_t known = row[u] > floor ? step : Unknown;
-      winners[u] = order < 0 ? -1 : known;
-      missing |= static_cast<std::int32_t>(winners[u] == Unknown);
+      return false;
     }
+    const RayLoops<P>& loops = this->Shared.kernels;
+    const bool missing = loops.settle(row + span.begin, orders + span.begin, this->Floor,
+      this->reversed(), this->Shared.orderOfStep(0), winners + span.begin, span.end - span.begin);
     if (this->Preview && this->Shared.geometry.isPerspective())
     {
       for (int u = span.begin; u < span.end; ++u)
@@ -112,7 +105,7 @@ private:
           winners[u] < 0 ? winners[u] : this->stepIn(winners[u] / StepsPerSlice, u, v, &row[u]);
       }
     }
-    return missing != 0;
+    return missing;
   }
 
   /// The first step of a ray in slice k, of this value if there is one; -1 if it has none.
@@ -157,7 +150,7 @@ private:
     std::int32_t* const winners = &image.winners[std::size_t(v) * image.width];
     for (int u = image.spans[v].begin; u < image.spans[v].end; ++u)
     {
-      if (winners[u] == Unknown)
+      if (winners[u] == UnknownWinner)
       {
         winners[u] = -1;
         const int first = scratch.first[u], last = scratch.last[u];
@@ -186,13 +179,13 @@ private:
       }
       for (int u = pixels.begin; u < pixels.end; ++u)
       {
-        const std::int32_t step = winners[u] == Unknown && scratch.mask[u - pixels.begin]
+        const std::int32_t step = winners[u] == UnknownWinner && scratch.mask[u - pixels.begin]
           ? this->stepIn(k, u, v, nullptr)
           : -1;
         winners[u] = step >= 0 ? step : winners[u];
       }
     }
-    std::replace(winners, winners + image.width, Unknown, -1);
+    std::replace(winners, winners + image.width, UnknownWinner, -1);
   }
 
   const Frame<T>& Shared;
