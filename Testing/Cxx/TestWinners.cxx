@@ -30,7 +30,8 @@ struct Scene
   reference::RayCuts cuts;
 };
 
-Scene anyScene(const std::array<int, 3>& size, bool perspective, reference::Random& random)
+Scene anyScene(
+  const std::array<int, 3>& size, bool perspective, reference::Random& random, bool mayBeCut = true)
 {
   Scene scene;
   while (scene.images.empty())
@@ -38,14 +39,14 @@ Scene anyScene(const std::array<int, 3>& size, bool perspective, reference::Rand
     scene.view = perspective ? randomPerspective(size, random) : anyView(size, random);
     splatting::ShearWarp::factorise(scene.view, scene.images, anySampling(random));
   }
-  if (random.uniform(0, 2) == 0)
+  if (mayBeCut && random.uniform(0, 2) == 0)
   {
     const glm::dvec3 normal(
       random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
     const glm::dvec3 middle = 0.5 * glm::dvec3(scene.view.dimensions - 1);
     scene.view.halfSpaces.emplace_back(normal, -glm::dot(normal, middle) + 0.1);
   }
-  if (random.uniform(0, 2) == 0)
+  if (mayBeCut && random.uniform(0, 2) == 0)
   {
     for (int a = 0; a < 3; ++a)
     {
@@ -131,12 +132,10 @@ std::vector<std::array<int, 3>> pathOf(
                                   : reference::crossedVoxels(size, referenceView(geometry), u, v);
 }
 
-/// Few values, so that ties are common, on a background of the lowest; of any size so that there
-/// are several bricks.
+/// Few values, so that ties are common, on a background of the lowest.
 template <class T>
-reference::Volume<T> volumeWithTies(reference::Random& random)
+reference::Volume<T> withTies(const std::array<int, 3>& size, reference::Random& random)
 {
-  const auto size = randomSize(random, random.uniform(0, 1) ? 40 : 12);
   auto volume = reference::uniformNoise<T>(size, random.bits(), T(0), T(3));
   const int background = random.uniform(0, 3) * 100;
   for (std::size_t n = 0; n < volume.voxels.size(); ++n)
@@ -145,6 +144,43 @@ reference::Volume<T> volumeWithTies(reference::Random& random)
     volume.voxels[n] = static_cast<int>(n % 397) < background ? T(0) : volume.voxels[n];
   }
   return volume;
+}
+
+/// The same of any size so that there are several bricks.
+template <class T>
+reference::Volume<T> volumeWithTies(reference::Random& random)
+{
+  return withTies<T>(randomSize(random, random.uniform(0, 1) ? 40 : 12), random);
+}
+
+template <class T>
+void comparePreview(Checks& check, const reference::Volume<T>& volume, const Scene& scene,
+  splatting::ProjectionSettings settings, const std::string& name)
+{
+  const auto images = projectScene(volume, scene, settings);
+  const splatting::Located where = located(volume, scene, images, settings);
+  for (std::size_t m = 0; m < images.size(); ++m)
+  {
+    const splatting::ShearWarp& geometry = scene.images[m];
+    std::vector<glm::ivec3> voxels;
+    splatting::findVoxels(where, m, voxels);
+    const auto rays = voxelsOf(volume, geometry);
+    const reference::RayCutter cutter = cutterOf(geometry, volume.size, scene);
+    bool same = true;
+    for (int v = 0; v < geometry.rayCount().y && same; ++v)
+    {
+      for (int u = 0; u < geometry.rayCount().x && same; ++u)
+      {
+        const std::size_t at = std::size_t(v) * geometry.width() + u;
+        const int winner = reference::winnerOf(
+          rays[at], cutter, u, v, geometry.reversed(), settings.reduction == Reduction::Minimum);
+        const glm::ivec3 expected =
+          winner < 0 ? glm::ivec3(-1) : toGlm(pathOf(volume.size, geometry, u, v)[winner]);
+        same = voxels[at] == expected;
+      }
+    }
+    check(same, name, ", image ", m, ": another voxel");
+  }
 }
 
 template <class T>
@@ -159,30 +195,34 @@ void testPreview(Checks& check, bool perspective, std::uint64_t seed)
     settings.quality = Quality::Preview;
     settings.reduction = random.uniform(0, 3) ? Reduction::Maximum : Reduction::Minimum;
     settings.acceleration = static_cast<Acceleration>(random.uniform(0, 5));
-    const auto images = projectScene(volume, scene, settings);
-    const splatting::Located where = located(volume, scene, images, settings);
-    for (std::size_t m = 0; m < images.size(); ++m)
+    comparePreview(check, volume, scene, settings,
+      "preview, view " + std::to_string(n) + (perspective ? " in perspective" : ""));
+  }
+}
+
+/// Rows of pixels that fill registers, and volumes deep enough for pairs of layers: there previews
+/// note winners by other loops, which are each instruction set's own.
+template <class T>
+void testLongRows(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int n = 0; n < 12; ++n)
+  {
+    std::array<int, 3> size;
+    for (int a = 0; a < 3; ++a)
     {
-      const splatting::ShearWarp& geometry = scene.images[m];
-      std::vector<glm::ivec3> voxels;
-      splatting::findVoxels(where, m, voxels);
-      const auto rays = voxelsOf(volume, geometry);
-      const reference::RayCutter cutter = cutterOf(geometry, volume.size, scene);
-      bool same = true;
-      for (int v = 0; v < geometry.rayCount().y && same; ++v)
-      {
-        for (int u = 0; u < geometry.rayCount().x && same; ++u)
-        {
-          const std::size_t at = std::size_t(v) * geometry.width() + u;
-          const int winner = reference::winnerOf(
-            rays[at], cutter, u, v, geometry.reversed(), settings.reduction == Reduction::Minimum);
-          const glm::ivec3 expected =
-            winner < 0 ? glm::ivec3(-1) : toGlm(pathOf(volume.size, geometry, u, v)[winner]);
-          same = voxels[at] == expected;
-        }
-      }
-      check(same, "preview, view ", n, perspective ? " in perspective" : "", ", image ", m,
-        ": another voxel");
+      size[a] = a == n % 3 ? random.uniform(64, 300) : random.uniform(9, 36);
+    }
+    const auto volume = withTies<T>(size, random);
+    const Scene scene = anyScene(size, false, random, n % 4 == 0);
+    for (int way = 0; way < 8; ++way)
+    {
+      splatting::ProjectionSettings settings;
+      settings.quality = Quality::Preview;
+      settings.acceleration = way % 2 ? Acceleration::Bricks : Acceleration::Dense;
+      settings.instructionSet = static_cast<splatting::InstructionSet>(way / 2);
+      comparePreview(check, volume, scene, settings,
+        "long rows, view " + std::to_string(n) + ", way " + std::to_string(way));
     }
   }
 }
@@ -523,6 +563,12 @@ int TestWinners(int, char*[])
     testExact(check, perspective);
     testPoints(check, perspective);
   }
+  testLongRows<std::uint8_t>(check, 11);
+  testLongRows<std::int8_t>(check, 12);
+  testLongRows<std::int16_t>(check, 13);
+  testLongRows<std::uint32_t>(check, 14);
+  testLongRows<float>(check, 15);
+  testLongRows<double>(check, 16);
   testWholeFootprints(check);
   testEqualSlices(check);
   return check.result();
