@@ -250,6 +250,25 @@ void testLongRows(Checks& check, std::uint64_t seed)
   }
 }
 
+/// More slices than walks have notes for.
+void testDeepVolume(Checks& check)
+{
+  reference::Random random(21);
+  const std::array<int, 3> size = { 3, 4, 11000 };
+  const auto volume = withTies<std::uint8_t>(size, random);
+  for (bool reversed : { false, true })
+  {
+    Scene scene;
+    scene.view = viewWithShear(size, 2, 1e-3, -2e-4);
+    scene.view.indexToClip[2][2] = reversed ? 1e-4 : -1e-4;
+    splatting::ShearWarp::factorise(scene.view, scene.images);
+    splatting::ProjectionSettings settings;
+    settings.quality = Quality::Preview;
+    comparePreview(
+      check, volume, scene, settings, winningVoxels(volume, scene, false), "deep volume");
+  }
+}
+
 /// The voxels of slice k with their weights in an average, by averaging volumes of one voxel each.
 double shareOf(const std::array<int, 3>& size, const splatting::ShearWarp& geometry,
   const reference::Kernel& kernel, const glm::ivec3& voxel, int u, int v, int k)
@@ -592,6 +611,7 @@ int TestWinners(int, char*[])
   testLongRows<std::uint32_t>(check, 14);
   testLongRows<float>(check, 15);
   testLongRows<double>(check, 16);
+  testDeepVolume(check);
   testWholeFootprints(check);
   testEqualSlices(check);
   return check.result();
