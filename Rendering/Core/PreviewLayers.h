@@ -418,7 +418,8 @@ private:
   }
 
   const Frame<T>& Shared;
-  const std::vector<Layer>&Layers, &Pairs;
+  const std::vector<Layer>& Layers;
+  const std::vector<Layer>& Pairs; ///< none if they are not to be used
 };
 }
 
