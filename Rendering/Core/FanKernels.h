@@ -7,8 +7,7 @@
 #ifndef splattingFanKernels_h
 #define splattingFanKernels_h
 
-#include "Kernels.h"
-#include "Registers.h"
+#include "NotingKernels.h"
 
 namespace splatting
 {
@@ -54,7 +53,8 @@ inline void steps(const double* __restrict at, const double* __restrict slope, d
   for (std::ptrdiff_t x = 0; x < n; ++x)
   {
     const std::int32_t ticks = static_cast<std::int32_t>(time[x] * 32768.0);
-    tick[x] = static_cast<std::int16_t>(ticks < 32767 ? ticks : 32767);
+    const std::int32_t fitting = ticks < 32767 ? ticks : 32767;
+    tick[x] = static_cast<std::int16_t>(first[x] != last[x] ? fitting : -1);
   }
 }
 
@@ -219,13 +219,44 @@ inline void crossPixel(const Crossing<T>& c, T* image, const unsigned char* bits
   }
 }
 
+/// The same where winners are noted: voxel by voxel along the path.
 template <class T>
-inline void crossPixels(const Crossing<T>& c, T* image, const unsigned char* bits,
-  const T* const (&rows)[2], double rowTime, std::ptrdiff_t begin, std::ptrdiff_t end)
+inline void crossPixelNoting(const Crossing<T>& c, T* image, std::int16_t* notes,
+  const unsigned char* bits, const T* const (&rows)[2], bool changesRows, double rowTime,
+  std::ptrdiff_t x)
 {
-  for (std::ptrdiff_t x = begin; x < end; ++x)
+  if (bits && !(bits[x] & c.bit))
   {
-    crossPixel(c, image, bits, rows, rowTime, x);
+    return;
+  }
+  const Integer<T> enters = static_cast<const Integer<T>*>(c.entryLanes)[x];
+  const Integer<T> leaves = static_cast<const Integer<T>*>(c.exitLanes)[x];
+  const std::ptrdiff_t group = x / Picker<T>::group;
+  const auto at = [&](int row, bool last)
+  {
+    const Integer<T> lane = last ? leaves : enters;
+    return lane >= 0 ? rows[row][(last ? c.exitBase : c.entryBase)[group] + lane] : Least<T>;
+  };
+  const bool changesColumns = c.columnTick[x] >= 0, columnFirst = c.columnTime[x] < rowTime;
+  T path[3] = { at(0, false) };
+  int count = 1;
+  if (changesRows && changesColumns && c.columnTime[x] != rowTime)
+  {
+    path[count++] = columnFirst ? at(0, true) : at(1, false);
+  }
+  if (changesRows || changesColumns)
+  {
+    path[count++] = at(1, true);
+  }
+  for (int n = 0; n < count; ++n)
+  {
+    const std::int16_t own =
+      static_cast<std::int16_t>(c.reversed ? c.noting.order - n : c.noting.order + n);
+    if (path[n] > image[x] || (path[n] == image[x] && own < notes[x]))
+    {
+      image[x] = path[n];
+      notes[x] = own;
+    }
   }
 }
 
@@ -378,7 +409,7 @@ public:
   PickedRows(const Crossing<T>& crossing, std::ptrdiff_t begin, std::ptrdiff_t end)
     : C(crossing),
       Begin(begin),
-      Registers(static_cast<int>((end - begin) / width<T>))
+      Count(static_cast<int>((end - begin) / width<T>))
   {
     for (Row& row : this->Rows)
     {
@@ -386,20 +417,15 @@ public:
     }
   }
 
-  void cross(int v, T* image, const unsigned char* bits)
+  void cross(int v)
   {
-    const std::int32_t j0 = this->C.firstRow[v], j1 = this->C.lastRow[v];
-    const Row* const first = this->row(j0);
-    const Row* const last = j1 == j0 ? first : this->row(j1);
-    if (bits)
+    if (this->C.noting.notes)
     {
-      j0 == j1 ? this->raise<false, true>(v, first, last, image, bits)
-               : this->raise<true, true>(v, first, last, image, bits);
+      this->C.bits ? this->cross<true, true>(v) : this->cross<false, true>(v);
     }
     else
     {
-      j0 == j1 ? this->raise<false, false>(v, first, last, image, bits)
-               : this->raise<true, false>(v, first, last, image, bits);
+      this->C.bits ? this->cross<true, false>(v) : this->cross<false, false>(v);
     }
   }
 
@@ -411,6 +437,16 @@ private:
     alignas(64) T entry[Width];
     alignas(64) T exit[Width];
   };
+
+  template <bool Cut, bool Notes>
+  void cross(int v)
+  {
+    const std::int32_t j0 = this->C.firstRow[v], j1 = this->C.lastRow[v];
+    const Row* const first = this->row(j0);
+    const Row* const last = j1 == j0 ? first : this->row(j1);
+    j0 == j1 ? this->raise<false, Cut, Notes>(v, first, last)
+             : this->raise<true, Cut, Notes>(v, first, last);
+  }
 
   const Row* row(std::int32_t j)
   {
@@ -429,7 +465,7 @@ private:
   {
     const Crossing<T>& c = this->C;
     const Register none = loadRegister(c.none);
-    for (int n = 0; n < this->Registers; ++n)
+    for (int n = 0; n < this->Count; ++n)
     {
       const std::ptrdiff_t x = this->Begin + n * width<T>, group = x / Picker<T>::group;
       const Register entry = loadRegister(static_cast<const Integer<T>*>(c.entryLanes) + x);
@@ -443,43 +479,97 @@ private:
     }
   }
 
-  template <bool TwoRows, bool Cut>
-  void raise(int v, const Row* first, const Row* last, T* image, const unsigned char* bits) const
+  template <bool TwoRows, bool Cut, bool Notes>
+  void raise(int v, const Row* first, const Row* last) const
   {
     const Crossing<T>& c = this->C;
-    for (int n = 0; n < this->Registers; ++n)
+    T* const image = c.image + v * c.imageStride + this->Begin;
+    std::int16_t* const notes = Notes ? c.noting.notes + v * c.imageStride + this->Begin : nullptr;
+    const unsigned char* const bits = Cut ? c.bits + v * c.bitsStride + this->Begin : nullptr;
+    for (int n = 0; n < this->Count; ++n)
     {
-      const std::ptrdiff_t at = n * width<T>, x = this->Begin + at;
-      const Pack<T> entry = load<T>(first->entry + at);
-      Pack<T> best = larger(entry, load<T>(last->exit + at));
+      const std::ptrdiff_t at = n * width<T>;
+      const Pack<T> entry = load<T>(first->entry + at), exit = load<T>(last->exit + at);
+      Pack<T> best = larger(entry, exit), corner = entry;
+      TickOrder order{};
       if constexpr (TwoRows)
       {
-        TickOrder order = orderOf<width<T>>(c.columnTick + x, c.rowTick[v]);
-        if (order.ties)
-        {
-          // Which face comes first takes more digits.
-          order = orderOf<width<T>>(c.columnTime + x, c.rowTime[v]);
-        }
+        order = this->orderAt(v, at);
         const Register rowFirst = (Register)load<T>(last->entry + at);
         const Register columnFirst = (Register)load<T>(first->exit + at);
-        const Register corner = chosen<sizeof(T)>(
+        corner = (Pack<T>)chosen<sizeof(T)>(
           order.before, chosen<sizeof(T)>(order.after, (Register)entry, rowFirst), columnFirst);
-        best = larger((Pack<T>)corner, best);
+        best = larger(corner, best);
       }
-      const Pack<T> before = load<T>(image + x);
+      const Pack<T> before = Notes ? Pack<T>{} + Least<T> : load<T>(image + at);
       best = larger(best, before);
       if constexpr (Cut)
       {
-        const Pack<Integer<T>> own = loadBits<T>(bits + x);
+        const Pack<Integer<T>> own = loadBits<T>(bits + at);
         best = (own & static_cast<Integer<T>>(c.bit)) != 0 ? best : before;
       }
-      store<T>(image + x, best);
+      if constexpr (!Notes)
+      {
+        store<T>(image + at, best);
+      }
+      else if (mayWin<1, T>(c.noting, image, notes, Registers<T, 1>{ at, at }, { best }))
+      {
+        const Pack<Integer<T>> steps =
+          this->stepsOf<TwoRows>(at, order, { entry, corner, exit }, best);
+        raiseRegister<T>(
+          c.noting, image + at, notes + at, best, c.reversed ? Pack<Integer<T>>{} - steps : steps);
+      }
     }
+  }
+
+  TickOrder orderAt(int v, std::ptrdiff_t at) const
+  {
+    const Crossing<T>& c = this->C;
+    const TickOrder order = orderOf<width<T>>(c.columnTick + this->Begin + at, c.rowTick[v]);
+    // Which face comes first may take more digits.
+    return order.ties ? orderOf<width<T>>(c.columnTime + this->Begin + at, c.rowTime[v]) : order;
+  }
+
+  /// Where rays enter a slice, where they are between changing columns and rows, and where they
+  /// leave.
+  struct Path
+  {
+    Pack<T> entry, corner, exit;
+  };
+
+  /// Which voxel of their path in the slice the best one is, of equal ones the nearest.
+  template <bool TwoRows>
+  Pack<Integer<T>> stepsOf(
+    std::ptrdiff_t at, const TickOrder& order, const Path& path, Pack<T> best) const
+  {
+    const Register none{}, one = (Register)(Pack<Integer<T>>{} + Integer<T>(1));
+    const auto stays = orderOf<width<T>>(this->C.columnTick + this->Begin + at, 0).before;
+    Pack<Integer<T>> last = (Pack<Integer<T>>)chosen<sizeof(T)>(stays, one, none);
+    const Pack<T> nearest = this->C.reversed ? path.exit : path.entry;
+    Pack<T> corner = path.corner;
+    if constexpr (TwoRows)
+    {
+      // There is a corner where both change, but not at once.
+      const Register two = (Register)(Pack<Integer<T>>{} + Integer<T>(2));
+      const auto differ = order.before | order.after;
+      const auto turned = chosen<sizeof(T)>(differ, one, two);
+      last = (Pack<Integer<T>>)chosen<sizeof(T)>(stays, turned, one);
+      const Register met = chosen<sizeof(T)>(differ, (Register)nearest, (Register)corner);
+      corner = (Pack<T>)chosen<sizeof(T)>(stays, met, (Register)nearest);
+    }
+    const Pack<Integer<T>> first{};
+    const Pack<Integer<T>> second = first + Integer<T>(1);
+    Pack<Integer<T>> step = this->C.reversed ? first : last;
+    if constexpr (TwoRows)
+    {
+      step = corner == best ? second : step;
+    }
+    return nearest == best ? (this->C.reversed ? last : first) : step;
   }
 
   const Crossing<T>& C;
   std::ptrdiff_t Begin;
-  int Registers;
+  int Count; ///< of registers
   Row Rows[3]; // two neighbours, and one without voxels
 };
 
@@ -495,7 +585,7 @@ inline std::ptrdiff_t crossRegisters(const Crossing<T>& c, const Span& run)
       c, begin, begin + (left < PickedRows<T>::Width ? left : PickedRows<T>::Width));
     for (int v = 0; v < c.height; ++v)
     {
-      rows.cross(v, c.image + v * c.imageStride, c.bits ? c.bits + v * c.bitsStride : nullptr);
+      rows.cross(v);
     }
   }
   return end;
@@ -509,8 +599,14 @@ inline void crossRow(const Crossing<T>& c, const Span& run, int v)
   const bool inside[2] = { j[0] >= 0 && j[0] < c.rows, j[1] >= 0 && j[1] < c.rows };
   const T* const rows[2] = { inside[0] ? c.voxels + j[0] * c.rowStride : c.none,
     inside[1] ? c.voxels + j[1] * c.rowStride : c.none };
-  crossPixels(c, c.image + v * c.imageStride, c.bits ? c.bits + v * c.bitsStride : nullptr, rows,
-    c.rowTime[v], run.begin, run.end);
+  T* const image = c.image + v * c.imageStride;
+  std::int16_t* const notes = c.noting.notes ? c.noting.notes + v * c.imageStride : nullptr;
+  const unsigned char* const bits = c.bits ? c.bits + v * c.bitsStride : nullptr;
+  for (std::ptrdiff_t x = run.begin; x < run.end; ++x)
+  {
+    notes ? crossPixelNoting(c, image, notes, bits, rows, j[0] != j[1], c.rowTime[v], x)
+          : crossPixel(c, image, bits, rows, c.rowTime[v], x);
+  }
 }
 
 template <class T>

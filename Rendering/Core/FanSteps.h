@@ -32,7 +32,8 @@ public:
     const std::int32_t *first, *last;
     /// How far from the entry, as a share of a slice, rays change from the one to the other.
     const double* time;
-    const std::int16_t* tick; ///< the same, rounded down to multiples of 2^-15
+    /// The same, rounded down to multiples of 2^-15; -1 where rays stay in one voxel.
+    const std::int16_t* tick;
   };
   Slice slice(int k) const
   {

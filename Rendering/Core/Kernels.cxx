@@ -157,8 +157,8 @@ inline void noteSums(
 {
   // Without a question, whose answer nobody could foretell.
   const Pack<Integer<A>> tied = (sum == before) & counts;
-  keepNearest<A>(s.notes + at, 0, typename NotesOf<A>::type{} + s.order, sum > before,
-    s.nearestFirst ? Pack<Integer<A>>{} : tied);
+  keepNearest<A>(s.noting.notes + at, 0, typename NotesOf<A>::type{} + s.noting.order, sum > before,
+    s.noting.nearestFirst ? Pack<Integer<A>>{} : tied);
 }
 
 /// Rows x V registers of pixels, from (x, y) of the rectangle.
@@ -214,7 +214,7 @@ inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
         counts = (bits & static_cast<Integer<A>>(s.bit)) != 0;
         sum[o][v] = counts ? sum[o][v] : before;
       }
-      if (s.notes)
+      if (s.noting.notes)
       {
         noteSums(s, at, sum[o][v], before, counts);
       }
@@ -244,9 +244,9 @@ inline void splatPixel(const Splat<A>& s, std::ptrdiff_t x, int y)
   }
   const std::ptrdiff_t at = y * s.imageStride + x;
   A& pixel = s.image[at];
-  if (s.notes && (sum > pixel || (sum == pixel && s.order < s.notes[at])))
+  if (s.noting.notes && (sum > pixel || (sum == pixel && s.noting.order < s.noting.notes[at])))
   {
-    s.notes[at] = s.order;
+    s.noting.notes[at] = s.noting.order;
   }
   pixel = larger(sum, pixel);
 }

@@ -50,6 +50,14 @@ struct Rim
   int end[MostRows];
 };
 
+/// What loops note of the samples that raise pixels: a number each, of equal samples the least.
+struct Noting
+{
+  std::int16_t* notes = nullptr; ///< the first pixel's, in rows as the image has them, or none
+  std::int16_t order = 0;        ///< of the samples that come first
+  bool nearestFirst = false;     ///< whether all that was noted before is less
+};
+
 /// Rows of pixels, and the rows of voxels that the first one meets, shifted so that pixel x meets
 /// rows[r][x].
 template <class T>
@@ -70,13 +78,8 @@ struct Sweep
   const unsigned char* bits;
   std::ptrdiff_t bitsStride;
   unsigned char bit[MostRows];
-  /// If winners are noted, the first pixel's note in rows as the image has them, else nullptr. A
-  /// voxel of row r has the note `order` + offsets[r], where offsets ascend; of equal ones the
-  /// least stays. All notes before are less where the nearest come first.
-  std::int16_t* notes;
-  std::int16_t order;
-  std::int8_t offsets[MostRows];
-  bool nearestFirst;
+  Noting noting;
+  std::int8_t offsets[MostRows]; ///< from noting.order, ascending
 };
 
 /// Rows of pixels of a perspective image and the voxels that their rays cross in one slice; see
@@ -103,6 +106,8 @@ struct Crossing
   const unsigned char* bits;
   std::ptrdiff_t bitsStride;
   unsigned char bit;
+  Noting noting; ///< voxel n of a ray's path in the slice has noting.order plus n, or minus
+  bool reversed; ///< whether minus
 };
 
 /// Loops over voxels of type T.
@@ -209,10 +214,7 @@ struct Splat
   const unsigned char* bits;
   std::ptrdiff_t bitsStride;
   unsigned char bit;
-  /// As in Sweep, in rows as the image has them; all voxels have the same.
-  std::int16_t* notes;
-  std::int16_t order;
-  bool nearestFirst;
+  Noting noting;
 };
 
 /// The least and greatest first and last slices that the rays of tiles are cut to.

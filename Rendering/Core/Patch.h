@@ -29,9 +29,8 @@ struct Patch
   std::vector<std::uint16_t> runEnds;   ///< of walks along chains only
   std::vector<unsigned char> worksheet; ///< of walks that look at each sample only
   std::vector<unsigned char> present;   ///< which of its pixels have one, in perspective previews
-  std::vector<unsigned char> noted; ///< of perspective previews that note winners: a layer's voxels
-  std::vector<Span> runs;           ///< of perspective previews: what a slice covers of others
-  Span rows, pixels;                ///< of the image, that it has the voxels for
+  std::vector<Span> runs;               ///< of perspective previews: what a slice covers of others
+  Span rows, pixels;                    ///< of the image, that it has the voxels for
   std::ptrdiff_t rowLength = 0;
   std::ptrdiff_t sheetLength = 0;
   std::array<Sheet, 3> sheets;

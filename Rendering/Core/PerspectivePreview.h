@@ -52,11 +52,9 @@ public:
     int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
     const Span slices = this->slices(z);
-    for (int k = slices.begin; k < slices.end; ++k)
+    for (int n = 0; n < slices.end - slices.begin; ++n)
     {
-      this->Shared.orders
-        ? this->noteSlice(k, v0, v1, runs, bits, patch)
-        : this->splatSlice(this->Shared.image.template row<T>(0), k, v0, v1, runs, bits, patch);
+      this->splatSlice(this->Shared.nth(slices, n), v0, v1, runs, bits, patch);
     }
   }
 
@@ -75,9 +73,9 @@ public:
   void splatAll(
     const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const
   {
-    for (int z = layers.begin; z < layers.end; ++z)
+    for (int n = 0; n < layers.end - layers.begin; ++n)
     {
-      this->splat(z, v0, v1, all, {}, patch);
+      this->splat(this->Shared.nth(layers, n), v0, v1, all, {}, patch);
     }
   }
 
@@ -117,39 +115,8 @@ private:
     return common(slicesOfLayer(z, this->Shared.geometry.size()), this->Shared.geometry.slices());
   }
 
-  /// Raises the image to what the slice makes of an empty one, and notes which pixels it has won.
-  void noteSlice(
+  void splatSlice(
     int k, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
-  {
-    const SliceGeometry& slice = this->Shared.sliceGeometry[k];
-    v0 = std::max(v0, slice.vBegin);
-    v1 = std::min(v1, slice.vEnd);
-    if (v0 >= v1)
-    {
-      return;
-    }
-    const std::ptrdiff_t width = this->Shared.image.width;
-    patch.noted.resize((v1 - v0) * width * sizeof(T));
-    T* const pixels = reinterpret_cast<T*>(patch.noted.data()) - v0 * width;
-    // Registers write beside their runs.
-    std::fill(pixels + v0 * width, pixels + v1 * width, leastValue<T>());
-    this->splatSlice(pixels, k, v0, v1, runs, bits, patch);
-    const RayLoops<T>& loops = this->Shared.kernels;
-    const int order = this->Shared.orderOfStep(StepsPerSlice * k);
-    for (int v = v0; v < v1; ++v)
-    {
-      for (const Span& run : runs)
-      {
-        loops.raiseNoting(this->Shared.image.template row<T>(v) + run.begin,
-          this->Shared.ordersOfRow(v) + run.begin, static_cast<std::int16_t>(order),
-          pixels + v * width + run.begin, nullptr, 0, run.end - run.begin);
-      }
-    }
-  }
-
-  /// @param pixels  pixel (0, 0) of what has the image's rows
-  void splatSlice(T* pixels, int k, int v0, int v1, const std::vector<Span>& runs,
-    const SliceBits& bits, Patch& patch) const
   {
     const SliceGeometry& slice = this->Shared.sliceGeometry[k];
     v0 = std::max(v0, slice.vBegin);
@@ -177,18 +144,17 @@ private:
       return;
     }
     const VoxelLoops<T>& loops = this->Shared.kernels;
-    loops.cross(this->crossingOf(pixels, k, v0, v1, bits, patch));
+    loops.cross(this->crossingOf(k, v0, v1, bits, patch));
   }
 
-  Crossing<T> crossingOf(
-    T* pixels, int k, int v0, int v1, const SliceBits& bits, const Patch& patch) const
+  Crossing<T> crossingOf(int k, int v0, int v1, const SliceBits& bits, const Patch& patch) const
   {
     const PerspectiveSteps& steps = this->Shared.steps;
     const FanSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
     const FanWindows::Picks entry = steps.windows.entering(k), exit = steps.windows.leaving(k);
     Crossing<T> c;
     c.imageStride = this->Shared.image.width;
-    c.image = pixels + v0 * c.imageStride;
+    c.image = this->Shared.image.template row<T>(v0);
     c.height = v1 - v0;
     c.voxels = this->Shared.voxelRow(0, k);
     c.rowStride = this->Shared.slices.rowStride;
@@ -211,6 +177,10 @@ private:
     c.bits = bits.origin ? bits.at(0, v0) : nullptr;
     c.bitsStride = bits.stride;
     c.bit = static_cast<unsigned char>(1u << k % BrickDepth);
+    c.noting.notes = this->Shared.orders ? this->Shared.ordersOfRow(v0) : nullptr;
+    c.noting.order = static_cast<std::int16_t>(this->Shared.orderOfStep(StepsPerSlice * k));
+    c.noting.nearestFirst = this->Shared.nearestFirst;
+    c.reversed = this->Shared.geometry.reversed();
     return c;
   }
 

@@ -290,9 +290,9 @@ private:
     sweep.bitsStride = bits.stride;
     sweep.imageStride = this->Shared.image.width;
     sweep.image = this->image().template row<T>(v0);
-    sweep.notes = this->Shared.orders ? this->Shared.ordersOfRow(v0) : nullptr;
-    sweep.order = this->orderOf(layer.taps[0].k / BrickDepth);
-    sweep.nearestFirst = this->Shared.nearestFirst;
+    sweep.noting.notes = this->Shared.orders ? this->Shared.ordersOfRow(v0) : nullptr;
+    sweep.noting.order = this->orderOf(layer.taps[0].k / BrickDepth);
+    sweep.noting.nearestFirst = this->Shared.nearestFirst;
     sweep.height = v1 - v0;
     sweep.count = endTap - firstTap;
     sweep.rowStride = this->Shared.slices.rowStride;
@@ -302,7 +302,7 @@ private:
       sweep.bit[t - firstTap] = static_cast<unsigned char>(1u << tap.k % BrickDepth);
       sweep.rows[t - firstTap] = this->Shared.voxelRow(v0 + tap.dj, tap.k) + tap.di;
       sweep.offsets[t - firstTap] = static_cast<std::int8_t>(
-        this->Shared.orderOfStep(StepsPerSlice * tap.k + tap.t) - sweep.order);
+        this->Shared.orderOfStep(StepsPerSlice * tap.k + tap.t) - sweep.noting.order);
     }
     sweep.runs = runs.data();
     sweep.runCount = static_cast<int>(runs.size());

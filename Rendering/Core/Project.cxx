@@ -191,8 +191,7 @@ void Projector::walk(
     this->openNotes(frame);
   }
   const bool preview = std::is_same_v<P, T> && Layers::Beyond == 0;
-  const WinnerFinder<Layers> finder(
-    frame, layers, index.volume(), this->Memory->outline.crossed, preview);
+  const WinnerFinder<Layers> finder(frame, layers, this->Memory->outline.crossed, preview);
   const BrickMaxima* const bricks =
     used == Acceleration::Bricks ? &index.bricks(frame.geometry.principalAxis()) : nullptr;
   frame.nearestFirst = notes && !bricks;

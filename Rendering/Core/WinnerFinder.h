@@ -4,14 +4,12 @@
  * From what a walk has noted of each pixel to ShearImage::winners.
  *
  * Of equal samples the nearest to the viewer wins, whatever the order of a walk: Frame::orders
- * tells the nearest step whose sample is the pixel's value, or, in perspective previews, a step of
- * the nearest slice that has such a voxel. Where the value is the floor, which no sample is
- * below, that is the first sample of the ray, and walks need not look for it.
+ * tells the nearest step whose sample is the pixel's value. Where the value is the floor, which no
+ * sample is below, that is the first sample of the ray, and walks need not look for it.
  */
 #ifndef splattingWinnerFinder_h
 #define splattingWinnerFinder_h
 
-#include "Carry.h"
 #include "Cuts.h"
 #include "Frame.h"
 
@@ -52,13 +50,11 @@ public:
   using T = typename Stack::Voxel;
   using P = typename Stack::Pixel;
 
-  /// @param volume   where the frame's slices come from
   /// @param crossed  for the frame's slices
   /// @param preview  whether samples are voxels
-  WinnerFinder(const Frame<T>& frame, const Stack& layers, const VoxelArray& volume,
-    const CrossedSlices& crossed, bool preview)
+  WinnerFinder(
+    const Frame<T>& frame, const Stack& layers, const CrossedSlices& crossed, bool preview)
     : Shared(frame),
-      Voxels(volume, frame.geometry),
       Crossed(crossed),
       Floor(layers.floor()),
       Preview(preview)
@@ -95,21 +91,12 @@ private:
       return false;
     }
     const RayLoops<P>& loops = this->Shared.kernels;
-    const bool missing = loops.settle(row + span.begin, orders + span.begin, this->Floor,
-      this->reversed(), this->Shared.orderOfStep(0), winners + span.begin, span.end - span.begin);
-    if (this->Preview && this->Shared.geometry.isPerspective())
-    {
-      for (int u = span.begin; u < span.end; ++u)
-      {
-        winners[u] =
-          winners[u] < 0 ? winners[u] : this->stepIn(winners[u] / StepsPerSlice, u, v, &row[u]);
-      }
-    }
-    return missing;
+    return loops.settle(row + span.begin, orders + span.begin, this->Floor, this->reversed(),
+      this->Shared.orderOfStep(0), winners + span.begin, span.end - span.begin);
   }
 
-  /// The first step of a ray in slice k, of this value if there is one; -1 if it has none.
-  std::int32_t stepIn(int k, int u, int v, const P* value) const
+  /// The first step of a ray in slice k; -1 if it has none.
+  std::int32_t stepIn(int k, int u, int v) const
   {
     const SliceGeometry& slice = this->Shared.sliceGeometry[k];
     if (v < slice.vBegin || v >= slice.vEnd || u < slice.span(v).begin || u >= slice.span(v).end)
@@ -132,8 +119,7 @@ private:
     {
       const int t = this->reversed() ? path.count - 1 - n : n;
       const int i = path.di[t] + (own ? 0 : u), j = path.dj[t] + (own ? 0 : v);
-      if (i >= 0 && i < size.x && j >= 0 && j < size.y &&
-        (!value || static_cast<P>(this->Voxels.at(i, j, k)) == *value))
+      if (i >= 0 && i < size.x && j >= 0 && j < size.y)
       {
         return StepsPerSlice * k + t;
       }
@@ -156,7 +142,7 @@ private:
         const int first = scratch.first[u], last = scratch.last[u];
         for (int n = 0; n <= last - first && winners[u] < 0; ++n)
         {
-          winners[u] = this->stepIn(this->reversed() ? last - n : first + n, u, v, nullptr);
+          winners[u] = this->stepIn(this->reversed() ? last - n : first + n, u, v);
         }
       }
     }
@@ -180,7 +166,7 @@ private:
       for (int u = pixels.begin; u < pixels.end; ++u)
       {
         const std::int32_t step = winners[u] == UnknownWinner && scratch.mask[u - pixels.begin]
-          ? this->stepIn(k, u, v, nullptr)
+          ? this->stepIn(k, u, v)
           : -1;
         winners[u] = step >= 0 ? step : winners[u];
       }
@@ -189,7 +175,6 @@ private:
   }
 
   const Frame<T>& Shared;
-  PermutedVoxels<T> Voxels;
   const CrossedSlices& Crossed;
   P Floor;
   bool Preview;

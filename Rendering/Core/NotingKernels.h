@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * How loops note which sample a pixel's value is. For Kernels.cxx only, which says why all of this
+ * is in an anonymous namespace.
+ */
+#ifndef splattingNotingKernels_h
+#define splattingNotingKernels_h
+
+#include "Kernels.h"
+#include "Registers.h"
+
+#include <limits>
+
+namespace splatting
+{
+namespace
+{
+/// No element is less.
+template <class T>
+constexpr T Least = std::numeric_limits<T>::has_infinity ? -std::numeric_limits<T>::infinity()
+                                                         : std::numeric_limits<T>::lowest();
+
+/// Where the V registers of a block are: side by side, but for the last one, which may overlap.
+template <class T, int V>
+struct Registers
+{
+  std::ptrdiff_t x, last;
+  inline std::ptrdiff_t operator[](int v) const
+  {
+    return v + 1 < V ? this->x + v * width<T> : this->last;
+  }
+};
+
+/// Whether any of a register's pixels has a greater note.
+template <class T>
+inline bool anyBehind(const std::int16_t* notes, std::int16_t order)
+{
+  std::int16_t any = 0;
+  for (std::ptrdiff_t n = 0; n < width<T>; ++n)
+  {
+    any |= static_cast<std::int16_t>(notes[n] > order);
+  }
+  return any != 0;
+}
+
+#if defined(__GNUC__)
+/// As many notes as a register of T has elements, or as fit into one.
+template <class T>
+struct NotesOf
+{
+  static constexpr std::ptrdiff_t count =
+    width<T> < width<std::int16_t> ? width<T> : width<std::int16_t>;
+  typedef std::int16_t type __attribute__((vector_size(2 * count)));
+  typedef std::int16_t loose
+    __attribute__((vector_size(2 * count), aligned(sizeof(std::int16_t)), may_alias));
+  typedef Integer<T> wide __attribute__((vector_size(sizeof(T) * count), may_alias));
+
+  /// Part n of a register, narrowed or widened.
+  static inline type part(const Pack<Integer<T>>& pack, std::ptrdiff_t n)
+  {
+    // Compilers need to be told the instruction that widens bytes.
+#if defined(__AVX512F__)
+    if constexpr (sizeof(T) == 1)
+    {
+      return reinterpret_cast<type>(
+        _mm512_cvtepi8_epi16(reinterpret_cast<const __m256i*>(&pack)[n]));
+    }
+#elif defined(__AVX2__)
+    if constexpr (sizeof(T) == 1)
+    {
+      return reinterpret_cast<type>(
+        _mm256_cvtepi8_epi16(reinterpret_cast<const __m128i*>(&pack)[n]));
+    }
+#endif
+    return __builtin_convertvector(reinterpret_cast<const wide*>(&pack)[n], type);
+  }
+};
+#else
+template <class T>
+struct NotesOf
+{
+  static constexpr std::ptrdiff_t count = 1;
+  using type = std::int16_t;
+  using loose = std::int16_t;
+  static inline type part(Integer<T> element, std::ptrdiff_t) { return static_cast<type>(element); }
+};
+#endif
+
+/// Notes `own` where pixels win, or tie with what is farther.
+template <class T, class N>
+inline void keepNearest(
+  std::int16_t* notes, std::ptrdiff_t part, N own, Pack<Integer<T>> raised, Pack<Integer<T>> tied)
+{
+  using Notes = NotesOf<T>;
+  typename Notes::loose* const place = reinterpret_cast<typename Notes::loose*>(notes) + part;
+  const N old = *place;
+  const N wins = Notes::part(raised, part) | (Notes::part(tied, part) & (own < old));
+  *place = wins != 0 ? own : old;
+}
+
+/// Whether any of V registers can win or tie with what is farther. One question for all of them: in
+/// noise most registers are raised, elsewhere few are, so that the answer is easily foretold.
+template <int V, class T>
+inline bool mayWin(const Noting& noting, const T* image, const std::int16_t* notes,
+  const Registers<T, V>& at, const Pack<T> (&best)[V])
+{
+  Pack<Integer<T>> raised{}, tied{};
+#pragma GCC unroll 4
+  for (int v = 0; v < V; ++v)
+  {
+    const Pack<T> before = load<T>(image + at[v]);
+    raised |= best[v] > before;
+    tied |= best[v] == before;
+  }
+  if (noting.nearestFirst || anyOf(raised) || !anyOf(tied))
+  {
+    return anyOf(raised);
+  }
+  bool behind = false;
+  for (int v = 0; v < V; ++v)
+  {
+    behind = behind || anyBehind<T>(notes + at[v], noting.order);
+  }
+  return behind;
+}
+
+#if defined(__AVX512F__)
+inline __mmask64 maskOfLarger(Pack<std::uint8_t> a, Pack<std::uint8_t> b)
+{
+  return _mm512_cmpgt_epu8_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b));
+}
+inline __mmask64 maskOfLarger(Pack<std::int8_t> a, Pack<std::int8_t> b)
+{
+  return _mm512_cmpgt_epi8_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b));
+}
+
+/// keepNearest() for bytes where the nearest come first: half of the instructions that compilers
+/// find, which do not see that masks need no widening.
+inline void keepRaised(std::int16_t* notes, std::int16_t order, __mmask64 raised, __m512i offset)
+{
+  const __m512i base = _mm512_set1_epi16(order);
+  _mm512_storeu_si512(notes,
+    _mm512_mask_add_epi16(_mm512_loadu_si512(notes), static_cast<__mmask32>(raised),
+      _mm512_cvtepi8_epi16(_mm512_castsi512_si256(offset)), base));
+  _mm512_storeu_si512(notes + 32,
+    _mm512_mask_add_epi16(_mm512_loadu_si512(notes + 32), static_cast<__mmask32>(raised >> 32),
+      _mm512_cvtepi8_epi16(_mm512_extracti64x4_epi64(offset, 1)), base));
+}
+#endif
+
+/// Raises a register of pixels, and notes which row that is.
+template <class T>
+inline void raiseRegister(
+  const Noting& noting, T* image, std::int16_t* notes, Pack<T> best, Pack<Integer<T>> offset)
+{
+  const Pack<T> before = load<T>(image);
+  store<T>(image, larger(best, before));
+#if defined(__AVX512F__)
+  if constexpr (sizeof(T) == 1)
+  {
+    if (noting.nearestFirst)
+    {
+      keepRaised(
+        notes, noting.order, maskOfLarger(best, before), reinterpret_cast<__m512i>(offset));
+      return;
+    }
+  }
+#endif
+  const Pack<Integer<T>> raised = best > before;
+  Pack<Integer<T>> tied{};
+  if (!noting.nearestFirst)
+  {
+    tied = best == before;
+  }
+#pragma GCC unroll 2
+  for (std::ptrdiff_t n = 0; n < width<T> / NotesOf<T>::count; ++n)
+  {
+    keepNearest<T>(notes, n, NotesOf<T>::part(offset, n) + noting.order, raised, tied);
+  }
+}
+}
+}
+
+#endif
