@@ -241,6 +241,29 @@ private:
 };
 }
 
+RayPath PerspectiveSteps::path(int u, int v, int k) const
+{
+  const FanSteps::Slice i = this->columns.slice(k), j = this->rows.slice(k);
+  const int i0 = i.first[u], i1 = i.last[u], j0 = j.first[v], j1 = j.last[v];
+  RayPath path;
+  const auto add = [&](int column, int row)
+  {
+    path.di[path.count] = column;
+    path.dj[path.count++] = row;
+  };
+  add(i0, j0);
+  if (i0 != i1 && j0 != j1 && i.time[u] != j.time[v])
+  {
+    const bool columnFirst = i.time[u] < j.time[v];
+    add(columnFirst ? i1 : i0, columnFirst ? j0 : j1);
+  }
+  if (i0 != i1 || j0 != j1)
+  {
+    add(i1, j1);
+  }
+  return path;
+}
+
 std::vector<SliceGeometry>& findSlices(
   const ShearWarp& geometry, std::vector<SliceGeometry>& slices, const PerspectiveSteps& steps)
 {

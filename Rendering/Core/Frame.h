@@ -44,6 +44,10 @@ struct PerspectiveSteps
 {
   FanSteps columns, rows;
   FanWindows windows; ///< of the columns; for preview only
+
+  /// The voxels of one pixel's ray in slice k; those outside the volume may be closer than they
+  /// are.
+  RayPath path(int u, int v, int k) const;
 };
 
 /// @param steps  of perspective images, else ignored

@@ -27,8 +27,8 @@ enum class InstructionSet
   AVX512VBMI ///< and instructions that pick bytes
 };
 
-/// Most rows of voxels that a row of pixels meets at a time: three in each of eight slices.
-constexpr int MostRows = 24;
+/// Most rows of voxels that a row of pixels meets at a time: three in each of sixteen slices.
+constexpr int MostRows = 48;
 
 /// Among winners, what is still to be found.
 constexpr std::int32_t UnknownWinner = -2;
@@ -80,34 +80,46 @@ struct Sweep
   unsigned char bit[MostRows];
   Noting noting;
   std::int8_t offsets[MostRows]; ///< from noting.order, ascending
+  bool winsOften;                ///< whether most registers of pixels are likely to be raised
 };
 
-/// Rows of pixels of a perspective image and the voxels that their rays cross in one slice; see
-/// FanSteps and FanWindows for the arrays, which begin with the first column and the first row.
+/// What the rays of a perspective image do in one slice; see FanSteps and FanWindows for the
+/// arrays, which begin with the first column and the first row.
+template <class T>
+struct CrossedSlice
+{
+  const T* voxels; ///< the slice's first
+  const std::int32_t *firstRow, *lastRow;
+  const double *rowTime, *columnTime;
+  const std::int16_t *rowTick, *columnTick;
+  const std::int32_t *entryBase, *exitBase;
+  const void *entryLanes, *exitLanes;
+  unsigned char bit;  ///< see Crossing::bits
+  std::int16_t order; ///< see Crossing::noting
+};
+
+/// Rows of pixels of a perspective image and the voxels that their rays cross in one slice or two.
 template <class T>
 struct Crossing
 {
   T* image; ///< the row's first pixel
   std::ptrdiff_t imageStride;
   int height;
-  const T* voxels; ///< the slice's first
+  CrossedSlice<T> slices[2];
+  int count; ///< of slices
   std::ptrdiff_t rowStride;
   std::ptrdiff_t ahead;       ///< to voxels that will be needed next
   std::int32_t columns, rows; ///< of voxels
   const T* none;              ///< a row of the least value
-  const std::int32_t *firstRow, *lastRow;
-  const double *rowTime, *columnTime;
-  const std::int16_t *rowTick, *columnTick;
-  const std::int32_t *entryBase, *exitBase;
-  const void *entryLanes, *exitLanes;
   const Span* runs; ///< the pixels that count: multiples of 64 bytes, but for the row's end
   int runCount;
-  /// Where rays are cut, pixel x takes voxels if bits[x] & bit; else nullptr.
+  /// Where rays are cut, pixel x takes voxels of a slice if bits[x] & its bit; else nullptr.
   const unsigned char* bits;
   std::ptrdiff_t bitsStride;
-  unsigned char bit;
-  Noting noting; ///< voxel n of a ray's path in the slice has noting.order plus n, or minus
-  bool reversed; ///< whether minus
+  /// Voxel n of a ray's path has the note `order` of its slice plus n, or minus if reversed;
+  /// noting.order is that of the first slice, the nearer one.
+  Noting noting;
+  bool reversed;
 };
 
 /// Loops over voxels of type T.

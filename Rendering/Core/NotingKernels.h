@@ -109,13 +109,20 @@ inline bool mayWin(const Noting& noting, const T* image, const std::int16_t* not
 #pragma GCC unroll 4
   for (int v = 0; v < V; ++v)
   {
-    const Pack<T> before = load<T>(image + at[v]);
-    raised |= best[v] > before;
-    tied |= best[v] == before;
+    raised |= best[v] > load<T>(image + at[v]);
   }
-  if (noting.nearestFirst || anyOf(raised) || !anyOf(tied))
+  if (noting.nearestFirst || anyOf(raised))
   {
     return anyOf(raised);
+  }
+#pragma GCC unroll 4
+  for (int v = 0; v < V; ++v)
+  {
+    tied |= best[v] == load<T>(image + at[v]);
+  }
+  if (!anyOf(tied))
+  {
+    return false;
   }
   bool behind = false;
   for (int v = 0; v < V; ++v)

@@ -52,9 +52,26 @@ public:
     int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
     const Span slices = this->slices(z);
-    for (int n = 0; n < slices.end - slices.begin; ++n)
+    const int count = slices.end - slices.begin;
+    if (this->Shared.range.special)
     {
-      this->splatSlice(this->Shared.nth(slices, n), v0, v1, runs, bits, patch);
+      for (int n = 0; n < count; ++n)
+      {
+        this->splatSamples(slices.begin + n, v0, v1, bits, patch);
+      }
+      return;
+    }
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    for (int n = 0; n < count; n += 2)
+    {
+      // Two slices at a time, from the viewer on: image and notes are read and written once.
+      const int near = this->Shared.nth(slices, n);
+      const int far = n + 1 < count ? this->Shared.nth(slices, n + 1) : near;
+      const Span rows = this->findRuns(near, far, { v0, v1 }, runs, patch.runs);
+      if (!rows.empty() && !patch.runs.empty())
+      {
+        loops.cross(this->crossingOf(near, far, rows, bits, patch.runs));
+      }
     }
   }
 
@@ -115,70 +132,70 @@ private:
     return common(slicesOfLayer(z, this->Shared.geometry.size()), this->Shared.geometry.slices());
   }
 
-  void splatSlice(
-    int k, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  /// The rows that two slices cover, and in these the pixels, in whole registers.
+  Span findRuns(int near, int far, const Span& rows, const std::vector<Span>& runs,
+    std::vector<Span>& covered) const
   {
-    const SliceGeometry& slice = this->Shared.sliceGeometry[k];
-    v0 = std::max(v0, slice.vBegin);
-    v1 = std::min(v1, slice.vEnd);
-    patch.runs.clear();
+    const SliceGeometry& a = this->Shared.sliceGeometry[near];
+    const SliceGeometry& b = this->Shared.sliceGeometry[far];
+    const Span both{ std::min(a.inner.begin, b.inner.begin), std::max(a.inner.end, b.inner.end) };
+    const Span registers{ both.begin / RunUnit * RunUnit,
+      std::min((both.end + RunUnit - 1) / RunUnit * RunUnit, this->Shared.image.width) };
+    covered.clear();
     for (const Span& run : runs)
     {
-      // Whole registers around what the slice covers.
-      const Span covered = common(run,
-        { slice.inner.begin / RunUnit * RunUnit,
-          std::min(
-            (slice.inner.end + RunUnit - 1) / RunUnit * RunUnit, this->Shared.image.width) });
-      if (!covered.empty())
+      const Span some = common(run, registers);
+      if (!some.empty())
       {
-        patch.runs.push_back(covered);
+        covered.push_back(some);
       }
     }
-    if (v0 >= v1 || patch.runs.empty())
-    {
-      return;
-    }
-    if (this->Shared.range.special)
-    {
-      this->splatSamples(k, v0, v1, bits, patch);
-      return;
-    }
-    const VoxelLoops<T>& loops = this->Shared.kernels;
-    loops.cross(this->crossingOf(k, v0, v1, bits, patch));
+    return common(rows, { std::min(a.vBegin, b.vBegin), std::max(a.vEnd, b.vEnd) });
   }
 
-  Crossing<T> crossingOf(int k, int v0, int v1, const SliceBits& bits, const Patch& patch) const
+  CrossedSlice<T> sliceOf(int k, int v0) const
   {
     const PerspectiveSteps& steps = this->Shared.steps;
     const FanSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
     const FanWindows::Picks entry = steps.windows.entering(k), exit = steps.windows.leaving(k);
+    CrossedSlice<T> s;
+    s.voxels = this->Shared.voxelRow(0, k);
+    s.firstRow = rows.first + v0;
+    s.lastRow = rows.last + v0;
+    s.rowTime = rows.time + v0;
+    s.rowTick = rows.tick + v0;
+    s.columnTime = columns.time;
+    s.columnTick = columns.tick;
+    s.entryBase = entry.base;
+    s.entryLanes = entry.lanes;
+    s.exitBase = exit.base;
+    s.exitLanes = exit.lanes;
+    s.bit = static_cast<unsigned char>(1u << k % BrickDepth);
+    s.order = static_cast<std::int16_t>(this->Shared.orderOfStep(StepsPerSlice * k));
+    return s;
+  }
+
+  Crossing<T> crossingOf(
+    int near, int far, const Span& rows, const SliceBits& bits, const std::vector<Span>& runs) const
+  {
     Crossing<T> c;
     c.imageStride = this->Shared.image.width;
-    c.image = this->Shared.image.template row<T>(v0);
-    c.height = v1 - v0;
-    c.voxels = this->Shared.voxelRow(0, k);
+    c.image = this->Shared.image.template row<T>(rows.begin);
+    c.height = rows.end - rows.begin;
+    c.count = near == far ? 1 : 2;
+    c.slices[0] = this->sliceOf(near, rows.begin);
+    c.slices[1] = this->sliceOf(far, rows.begin);
     c.rowStride = this->Shared.slices.rowStride;
-    c.ahead = this->Shared.slices.sliceStride;
+    c.ahead = 2 * (far - near) * this->Shared.slices.sliceStride;
     c.columns = this->Shared.geometry.size().x;
     c.rows = this->Shared.geometry.size().y;
     c.none = this->None;
-    c.firstRow = rows.first + v0;
-    c.lastRow = rows.last + v0;
-    c.rowTime = rows.time + v0;
-    c.rowTick = rows.tick + v0;
-    c.columnTime = columns.time;
-    c.columnTick = columns.tick;
-    c.entryBase = entry.base;
-    c.entryLanes = entry.lanes;
-    c.exitBase = exit.base;
-    c.exitLanes = exit.lanes;
-    c.runs = patch.runs.data();
-    c.runCount = static_cast<int>(patch.runs.size());
-    c.bits = bits.origin ? bits.at(0, v0) : nullptr;
+    c.runs = runs.data();
+    c.runCount = static_cast<int>(runs.size());
+    c.bits = bits.origin ? bits.at(0, rows.begin) : nullptr;
     c.bitsStride = bits.stride;
-    c.bit = static_cast<unsigned char>(1u << k % BrickDepth);
-    c.noting.notes = this->Shared.orders ? this->Shared.ordersOfRow(v0) : nullptr;
-    c.noting.order = static_cast<std::int16_t>(this->Shared.orderOfStep(StepsPerSlice * k));
+    c.noting.notes = this->Shared.orders ? this->Shared.ordersOfRow(rows.begin) : nullptr;
+    c.noting.order = c.slices[0].order;
     c.noting.nearestFirst = this->Shared.nearestFirst;
     c.reversed = this->Shared.geometry.reversed();
     return c;

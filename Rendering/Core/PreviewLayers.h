@@ -14,6 +14,9 @@
 
 namespace splatting
 {
+/// Layers that walks take together where they note winners, at most.
+constexpr int LayersTogether = 4;
+
 /// The paths of all slices of a layer; from the viewer on if winners are noted.
 struct PreviewLayer
 {
@@ -29,13 +32,13 @@ struct PreviewLayer
   Rim left, right;
   bool rimsFit = false; ///< whether a register holds a rim
 };
-static_assert(MostRows == 2 * StepsPerSlice * BrickDepth);
+static_assert(MostRows == LayersTogether * StepsPerSlice * BrickDepth);
 
-/// All layers of a volume; for walks that note winners also pairs of layers, where these can be
-/// swept: what it costs to note is paid once for both.
+/// All layers of a volume; for walks that note winners also groups of layers, where these can be
+/// swept: what it costs to note is paid once for all of them.
 struct PreviewStorage
 {
-  std::vector<PreviewLayer> layers, pairs;
+  std::vector<PreviewLayer> layers, groups;
 };
 
 template <class T>
@@ -56,18 +59,13 @@ public:
   PreviewLayers(const Frame<T>& frame, PreviewStorage& storage)
     : Shared(frame),
       Layers(storage.layers),
-      Pairs(storage.pairs)
+      Groups(storage.groups)
   {
     this->find(BrickDepth, storage.layers);
-    storage.pairs.clear();
+    storage.groups.clear();
     if (frame.image.keepsWinners())
     {
-      this->find(2 * BrickDepth, storage.pairs);
-    }
-    const auto fits = [](const Layer& pair) { return pair.rimsFit; };
-    if (!std::all_of(storage.pairs.begin(), storage.pairs.end(), fits))
-    {
-      storage.pairs.clear();
+      this->findGroups(storage.groups);
     }
   }
 
@@ -149,15 +147,17 @@ public:
     // other.
     const bool longRows = slices.sliceStride * std::ptrdiff_t(sizeof(T)) >= 1024;
     const int sideBySide = !slicesFirst && longRows ? 1 : BrickDepth;
-    const bool paired = !this->Pairs.empty();
-    const Span some = paired ? Span{ layers.begin / 2, (layers.end + 1) / 2 } : layers;
+    const bool grouped = !this->Groups.empty();
+    const int together = this->Together;
+    const Span some =
+      grouped ? Span{ layers.begin / together, (layers.end + together - 1) / together } : layers;
     for (int v = v0; v < v1; v += height)
     {
       for (int n = 0; n < some.end - some.begin; ++n)
       {
         const int z = this->Shared.nth(some, n), end = std::min(v + height, v1);
-        paired ? this->splatPair(z, v, end, all, patch)
-               : this->splatLayer(this->Layers[z], v, end, all, sideBySide, {}, patch);
+        grouped ? this->splatGroup(z, v, end, all, patch)
+                : this->splatLayer(this->Layers[z], v, end, all, sideBySide, {}, patch);
       }
     }
   }
@@ -196,25 +196,51 @@ private:
     return { first, std::clamp(last, first, v1) };
   }
 
-  void splatPair(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
+  void splatGroup(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
   {
-    const Layer& pair = this->Pairs[z];
-    const Span plain = this->plainRows(pair, v0, v1);
+    const Layer& group = this->Groups[z];
+    const Span plain = this->plainRows(group, v0, v1);
     const auto splatEach = [&](int begin, int end)
     {
-      const Span two{ 2 * z, std::min(2 * z + 2, static_cast<int>(this->Layers.size())) };
-      for (int n = 0; n < two.end - two.begin && begin < end; ++n)
+      const Span own{ this->Together * z,
+        std::min(this->Together * (z + 1), static_cast<int>(this->Layers.size())) };
+      for (int n = 0; n < own.end - own.begin && begin < end; ++n)
       {
-        const Layer& layer = this->Layers[this->Shared.nth(two, n)];
+        const Layer& layer = this->Layers[this->Shared.nth(own, n)];
         this->splatLayer(layer, begin, end, runs, BrickDepth, {}, patch);
       }
     };
     splatEach(v0, plain.begin);
     if (!plain.empty())
     {
-      this->sweep(pair, plain.begin, plain.end, runs, 2 * BrickDepth, {});
+      this->sweep(group, plain.begin, plain.end, runs, this->Together * BrickDepth, {});
     }
     splatEach(plain.end, v1);
+  }
+
+  /// As many layers together as pays and can be swept; none if that is one.
+  void findGroups(std::vector<Layer>& groups)
+  {
+    const auto fits = [](const Layer& group) { return group.rimsFit; };
+    for (this->Together = this->mostTogether(); this->Together > 1; this->Together /= 2)
+    {
+      this->find(this->Together * BrickDepth, groups);
+      if (std::all_of(groups.begin(), groups.end(), fits))
+      {
+        return;
+      }
+      groups.clear();
+    }
+  }
+
+  /// All, unless memory would be read in too many places at once: where slices are big, and their
+  /// rows do not lie side by side.
+  int mostTogether() const
+  {
+    constexpr std::size_t bigSlice = 128 * 1024;
+    const glm::ivec3& size = this->Shared.geometry.size();
+    const bool sideBySide = this->Shared.geometry.principalAxis() == 1;
+    return sideBySide || sizeof(T) * size.x * size.y <= bigSlice ? LayersTogether : 2;
   }
 
   /// Layers of so many slices.
@@ -296,6 +322,8 @@ private:
     sweep.height = v1 - v0;
     sweep.count = endTap - firstTap;
     sweep.rowStride = this->Shared.slices.rowStride;
+    // Of many slices one is likely to have the largest voxel so far of some pixel.
+    sweep.winsOften = this->Together == LayersTogether;
     for (int t = firstTap; t < endTap; ++t)
     {
       const Layer::Tap& tap = layer.taps[t];
@@ -419,7 +447,8 @@ private:
 
   const Frame<T>& Shared;
   const std::vector<Layer>& Layers;
-  const std::vector<Layer>& Pairs; ///< none if they are not to be used
+  const std::vector<Layer>& Groups; ///< none if they are not to be used
+  int Together = 1;                 ///< layers of a group
 };
 }
 

@@ -20,6 +20,13 @@
 #include <emmintrin.h>
 #endif
 
+/// For functions of loops in which a call costs more than compilers expect.
+#if defined(__GNUC__)
+#define SPLATTING_INLINE __attribute__((always_inline)) inline
+#else
+#define SPLATTING_INLINE inline
+#endif
+
 namespace splatting
 {
 namespace

@@ -162,27 +162,10 @@ void largest(const T* const* rows, int count, T* out, std::ptrdiff_t n)
   }
 }
 
-/// Raises V registers of pixels to the best of the rows, and notes the first that has it;
-/// seen(v, r, is) is, of a comparison of register v with row r, what counts.
-template <int V, class T, class Seen>
-inline void raiseRegisters(const Sweep<T>& s, T* image, std::int16_t* notes, const T* const* rows,
-  const Registers<T, V>& at, const Pack<T> (&best)[V], Seen&& seen)
+template <int V, class T>
+inline void raiseRegisters(const Sweep<T>& s, T* image, std::int16_t* notes,
+  const Registers<T, V>& at, const Pack<T> (&best)[V], const Pack<Integer<T>> (&offset)[V])
 {
-  if (!mayWin<V>(s.noting, image, notes, at, best))
-  {
-    return;
-  }
-  Pack<Integer<T>> offset[V]{};
-  for (int r = s.count - 1; r >= 0; --r)
-  {
-    const Pack<Integer<T>> own = Pack<Integer<T>>{} + static_cast<Integer<T>>(s.offsets[r]);
-#pragma GCC unroll 4
-    for (int v = 0; v < V; ++v)
-    {
-      const auto is = load<T>(rows[r] + at[v]) == best[v];
-      offset[v] = seen(v, r, is) ? own : offset[v];
-    }
-  }
 #pragma GCC unroll 4
   for (int v = 0; v < V; ++v)
   {
@@ -190,9 +173,84 @@ inline void raiseRegisters(const Sweep<T>& s, T* image, std::int16_t* notes, con
   }
 }
 
-/// CutBlock, or without bits MaximumBlock, where winners are noted: the maxima come first, because
-/// most registers are not raised, and then the rows that have them. Samples that do not count are
+/// Raises V registers of pixels where the nearest rows come first, and notes the last one that
+/// raises them. sample(v, r, other) is register v of row r, or `other` where it does not count.
+template <int V, class T, class Sample>
+inline void raiseFromNearest(
+  const Sweep<T>& s, T* image, std::int16_t* notes, const Registers<T, V>& at, Sample&& sample)
+{
+  Pack<T> best[V];
+  Pack<Integer<T>> offset[V]{};
+#pragma GCC unroll 4
+  for (int v = 0; v < V; ++v)
+  {
+    best[v] = load<T>(image + at[v]);
+  }
+  for (int r = 0; r < s.count; ++r)
+  {
+    const Pack<Integer<T>> own = Pack<Integer<T>>{} + static_cast<Integer<T>>(s.offsets[r]);
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      const Pack<T> value = sample(v, r, best[v]);
+      offset[v] = value > best[v] ? own : offset[v];
+      best[v] = larger(value, best[v]);
+    }
+  }
+  if (mayWin<V>(s.noting, image, notes, at, best))
+  {
+    raiseRegisters<V>(s, image, notes, at, best, offset);
+  }
+}
+
+/// The same where most registers are not raised, or where rows that came before may be farther: the
+/// maxima come first, and then, if they win, the rows that have them. Samples that do not count are
 /// the least value, which raises nothing and ties with nothing that has a note.
+template <int V, class T, class Sample>
+inline void raiseFromAny(
+  const Sweep<T>& s, T* image, std::int16_t* notes, const Registers<T, V>& at, Sample&& sample)
+{
+  Pack<T> best[V];
+  Pack<Integer<T>> offset[V]{};
+#pragma GCC unroll 4
+  for (int v = 0; v < V; ++v)
+  {
+    best[v] = Pack<T>{} + Least<T>;
+  }
+  for (int r = 0; r < s.count; ++r)
+  {
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      best[v] = larger(sample(v, r, best[v]), best[v]);
+    }
+  }
+  if (!mayWin<V>(s.noting, image, notes, at, best))
+  {
+    return;
+  }
+  const Pack<T> least = Pack<T>{} + Least<T>;
+  for (int r = s.count - 1; r >= 0; --r)
+  {
+    const Pack<Integer<T>> own = Pack<Integer<T>>{} + static_cast<Integer<T>>(s.offsets[r]);
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      offset[v] = sample(v, r, least) == best[v] ? own : offset[v];
+    }
+  }
+  raiseRegisters<V>(s, image, notes, at, best, offset);
+}
+
+template <int V, class T, class Sample>
+inline void raiseNoting(
+  const Sweep<T>& s, T* image, std::int16_t* notes, const Registers<T, V>& at, Sample&& sample)
+{
+  s.winsOften&& s.noting.nearestFirst ? raiseFromNearest<V>(s, image, notes, at, sample)
+                                      : raiseFromAny<V>(s, image, notes, at, sample);
+}
+
+/// CutBlock, or without bits MaximumBlock, where winners are noted.
 template <class T, bool Cut>
 struct NotingBlock
 {
@@ -204,38 +262,22 @@ struct NotingBlock
   template <int V>
   inline void run(const Registers<T, V>& at) const
   {
-    Pack<T> best[V];
-    Pack<Integer<T>> counts[V];
-#pragma GCC unroll 4
-    for (int v = 0; v < V; ++v)
+    Pack<Integer<T>> counts[V]{};
+    for (int v = 0; v < V && Cut; ++v)
     {
-      counts[v] = Cut ? loadBits<T>(this->bits + at[v]) : Pack<Integer<T>>{};
-      best[v] = Pack<T>{} + Least<T>;
+      counts[v] = loadBits<T>(this->bits + at[v]);
     }
-    for (int r = 0; r < this->sweep.count; ++r)
-    {
-      const T* const row = this->rows[r];
-#pragma GCC unroll 4
-      for (int v = 0; v < V; ++v)
+    raiseNoting<V>(this->sweep, this->image, this->notes, at,
+      [&](int v, int r, Pack<T> other)
       {
-        Pack<T> sample = load<T>(row + at[v]);
+        const Pack<T> value = load<T>(this->rows[r] + at[v]);
         if constexpr (Cut)
         {
-          sample = (counts[v] & this->bit(r)) != 0 ? sample : best[v];
-        }
-        best[v] = larger(sample, best[v]);
-      }
-    }
-    raiseRegisters<V, T>(this->sweep, this->image, this->notes, this->rows, at, best,
-      [&](int v, int r, auto is)
-      {
-        if constexpr (Cut)
-        {
-          return is & ((counts[v] & this->bit(r)) != 0);
+          return (counts[v] & this->bit(r)) != 0 ? value : other;
         }
         else
         {
-          return is;
+          return value;
         }
       });
   }
@@ -299,26 +341,22 @@ inline void sweepRim(const Sweep<T>& s, T* image, std::int16_t* notes, const T* 
     const Integer<T> own = static_cast<Integer<T>>(bits ? s.bit[r] : 1);
     return masks.rows[r] & ((shown & own) != 0);
   };
-  const Pack<T> least = Pack<T>{} + Least<T>;
-  Pack<T> best[1] = { least };
-  if (!notes)
+  const auto sample = [&](int, int r, Pack<T> other)
   {
-    best[0] = load<T>(image + first);
-  }
-  for (int r = 0; r < s.count; ++r)
-  {
-    const Pack<T> sample = load<T>(rows[r] + first);
-    best[0] = larger(seen(r) != 0 ? sample : best[0], best[0]);
-  }
+    const Pack<T> value = load<T>(rows[r] + first);
+    return seen(r) != 0 ? value : other;
+  };
   if (notes)
   {
-    raiseRegisters<1, T>(s, image, notes, rows, Registers<T, 1>{ first, first }, best,
-      [&](int, int r, auto is) { return (is & seen(r)) != 0; });
+    raiseNoting<1>(s, image, notes, Registers<T, 1>{ first, first }, sample);
+    return;
   }
-  else
+  Pack<T> best = load<T>(image + first);
+  for (int r = 0; r < s.count; ++r)
   {
-    store<T>(image + first, best[0]);
+    best = larger(sample(0, r, best), best);
   }
+  store<T>(image + first, best);
 }
 
 /// The runs and rims of one row of pixels.

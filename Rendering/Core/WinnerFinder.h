@@ -111,7 +111,7 @@ private:
     RayPath ofRay;
     if (own)
     {
-      ofRay = this->Shared.geometry.voxelsOnRay(u, v, k);
+      ofRay = this->Shared.steps.path(u, v, k);
     }
     const RayPath& path = own ? ofRay : slice.path;
     const glm::ivec3& size = this->Shared.geometry.size();
