@@ -27,8 +27,8 @@ enum class InstructionSet
   AVX512VBMI ///< and instructions that pick bytes
 };
 
-/// Most rows of voxels that a row of pixels meets at a time: three in each of sixteen slices.
-constexpr int MostRows = 48;
+/// Most rows of voxels that a row of pixels meets at a time: three in each of eight slices.
+constexpr int MostRows = 24;
 
 /// Among winners, what is still to be found.
 constexpr std::int32_t UnknownWinner = -2;
@@ -80,7 +80,7 @@ struct Sweep
   unsigned char bit[MostRows];
   Noting noting;
   std::int8_t offsets[MostRows]; ///< from noting.order, ascending
-  bool winsOften;                ///< whether most registers of pixels are likely to be raised
+  bool winsOften;                ///< whether many registers of pixels are likely to be raised
 };
 
 /// What the rays of a perspective image do in one slice; see FanSteps and FanWindows for the

@@ -14,8 +14,8 @@
 
 namespace splatting
 {
-/// Layers that walks take together where they note winners, at most.
-constexpr int LayersTogether = 4;
+/// Layers that walks take together where they note winners.
+constexpr int LayersTogether = 2;
 
 /// The paths of all slices of a layer; from the viewer on if winners are noted.
 struct PreviewLayer
@@ -65,7 +65,12 @@ public:
     storage.groups.clear();
     if (frame.image.keepsWinners())
     {
-      this->findGroups(storage.groups);
+      this->find(LayersTogether * BrickDepth, storage.groups);
+    }
+    const auto fits = [](const Layer& group) { return group.rimsFit; };
+    if (!std::all_of(storage.groups.begin(), storage.groups.end(), fits))
+    {
+      storage.groups.clear();
     }
   }
 
@@ -148,7 +153,7 @@ public:
     const bool longRows = slices.sliceStride * std::ptrdiff_t(sizeof(T)) >= 1024;
     const int sideBySide = !slicesFirst && longRows ? 1 : BrickDepth;
     const bool grouped = !this->Groups.empty();
-    const int together = this->Together;
+    constexpr int together = LayersTogether;
     const Span some =
       grouped ? Span{ layers.begin / together, (layers.end + together - 1) / together } : layers;
     for (int v = v0; v < v1; v += height)
@@ -202,8 +207,8 @@ private:
     const Span plain = this->plainRows(group, v0, v1);
     const auto splatEach = [&](int begin, int end)
     {
-      const Span own{ this->Together * z,
-        std::min(this->Together * (z + 1), static_cast<int>(this->Layers.size())) };
+      const Span own{ LayersTogether * z,
+        std::min(LayersTogether * (z + 1), static_cast<int>(this->Layers.size())) };
       for (int n = 0; n < own.end - own.begin && begin < end; ++n)
       {
         const Layer& layer = this->Layers[this->Shared.nth(own, n)];
@@ -213,34 +218,18 @@ private:
     splatEach(v0, plain.begin);
     if (!plain.empty())
     {
-      this->sweep(group, plain.begin, plain.end, runs, this->Together * BrickDepth, {});
+      this->sweep(group, plain.begin, plain.end, runs, LayersTogether * BrickDepth, {});
     }
     splatEach(plain.end, v1);
   }
 
-  /// As many layers together as pays and can be swept; none if that is one.
-  void findGroups(std::vector<Layer>& groups)
+  /// Whether caches rather than memory set the pace. Then asking whether any pixel wins costs more
+  /// than noting it, as answers are hard to foretell.
+  bool isSmall() const
   {
-    const auto fits = [](const Layer& group) { return group.rimsFit; };
-    for (this->Together = this->mostTogether(); this->Together > 1; this->Together /= 2)
-    {
-      this->find(this->Together * BrickDepth, groups);
-      if (std::all_of(groups.begin(), groups.end(), fits))
-      {
-        return;
-      }
-      groups.clear();
-    }
-  }
-
-  /// All, unless memory would be read in too many places at once: where slices are big, and their
-  /// rows do not lie side by side.
-  int mostTogether() const
-  {
-    constexpr std::size_t bigSlice = 128 * 1024;
+    constexpr std::size_t slice = 128 * 1024;
     const glm::ivec3& size = this->Shared.geometry.size();
-    const bool sideBySide = this->Shared.geometry.principalAxis() == 1;
-    return sideBySide || sizeof(T) * size.x * size.y <= bigSlice ? LayersTogether : 2;
+    return sizeof(T) * size.x * size.y <= slice;
   }
 
   /// Layers of so many slices.
@@ -322,8 +311,7 @@ private:
     sweep.height = v1 - v0;
     sweep.count = endTap - firstTap;
     sweep.rowStride = this->Shared.slices.rowStride;
-    // Of many slices one is likely to have the largest voxel so far of some pixel.
-    sweep.winsOften = this->Together == LayersTogether;
+    sweep.winsOften = this->isSmall();
     for (int t = firstTap; t < endTap; ++t)
     {
       const Layer::Tap& tap = layer.taps[t];
@@ -448,7 +436,6 @@ private:
   const Frame<T>& Shared;
   const std::vector<Layer>& Layers;
   const std::vector<Layer>& Groups; ///< none if they are not to be used
-  int Together = 1;                 ///< layers of a group
 };
 }
 
