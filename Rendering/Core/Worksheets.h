@@ -529,7 +529,8 @@ protected:
     splat.bits = target.bits.origin ? target.bits.at(span.begin, first) : nullptr;
     splat.bitsStride = target.bits.stride;
     splat.bit = target.bit;
-    splat.noting.notes = target.orders ? target.orders + first * target.stride + span.begin : nullptr;
+    splat.noting.notes =
+      target.orders ? target.orders + first * target.stride + span.begin : nullptr;
     splat.noting.order = target.order;
     splat.noting.nearestFirst = this->Shared.nearestFirst;
     splat.width = span.end - span.begin;
