@@ -63,7 +63,6 @@ inline void steps(const double* __restrict at, const double* __restrict slope, d
 template <class T>
 struct CrossedPixel
 {
-  const Crossing<T>& c;
   const CrossedSlice<T>& slice;
   const T* rows[2];
   bool changesRows;
@@ -132,7 +131,7 @@ inline void crossRow(const Crossing<T>& c, int s, const Span& run, int v)
   const std::int32_t j[2] = { slice.firstRow[v], slice.lastRow[v] };
   const auto row = [&](std::int32_t own)
   { return own >= 0 && own < c.rows ? slice.voxels + own * c.rowStride : c.none; };
-  const CrossedPixel<T> own{ c, slice, { row(j[0]), row(j[1]) }, j[0] != j[1], slice.rowTime[v] };
+  const CrossedPixel<T> own{ slice, { row(j[0]), row(j[1]) }, j[0] != j[1], slice.rowTime[v] };
   T* const image = c.image + v * c.imageStride;
   std::int16_t* const notes = c.noting.notes ? c.noting.notes + v * c.imageStride : nullptr;
   const unsigned char* const bits = c.bits ? c.bits + v * c.bitsStride : nullptr;
