@@ -14,6 +14,8 @@
 #include "ResamplingKernels.h"
 #include "SweepKernels.h"
 
+#include <cstring>
+
 namespace splatting
 {
 namespace
@@ -368,13 +370,22 @@ struct Places
   inline void mix(
     const A* __restrict image, std::int32_t rowLength, A* __restrict out, std::int32_t count) const
   {
+    // Neighbours along u are fetched as one: gathering elements takes twice as long.
+    struct Pair
+    {
+      A left, right;
+    };
+    Pair lower[chunk], upper[chunk];
     for (std::int32_t x = 0; x < count; ++x)
     {
-      const A a = image[this->at[x]], b = image[this->at[x] + 1];
-      const A c = image[this->at[x] + rowLength], d = image[this->at[x] + rowLength + 1];
-      const A lower = a + this->fu[x] * (b - a);
-      const A upper = c + this->fu[x] * (d - c);
-      out[x] = lower + this->fv[x] * (upper - lower);
+      std::memcpy(lower + x, image + this->at[x], sizeof(Pair));
+      std::memcpy(upper + x, image + this->at[x] + rowLength, sizeof(Pair));
+    }
+    for (std::int32_t x = 0; x < count; ++x)
+    {
+      const A below = lower[x].left + this->fu[x] * (lower[x].right - lower[x].left);
+      const A above = upper[x].left + this->fu[x] * (upper[x].right - upper[x].left);
+      out[x] = below + this->fv[x] * (above - below);
     }
   }
 };
@@ -425,12 +436,23 @@ void lookUp(const A* __restrict values, A low, A scale, std::int32_t last,
   const std::uint32_t* __restrict colors, std::uint32_t* __restrict out, std::ptrdiff_t n)
 {
   const A top = static_cast<A>(last), zero = 0, half = static_cast<A>(0.5);
-  for (std::ptrdiff_t x = 0; x < n; ++x)
+  constexpr std::ptrdiff_t chunk = 64;
+  std::int32_t at[chunk];
+  for (std::ptrdiff_t begin = 0; begin < n; begin += chunk)
   {
-    A place = (values[x] - low) * scale;
-    place = place > zero ? place : zero; // also NaN
-    place = place < top ? place : top;
-    out[x] = colors[static_cast<std::int32_t>(place + half)];
+    const std::ptrdiff_t count = begin + chunk < n ? chunk : n - begin;
+    for (std::ptrdiff_t x = 0; x < count; ++x)
+    {
+      A place = (values[begin + x] - low) * scale;
+      place = place > zero ? place : zero; // also NaN
+      place = place < top ? place : top;
+      at[x] = static_cast<std::int32_t>(place + half);
+    }
+    for (std::ptrdiff_t x = 0; x < count; ++x)
+    {
+      // An assignment would be compiled to instructions that gather, which take longer.
+      std::memcpy(out + begin + x, colors + at[x], sizeof(std::uint32_t));
+    }
   }
 }
 
