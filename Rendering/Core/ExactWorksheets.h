@@ -62,7 +62,6 @@ public:
       Paths(paths),
       Field(field)
   {
-    this->RaisesBest = true;
   }
 
   const Window& window(int layer) const { return this->Reach.layers[layer].window; }

@@ -152,17 +152,6 @@ inline void addPart(
   }
 }
 
-/// Notes the slice where its sums are larger than what was before, or as large and nearer.
-template <class A>
-inline void noteSums(
-  const Splat<A>& s, std::ptrdiff_t at, Pack<A> sum, Pack<A> before, Pack<Integer<A>> counts)
-{
-  // Without a question, whose answer nobody could foretell.
-  const Pack<Integer<A>> tied = (sum == before) & counts;
-  keepNearest<A>(s.noting.notes + at, 0, typename NotesOf<A>::type{} + s.noting.order, sum > before,
-    s.noting.nearestFirst ? Pack<Integer<A>>{} : tied);
-}
-
 /// Rows x V registers of pixels, from (x, y) of the rectangle.
 template <class A, int Rows, int V, bool Cut>
 inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
@@ -218,7 +207,7 @@ inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
       }
       if (s.noting.notes)
       {
-        noteSums(s, at, sum[o][v], before, counts);
+        noteSums<A>(s.noting, at, sum[o][v], before, counts);
       }
       store<A>(s.image + at, larger(sum[o][v], before));
     }
@@ -246,10 +235,7 @@ inline void splatPixel(const Splat<A>& s, std::ptrdiff_t x, int y)
   }
   const std::ptrdiff_t at = y * s.imageStride + x;
   A& pixel = s.image[at];
-  if (s.noting.notes && (sum > pixel || (sum == pixel && s.noting.order < s.noting.notes[at])))
-  {
-    s.noting.notes[at] = s.noting.order;
-  }
+  noteSum(s.noting, at, sum, pixel);
   pixel = larger(sum, pixel);
 }
 

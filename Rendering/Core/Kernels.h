@@ -27,8 +27,8 @@ enum class InstructionSet
   AVX512VBMI ///< and instructions that pick bytes
 };
 
-/// Most rows of voxels that a row of pixels meets at a time: three in each of eight slices.
-constexpr int MostRows = 24;
+/// Most rows of voxels that a row of pixels meets at a time: three in each of sixteen slices.
+constexpr int MostRows = 48;
 
 /// Among winners, what is still to be found.
 constexpr std::int32_t UnknownWinner = -2;
@@ -377,7 +377,7 @@ struct WorksheetLoops
   /// image[x] = max(image[x], the sum of weights[r] rows[r][x]); where there are bits, if
   /// bits[x] & bit.
   void (*raiseBlend)(A* image, const A* const* rows, const A* weights, int count,
-    const unsigned char* bits, unsigned char bit, std::ptrdiff_t n);
+    const unsigned char* bits, unsigned char bit, const Noting& noting, std::ptrdiff_t n);
   /// Every pixel of the rectangle: the maximum of it and the weighted sum of its voxels, which must
   /// be finite.
   void (*splat)(const Splat<A>& splat);

@@ -132,6 +132,27 @@ inline bool mayWin(const Noting& noting, const T* image, const std::int16_t* not
   return behind;
 }
 
+/// Notes a slice where its sums are larger than what was before, or as large and nearer, and count.
+template <class A>
+inline void noteSums(const Noting& noting, std::ptrdiff_t at, Pack<A> sum, Pack<A> before,
+  Pack<Integer<A>> counts)
+{
+  // Without a question, whose answer nobody could foretell.
+  const Pack<Integer<A>> tied = (sum == before) & counts;
+  keepNearest<A>(noting.notes + at, 0, typename NotesOf<A>::type{} + noting.order, sum > before,
+    noting.nearestFirst ? Pack<Integer<A>>{} : tied);
+}
+
+/// The same for one sum, if there are notes.
+template <class A>
+inline void noteSum(const Noting& noting, std::ptrdiff_t at, A sum, A before)
+{
+  if (noting.notes && (sum > before || (sum == before && noting.order < noting.notes[at])))
+  {
+    noting.notes[at] = noting.order;
+  }
+}
+
 #if defined(__AVX512F__)
 inline __mmask64 maskOfLarger(Pack<std::uint8_t> a, Pack<std::uint8_t> b)
 {

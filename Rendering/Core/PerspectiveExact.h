@@ -40,7 +40,6 @@ public:
       Rows(rows),
       Depths(frame.whole, 2)
   {
-    this->RaisesBest = true;
   }
 
   /// As in PerspectiveWorksheets.

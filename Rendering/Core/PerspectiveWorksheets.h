@@ -51,6 +51,7 @@ public:
   {
     // Rows of voxels that two pieces need are widened, blended and weighed twice.
     this->PieceHeight = 32;
+    this->Notes = true;
   }
 
   /// The voxels of a layer that some columns (or rows) of pixels read, from first to last; they may
@@ -126,7 +127,7 @@ private:
       }
       loops.raiseBlend(target.at(span.begin, v), rows, weights, count,
         target.bits.origin ? target.bits.at(span.begin, v) : nullptr, target.bit,
-        span.end - span.begin);
+        this->notingAt(target, span.begin, v), span.end - span.begin);
     }
   }
 

@@ -14,8 +14,8 @@
 
 namespace splatting
 {
-/// Layers that walks take together where they note winners.
-constexpr int LayersTogether = 2;
+/// Most layers that walks take together where they note winners.
+constexpr int LayersTogether = 4;
 
 /// The paths of all slices of a layer; from the viewer on if winners are noted.
 struct PreviewLayer
@@ -65,7 +65,7 @@ public:
     storage.groups.clear();
     if (frame.image.keepsWinners())
     {
-      this->find(LayersTogether * BrickDepth, storage.groups);
+      this->find(this->layersTogether() * BrickDepth, storage.groups);
     }
     const auto fits = [](const Layer& group) { return group.rimsFit; };
     if (!std::all_of(storage.groups.begin(), storage.groups.end(), fits))
@@ -153,7 +153,7 @@ public:
     const bool longRows = slices.sliceStride * std::ptrdiff_t(sizeof(T)) >= 1024;
     const int sideBySide = !slicesFirst && longRows ? 1 : BrickDepth;
     const bool grouped = !this->Groups.empty();
-    constexpr int together = LayersTogether;
+    const int together = this->layersTogether();
     const Span some =
       grouped ? Span{ layers.begin / together, (layers.end + together - 1) / together } : layers;
     for (int v = v0; v < v1; v += height)
@@ -207,8 +207,9 @@ private:
     const Span plain = this->plainRows(group, v0, v1);
     const auto splatEach = [&](int begin, int end)
     {
-      const Span own{ LayersTogether * z,
-        std::min(LayersTogether * (z + 1), static_cast<int>(this->Layers.size())) };
+      const int together = this->layersTogether();
+      const Span own{ together * z,
+        std::min(together * (z + 1), static_cast<int>(this->Layers.size())) };
       for (int n = 0; n < own.end - own.begin && begin < end; ++n)
       {
         const Layer& layer = this->Layers[this->Shared.nth(own, n)];
@@ -218,10 +219,13 @@ private:
     splatEach(v0, plain.begin);
     if (!plain.empty())
     {
-      this->sweep(group, plain.begin, plain.end, runs, LayersTogether * BrickDepth, {});
+      this->sweep(group, plain.begin, plain.end, runs, this->layersTogether() * BrickDepth, {});
     }
     splatEach(plain.end, v1);
   }
+
+  /// Large slices are read from memory, which does not like too many rows side by side.
+  int layersTogether() const { return this->isSmall() ? LayersTogether : 2; }
 
   /// Whether caches rather than memory set the pace. Then asking whether any pixel wins costs more
   /// than noting it, as answers are hard to foretell.
@@ -236,7 +240,12 @@ private:
   void find(int depth, std::vector<Layer>& layers) const
   {
     const glm::ivec3& size = this->Shared.geometry.size();
-    layers.assign((size.z + depth - 1) / depth, Layer{});
+    layers.resize((size.z + depth - 1) / depth);
+    for (Layer& layer : layers)
+    {
+      layer.tapCount = 0;
+      layer.window = {};
+    }
     const bool fromLast = this->Shared.image.keepsWinners() && this->Shared.geometry.reversed();
     for (int n = 0; n < size.z; ++n)
     {

@@ -8,6 +8,7 @@
 #define splattingResamplingKernels_h
 
 #include "FanKernels.h"
+#include "NotingKernels.h"
 
 namespace splatting
 {
@@ -351,7 +352,7 @@ void blend(const A* const* rows, const A* weights, int count, A* out, std::ptrdi
   }
 }
 
-template <class A>
+template <class A, bool Cut>
 struct RaiseBlock
 {
   A* image;
@@ -360,6 +361,7 @@ struct RaiseBlock
   int count;
   const unsigned char* bits;
   unsigned char bit;
+  const Noting& noting;
 
   inline void single(std::ptrdiff_t x) const
   {
@@ -368,8 +370,9 @@ struct RaiseBlock
     {
       sum += this->weights[r] * this->rows[r][x];
     }
-    if (!this->bits || this->bits[x] & this->bit)
+    if (!Cut || this->bits[x] & this->bit)
     {
+      noteSum(this->noting, x, sum, this->image[x]);
       this->image[x] = larger(sum, this->image[x]);
     }
   }
@@ -395,24 +398,32 @@ struct RaiseBlock
 #pragma GCC unroll 4
     for (int v = 0; v < V; ++v)
     {
-      A* const pixels = this->image + x + v * width<A>;
-      const Pack<A> before = load<A>(pixels);
-      if (this->bits)
+      const std::ptrdiff_t at = x + v * width<A>;
+      const Pack<A> before = load<A>(this->image + at);
+      Pack<Integer<A>> counts = ~Pack<Integer<A>>{};
+      if constexpr (Cut)
       {
-        const Pack<Integer<A>> own = loadBits<A>(this->bits + x + v * width<A>);
-        sum[v] = (own & static_cast<Integer<A>>(this->bit)) != 0 ? sum[v] : before;
+        const Pack<Integer<A>> own = loadBits<A>(this->bits + at);
+        counts = (own & static_cast<Integer<A>>(this->bit)) != 0;
+        sum[v] = counts ? sum[v] : before;
       }
-      store<A>(pixels, larger(sum[v], before));
+      if (this->noting.notes)
+      {
+        noteSums<A>(this->noting, at, sum[v], before, counts);
+      }
+      store<A>(this->image + at, larger(sum[v], before));
     }
   }
 };
 
 template <class A>
 void raiseBlend(A* image, const A* const* rows, const A* weights, int count,
-  const unsigned char* bits, unsigned char bit, std::ptrdiff_t n)
+  const unsigned char* bits, unsigned char bit, const Noting& noting, std::ptrdiff_t n)
 {
-  const RaiseBlock<A> block{ image, rows, weights, count, bits, bit };
-  blocks<A>(n, block, [&](std::ptrdiff_t x) { block.single(x); });
+  const auto raise = [n](const auto& block)
+  { blocks<A>(n, block, [&](std::ptrdiff_t x) { block.single(x); }); };
+  bits ? raise(RaiseBlock<A, true>{ image, rows, weights, count, bits, bit, noting })
+       : raise(RaiseBlock<A, false>{ image, rows, weights, count, bits, bit, noting });
 }
 }
 }

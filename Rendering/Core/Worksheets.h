@@ -275,7 +275,7 @@ private:
   void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const SliceBits& bits,
     Patch& patch) const
   {
-    if (this->Shared.orders && !this->NotesItself)
+    if (this->Shared.orders && !this->Notes)
     {
       this->notePiece(slices, v0, v1, columns, bits, patch);
       return;
@@ -301,7 +301,7 @@ private:
     return static_cast<std::int16_t>(this->Shared.orderOfStep(StepsPerSlice * k));
   }
 
-  /// The same by way of worksheets of their own, where pixels remember which slice has won.
+  /// The same by way of worksheets of their own, for splatRows() that do not note winners.
   void notePiece(const Span& slices, int v0, int v1, const Span& columns, const SliceBits& bits,
     Patch& patch) const
   {
@@ -312,12 +312,9 @@ private:
       const int k = this->Shared.nth(slices, n);
       const std::int16_t order = this->orderOfSlice(k);
       const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
-      const auto open = [&](int v, const Span& pixels)
-      {
-        this->RaisesBest ? this->putBelowImage(v, pixels, worksheet)
-                         : this->put(leastValue<A>(), v, pixels, worksheet);
-      };
-      this->splatSlice(k, v0, v1, columns, worksheet, patch, open,
+      this->splatSlice(
+        k, v0, v1, columns, worksheet, patch,
+        [&](int v, const Span& pixels) { this->putBelowImage(v, pixels, worksheet); },
         [&](int v, const Span& pixels)
         {
           loops.raiseNoting(this->Shared.image.template row<A>(v) + pixels.begin,
@@ -458,6 +455,16 @@ protected:
     }
   }
 
+  /// What splatRows() notes of pixel (u, v) and those after it.
+  Noting notingAt(const Target& target, int u, int v) const
+  {
+    Noting noting;
+    noting.notes = target.orders ? target.orders + v * target.stride + u : nullptr;
+    noting.order = target.order;
+    noting.nearestFirst = this->Shared.nearestFirst;
+    return noting;
+  }
+
   /// Raises pixels of some rows to the worksheet of slice k, whose voxels have been loaded.
   virtual void splatRows(
     int k, int first, int end, const Span& span, const Target& target, Patch& patch) const = 0;
@@ -465,8 +472,7 @@ protected:
   const Frame<T>& Shared;
   const WorksheetReach<A>& Reach;
   int Depth;
-  bool RaisesBest = false;  ///< whether splatRows() does less where pixels are large already
-  bool NotesItself = false; ///< whether it notes winners
+  bool Notes = false; ///< whether splatRows() notes winners
   int PieceWidth = 1024, PieceHeight = RowsTogether; ///< pixels; for the second-level cache
   A Base;
 };
@@ -485,7 +491,7 @@ public:
     : WorksheetLayers<T>(frame, reach, depth),
       Footprints(footprints)
   {
-    this->NotesItself = true;
+    this->Notes = true;
   }
 
   const Window& window(int layer) const { return this->Reach.layers[layer].window; }
@@ -529,10 +535,7 @@ protected:
     splat.bits = target.bits.origin ? target.bits.at(span.begin, first) : nullptr;
     splat.bitsStride = target.bits.stride;
     splat.bit = target.bit;
-    splat.noting.notes =
-      target.orders ? target.orders + first * target.stride + span.begin : nullptr;
-    splat.noting.order = target.order;
-    splat.noting.nearestFirst = this->Shared.nearestFirst;
+    splat.noting = this->notingAt(target, span.begin, first);
     splat.width = span.end - span.begin;
     splat.height = end - first;
     splat.sourceStride = patch.rowLength;
