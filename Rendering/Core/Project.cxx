@@ -76,12 +76,14 @@ double worthwhileShare(Quality quality)
 }
 
 /// The rule of Acceleration::Auto.
-Acceleration choose(const Experience& experience, Quality quality)
+Acceleration choose(const Experience& experience, const ProjectionSettings& settings)
 {
   constexpr int patience = 16;
-  return experience.share > worthwhileShare(quality) && experience.framesSince < patience
-    ? Acceleration::Dense
-    : Acceleration::Bricks;
+  // Previews that keep winners must look at tiles, too, that can but tie: more than is left out.
+  const bool ties = settings.keepWinners && settings.quality == Quality::Preview;
+  const bool crowded = experience.share > worthwhileShare(settings.quality);
+  return ties || (crowded && experience.framesSince < patience) ? Acceleration::Dense
+                                                                : Acceleration::Bricks;
 }
 
 /// Whether each sample has to be looked at by itself.
@@ -575,7 +577,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
   const int axis = geometry.principalAxis();
   const LineIndex* lines = nullptr;
   const Acceleration used = this->possible(settings.acceleration == Acceleration::Auto
-      ? choose(index.experience(axis, static_cast<int>(settings.quality)), settings.quality)
+      ? choose(index.experience(axis, static_cast<int>(settings.quality)), settings)
       : settings.acceleration,
     index, settings, geometry, cuts, lines);
   dispatch(index.volume().type,
