@@ -220,7 +220,7 @@ private:
       const Register entry = loadRegister(static_cast<const Integer<T>*>(s.entryLanes) + x);
       const Register exit = loadRegister(static_cast<const Integer<T>*>(s.exitLanes) + x);
       // A band of rows is too short for processors to notice that the next slice will come.
-      __builtin_prefetch(voxels + ahead + s.entryBase[group]);
+      prefetch(voxels + ahead + s.entryBase[group]);
       store<T>(row.entry + n * width<T>,
         (Pack<T>)Picker<T>::pick(voxels, s.entryBase + group, entry, none));
       store<T>(

@@ -319,7 +319,9 @@ private:
     sweep.noting.nearestFirst = this->Shared.nearestFirst;
     sweep.height = v1 - v0;
     sweep.count = endTap - firstTap;
-    sweep.rowStride = this->Shared.slices.rowStride;
+    const Slices& slices = this->Shared.slices;
+    sweep.rowStride = slices.rowStride;
+    sweep.ahead = slices.rowStride > slices.sliceStride ? slices.rowStride : 0;
     sweep.winsOften = this->isSmall();
     for (int t = firstTap; t < endTap; ++t)
     {

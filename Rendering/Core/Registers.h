@@ -31,6 +31,16 @@ namespace splatting
 {
 namespace
 {
+/// Has memory fetch what will be needed soon; nothing need be there.
+inline void prefetch(const void* place)
+{
+#if defined(__GNUC__)
+  __builtin_prefetch(place);
+#else
+  (void)place;
+#endif
+}
+
 #if defined(__GNUC__)
 /// A register full of T. Vector extensions of GCC and Clang; elsewhere one element.
 template <class T>

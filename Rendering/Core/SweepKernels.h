@@ -13,12 +13,13 @@ namespace splatting
 {
 namespace
 {
-template <class T>
+template <class T, bool Ahead>
 struct MaximumBlock
 {
   T* image;
   const T* const* rows;
   int count;
+  std::ptrdiff_t ahead;
   inline void single(std::ptrdiff_t x) const
   {
     for (int r = 0; r < this->count; ++r)
@@ -42,6 +43,10 @@ struct MaximumBlock
       for (int v = 0; v < V; ++v)
       {
         best[v] = larger(load<T>(row + at[v]), best[v]);
+        if constexpr (Ahead)
+        {
+          prefetch(row + at[v] + this->ahead);
+        }
       }
     }
 #pragma GCC unroll 4
@@ -144,8 +149,8 @@ inline void sweepRun(const Block& block, const Span& run, const Span& valid)
 template <class T>
 void maximum(T* image, const T* const* rows, int count, std::ptrdiff_t n)
 {
-  sweepRun<T>(
-    MaximumBlock<T>{ image, rows, count }, { 0, static_cast<int>(n) }, { 0, static_cast<int>(n) });
+  const Span all{ 0, static_cast<int>(n) };
+  sweepRun<T>(MaximumBlock<T, false>{ image, rows, count, 0 }, all, all);
 }
 
 template <class T>
@@ -271,6 +276,7 @@ struct NotingBlock
       [&](int v, int r, Pack<T> other)
       {
         const Pack<T> value = load<T>(this->rows[r] + at[v]);
+        prefetch(this->rows[r] + at[v] + this->sweep.ahead);
         if constexpr (Cut)
         {
           return (counts[v] & this->bit(r)) != 0 ? value : other;
@@ -372,10 +378,14 @@ inline void sweepRow(const Sweep<T>& s, T* image, std::int16_t* notes, const T* 
       bits ? sweepRun<T>(NotingBlock<T, true>{ s, image, notes, rows, bits }, run, s.valid)
            : sweepRun<T>(NotingBlock<T, false>{ s, image, notes, rows, bits }, run, s.valid);
     }
+    else if (bits)
+    {
+      sweepRun<T>(CutBlock<T>{ image, rows, s.count, bits, s.bit }, run, s.valid);
+    }
     else
     {
-      bits ? sweepRun<T>(CutBlock<T>{ image, rows, s.count, bits, s.bit }, run, s.valid)
-           : sweepRun<T>(MaximumBlock<T>{ image, rows, s.count }, run, s.valid);
+      s.ahead ? sweepRun<T>(MaximumBlock<T, true>{ image, rows, s.count, s.ahead }, run, s.valid)
+              : sweepRun<T>(MaximumBlock<T, false>{ image, rows, s.count, 0 }, run, s.valid);
     }
   }
   for (int n = 0; n < s.rimCount; ++n)
