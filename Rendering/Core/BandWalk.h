@@ -158,6 +158,7 @@ private:
           rows.v1 = rows.v0 + this->rowsOf(g);
           std::fill_n(this->openFlags(), this->Tiles, static_cast<unsigned char>(1));
           rows.bits = this->findBits(z, g);
+          rows.whole = rows.bits.origin ? this->Scratch.cuts.wholeRun() : Span{};
           this->findRuns(rows.runs);
         }
         this->Stack.splatOpened(z, this->Scratch.rows, end - first, this->Scratch.patch);

@@ -130,6 +130,17 @@ SliceBits BandCuts::findBits(const Span& slices, int group, unsigned char* flags
   return { this->Bits.data() - this->V0 * this->Stride, this->Stride };
 }
 
+Span BandCuts::wholeRun() const
+{
+  Span longest, run;
+  for (int t = 0; t < this->Tiles; ++t)
+  {
+    run = { this->Shares[t] == All ? run.begin : t + 1, t + 1 };
+    longest = run.end - run.begin > longest.end - longest.begin ? run : longest;
+  }
+  return { longest.begin * TileWidth, std::min(longest.end * TileWidth, this->Width) };
+}
+
 void BandCuts::findSome(const Span& slices, int v, const Span& pixels, unsigned char* bits) const
 {
   const RayIntervals& intervals = this->Map->source().intervals;

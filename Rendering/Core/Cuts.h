@@ -66,12 +66,14 @@ struct SliceBits
   const unsigned char* at(int u, int v) const { return this->origin + v * this->stride + u; }
 };
 
-/// Some rows of pixels, the runs of pixels in them, and their bits if not all samples count.
+/// Some rows of pixels, the runs of pixels in them, and, if not all samples count, their bits and
+/// the longest run of pixels of which all do.
 struct RowRuns
 {
   int v0 = 0, v1 = 0;
   std::vector<Span> runs;
   SliceBits bits;
+  Span whole;
 };
 
 /// The cuts of a band of rows, tile by tile, in groups of TileHeight rows. A thread's work space.
@@ -85,6 +87,8 @@ public:
    * which nothing counts, which lose theirs, get no bits. If everything counts there are none.
    */
   SliceBits findBits(const Span& slices, int group, unsigned char* flags);
+  /// The longest run of pixels of tiles of which everything counts, where bits were found last.
+  Span wholeRun() const;
 
 private:
   /// How much of a tile's samples counts.

@@ -84,7 +84,7 @@ public:
   void splat(
     int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
-    this->splatLayer(this->Layers[z], v0, v1, runs, BrickDepth, bits, patch);
+    this->splatLayer(this->Layers[z], v0, v1, runs, BrickDepth, bits, {}, patch);
   }
 
   /// The same for all layers of some rows; to be opened once.
@@ -96,15 +96,14 @@ public:
       // Rows go together for long streams through memory: those without cuts, and those with bits,
       // which say what counts between the first run and the last.
       RowRuns& first = rows[r];
-      for (end = r + 1; end < count && !first.bits.origin == !rows[end].bits.origin &&
-           first.runs.empty() == rows[end].runs.empty();
-           ++end)
+      for (end = r + 1; end < count && goTogether(first, rows[end]); ++end)
       {
         if (first.bits.origin)
         {
           first.runs.front().begin =
             std::min(first.runs.front().begin, rows[end].runs.front().begin);
           first.runs.back().end = std::max(first.runs.back().end, rows[end].runs.back().end);
+          first.whole = common(first.whole, rows[end].whole);
         }
       }
       if (first.runs.empty())
@@ -115,7 +114,8 @@ public:
       {
         first.runs.assign(1, { first.runs.front().begin, first.runs.back().end });
       }
-      this->splat(z, first.v0, rows[end - 1].v1, first.runs, first.bits, patch);
+      this->splatLayer(this->Layers[z], first.v0, rows[end - 1].v1, first.runs, BrickDepth,
+        first.bits, first.whole, patch);
     }
   }
 
@@ -162,7 +162,7 @@ public:
       {
         const int z = this->Shared.nth(some, n), end = std::min(v + height, v1);
         grouped ? this->splatGroup(z, v, end, all, patch)
-                : this->splatLayer(this->Layers[z], v, end, all, sideBySide, {}, patch);
+                : this->splatLayer(this->Layers[z], v, end, all, sideBySide, {}, {}, patch);
       }
     }
   }
@@ -177,18 +177,48 @@ public:
 private:
   using Layer = PreviewLayer;
 
+  /// Whether so many pixels, all of whose samples count, are worth a sweep without bits.
+  static bool isLong(const Span& whole) { return whole.end - whole.begin >= 64; }
+
+  /// Whether rows are alike, and a long whole run remains one.
+  static bool goTogether(const RowRuns& a, const RowRuns& b)
+  {
+    const bool isOne = isLong(common(a.whole, b.whole));
+    return !a.bits.origin == !b.bits.origin && a.runs.empty() == b.runs.empty() &&
+      isLong(a.whole) == isOne && isLong(b.whole) == isOne;
+  }
+
   ShearImage& image() const { return this->Shared.image; }
 
+  /// @param whole  pixels of a single run for which all bits are set
   void splatLayer(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
-    const SliceBits& bits, Patch& patch) const
+    const SliceBits& bits, const Span& whole, Patch& patch) const
   {
     const Span plain = this->plainRows(layer, v0, v1);
     this->splatSlices(layer.slices, v0, plain.begin, runs, bits, patch);
     if (!plain.empty())
     {
-      this->sweep(layer, plain.begin, plain.end, runs, sideBySide, bits);
+      const Span inner = common(whole, layer.valid); // rims have pixels beside it
+      isLong(inner)
+        ? this->sweepAround(layer, plain, runs.front(), sideBySide, bits, inner)
+        : this->sweep(layer, plain.begin, plain.end, runs, layer.valid, sideBySide, bits);
     }
     this->splatSlices(layer.slices, plain.end, v1, runs, bits, patch);
+  }
+
+  /// A run by parts: pixels in the middle of which all samples count, and, by bits, the others.
+  void sweepAround(const Layer& layer, const Span& rows, const Span& run, int sideBySide,
+    const SliceBits& bits, const Span& whole) const
+  {
+    this->sweep(layer, rows.begin, rows.end, { whole }, whole, sideBySide, {});
+    const Span sides[2] = { { run.begin, whole.begin }, { whole.end, run.end } };
+    for (const Span& side : sides)
+    {
+      if (!side.empty())
+      {
+        this->sweep(layer, rows.begin, rows.end, { side }, layer.valid, sideBySide, bits);
+      }
+    }
   }
 
   /// The rows of pixels, of some, whose voxels all exist in a layer, and beside which there are
@@ -213,13 +243,14 @@ private:
       for (int n = 0; n < own.end - own.begin && begin < end; ++n)
       {
         const Layer& layer = this->Layers[this->Shared.nth(own, n)];
-        this->splatLayer(layer, begin, end, runs, BrickDepth, {}, patch);
+        this->splatLayer(layer, begin, end, runs, BrickDepth, {}, {}, patch);
       }
     };
     splatEach(v0, plain.begin);
     if (!plain.empty())
     {
-      this->sweep(group, plain.begin, plain.end, runs, this->layersTogether() * BrickDepth, {});
+      this->sweep(group, plain.begin, plain.end, runs, group.valid,
+        this->layersTogether() * BrickDepth, {});
     }
     splatEach(plain.end, v1);
   }
@@ -291,10 +322,11 @@ private:
     }
   }
 
-  /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns. So many slices
-  /// are read side by side.
-  void sweep(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
-    const SliceBits& bits) const
+  /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns. Besides the
+  /// runs valid pixels may be swept, which see voxels along all paths. So many slices are read side
+  /// by side.
+  void sweep(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, const Span& valid,
+    int sideBySide, const SliceBits& bits) const
   {
     for (int first = 0, end = 0; first < layer.tapCount; first = end)
     {
@@ -302,12 +334,12 @@ private:
       {
         ++end;
       }
-      this->sweepTaps(layer, first, end, v0, v1, runs, bits);
+      this->sweepTaps(layer, first, end, v0, v1, runs, valid, bits);
     }
   }
 
   void sweepTaps(const Layer& layer, int firstTap, int endTap, int v0, int v1,
-    const std::vector<Span>& runs, const SliceBits& bits) const
+    const std::vector<Span>& runs, const Span& valid, const SliceBits& bits) const
   {
     Sweep<T> sweep;
     sweep.bits = bits.origin ? bits.at(0, v0) : nullptr;
@@ -333,7 +365,7 @@ private:
     }
     sweep.runs = runs.data();
     sweep.runCount = static_cast<int>(runs.size());
-    sweep.valid = layer.valid;
+    sweep.valid = valid;
     Rim left, right;
     sweep.rimCount = 0;
     if (layer.window.iMin < layer.window.iMax)

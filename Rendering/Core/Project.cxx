@@ -76,8 +76,10 @@ double worthwhileShare(Quality quality)
 }
 
 /// The rule of Acceleration::Auto.
-Acceleration choose(const Experience& experience, const ProjectionSettings& settings)
+Acceleration choose(VolumeIndex& index, int axis, bool isCut, const ProjectionSettings& settings)
 {
+  const Experience& experience =
+    index.experience(axis, static_cast<int>(settings.quality), isCut);
   constexpr int patience = 16;
   // Previews that keep winners must look at tiles, too, that can but tie: more than is left out.
   const bool ties = settings.keepWinners && settings.quality == Quality::Preview;
@@ -365,12 +367,9 @@ void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settin
     this->walk(index, frame, layers, used, count);
     if (!this->stopped())
     {
-      // What is left of a cut volume says nothing about the whole one.
-      if (frame.cuts.none())
-      {
-        learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality)),
-          used, count);
-      }
+      learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality),
+              !frame.cuts.none()),
+        used, count);
     }
   };
   const int depth = standard ? 0 : 1;
@@ -577,7 +576,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
   const int axis = geometry.principalAxis();
   const LineIndex* lines = nullptr;
   const Acceleration used = this->possible(settings.acceleration == Acceleration::Auto
-      ? choose(index.experience(axis, static_cast<int>(settings.quality)), settings)
+      ? choose(index, axis, !memory.cuts.none(), settings)
       : settings.acceleration,
     index, settings, geometry, cuts, lines);
   dispatch(index.volume().type,

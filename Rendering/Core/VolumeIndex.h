@@ -124,9 +124,10 @@ public:
   const LineIndex* lines(
     int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress = {});
 
-  Experience& experience(int principalAxis, int quality)
+  /// A cut volume is another one: much of it may be hidden or left out.
+  Experience& experience(int principalAxis, int quality, bool isCut)
   {
-    return this->Experiences[principalAxis][quality];
+    return this->Experiences[isCut][principalAxis][quality];
   }
 
   /// Bytes held besides the volume.
@@ -152,7 +153,8 @@ private:
   bool BricksMade = false;
   bool Exceeded = false;
   double Seconds = 0.0;
-  std::array<std::array<Experience, 4>, 3> Experiences; // of axes and qualities
+  // Of the whole and of the cut volume, axes and qualities.
+  std::array<std::array<std::array<Experience, 4>, 3>, 2> Experiences;
 };
 }
 

@@ -98,7 +98,7 @@ Result projected(const reference::Volume<T>& volume, const splatting::ShearWarp&
     index, geometry, settings, coretesting::cutsBy(geometry, c.halfSpaces), result.image);
   result.memory = index.memorySize();
   result.share =
-    index.experience(geometry.principalAxis(), static_cast<int>(settings.quality)).share;
+    index.experience(geometry.principalAxis(), static_cast<int>(settings.quality), false).share;
   return result;
 }
 
