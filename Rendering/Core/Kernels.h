@@ -70,7 +70,7 @@ struct Sweep
   int count;
   std::ptrdiff_t rowStride;
   std::ptrdiff_t ahead; ///< to voxels that will be needed next, if memory does not foresee them
-  const Span* runs; ///< the pixels that count
+  const Span* runs;     ///< the pixels that count
   int runCount;
   Span valid; ///< the pixels that all rows have voxels for
   const Rim* rims[2];

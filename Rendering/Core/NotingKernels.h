@@ -134,8 +134,8 @@ inline bool mayWin(const Noting& noting, const T* image, const std::int16_t* not
 
 /// Notes a slice where its sums are larger than what was before, or as large and nearer, and count.
 template <class A>
-inline void noteSums(const Noting& noting, std::ptrdiff_t at, Pack<A> sum, Pack<A> before,
-  Pack<Integer<A>> counts)
+inline void noteSums(
+  const Noting& noting, std::ptrdiff_t at, Pack<A> sum, Pack<A> before, Pack<Integer<A>> counts)
 {
   // Without a question, whose answer nobody could foretell.
   const Pack<Integer<A>> tied = (sum == before) & counts;

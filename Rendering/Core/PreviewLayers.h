@@ -249,8 +249,8 @@ private:
     splatEach(v0, plain.begin);
     if (!plain.empty())
     {
-      this->sweep(group, plain.begin, plain.end, runs, group.valid,
-        this->layersTogether() * BrickDepth, {});
+      this->sweep(
+        group, plain.begin, plain.end, runs, group.valid, this->layersTogether() * BrickDepth, {});
     }
     splatEach(plain.end, v1);
   }

@@ -78,8 +78,7 @@ double worthwhileShare(Quality quality)
 /// The rule of Acceleration::Auto.
 Acceleration choose(VolumeIndex& index, int axis, bool isCut, const ProjectionSettings& settings)
 {
-  const Experience& experience =
-    index.experience(axis, static_cast<int>(settings.quality), isCut);
+  const Experience& experience = index.experience(axis, static_cast<int>(settings.quality), isCut);
   constexpr int patience = 16;
   // Previews that keep winners must look at tiles, too, that can but tie: more than is left out.
   const bool ties = settings.keepWinners && settings.quality == Quality::Preview;

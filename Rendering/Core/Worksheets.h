@@ -472,7 +472,7 @@ protected:
   const Frame<T>& Shared;
   const WorksheetReach<A>& Reach;
   int Depth;
-  bool Notes = false; ///< whether splatRows() notes winners
+  bool Notes = false;                                ///< whether splatRows() notes winners
   int PieceWidth = 1024, PieceHeight = RowsTogether; ///< pixels; for the second-level cache
   A Base;
 };
