@@ -177,6 +177,16 @@ public:
 private:
   using Layer = PreviewLayer;
 
+  struct Runs
+  {
+    const Span* first;
+    int count;
+  };
+  static Runs all(const std::vector<Span>& runs)
+  {
+    return { runs.data(), static_cast<int>(runs.size()) };
+  }
+
   /// Whether so many pixels, all of whose samples count, are worth a sweep without bits.
   static bool isLong(const Span& whole) { return whole.end - whole.begin >= 64; }
 
@@ -199,9 +209,8 @@ private:
     if (!plain.empty())
     {
       const Span inner = common(whole, layer.valid); // rims have pixels beside it
-      isLong(inner)
-        ? this->sweepAround(layer, plain, runs.front(), sideBySide, bits, inner)
-        : this->sweep(layer, plain.begin, plain.end, runs, layer.valid, sideBySide, bits);
+      isLong(inner) ? this->sweepAround(layer, plain, runs.front(), sideBySide, bits, inner)
+                    : this->sweep(layer, plain, all(runs), layer.valid, sideBySide, bits);
     }
     this->splatSlices(layer.slices, plain.end, v1, runs, bits, patch);
   }
@@ -210,13 +219,13 @@ private:
   void sweepAround(const Layer& layer, const Span& rows, const Span& run, int sideBySide,
     const SliceBits& bits, const Span& whole) const
   {
-    this->sweep(layer, rows.begin, rows.end, { whole }, whole, sideBySide, {});
+    this->sweep(layer, rows, { &whole, 1 }, whole, sideBySide, {});
     const Span sides[2] = { { run.begin, whole.begin }, { whole.end, run.end } };
     for (const Span& side : sides)
     {
       if (!side.empty())
       {
-        this->sweep(layer, rows.begin, rows.end, { side }, layer.valid, sideBySide, bits);
+        this->sweep(layer, rows, { &side, 1 }, layer.valid, sideBySide, bits);
       }
     }
   }
@@ -249,8 +258,7 @@ private:
     splatEach(v0, plain.begin);
     if (!plain.empty())
     {
-      this->sweep(
-        group, plain.begin, plain.end, runs, group.valid, this->layersTogether() * BrickDepth, {});
+      this->sweep(group, plain, all(runs), group.valid, this->layersTogether() * BrickDepth, {});
     }
     splatEach(plain.end, v1);
   }
@@ -325,7 +333,7 @@ private:
   /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns. Besides the
   /// runs valid pixels may be swept, which see voxels along all paths. So many slices are read side
   /// by side.
-  void sweep(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, const Span& valid,
+  void sweep(const Layer& layer, const Span& rows, const Runs& runs, const Span& valid,
     int sideBySide, const SliceBits& bits) const
   {
     for (int first = 0, end = 0; first < layer.tapCount; first = end)
@@ -334,13 +342,14 @@ private:
       {
         ++end;
       }
-      this->sweepTaps(layer, first, end, v0, v1, runs, valid, bits);
+      this->sweepTaps(layer, first, end, rows, runs, valid, bits);
     }
   }
 
-  void sweepTaps(const Layer& layer, int firstTap, int endTap, int v0, int v1,
-    const std::vector<Span>& runs, const Span& valid, const SliceBits& bits) const
+  void sweepTaps(const Layer& layer, int firstTap, int endTap, const Span& rows, const Runs& runs,
+    const Span& valid, const SliceBits& bits) const
   {
+    const int v0 = rows.begin;
     Sweep<T> sweep;
     sweep.bits = bits.origin ? bits.at(0, v0) : nullptr;
     sweep.bitsStride = bits.stride;
@@ -349,7 +358,7 @@ private:
     sweep.noting.notes = this->Shared.orders ? this->Shared.ordersOfRow(v0) : nullptr;
     sweep.noting.order = this->orderOf(layer.taps[0].k / BrickDepth);
     sweep.noting.nearestFirst = this->Shared.nearestFirst;
-    sweep.height = v1 - v0;
+    sweep.height = rows.end - v0;
     sweep.count = endTap - firstTap;
     const Slices& slices = this->Shared.slices;
     sweep.rowStride = slices.rowStride;
@@ -363,19 +372,19 @@ private:
       sweep.offsets[t - firstTap] = static_cast<std::int8_t>(
         this->Shared.orderOfStep(StepsPerSlice * tap.k + tap.t) - sweep.noting.order);
     }
-    sweep.runs = runs.data();
-    sweep.runCount = static_cast<int>(runs.size());
+    sweep.runs = runs.first;
+    sweep.runCount = runs.count;
     sweep.valid = valid;
     Rim left, right;
     sweep.rimCount = 0;
     if (layer.window.iMin < layer.window.iMax)
     {
-      if (runs.front().begin < layer.valid.begin)
+      if (runs.first->begin < layer.valid.begin)
       {
         left = partOf(layer.left, firstTap, endTap);
         sweep.rims[sweep.rimCount++] = &left;
       }
-      if (runs.back().end > layer.valid.end)
+      if (runs.first[runs.count - 1].end > layer.valid.end)
       {
         right = partOf(layer.right, firstTap, endTap);
         sweep.rims[sweep.rimCount++] = &right;
