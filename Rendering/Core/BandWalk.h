@@ -136,6 +136,13 @@ private:
     return reinterpret_cast<P*>(this->Scratch.minima.data()) + std::ptrdiff_t(group) * this->Tiles;
   }
 
+  /// The farthest sample that any least pixel of each tile has its value from: a layer whose bound
+  /// is that value can tie with no other pixel.
+  std::int16_t* farthestOf(int group)
+  {
+    return this->Scratch.farthest.data() + std::ptrdiff_t(group) * this->Tiles;
+  }
+
   /// Cut rays, layer by layer. Some groups of rows together, for which worksheets widen the same
   /// voxels.
   void walkCut()
@@ -421,26 +428,9 @@ private:
       }
       if (this->Shared.orders)
       {
-        this->findFarthest(g);
-      }
-    }
-  }
-
-  /// The farthest slice that any pixel of each tile has its value from, but for pixels at the
-  /// floor.
-  void findFarthest(int group)
-  {
-    const P floor = this->Stack.floor();
-    std::int16_t* const out = &this->Scratch.farthest[std::size_t(group) * this->Tiles];
-    std::fill_n(out, this->Tiles, std::int16_t(-1));
-    for (int v = this->firstRow(group); v < this->firstRow(group) + this->rowsOf(group); ++v)
-    {
-      const P* const row = this->Shared.image.template row<P>(v);
-      const std::int16_t* const orders = this->Shared.ordersOfRow(v);
-      for (int u = 0; u < this->Shared.image.width; ++u)
-      {
-        const std::int16_t order = row[u] > floor ? orders[u] : std::int16_t(-1);
-        out[u / TileWidth] = std::max(out[u / TileWidth], order);
+        // A last tile with fewer pixels keeps what it began with: any layer may tie with it.
+        loops.farthest(rows, this->Shared.ordersOfRow(this->firstRow(g)), image.width,
+          this->rowsOf(g), whole, out, this->farthestOf(g));
       }
     }
   }
@@ -449,17 +439,9 @@ private:
   /// equal samples. At the floor all samples are equal, and the first one is known without a walk.
   void flagTies(int z, int group)
   {
-    const P floor = this->Stack.floor();
-    const P* const bounds = this->bounds(z, group);
-    const P* const minima = this->minimaOf(group);
-    const std::int16_t* const farthest = &this->Scratch.farthest[std::size_t(group) * this->Tiles];
-    unsigned char* const flags = this->Scratch.flags.data();
-    const std::int16_t order = this->Stack.orderOf(z);
-    for (int t = 0; t < this->Tiles; ++t)
-    {
-      const bool ties = (bounds[t] == minima[t]) & (bounds[t] > floor) & (order < farthest[t]);
-      flags[t] = static_cast<unsigned char>(flags[t] | static_cast<unsigned char>(ties));
-    }
+    const TileLoops<P>& loops = this->Shared.kernels;
+    loops.ties(this->bounds(z, group), this->minimaOf(group), this->Stack.floor(),
+      this->farthestOf(group), this->Stack.orderOf(z), this->Scratch.flags.data(), this->Tiles);
   }
 
   /// Splats the tiles of a group that a layer can change.

@@ -403,10 +403,9 @@ private:
       {
         store<T>(image + at, p.best);
       }
-      else if (noting.nearestFirst ||
-        mayWin<1, T>(noting, image, notes, Registers<T, 1>{ at, at }, { p.best }))
+      else
       {
-        // Where the nearest come first, noting costs less than a guess whether any pixel wins.
+        // Noting costs less than a guess whether any pixel wins.
         note(noting, image, notes, at, p);
       }
     }

@@ -116,6 +116,57 @@ void exceeds(const P* bounds, const P* minima, unsigned char* __restrict flags, 
   }
 }
 
+template <class P>
+void farthest(const P* image, const std::int16_t* notes, std::ptrdiff_t stride, int rows,
+  std::ptrdiff_t tiles, const P* __restrict minima, std::int16_t* __restrict farthest)
+{
+  constexpr std::ptrdiff_t chunk = 64; // tiles
+  for (std::ptrdiff_t first = 0; first < tiles; first += chunk)
+  {
+    const std::ptrdiff_t count = first + chunk < tiles ? chunk : tiles - first;
+    P least[chunk * TileWidth];
+    std::int16_t columns[chunk * TileWidth];
+    for (std::ptrdiff_t t = 0; t < count; ++t)
+    {
+      for (std::ptrdiff_t x = 0; x < TileWidth; ++x)
+      {
+        least[t * TileWidth + x] = minima[first + t];
+      }
+    }
+    for (std::ptrdiff_t x = 0; x < count * TileWidth; ++x)
+    {
+      columns[x] = -1;
+    }
+    for (int r = 0; r < rows; ++r)
+    {
+      const P* const row = image + r * stride + first * TileWidth;
+      const std::int16_t* const own = notes + r * stride + first * TileWidth;
+      for (std::ptrdiff_t x = 0; x < count * TileWidth; ++x)
+      {
+        const std::int16_t note = row[x] == least[x] ? own[x] : std::int16_t(-1);
+        columns[x] = larger(note, columns[x]);
+      }
+    }
+    for (std::ptrdiff_t t = 0; t < count; ++t)
+    {
+      const std::int16_t* const c = columns + t * TileWidth;
+      farthest[first + t] = larger(larger(larger(c[0], c[1]), larger(c[2], c[3])),
+        larger(larger(c[4], c[5]), larger(c[6], c[7])));
+    }
+  }
+}
+
+template <class P>
+void ties(const P* bounds, const P* minima, P floor, const std::int16_t* farthest,
+  std::int16_t order, unsigned char* __restrict flags, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t t = 0; t < n; ++t)
+  {
+    const bool ties = (bounds[t] == minima[t]) & (bounds[t] > floor) & (order < farthest[t]);
+    flags[t] = static_cast<unsigned char>(flags[t] | static_cast<unsigned char>(ties));
+  }
+}
+
 /// Adds one part of the footprint to the worksheets of Rows x V registers. Rows of pixels share
 /// rows of voxels, so each register of voxels is loaded once for all of them; a pixel's sum still
 /// runs through the weights row by row.
@@ -446,7 +497,7 @@ template <class T>
 constexpr VoxelLoops<T> voxelLoops{ width<T>, Picker<T>::group, &maximum<T>, &largest<T>, &sweep<T>,
   &cross<T>, &widen<T>, &survey<T>, &largestOfFour<T> };
 template <class P>
-constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P> };
+constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P>, &farthest<P>, &ties<P> };
 template <class P>
 constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::climb)>(&climb<P>),

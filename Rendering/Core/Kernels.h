@@ -160,6 +160,13 @@ struct TileLoops
   void (*minima)(const P* image, std::ptrdiff_t stride, int rows, std::ptrdiff_t tiles, P* minima);
   /// flags[t] = whether bounds[t] > minima[t].
   void (*exceeds)(const P* bounds, const P* minima, unsigned char* flags, std::ptrdiff_t n);
+  /// farthest[t] = the largest note of the pixels of tile t that are minima[t]. Notes lie in rows
+  /// as the pixels do.
+  void (*farthest)(const P* image, const std::int16_t* notes, std::ptrdiff_t stride, int rows,
+    std::ptrdiff_t tiles, const P* minima, std::int16_t* farthest);
+  /// Sets flags[t], too, where bounds[t] is minima[t] but above the floor, and order < farthest[t].
+  void (*ties)(const P* bounds, const P* minima, P floor, const std::int16_t* farthest,
+    std::int16_t order, unsigned char* flags, std::ptrdiff_t n);
 };
 
 /// Loops over the samples that a row of pixels has in one slice. A NaN sample is none, a NaN pixel

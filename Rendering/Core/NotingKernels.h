@@ -32,18 +32,6 @@ struct Registers
   }
 };
 
-/// Whether any of a register's pixels has a greater note.
-template <class T>
-inline bool anyBehind(const std::int16_t* notes, std::int16_t order)
-{
-  std::int16_t any = 0;
-  for (std::ptrdiff_t n = 0; n < width<T>; ++n)
-  {
-    any |= static_cast<std::int16_t>(notes[n] > order);
-  }
-  return any != 0;
-}
-
 #if defined(__GNUC__)
 /// As many notes as a register of T has elements, or as fit into one.
 template <class T>
@@ -99,37 +87,18 @@ inline void keepNearest(
   *place = wins != 0 ? own : old;
 }
 
-/// Whether any of V registers can win or tie with what is farther. One question for all of them: in
-/// noise most registers are raised, elsewhere few are, so that the answer is easily foretold.
+/// Whether V registers raise any pixel. One question for all of them: in noise most registers do,
+/// elsewhere few, so that the answer is easily foretold.
 template <int V, class T>
-inline bool mayWin(const Noting& noting, const T* image, const std::int16_t* notes,
-  const Registers<T, V>& at, const Pack<T> (&best)[V])
+inline bool anyLarger(const T* image, const Registers<T, V>& at, const Pack<T> (&best)[V])
 {
-  Pack<Integer<T>> raised{}, tied{};
+  Pack<Integer<T>> raised{};
 #pragma GCC unroll 4
   for (int v = 0; v < V; ++v)
   {
     raised |= best[v] > load<T>(image + at[v]);
   }
-  if (noting.nearestFirst || anyOf(raised))
-  {
-    return anyOf(raised);
-  }
-#pragma GCC unroll 4
-  for (int v = 0; v < V; ++v)
-  {
-    tied |= best[v] == load<T>(image + at[v]);
-  }
-  if (!anyOf(tied))
-  {
-    return false;
-  }
-  bool behind = false;
-  for (int v = 0; v < V; ++v)
-  {
-    behind = behind || anyBehind<T>(notes + at[v], noting.order);
-  }
-  return behind;
+  return anyOf(raised);
 }
 
 /// Notes a slice where its sums are larger than what was before, or as large and nearer, and count.
@@ -162,18 +131,45 @@ inline __mmask64 maskOfLarger(Pack<std::int8_t> a, Pack<std::int8_t> b)
 {
   return _mm512_cmpgt_epi8_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b));
 }
-
-/// keepNearest() for bytes where the nearest come first: half of the instructions that compilers
-/// find, which do not see that masks need no widening.
-inline void keepRaised(std::int16_t* notes, std::int16_t order, __mmask64 raised, __m512i offset)
+inline __mmask32 maskOfLarger(Pack<std::uint16_t> a, Pack<std::uint16_t> b)
 {
-  const __m512i base = _mm512_set1_epi16(order);
-  _mm512_storeu_si512(notes,
-    _mm512_mask_add_epi16(_mm512_loadu_si512(notes), static_cast<__mmask32>(raised),
-      _mm512_cvtepi8_epi16(_mm512_castsi512_si256(offset)), base));
-  _mm512_storeu_si512(notes + 32,
-    _mm512_mask_add_epi16(_mm512_loadu_si512(notes + 32), static_cast<__mmask32>(raised >> 32),
-      _mm512_cvtepi8_epi16(_mm512_extracti64x4_epi64(offset, 1)), base));
+  return _mm512_cmpgt_epu16_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b));
+}
+inline __mmask32 maskOfLarger(Pack<std::int16_t> a, Pack<std::int16_t> b)
+{
+  return _mm512_cmpgt_epi16_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b));
+}
+
+/// A register of notes.
+inline void keepNearestNotes(
+  const Noting& noting, std::int16_t* notes, __m512i offset, __mmask32 raised, __mmask32 tied)
+{
+  const __m512i own = _mm512_add_epi16(_mm512_set1_epi16(noting.order), offset);
+  const __m512i old = _mm512_loadu_si512(notes);
+  const __mmask32 nearer = noting.nearestFirst ? 0 : tied & _mm512_cmplt_epi16_mask(own, old);
+  _mm512_storeu_si512(notes, _mm512_mask_mov_epi16(old, raised | nearer, own));
+}
+
+/// keepNearest() for a register of bytes or shorts: half of the instructions that compilers find,
+/// which do not see that masks need no widening.
+template <class T>
+inline void keepNearestMasked(
+  const Noting& noting, std::int16_t* notes, Pack<T> best, Pack<T> before, __m512i offset)
+{
+  const auto raised = maskOfLarger(best, before);
+  const __m512i a = reinterpret_cast<__m512i>(best), b = reinterpret_cast<__m512i>(before);
+  if constexpr (sizeof(T) == 2)
+  {
+    keepNearestNotes(noting, notes, offset, raised, _mm512_cmpeq_epi16_mask(a, b));
+  }
+  else
+  {
+    const __mmask64 tied = _mm512_cmpeq_epi8_mask(a, b);
+    keepNearestNotes(noting, notes, _mm512_cvtepi8_epi16(_mm512_castsi512_si256(offset)),
+      static_cast<__mmask32>(raised), static_cast<__mmask32>(tied));
+    keepNearestNotes(noting, notes + 32, _mm512_cvtepi8_epi16(_mm512_extracti64x4_epi64(offset, 1)),
+      static_cast<__mmask32>(raised >> 32), static_cast<__mmask32>(tied >> 32));
+  }
 }
 #endif
 
@@ -185,14 +181,10 @@ inline void raiseRegister(
   const Pack<T> before = load<T>(image);
   store<T>(image, larger(best, before));
 #if defined(__AVX512F__)
-  if constexpr (sizeof(T) == 1)
+  if constexpr (sizeof(T) <= 2)
   {
-    if (noting.nearestFirst)
-    {
-      keepRaised(
-        notes, noting.order, maskOfLarger(best, before), reinterpret_cast<__m512i>(offset));
-      return;
-    }
+    keepNearestMasked<T>(noting, notes, best, before, reinterpret_cast<__m512i>(offset));
+    return;
   }
 #endif
   const Pack<Integer<T>> raised = best > before;

@@ -363,7 +363,7 @@ private:
     const Slices& slices = this->Shared.slices;
     sweep.rowStride = slices.rowStride;
     sweep.ahead = slices.rowStride > slices.sliceStride ? slices.rowStride : 0;
-    sweep.winsOften = this->isSmall();
+    sweep.winsOften = this->isSmall() || !this->Shared.nearestFirst;
     for (int t = firstTap; t < endTap; ++t)
     {
       const Layer::Tap& tap = layer.taps[t];

@@ -16,6 +16,7 @@
 #include <vtkSMPThreadLocal.h>
 #include <vtkSMPTools.h>
 
+#include <functional>
 #include <tuple>
 
 namespace splatting
@@ -29,8 +30,8 @@ int bandHeight(int rows)
   return std::clamp(share / TileHeight * TileHeight, 2 * TileHeight, 8 * TileHeight);
 }
 
-template <class Body>
-void forBands(int height, int rows, Watch& watch, Body&& body)
+/// Not a template: threads are started in one place, whatever is projected.
+void forBands(int height, int rows, Watch& watch, const std::function<void(int v0, int v1)>& body)
 {
   const int bands = (height + rows - 1) / rows;
   watch.begin(bands);
@@ -80,11 +81,8 @@ Acceleration choose(VolumeIndex& index, int axis, bool isCut, const ProjectionSe
 {
   const Experience& experience = index.experience(axis, static_cast<int>(settings.quality), isCut);
   constexpr int patience = 16;
-  // Previews that keep winners must look at tiles, too, that can but tie: more than is left out.
-  const bool ties = settings.keepWinners && settings.quality == Quality::Preview;
   const bool crowded = experience.share > worthwhileShare(settings.quality);
-  return ties || (crowded && experience.framesSince < patience) ? Acceleration::Dense
-                                                                : Acceleration::Bricks;
+  return crowded && experience.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
 }
 
 /// Whether each sample has to be looked at by itself.

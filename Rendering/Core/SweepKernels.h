@@ -178,10 +178,11 @@ inline void raiseRegisters(const Sweep<T>& s, T* image, std::int16_t* notes,
   }
 }
 
-/// Raises V registers of pixels where the nearest rows come first, and notes the last one that
-/// raises them. sample(v, r, other) is register v of row r, or `other` where it does not count.
+/// Raises V registers of pixels, and notes the nearest of the rows that raise them, which come
+/// before the others. sample(v, r, other) is register v of row r, or `other` where it does not
+/// count.
 template <int V, class T, class Sample>
-inline void raiseFromNearest(
+inline void raiseInOnePass(
   const Sweep<T>& s, T* image, std::int16_t* notes, const Registers<T, V>& at, Sample&& sample)
 {
   Pack<T> best[V];
@@ -189,7 +190,7 @@ inline void raiseFromNearest(
 #pragma GCC unroll 4
   for (int v = 0; v < V; ++v)
   {
-    best[v] = load<T>(image + at[v]);
+    best[v] = Pack<T>{} + Least<T>;
   }
   for (int r = 0; r < s.count; ++r)
   {
@@ -202,17 +203,18 @@ inline void raiseFromNearest(
       best[v] = larger(value, best[v]);
     }
   }
-  if (mayWin<V>(s.noting, image, notes, at, best))
+  // What bricks let pass raises something more often than not.
+  if (!s.noting.nearestFirst || anyLarger<V>(image, at, best))
   {
     raiseRegisters<V>(s, image, notes, at, best, offset);
   }
 }
 
-/// The same where most registers are not raised, or where rows that came before may be farther: the
-/// maxima come first, and then, if they win, the rows that have them. Samples that do not count are
-/// the least value, which raises nothing and ties with nothing that has a note.
+/// The same where the nearest rows of all come first and few registers are raised: the maxima come
+/// first, and then, if they win, the rows that have them. Samples that do not count are the least
+/// value, which raises nothing.
 template <int V, class T, class Sample>
-inline void raiseFromAny(
+inline void raiseInTwoPasses(
   const Sweep<T>& s, T* image, std::int16_t* notes, const Registers<T, V>& at, Sample&& sample)
 {
   Pack<T> best[V];
@@ -230,7 +232,7 @@ inline void raiseFromAny(
       best[v] = larger(sample(v, r, best[v]), best[v]);
     }
   }
-  if (!mayWin<V>(s.noting, image, notes, at, best))
+  if (!anyLarger<V>(image, at, best))
   {
     return;
   }
@@ -251,8 +253,8 @@ template <int V, class T, class Sample>
 inline void raiseNoting(
   const Sweep<T>& s, T* image, std::int16_t* notes, const Registers<T, V>& at, Sample&& sample)
 {
-  s.winsOften&& s.noting.nearestFirst ? raiseFromNearest<V>(s, image, notes, at, sample)
-                                      : raiseFromAny<V>(s, image, notes, at, sample);
+  s.winsOften ? raiseInOnePass<V>(s, image, notes, at, sample)
+              : raiseInTwoPasses<V>(s, image, notes, at, sample);
 }
 
 /// CutBlock, or without bits MaximumBlock, where winners are noted.

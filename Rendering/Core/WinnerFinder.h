@@ -134,18 +134,80 @@ private:
     scratch.last.resize(image.width);
     this->Crossed.find(v, scratch.first.data(), scratch.last.data());
     std::int32_t* const winners = &image.winners[std::size_t(v) * image.width];
-    for (int u = image.spans[v].begin; u < image.spans[v].end; ++u)
+    const std::int16_t* const entered =
+      this->reversed() ? scratch.last.data() : scratch.first.data();
+    for (int u = image.spans[v].begin; u < image.spans[v].end;)
     {
-      if (winners[u] == UnknownWinner)
+      if (winners[u] != UnknownWinner)
       {
-        winners[u] = -1;
-        const int first = scratch.first[u], last = scratch.last[u];
-        for (int n = 0; n <= last - first && winners[u] < 0; ++n)
-        {
-          winners[u] = this->stepIn(this->reversed() ? last - n : first + n, u, v);
-        }
+        ++u;
+        continue;
+      }
+      const Entry entry = this->entryInto(entered[u], v);
+      if (u < entry.pixels.begin || u >= entry.pixels.end)
+      {
+        winners[u] = this->firstStep(scratch.first[u], scratch.last[u], u, v);
+        ++u;
+        continue;
+      }
+      const int end = static_cast<int>(std::find_if(entered + u, entered + entry.pixels.end,
+                                         [=](std::int16_t k) { return k != entered[u]; }) -
+        entered);
+      for (; u < end; ++u)
+      {
+        winners[u] = winners[u] == UnknownWinner ? entry.step : winners[u];
       }
     }
+  }
+
+  /// Pixels of a row that have the same first step in a slice; not all of those that have it.
+  struct Entry
+  {
+    Span pixels;
+    std::int32_t step = -1;
+  };
+  Entry entryInto(int k, int v) const
+  {
+    Entry entry;
+    const int depth = this->Shared.geometry.size().z;
+    if (k < 0 || k >= depth || this->Shared.geometry.isPerspective())
+    {
+      return entry;
+    }
+    const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+    if (v < slice.vBegin || v >= slice.vEnd)
+    {
+      return entry;
+    }
+    if (!this->Preview)
+    {
+      entry.pixels = slice.span(v);
+      entry.step = StepsPerSlice * k;
+      return entry;
+    }
+    const glm::ivec3& size = this->Shared.geometry.size();
+    const RayPath& path = slice.path;
+    for (int n = 0; n < path.count && entry.step < 0; ++n)
+    {
+      const int t = this->reversed() ? path.count - 1 - n : n;
+      if (v + path.dj[t] >= 0 && v + path.dj[t] < size.y)
+      {
+        entry.pixels = common(slice.span(v), { -path.di[t], size.x - path.di[t] });
+        entry.step = StepsPerSlice * k + t;
+      }
+    }
+    return entry;
+  }
+
+  /// The first step of a ray that crosses some slices; -1 if it has none.
+  std::int32_t firstStep(int first, int last, int u, int v) const
+  {
+    std::int32_t step = -1;
+    for (int n = 0; n <= last - first && step < 0; ++n)
+    {
+      step = this->stepIn(this->reversed() ? last - n : first + n, u, v);
+    }
+    return step;
   }
 
   void findFirstCounted(int v, WinnerScratch& scratch) const
