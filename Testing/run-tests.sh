@@ -18,5 +18,5 @@ bash "$source_dir/Testing/Package/VTKsOwn/fetch-on-debian.sh" "$vtk_tests"
 export VTK_TESTING=1
 # Without -noreset the server would forget its settings whenever a test closes its last window.
 xvfb-run -a --server-args "-screen 0 1280x1024x24 -noreset" \
-  ctest --test-dir "$build_dir" --output-on-failure --timeout 600 "$@"
+  ctest --test-dir "$build_dir" -j2 --output-on-failure --timeout 600 "$@"
 exec bash "$source_dir/Module/ParaView/test-on-debian.sh" "$@"
