@@ -461,9 +461,8 @@ public:
    * AUTO takes BRICKS, unless the last frame that used them along this principal axis in this mode,
    * with cut rays or without, still had to splat more than 30 % (PREVIEW) or 50 % (STANDARD, HIGH)
    * of the tiles, as is the case with noise everywhere; then DENSE, and every 16th frame tries
-   * BRICKS again. Where a PREVIEW records locations it takes DENSE: tiles that can but tie count,
-   * too. It never takes chains, which are slower on all data that we measured (splatmip-paper
-   * reports it), but need less memory than the volume.
+   * BRICKS again. It never takes chains, which are slower on all data that we measured
+   * (splatmip-paper reports it), but need less memory than the volume.
    *
    * Where rays are cut and in perspective, BRICKS take the place of chains. Volumes with NaN or
    * infinity are walked densely, as are all when IndexMemoryBudget has no room for the index;

@@ -22,11 +22,12 @@
 
 namespace
 {
-vtkSmartPointer<vtkVolumeMapper> MakeSplatting(const BenchmarkMapper& kind)
+vtkSmartPointer<vtkVolumeMapper> MakeSplatting(const BenchmarkMapper& kind, int sampling)
 {
   auto mapper = vtkSmartPointer<vtkSplattingMIPVolumeMapper>::New();
   mapper->SetQualityMode(kind.QualityMode);
   mapper->SetAcceleration(kind.Acceleration);
+  mapper->SetShearImageSampling(sampling);
   return mapper;
 }
 
@@ -50,7 +51,8 @@ vtkSmartPointer<vtkVolumeMapper> MakeGPURayCasting(double distance)
   return mapper;
 }
 
-vtkSmartPointer<vtkVolumeMapper> MakeMapper(const BenchmarkMapper& kind, vtkImageData* image)
+vtkSmartPointer<vtkVolumeMapper> MakeMapper(
+  const BenchmarkMapper& kind, vtkImageData* image, int sampling)
 {
   const double* spacing = image->GetSpacing();
   const double distance = kind.SampleDistance * *std::min_element(spacing, spacing + 3);
@@ -58,7 +60,7 @@ vtkSmartPointer<vtkVolumeMapper> MakeMapper(const BenchmarkMapper& kind, vtkImag
   switch (kind.Kind)
   {
     case BenchmarkMapper::SPLATTING:
-      mapper = MakeSplatting(kind);
+      mapper = MakeSplatting(kind, sampling);
       break;
     case BenchmarkMapper::CPU_RAY_CASTING:
       mapper = MakeCPURayCasting(distance);
@@ -140,7 +142,7 @@ BenchmarkStage& BenchmarkStage::GetInstance()
 }
 
 //------------------------------------------------------------------------------
-BenchmarkStage::BenchmarkStage()
+BenchmarkStage::BenchmarkStage() : Sampling(vtkSplattingMIPVolumeMapper::AUTOMATIC_SAMPLING)
 {
   RequireDisplay(this->Window);
   this->Window->SetOffScreenRendering(1);
@@ -187,7 +189,7 @@ void BenchmarkStage::SetMapper(const BenchmarkMapper& kind, vtkImageData* image)
   this->Property->SetInterpolationType(kind.Interpolation);
   image->GetPointData()->GetScalars()->Modified();
 
-  this->Mapper = MakeMapper(kind, image);
+  this->Mapper = MakeMapper(kind, image, this->Sampling);
   this->Prop->SetProperty(this->Property);
   this->Prop->SetMapper(this->Mapper);
   this->Renderer->AddVolume(this->Prop);

@@ -31,6 +31,7 @@ struct Options
 {
   std::string Data = SPLATTINGMIP_TEST_DATA;
   double ViewAngle = 0.0;
+  int Sampling = vtkSplattingMIPVolumeMapper::AUTOMATIC_SAMPLING;
   int Threads = 0;
   bool Quick = false;
   bool IsConsole = true; // what Google Benchmark prints is meant for people
@@ -59,7 +60,7 @@ ACCELERATION  dense or bricks; without it the mapper chooses
 CUT      none; around: planes that leave nothing out; plane: through the middle; box: six planes
 MAPPER   preview, standard, high, exact: the modes of vtkSplattingMIPVolumeMapper
          raycast-nearest, raycast-linear: vtkFixedPointVolumeRayCastMapper; raycast-fine: with 20
-         samples per voxel, of vessels256-uint8 at 1024 only, as it takes minutes
+         samples per voxel, of vessels256-uint8 and aorta-int16 at 1024 only, as it takes a minute
          gpu: vtkOpenGLGPUVolumeRayCastMapper, linear
 
 Everything goes through the same two turns of the camera, 36 views in all; slow mappers and big
@@ -71,6 +72,8 @@ so there is none with --benchmark_report_aggregates_only.
   --data=DIR     where lidc-idri-0314.nrrd lies
   --threads=N    threads of vtkSMPTools and of the ray caster on the CPU
   --perspective=DEGREES  perspective cameras with this view angle, for all but floor, index and turn
+  --sampling=N   pixels of shear images per voxel along each side; without it, in exact mode up to
+                 those of the window
 
   For JSON, too: --benchmark_out=FILE. The rows that matter most:
     splatmip-benchmark --benchmark_filter='frame/vessels256-uint8/[0-9]+/[^g]'
@@ -115,6 +118,10 @@ Options TakeOptions(int& argc, char** argv)
     {
       options.ViewAngle = std::atof(value.c_str());
     }
+    else if (Starts(argv[i], "--sampling=", value))
+    {
+      options.Sampling = std::atoi(value.c_str());
+    }
     else
     {
       if (Starts(argv[i], "--benchmark_format=", value))
@@ -136,6 +143,13 @@ std::string DescribeCamera()
   return angle > 0.0 ? text.str() : "parallel";
 }
 
+std::string DescribeSampling()
+{
+  const int sampling = BenchmarkStage::GetInstance().GetSampling();
+  return sampling == vtkSplattingMIPVolumeMapper::AUTOMATIC_SAMPLING ? "automatic"
+                                                                     : std::to_string(sampling);
+}
+
 /// What the numbers depend on, besides the program.
 Facts DescribeMachine()
 {
@@ -145,6 +159,7 @@ Facts DescribeMachine()
       std::to_string(vtkSMPTools::GetEstimatedNumberOfThreads()) + " (vtkSMPTools, " +
         vtkSMPTools::GetBackend() + ")" },
     { "instruction set", mapper->GetInstructionSet() }, { "camera", DescribeCamera() },
+    { "shear image sampling", DescribeSampling() },
     { "OpenGL renderer", BenchmarkStage::GetInstance().GetDeviceName() },
     { "VTK", vtkVersion::GetVTKVersion() } };
 }
@@ -178,14 +193,15 @@ void RegisterFrames(const BenchmarkVolume& volume, int window, bool isQuick)
   for (const BenchmarkMapper& mapper : GetBenchmarkMappers())
   {
     const bool isFine = mapper.SampleDistance < 1.0;
-    if (isFine && (isQuick || window < 1024 || volume.Name != "vessels256-uint8"))
+    const bool isForFine = volume.Name == "vessels256-uint8" || volume.Name == "aorta-int16";
+    if (isFine && (isQuick || window < 1024 || !isForFine))
     {
       continue;
     }
     if (mapper.Kind == BenchmarkMapper::SPLATTING || volume.ForAllMappers)
     {
       const BenchmarkRotation rotation =
-        isFine ? BenchmarkRotation{ 1, 1 } : ChooseRotation(mapper, volume.IsBig, isQuick);
+        isFine ? BenchmarkRotation{ 3, 1 } : ChooseRotation(mapper, volume.IsBig, isQuick);
       Register("frame/" + volume.Name + "/" + std::to_string(window) + "/" + mapper.Name,
         rotation.Views * rotation.Passes,
         [=](benchmark::State& state) { MeasureFrames(state, volume, window, mapper, rotation); });
@@ -289,6 +305,7 @@ int main(int argc, char** argv)
     vtkSMPTools::Initialize(options.Threads);
   }
   BenchmarkStage::GetInstance().SetViewAngle(options.ViewAngle);
+  BenchmarkStage::GetInstance().SetSampling(options.Sampling);
   RegisterAll(options);
   const Facts machine = DescribeMachine();
   for (const auto& fact : machine)
