@@ -460,7 +460,7 @@ public:
    *
    * AUTO takes BRICKS, unless the last frame that used them along this principal axis in this mode,
    * with cut rays or without, still had to splat more than 30 % (PREVIEW) or 50 % (STANDARD, HIGH)
-   * of the tiles, as is the case with noise everywhere; then DENSE, and every 16th frame tries
+   * of the tiles, as is the case with noise everywhere; then DENSE, and every 32nd frame tries
    * BRICKS again. It never takes chains, which are slower on all data that we measured
    * (splatmip-paper reports it), but need less memory than the volume.
    *

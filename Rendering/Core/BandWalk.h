@@ -94,8 +94,8 @@ public:
     this->orderLayers();
     this->Scratch.minima.resize(std::size_t(this->Groups) * this->Tiles * sizeof(P));
     std::fill_n(this->minimaOf(0), this->Groups * this->Tiles, this->Stack.floor());
-    this->Scratch.farthest.assign(this->Shared.orders ? this->Groups * this->Tiles : 0,
-      std::numeric_limits<std::int16_t>::max());
+    this->Scratch.farthest.assign(
+      this->Shared.orders ? this->Groups * this->Tiles : 0, std::int16_t(-1));
     this->openCuts();
     int walked = 0;
     for (int z : this->Scratch.order)
@@ -137,7 +137,8 @@ private:
   }
 
   /// The farthest sample that any least pixel of each tile has its value from: a layer whose bound
-  /// is that value can tie with no other pixel.
+  /// is that value can tie with no other pixel. At the floor all samples are equal, and the first
+  /// one is known without a walk.
   std::int16_t* farthestOf(int group)
   {
     return this->Scratch.farthest.data() + std::ptrdiff_t(group) * this->Tiles;
@@ -416,43 +417,48 @@ private:
       const P* const rows = image.row<P>(this->firstRow(g));
       P* const out = this->minimaOf(g);
       loops.minima(rows, image.width, this->rowsOf(g), whole, out);
-      if (whole < this->Tiles)
-      {
-        P least = greatestValue<P>();
-        for (int v = 0; v < this->rowsOf(g); ++v)
-        {
-          const P* const row = rows + std::ptrdiff_t(v) * image.width;
-          least = std::min(least, *std::min_element(row + whole * TileWidth, row + image.width));
-        }
-        out[whole] = least;
-      }
       if (this->Shared.orders)
       {
-        // A last tile with fewer pixels keeps what it began with: any layer may tie with it.
         loops.farthest(rows, this->Shared.ordersOfRow(this->firstRow(g)), image.width,
-          this->rowsOf(g), whole, out, this->farthestOf(g));
+          this->rowsOf(g), whole, out, this->Stack.floor(), this->farthestOf(g));
+      }
+      if (whole < this->Tiles)
+      {
+        this->findLastMinimum(g);
       }
     }
   }
 
-  /// Flags tiles, too, of which a layer can take no more than a tie: pixels show the nearest of
-  /// equal samples. At the floor all samples are equal, and the first one is known without a walk.
-  void flagTies(int z, int group)
+  /// Of a tile with fewer columns than the others.
+  void findLastMinimum(int group)
   {
-    const TileLoops<P>& loops = this->Shared.kernels;
-    loops.ties(this->bounds(z, group), this->minimaOf(group), this->Stack.floor(),
-      this->farthestOf(group), this->Stack.orderOf(z), this->Scratch.flags.data(), this->Tiles);
+    const ShearImage& image = this->Shared.image;
+    P least = greatestValue<P>();
+    for (int v = this->firstRow(group); v < this->firstRow(group) + this->rowsOf(group); ++v)
+    {
+      const P* const row = image.row<P>(v);
+      least =
+        std::min(least, *std::min_element(row + (this->Tiles - 1) * TileWidth, row + image.width));
+    }
+    this->minimaOf(group)[this->Tiles - 1] = least;
+    if (this->Shared.orders)
+    {
+      // Any layer may tie.
+      this->farthestOf(group)[this->Tiles - 1] =
+        least > this->Stack.floor() ? std::numeric_limits<std::int16_t>::max() : std::int16_t(-1);
+    }
   }
 
   /// Splats the tiles of a group that a layer can change.
   void walkGroup(int z, int group)
   {
     const TileLoops<P>& loops = this->Shared.kernels;
-    loops.exceeds(this->bounds(z, group), this->minimaOf(group), this->openFlags(), this->Tiles);
-    if (this->Shared.orders)
-    {
-      this->flagTies(z, group);
-    }
+    const P* const bounds = this->bounds(z, group);
+    const P* const minima = this->minimaOf(group);
+    unsigned char* const flags = this->openFlags();
+    this->Shared.orders ? loops.exceedsOrTies(bounds, minima, this->farthestOf(group),
+                            this->Stack.orderOf(z), flags, this->Tiles)
+                        : loops.exceeds(bounds, minima, flags, this->Tiles);
     this->splatFlagged(z, group);
   }
 

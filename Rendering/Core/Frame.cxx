@@ -336,12 +336,14 @@ void CrossedSlices::find(int v, std::int16_t* first, std::int16_t* last) const
   {
   }
   const int width = static_cast<int>(this->First.size());
-  for (int u = 0; u < width; ++u)
+  const std::int16_t lowest = static_cast<std::int16_t>(begin);
+  const std::int16_t highest = static_cast<std::int16_t>(end - 1);
+  for (int u = 0; u < width; ++u) // in 16 bits, which every instruction set compares fast
   {
-    const int low = std::max<int>(this->First[u], begin);
-    const int high = std::min<int>(this->Last[u], end - 1);
-    first[u] = low <= high ? static_cast<std::int16_t>(low) : NoFirst;
-    last[u] = low <= high ? static_cast<std::int16_t>(high) : NoLast;
+    const std::int16_t low = std::max(this->First[u], lowest);
+    const std::int16_t high = std::min(this->Last[u], highest);
+    first[u] = low <= high ? low : NoFirst;
+    last[u] = low <= high ? high : NoLast;
   }
   const auto add = [&](int k)
   {

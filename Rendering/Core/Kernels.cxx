@@ -118,7 +118,7 @@ void exceeds(const P* bounds, const P* minima, unsigned char* __restrict flags, 
 
 template <class P>
 void farthest(const P* image, const std::int16_t* notes, std::ptrdiff_t stride, int rows,
-  std::ptrdiff_t tiles, const P* __restrict minima, std::int16_t* __restrict farthest)
+  std::ptrdiff_t tiles, const P* __restrict minima, P floor, std::int16_t* __restrict farthest)
 {
   constexpr std::ptrdiff_t chunk = 64; // tiles
   for (std::ptrdiff_t first = 0; first < tiles; first += chunk)
@@ -150,20 +150,20 @@ void farthest(const P* image, const std::int16_t* notes, std::ptrdiff_t stride, 
     for (std::ptrdiff_t t = 0; t < count; ++t)
     {
       const std::int16_t* const c = columns + t * TileWidth;
-      farthest[first + t] = larger(larger(larger(c[0], c[1]), larger(c[2], c[3])),
+      const std::int16_t note = larger(larger(larger(c[0], c[1]), larger(c[2], c[3])),
         larger(larger(c[4], c[5]), larger(c[6], c[7])));
+      farthest[first + t] = minima[first + t] > floor ? note : std::int16_t(-1);
     }
   }
 }
 
 template <class P>
-void ties(const P* bounds, const P* minima, P floor, const std::int16_t* farthest,
+void exceedsOrTies(const P* bounds, const P* minima, const std::int16_t* farthest,
   std::int16_t order, unsigned char* __restrict flags, std::ptrdiff_t n)
 {
   for (std::ptrdiff_t t = 0; t < n; ++t)
   {
-    const bool ties = (bounds[t] == minima[t]) & (bounds[t] > floor) & (order < farthest[t]);
-    flags[t] = static_cast<unsigned char>(flags[t] | static_cast<unsigned char>(ties));
+    flags[t] = (bounds[t] > minima[t]) | ((bounds[t] == minima[t]) & (order < farthest[t]));
   }
 }
 
@@ -497,7 +497,7 @@ template <class T>
 constexpr VoxelLoops<T> voxelLoops{ width<T>, Picker<T>::group, &maximum<T>, &largest<T>, &sweep<T>,
   &cross<T>, &widen<T>, &survey<T>, &largestOfFour<T> };
 template <class P>
-constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P>, &farthest<P>, &ties<P> };
+constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P>, &farthest<P>, &exceedsOrTies<P> };
 template <class P>
 constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::climb)>(&climb<P>),

@@ -160,12 +160,12 @@ struct TileLoops
   void (*minima)(const P* image, std::ptrdiff_t stride, int rows, std::ptrdiff_t tiles, P* minima);
   /// flags[t] = whether bounds[t] > minima[t].
   void (*exceeds)(const P* bounds, const P* minima, unsigned char* flags, std::ptrdiff_t n);
-  /// farthest[t] = the largest note of the pixels of tile t that are minima[t]. Notes lie in rows
-  /// as the pixels do.
+  /// farthest[t] = the largest note of the pixels of tile t that are minima[t]; -1 if these are no
+  /// more than the floor. Notes lie in rows as the pixels do.
   void (*farthest)(const P* image, const std::int16_t* notes, std::ptrdiff_t stride, int rows,
-    std::ptrdiff_t tiles, const P* minima, std::int16_t* farthest);
-  /// Sets flags[t], too, where bounds[t] is minima[t] but above the floor, and order < farthest[t].
-  void (*ties)(const P* bounds, const P* minima, P floor, const std::int16_t* farthest,
+    std::ptrdiff_t tiles, const P* minima, P floor, std::int16_t* farthest);
+  /// flags[t] = whether bounds[t] > minima[t], or as large and order < farthest[t].
+  void (*exceedsOrTies)(const P* bounds, const P* minima, const std::int16_t* farthest,
     std::int16_t order, unsigned char* flags, std::ptrdiff_t n);
 };
 

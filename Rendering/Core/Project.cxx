@@ -80,7 +80,7 @@ double worthwhileShare(Quality quality)
 Acceleration choose(VolumeIndex& index, int axis, bool isCut, const ProjectionSettings& settings)
 {
   const Experience& experience = index.experience(axis, static_cast<int>(settings.quality), isCut);
-  constexpr int patience = 16;
+  constexpr int patience = 32;
   const bool crowded = experience.share > worthwhileShare(settings.quality);
   return crowded && experience.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
 }

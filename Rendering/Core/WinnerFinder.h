@@ -34,8 +34,10 @@ void openOrders(const Frame<T>& frame, int v0, int v1)
   {
     const Span& span = image.spans[v];
     std::int16_t* const row = frame.ordersOfRow(v);
-    std::fill(row, row + image.width, std::int16_t(-1));
-    std::fill(row + span.begin, row + std::max(span.begin, span.end), std::int16_t(0));
+    const int begin = std::min(span.begin, image.width), end = std::max(begin, span.end);
+    std::fill(row, row + begin, std::int16_t(-1));
+    std::fill(row + begin, row + end, std::int16_t(0));
+    std::fill(row + end, row + image.width, std::int16_t(-1));
     for (int u = span.begin; u < span.end && !image.mask.empty(); ++u)
     {
       row[u] = image.covers(u, v) ? std::int16_t(0) : std::int16_t(-1);
@@ -85,11 +87,13 @@ private:
     std::int32_t* const winners = &image.winners[std::size_t(v) * image.width];
     const std::int16_t* const orders = this->Shared.ordersOfRow(v);
     const P* const row = image.row<P>(v);
-    std::fill(winners, winners + image.width, -1);
     if (span.empty())
     {
+      std::fill(winners, winners + image.width, -1);
       return false;
     }
+    std::fill(winners, winners + span.begin, -1);
+    std::fill(winners + span.end, winners + image.width, -1);
     const RayLoops<P>& loops = this->Shared.kernels;
     return loops.settle(row + span.begin, orders + span.begin, this->Floor, this->reversed(),
       this->Shared.orderOfStep(0), winners + span.begin, span.end - span.begin);
