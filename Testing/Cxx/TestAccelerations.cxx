@@ -247,13 +247,13 @@ void testAuto(Checks& check)
   splatting::Projector projector;
   splatting::ShearImage image;
   int bricks = 0;
-  for (int frame = 0; frame < 35; ++frame)
+  for (int frame = 0; frame < 67; ++frame)
   {
     splatting::ProjectionSettings settings;
     settings.quality = Quality::Preview;
     const bool usesBricks =
       projector.project(index, geometry, settings, {}, image) == Acceleration::Bricks;
-    check(usesBricks == (frame % 17 == 0), "frame ", frame, " in noise");
+    check(usesBricks == (frame % 33 == 0), "frame ", frame, " in noise");
     bricks += usesBricks;
   }
   check(bricks == 3, "Auto does not try again");
