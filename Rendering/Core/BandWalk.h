@@ -44,6 +44,7 @@ struct BandScratch
   std::vector<Span> runs;
   std::vector<RowRuns> rows;
   BandCuts cuts;
+  SliceRuns sliceRuns;
   std::vector<unsigned char> mask;
   std::vector<unsigned char> brickRow;
   std::vector<std::int16_t> farthest;
@@ -79,13 +80,28 @@ public:
 
   void walkDensely()
   {
-    if (!this->Shared.cuts.none())
+    std::vector<Span>& runs = this->Scratch.runs;
+    runs.assign(1, { 0, this->Shared.image.width });
+    if (this->Shared.cuts.none())
     {
-      this->Shared.range.special ? this->walkSamples() : this->walkCut();
+      this->Stack.splatAll(this->Range, this->V0, this->V1, runs, this->Scratch.patch);
       return;
     }
-    this->Scratch.runs.assign(1, { 0, this->Shared.image.width });
-    this->Stack.splatAll(this->Range, this->V0, this->V1, this->Scratch.runs, this->Scratch.patch);
+    if (this->Shared.range.special)
+    {
+      this->walkSamples();
+      return;
+    }
+    if constexpr (Layers::TakesSliceRuns)
+    {
+      if (this->findSliceRuns())
+      {
+        this->Stack.splatAll(
+          this->Range, this->V0, this->V1, runs, this->Scratch.patch, &this->Scratch.sliceRuns);
+        return;
+      }
+    }
+    this->walkCut();
   }
 
   void walkBricks(const BrickMaxima& bricks)
@@ -193,6 +209,17 @@ private:
             pixels.end - pixels.begin);
         }
       });
+  }
+
+  /// Of all slices that layers are taken together with.
+  bool findSliceRuns()
+  {
+    constexpr int depth = LayersTogether * BrickDepth;
+    const int begin = this->Range.begin * BrickDepth, end = this->Range.end * BrickDepth;
+    const Span slices{ begin / depth * depth,
+      std::min((end + depth - 1) / depth * depth, this->Shared.geometry.size().z) };
+    return this->Scratch.sliceRuns.find(
+      this->Shared.cuts, slices, this->V0, this->V1, this->Shared.image.spans);
   }
 
   void openCuts()

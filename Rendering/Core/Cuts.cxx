@@ -55,6 +55,98 @@ bool CutMap::findMask(int k, int v, const Span& pixels, unsigned char* mask) con
   return any != 0 && shown != 0;
 }
 
+bool SliceRuns::find(
+  const CutMap& map, const Span& slices, int v0, int v1, const std::vector<Span>& spans)
+{
+  this->V0 = v0;
+  this->Slices = slices;
+  this->Runs.resize(std::size_t(v1 - v0) * this->stride());
+  const RayIntervals& intervals = map.source().intervals;
+  Span* runs = this->Runs.data();
+  for (int v = v0; v < v1; ++v, runs += this->stride())
+  {
+    std::fill_n(runs, this->stride(), intervals.empty() ? spans[v] : Nothing);
+    if (!(intervals.empty() || this->cutByIntervals(intervals, v, spans[v], runs)) ||
+      !(map.crops() ? this->crop(map, v, runs) : true))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Opens and ends empty runs where slices begin and cease to count from one pixel to the next.
+bool SliceRuns::cutByIntervals(
+  const RayIntervals& intervals, int v, const Span& pixels, Span* runs) const
+{
+  const std::int16_t* const first = intervals.first(v);
+  const std::int16_t* const last = intervals.last(v);
+  Span* const slice = runs - this->Slices.begin;
+  bool once = true;
+  const auto begin = [&](const Span& slices, int u)
+  {
+    for (int k = slices.begin; k < slices.end; ++k)
+    {
+      once = once && slice[k].empty();
+      slice[k] = { u, pixels.end };
+    }
+  };
+  const auto end = [&](const Span& slices, int u)
+  {
+    for (int k = slices.begin; k < slices.end; ++k)
+    {
+      slice[k].end = u;
+    }
+  };
+  Span open{ this->Slices.begin, this->Slices.begin };
+  for (int u = pixels.begin; u < pixels.end && once; ++u)
+  {
+    Span now = common(this->Slices, { first[u], last[u] + 1 });
+    now = now.empty() ? Span{ open.end, open.end } : now;
+    if (now.begin > open.begin)
+    {
+      end({ open.begin, std::min(open.end, now.begin) }, u);
+    }
+    if (now.end < open.end)
+    {
+      end({ std::max(open.begin, now.end), open.end }, u);
+    }
+    if (now.begin < open.begin)
+    {
+      begin({ now.begin, std::min(now.end, open.begin) }, u);
+    }
+    if (now.end > open.end)
+    {
+      begin({ std::max(now.begin, open.end), now.end }, u);
+    }
+    open = now;
+  }
+  return once;
+}
+
+bool SliceRuns::crop(const CutMap& map, int v, Span* runs) const
+{
+  for (int k = this->Slices.begin; k < this->Slices.end; ++k, ++runs)
+  {
+    const SliceRegions& regions = map.regions(k);
+    const unsigned shown = regions.regionsOfRow(v);
+    if (shown == 5u) // the outer two
+    {
+      return false;
+    }
+    const int least = shown & 1u ? 0
+      : shown & 2u               ? 1
+                                 : 2,
+              most = shown & 4u ? 2
+      : shown & 2u              ? 1
+                                : 0;
+    const Span region{ regions.pixels(least).begin, regions.pixels(most).end };
+    *runs = common(*runs, region);
+    *runs = shown == 0 || runs->empty() ? Nothing : *runs;
+  }
+  return true;
+}
+
 void BandCuts::reset(const CutMap& map, const CutLoops& loops, int v0, int v1, int width)
 {
   this->Map = &map;

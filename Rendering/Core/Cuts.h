@@ -66,6 +66,34 @@ struct SliceBits
   const unsigned char* at(int u, int v) const { return this->origin + v * this->stride + u; }
 };
 
+/// For each row of a band and each slice the run of pixels for which the slice counts, where that
+/// is one run, as with planes and boxes. A thread's work space.
+class SliceRuns
+{
+public:
+  /// False if a slice counts for two runs of a row.
+  /// @param spans  the pixels of each row of the image that matter
+  bool find(const CutMap& map, const Span& slices, int v0, int v1, const std::vector<Span>& spans);
+
+  /// Of empty ones all begin behind and end before the others.
+  const Span& at(int k, int v) const
+  {
+    return this->Runs[std::ptrdiff_t(v - this->V0) * this->stride() + k - this->Slices.begin];
+  }
+  /// From one row to the next.
+  std::ptrdiff_t stride() const { return this->Slices.end - this->Slices.begin; }
+
+private:
+  static constexpr Span Nothing{ std::numeric_limits<int>::max() / 2, 0 };
+
+  bool cutByIntervals(const RayIntervals& intervals, int v, const Span& pixels, Span* runs) const;
+  bool crop(const CutMap& map, int v, Span* runs) const;
+
+  int V0 = 0;
+  Span Slices;
+  std::vector<Span> Runs;
+};
+
 /// Some rows of pixels, the runs of pixels in them, and, if not all samples count, their bits and
 /// the longest run of pixels of which all do.
 struct RowRuns

@@ -7,6 +7,7 @@
 // it might be the one that only the newest processors can run. For the same reason all is in an
 // anonymous namespace, but the table.
 #include "Kernels.h"
+#include "DepthKernels.h"
 #include "ExactKernels.h"
 #include "FanKernels.h"
 #include "RayKernels.h"
@@ -512,7 +513,7 @@ constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>,
 }
 
 extern const Kernels SPLATTING_KERNELS;
-const Kernels SPLATTING_KERNELS = { { &sliceBits, &tileExtremes, &tileShares }, { &steps },
+const Kernels SPLATTING_KERNELS = { { &beginAtPlane, &endAtPlane, &slicesBetween, &sliceBits, &tileExtremes, &tileShares }, { &steps },
   voxelLoops<std::int8_t>, voxelLoops<std::uint8_t>, voxelLoops<std::int16_t>,
   voxelLoops<std::uint16_t>, voxelLoops<std::int32_t>, voxelLoops<std::uint32_t>,
   voxelLoops<std::int64_t>, voxelLoops<std::uint64_t>, voxelLoops<float>, voxelLoops<double>,

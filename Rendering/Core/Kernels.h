@@ -79,6 +79,13 @@ struct Sweep
   const unsigned char* bits;
   std::ptrdiff_t bitsStride;
   unsigned char bit[MostRows];
+  /// Where each slice counts for one run of pixels in a row: pixel x takes voxels of row r if
+  /// sliceRuns[slice[r]] and sees[r] have it, in place of runs, valid and rims; else nullptr.
+  const Span* sliceRuns;
+  std::ptrdiff_t sliceRunsStride;
+  std::ptrdiff_t wholeAhead; ///< to rows that are worth fetching as a whole, or 0
+  unsigned char slice[MostRows];
+  Span sees[MostRows];
   Noting noting;
   std::int8_t offsets[MostRows]; ///< from noting.order, ascending
   bool winsOften;                ///< whether many registers of pixels are likely to be raised
@@ -243,9 +250,32 @@ struct TileExtremes
   std::int16_t *leastFirst, *greatestFirst, *leastLast, *greatestLast; ///< arrays
 };
 
-/// Loops over the slices that rays are cut to.
+/// Of depths along rays, in slices.
+struct DepthLimits
+{
+  static constexpr double Rounding = 1e-9; ///< that far outside is inside
+  /// Less than the first slice, and more than the last one.
+  static constexpr double Before = -1.0, Beyond = 32767.0;
+};
+
+/// A plane along a row of pixels: the ray of pixel x meets it at (slope (u + x) + rest) scale.
+struct PlaneRow
+{
+  double slope, rest, scale;
+  int u;
+};
+
+/// Loops over the depths that rays are cut at, and over the slices that are left.
 struct CutLoops
 {
+  /// near[x] = max(near[x], where the ray meets the plane).
+  void (*beginAtPlane)(const PlaneRow& plane, double* near, std::ptrdiff_t n);
+  /// far[x] = min(far[x], where the ray meets the plane).
+  void (*endAtPlane)(const PlaneRow& plane, double* far, std::ptrdiff_t n);
+  /// The first and last of slices [begin, end) that lie between the depths, as RayIntervals says;
+  /// first > last if none do. Whether there are rays that do not have all.
+  bool (*slicesBetween)(const double* near, const double* far, int begin, int end,
+    std::int16_t* first, std::int16_t* last, std::ptrdiff_t n);
   /// Bit s of bits[x] = whether first[x] <= k + s <= last[x], for s from 0 to `count` - 1.
   void (*sliceBits)(const std::int16_t* first, const std::int16_t* last, int k, int count,
     unsigned char* bits, std::ptrdiff_t n);

@@ -23,6 +23,8 @@ public:
   static constexpr int Beyond = 0;
   static constexpr int RowsTogether = 32;
   static constexpr int RunUnit = 64 / sizeof(T);
+  /// Whether splatAll() takes SliceRuns.
+  static constexpr bool TakesSliceRuns = false;
   static_assert(RunUnit % TileWidth == 0);
 
   /// @param none  work space

@@ -54,6 +54,8 @@ public:
   static constexpr int RowsTogether = 32;
   /// Pixels whose multiples runs had best begin and end at.
   static constexpr int RunUnit = TileWidth;
+  /// Whether splatAll() takes SliceRuns.
+  static constexpr bool TakesSliceRuns = true;
 
   /// `storage` outlives this, and is kept for the next frame.
   PreviewLayers(const Frame<T>& frame, PreviewStorage& storage)
@@ -84,7 +86,7 @@ public:
   void splat(
     int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
   {
-    this->splatLayer(this->Layers[z], v0, v1, runs, BrickDepth, bits, {}, patch);
+    this->splatLayer(this->Layers[z], v0, v1, runs, BrickDepth, { bits, nullptr }, {}, patch);
   }
 
   /// The same for all layers of some rows; to be opened once.
@@ -115,7 +117,7 @@ public:
         first.runs.assign(1, { first.runs.front().begin, first.runs.back().end });
       }
       this->splatLayer(this->Layers[z], first.v0, rows[end - 1].v1, first.runs, BrickDepth,
-        first.bits, first.whole, patch);
+        { first.bits, nullptr }, first.whole, patch);
     }
   }
 
@@ -141,10 +143,11 @@ public:
 
   /// The same for all pixels of some rows, which are one run, and all voxels of some layers, in the
   /// order of memory: slice after slice, or, where rows of all slices lie side by side, a few rows
-  /// through all of them.
-  void splatAll(
-    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const
+  /// through all of them. Or, if there are `cuts`, the pixels that these say.
+  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch,
+    const SliceRuns* cuts = nullptr) const
   {
+    const RowCuts by{ {}, cuts };
     const Slices& slices = this->Shared.slices;
     const bool slicesFirst = slices.rowStride <= slices.sliceStride;
     const int height = slicesFirst ? v1 - v0 : BrickHeight;
@@ -161,8 +164,8 @@ public:
       for (int n = 0; n < some.end - some.begin; ++n)
       {
         const int z = this->Shared.nth(some, n), end = std::min(v + height, v1);
-        grouped ? this->splatGroup(z, v, end, all, patch)
-                : this->splatLayer(this->Layers[z], v, end, all, sideBySide, {}, {}, patch);
+        grouped ? this->splatGroup(z, v, end, all, by, patch)
+                : this->splatLayer(this->Layers[z], v, end, all, sideBySide, by, {}, patch);
       }
     }
   }
@@ -176,6 +179,13 @@ public:
 
 private:
   using Layer = PreviewLayer;
+
+  /// Which slices count for the pixels of some rows, by bits or by runs: all of them without.
+  struct RowCuts
+  {
+    SliceBits bits;
+    const SliceRuns* runs = nullptr;
+  };
 
   struct Runs
   {
@@ -202,22 +212,22 @@ private:
 
   /// @param whole  pixels of a single run for which all bits are set
   void splatLayer(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
-    const SliceBits& bits, const Span& whole, Patch& patch) const
+    const RowCuts& cuts, const Span& whole, Patch& patch) const
   {
     const Span plain = this->plainRows(layer, v0, v1);
-    this->splatSlices(layer.slices, v0, plain.begin, runs, bits, patch);
+    this->splatSlices(layer.slices, v0, plain.begin, runs, cuts, patch);
     if (!plain.empty())
     {
       const Span inner = common(whole, layer.valid); // rims have pixels beside it
-      isLong(inner) ? this->sweepAround(layer, plain, runs.front(), sideBySide, bits, inner)
-                    : this->sweep(layer, plain, all(runs), layer.valid, sideBySide, bits);
+      isLong(inner) ? this->sweepAround(layer, plain, runs.front(), sideBySide, cuts, inner)
+                    : this->sweep(layer, plain, all(runs), layer.valid, sideBySide, cuts);
     }
-    this->splatSlices(layer.slices, plain.end, v1, runs, bits, patch);
+    this->splatSlices(layer.slices, plain.end, v1, runs, cuts, patch);
   }
 
   /// A run by parts: pixels in the middle of which all samples count, and, by bits, the others.
   void sweepAround(const Layer& layer, const Span& rows, const Span& run, int sideBySide,
-    const SliceBits& bits, const Span& whole) const
+    const RowCuts& cuts, const Span& whole) const
   {
     this->sweep(layer, rows, { &whole, 1 }, whole, sideBySide, {});
     const Span sides[2] = { { run.begin, whole.begin }, { whole.end, run.end } };
@@ -225,7 +235,7 @@ private:
     {
       if (!side.empty())
       {
-        this->sweep(layer, rows, { &side, 1 }, layer.valid, sideBySide, bits);
+        this->sweep(layer, rows, { &side, 1 }, layer.valid, sideBySide, cuts);
       }
     }
   }
@@ -240,7 +250,8 @@ private:
     return { first, std::clamp(last, first, v1) };
   }
 
-  void splatGroup(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
+  void splatGroup(
+    int z, int v0, int v1, const std::vector<Span>& runs, const RowCuts& cuts, Patch& patch) const
   {
     const Layer& group = this->Groups[z];
     const Span plain = this->plainRows(group, v0, v1);
@@ -252,13 +263,13 @@ private:
       for (int n = 0; n < own.end - own.begin && begin < end; ++n)
       {
         const Layer& layer = this->Layers[this->Shared.nth(own, n)];
-        this->splatLayer(layer, begin, end, runs, BrickDepth, {}, {}, patch);
+        this->splatLayer(layer, begin, end, runs, BrickDepth, cuts, {}, patch);
       }
     };
     splatEach(v0, plain.begin);
     if (!plain.empty())
     {
-      this->sweep(group, plain, all(runs), group.valid, this->layersTogether() * BrickDepth, {});
+      this->sweep(group, plain, all(runs), group.valid, this->layersTogether() * BrickDepth, cuts);
     }
     splatEach(plain.end, v1);
   }
@@ -334,7 +345,7 @@ private:
   /// runs valid pixels may be swept, which see voxels along all paths. So many slices are read side
   /// by side.
   void sweep(const Layer& layer, const Span& rows, const Runs& runs, const Span& valid,
-    int sideBySide, const SliceBits& bits) const
+    int sideBySide, const RowCuts& cuts) const
   {
     for (int first = 0, end = 0; first < layer.tapCount; first = end)
     {
@@ -342,17 +353,20 @@ private:
       {
         ++end;
       }
-      this->sweepTaps(layer, first, end, rows, runs, valid, bits);
+      this->sweepTaps(layer, first, end, rows, runs, valid, cuts);
     }
   }
 
   void sweepTaps(const Layer& layer, int firstTap, int endTap, const Span& rows, const Runs& runs,
-    const Span& valid, const SliceBits& bits) const
+    const Span& valid, const RowCuts& cuts) const
   {
     const int v0 = rows.begin;
     Sweep<T> sweep;
-    sweep.bits = bits.origin ? bits.at(0, v0) : nullptr;
-    sweep.bitsStride = bits.stride;
+    sweep.bits = cuts.bits.origin ? cuts.bits.at(0, v0) : nullptr;
+    sweep.bitsStride = cuts.bits.stride;
+    const int firstSlice = layer.slices.begin;
+    sweep.sliceRuns = cuts.runs ? &cuts.runs->at(firstSlice, v0) : nullptr;
+    sweep.sliceRunsStride = cuts.runs ? cuts.runs->stride() : 0;
     sweep.imageStride = this->Shared.image.width;
     sweep.image = this->image().template row<T>(v0);
     sweep.noting.notes = this->Shared.orders ? this->Shared.ordersOfRow(v0) : nullptr;
@@ -362,12 +376,18 @@ private:
     sweep.count = endTap - firstTap;
     const Slices& slices = this->Shared.slices;
     sweep.rowStride = slices.rowStride;
-    sweep.ahead = slices.rowStride > slices.sliceStride ? slices.rowStride : 0;
+    // Runs that end anywhere are not foreseen. What lies in caches may be fetched in vain.
+    const bool fetchesWhole = cuts.runs && this->isSmall();
+    const bool jumps = cuts.runs || slices.rowStride > slices.sliceStride;
+    sweep.ahead = jumps && !fetchesWhole ? slices.rowStride : 0;
+    sweep.wholeAhead = fetchesWhole ? 2 * slices.rowStride : 0;
     sweep.winsOften = this->isSmall() || !this->Shared.nearestFirst;
     for (int t = firstTap; t < endTap; ++t)
     {
       const Layer::Tap& tap = layer.taps[t];
       sweep.bit[t - firstTap] = static_cast<unsigned char>(1u << tap.k % BrickDepth);
+      sweep.slice[t - firstTap] = static_cast<unsigned char>(tap.k - firstSlice);
+      sweep.sees[t - firstTap] = { -tap.di, this->Shared.geometry.size().x - tap.di };
       sweep.rows[t - firstTap] = this->Shared.voxelRow(v0 + tap.dj, tap.k) + tap.di;
       sweep.offsets[t - firstTap] = static_cast<std::int8_t>(
         this->Shared.orderOfStep(StepsPerSlice * tap.k + tap.t) - sweep.noting.order);
@@ -377,7 +397,7 @@ private:
     sweep.valid = valid;
     Rim left, right;
     sweep.rimCount = 0;
-    if (layer.window.iMin < layer.window.iMax)
+    if (layer.window.iMin < layer.window.iMax && !cuts.runs)
     {
       if (runs.first->begin < layer.valid.begin)
       {
@@ -405,7 +425,7 @@ private:
 
   /// Any rows, slice by slice.
   void splatSlices(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
-    const SliceBits& bits, Patch& patch) const
+    const RowCuts& cuts, Patch& patch) const
   {
     for (int k = slices.begin; k < slices.end; ++k)
     {
@@ -414,22 +434,23 @@ private:
       {
         for (const Span& run : runs)
         {
-          const Span span = common(run, this->Shared.pixels(v, k));
-          this->Shared.orders ? this->noteSlice(k, v, span, bits)
-                              : this->splatSlice(k, v, span, bits, patch);
+          const Span pixels = common(run, this->Shared.pixels(v, k));
+          const Span span = cuts.runs ? common(pixels, cuts.runs->at(k, v)) : pixels;
+          this->Shared.orders ? this->noteSlice(k, v, span, cuts)
+                              : this->splatSlice(k, v, span, cuts, patch);
         }
       }
     }
   }
 
-  void splatSlice(int k, int v, const Span& span, const SliceBits& bits, Patch& patch) const
+  void splatSlice(int k, int v, const Span& span, const RowCuts& cuts, Patch& patch) const
   {
     const unsigned char* mask = nullptr;
-    if (bits.origin && !span.empty())
+    if (cuts.bits.origin && !span.empty())
     {
       patch.worksheet.resize(this->image().width);
       const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
-      std::transform(bits.at(span.begin, v), bits.at(span.end, v),
+      std::transform(cuts.bits.at(span.begin, v), cuts.bits.at(span.end, v),
         patch.worksheet.data() + span.begin,
         [bit](unsigned char b) { return static_cast<unsigned char>(b & bit); });
       mask = patch.worksheet.data();
@@ -453,7 +474,7 @@ private:
       });
   }
 
-  void noteSlice(int k, int v, const Span& span, const SliceBits& bits) const
+  void noteSlice(int k, int v, const Span& span, const RowCuts& cuts) const
   {
     const RayLoops<T>& loops = this->Shared.kernels;
     this->forVoxels(k, v, span, false,
@@ -462,7 +483,7 @@ private:
         const int order = this->Shared.orderOfStep(StepsPerSlice * k + t);
         loops.raiseNoting(this->image().template row<T>(v) + pixels.begin,
           this->Shared.ordersOfRow(v) + pixels.begin, static_cast<std::int16_t>(order), voxels,
-          bits.origin ? bits.at(pixels.begin, v) : nullptr,
+          cuts.bits.origin ? cuts.bits.at(pixels.begin, v) : nullptr,
           static_cast<unsigned char>(1u << k % BrickDepth), pixels.end - pixels.begin);
       });
   }

@@ -18,16 +18,8 @@ namespace splatting
 namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
-constexpr double Rounding = 1e-9;
-/// Less than the first slice, and more than the last one.
-constexpr double Before = -1.0, Beyond = std::numeric_limits<std::int16_t>::max();
-
-/// Without a function call on the baseline of x86-64. For doubles far below 2^51.
-inline double nearestInteger(double x)
-{
-  constexpr double unit = 0x1.8p52;
-  return (x + unit) - unit;
-}
+constexpr double Rounding = DepthLimits::Rounding;
+constexpr double Before = DepthLimits::Before, Beyond = DepthLimits::Beyond;
 
 /// The half-spaces as Depths::cut() and cutFan() take them.
 std::vector<glm::dvec4> asSeen(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces)
@@ -54,7 +46,7 @@ struct Depths
   }
 
   /// By a half-space of the pixels of a parallel image.
-  void cut(const glm::dvec4 h, int u0, int v, int count)
+  void cut(const CutLoops& loops, const glm::dvec4 h, int u0, int v, int count)
   {
     // h.x u + rest + h.z z >= 0
     const double rest = h.y * v + h.w;
@@ -68,19 +60,9 @@ struct Depths
       }
       return;
     }
-    const double scale = -1.0 / h.z;
-    if (h.z > 0.0)
-    {
-      for (int x = 0; x < count; ++x)
-      {
-        this->near[x] = std::max(this->near[x], (h.x * (u0 + x) + rest) * scale);
-      }
-      return;
-    }
-    for (int x = 0; x < count; ++x)
-    {
-      this->far[x] = std::min(this->far[x], (h.x * (u0 + x) + rest) * scale);
-    }
+    const PlaneRow plane{ h.x, rest, -1.0 / h.z, u0 };
+    h.z > 0.0 ? loops.beginAtPlane(plane, this->near, count)
+              : loops.endAtPlane(plane, this->far, count);
   }
 
   /// By a half-space of (i, j, k), for the rays of a perspective image.
@@ -127,42 +109,6 @@ struct Depths
       this->near[x] = std::max(this->near[x], nearest[x]);
       this->far[x] = std::min(this->far[x], farthest[x]);
     }
-  }
-
-  /// The first and last slice of each pixel, first > last if there are none, instead of depths.
-  void round(const Span slices, int count)
-  {
-    const double begin = slices.begin, end = slices.end - 1;
-    for (int x = 0; x < count; ++x)
-    {
-      // Also keeps infinities out of the arithmetic.
-      const double low = std::min(std::max(this->near[x], Before), Beyond);
-      const double high = std::min(std::max(this->far[x], Before), Beyond);
-      const double margin = Rounding * (1.0 + std::abs(low));
-      // Up and down: with the margins these are no integers.
-      const double first = nearestInteger(low - margin + 0.5);
-      const double last = nearestInteger(high + Rounding * (1.0 + std::abs(high)) - 0.5);
-      const bool isThin = first > last && high - low > margin;
-      // Of two slices that are as near, the higher one.
-      const double middle = nearestInteger(0.5 * (low + high) + Rounding);
-      this->near[x] = std::max(isThin ? middle : first, begin);
-      this->far[x] = std::min(isThin ? middle : last, end);
-    }
-  }
-
-  /// Whether any slices are lost.
-  bool write(const Span slices, int count, std::int16_t* __restrict first,
-    std::int16_t* __restrict last) const
-  {
-    int lost = 0;
-    for (int x = 0; x < count; ++x)
-    {
-      const int begin = static_cast<int>(this->near[x]), end = static_cast<int>(this->far[x]);
-      first[x] = static_cast<std::int16_t>(begin);
-      last[x] = static_cast<std::int16_t>(end);
-      lost |= (begin - slices.begin) | (slices.end - 1 - end);
-    }
-    return lost != 0;
   }
 
   double near[Most], far[Most];
@@ -245,7 +191,7 @@ void RayIntervals::clear()
 }
 
 void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces,
-  ClosedSurface* surface, const SceneDepth* depth)
+  ClosedSurface* surface, const SceneDepth* depth, InstructionSet set)
 {
   if (halfSpaces.empty() && !surface && !depth)
   {
@@ -261,6 +207,7 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
   {
     reach.findVolume(geometry);
   }
+  const CutLoops& loops = kernelsFor(set);
   const Span slices = geometry.slices();
   const std::vector<glm::dvec4> planes = asSeen(geometry, halfSpaces);
   const SurfaceDepths* const hull = surface ? &surface->project(geometry) : nullptr;
@@ -284,7 +231,7 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
             }
             else
             {
-              depths.cut(h, u, v, count);
+              depths.cut(loops, h, u, v, count);
             }
           }
           if (hull)
@@ -301,8 +248,8 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
             reach.openWhole(u, v, count, depths);
           }
           const std::size_t first = std::size_t(v) * this->Width + u;
-          depths.round(slices, count);
-          lost |= depths.write(slices, count, &this->First[first], &this->Last[first]);
+          lost |= loops.slicesBetween(depths.near, depths.far, slices.begin, slices.end,
+            &this->First[first], &this->Last[first], count);
         }
       }
       if (lost)

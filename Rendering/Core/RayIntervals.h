@@ -40,9 +40,11 @@ public:
    * @param halfSpaces  of index space, as View has them
    * @param surface     what lies outside is cut away; it is projected
    * @param depth       of other things in the scene, which end rays; placed in the same view
+   * @param set         of instructions; all give the same
    */
   void find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces,
-    ClosedSurface* surface = nullptr, const SceneDepth* depth = nullptr);
+    ClosedSurface* surface = nullptr, const SceneDepth* depth = nullptr,
+    InstructionSet set = bestInstructionSet());
 
   /// The slices that each pixel's ray crosses, of those in other intervals, if these are not empty.
   void findCrossed(const CrossedSlices& crossed, int width, int height, const RayIntervals& within);

@@ -396,9 +396,162 @@ inline void sweepRow(const Sweep<T>& s, T* image, std::int16_t* notes, const T* 
   }
 }
 
+/// Rows of pixels for runs of which slices count: all of most runs lies in each of the others, and
+/// what does not is swept with masks, a register at a time.
+template <class T>
+class CutSweep
+{
+public:
+  explicit CutSweep(const Sweep<T>& sweep) : Shared(sweep)
+  {
+    for (int x = 0; x < width<T>; ++x)
+    {
+      reinterpret_cast<Unsigned*>(&this->Lanes)[x] = static_cast<Unsigned>(x);
+    }
+    for (int r = 0; r < sweep.count; ++r)
+    {
+      const int slice = sweep.slice[r];
+      this->Any = widened(this->Any, sweep.sees[r]);
+      this->All = narrowed(this->All, sweep.sees[r]);
+      this->Slices = widened(this->Slices, { slice, slice + 1 });
+    }
+    const int end =
+      static_cast<int>(this->Any.end < sweep.imageStride ? this->Any.end : sweep.imageStride);
+    this->LastRegister = end - static_cast<int>(width<T>);
+  }
+
+  /// @param runs  of the slices for this row of pixels
+  inline void row(const Span* runs, T* image, std::int16_t* notes, const T* const* rows)
+  {
+    Span any = nothing(), all = everything();
+    for (int k = this->Slices.begin; k < this->Slices.end; ++k)
+    {
+      any = widened(any, runs[k]);
+      all = narrowed(all, runs[k]);
+    }
+    any = narrowed(any, this->Any);
+    all = narrowed(all, this->All);
+    if (any.end <= any.begin)
+    {
+      return;
+    }
+    this->Runs = runs;
+    const Sweep<T>& s = this->Shared;
+    // Whole rows, as what runs leave out would interrupt the processor's own reading ahead. (Not in
+    // a function of its own: GCC drops calls of functions that only fetch.)
+    for (int r = 0; r < s.count && s.wholeAhead; ++r)
+    {
+      const bool isNew = r == 0 || s.slice[r] != s.slice[r - 1];
+      for (int x = this->All.begin; x < this->All.end && isNew; x += static_cast<int>(width<T>))
+      {
+        prefetch(rows[r] + x + s.wholeAhead);
+      }
+    }
+    if (all.end - all.begin < width<T>)
+    {
+      this->sweepPartly(any, image, notes, rows);
+      return;
+    }
+    this->sweepPartly({ any.begin, all.begin }, image, notes, rows);
+    this->sweepPartly({ all.end, any.end }, image, notes, rows);
+    if (notes)
+    {
+      sweepRun<T>(NotingBlock<T, false>{ s, image, notes, rows, nullptr }, all, all);
+    }
+    else
+    {
+      s.ahead ? sweepRun<T>(MaximumBlock<T, true>{ image, rows, s.count, s.ahead }, all, all)
+              : sweepRun<T>(MaximumBlock<T, false>{ image, rows, s.count, 0 }, all, all);
+    }
+  }
+
+private:
+  using Unsigned = std::make_unsigned_t<Integer<T>>;
+
+  static constexpr Span nothing() { return { std::numeric_limits<int>::max(), 0 }; }
+  static constexpr Span everything() { return { 0, std::numeric_limits<int>::max() }; }
+  static inline Span widened(const Span& a, const Span& b)
+  {
+    return { a.begin < b.begin ? a.begin : b.begin, a.end > b.end ? a.end : b.end };
+  }
+  static inline Span narrowed(const Span& a, const Span& b)
+  {
+    return { a.begin > b.begin ? a.begin : b.begin, a.end < b.end ? a.end : b.end };
+  }
+
+  /// Pixels that see some of the rows.
+  inline void sweepPartly(
+    const Span& pixels, T* image, std::int16_t* notes, const T* const* rows) const
+  {
+    for (int x = pixels.begin; x < pixels.end; x += static_cast<int>(width<T>))
+    {
+      this->sweepRegister(x < this->LastRegister ? x : this->LastRegister, image, notes, rows);
+    }
+  }
+
+  inline void sweepRegister(int x, T* image, std::int16_t* notes, const T* const* rows) const
+  {
+    const Sweep<T>& s = this->Shared;
+    const auto sample = [&](int, int r, Pack<T> other)
+    {
+      constexpr int w = static_cast<int>(width<T>);
+      const Span seen = narrowed(this->Runs[s.slice[r]], s.sees[r]);
+      const int begin = seen.begin - x > 0 ? seen.begin - x : 0;
+      const int end = seen.end - x < w ? seen.end - x : w;
+      const int count = end > begin ? end - begin : 0;
+      const Pack<Unsigned> beyond = this->Lanes - static_cast<Unsigned>(begin);
+      const Pack<T> value = load<T>(rows[r] + x);
+      if (s.ahead)
+      {
+        prefetch(rows[r] + x + s.ahead);
+      }
+      return beyond < static_cast<Unsigned>(count) ? value : other;
+    };
+    if (notes)
+    {
+      raiseNoting<1>(s, image, notes, Registers<T, 1>{ x, x }, sample);
+      return;
+    }
+    Pack<T> best = load<T>(image + x);
+    for (int r = 0; r < s.count; ++r)
+    {
+      best = larger(sample(0, r, best), best);
+    }
+    store<T>(image + x, best);
+  }
+
+  const Sweep<T>& Shared;
+  Pack<Unsigned> Lanes;
+  Span Slices = nothing(), Any = nothing(), All = everything();
+  int LastRegister; ///< registers beyond would leave the image, or read more than rims do
+  const Span* Runs = nullptr;
+};
+
+template <class T>
+void sweepCut(const Sweep<T>& s)
+{
+  CutSweep<T> cut(s);
+  const T* rows[MostRows];
+  for (int v = 0; v < s.height; ++v)
+  {
+    for (int r = 0; r < s.count; ++r)
+    {
+      rows[r] = s.rows[r] + v * s.rowStride;
+    }
+    const std::ptrdiff_t first = v * s.imageStride;
+    cut.row(s.sliceRuns + v * s.sliceRunsStride, s.image + first,
+      s.noting.notes ? s.noting.notes + first : nullptr, rows);
+  }
+}
+
 template <class T>
 void sweep(const Sweep<T>& s)
 {
+  if (s.sliceRuns)
+  {
+    sweepCut(s);
+    return;
+  }
   T* image = s.image;
   std::int16_t* notes = s.noting.notes;
   const unsigned char* bits = s.bits;

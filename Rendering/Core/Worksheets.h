@@ -82,6 +82,8 @@ public:
   /// Pixels whose multiples runs had best begin and end at: the widest registers hold two tiles,
   /// and take no longer for both than for one.
   static constexpr int RunUnit = 2 * TileWidth;
+  /// Whether splatAll() takes SliceRuns.
+  static constexpr bool TakesSliceRuns = false;
 
   /// @param depth  how many slices beyond its own a footprint reads
   WorksheetLayers(const Frame<T>& frame, const WorksheetReach<A>& reach, int depth)

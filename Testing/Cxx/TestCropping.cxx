@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Cropping leaves the samples of the regions that are shown: each of the 27 regions by itself, the
-// sets that VTK has names for and random ones, in all modes and with all accelerations.
+// sets that VTK has names for and random ones, in all modes and with all accelerations; and planes
+// at any angle besides.
 #include "CoreTesting.h"
 #include "Reductions.h"
 
@@ -252,6 +253,67 @@ void testLarge(Checks& check)
   }
 }
 
+/// Planes at any angle, a box or a thin slab.
+reference::RayCuts cutsAtAnyAngle(reference::Random& random, const std::array<int, 3>& size)
+{
+  reference::RayCuts cuts;
+  const auto within = [&](int a) { return random.uniform(0.0, size[a] - 1.0); };
+  const int planes = random.uniform(0, 3);
+  for (int n = 0; n < planes; ++n)
+  {
+    const std::array<double, 3> normal = { random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
+      random.uniform(-1.0, 1.0) };
+    cuts.halfSpaces.push_back({ normal[0], normal[1], normal[2],
+      -(normal[0] * within(0) + normal[1] * within(1) + normal[2] * within(2)) });
+  }
+  if (planes == 1 && random.uniform(0, 1))
+  {
+    const auto& h = cuts.halfSpaces.front();
+    cuts.halfSpaces.push_back({ -h[0], -h[1], -h[2], -h[3] + random.uniform(0.0, 4.0) });
+  }
+  placePlanes(random, size, cuts);
+  cuts.regions = random.uniform(0, 2) ? (1u << 27) - 1 : named[random.uniform(0, 4)];
+  return cuts;
+}
+
+/// Rows that fill registers, whose slices count for runs of pixels: loops that are each instruction
+/// set's own.
+template <class T>
+void testLongRows(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int n = 0; n < 18; ++n)
+  {
+    std::array<int, 3> size;
+    for (int a = 0; a < 3; ++a)
+    {
+      size[a] = a == n % 3 ? random.uniform(64, 200) : random.uniform(6, 40);
+    }
+    const auto volume = spots<T>(random, size);
+    Scene scene;
+    scene.geometry = splatting::ShearWarp(anyView(size, random));
+    scene.settings.quality = Quality::Preview;
+    const reference::ShearView view = referenceView(scene.geometry);
+    const auto grid = reference::makeShearGrid(size, view);
+    const auto rays = reference::voxelSamples(volume, view);
+    for (int m = 0; m < 6; ++m)
+    {
+      scene.cuts = cutsAtAnyAngle(random, size);
+      const auto expected = expectedOf(rays, grid, view, scene.cuts);
+      for (int way = 0; way < 12; ++way)
+      {
+        scene.settings.acceleration = way % 3 == 1 ? Acceleration::Bricks : Acceleration::Dense;
+        scene.settings.keepWinners = way % 3 == 2;
+        scene.settings.instructionSet = static_cast<splatting::InstructionSet>(way / 3);
+        check(sameBits(expected, toReference<T>(projected(volume, scene))), "long rows, type ",
+          int(splatting::scalarTypeOf<T>()), ", volume ", n, ", cuts ", m, ", way ", way,
+          ": other samples; axis ", view.axis, ", shear ", view.shear[0], " ", view.shear[1],
+          ", size ", size[0], " ", size[1], " ", size[2]);
+      }
+    }
+  }
+}
+
 /// The region of a place along an axis; -1 if rounding decides. Of slices only the place matters:
 /// where the middle region has none it has the one that is nearest to its middle.
 int regionOf(std::array<double, 2> planes, double place, bool isSlice)
@@ -372,6 +434,7 @@ int TestCropping(int, char*[])
       using T = std::remove_pointer_t<decltype(null)>;
       testPreview<T>(check, ++seed);
       testAverages<T>(check, ++seed);
+      testLongRows<T>(check, ++seed);
     });
   testLarge(check);
   testUnion(check);
