@@ -21,6 +21,7 @@
 #include "Worksheets.h"
 
 #include <cstdint>
+#include <cstring>
 #include <numeric>
 
 namespace splatting
@@ -101,6 +102,7 @@ public:
         return;
       }
     }
+    this->openBits();
     this->walkCut();
   }
 
@@ -166,7 +168,6 @@ private:
   {
     constexpr int together = Layers::RowsTogether / TileHeight;
     this->Scratch.rows.resize(together);
-    this->openCuts();
     for (int first = 0; first < this->Groups; first += together)
     {
       const int end = std::min(first + together, this->Groups);
@@ -224,11 +225,21 @@ private:
 
   void openCuts()
   {
-    if (!this->Shared.cuts.none())
+    if (this->Shared.cuts.none())
     {
-      this->Scratch.cuts.reset(
-        this->Shared.cuts, this->Shared.kernels, this->V0, this->V1, this->Shared.image.width);
+      return;
     }
+    this->HasSliceRuns = Layers::TakesSliceRuns && this->findSliceRuns();
+    if (!this->HasSliceRuns)
+    {
+      this->openBits();
+    }
+  }
+
+  void openBits()
+  {
+    this->Scratch.cuts.reset(
+      this->Shared.cuts, this->Shared.kernels, this->V0, this->V1, this->Shared.image.width);
   }
 
   SliceBits findBits(int z, int group)
@@ -503,6 +514,15 @@ private:
   /// Splats the tiles of a group that have flags.
   void splatFlagged(int z, int group)
   {
+    const int v0 = this->firstRow(group), v1 = v0 + this->rowsOf(group);
+    if constexpr (Layers::TakesSliceRuns)
+    {
+      if (this->HasSliceRuns)
+      {
+        this->splatFlaggedCut(z, v0, v1);
+        return;
+      }
+    }
     SliceBits bits;
     if (!this->Shared.cuts.none())
     {
@@ -511,9 +531,34 @@ private:
     this->findRuns(this->Scratch.runs);
     if (!this->Scratch.runs.empty())
     {
-      const int v0 = this->firstRow(group);
+      this->Stack.splat(z, v0, v1, this->Scratch.runs, bits, this->Scratch.patch);
+    }
+  }
+
+  /// The same where slices count for runs of pixels.
+  void splatFlaggedCut(int z, int v0, int v1)
+  {
+    unsigned char* const flags = this->Scratch.flags.data();
+    if (!std::memchr(flags, 1, this->Tiles))
+    {
+      return;
+    }
+    const SliceRuns::Hull hull =
+      this->Scratch.sliceRuns.hull(slicesOfLayer(z, this->Shared.geometry.size()), v0, v1);
+    const int begin = std::clamp(hull.any.begin / TileWidth, 0, this->Tiles);
+    const int end = std::clamp((hull.any.end + TileWidth - 1) / TileWidth, begin, this->Tiles);
+    std::fill(flags, flags + begin, static_cast<unsigned char>(0));
+    std::fill(flags + end, flags + this->Tiles, static_cast<unsigned char>(0));
+    std::vector<Span>& runs = this->Scratch.runs;
+    this->findRuns(runs);
+    if (!runs.empty())
+    {
+      const VoxelLoops<T>& loops = this->Shared.kernels;
+      const int beside = static_cast<int>(loops.lanes); // sweeps may go on as far
+      const bool isCut =
+        runs.front().begin - beside < hull.all.begin || runs.back().end + beside > hull.all.end;
       this->Stack.splat(
-        z, v0, v0 + this->rowsOf(group), this->Scratch.runs, bits, this->Scratch.patch);
+        z, v0, v1, runs, {}, this->Scratch.patch, isCut ? &this->Scratch.sliceRuns : nullptr);
     }
   }
 
@@ -585,7 +630,8 @@ private:
   Span Range; // of layers that are walked
   Span Known; // and that have bounds: their neighbours, too
   int Tiles, Groups;
-  int WindowsOf = -1; // the layer that the scratch's windows are of
+  bool HasSliceRuns = false; // whether the scratch's say how rays are cut
+  int WindowsOf = -1;        // the layer that the scratch's windows are of
 };
 }
 

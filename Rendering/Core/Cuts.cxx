@@ -65,7 +65,7 @@ bool SliceRuns::find(
   Span* runs = this->Runs.data();
   for (int v = v0; v < v1; ++v, runs += this->stride())
   {
-    std::fill_n(runs, this->stride(), intervals.empty() ? spans[v] : Nothing);
+    std::fill_n(runs, this->stride(), intervals.empty() ? Span{ -Far, Far } : Nothing);
     if (!(intervals.empty() || this->cutByIntervals(intervals, v, spans[v], runs)) ||
       !(map.crops() ? this->crop(map, v, runs) : true))
     {
@@ -73,6 +73,21 @@ bool SliceRuns::find(
     }
   }
   return true;
+}
+
+SliceRuns::Hull SliceRuns::hull(const Span& slices, int v0, int v1) const
+{
+  Hull hull;
+  for (int v = v0; v < v1; ++v)
+  {
+    for (int k = slices.begin; k < slices.end; ++k)
+    {
+      const Span& run = this->at(k, v);
+      hull.any = { std::min(hull.any.begin, run.begin), std::max(hull.any.end, run.end) };
+      hull.all = common(hull.all, run);
+    }
+  }
+  return hull;
 }
 
 /// Opens and ends empty runs where slices begin and cease to count from one pixel to the next.
@@ -83,12 +98,26 @@ bool SliceRuns::cutByIntervals(
   const std::int16_t* const last = intervals.last(v);
   Span* const slice = runs - this->Slices.begin;
   bool once = true;
+  // How many pixels after u are surely like it: most rays are not cut, or lose all.
+  const auto pixelsLike = [=](int u, int end)
+  {
+    constexpr int some = 8;
+    constexpr std::size_t size = some * sizeof(std::int16_t);
+    int count = 0;
+    while (u + count + some < end &&
+      std::memcmp(first + u + count, first + u + count + 1, size) == 0 &&
+      std::memcmp(last + u + count, last + u + count + 1, size) == 0)
+    {
+      count += some;
+    }
+    return count;
+  };
   const auto begin = [&](const Span& slices, int u)
   {
     for (int k = slices.begin; k < slices.end; ++k)
     {
       once = once && slice[k].empty();
-      slice[k] = { u, pixels.end };
+      slice[k] = { u > pixels.begin ? u : -Far, Far };
     }
   };
   const auto end = [&](const Span& slices, int u)
@@ -103,6 +132,11 @@ bool SliceRuns::cutByIntervals(
   {
     Span now = common(this->Slices, { first[u], last[u] + 1 });
     now = now.empty() ? Span{ open.end, open.end } : now;
+    if (now.begin == open.begin && now.end == open.end)
+    {
+      u += pixelsLike(u, pixels.end);
+      continue;
+    }
     if (now.begin > open.begin)
     {
       end({ open.begin, std::min(open.end, now.begin) }, u);

@@ -70,12 +70,16 @@ struct SliceBits
 /// is one run, as with planes and boxes. A thread's work space.
 class SliceRuns
 {
+  static constexpr int Far = 1 << 29;
+  static constexpr Span Nothing{ Far, -Far };
+
 public:
   /// False if a slice counts for two runs of a row.
   /// @param spans  the pixels of each row of the image that matter
   bool find(const CutMap& map, const Span& slices, int v0, int v1, const std::vector<Span>& spans);
 
-  /// Of empty ones all begin behind and end before the others.
+  /// Those that reach the ends of what matters go on beyond, empty ones begin behind the others and
+  /// end before them.
   const Span& at(int k, int v) const
   {
     return this->Runs[std::ptrdiff_t(v - this->V0) * this->stride() + k - this->Slices.begin];
@@ -83,9 +87,15 @@ public:
   /// From one row to the next.
   std::ptrdiff_t stride() const { return this->Slices.end - this->Slices.begin; }
 
-private:
-  static constexpr Span Nothing{ std::numeric_limits<int>::max() / 2, 0 };
+  /// The pixels of some rows for which any of some slices counts, and those for which all do in all
+  /// rows.
+  struct Hull
+  {
+    Span any = Nothing, all{ -Far, Far };
+  };
+  Hull hull(const Span& slices, int v0, int v1) const;
 
+private:
   bool cutByIntervals(const RayIntervals& intervals, int v, const Span& pixels, Span* runs) const;
   bool crop(const CutMap& map, int v, Span* runs) const;
 

@@ -160,8 +160,10 @@ public:
     if (!this->Map.crops())
     {
       this->fromIntervals(v, mask);
+      return;
     }
-    else if (this->Map.source().intervals.empty())
+    std::fill_n(mask, this->First.size(), static_cast<unsigned char>(0));
+    if (this->Map.source().intervals.empty())
     {
       this->fromRegions(v, mask);
     }
@@ -371,7 +373,7 @@ void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& s
   image.height = geometry.height();
   image.spans.assign(image.height, Span{ image.width, 0 });
   findSpans(slices, image.spans);
-  image.mask.assign(cuts.none() ? 0 : std::size_t(image.width) * image.height, 0);
+  image.mask.resize(cuts.none() ? 0 : std::size_t(image.width) * image.height);
   if (cuts.none())
   {
     return;

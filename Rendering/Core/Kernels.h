@@ -80,7 +80,7 @@ struct Sweep
   std::ptrdiff_t bitsStride;
   unsigned char bit[MostRows];
   /// Where each slice counts for one run of pixels in a row: pixel x takes voxels of row r if
-  /// sliceRuns[slice[r]] and sees[r] have it, in place of runs, valid and rims; else nullptr.
+  /// sliceRuns[slice[r]] and sees[r] have it, in place of valid and rims; else nullptr.
   const Span* sliceRuns;
   std::ptrdiff_t sliceRunsStride;
   std::ptrdiff_t wholeAhead; ///< to rows that are worth fetching as a whole, or 0

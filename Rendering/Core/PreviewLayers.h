@@ -82,11 +82,11 @@ public:
   std::int16_t orderOf(int z) const { return this->Shared.nearestOrder(z); }
 
   /// Takes a layer's voxels into the pixels of some rows and runs of columns, as far as the bits
-  /// (if there are any) say.
-  void splat(
-    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  /// or the slices' runs (if there are any) say.
+  void splat(int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits,
+    Patch& patch, const SliceRuns* cuts = nullptr) const
   {
-    this->splatLayer(this->Layers[z], v0, v1, runs, BrickDepth, { bits, nullptr }, {}, patch);
+    this->splatLayer(this->Layers[z], v0, v1, runs, BrickDepth, { bits, cuts }, {}, patch);
   }
 
   /// The same for all layers of some rows; to be opened once.
@@ -377,7 +377,8 @@ private:
     const Slices& slices = this->Shared.slices;
     sweep.rowStride = slices.rowStride;
     // Runs that end anywhere are not foreseen. What lies in caches may be fetched in vain.
-    const bool fetchesWhole = cuts.runs && this->isSmall();
+    const bool isWhole = runs.first->end - runs.first->begin == this->Shared.image.width;
+    const bool fetchesWhole = cuts.runs && this->isSmall() && isWhole;
     const bool jumps = cuts.runs || slices.rowStride > slices.sliceStride;
     sweep.ahead = jumps && !fetchesWhole ? slices.rowStride : 0;
     sweep.wholeAhead = fetchesWhole ? 2 * slices.rowStride : 0;

@@ -447,21 +447,9 @@ public:
         prefetch(rows[r] + x + s.wholeAhead);
       }
     }
-    if (all.end - all.begin < width<T>)
+    for (int n = 0; n < s.runCount; ++n)
     {
-      this->sweepPartly(any, image, notes, rows);
-      return;
-    }
-    this->sweepPartly({ any.begin, all.begin }, image, notes, rows);
-    this->sweepPartly({ all.end, any.end }, image, notes, rows);
-    if (notes)
-    {
-      sweepRun<T>(NotingBlock<T, false>{ s, image, notes, rows, nullptr }, all, all);
-    }
-    else
-    {
-      s.ahead ? sweepRun<T>(MaximumBlock<T, true>{ image, rows, s.count, s.ahead }, all, all)
-              : sweepRun<T>(MaximumBlock<T, false>{ image, rows, s.count, 0 }, all, all);
+      this->sweepRun(narrowed(any, s.runs[n]), narrowed(all, s.runs[n]), image, notes, rows);
     }
   }
 
@@ -477,6 +465,30 @@ private:
   static inline Span narrowed(const Span& a, const Span& b)
   {
     return { a.begin > b.begin ? a.begin : b.begin, a.end < b.end ? a.end : b.end };
+  }
+
+  /// Pixels of a run that see any rows, and those that see all.
+  inline void sweepRun(
+    const Span& any, const Span& all, T* image, std::int16_t* notes, const T* const* rows) const
+  {
+    const Sweep<T>& s = this->Shared;
+    if (all.end - all.begin < width<T>)
+    {
+      this->sweepPartly(any, image, notes, rows);
+      return;
+    }
+    this->sweepPartly({ any.begin, all.begin }, image, notes, rows);
+    this->sweepPartly({ all.end, any.end }, image, notes, rows);
+    if (notes)
+    {
+      splatting::sweepRun<T>(NotingBlock<T, false>{ s, image, notes, rows, nullptr }, all, all);
+    }
+    else
+    {
+      s.ahead
+        ? splatting::sweepRun<T>(MaximumBlock<T, true>{ image, rows, s.count, s.ahead }, all, all)
+        : splatting::sweepRun<T>(MaximumBlock<T, false>{ image, rows, s.count, 0 }, all, all);
+    }
   }
 
   /// Pixels that see some of the rows.
