@@ -280,7 +280,7 @@ private:
       if (count > 0)
       {
         loops.widen(this->voxelBounds(this->Known.begin, 0), 0, this->bounds(this->Known.begin, 0),
-          0, this->Stack.base(), count, 1);
+          0, this->Stack.base(), count, 1, 0);
       }
       this->blendBounds();
     }

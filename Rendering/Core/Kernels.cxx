@@ -23,12 +23,17 @@ namespace
 {
 template <class T>
 void widen(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
-  Accumulator<T> base, std::ptrdiff_t n, int rows)
+  Accumulator<T> base, std::ptrdiff_t n, int rows, std::ptrdiff_t ahead)
 {
   using A = Accumulator<T>;
   constexpr std::ptrdiff_t w = width<A>;
+  constexpr std::ptrdiff_t line = 64 / sizeof(T); // of a cache
   for (int r = 0; r < rows; ++r, row += stride, out += outStride)
   {
+    for (std::ptrdiff_t x = 0; x < n && ahead != 0; x += line)
+    {
+      prefetch(row + x + ahead);
+    }
     std::ptrdiff_t x = 0;
     for (; x + w <= n; x += w)
     {
@@ -513,8 +518,9 @@ constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>,
 }
 
 extern const Kernels SPLATTING_KERNELS;
-const Kernels SPLATTING_KERNELS = { { &beginAtPlane, &endAtPlane, &slicesBetween, &sliceBits, &tileExtremes, &tileShares }, { &steps },
-  voxelLoops<std::int8_t>, voxelLoops<std::uint8_t>, voxelLoops<std::int16_t>,
+const Kernels SPLATTING_KERNELS = { { &beginAtPlane, &endAtPlane, &slicesBetween, &sliceBits,
+                                      &tileExtremes, &tileShares },
+  { &steps }, voxelLoops<std::int8_t>, voxelLoops<std::uint8_t>, voxelLoops<std::int16_t>,
   voxelLoops<std::uint16_t>, voxelLoops<std::int32_t>, voxelLoops<std::uint32_t>,
   voxelLoops<std::int64_t>, voxelLoops<std::uint64_t>, voxelLoops<float>, voxelLoops<double>,
   tileLoops<std::int8_t>, tileLoops<std::uint8_t>, tileLoops<std::int16_t>,

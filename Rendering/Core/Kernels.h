@@ -148,9 +148,10 @@ struct VoxelLoops
   void (*sweep)(const Sweep<T>& sweep);
   /// `maximum` of the voxels that rays cross, each pixel its own.
   void (*cross)(const Crossing<T>& crossing);
-  /// out[x] = row[x] - base, which must be exact, for some rows of n elements.
+  /// out[x] = row[x] - base, which must be exact, for some rows of n elements. row[x + ahead] will
+  /// be needed next; unless ahead is 0.
   void (*widen)(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
-    Accumulator<T> base, std::ptrdiff_t n, int rows);
+    Accumulator<T> base, std::ptrdiff_t n, int rows, std::ptrdiff_t ahead);
   /// maxima[x] = max(maxima[x], rows[0..count)[x]) and low = min(low, all of them), NaN aside; sets
   /// special if there are NaN or infinity.
   void (*survey)(

@@ -31,6 +31,7 @@ struct Patch
   std::vector<unsigned char> present;   ///< which of its pixels have one, in perspective previews
   std::vector<Span> runs;               ///< of perspective previews: what a slice covers of others
   Span rows, pixels;                    ///< of the image, that it has the voxels for
+  std::ptrdiff_t ahead = 0; ///< to voxels that will be needed after those that are loaded
   std::ptrdiff_t rowLength = 0;
   std::ptrdiff_t sheetLength = 0;
   std::array<Sheet, 3> sheets;

@@ -228,7 +228,7 @@ private:
     {
       A* const out = reinterpret_cast<A*>(scratch.widened.data());
       const VoxelLoops<P>& loops = this->Shared.kernels;
-      loops.widen(samples, 0, out, 0, A(0), n, 1);
+      loops.widen(samples, 0, out, 0, A(0), n, 1, 0);
       return out;
     }
   }

@@ -520,7 +520,7 @@ const Accumulator<T>* widenedPixels(
     const std::size_t count = std::size_t(image.width) * image.height;
     widened.resize(count * sizeof(A));
     A* const pixels = reinterpret_cast<A*>(widened.data());
-    loops.widen(image.row<T>(0), 0, pixels, 0, A(0), static_cast<std::ptrdiff_t>(count), 1);
+    loops.widen(image.row<T>(0), 0, pixels, 0, A(0), static_cast<std::ptrdiff_t>(count), 1, 0);
     return pixels;
   }
 }

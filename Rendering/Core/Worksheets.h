@@ -142,7 +142,8 @@ public:
       {
         for (const Span& run : rows[r].runs)
         {
-          this->splatPiece({ k, k + 1 }, rows[r].v0, rows[r].v1, run, rows[r].bits, patch);
+          this->splatPiece(
+            { k, k + 1 }, rows[r].v0, rows[r].v1, run, rows[r].bits, patch, this->step());
         }
       }
     }
@@ -166,7 +167,7 @@ public:
         {
           const int k = reversed ? slices.end - 1 - n : slices.begin + n;
           this->splatSlice(
-            k, first, last, piece, worksheet, patch,
+            k, reversed ? -1 : 1, first, last, piece, worksheet, patch,
             [&](int v, const Span& pixels) { this->put(none, v, pixels, worksheet); },
             [&](int v, const Span& pixels)
             { f(StepsPerSlice * k, v, pixels, worksheet.at(pixels.begin, v), nullptr); });
@@ -274,21 +275,23 @@ private:
     patch.resize<A>(columns.end - columns.begin + this->Reach.columns, v1 - v0 + this->Reach.rows);
   }
 
+  /// @param after  the step to the slice that comes after these, if it is known
   void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const SliceBits& bits,
-    Patch& patch) const
+    Patch& patch, int after = 0) const
   {
     if (this->Shared.orders && !this->Notes)
     {
       this->notePiece(slices, v0, v1, columns, bits, patch);
       return;
     }
-    for (int n = 0; n < slices.end - slices.begin; ++n)
+    const int count = slices.end - slices.begin, step = this->step();
+    for (int n = 0; n < count; ++n)
     {
       const int k = this->Shared.nth(slices, n);
       this->forRows(k, v0, v1, columns,
         [&](int first, int end, const Span& span)
         {
-          this->load(k, patch);
+          this->load(k, n + 1 < count ? step : after, patch);
           Target target = this->image();
           target.order = this->orderOfSlice(k);
           target.bits = bits;
@@ -297,6 +300,9 @@ private:
         });
     }
   }
+
+  /// From one slice to the next.
+  int step() const { return this->Shared.nth({ 0, 2 }, 1) - this->Shared.nth({ 0, 2 }, 0); }
 
   std::int16_t orderOfSlice(int k) const
   {
@@ -315,7 +321,7 @@ private:
       const std::int16_t order = this->orderOfSlice(k);
       const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
       this->splatSlice(
-        k, v0, v1, columns, worksheet, patch,
+        k, this->step(), v0, v1, columns, worksheet, patch,
         [&](int v, const Span& pixels) { this->putBelowImage(v, pixels, worksheet); },
         [&](int v, const Span& pixels)
         {
@@ -345,16 +351,16 @@ private:
     }
   }
 
-  /// The worksheet of slice k alone, in which pixels are as open(v, pixels) has set them or larger,
-  /// then f(v, pixels) for its rows.
+  /// The worksheet of slice k alone (a step from the next one), in which pixels are as open(v,
+  /// pixels) has set them or larger, then f(v, pixels) for its rows.
   template <class Open, class F>
-  void splatSlice(int k, int v0, int v1, const Span& columns, const Target& worksheet, Patch& patch,
-    Open&& open, F&& f) const
+  void splatSlice(int k, int step, int v0, int v1, const Span& columns, const Target& worksheet,
+    Patch& patch, Open&& open, F&& f) const
   {
     this->forRows(k, v0, v1, columns,
       [&](int first, int end, const Span& span)
       {
-        this->load(k, patch);
+        this->load(k, step, patch);
         for (int v = first; v < end; ++v)
         {
           open(v, span);
@@ -397,13 +403,16 @@ private:
   }
 
   /// Widens the voxels that worksheet k reads, as far as the patch does not have them.
-  void load(int k, Patch& patch) const
+  /// @param step  to the worksheet that comes next, 0 if none does
+  void load(int k, int step, Patch& patch) const
   {
     const int last = this->Shared.geometry.size().z - 1;
     for (int s = std::max(k - this->Depth, 0); s <= std::min(k + this->Depth, last); ++s)
     {
       if (patch.sheet(s).slice != s)
       {
+        const bool exists = s + step >= 0 && s + step <= last;
+        patch.ahead = exists ? step * this->Shared.slices.sliceStride : 0;
         patch.sheet(s) = this->sheetOf(s, patch.rows.begin, patch.rows.end, patch.pixels);
         this->loadSheet(patch.sheet(s), patch);
       }
@@ -446,7 +455,7 @@ protected:
     if (begin < end)
     {
       loops.widen(voxels + sheet.i + begin, this->Shared.slices.rowStride, out + begin,
-        patch.rowLength, this->Base, end - begin, rows);
+        patch.rowLength, this->Base, end - begin, rows, patch.ahead);
     }
     for (int r = 0; r < rows && (begin > 0 || end < sheet.columns); ++r)
     {
