@@ -459,9 +459,9 @@ public:
    * values; a pixel that has a value is done [CS98, footnote 2]. The other modes use LINES.
    *
    * AUTO takes BRICKS, unless the last frame that used them along this principal axis in this mode,
-   * with cut rays or without, still had to splat more than 30 % (PREVIEW) or 50 % (STANDARD, HIGH)
-   * of the tiles, as is the case with noise everywhere; then DENSE, and every 32nd frame tries
-   * BRICKS again. It never takes chains, which are slower on all data that we measured
+   * with cut rays or without, still had to splat more than 50 % of the tiles (30 % in PREVIEW, and
+   * in STANDARD of parallel views), as is the case with noise everywhere; then DENSE, and every 32nd
+   * frame tries BRICKS again. It never takes chains, which are slower on all data that we measured
    * (splatmip-paper reports it), but need less memory than the volume.
    *
    * Where rays are cut and in perspective, BRICKS take the place of chains. Volumes with NaN or

@@ -173,24 +173,49 @@ void exceedsOrTies(const P* bounds, const P* minima, const std::int16_t* farthes
   }
 }
 
+/// Whether footprints weigh voxels of this type without a copy in the accumulator's.
+template <class T>
+constexpr bool weighsOwn = std::is_same_v<Accumulator<T>, float> && sizeof(T) <= 4;
+
+/// A register of voxels as worksheets weigh them.
+template <class A, class S>
+inline Pack<A> fetch(const Splat<A, S>& s, const S* voxels)
+{
+  if constexpr (std::is_same_v<A, S>)
+  {
+    (void)s;
+    return load<A>(voxels);
+  }
+  else
+  {
+    return loadWidened(voxels) - s.base;
+  }
+}
+
 /// Adds one part of the footprint to the worksheets of Rows x V registers. Rows of pixels share
 /// rows of voxels, so each register of voxels is loaded once for all of them; a pixel's sum still
 /// runs through the weights row by row.
-template <class A, int Rows, int V, int WeightRows>
+template <int Rows, int V, int WeightRows, class A, class S>
 inline void addPart(
-  Pack<A> (&sum)[Rows][V], const A* source, std::ptrdiff_t stride, const A* weights, int columns)
+  const Splat<A, S>& s, const SplatPart<A, S>& part, const S* source, Pack<A> (&sum)[Rows][V])
 {
+  const A* const weights = part.weights;
+  const int columns = part.columns;
 #pragma GCC unroll 8
   for (int r = 0; r < Rows + WeightRows - 1; ++r)
   {
-    const A* const row = source + r * stride;
+    const S* const row = source + r * s.sourceStride;
+    for (int v = 0; v < V && !std::is_same_v<A, S>; ++v)
+    {
+      prefetch(row + v * width<A> + s.ahead);
+    }
     for (int i = 0; i < columns; ++i)
     {
       Pack<A> voxels[V];
 #pragma GCC unroll 4
       for (int v = 0; v < V; ++v)
       {
-        voxels[v] = load<A>(row + i + v * width<A>);
+        voxels[v] = fetch<A, S>(s, row + i + v * width<A>);
       }
 #pragma GCC unroll 4
       for (int o = 0; o < Rows; ++o)
@@ -210,8 +235,8 @@ inline void addPart(
 }
 
 /// Rows x V registers of pixels, from (x, y) of the rectangle.
-template <class A, int Rows, int V, bool Cut>
-inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
+template <class A, int Rows, int V, bool Cut, class S>
+inline void splatTile(const Splat<A, S>& s, std::ptrdiff_t x, int y)
 {
   Pack<A> sum[Rows][V];
 #pragma GCC unroll 4
@@ -225,24 +250,24 @@ inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
   }
   for (int p = 0; p < s.partCount; ++p)
   {
-    const SplatPart<A>& part = s.parts[p];
-    const A* const source = part.source + y * s.sourceStride + x;
+    const SplatPart<A, S>& part = s.parts[p];
+    const S* const source = part.source + y * s.sourceStride + x;
     switch (part.rows)
     {
       case 1:
-        addPart<A, Rows, V, 1>(sum, source, s.sourceStride, part.weights, part.columns);
+        addPart<Rows, V, 1>(s, part, source, sum);
         break;
       case 2:
-        addPart<A, Rows, V, 2>(sum, source, s.sourceStride, part.weights, part.columns);
+        addPart<Rows, V, 2>(s, part, source, sum);
         break;
       case 3:
-        addPart<A, Rows, V, 3>(sum, source, s.sourceStride, part.weights, part.columns);
+        addPart<Rows, V, 3>(s, part, source, sum);
         break;
       case 4:
-        addPart<A, Rows, V, 4>(sum, source, s.sourceStride, part.weights, part.columns);
+        addPart<Rows, V, 4>(s, part, source, sum);
         break;
       default:
-        addPart<A, Rows, V, 5>(sum, source, s.sourceStride, part.weights, part.columns);
+        addPart<Rows, V, 5>(s, part, source, sum);
         break;
     }
   }
@@ -271,8 +296,8 @@ inline void splatTile(const Splat<A>& s, std::ptrdiff_t x, int y)
   }
 }
 
-template <class A, bool Cut>
-inline void splatPixel(const Splat<A>& s, std::ptrdiff_t x, int y)
+template <class A, bool Cut, class S>
+inline void splatPixel(const Splat<A, S>& s, std::ptrdiff_t x, int y)
 {
   if (Cut && !(s.bits[y * s.bitsStride + x] & s.bit))
   {
@@ -281,12 +306,13 @@ inline void splatPixel(const Splat<A>& s, std::ptrdiff_t x, int y)
   A sum = 0;
   for (int p = 0; p < s.partCount; ++p)
   {
-    const SplatPart<A>& part = s.parts[p];
+    const SplatPart<A, S>& part = s.parts[p];
     for (int j = 0; j < part.rows; ++j)
     {
       for (int i = 0; i < part.columns; ++i)
       {
-        sum += part.weights[j * part.columns + i] * part.source[(y + j) * s.sourceStride + x + i];
+        const A voxel = static_cast<A>(part.source[(y + j) * s.sourceStride + x + i]);
+        sum += part.weights[j * part.columns + i] * (std::is_same_v<A, S> ? voxel : voxel - s.base);
       }
     }
   }
@@ -296,10 +322,10 @@ inline void splatPixel(const Splat<A>& s, std::ptrdiff_t x, int y)
   pixel = larger(sum, pixel);
 }
 
-template <class A, int Rows, bool Cut>
+template <class A, int Rows, bool Cut, class S>
 struct SplatBlock
 {
-  const Splat<A>& splat;
+  const Splat<A, S>& splat;
   int y;
   template <int V>
   inline void run(std::ptrdiff_t x) const
@@ -317,10 +343,10 @@ struct SplatBlock
   }
 };
 
-template <class A, int Rows, bool Cut>
-inline void splatStrip(const Splat<A>& s, int y)
+template <class A, int Rows, bool Cut, class S>
+inline void splatStrip(const Splat<A, S>& s, int y)
 {
-  blocks<A>(s.width, SplatBlock<A, Rows, Cut>{ s, y },
+  blocks<A>(s.width, SplatBlock<A, Rows, Cut, S>{ s, y },
     [&](std::ptrdiff_t x)
     {
       for (int o = 0; o < Rows; ++o)
@@ -330,8 +356,8 @@ inline void splatStrip(const Splat<A>& s, int y)
     });
 }
 
-template <class A>
-void splat(const Splat<A>& s)
+template <class A, class S>
+void splat(const Splat<A, S>& s)
 {
   int y = 0;
   for (; y + 4 <= s.height; y += 4)
@@ -500,8 +526,21 @@ void lookUp(const A* __restrict values, A low, A scale, std::int32_t last,
 }
 
 template <class T>
+constexpr decltype(VoxelLoops<T>::splatVoxels) splatOwn()
+{
+  if constexpr (weighsOwn<T>)
+  {
+    return &splat<Accumulator<T>, T>;
+  }
+  else
+  {
+    return nullptr;
+  }
+}
+
+template <class T>
 constexpr VoxelLoops<T> voxelLoops{ width<T>, Picker<T>::group, &maximum<T>, &largest<T>, &sweep<T>,
-  &cross<T>, &widen<T>, &survey<T>, &largestOfFour<T> };
+  &cross<T>, &widen<T>, splatOwn<T>(), &survey<T>, &largestOfFour<T> };
 template <class P>
 constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P>, &farthest<P>, &exceedsOrTies<P> };
 template <class P>
@@ -511,7 +550,7 @@ constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::raiseNoting)>(&raiseNoting<P>), &settle<P> };
 template <class A>
 constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>, &resample<A>,
-  &blend<A>, &raiseBlend<A>, &splat<A>, &raiseCubics<A>, &raiseFanCubics<A>, &splatValid<A>,
+  &blend<A>, &raiseBlend<A>, &splat<A, A>, &raiseCubics<A>, &raiseFanCubics<A>, &splatValid<A>,
   static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
   static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
   &interpolateProjective<A>, &lookUp<A> };

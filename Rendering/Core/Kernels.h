@@ -130,6 +130,37 @@ struct Crossing
   bool reversed;
 };
 
+/// A rectangle of footprint weights and the voxels that it meets first, which are of type A or, as
+/// the volume has them, of another one.
+template <class A, class S = A>
+struct SplatPart
+{
+  const S* source;  ///< the voxel under the first weight of the first pixel
+  const A* weights; ///< rows x columns of them
+  int rows;         ///< 1 to 5
+  int columns;
+};
+
+/// A rectangle of the image, and the parts of the footprint: one per slice that adds to it.
+template <class A, class S = A>
+struct Splat
+{
+  A* image;
+  std::ptrdiff_t imageStride;
+  std::ptrdiff_t width;
+  int height;
+  std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
+  SplatPart<A, S> parts[3];
+  int partCount;
+  /// Where rays are cut, pixel x changes if bits[x] & bit; else nullptr.
+  const unsigned char* bits;
+  std::ptrdiff_t bitsStride;
+  unsigned char bit;
+  Noting noting;
+  A base = 0;               ///< what is subtracted from the volume's own voxels
+  std::ptrdiff_t ahead = 0; ///< from these to voxels that will be needed next, or 0
+};
+
 /// Loops over voxels of type T.
 template <class T>
 struct VoxelLoops
@@ -152,6 +183,8 @@ struct VoxelLoops
   /// be needed next; unless ahead is 0.
   void (*widen)(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
     Accumulator<T> base, std::ptrdiff_t n, int rows, std::ptrdiff_t ahead);
+  /// WorksheetLoops::splat from the volume's own voxels; nullptr for types that take too long.
+  void (*splatVoxels)(const Splat<Accumulator<T>, T>& splat);
   /// maxima[x] = max(maxima[x], rows[0..count)[x]) and low = min(low, all of them), NaN aside; sets
   /// special if there are NaN or infinity.
   void (*survey)(
@@ -215,34 +248,6 @@ struct Shade
   bool reversed; ///< whether the ray comes from the last slice
   const std::int16_t* first;
   const std::int16_t* last;
-};
-
-/// A rectangle of footprint weights and the voxels that it meets first.
-template <class A>
-struct SplatPart
-{
-  const A* source;  ///< the voxel under the first weight of the first pixel
-  const A* weights; ///< rows x columns of them
-  int rows;         ///< 1 to 5
-  int columns;
-};
-
-/// A rectangle of the image, and the parts of the footprint: one per slice that adds to it.
-template <class A>
-struct Splat
-{
-  A* image;
-  std::ptrdiff_t imageStride;
-  std::ptrdiff_t width;
-  int height;
-  std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
-  SplatPart<A> parts[3];
-  int partCount;
-  /// Where rays are cut, pixel x changes if bits[x] & bit; else nullptr.
-  const unsigned char* bits;
-  std::ptrdiff_t bitsStride;
-  unsigned char bit;
-  Noting noting;
 };
 
 /// The least and greatest first and last slices that the rays of tiles are cut to.

@@ -52,6 +52,12 @@ protected:
     }
   }
 
+  /// Chains need not have the volume's own voxels.
+  bool splatOwn(int, int, int, int, const Span&, const Target&, Patch&) const override
+  {
+    return false;
+  }
+
   void splatRows(
     int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
   {

@@ -71,17 +71,22 @@ constexpr int ChunkDepth = 8 * BrickDepth;
 
 /// A share of tiles above which skipping the others does not pay: the plain walk reads memory in
 /// order, which is worth more where little is computed.
-double worthwhileShare(Quality quality)
+double worthwhileShare(Quality quality, bool perspective)
 {
-  return quality == Quality::Preview ? 0.3 : 0.5;
+  const bool computesLittle =
+    quality == Quality::Preview || (quality == Quality::Standard && !perspective);
+  return computesLittle ? 0.3 : 0.5;
 }
 
 /// The rule of Acceleration::Auto.
-Acceleration choose(VolumeIndex& index, int axis, bool isCut, const ProjectionSettings& settings)
+Acceleration choose(
+  VolumeIndex& index, const ShearWarp& geometry, bool isCut, const ProjectionSettings& settings)
 {
-  const Experience& experience = index.experience(axis, static_cast<int>(settings.quality), isCut);
+  const Experience& experience =
+    index.experience(geometry.principalAxis(), static_cast<int>(settings.quality), isCut);
   constexpr int patience = 32;
-  const bool crowded = experience.share > worthwhileShare(settings.quality);
+  const bool crowded =
+    experience.share > worthwhileShare(settings.quality, geometry.isPerspective());
   return crowded && experience.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
 }
 
@@ -570,10 +575,9 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
   const VolumeIndex::Range& range = index.range();
   // The mean of no sample is none.
   image.special = range.special || settings.reduction == Reduction::Mean;
-  const int axis = geometry.principalAxis();
   const LineIndex* lines = nullptr;
   const Acceleration used = this->possible(settings.acceleration == Acceleration::Auto
-      ? choose(index, axis, !memory.cuts.none(), settings)
+      ? choose(index, geometry, !memory.cuts.none(), settings)
       : settings.acceleration,
     index, settings, geometry, cuts, lines);
   dispatch(index.volume().type,

@@ -291,12 +291,16 @@ private:
       this->forRows(k, v0, v1, columns,
         [&](int first, int end, const Span& span)
         {
-          this->load(k, n + 1 < count ? step : after, patch);
           Target target = this->image();
           target.order = this->orderOfSlice(k);
           target.bits = bits;
           target.bit = static_cast<unsigned char>(1u << k % BrickDepth);
-          this->splatRows(k, first, end, span, target, patch);
+          const int next = n + 1 < count ? step : after;
+          if (!this->splatOwn(k, next, first, end, span, target, patch))
+          {
+            this->load(k, next, patch);
+            this->splatRows(k, first, end, span, target, patch);
+          }
         });
     }
   }
@@ -402,6 +406,7 @@ private:
     return (a.begin == b.begin && a.end == b.end) || (a.empty() && b.empty());
   }
 
+protected:
   /// Widens the voxels that worksheet k reads, as far as the patch does not have them.
   /// @param step  to the worksheet that comes next, 0 if none does
   void load(int k, int step, Patch& patch) const
@@ -419,7 +424,6 @@ private:
     }
   }
 
-protected:
   /// The voxels of slice s that worksheets need for some pixels.
   virtual Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const = 0;
 
@@ -474,6 +478,13 @@ protected:
     noting.order = target.order;
     noting.nearestFirst = this->Shared.nearestFirst;
     return noting;
+  }
+
+  /// Does the same as load() and splatRows() from the volume's own voxels, as far as these are all
+  /// that counts. False if that does not pay.
+  virtual bool splatOwn(int, int, int, int, const Span&, const Target&, Patch&) const
+  {
+    return false;
   }
 
   /// Raises pixels of some rows to the worksheet of slice k, whose voxels have been loaded.
@@ -540,15 +551,7 @@ protected:
     int k, int first, int end, const Span& span, const Target& target, Patch& patch) const
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];
-    Splat<A> splat;
-    splat.image = target.at(span.begin, first);
-    splat.imageStride = target.stride;
-    splat.bits = target.bits.origin ? target.bits.at(span.begin, first) : nullptr;
-    splat.bitsStride = target.bits.stride;
-    splat.bit = target.bit;
-    splat.noting = this->notingAt(target, span.begin, first);
-    splat.width = span.end - span.begin;
-    splat.height = end - first;
+    Splat<A> splat = this->splatInto<A>(target, first, end, span);
     splat.sourceStride = patch.rowLength;
     splat.partCount = footprint.partCount;
     for (int p = 0; p < splat.partCount; ++p)
@@ -560,7 +563,85 @@ protected:
     return splat;
   }
 
+  /// All but the source.
+  template <class S>
+  Splat<A, S> splatInto(const Target& target, int first, int end, const Span& span) const
+  {
+    Splat<A, S> splat;
+    splat.image = target.at(span.begin, first);
+    splat.imageStride = target.stride;
+    splat.bits = target.bits.origin ? target.bits.at(span.begin, first) : nullptr;
+    splat.bitsStride = target.bits.stride;
+    splat.bit = target.bit;
+    splat.noting = this->notingAt(target, span.begin, first);
+    splat.width = span.end - span.begin;
+    splat.height = end - first;
+    return splat;
+  }
+
+  bool splatOwn(int k, int step, int first, int end, const Span& span, const Target& target,
+    Patch& patch) const override
+  {
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    if (this->Depth > 0 || !loops.splatVoxels || this->Shared.range.special ||
+      this->Footprints[k].partCount != 1)
+    {
+      return false; // copies are used for several slices, or are not worse
+    }
+    // Pixels whose footprints lie in the volume.
+    const glm::ivec3& size = this->Shared.geometry.size();
+    const SliceFootprint<A>& footprint = this->Footprints[k];
+    const FootprintPart<A>& part = footprint.parts[0];
+    const int di = part.di - footprint.nearest.x, dj = part.dj - footprint.nearest.y;
+    const Span columns = common(span, { -di, size.x - di - part.columns + 1 });
+    const Span rows = common({ first, end }, { -dj, size.y - dj - part.rows + 1 });
+    const bool isAll = columns.begin == span.begin && columns.end == span.end;
+    if (rows.empty() || (columns.end - columns.begin < LeastOwn && !(isAll && !columns.empty())))
+    {
+      return false;
+    }
+    Splat<A, T> splat = this->template splatInto<T>(target, rows.begin, rows.end, columns);
+    splat.sourceStride = this->Shared.slices.rowStride;
+    splat.base = this->Base;
+    splat.ahead = k + step >= 0 && k + step < size.z ? step * this->Shared.slices.sliceStride : 0;
+    splat.partCount = 1;
+    splat.parts[0] = { this->Shared.voxelRow(rows.begin + dj, k) + columns.begin + di,
+      part.weights.data(), part.rows, part.columns };
+    loops.splatVoxels(splat);
+    this->splatRim(k, first, rows.begin, span, target, patch);
+    this->splatRim(k, rows.end, end, span, target, patch);
+    const int least = std::min(RimWidth, span.end - span.begin);
+    if (columns.begin > span.begin)
+    {
+      this->splatRim(k, rows.begin, rows.end,
+        { span.begin, std::max(columns.begin, span.begin + least) }, target, patch);
+    }
+    if (columns.end < span.end)
+    {
+      this->splatRim(k, rows.begin, rows.end, { std::min(columns.end, span.end - least), span.end },
+        target, patch);
+    }
+    return true;
+  }
+
 private:
+  /// Pixels that are worth a rim beside them, and those of a rim: a register of floats, at most.
+  static constexpr int LeastOwn = 64, RimWidth = 16;
+
+  /// By a copy of what footprints read beyond the volume, too.
+  void splatRim(
+    int k, int first, int end, const Span& columns, const Target& target, Patch& patch) const
+  {
+    if (first < end)
+    {
+      const Span rows = patch.rows, pixels = patch.pixels;
+      this->open(first, end, columns, patch);
+      this->load(k, 0, patch);
+      this->splatRows(k, first, end, columns, target, patch);
+      this->open(rows.begin, rows.end, pixels, patch);
+    }
+  }
+
   void splatValidRow(int k, int v, const Span& span, const Target& target, Patch& patch) const
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];

@@ -314,6 +314,58 @@ void testLongRows(Checks& check, std::uint64_t seed)
   }
 }
 
+/// Likewise averages in standard mode, which weighs rows of voxels without a copy where all of a
+/// footprint lies in the volume.
+template <class T>
+void testLongAverages(Checks& check, std::uint64_t seed)
+{
+  using A = splatting::Accumulator<T>;
+  reference::Random random(seed);
+  for (int n = 0; n < 6; ++n)
+  {
+    std::array<int, 3> size;
+    for (int a = 0; a < 3; ++a)
+    {
+      size[a] = a == n % 3 ? random.uniform(60, 150) : random.uniform(4, 12);
+    }
+    const auto volume = wholeRangeNoise<T>(size, random.bits());
+    const auto bounds = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
+    const double low = double(*bounds.first), high = double(*bounds.second);
+    Scene scene;
+    scene.geometry = splatting::ShearWarp(anyView(size, random));
+    scene.settings.quality = Quality::Standard;
+    const reference::ShearView view = referenceView(scene.geometry);
+    const auto grid = reference::makeShearGrid(size, view);
+    const auto rays = reference::slabSamples(
+      reference::toDouble(volume), view, { reference::Kernel::Nearest, 1.0 });
+    const double bound = errorBound<T>(Quality::Standard, low, high) +
+      2e-13 * std::max(std::abs(low), std::abs(high)) + 1e-300;
+    for (int m = 0; m < 3; ++m)
+    {
+      scene.cuts = m == 0 ? reference::RayCuts{} : cutsAtAnyAngle(random, size);
+      const auto expected = expectedOf(rays, grid, view, scene.cuts);
+      reference::Image<A> first;
+      for (int way = 0; way < 16; ++way)
+      {
+        scene.settings.acceleration = way % 2 ? Acceleration::Bricks : Acceleration::Dense;
+        scene.settings.keepWinners = way / 2 % 2;
+        scene.settings.instructionSet = static_cast<splatting::InstructionSet>(way / 4);
+        const auto image = toReference<A>(projected(volume, scene));
+        bool within = image.hit == expected.hit;
+        for (std::size_t p = 0; within && p < image.value.size(); ++p)
+        {
+          within = !image.hit[p] || std::abs(double(image.value[p]) - expected.value[p]) <= bound;
+        }
+        first = way == 0 ? image : first;
+        check(within && sameBits(first, image), "long averages, type ",
+          int(splatting::scalarTypeOf<T>()), ", volume ", n, ", cuts ", m, ", way ", way,
+          within ? ": other bits" : ": other averages", "; axis ", view.axis, ", shear ",
+          view.shear[0], " ", view.shear[1], ", size ", size[0], " ", size[1], " ", size[2]);
+      }
+    }
+  }
+}
+
 /// The region of a place along an axis; -1 if rounding decides. Of slices only the place matters:
 /// where the middle region has none it has the one that is nearest to its middle.
 int regionOf(std::array<double, 2> planes, double place, bool isSlice)
@@ -435,6 +487,7 @@ int TestCropping(int, char*[])
       testPreview<T>(check, ++seed);
       testAverages<T>(check, ++seed);
       testLongRows<T>(check, ++seed);
+      testLongAverages<T>(check, ++seed);
     });
   testLarge(check);
   testUnion(check);
