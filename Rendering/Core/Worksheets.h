@@ -134,6 +134,7 @@ public:
   }
   void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const
   {
+    count = joined(rows, count);
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
     for (int n = 0; n < slices.end - slices.begin; ++n)
     {
@@ -238,6 +239,36 @@ protected:
   }
 
 private:
+  /// Joins rows that are alike, so that they share rows of voxels: those of which all counts, and
+  /// those with bits, which say what counts between the first run and the last. How many are left.
+  static int joined(std::vector<RowRuns>& rows, int count)
+  {
+    int last = 0;
+    for (int r = 0; r < count; ++r)
+    {
+      RowRuns& own = rows[r];
+      if (own.bits.origin && !own.runs.empty())
+      {
+        own.runs.assign(1, { own.runs.front().begin, own.runs.back().end });
+      }
+      RowRuns& before = rows[last];
+      const bool isAlike = r > 0 && !own.runs.empty() && !before.runs.empty() &&
+        !own.bits.origin == !before.bits.origin;
+      if (isAlike)
+      {
+        Span& run = before.runs.front();
+        run = { std::min(run.begin, own.runs.front().begin),
+          std::max(run.end, own.runs.front().end) };
+        before.v1 = own.v1;
+      }
+      else if (r > 0 && ++last < r)
+      {
+        std::swap(rows[last], own);
+      }
+    }
+    return last + 1;
+  }
+
   /// Room for one worksheet.
   Target worksheetFor(int v0, int v1, const Span& columns, Patch& patch) const
   {
