@@ -60,6 +60,10 @@ bool SliceRuns::find(
 {
   this->V0 = v0;
   this->Slices = slices;
+  if (slices.empty())
+  {
+    return true;
+  }
   this->Runs.resize(std::size_t(v1 - v0) * this->stride());
   const RayIntervals& intervals = map.source().intervals;
   Span* runs = this->Runs.data();
