@@ -460,9 +460,9 @@ public:
    *
    * AUTO takes BRICKS, unless the last frame that used them along this principal axis in this mode,
    * with cut rays or without, still had to splat more than 50 % of the tiles (30 % in PREVIEW, and
-   * in STANDARD of parallel views), as is the case with noise everywhere; then DENSE, and every 32nd
-   * frame tries BRICKS again. It never takes chains, which are slower on all data that we measured
-   * (splatmip-paper reports it), but need less memory than the volume.
+   * in STANDARD of parallel views), as is the case with noise everywhere; then DENSE, and every
+   * 32nd frame tries BRICKS again. It never takes chains, which are slower on all data that we
+   * measured (splatmip-paper reports it), but need less memory than the volume.
    *
    * Where rays are cut and in perspective, BRICKS take the place of chains. Volumes with NaN or
    * infinity are walked densely, as are all when IndexMemoryBudget has no room for the index;
