@@ -72,6 +72,14 @@ Stage::Stage(int width, int height) : Width(width), Height(height)
   this->window->SetMultiSamples(0);
   this->window->SetSize(width, height);
   this->window->AddRenderer(this->renderer);
+  // VTK 9.1 remembers for what size it computed the aspect, in members it does not initialise:
+  // where an earlier renderer of this size lay in memory, the aspect would stay 1, as VTK's ray
+  // casters would see it. Another pixel aspect first makes it compute both.
+  for (double pixelAspect : { 2.0, 1.0 })
+  {
+    this->renderer->SetPixelAspect(pixelAspect, 1.0);
+    this->renderer->ComputeAspect();
+  }
   this->volume->SetProperty(this->property);
   this->property->SetInterpolationTypeToLinear();
   this->setGrayRamp(0.0, 255.0);
