@@ -326,6 +326,7 @@ template <class A, int Rows, bool Cut, class S>
 struct SplatBlock
 {
   const Splat<A, S>& splat;
+  std::ptrdiff_t begin;
   int y;
   template <int V>
   inline void run(std::ptrdiff_t x) const
@@ -338,22 +339,46 @@ struct SplatBlock
     }
     else
     {
-      splatTile<A, Rows, V, Cut>(this->splat, x, this->y);
+      splatTile<A, Rows, V, Cut>(this->splat, this->begin + x, this->y);
     }
   }
 };
 
+/// Pixels `begin` to `end` of some rows.
 template <class A, int Rows, bool Cut, class S>
-inline void splatStrip(const Splat<A, S>& s, int y)
+inline void splatStrip(const Splat<A, S>& s, int y, std::ptrdiff_t begin, std::ptrdiff_t end)
 {
-  blocks<A>(s.width, SplatBlock<A, Rows, Cut, S>{ s, y },
+  blocks<A>(end - begin, SplatBlock<A, Rows, Cut, S>{ s, begin, y },
     [&](std::ptrdiff_t x)
     {
       for (int o = 0; o < Rows; ++o)
       {
-        splatPixel<A, Cut>(s, x, y + o);
+        splatPixel<A, Cut>(s, begin + x, y + o);
       }
     });
+}
+
+template <class A, int Rows, class S>
+inline void splatRows(const Splat<A, S>& s, int y)
+{
+  if (!s.bits)
+  {
+    splatStrip<A, Rows, false>(s, y, 0, s.width);
+    return;
+  }
+  // Bits are asked beside the pixels of which all change, in whole registers if there are any.
+  constexpr std::ptrdiff_t w = width<A>;
+  const std::ptrdiff_t begin = (s.wholeBegin + w - 1) / w * w;
+  const std::ptrdiff_t last = s.width - w;
+  const std::ptrdiff_t end = s.wholeEnd < s.width && s.wholeEnd > last ? last : s.wholeEnd;
+  if (end - begin < 2 * w)
+  {
+    splatStrip<A, Rows, true>(s, y, 0, s.width);
+    return;
+  }
+  splatStrip<A, Rows, true>(s, y, 0, begin);
+  splatStrip<A, Rows, false>(s, y, begin, end);
+  splatStrip<A, Rows, true>(s, y, end, s.width);
 }
 
 template <class A, class S>
@@ -362,11 +387,11 @@ void splat(const Splat<A, S>& s)
   int y = 0;
   for (; y + 4 <= s.height; y += 4)
   {
-    s.bits ? splatStrip<A, 4, true>(s, y) : splatStrip<A, 4, false>(s, y);
+    splatRows<A, 4>(s, y);
   }
   for (; y < s.height; ++y)
   {
-    s.bits ? splatStrip<A, 1, true>(s, y) : splatStrip<A, 1, false>(s, y);
+    splatRows<A, 1>(s, y);
   }
 }
 

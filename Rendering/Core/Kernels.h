@@ -156,6 +156,8 @@ struct Splat
   const unsigned char* bits;
   std::ptrdiff_t bitsStride;
   unsigned char bit;
+  /// Pixels of which all change in all rows, as far as that is known.
+  std::ptrdiff_t wholeBegin = 0, wholeEnd = 0;
   Noting noting;
   A base = 0;               ///< what is subtracted from the volume's own voxels
   std::ptrdiff_t ahead = 0; ///< from these to voxels that will be needed next, or 0

@@ -83,7 +83,7 @@ public:
   /// and take no longer for both than for one.
   static constexpr int RunUnit = 2 * TileWidth;
   /// Whether splatAll() takes SliceRuns.
-  static constexpr bool TakesSliceRuns = false;
+  static constexpr bool TakesSliceRuns = true;
 
   /// @param depth  how many slices beyond its own a footprint reads
   WorksheetLayers(const Frame<T>& frame, const WorksheetReach<A>& reach, int depth)
@@ -108,9 +108,9 @@ public:
   A magnitude() const { return std::abs(static_cast<A>(this->Shared.range.low) - this->Base); }
 
   /// Splats a layer's worksheets into the pixels of some rows and runs of columns, as far as the
-  /// bits (if there are any) say.
-  void splat(
-    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  /// bits or the slices' runs (if there are any) say.
+  void splat(int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits,
+    Patch& patch, const SliceRuns* cuts = nullptr) const
   {
     const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
     for (std::size_t n = 0; n < runs.size(); ++n)
@@ -119,7 +119,7 @@ public:
         [&](int first, int last, const Span& columns)
         {
           this->open(first, last, columns, patch);
-          this->splatPiece(slices, first, last, columns, bits, patch);
+          this->splatPiece(slices, first, last, columns, { bits, cuts }, patch);
         });
     }
   }
@@ -144,7 +144,7 @@ public:
         for (const Span& run : rows[r].runs)
         {
           this->splatPiece(
-            { k, k + 1 }, rows[r].v0, rows[r].v1, run, rows[r].bits, patch, this->step());
+            { k, k + 1 }, rows[r].v0, rows[r].v1, run, { rows[r].bits }, patch, this->step());
         }
       }
     }
@@ -178,8 +178,8 @@ public:
 
   /// The same for all pixels of some rows, which are one run, and all slices of some layers, piece
   /// by piece, so that voxels are widened once.
-  void splatAll(
-    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const
+  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch,
+    const SliceRuns* cuts = nullptr) const
   {
     const Span slices{ layers.begin * BrickDepth,
       std::min(layers.end * BrickDepth, this->Shared.geometry.size().z) };
@@ -187,7 +187,7 @@ public:
       [&](int first, int last, const Span& columns)
       {
         this->open(first, last, columns, patch);
-        this->splatPiece(slices, first, last, columns, {}, patch);
+        this->splatPiece(slices, first, last, columns, { {}, cuts }, patch);
       });
   }
 
@@ -223,6 +223,7 @@ protected:
     std::ptrdiff_t stride;
     SliceBits bits = {}; ///< which pixels change, by one of them; if there are any
     unsigned char bit = 0;
+    Span whole = {};                ///< pixels that all change, as far as that is known
     std::int16_t* orders = nullptr; ///< of pixel (0, 0), if splatRows() notes winners
     std::int16_t order = 0;
 
@@ -306,13 +307,66 @@ private:
     patch.resize<A>(columns.end - columns.begin + this->Reach.columns, v1 - v0 + this->Reach.rows);
   }
 
+  /// What says which samples count, where rays are cut: either, or nothing.
+  struct SampleCuts
+  {
+    SliceBits bits;
+    const SliceRuns* runs = nullptr;
+  };
+
+  /// Sets which of some pixels slice k changes, and leaves out of these what it does not. False if
+  /// it changes none.
+  bool cut(
+    const SampleCuts& cuts, int k, int v0, int v1, Span& pixels, Target& target, Patch& patch) const
+  {
+    target.bits = cuts.bits;
+    target.bit = static_cast<unsigned char>(1u << k % BrickDepth);
+    if (!cuts.runs)
+    {
+      return true;
+    }
+    const SliceRuns::Hull hull = cuts.runs->hull({ k, k + 1 }, v0, v1);
+    const Span all = common(pixels, hull.all);
+    if (all.begin == pixels.begin && all.end == pixels.end)
+    {
+      return true;
+    }
+    const Span any = common(pixels, hull.any);
+    if (any.empty())
+    {
+      return false;
+    }
+    // Loops take whole registers.
+    pixels = common(pixels, { any.begin / RunUnit * RunUnit, any.end + RunUnit - 1 });
+    target.whole = all;
+    target.bits = this->bitsOf(*cuts.runs, k, v0, v1, pixels, patch);
+    target.bit = 1;
+    return true;
+  }
+
+  SliceBits bitsOf(
+    const SliceRuns& runs, int k, int v0, int v1, const Span& pixels, Patch& patch) const
+  {
+    const std::ptrdiff_t stride = pixels.end - pixels.begin;
+    patch.counts.resize(std::max<std::size_t>(patch.counts.size(), stride * (v1 - v0)));
+    unsigned char* row = patch.counts.data();
+    for (int v = v0; v < v1; ++v, row += stride)
+    {
+      const Span run = common(pixels, runs.at(k, v));
+      std::fill_n(row, stride, static_cast<unsigned char>(0));
+      std::fill_n(row + (run.begin - pixels.begin), std::max(run.end - run.begin, 0),
+        static_cast<unsigned char>(1));
+    }
+    return { patch.counts.data() - v0 * stride - pixels.begin, stride };
+  }
+
   /// @param after  the step to the slice that comes after these, if it is known
-  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const SliceBits& bits,
+  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const SampleCuts& cuts,
     Patch& patch, int after = 0) const
   {
     if (this->Shared.orders && !this->Notes)
     {
-      this->notePiece(slices, v0, v1, columns, bits, patch);
+      this->notePiece(slices, v0, v1, columns, cuts, patch);
       return;
     }
     const int count = slices.end - slices.begin, step = this->step();
@@ -323,14 +377,17 @@ private:
         [&](int first, int end, const Span& span)
         {
           Target target = this->image();
+          Span pixels = span;
+          if (!this->cut(cuts, k, first, end, pixels, target, patch))
+          {
+            return;
+          }
           target.order = this->orderOfSlice(k);
-          target.bits = bits;
-          target.bit = static_cast<unsigned char>(1u << k % BrickDepth);
           const int next = n + 1 < count ? step : after;
-          if (!this->splatOwn(k, next, first, end, span, target, patch))
+          if (!this->splatOwn(k, next, first, end, pixels, target, patch))
           {
             this->load(k, next, patch);
-            this->splatRows(k, first, end, span, target, patch);
+            this->splatRows(k, first, end, pixels, target, patch);
           }
         });
     }
@@ -345,7 +402,7 @@ private:
   }
 
   /// The same by way of worksheets of their own, for splatRows() that do not note winners.
-  void notePiece(const Span& slices, int v0, int v1, const Span& columns, const SliceBits& bits,
+  void notePiece(const Span& slices, int v0, int v1, const Span& columns, const SampleCuts& cuts,
     Patch& patch) const
   {
     const RayLoops<A>& loops = this->Shared.kernels;
@@ -354,15 +411,19 @@ private:
     {
       const int k = this->Shared.nth(slices, n);
       const std::int16_t order = this->orderOfSlice(k);
-      const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
       this->splatSlice(
         k, this->step(), v0, v1, columns, worksheet, patch,
         [&](int v, const Span& pixels) { this->putBelowImage(v, pixels, worksheet); },
-        [&](int v, const Span& pixels)
+        [&](int v, Span pixels)
         {
-          loops.raiseNoting(this->Shared.image.template row<A>(v) + pixels.begin,
-            this->Shared.ordersOfRow(v) + pixels.begin, order, worksheet.at(pixels.begin, v),
-            bits.origin ? bits.at(pixels.begin, v) : nullptr, bit, pixels.end - pixels.begin);
+          Target image = this->image();
+          if (this->cut(cuts, k, v, v + 1, pixels, image, patch))
+          {
+            loops.raiseNoting(image.at(pixels.begin, v),
+              image.orders + v * image.stride + pixels.begin, order, worksheet.at(pixels.begin, v),
+              image.bits.origin ? image.bits.at(pixels.begin, v) : nullptr, image.bit,
+              pixels.end - pixels.begin);
+          }
         });
     }
   }
@@ -604,6 +665,9 @@ protected:
     splat.bits = target.bits.origin ? target.bits.at(span.begin, first) : nullptr;
     splat.bitsStride = target.bits.stride;
     splat.bit = target.bit;
+    const Span whole = common(target.whole, span);
+    splat.wholeBegin = whole.empty() ? 0 : whole.begin - span.begin;
+    splat.wholeEnd = whole.empty() ? 0 : whole.end - span.begin;
     splat.noting = this->notingAt(target, span.begin, first);
     splat.width = span.end - span.begin;
     splat.height = end - first;
