@@ -3,11 +3,13 @@
 #include "vtkOpenGLSplattingMIPVolumeMapper.h"
 
 #include "vtkObjectFactory.h"
+#include "vtkOpenGLFramebufferObject.h"
 #include "vtkOpenGLQuadHelper.h"
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkOpenGLShaderCache.h"
 #include "vtkOpenGLState.h"
 #include "vtkRenderer.h"
+#include "vtkSMPTools.h"
 #include "vtkShaderProgram.h"
 #include "vtkTextureObject.h"
 #if __has_include("vtk_glad.h") // since VTK 9.4
@@ -15,6 +17,11 @@
 #else
 #include "vtk_glew.h"
 #endif
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
 
 vtkStandardNewMacro(vtkOpenGLSplattingMIPVolumeMapper);
 
@@ -58,6 +65,185 @@ void prepare(vtkTextureObject* texture, vtkOpenGLRenderWindow* window)
   texture->SetMinificationFilter(vtkTextureObject::Nearest);
   texture->SetMagnificationFilter(vtkTextureObject::Nearest);
 }
+
+/// Pixels of an image, without the last ones.
+struct Rectangle
+{
+  int x0, y0, x1, y1;
+
+  bool empty() const { return this->x0 >= this->x1 || this->y0 >= this->y1; }
+};
+
+/// Into how many bands of rows an image is divided, each with one rectangle of opaque pixels. More
+/// would fit a convex outline better, and take more calls.
+constexpr int Bands = 12;
+/// Pixels that are looked at together, and columns that are worth a copy.
+constexpr int Together = 16, LeastColumns = 64;
+
+bool areOpaque(const unsigned char* rgba)
+{
+  std::uint32_t pixels[Together];
+  std::memcpy(pixels, rgba, sizeof(pixels));
+  std::uint32_t all = ~std::uint32_t(0);
+  for (std::uint32_t pixel : pixels)
+  {
+    all &= pixel;
+  }
+  unsigned char bytes[4];
+  std::memcpy(bytes, &all, sizeof(bytes));
+  return bytes[3] == 255;
+}
+
+/// Narrows columns on both sides of the middle to those that are opaque in row y.
+void narrow(const unsigned char* rgba, int width, int y, int& before, int& after)
+{
+  const unsigned char* const middle = rgba + 4 * (std::ptrdiff_t(y) * width + width / 2);
+  int n = 0;
+  for (; n + Together <= before && areOpaque(middle - 4 * (n + Together)); n += Together)
+  {
+  }
+  before = n;
+  for (n = 0; n + Together <= after && areOpaque(middle + 4 * n); n += Together)
+  {
+  }
+  after = n;
+}
+
+/// A rectangle of opaque pixels in some rows. At both ends it leaves out rows that have few.
+Rectangle opaquePart(const unsigned char* rgba, int width, int y0, int y1)
+{
+  const auto isNarrow = [=](int y)
+  {
+    int before = std::min(LeastColumns, width / 2);
+    int after = std::min(LeastColumns, width - width / 2);
+    narrow(rgba, width, y, before, after);
+    return before + after < LeastColumns;
+  };
+  for (; y0 < y1 && isNarrow(y0); ++y0)
+  {
+  }
+  for (; y0 < y1 && isNarrow(y1 - 1); --y1)
+  {
+  }
+  int before = width / 2, after = width - before;
+  for (int y = y0; y < y1; ++y)
+  {
+    narrow(rgba, width, y, before, after);
+  }
+  return { width / 2 - before, y0, width / 2 + after, y1 };
+}
+
+using Parts = std::array<Rectangle, Bands>;
+
+/// Each band's, from the bottom to the top; empty if it is not worth a copy.
+Parts opaqueParts(const unsigned char* rgba, const int size[2])
+{
+  Parts parts;
+  vtkSMPTools::For(0, Bands, 1,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (int b = static_cast<int>(first); b < last; ++b)
+      {
+        parts[b] = opaquePart(rgba, size[0], static_cast<int>(vtkIdType(size[1]) * b / Bands),
+          static_cast<int>(vtkIdType(size[1]) * (b + 1) / Bands));
+        if (parts[b].x1 - parts[b].x0 < LeastColumns)
+        {
+          parts[b] = {};
+        }
+      }
+    });
+  return parts;
+}
+
+/// A viewport of the window, and a picture in it.
+struct Place
+{
+  int corner[2], viewport[2]; // pixels of the window
+  int origin[2], size[2];     // of the viewport
+};
+
+/// Whether copied pixels arrive as drawn ones do: only there, at their places, and as they are.
+bool takesCopies(vtkOpenGLRenderWindow* window, Place& place)
+{
+  vtkOpenGLState* const state = window->GetState();
+  int samples = 0, second = GL_NONE, viewport[4] = {};
+  unsigned char mask[4] = {};
+  glGetIntegerv(GL_SAMPLE_BUFFERS, &samples);
+  glGetIntegerv(GL_DRAW_BUFFER1, &second);
+  glGetBooleanv(GL_COLOR_WRITEMASK, mask);
+  state->vtkglGetIntegerv(GL_VIEWPORT, viewport);
+  std::copy(viewport, viewport + 2, place.corner);
+  return std::equal(viewport + 2, viewport + 4, place.viewport) && samples == 0 &&
+    second == GL_NONE && std::all_of(mask, mask + 4, [](unsigned char m) { return m != 0; }) &&
+    !state->GetEnumState(GL_STENCIL_TEST) && !window->GetUseSRGBColorSpace();
+}
+
+void draw(vtkTextureObject* texture, const Rectangle& part, const Place& place)
+{
+  if (part.empty())
+  {
+    return;
+  }
+  const int low[2] = { part.x0, part.y0 }, high[2] = { part.x1, part.y1 };
+  float t[2][2], c[2][2]; // of the texture and of the viewport; low and high
+  for (int a = 0; a < 2; ++a)
+  {
+    t[0][a] = float(low[a]) / place.size[a];
+    t[1][a] = float(high[a]) / place.size[a];
+    c[0][a] = 2.0f * (place.origin[a] + low[a]) / place.viewport[a] - 1.0f;
+    c[1][a] = 2.0f * (place.origin[a] + high[a]) / place.viewport[a] - 1.0f;
+  }
+  float texels[] = { t[0][0], t[0][1], t[1][0], t[0][1], t[1][0], t[1][1], t[0][0], t[1][1] };
+  float corners[] = { c[0][0], c[0][1], 0, c[1][0], c[0][1], 0, c[1][0], c[1][1], 0, c[0][0],
+    c[1][1], 0 };
+  texture->CopyToFrameBuffer(texels, corners, nullptr, nullptr);
+}
+
+/// All but some parts.
+void drawBeside(vtkTextureObject* texture, const Parts& parts, const Place& place)
+{
+  const int width = place.size[0];
+  int row = 0;
+  for (const Rectangle& part : parts)
+  {
+    if (!part.empty())
+    {
+      draw(texture, { 0, row, width, part.y0 }, place);
+      draw(texture, { 0, part.y0, part.x0, part.y1 }, place);
+      draw(texture, { part.x1, part.y0, width, part.y1 }, place);
+      row = part.y1;
+    }
+  }
+  draw(texture, { 0, row, width, place.size[1] }, place);
+}
+
+/// Copies parts by a framebuffer object that is used for nothing else.
+void copy(vtkTextureObject* texture, vtkOpenGLFramebufferObject* buffer, const Parts& parts,
+  const Place& place)
+{
+  vtkOpenGLRenderWindow* const window = texture->GetContext();
+  vtkOpenGLRenderWindow* const before = buffer->GetContext();
+  if (before && before != window)
+  {
+    buffer->ReleaseGraphicsResources(before);
+  }
+  vtkOpenGLState* const state = window->GetState();
+  state->PushReadFramebufferBinding();
+  buffer->SetContext(window);
+  buffer->Bind(GL_READ_FRAMEBUFFER);
+  buffer->AddColorAttachment(0, texture);
+  buffer->ActivateReadBuffer(0);
+  const int x = place.corner[0] + place.origin[0], y = place.corner[1] + place.origin[1];
+  for (const Rectangle& part : parts)
+  {
+    if (!part.empty())
+    {
+      state->vtkglBlitFramebuffer(part.x0, part.y0, part.x1, part.y1, x + part.x0, y + part.y0,
+        x + part.x1, y + part.y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    }
+  }
+  state->PopReadFramebufferBinding();
+}
 }
 
 //------------------------------------------------------------------------------
@@ -91,17 +277,20 @@ void vtkOpenGLSplattingMIPVolumeMapper::DisplayImage(
   state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
 
   // In the current viewport, which is the renderer's, not the whole window.
-  int width, height, left, bottom;
-  ren->GetTiledSizeAndOrigin(&width, &height, &left, &bottom);
-  const float x0 = 2.0f * origin[0] / width - 1.0f;
-  const float y0 = 2.0f * origin[1] / height - 1.0f;
-  const float x1 = 2.0f * (origin[0] + size[0]) / width - 1.0f;
-  const float y1 = 2.0f * (origin[1] + size[1]) / height - 1.0f;
-  float texture[] = { 0, 0, 1, 0, 1, 1, 0, 1 };
-  float corners[] = { x0, y0, 0, x1, y0, 0, x1, y1, 0, x0, y1, 0 };
+  Place place;
+  ren->GetTiledSizeAndOrigin(
+    &place.viewport[0], &place.viewport[1], &place.corner[0], &place.corner[1]);
+  std::copy(origin, origin + 2, place.origin);
+  std::copy(size, size + 2, place.size);
+  const Parts opaque = takesCopies(window, place) ? opaqueParts(rgba, size) : Parts{};
   this->Texture->Activate();
-  this->Texture->CopyToFrameBuffer(texture, corners, nullptr, nullptr);
+  drawBeside(this->Texture, opaque, place);
   this->Texture->Deactivate();
+  if (std::any_of(
+        opaque.begin(), opaque.end(), [](const Rectangle& part) { return !part.empty(); }))
+  {
+    copy(this->Texture, this->TextureBuffer, opaque, place);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -158,6 +347,7 @@ void vtkOpenGLSplattingMIPVolumeMapper::ReleaseGraphicsResources(vtkWindow* wind
 {
   this->DepthQuad = nullptr;
   this->DepthTexture->ReleaseGraphicsResources(window);
+  this->TextureBuffer->ReleaseGraphicsResources(window);
   this->Texture->ReleaseGraphicsResources(window);
   this->Superclass::ReleaseGraphicsResources(window);
 }

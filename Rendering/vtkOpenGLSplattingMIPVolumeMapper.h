@@ -5,8 +5,10 @@
  * @brief   draws the pictures of vtkSplattingMIPVolumeMapper with OpenGL
  *
  * The class that the object factory gives for vtkSplattingMIPVolumeMapper. All it adds is the
- * display: one texture, texel on pixel, blended over what the renderer has drawn before. It writes
- * depth only where the mapper wants it, by a second texture.
+ * display: one texture, texel on pixel, blended over what the renderer has drawn before. Where all
+ * pixels of large rectangles are opaque they are copied instead, which looks the same and spares an
+ * OpenGL without GPU most of the work (not in windows with multisampling, which OpenGL ES does not
+ * copy to). It writes depth only where the mapper wants it, by a second texture.
  */
 #ifndef vtkOpenGLSplattingMIPVolumeMapper_h
 #define vtkOpenGLSplattingMIPVolumeMapper_h
@@ -17,6 +19,7 @@
 
 #include <memory> // for the quad
 
+class vtkOpenGLFramebufferObject;
 class vtkOpenGLQuadHelper;
 class vtkTextureObject;
 
@@ -47,6 +50,7 @@ private:
   void operator=(const vtkOpenGLSplattingMIPVolumeMapper&) = delete;
 
   vtkNew<vtkTextureObject> Texture, DepthTexture;
+  vtkNew<vtkOpenGLFramebufferObject> TextureBuffer; // to copy from the texture
   std::unique_ptr<vtkOpenGLQuadHelper> DepthQuad;
 };
 

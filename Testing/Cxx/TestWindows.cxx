@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Large screenshots, stereo, layers, and mappers that are shared, hidden, replaced and set beside
-// others: the volume looks as it does alone.
+// Large screenshots, stereo, layers, multisampling, and mappers that are shared, hidden, replaced
+// and set beside others: the volume looks as it does alone.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
@@ -251,6 +251,37 @@ void testTwoProps(Mapper* mapper, double viewAngle, stage::Checks& check)
   check(isBlack(stage.pixels()), "Invisible volumes are not seen.");
 }
 
+/// Large opaque parts of a picture are copied, but for windows with multisampling, which must show
+/// the same, whether all of the picture is opaque, some, or nothing.
+void testMultisampling(Mapper* mapper, double viewAngle, stage::Checks& check)
+{
+  constexpr double opacities[][2] = { { 1.0, 1.0 }, { 0.4, 1.0 }, { 0.4, 0.6 } };
+  stage::Pixels last;
+  for (const double(&opacity)[2] : opacities)
+  {
+    stage::Pixels pixels[2];
+    for (int samples : { 0, 4 })
+    {
+      stage::Stage stage(3 * Width, 3 * Height);
+      stage.window->SetMultiSamples(samples);
+      stage.viewAngle = viewAngle;
+      stage.show(mapper);
+      vtkNew<vtkPiecewiseFunction> function;
+      function->AddPoint(20.0, opacity[0]);
+      function->AddPoint(20.5, opacity[1]);
+      stage.property->SetScalarOpacity(function);
+      stage.renderer->SetBackground(0.1, 0.2, 0.4);
+      stage.look(Direction, Up, 0.6);
+      pixels[samples > 0] = stage.pixels();
+    }
+    check(pixels[0] == pixels[1],
+      std::string("Multisampling changes nothing in mode ") + mapper->GetQualityModeAsString() +
+        " with opacity " + std::to_string(opacity[0]) + ".");
+    check(pixels[0] != last, "Opacity matters.");
+    last = pixels[0];
+  }
+}
+
 stage::Pixels alone(vtkImageData* image, int mode, double viewAngle)
 {
   stage::Stage stage(Width, Height);
@@ -362,6 +393,7 @@ int TestWindows(int, char*[])
       testScreenshot(mapper, viewAngle, 3, check);
       testStereo(mapper, viewAngle, image, check);
       testLayers(mapper, viewAngle, check);
+      testMultisampling(mapper, viewAngle, check);
       testTwoProps(mapper, viewAngle, check);
       testReplacements(mapper, viewAngle, image, check);
     }
