@@ -166,16 +166,19 @@ struct Place
 bool takesCopies(vtkOpenGLRenderWindow* window, Place& place)
 {
   vtkOpenGLState* const state = window->GetState();
-  int samples = 0, second = GL_NONE, viewport[4] = {};
+  int samples = 0, second = GL_NONE, viewport[4] = {}, scissor[4] = {};
   unsigned char mask[4] = {};
   glGetIntegerv(GL_SAMPLE_BUFFERS, &samples);
   glGetIntegerv(GL_DRAW_BUFFER1, &second);
   glGetBooleanv(GL_COLOR_WRITEMASK, mask);
   state->vtkglGetIntegerv(GL_VIEWPORT, viewport);
+  state->vtkglGetIntegerv(GL_SCISSOR_BOX, scissor);
+  const bool cuts =
+    state->GetEnumState(GL_SCISSOR_TEST) && !std::equal(viewport, viewport + 4, scissor);
   std::copy(viewport, viewport + 2, place.corner);
   return std::equal(viewport + 2, viewport + 4, place.viewport) && samples == 0 &&
     second == GL_NONE && std::all_of(mask, mask + 4, [](unsigned char m) { return m != 0; }) &&
-    !state->GetEnumState(GL_STENCIL_TEST) && !window->GetUseSRGBColorSpace();
+    !cuts && !state->GetEnumState(GL_STENCIL_TEST) && !window->GetUseSRGBColorSpace();
 }
 
 void draw(vtkTextureObject* texture, const Rectangle& part, const Place& place)
@@ -221,15 +224,9 @@ void drawBeside(vtkTextureObject* texture, const Parts& parts, const Place& plac
 void copy(vtkTextureObject* texture, vtkOpenGLFramebufferObject* buffer, const Parts& parts,
   const Place& place)
 {
-  vtkOpenGLRenderWindow* const window = texture->GetContext();
-  vtkOpenGLRenderWindow* const before = buffer->GetContext();
-  if (before && before != window)
-  {
-    buffer->ReleaseGraphicsResources(before);
-  }
-  vtkOpenGLState* const state = window->GetState();
+  vtkOpenGLState* const state = texture->GetContext()->GetState();
   state->PushReadFramebufferBinding();
-  buffer->SetContext(window);
+  buffer->SetContext(texture->GetContext());
   buffer->Bind(GL_READ_FRAMEBUFFER);
   buffer->AddColorAttachment(0, texture);
   buffer->ActivateReadBuffer(0);
@@ -261,6 +258,11 @@ void vtkOpenGLSplattingMIPVolumeMapper::DisplayImage(
   {
     this->Superclass::DisplayImage(ren, origin, size, rgba);
     return;
+  }
+  if (this->TextureBuffer->GetContext() && this->Texture->GetContext() != window)
+  {
+    // It would go on to read the texture of that window, which ends now.
+    this->TextureBuffer->ReleaseGraphicsResources(this->TextureBuffer->GetContext());
   }
   prepare(this->Texture, window);
   this->Texture->Create2DFromRaw(static_cast<unsigned int>(size[0]),

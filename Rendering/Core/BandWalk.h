@@ -10,8 +10,8 @@
  * pixel may still change the winner.) What remains is walked row by row, several tiles at a
  * time, because memory is fastest where it is read in order.
  *
- * Where rays are cut, bits say which slices of a layer count for a pixel, and tiles that have none
- * are left out.
+ * Where rays are cut, runs of pixels say where a slice counts or, where one run does not tell, bits
+ * which slices of a layer count for a pixel. Tiles that have none are left out.
  */
 #ifndef splattingBandWalk_h
 #define splattingBandWalk_h

@@ -354,8 +354,11 @@ private:
     {
       const Span run = common(pixels, runs.at(k, v));
       std::fill_n(row, stride, static_cast<unsigned char>(0));
-      std::fill_n(row + (run.begin - pixels.begin), std::max(run.end - run.begin, 0),
-        static_cast<unsigned char>(1));
+      if (!run.empty())
+      {
+        std::fill_n(
+          row + (run.begin - pixels.begin), run.end - run.begin, static_cast<unsigned char>(1));
+      }
     }
     return { patch.counts.data() - v0 * stride - pixels.begin, stride };
   }

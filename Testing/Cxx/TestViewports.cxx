@@ -117,6 +117,26 @@ void testTwoWindows(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& ch
   check(left.pixels() == expectedLeft, "The first window gets new resources.");
 }
 
+/// A window whose picture is copied in parts, between frames of one with multisampling, where none
+/// is.
+void testWindowWithMultisampling(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
+{
+  const auto look = [=](stage::Stage& stage, const stage::Vector& direction, int samples)
+  {
+    stage.window->SetMultiSamples(samples);
+    stage.viewAngle = viewAngle;
+    stage.show(mapper);
+    stage.look(direction, up, 0.6);
+    return stage.pixels();
+  };
+  stage::Stage one(2 * Width, 2 * Height), other(2 * Width, 2 * Height);
+  const stage::Pixels left = look(one, leftDirection, 0);
+  const stage::Pixels right = look(other, rightDirection, 4);
+  check(left != right, "The windows show different views.");
+  check(look(one, rightDirection, 0) == right, "A window shows the view of another.");
+  check(look(other, leftDirection, 4) == left, "The other shows the view of the first.");
+}
+
 void testReleasedWindow(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
 {
   stage::Pixels first;
@@ -272,6 +292,7 @@ int TestViewports(int, char*[])
     {
       testTwoViewports(viewAngle, mapper, check);
       testTwoWindows(viewAngle, mapper, check);
+      testWindowWithMultisampling(viewAngle, mapper, check);
       testReleasedWindow(viewAngle, mapper, check);
       testGeometryBehind(viewAngle, mapper, image, check);
       testPartlyOutside(viewAngle, mapper, check);
