@@ -296,7 +296,7 @@ private:
     const int last = this->Shared.geometry.size().y - 1;
     const int low = std::clamp(bottom + window.jMin, 0, last) / BrickHeight;
     const int high = std::clamp(top + window.jMax, 0, last) / BrickHeight;
-    const bool meets = top + window.jMax >= -Reach && bottom + window.jMin <= last + Reach;
+    const bool meets = top + window.jMax >= -Beside && bottom + window.jMin <= last + Beside;
     // Tile t meets bricks t + from to t + to.
     const int from = floorDivided(window.iMin, BrickWidth);
     const int to = floorDivided(TileWidth - 1 + window.iMax, BrickWidth);
@@ -338,7 +338,7 @@ private:
     std::fill(out, out + this->Tiles, leastValue<T>());
     const int v0 = this->firstRow(group);
     const Span rows = this->Stack.rowsOf(z, { v0, v0 + this->rowsOf(group) });
-    if (rows.end <= -Reach || rows.begin >= size.y + Reach || rows.empty())
+    if (rows.end <= -Beside || rows.begin >= size.y + Beside || rows.empty())
     {
       return;
     }
@@ -377,7 +377,7 @@ private:
       for (int t = 0; t < this->Tiles; ++t)
       {
         const Span voxels = this->Stack.columnsOf(z, { t * TileWidth, (t + 1) * TileWidth });
-        windows[t] = voxels.empty() || voxels.end <= -Reach || voxels.begin >= size + Reach
+        windows[t] = voxels.empty() || voxels.end <= -Beside || voxels.begin >= size + Beside
           ? Span{}
           : Span{ std::clamp(voxels.begin, 0, size - 1) / BrickWidth,
               std::clamp(voxels.end - 1, 0, size - 1) / BrickWidth + 1 };
@@ -385,10 +385,6 @@ private:
     }
     return windows.data();
   }
-
-  /// How far beyond the volume worksheets may read: a footprint and the drift of a slice. Less than
-  /// a tile.
-  static constexpr int Reach = 4;
 
   /// In each direction a window is at most a tile, the drift of BrickDepth + 2 slices and a
   /// footprint wide.

@@ -153,6 +153,10 @@ struct Frame
 /// Slices of a volume whose steps Frame::orders can hold.
 constexpr int MostNoted = std::numeric_limits<std::int16_t>::max() / StepsPerSlice;
 
+/// How far beyond the volume worksheets may read: a footprint and the drift of a slice. Less than a
+/// tile.
+constexpr int Beside = 4;
+
 /// The voxels that the pixels of a layer read, relative to the pixel.
 struct Window
 {

@@ -192,6 +192,21 @@ inline Pack<A> fetch(const Splat<A, S>& s, const S* voxels)
   }
 }
 
+/// V registers of voxels from `row` on, where those from the voxel before are at hand. Where voxels
+/// have to be converted, taking them from these is cheaper; the last one is fetched, so that
+/// nothing is read that is not needed.
+template <int V, class A, class S>
+inline void nextColumn(const Splat<A, S>& s, const S* row, Pack<A> (&voxels)[V])
+{
+  constexpr int joins = JoinsRegisters && !std::is_same_v<A, S> ? V - 1 : 0;
+#pragma GCC unroll 4
+  for (int v = 0; v < V; ++v)
+  {
+    voxels[v] = v < joins ? joined(voxels[v], voxels[v + 1 < V ? v + 1 : v])
+                          : fetch<A, S>(s, row + v * width<A>);
+  }
+}
+
 /// Adds one part of the footprint to the worksheets of Rows x V registers. Rows of pixels share
 /// rows of voxels, so each register of voxels is loaded once for all of them; a pixel's sum still
 /// runs through the weights row by row.
@@ -209,14 +224,14 @@ inline void addPart(
     {
       prefetch(row + v * width<A> + s.ahead);
     }
-    for (int i = 0; i < columns; ++i)
-    {
-      Pack<A> voxels[V];
+    Pack<A> voxels[V];
 #pragma GCC unroll 4
-      for (int v = 0; v < V; ++v)
-      {
-        voxels[v] = fetch<A, S>(s, row + i + v * width<A>);
-      }
+    for (int v = 0; v < V; ++v)
+    {
+      voxels[v] = fetch<A, S>(s, row + v * width<A>);
+    }
+    for (int i = 0;;)
+    {
 #pragma GCC unroll 4
       for (int o = 0; o < Rows; ++o)
       {
@@ -230,6 +245,11 @@ inline void addPart(
           }
         }
       }
+      if (++i == columns)
+      {
+        break;
+      }
+      nextColumn<V, A, S>(s, row + i, voxels);
     }
   }
 }

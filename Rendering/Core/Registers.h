@@ -177,6 +177,28 @@ inline Pack<float> loadWidened(const std::int16_t* p)
 }
 #endif
 
+/// Whether joined() is an instruction.
+#if defined(__AVX512F__)
+constexpr bool JoinsRegisters = true;
+#else
+constexpr bool JoinsRegisters = false;
+#endif
+
+/// All elements of one register but the first, then the first of another.
+template <class P>
+inline P joined(P front, P back)
+{
+#if defined(__AVX512F__)
+  if constexpr (std::is_same_v<P, Pack<float>>)
+  {
+    return reinterpret_cast<P>(
+      _mm512_alignr_epi32(reinterpret_cast<__m512i>(back), reinterpret_cast<__m512i>(front), 1));
+  }
+#endif
+  (void)back;
+  return front;
+}
+
 /// Whether any element of a comparison's result is true.
 template <class M>
 inline bool anyOf(const M& mask)

@@ -622,9 +622,11 @@ protected:
   Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
   {
     const Window& window = this->Reach.slices[s];
-    return { s, columns.begin + window.iMin, v0 + window.jMin,
-      columns.end - columns.begin + window.iMax - window.iMin,
-      v1 - v0 + window.jMax - window.jMin };
+    const glm::ivec3& size = this->Shared.geometry.size();
+    const Span i = common(
+      { columns.begin + window.iMin, columns.end + window.iMax }, { -Beside, size.x + Beside });
+    const Span j = common({ v0 + window.jMin, v1 + window.jMax }, { -Beside, size.y + Beside });
+    return { s, i.begin, j.begin, std::max(i.end - i.begin, 0), std::max(j.end - j.begin, 0) };
   }
 
   void splatRows(
