@@ -100,7 +100,8 @@ bool SliceRuns::cutByIntervals(
 {
   const std::int16_t* const first = intervals.first(v);
   const std::int16_t* const last = intervals.last(v);
-  Span* const slice = runs - this->Slices.begin;
+  const Span all = this->Slices;
+  Span* const slice = runs - all.begin;
   bool once = true;
   // How many pixels after u are surely like it: most rays are not cut, or lose all.
   const auto pixelsLike = [=](int u, int end)
@@ -116,47 +117,35 @@ bool SliceRuns::cutByIntervals(
     }
     return count;
   };
-  const auto begin = [&](const Span& slices, int u)
+  const auto begin = [&](int from, int to, int u)
   {
-    for (int k = slices.begin; k < slices.end; ++k)
+    for (int k = from; k < to; ++k)
     {
       once = once && slice[k].empty();
       slice[k] = { u > pixels.begin ? u : -Far, Far };
     }
   };
-  const auto end = [&](const Span& slices, int u)
+  const auto end = [&](int from, int to, int u)
   {
-    for (int k = slices.begin; k < slices.end; ++k)
+    for (int k = from; k < to; ++k)
     {
       slice[k].end = u;
     }
   };
-  Span open{ this->Slices.begin, this->Slices.begin };
+  Span open{ all.begin, all.begin };
   for (int u = pixels.begin; u < pixels.end && once; ++u)
   {
-    Span now = common(this->Slices, { first[u], last[u] + 1 });
+    Span now = common(all, { first[u], last[u] + 1 });
     now = now.empty() ? Span{ open.end, open.end } : now;
     if (now.begin == open.begin && now.end == open.end)
     {
       u += pixelsLike(u, pixels.end);
       continue;
     }
-    if (now.begin > open.begin)
-    {
-      end({ open.begin, std::min(open.end, now.begin) }, u);
-    }
-    if (now.end < open.end)
-    {
-      end({ std::max(open.begin, now.end), open.end }, u);
-    }
-    if (now.begin < open.begin)
-    {
-      begin({ now.begin, std::min(now.end, open.begin) }, u);
-    }
-    if (now.end > open.end)
-    {
-      begin({ std::max(now.begin, open.end), now.end }, u);
-    }
+    end(open.begin, std::min(open.end, now.begin), u);
+    end(std::max(open.begin, now.end), open.end, u);
+    begin(now.begin, std::min(now.end, open.begin), u);
+    begin(std::max(now.begin, open.end), now.end, u);
     open = now;
   }
   return once;

@@ -179,10 +179,12 @@ private:
     this->Crossed.find(v, this->First.data(), this->Last.data());
     const std::int16_t* const first = this->Map.source().intervals.first(v);
     const std::int16_t* const last = this->Map.source().intervals.last(v);
-    const int width = static_cast<int>(this->First.size());
-    for (int u = 0; u < width; ++u)
+    const std::int16_t* const firstCrossed = this->First.data();
+    const std::int16_t* const lastCrossed = this->Last.data();
+    const std::size_t width = this->First.size();
+    for (std::size_t u = 0; u < width; ++u)
     {
-      mask[u] = std::max(first[u], this->First[u]) <= std::min(last[u], this->Last[u]);
+      mask[u] = std::max(first[u], firstCrossed[u]) <= std::min(last[u], lastCrossed[u]);
     }
   }
 

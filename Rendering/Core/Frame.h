@@ -243,7 +243,8 @@ void openRows(ShearImage& image, P floor, int v0, int v1)
       continue;
     }
     const unsigned char* const mask = &image.mask[std::ptrdiff_t(v) * image.width];
-    for (int u = span.begin; u < span.end; ++u)
+    const Span pixels = span; // not what a pixel might overwrite
+    for (int u = pixels.begin; u < pixels.end; ++u)
     {
       row[u] = mask[u] ? empty : outside;
     }

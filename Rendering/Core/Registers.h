@@ -120,6 +120,52 @@ inline Pack<Integer<T>> loadBits(const unsigned char* p)
 #endif
 }
 
+/// Bit n says something of element n of a register.
+using LaneBits = std::uint64_t;
+
+/// `value` where the elements' bits are set, elsewhere `other`.
+template <class T>
+inline Pack<T> selected(LaneBits bits, Pack<T> value, Pack<T> other)
+{
+#if defined(__AVX512BW__)
+  const __m512i yes = reinterpret_cast<__m512i>(value), no = reinterpret_cast<__m512i>(other);
+  __m512i result;
+  if constexpr (sizeof(T) == 1)
+  {
+    result = _mm512_mask_blend_epi8(static_cast<__mmask64>(bits), no, yes);
+  }
+  else if constexpr (sizeof(T) == 2)
+  {
+    result = _mm512_mask_blend_epi16(static_cast<__mmask32>(bits), no, yes);
+  }
+  else if constexpr (sizeof(T) == 4)
+  {
+    result = _mm512_mask_blend_epi32(static_cast<__mmask16>(bits), no, yes);
+  }
+  else
+  {
+    result = _mm512_mask_blend_epi64(static_cast<__mmask8>(bits), no, yes);
+  }
+  return reinterpret_cast<Pack<T>>(result);
+#elif defined(__GNUC__)
+  // Each element tests its own bit of a word as large as itself; bytes, of which there are more
+  // than such a word has bits, that of one of several words.
+  using Word = std::make_unsigned_t<Integer<T>>;
+  Pack<Word> words = Pack<Word>{} + static_cast<Word>(bits), lane;
+  for (std::ptrdiff_t n = 0; n < width<T>; ++n)
+  {
+    reinterpret_cast<Word*>(&lane)[n] = static_cast<Word>(Word(1) << n % (8 * sizeof(Word)));
+    if (sizeof(Word) == 1)
+    {
+      reinterpret_cast<Word*>(&words)[n] = static_cast<Word>(bits >> n / 8 * 8);
+    }
+  }
+  return (words & lane) != 0 ? value : other;
+#else
+  return bits & 1 ? value : other;
+#endif
+}
+
 /// A register of elements, widened to the accumulator's type. Where that is float, compilers need
 /// to be told the instruction that widens small integers.
 template <class T>

@@ -404,16 +404,13 @@ class CutSweep
 public:
   explicit CutSweep(const Sweep<T>& sweep) : Shared(sweep)
   {
-    for (int x = 0; x < width<T>; ++x)
-    {
-      reinterpret_cast<Unsigned*>(&this->Lanes)[x] = static_cast<Unsigned>(x);
-    }
     for (int r = 0; r < sweep.count; ++r)
     {
       const int slice = sweep.slice[r];
       this->Any = widened(this->Any, sweep.sees[r]);
       this->All = narrowed(this->All, sweep.sees[r]);
       this->Slices = widened(this->Slices, { slice, slice + 1 });
+      this->Everywhere.rows[r] = ~LaneBits(0);
     }
     const int end =
       static_cast<int>(this->Any.end < sweep.imageStride ? this->Any.end : sweep.imageStride);
@@ -454,7 +451,12 @@ public:
   }
 
 private:
-  using Unsigned = std::make_unsigned_t<Integer<T>>;
+  /// Which elements of the register at x see each row.
+  struct Seen
+  {
+    int x = std::numeric_limits<int>::min();
+    LaneBits rows[MostRows];
+  };
 
   static constexpr Span nothing() { return { std::numeric_limits<int>::max(), 0 }; }
   static constexpr Span everything() { return { 0, std::numeric_limits<int>::max() }; }
@@ -469,7 +471,7 @@ private:
 
   /// Pixels of a run that see any rows, and those that see all.
   inline void sweepRun(
-    const Span& any, const Span& all, T* image, std::int16_t* notes, const T* const* rows) const
+    const Span& any, const Span& all, T* image, std::int16_t* notes, const T* const* rows)
   {
     const Sweep<T>& s = this->Shared;
     if (all.end - all.begin < width<T>)
@@ -492,8 +494,7 @@ private:
   }
 
   /// Pixels that see some of the rows.
-  inline void sweepPartly(
-    const Span& pixels, T* image, std::int16_t* notes, const T* const* rows) const
+  inline void sweepPartly(const Span& pixels, T* image, std::int16_t* notes, const T* const* rows)
   {
     for (int x = pixels.begin; x < pixels.end; x += static_cast<int>(width<T>))
     {
@@ -501,23 +502,23 @@ private:
     }
   }
 
-  inline void sweepRegister(int x, T* image, std::int16_t* notes, const T* const* rows) const
+  inline void sweepRegister(int x, T* image, std::int16_t* notes, const T* const* rows)
   {
     const Sweep<T>& s = this->Shared;
+    LaneBits counting[MostRows]; // in each slice
+    for (int k = this->Slices.begin; k < this->Slices.end; ++k)
+    {
+      counting[k] = lanesOf(this->Runs[k], x);
+    }
+    const LaneBits* const seen = this->seenAt(x).rows;
     const auto sample = [&](int, int r, Pack<T> other)
     {
-      constexpr int w = static_cast<int>(width<T>);
-      const Span seen = narrowed(this->Runs[s.slice[r]], s.sees[r]);
-      const int begin = seen.begin - x > 0 ? seen.begin - x : 0;
-      const int end = seen.end - x < w ? seen.end - x : w;
-      const int count = end > begin ? end - begin : 0;
-      const Pack<Unsigned> beyond = this->Lanes - static_cast<Unsigned>(begin);
       const Pack<T> value = load<T>(rows[r] + x);
       if (s.ahead)
       {
         prefetch(rows[r] + x + s.ahead);
       }
-      return beyond < static_cast<Unsigned>(count) ? value : other;
+      return selected<T>(counting[s.slice[r]] & seen[r], value, other);
     };
     if (notes)
     {
@@ -532,9 +533,34 @@ private:
     store<T>(image + x, best);
   }
 
+  /// The elements of a register at x that lie in a run.
+  static inline LaneBits lanesOf(const Span& run, int x)
+  {
+    constexpr int w = static_cast<int>(width<T>);
+    const int begin = run.begin - x > 0 ? run.begin - x : 0;
+    const int end = run.end - x < w ? run.end - x : w;
+    return end > begin ? ~LaneBits(0) >> (64 - (end - begin)) << begin : LaneBits(0);
+  }
+
+  /// Most registers of either side of the volume are at the same place in all rows.
+  inline const Seen& seenAt(int x)
+  {
+    if (x >= this->All.begin && x + static_cast<int>(width<T>) <= this->All.end)
+    {
+      return this->Everywhere;
+    }
+    Seen& seen = x < this->All.begin ? this->Left : this->Right;
+    for (int r = 0; r < this->Shared.count && seen.x != x; ++r)
+    {
+      seen.rows[r] = lanesOf(this->Shared.sees[r], x);
+    }
+    seen.x = x;
+    return seen;
+  }
+
   const Sweep<T>& Shared;
-  Pack<Unsigned> Lanes;
   Span Slices = nothing(), Any = nothing(), All = everything();
+  Seen Everywhere, Left, Right;
   int LastRegister; ///< registers beyond would leave the image, or read more than rims do
   const Span* Runs = nullptr;
 };
