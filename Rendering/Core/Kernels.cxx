@@ -198,12 +198,12 @@ inline Pack<A> fetch(const Splat<A, S>& s, const S* voxels)
 template <int V, class A, class S>
 inline void nextColumn(const Splat<A, S>& s, const S* row, Pack<A> (&voxels)[V])
 {
-  constexpr int joins = JoinsRegisters && !std::is_same_v<A, S> ? V - 1 : 0;
+  constexpr int advances = AdvancesRegisters && !std::is_same_v<A, S> ? V - 1 : 0;
 #pragma GCC unroll 4
   for (int v = 0; v < V; ++v)
   {
-    voxels[v] = v < joins ? joined(voxels[v], voxels[v + 1 < V ? v + 1 : v])
-                          : fetch<A, S>(s, row + v * width<A>);
+    voxels[v] = v < advances ? advanced(voxels[v], voxels[v + 1 < V ? v + 1 : v])
+                             : fetch<A, S>(s, row + v * width<A>);
   }
 }
 

@@ -223,16 +223,16 @@ inline Pack<float> loadWidened(const std::int16_t* p)
 }
 #endif
 
-/// Whether joined() is an instruction.
+/// Whether advanced() is an instruction.
 #if defined(__AVX512F__)
-constexpr bool JoinsRegisters = true;
+constexpr bool AdvancesRegisters = true;
 #else
-constexpr bool JoinsRegisters = false;
+constexpr bool AdvancesRegisters = false;
 #endif
 
 /// All elements of one register but the first, then the first of another.
 template <class P>
-inline P joined(P front, P back)
+inline P advanced(P front, P back)
 {
 #if defined(__AVX512F__)
   if constexpr (std::is_same_v<P, Pack<float>>)

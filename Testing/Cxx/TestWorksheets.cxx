@@ -17,12 +17,14 @@ namespace
 /// The largest error, relative to the bound; infinity where one image has a sample and one not.
 template <class T>
 double largestError(const reference::Volume<T>& volume, const splatting::ShearWarp& geometry,
-  const Mode& mode, double bound)
+  const Mode& mode, double bound, splatting::InstructionSet set = splatting::bestInstructionSet())
 {
   using A = splatting::Accumulator<T>;
   const auto expected =
     reference::slabAverage(reference::toDouble(volume), referenceView(geometry), mode.reference);
-  const auto found = toReference<A>(project(volume, geometry, settingsOf(mode)));
+  splatting::ProjectionSettings settings = settingsOf(mode);
+  settings.instructionSet = set;
+  const auto found = toReference<A>(project(volume, geometry, settings));
   if (found.hit != expected.hit)
   {
     return std::numeric_limits<double>::infinity();
@@ -36,6 +38,29 @@ double largestError(const reference::Volume<T>& volume, const splatting::ShearWa
     }
   }
   return largest / bound;
+}
+
+/// Rows that fill several registers, with every instruction set.
+template <class T>
+void testLongRows(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int way = 0; way < 8; ++way)
+  {
+    const auto volume = wholeRangeNoise<T>(
+      { random.uniform(70, 150), random.uniform(3, 9), random.uniform(2, 4) }, random.bits());
+    const splatting::ShearWarp geometry(viewWithShear(
+      volume.size, 2, 0.01 * random.uniform(-99, 99), 0.01 * random.uniform(-99, 99)));
+    const double low = double(*std::min_element(volume.voxels.begin(), volume.voxels.end()));
+    const double high = double(*std::max_element(volume.voxels.begin(), volume.voxels.end()));
+    Mode mode = modes()[way % 2];
+    const double bound = errorBound<T>(mode.quality, low, high) +
+      2e-13 * std::max(std::abs(low), std::abs(high)) + 1e-300;
+    const auto set = static_cast<splatting::InstructionSet>(way / 2);
+    const double error = largestError(volume, geometry, mode, bound, set);
+    check(error <= 1.0, "long rows of type ", int(splatting::scalarTypeOf<T>()), ", mode ",
+      int(mode.quality), ", instruction set ", int(set), ": error of ", error, " bounds");
+  }
 }
 
 template <class T>
@@ -158,6 +183,7 @@ int TestWorksheets(int, char*[])
     {
       using T = std::remove_pointer_t<decltype(null)>;
       testType<T>(check, ++seed);
+      testLongRows<T>(check, seed);
       testConstant<T>(check, seed);
     });
   testOddValues(check);
