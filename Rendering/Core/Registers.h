@@ -120,51 +120,93 @@ inline Pack<Integer<T>> loadBits(const unsigned char* p)
 #endif
 }
 
-/// Bit n says something of element n of a register.
-using LaneBits = std::uint64_t;
-
-/// `value` where the elements' bits are set, elsewhere `other`.
+/// Picks neighbouring elements of registers: by bits where instructions take these, elsewhere by
+/// comparing where elements are with where the neighbours begin and end.
 template <class T>
-inline Pack<T> selected(LaneBits bits, Pack<T> value, Pack<T> other)
+class LanePicker
 {
 #if defined(__AVX512BW__)
-  const __m512i yes = reinterpret_cast<__m512i>(value), no = reinterpret_cast<__m512i>(other);
-  __m512i result;
-  if constexpr (sizeof(T) == 1)
+public:
+  /// Some neighbours.
+  using Run = std::uint64_t;
+
+  static inline Run everything()
   {
-    result = _mm512_mask_blend_epi8(static_cast<__mmask64>(bits), no, yes);
+    return ~Run(0);
   }
-  else if constexpr (sizeof(T) == 2)
+  /// Elements [begin, end) as far as there are such.
+  static inline Run run(int begin, int end)
   {
-    result = _mm512_mask_blend_epi16(static_cast<__mmask32>(bits), no, yes);
+    const int first = begin > 0 ? begin : 0;
+    const int last = end < static_cast<int>(width<T>) ? end : static_cast<int>(width<T>);
+    return last > first ? everything() >> (64 - (last - first)) << first : Run(0);
   }
-  else if constexpr (sizeof(T) == 4)
+  static inline Run common(Run a, Run b)
   {
-    result = _mm512_mask_blend_epi32(static_cast<__mmask16>(bits), no, yes);
+    return a & b;
   }
-  else
+  /// `value` in a run, elsewhere `other`.
+  inline Pack<T> pick(Run run, Pack<T> value, Pack<T> other) const
   {
-    result = _mm512_mask_blend_epi64(static_cast<__mmask8>(bits), no, yes);
-  }
-  return reinterpret_cast<Pack<T>>(result);
-#elif defined(__GNUC__)
-  // Each element tests its own bit of a word as large as itself; bytes, of which there are more
-  // than such a word has bits, that of one of several words.
-  using Word = std::make_unsigned_t<Integer<T>>;
-  Pack<Word> words = Pack<Word>{} + static_cast<Word>(bits), lane;
-  for (std::ptrdiff_t n = 0; n < width<T>; ++n)
-  {
-    reinterpret_cast<Word*>(&lane)[n] = static_cast<Word>(Word(1) << n % (8 * sizeof(Word)));
-    if (sizeof(Word) == 1)
+    const __m512i yes = reinterpret_cast<__m512i>(value), no = reinterpret_cast<__m512i>(other);
+    __m512i result;
+    if constexpr (sizeof(T) == 1)
     {
-      reinterpret_cast<Word*>(&words)[n] = static_cast<Word>(bits >> n / 8 * 8);
+      result = _mm512_mask_blend_epi8(static_cast<__mmask64>(run), no, yes);
+    }
+    else if constexpr (sizeof(T) == 2)
+    {
+      result = _mm512_mask_blend_epi16(static_cast<__mmask32>(run), no, yes);
+    }
+    else if constexpr (sizeof(T) == 4)
+    {
+      result = _mm512_mask_blend_epi32(static_cast<__mmask16>(run), no, yes);
+    }
+    else
+    {
+      result = _mm512_mask_blend_epi64(static_cast<__mmask8>(run), no, yes);
+    }
+    return reinterpret_cast<Pack<T>>(result);
+  }
+#else
+public:
+  struct Run
+  {
+    int begin, end;
+  };
+
+  LanePicker()
+  {
+    for (std::ptrdiff_t n = 0; n < width<T>; ++n)
+    {
+      reinterpret_cast<Unsigned*>(&this->Lanes)[n] = static_cast<Unsigned>(n);
     }
   }
-  return (words & lane) != 0 ? value : other;
-#else
-  return bits & 1 ? value : other;
+  static inline Run everything()
+  {
+    return { 0, static_cast<int>(width<T>) };
+  }
+  static inline Run run(int begin, int end)
+  {
+    return common({ begin, end }, everything());
+  }
+  static inline Run common(const Run& a, const Run& b)
+  {
+    return { a.begin > b.begin ? a.begin : b.begin, a.end < b.end ? a.end : b.end };
+  }
+  inline Pack<T> pick(const Run& run, Pack<T> value, Pack<T> other) const
+  {
+    const int count = run.end > run.begin ? run.end - run.begin : 0;
+    const Pack<Unsigned> beyond = this->Lanes - static_cast<Unsigned>(run.begin);
+    return beyond < static_cast<Unsigned>(count) ? value : other;
+  }
+
+private:
+  using Unsigned = std::make_unsigned_t<Integer<T>>;
+
+  Pack<Unsigned> Lanes;
 #endif
-}
+};
 
 /// A register of elements, widened to the accumulator's type. Where that is float, compilers need
 /// to be told the instruction that widens small integers.

@@ -410,7 +410,7 @@ public:
       this->Any = widened(this->Any, sweep.sees[r]);
       this->All = narrowed(this->All, sweep.sees[r]);
       this->Slices = widened(this->Slices, { slice, slice + 1 });
-      this->Everywhere.rows[r] = ~LaneBits(0);
+      this->Everywhere.rows[r] = Picks::everything();
     }
     const int end =
       static_cast<int>(this->Any.end < sweep.imageStride ? this->Any.end : sweep.imageStride);
@@ -451,11 +451,14 @@ public:
   }
 
 private:
+  using Picks = LanePicker<T>;
+  using Lanes = typename Picks::Run;
+
   /// Which elements of the register at x see each row.
   struct Seen
   {
     int x = std::numeric_limits<int>::min();
-    LaneBits rows[MostRows];
+    Lanes rows[MostRows];
   };
 
   static constexpr Span nothing() { return { std::numeric_limits<int>::max(), 0 }; }
@@ -505,12 +508,12 @@ private:
   inline void sweepRegister(int x, T* image, std::int16_t* notes, const T* const* rows)
   {
     const Sweep<T>& s = this->Shared;
-    LaneBits counting[MostRows]; // in each slice
+    Lanes counting[MostRows]; // in each slice
     for (int k = this->Slices.begin; k < this->Slices.end; ++k)
     {
       counting[k] = lanesOf(this->Runs[k], x);
     }
-    const LaneBits* const seen = this->seenAt(x).rows;
+    const Lanes* const seen = this->seenAt(x).rows;
     const auto sample = [&](int, int r, Pack<T> other)
     {
       const Pack<T> value = load<T>(rows[r] + x);
@@ -518,7 +521,7 @@ private:
       {
         prefetch(rows[r] + x + s.ahead);
       }
-      return selected<T>(counting[s.slice[r]] & seen[r], value, other);
+      return this->Pick.pick(Picks::common(counting[s.slice[r]], seen[r]), value, other);
     };
     if (notes)
     {
@@ -534,12 +537,9 @@ private:
   }
 
   /// The elements of a register at x that lie in a run.
-  static inline LaneBits lanesOf(const Span& run, int x)
+  static inline Lanes lanesOf(const Span& run, int x)
   {
-    constexpr int w = static_cast<int>(width<T>);
-    const int begin = run.begin - x > 0 ? run.begin - x : 0;
-    const int end = run.end - x < w ? run.end - x : w;
-    return end > begin ? ~LaneBits(0) >> (64 - (end - begin)) << begin : LaneBits(0);
+    return Picks::run(run.begin - x, run.end - x);
   }
 
   /// Most registers of either side of the volume are at the same place in all rows.
@@ -559,6 +559,7 @@ private:
   }
 
   const Sweep<T>& Shared;
+  Picks Pick;
   Span Slices = nothing(), Any = nothing(), All = everything();
   Seen Everywhere, Left, Right;
   int LastRegister; ///< registers beyond would leave the image, or read more than rims do
