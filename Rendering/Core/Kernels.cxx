@@ -254,6 +254,35 @@ inline void addPart(
   }
 }
 
+/// Raises Rows x V registers of pixels to their sums.
+template <class A, int Rows, int V, bool Cut, bool Notes, class S>
+inline void raiseTile(const Splat<A, S>& s, std::ptrdiff_t x, int y, Pack<A> (&sum)[Rows][V])
+{
+#pragma GCC unroll 4
+  for (int o = 0; o < Rows; ++o)
+  {
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      const std::ptrdiff_t at = (y + o) * s.imageStride + x + v * width<A>;
+      const Pack<A> before = load<A>(s.image + at);
+      Pack<Integer<A>> counts = ~Pack<Integer<A>>{};
+      if constexpr (Cut)
+      {
+        const Pack<Integer<A>> bits =
+          loadBits<A>(s.bits + (y + o) * s.bitsStride + x + v * width<A>);
+        counts = (bits & static_cast<Integer<A>>(s.bit)) != 0;
+        sum[o][v] = counts ? sum[o][v] : before;
+      }
+      if constexpr (Notes)
+      {
+        noteSums<A>(s.noting, at, sum[o][v], before, counts);
+      }
+      store<A>(s.image + at, larger(sum[o][v], before));
+    }
+  }
+}
+
 /// Rows x V registers of pixels, from (x, y) of the rectangle.
 template <class A, int Rows, int V, bool Cut, class S>
 inline void splatTile(const Splat<A, S>& s, std::ptrdiff_t x, int y)
@@ -291,29 +320,8 @@ inline void splatTile(const Splat<A, S>& s, std::ptrdiff_t x, int y)
         break;
     }
   }
-#pragma GCC unroll 4
-  for (int o = 0; o < Rows; ++o)
-  {
-#pragma GCC unroll 4
-    for (int v = 0; v < V; ++v)
-    {
-      const std::ptrdiff_t at = (y + o) * s.imageStride + x + v * width<A>;
-      const Pack<A> before = load<A>(s.image + at);
-      Pack<Integer<A>> counts = ~Pack<Integer<A>>{};
-      if constexpr (Cut)
-      {
-        const Pack<Integer<A>> bits =
-          loadBits<A>(s.bits + (y + o) * s.bitsStride + x + v * width<A>);
-        counts = (bits & static_cast<Integer<A>>(s.bit)) != 0;
-        sum[o][v] = counts ? sum[o][v] : before;
-      }
-      if (s.noting.notes)
-      {
-        noteSums<A>(s.noting, at, sum[o][v], before, counts);
-      }
-      store<A>(s.image + at, larger(sum[o][v], before));
-    }
-  }
+  s.noting.notes ? raiseTile<A, Rows, V, Cut, true>(s, x, y, sum)
+                 : raiseTile<A, Rows, V, Cut, false>(s, x, y, sum);
 }
 
 template <class A, bool Cut, class S>
