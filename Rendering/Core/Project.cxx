@@ -70,12 +70,21 @@ LineEncoding encodingFor(const ProjectionSettings& settings, const glm::ivec3& s
 constexpr int ChunkDepth = 8 * BrickDepth;
 
 /// A share of tiles above which skipping the others does not pay: the plain walk reads memory in
-/// order, which is worth more where little is computed.
-double worthwhileShare(Quality quality, bool perspective)
+/// order, which is worth more where little is computed, or where registers are wide and compute it
+/// fast.
+double worthwhileShare(const ProjectionSettings& settings, bool perspective)
 {
-  const bool computesLittle =
-    quality == Quality::Preview || (quality == Quality::Standard && !perspective);
-  return computesLittle ? 0.3 : 0.5;
+  const VoxelLoops<float>& loops = kernelsFor(settings.instructionSet);
+  const bool computesFast = loops.lanes >= 16;
+  switch (settings.quality)
+  {
+    case Quality::Preview:
+      return 0.3;
+    case Quality::Standard:
+      return perspective ? 0.5 : computesFast ? 0.3 : 0.4;
+    default:
+      return computesFast ? 0.5 : 0.6;
+  }
 }
 
 /// The rule of Acceleration::Auto.
@@ -85,8 +94,7 @@ Acceleration choose(
   const Experience& experience =
     index.experience(geometry.principalAxis(), static_cast<int>(settings.quality), isCut);
   constexpr int patience = 32;
-  const bool crowded =
-    experience.share > worthwhileShare(settings.quality, geometry.isPerspective());
+  const bool crowded = experience.share > worthwhileShare(settings, geometry.isPerspective());
   return crowded && experience.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
 }
 
