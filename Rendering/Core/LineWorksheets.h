@@ -10,7 +10,7 @@
 #define splattingLineWorksheets_h
 
 #include "LineIndex.h"
-#include "Worksheets.h"
+#include "ParallelWorksheets.h"
 
 namespace splatting
 {

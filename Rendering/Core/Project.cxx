@@ -6,6 +6,7 @@
 #include "Carry.h"
 #include "LineWalk.h"
 #include "LineWorksheets.h"
+#include "ParallelWorksheets.h"
 #include "PerspectiveExact.h"
 #include "PerspectivePreview.h"
 #include "PerspectiveWorksheets.h"
