@@ -269,23 +269,15 @@ void testDeepVolume(Checks& check)
   }
 }
 
-/// The voxels of slice k with their weights in an average, by averaging volumes of one voxel each.
+/// What a voxel weighs in an average: that of a volume where it alone is 1.
 double shareOf(const std::array<int, 3>& size, const splatting::ShearWarp& geometry,
   const reference::Kernel& kernel, const glm::ivec3& voxel, int u, int v, int k)
 {
   reference::Volume<double> single(size, 0.0);
   single.at(std::array<int, 3>{ voxel.x, voxel.y, voxel.z }) = 1.0;
-  const auto rays = geometry.isPerspective()
-    ? reference::slabSamples(single, referenceRays(geometry), kernel)
-    : reference::slabSamples(single, referenceView(geometry), kernel);
-  for (const auto& sample : rays[std::size_t(v) * geometry.width() + u])
-  {
-    if (sample.slice == k)
-    {
-      return sample.value;
-    }
-  }
-  return 0.0;
+  return geometry.isPerspective()
+    ? reference::slabSample(single, referenceRays(geometry), kernel, u, v, k).value
+    : reference::slabSample(single, referenceView(geometry), kernel, u, v, k).value;
 }
 
 /// Of one pixel, the voxel that adds most to its average: none adds more.

@@ -76,6 +76,14 @@ struct WeightedSum
   }
 };
 
+/**
+ * Without weight it is 0 / 0, a NaN, no sample.
+ */
+inline Sample<double> sampleOf(int slice, const WeightedSum& slab)
+{
+  return { slice, slab.sum / slab.weight, slab.weight };
+}
+
 } // namespace reference
 
 #endif

@@ -165,9 +165,7 @@ RaySamples<double> averages(const PerspectiveRays& rays, const Average& average)
       samples.emplace_back();
       for (int slice : crossedSlices(rays, u, v))
       {
-        const WeightedSum slab = average(u, v, slice);
-        // No weight: 0 / 0, a NaN, no sample.
-        samples.back().push_back({ slice, slab.sum / slab.weight, slab.weight });
+        samples.back().push_back(sampleOf(slice, average(u, v, slice)));
       }
     }
   }
@@ -212,6 +210,49 @@ std::vector<double> frustumKinks(const PerspectiveRays& rays, const Kernel& kern
   }
   return kinks;
 }
+
+/**
+ * A slice cut into parts, in each of which weights are products of means.
+ */
+class SlabAverage
+{
+public:
+  SlabAverage(const SeenVolume& source, const Kernel& kernel)
+    : Source(source),
+      H(kernel),
+      Rule(ruleFor(kernel)),
+      Parts(partsPerSlice(source.rays, kernel))
+  {
+  }
+
+  WeightedSum operator()(int u, int v, int slice) const
+  {
+    const PerspectiveRays& rays = this->Source.rays;
+    const std::array<double, 2> faces = rays.faces(slice, slice);
+    const double thickness = (faces[1] - faces[0]) / this->Parts;
+    WeightedSum slab;
+    for (int part = 0; part < this->Parts; ++part)
+    {
+      const double low = faces[0] + part * thickness, middle = low + 0.5 * thickness;
+      AxisWeights x = meanOverPart(this->H, rays.position(0, u, middle),
+        std::abs(rays.slope[0][u]) * thickness, rays.spacing(middle), this->Rule);
+      AxisWeights y = meanOverPart(this->H, rays.position(1, v, middle),
+        std::abs(rays.slope[1][v]) * thickness, rays.spacing(middle), this->Rule);
+      AxisWeights z = meanOverInterval(this->H, low, low + thickness, this->Rule);
+      x.divideBySum();
+      y.divideBySum();
+      z.divideBySum();
+      slab.add(1.0 / this->Parts, this->Source.sum(x, y, z));
+    }
+    return slab;
+  }
+
+private:
+  const SeenVolume& Source;
+  const Kernel& H;
+  const std::vector<Node> Rule;
+  const int Parts;
+};
 
 } // namespace
 
@@ -266,29 +307,16 @@ RaySamples<double> slabSamples(
   const Volume<double>& volume, const PerspectiveRays& rays, const Kernel& kernel)
 {
   const SeenVolume source = { volume, rays };
-  const std::vector<Node> rule = ruleFor(kernel);
-  const int parts = partsPerSlice(rays, kernel);
-  return averages(rays,
-    [&](int u, int v, int slice)
-    {
-      const std::array<double, 2> faces = rays.faces(slice, slice);
-      const double thickness = (faces[1] - faces[0]) / parts;
-      WeightedSum slab;
-      for (int part = 0; part < parts; ++part)
-      {
-        const double low = faces[0] + part * thickness, middle = low + 0.5 * thickness;
-        AxisWeights x = meanOverPart(kernel, rays.position(0, u, middle),
-          std::abs(rays.slope[0][u]) * thickness, rays.spacing(middle), rule);
-        AxisWeights y = meanOverPart(kernel, rays.position(1, v, middle),
-          std::abs(rays.slope[1][v]) * thickness, rays.spacing(middle), rule);
-        AxisWeights z = meanOverInterval(kernel, low, low + thickness, rule);
-        x.divideBySum();
-        y.divideBySum();
-        z.divideBySum();
-        slab.add(1.0 / parts, source.sum(x, y, z));
-      }
-      return slab;
-    });
+  const SlabAverage average(source, kernel);
+  return averages(rays, average);
+}
+
+//------------------------------------------------------------------------------
+Sample<double> slabSample(const Volume<double>& volume, const PerspectiveRays& rays,
+  const Kernel& kernel, int u, int v, int slice)
+{
+  const SeenVolume source = { volume, rays };
+  return sampleOf(slice, SlabAverage(source, kernel)(u, v, slice));
 }
 
 //------------------------------------------------------------------------------

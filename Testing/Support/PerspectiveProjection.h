@@ -128,6 +128,12 @@ RaySamples<double> slabSamples(
   const Volume<double>& volume, const PerspectiveRays& rays, const Kernel& kernel);
 
 /**
+ * One of them, of pixel (u, v) and a slice that its ray crosses.
+ */
+Sample<double> slabSample(const Volume<double>& volume, const PerspectiveRays& rays,
+  const Kernel& kernel, int u, int v, int slice);
+
+/**
  * What slabSamples approximates: the averages over all that a pixel sees of a slice, the points
  *   i = position(0, u, z) + spacing(z) b,  j = position(1, v, z) + spacing(z) c
  * with z uniform between the slice's faces, b and c in [-1/2, 1/2]: the integral of weights times

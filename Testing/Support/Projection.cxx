@@ -276,6 +276,14 @@ std::vector<int> crossedSlices(const Volume<double>& volume, const ShearView& vi
   return slices;
 }
 
+void requireSupported(const Kernel& kernel)
+{
+  if (kernel.shape == Kernel::CosineBell && !(kernel.radius >= 0.5 && kernel.radius <= 1.5))
+  {
+    throw std::invalid_argument("The radius of the cosine bell must be in [0.5, 1.5].");
+  }
+}
+
 } // namespace
 
 //------------------------------------------------------------------------------
@@ -365,10 +373,7 @@ double Kernel::operator()(double t) const
 RaySamples<double> slabSamples(
   const Volume<double>& volume, const ShearView& view, const Kernel& kernel)
 {
-  if (kernel.shape == Kernel::CosineBell && !(kernel.radius >= 0.5 && kernel.radius <= 1.5))
-  {
-    throw std::invalid_argument("The radius of the cosine bell must be in [0.5, 1.5].");
-  }
+  requireSupported(kernel);
   const ShearedVolume source = { volume, makeShearGrid(volume.size, view), view };
   const SlabIntegral integral(source, kernel);
   RaySamples<double> rays;
@@ -379,13 +384,20 @@ RaySamples<double> slabSamples(
       rays.emplace_back();
       for (int slice : crossedSlices(volume, view, u, v))
       {
-        const WeightedSum slab = integral(u, v, slice);
-        // No weight: 0 / 0, a NaN, no sample.
-        rays.back().push_back({ slice, slab.sum / slab.weight, slab.weight });
+        rays.back().push_back(sampleOf(slice, integral(u, v, slice)));
       }
     }
   }
   return rays;
+}
+
+//------------------------------------------------------------------------------
+Sample<double> slabSample(const Volume<double>& volume, const ShearView& view, const Kernel& kernel,
+  int u, int v, int slice)
+{
+  requireSupported(kernel);
+  const ShearedVolume source = { volume, makeShearGrid(volume.size, view), view };
+  return sampleOf(slice, SlabIntegral(source, kernel)(u, v, slice));
 }
 
 //------------------------------------------------------------------------------

@@ -214,6 +214,12 @@ RaySamples<double> slabSamples(
   const Volume<double>& volume, const ShearView& view, const Kernel& kernel);
 
 /**
+ * One of them, of pixel (u, v) and a slice that its ray crosses.
+ */
+Sample<double> slabSample(const Volume<double>& volume, const ShearView& view, const Kernel& kernel,
+  int u, int v, int slice);
+
+/**
  * Conventional ray casting: the maximum of the trilinearly interpolated volume at the depths z that
  * are multiples of the distance (in slices, so that 1/n samples every slice centre), wherever the
  * ray is inside the volume's box [-1/2, n-1/2]^3. Borders and NaN as in slabAverage.
