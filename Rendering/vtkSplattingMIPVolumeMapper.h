@@ -458,13 +458,14 @@ public:
    * modes use LINES. SORTED_VOLUME: in mode PREVIEW, the chains of all slices from high to low
    * values; a pixel that has a value is done [CS98, footnote 2]. The other modes use LINES.
    *
-   * AUTO takes BRICKS, unless the last frame that used them along this principal axis in this mode,
-   * with cut rays or without, still had to splat more than a share of the tiles, as is the case
-   * with noise everywhere: 30 % in PREVIEW, 40 % in STANDARD (in perspective 50 %), 60 % in HIGH
-   * and EXACT, and ten less where AVX-512 computes faster (30 % in STANDARD of parallel views, 50 %
-   * in HIGH and EXACT); then DENSE, and every 32nd frame tries BRICKS again. It never takes chains,
-   * which are slower on all data that we measured (splatmip-paper reports it), but need less memory
-   * than the volume.
+   * AUTO takes BRICKS, unless the last frame that used them along this principal axis in this
+   * mode, with cut rays or without, still had to splat more than a share of the tiles: 30 % in
+   * PREVIEW, 40 % in STANDARD (in perspective 50 %), 60 % in HIGH and EXACT, and ten less where
+   * AVX-512 computes faster (30 % in STANDARD of parallel views, 50 % in HIGH and EXACT). Then it
+   * takes DENSE, for 32 frames if nothing could be left out, as is the case with noise everywhere,
+   * and for the fewer, in proportion, the nearer the share was to the limit; after these it tries
+   * BRICKS again. It never takes chains, which are slower on all data that we measured
+   * (splatmip-paper reports it), but need less memory than the volume.
    *
    * Where rays are cut and in perspective, BRICKS take the place of chains. Volumes with NaN or
    * infinity are walked densely, as are all when IndexMemoryBudget has no room for the index;

@@ -94,9 +94,12 @@ Acceleration choose(
 {
   const Experience& experience =
     index.experience(geometry.principalAxis(), static_cast<int>(settings.quality), isCut);
-  constexpr int patience = 32;
-  const bool crowded = experience.share > worthwhileShare(settings, geometry.isPerspective());
-  return crowded && experience.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
+  // Views change little from frame to frame. Where bricks nearly pay, the next ones may, and trying
+  // costs little.
+  constexpr double mostPatience = 32.0;
+  const double worthwhile = worthwhileShare(settings, geometry.isPerspective());
+  const double patience = mostPatience * (experience.share - worthwhile) / (1.0 - worthwhile);
+  return experience.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
 }
 
 /// Whether each sample has to be looked at by itself.
