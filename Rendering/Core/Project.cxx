@@ -94,11 +94,14 @@ Acceleration choose(
 {
   const Experience& experience =
     index.experience(geometry.principalAxis(), static_cast<int>(settings.quality), isCut);
-  // Views change little from frame to frame. Where bricks nearly pay, the next ones may, and trying
-  // costs little.
-  constexpr double mostPatience = 32.0;
   const double worthwhile = worthwhileShare(settings, geometry.isPerspective());
-  const double patience = mostPatience * (experience.share - worthwhile) / (1.0 - worthwhile);
+  double patience = experience.share > worthwhile ? 32.0 : 0.0; // frames
+  if (settings.quality != Quality::Preview)
+  {
+    // Views change little from frame to frame. Where bricks nearly pay, the next ones may, and
+    // trying costs little where much is computed.
+    patience *= (experience.share - worthwhile) / (1.0 - worthwhile);
+  }
   return experience.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
 }
 
