@@ -462,9 +462,9 @@ public:
    * mode, with cut rays or without, still had to splat more than a share of the tiles: 30 % in
    * PREVIEW, 40 % in STANDARD (in perspective 50 %), 60 % in HIGH and EXACT, and ten less where
    * AVX-512 computes faster (30 % in STANDARD of parallel views, 50 % in HIGH and EXACT). Then it
-   * takes DENSE for 32 frames, but in all modes other than PREVIEW for fewer, in proportion, the
-   * nearer the share was to the limit (from there, 0 frames, to all tiles, as in noise everywhere),
-   * and tries BRICKS again. It never takes chains, which are slower on all data that we measured
+   * takes DENSE for 32 frames, but in HIGH and EXACT for fewer, in proportion, the nearer the share
+   * was to the limit (from there, 0 frames, to all tiles, as in noise everywhere), and tries BRICKS
+   * again. It never takes chains, which are slower on all data that we measured
    * (splatmip-paper reports it), but need less memory than the volume.
    *
    * Where rays are cut and in perspective, BRICKS take the place of chains. Volumes with NaN or

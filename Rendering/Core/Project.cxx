@@ -96,11 +96,11 @@ Acceleration choose(
     index.experience(geometry.principalAxis(), static_cast<int>(settings.quality), isCut);
   const double worthwhile = worthwhileShare(settings, geometry.isPerspective());
   double patience = experience.share > worthwhile ? 32.0 : 0.0; // frames
-  if (settings.quality != Quality::Preview)
+  if (settings.quality == Quality::High || settings.quality == Quality::Exact)
   {
     // Views change little from frame to frame. Where bricks nearly pay, the next ones may, and
-    // trying costs little where much is computed.
-    patience *= (experience.share - worthwhile) / (1.0 - worthwhile);
+    // trying costs little where much is computed. (Whole registers can make the share exceed 1.)
+    patience *= std::min((experience.share - worthwhile) / (1.0 - worthwhile), 1.0);
   }
   return experience.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
 }
