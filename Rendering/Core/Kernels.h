@@ -45,9 +45,9 @@ struct Span
 /// voxels: row r those in [begin[r], end[r]), relative to `first`. All rows are read there.
 struct Rim
 {
-  int first = 0;
-  int begin[MostRows];
-  int end[MostRows];
+  int first;
+  const int* begin;
+  const int* end;
 };
 
 /// What loops note of the samples that raise pixels: a number each, of equal samples the least.
@@ -73,22 +73,22 @@ struct Sweep
   const Span* runs;     ///< the pixels that count
   int runCount;
   Span valid; ///< the pixels that all rows have voxels for
-  const Rim* rims[2];
+  Rim rims[2];
   int rimCount;
   /// Where rays are cut, pixel x takes voxels of row r if bits[x] & bit[r]; else nullptr.
   const unsigned char* bits;
   std::ptrdiff_t bitsStride;
-  unsigned char bit[MostRows];
+  const unsigned char* bit;
   /// Where each slice counts for one run of pixels in a row: pixel x takes voxels of row r if
   /// sliceRuns[slice[r]] and sees[r] have it, in place of valid and rims; else nullptr.
   const Span* sliceRuns;
   std::ptrdiff_t sliceRunsStride;
   std::ptrdiff_t wholeAhead; ///< to rows that are worth fetching as a whole, or 0
-  unsigned char slice[MostRows];
-  Span sees[MostRows];
+  const unsigned char* slice;
+  const Span* sees;
   Noting noting;
-  std::int8_t offsets[MostRows]; ///< from noting.order, ascending
-  bool winsOften;                ///< whether many registers of pixels are likely to be raised
+  const std::int8_t* offsets; ///< from noting.order, ascending
+  bool winsOften;             ///< whether many registers of pixels are likely to be raised
 };
 
 /// What the rays of a perspective image do in one slice; see FanSteps and FanWindows for the

@@ -24,13 +24,23 @@ struct PreviewLayer
   {
     int k, t, di, dj;
   };
+  /// See Rim.
+  struct Ends
+  {
+    int first;
+    std::array<int, MostRows> begin, end;
+  };
   Span slices;
   std::array<Tap, MostRows> taps;
   int tapCount = 0;
   Window window;
   Span valid; ///< the pixels that see voxels along all paths
-  Rim left, right;
+  Ends left, right;
   bool rimsFit = false; ///< whether a register holds a rim
+  /// What Sweep says of each tap's row, ready to be handed over.
+  std::array<unsigned char, MostRows> bit, slice;
+  std::array<Span, MostRows> sees;
+  std::array<std::int8_t, MostRows> offsets;
 };
 static_assert(MostRows == LayersTogether * StepsPerSlice * BrickDepth);
 
@@ -86,7 +96,7 @@ public:
   void splat(int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits,
     Patch& patch, const SliceRuns* cuts = nullptr) const
   {
-    this->splatLayer(this->Layers[z], v0, v1, runs, BrickDepth, { bits, cuts }, {}, patch);
+    this->splatLayer(this->Layers[z], v0, v1, runs, {}, { bits, cuts }, {}, patch);
   }
 
   /// The same for all layers of some rows; to be opened once.
@@ -116,7 +126,7 @@ public:
       {
         first.runs.assign(1, { first.runs.front().begin, first.runs.back().end });
       }
-      this->splatLayer(this->Layers[z], first.v0, rows[end - 1].v1, first.runs, BrickDepth,
+      this->splatLayer(this->Layers[z], first.v0, rows[end - 1].v1, first.runs, {},
         { first.bits, nullptr }, first.whole, patch);
     }
   }
@@ -150,11 +160,15 @@ public:
     const RowCuts by{ {}, cuts };
     const Slices& slices = this->Shared.slices;
     const bool slicesFirst = slices.rowStride <= slices.sliceStride;
-    const int height = slicesFirst ? v1 - v0 : BrickHeight;
-    // Long rows that lie side by side in a page of memory are read ahead if one comes after the
-    // other.
-    const bool longRows = slices.sliceStride * std::ptrdiff_t(sizeof(T)) >= 1024;
-    const int sideBySide = !slicesFirst && longRows ? 1 : BrickDepth;
+    const int height = slicesFirst ? v1 - v0 : 2 * BrickHeight;
+    Reading reading;
+    if (!slicesFirst)
+    {
+      // Long rows that lie side by side in a page of memory are read one after the other.
+      const bool longRows = slices.sliceStride * std::ptrdiff_t(sizeof(T)) >= 1024;
+      reading.sideBySide = longRows ? 1 : BrickDepth;
+      reading.ahead = reading.sideBySide * this->step();
+    }
     const bool grouped = !this->Groups.empty();
     const int together = this->layersTogether();
     const Span some =
@@ -165,7 +179,7 @@ public:
       {
         const int z = this->Shared.nth(some, n), end = std::min(v + height, v1);
         grouped ? this->splatGroup(z, v, end, all, by, patch)
-                : this->splatLayer(this->Layers[z], v, end, all, sideBySide, by, {}, patch);
+                : this->splatLayer(this->Layers[z], v, end, all, reading, by, {}, patch);
       }
     }
   }
@@ -185,6 +199,13 @@ private:
   {
     SliceBits bits;
     const SliceRuns* runs = nullptr;
+  };
+
+  /// In which order the rows of slices are read.
+  struct Reading
+  {
+    int sideBySide = BrickDepth; ///< slices at a time
+    int ahead = 0;               ///< to those that come next, if that is known
   };
 
   struct Runs
@@ -210,32 +231,35 @@ private:
 
   ShearImage& image() const { return this->Shared.image; }
 
+  /// From one slice to the next.
+  int step() const { return this->Shared.nth({ 0, 2 }, 1) - this->Shared.nth({ 0, 2 }, 0); }
+
   /// @param whole  pixels of a single run for which all bits are set
-  void splatLayer(const Layer& layer, int v0, int v1, const std::vector<Span>& runs, int sideBySide,
-    const RowCuts& cuts, const Span& whole, Patch& patch) const
+  void splatLayer(const Layer& layer, int v0, int v1, const std::vector<Span>& runs,
+    const Reading& reading, const RowCuts& cuts, const Span& whole, Patch& patch) const
   {
     const Span plain = this->plainRows(layer, v0, v1);
     this->splatSlices(layer.slices, v0, plain.begin, runs, cuts, patch);
     if (!plain.empty())
     {
       const Span inner = common(whole, layer.valid); // rims have pixels beside it
-      isLong(inner) ? this->sweepAround(layer, plain, runs.front(), sideBySide, cuts, inner)
-                    : this->sweep(layer, plain, all(runs), layer.valid, sideBySide, cuts);
+      isLong(inner) ? this->sweepAround(layer, plain, runs.front(), reading, cuts, inner)
+                    : this->sweep(layer, plain, all(runs), everything(), reading, cuts);
     }
     this->splatSlices(layer.slices, plain.end, v1, runs, cuts, patch);
   }
 
   /// A run by parts: pixels in the middle of which all samples count, and, by bits, the others.
-  void sweepAround(const Layer& layer, const Span& rows, const Span& run, int sideBySide,
+  void sweepAround(const Layer& layer, const Span& rows, const Span& run, const Reading& reading,
     const RowCuts& cuts, const Span& whole) const
   {
-    this->sweep(layer, rows, { &whole, 1 }, whole, sideBySide, {});
+    this->sweep(layer, rows, { &whole, 1 }, whole, reading, {});
     const Span sides[2] = { { run.begin, whole.begin }, { whole.end, run.end } };
     for (const Span& side : sides)
     {
       if (!side.empty())
       {
-        this->sweep(layer, rows, { &side, 1 }, layer.valid, sideBySide, cuts);
+        this->sweep(layer, rows, { &side, 1 }, everything(), reading, cuts);
       }
     }
   }
@@ -263,13 +287,14 @@ private:
       for (int n = 0; n < own.end - own.begin && begin < end; ++n)
       {
         const Layer& layer = this->Layers[this->Shared.nth(own, n)];
-        this->splatLayer(layer, begin, end, runs, BrickDepth, cuts, {}, patch);
+        this->splatLayer(layer, begin, end, runs, {}, cuts, {}, patch);
       }
     };
     splatEach(v0, plain.begin);
     if (!plain.empty())
     {
-      this->sweep(group, plain, all(runs), group.valid, this->layersTogether() * BrickDepth, cuts);
+      this->sweep(
+        group, plain, all(runs), everything(), { this->layersTogether() * BrickDepth }, cuts);
     }
     splatEach(plain.end, v1);
   }
@@ -313,7 +338,27 @@ private:
     for (Layer& layer : layers)
     {
       this->findRims(layer);
+      this->findRows(layer);
     }
+  }
+
+  void findRows(Layer& layer) const
+  {
+    const int order = layer.tapCount > 0 ? this->orderOf(layer) : 0;
+    for (int t = 0; t < layer.tapCount; ++t)
+    {
+      const Layer::Tap& tap = layer.taps[t];
+      layer.bit[t] = static_cast<unsigned char>(1u << tap.k % BrickDepth);
+      layer.slice[t] = static_cast<unsigned char>(tap.k - layer.slices.begin);
+      layer.sees[t] = { -tap.di, this->Shared.geometry.size().x - tap.di };
+      layer.offsets[t] =
+        static_cast<std::int8_t>(this->Shared.orderOfStep(StepsPerSlice * tap.k + tap.t) - order);
+    }
+  }
+
+  std::int16_t orderOf(const Layer& layer) const
+  {
+    return this->orderOf(layer.taps[0].k / BrickDepth);
   }
 
   void findRims(Layer& layer) const
@@ -341,94 +386,105 @@ private:
     }
   }
 
+  static constexpr Span everything()
+  {
+    return { std::numeric_limits<int>::min(), std::numeric_limits<int>::max() };
+  }
+
   /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns. Besides the
-  /// runs valid pixels may be swept, which see voxels along all paths. So many slices are read side
-  /// by side.
-  void sweep(const Layer& layer, const Span& rows, const Runs& runs, const Span& valid,
-    int sideBySide, const RowCuts& cuts) const
+  /// runs other pixels within the `limits` may be swept.
+  void sweep(const Layer& layer, const Span& rows, const Runs& runs, const Span& limits,
+    const Reading& reading, const RowCuts& cuts) const
   {
     for (int first = 0, end = 0; first < layer.tapCount; first = end)
     {
-      while (end < layer.tapCount && std::abs(layer.taps[end].k - layer.taps[first].k) < sideBySide)
+      while (end < layer.tapCount &&
+        std::abs(layer.taps[end].k - layer.taps[first].k) < reading.sideBySide)
       {
         ++end;
       }
-      this->sweepTaps(layer, first, end, rows, runs, valid, cuts);
+      this->sweepTaps(layer, first, end, rows, runs, limits, reading.ahead, cuts);
     }
   }
 
   void sweepTaps(const Layer& layer, int firstTap, int endTap, const Span& rows, const Runs& runs,
-    const Span& valid, const RowCuts& cuts) const
+    const Span& limits, int slicesAhead, const RowCuts& cuts) const
   {
     const int v0 = rows.begin;
     Sweep<T> sweep;
     sweep.bits = cuts.bits.origin ? cuts.bits.at(0, v0) : nullptr;
     sweep.bitsStride = cuts.bits.stride;
-    const int firstSlice = layer.slices.begin;
-    sweep.sliceRuns = cuts.runs ? &cuts.runs->at(firstSlice, v0) : nullptr;
+    sweep.sliceRuns = cuts.runs ? &cuts.runs->at(layer.slices.begin, v0) : nullptr;
     sweep.sliceRunsStride = cuts.runs ? cuts.runs->stride() : 0;
     sweep.imageStride = this->Shared.image.width;
     sweep.image = this->image().template row<T>(v0);
     sweep.noting.notes = this->Shared.orders ? this->Shared.ordersOfRow(v0) : nullptr;
-    sweep.noting.order = this->orderOf(layer.taps[0].k / BrickDepth);
+    sweep.noting.order = this->orderOf(layer);
     sweep.noting.nearestFirst = this->Shared.nearestFirst;
     sweep.height = rows.end - v0;
     sweep.count = endTap - firstTap;
+    sweep.bit = layer.bit.data() + firstTap;
+    sweep.slice = layer.slice.data() + firstTap;
+    sweep.sees = layer.sees.data() + firstTap;
+    sweep.offsets = layer.offsets.data() + firstTap;
     const Slices& slices = this->Shared.slices;
     sweep.rowStride = slices.rowStride;
     // Runs that end anywhere are not foreseen. What lies in caches may be fetched in vain.
     const bool isWhole = runs.first->end - runs.first->begin == this->Shared.image.width;
     const bool fetchesWhole = cuts.runs && this->isSmall() && isWhole;
     const bool jumps = cuts.runs || slices.rowStride > slices.sliceStride;
-    sweep.ahead = jumps && !fetchesWhole ? slices.rowStride : 0;
+    sweep.ahead = fetchesWhole ? 0
+      : slicesAhead != 0       ? this->distance(layer.taps[firstTap], slicesAhead)
+      : jumps                  ? slices.rowStride
+                               : 0;
     sweep.wholeAhead = fetchesWhole ? 2 * slices.rowStride : 0;
     sweep.winsOften = this->isSmall() || !this->Shared.nearestFirst;
     for (int t = firstTap; t < endTap; ++t)
     {
       const Layer::Tap& tap = layer.taps[t];
-      sweep.bit[t - firstTap] = static_cast<unsigned char>(1u << tap.k % BrickDepth);
-      sweep.slice[t - firstTap] = static_cast<unsigned char>(tap.k - firstSlice);
-      sweep.sees[t - firstTap] = { -tap.di, this->Shared.geometry.size().x - tap.di };
       sweep.rows[t - firstTap] = this->Shared.voxelRow(v0 + tap.dj, tap.k) + tap.di;
-      sweep.offsets[t - firstTap] = static_cast<std::int8_t>(
-        this->Shared.orderOfStep(StepsPerSlice * tap.k + tap.t) - sweep.noting.order);
     }
     sweep.runs = runs.first;
     sweep.runCount = runs.count;
-    sweep.valid = valid;
-    Rim left, right;
+    // Pixels that see voxels along all paths, which all do that see any if paths shift alike.
+    const bool shiftAlike = std::all_of(layer.taps.begin() + firstTap, layer.taps.begin() + endTap,
+      [&](const Layer::Tap& tap) { return tap.di == layer.taps[firstTap].di; });
+    sweep.valid = common(limits, shiftAlike ? layer.sees[firstTap] : layer.valid);
     sweep.rimCount = 0;
-    if (layer.window.iMin < layer.window.iMax && !cuts.runs)
+    if (!shiftAlike && !cuts.runs)
     {
       if (runs.first->begin < layer.valid.begin)
       {
-        left = partOf(layer.left, firstTap, endTap);
-        sweep.rims[sweep.rimCount++] = &left;
+        sweep.rims[sweep.rimCount++] = rimOf(layer.left, firstTap);
       }
       if (runs.first[runs.count - 1].end > layer.valid.end)
       {
-        right = partOf(layer.right, firstTap, endTap);
-        sweep.rims[sweep.rimCount++] = &right;
+        sweep.rims[sweep.rimCount++] = rimOf(layer.right, firstTap);
       }
     }
     const VoxelLoops<T>& loops = this->Shared.kernels;
     loops.sweep(sweep);
   }
 
-  static Rim partOf(const Rim& rim, int firstTap, int endTap)
+  /// From a row of voxels to the one that the same pixels see first in another slice.
+  std::ptrdiff_t distance(const Layer::Tap& tap, int slices) const
   {
-    Rim part;
-    part.first = rim.first;
-    std::copy(rim.begin + firstTap, rim.begin + endTap, part.begin);
-    std::copy(rim.end + firstTap, rim.end + endTap, part.end);
-    return part;
+    const int last = this->Shared.geometry.size().z - 1, k = std::clamp(tap.k + slices, 0, last);
+    const RayPath& path = this->Shared.sliceGeometry[k].path;
+    return (k - tap.k) * this->Shared.slices.sliceStride +
+      (path.dj[0] - tap.dj) * this->Shared.slices.rowStride + path.di[0] - tap.di;
+  }
+
+  static Rim rimOf(const Layer::Ends& ends, int firstTap)
+  {
+    return { ends.first, ends.begin.data() + firstTap, ends.end.data() + firstTap };
   }
 
   /// Any rows, slice by slice.
   void splatSlices(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
     const RowCuts& cuts, Patch& patch) const
   {
-    for (int k = slices.begin; k < slices.end; ++k)
+    for (int k = slices.begin; k < slices.end && v0 < v1; ++k)
     {
       const SliceGeometry& slice = this->Shared.sliceGeometry[k];
       for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)

@@ -392,7 +392,7 @@ inline void sweepRow(const Sweep<T>& s, T* image, std::int16_t* notes, const T* 
   }
   for (int n = 0; n < s.rimCount; ++n)
   {
-    sweepRim(s, image, notes, rows, bits, s.rims[n]->first, rims[n]);
+    sweepRim(s, image, notes, rows, bits, s.rims[n].first, rims[n]);
   }
 }
 
@@ -602,7 +602,7 @@ void sweep(const Sweep<T>& s)
   RimMasks<T> rims[2];
   for (int n = 0; n < s.rimCount; ++n)
   {
-    rims[n].find(*s.rims[n], s.count);
+    rims[n].find(s.rims[n], s.count);
   }
   for (int v = 0; v < s.height; ++v)
   {
