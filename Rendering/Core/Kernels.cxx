@@ -52,26 +52,73 @@ void widen(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdif
   }
 }
 
+/// Some columns of all rows at once, so that their maxima stay in registers.
 template <class T>
-void survey(
-  const T* const* rows, int count, std::ptrdiff_t n, T* __restrict maxima, T& low, bool& special)
+struct SurveyBlock
 {
-  T least = low;
-  unsigned odd = 0;
-  for (int r = 0; r < count; ++r)
+  const T* const* rows;
+  int count;
+  T* maxima;
+  Pack<T>& low;
+  Pack<Integer<T>>& finite;
+  template <int V>
+  inline void run(std::ptrdiff_t x) const
   {
-    const T* const row = rows[r];
-    for (std::ptrdiff_t x = 0; x < n; ++x)
+    Pack<T> high[V], least[V];
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
     {
-      const T value = row[x];
-      maxima[x] = larger(value, maxima[x]);
-      least = value < least ? value : least;
-      // Only NaN and infinities are no zero when subtracted from themselves.
-      odd |= static_cast<unsigned>(!(static_cast<T>(value - value) == static_cast<T>(0)));
+      high[v] = load<T>(this->maxima + x + v * width<T>);
+      least[v] = this->low;
+    }
+    for (int r = 0; r < this->count; ++r)
+    {
+#pragma GCC unroll 4
+      for (int v = 0; v < V; ++v)
+      {
+        const Pack<T> value = load<T>(this->rows[r] + x + v * width<T>);
+        high[v] = larger(value, high[v]);
+        least[v] = smaller(value, least[v]);
+        if constexpr (!std::numeric_limits<T>::is_integer)
+        {
+          // Only NaN and infinities are no zero when subtracted from themselves.
+          this->finite &= value - value == 0;
+        }
+      }
+    }
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      store<T>(this->maxima + x + v * width<T>, high[v]);
+      this->low = smaller(least[v], this->low);
     }
   }
-  low = least;
-  special = special || odd != 0;
+};
+
+template <class T>
+void survey(const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low, bool& special)
+{
+  Pack<T> least = Pack<T>{} + low;
+  Pack<Integer<T>> finite = ~Pack<Integer<T>>{};
+  blocks<T>(n, SurveyBlock<T>{ rows, count, maxima, least, finite },
+    [&](std::ptrdiff_t x)
+    {
+      T high = maxima[x];
+      for (int r = 0; r < count; ++r)
+      {
+        const T value = rows[r][x];
+        high = larger(value, high);
+        low = smaller(value, low);
+        special = special || !(static_cast<T>(value - value) == static_cast<T>(0));
+      }
+      maxima[x] = high;
+    });
+  const T* const lanes = reinterpret_cast<const T*>(&least);
+  for (int lane = 0; lane < width<T>; ++lane)
+  {
+    low = smaller(lanes[lane], low);
+  }
+  special = special || anyOf(~finite);
 }
 
 template <class T>
@@ -191,10 +238,9 @@ void bound(A* __restrict own, const A* __restrict before, const A* __restrict af
 {
   for (std::ptrdiff_t t = 0; t < n; ++t)
   {
-    const A beside = larger(before[t], after[t]);
-    const A value = beside > own[t] ? own[t] + share * (beside - own[t]) : own[t];
-    const A size = value < 0 ? -value : value;
-    own[t] = value + slack * larger(size, magnitude);
+    const A excess = larger(larger(before[t], after[t]) - own[t], A(0));
+    const A value = own[t] + share * excess;
+    own[t] = value + slack * larger(larger(value, -value), magnitude);
   }
 }
 

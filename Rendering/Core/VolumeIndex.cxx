@@ -81,26 +81,6 @@ void transpose(const T* in, T* out, const glm::ivec3& size, int begin, int end)
     });
 }
 
-/// Cubes of 4 voxels, of which the bricks along every axis are made: [z][y][x].
-template <class T>
-struct Cubes
-{
-  static constexpr int Edge = 4;
-  glm::ivec3 count;
-  std::vector<T> maxima;
-
-  explicit Cubes(const glm::ivec3& dimensions)
-    : count((dimensions + (Edge - 1)) / Edge),
-      maxima(std::size_t(this->count.x) * this->count.y * this->count.z)
-  {
-  }
-  T* row(int y, int z)
-  {
-    return this->maxima.data() + (std::ptrdiff_t(z) * this->count.y + y) * this->count.x;
-  }
-  const T* row(int y, int z) const { return const_cast<Cubes*>(this)->row(y, z); }
-};
-
 template <class T>
 struct Extremes
 {
@@ -108,98 +88,158 @@ struct Extremes
   bool special = false;
 };
 
-/// Reads the voxels of one row of cubes.
+/// Looks at all voxels once, for their range and, if asked, for the bricks along all axes. These
+/// are made of cubes of four voxels, two rows of cubes along x at a time.
 template <class T>
-void surveyRow(const VoxelArray& volume, int y, int z, std::vector<T>& columns, Cubes<T>& cubes,
-  Extremes<T>& extremes)
+class Survey
 {
-  constexpr int edge = Cubes<T>::Edge;
-  const glm::ivec3& size = volume.dimensions;
-  const T* const voxels = static_cast<const T*>(volume.voxels);
-  const VoxelLoops<T>& loops = kernelsFor(bestInstructionSet());
-  columns.assign(std::size_t(cubes.count.x) * edge, lowest<T>());
-  for (int j = y * edge; j < std::min((y + 1) * edge, size.y); ++j)
+public:
+  /// @param bricks  of the three axes, or nullptr
+  Survey(const VoxelArray& volume, BrickMaxima* bricks)
+    : Volume(volume),
+      Bricks(bricks),
+      Count((volume.dimensions + (Edge - 1)) / Edge)
   {
-    const T* rows[edge]; // several streams through memory keep the processor busy
-    int count = 0;
-    for (int k = z * edge; k < std::min((z + 1) * edge, size.z); ++k)
+    for (int axis = 0; axis < 3 && bricks; ++axis)
     {
-      rows[count++] = voxels + (std::ptrdiff_t(k) * size.y + j) * size.x;
+      this->open(axis);
     }
-    loops.survey(rows, count, size.x, columns.data(), extremes.low, extremes.special);
   }
-  T* const out = cubes.row(y, z);
-  loops.largestOfFour(columns.data(), out, cubes.count.x);
-  for (int x = 0; x < cubes.count.x; ++x)
-  {
-    extremes.high = std::max(extremes.high, out[x]);
-  }
-}
 
-/// Two cubes along i make a brick.
-template <class T>
-void bricksFromCubes(const Cubes<T>& cubes, const std::array<int, 3>& axes, BrickMaxima& bricks)
-{
-  static_assert(BrickWidth == 2 * Cubes<T>::Edge && BrickHeight == Cubes<T>::Edge &&
-    BrickDepth == Cubes<T>::Edge);
-  const glm::ivec3 n(cubes.count[axes[0]], cubes.count[axes[1]], cubes.count[axes[2]]);
-  const std::ptrdiff_t strides[3] = { 1, cubes.count.x,
-    std::ptrdiff_t(cubes.count.x) * cubes.count.y };
-  const std::ptrdiff_t si = strides[axes[0]], sj = strides[axes[1]], sk = strides[axes[2]];
-  bricks.count = { (n.x + 1) / 2, n.y, n.z };
-  bricks.bytes.resize(
-    std::size_t(bricks.count.x) * n.y * n.z * sizeof(T) + 2 * BrickMaxima::Padding);
-  vtkSMPTools::For(0, n.y,
-    [&](vtkIdType first, vtkIdType last)
-    {
-      for (int j = static_cast<int>(first); j < last; ++j)
+  Extremes<T> operator()()
+  {
+    const int pairs = (this->Count.y + 1) / 2;
+    vtkSMPTools::For(0, std::ptrdiff_t(pairs) * this->Count.z,
+      [&](vtkIdType first, vtkIdType last)
       {
-        for (int k = 0; k < n.z; ++k)
+        Scratch& scratch = this->Scratches.Local();
+        for (vtkIdType n = first; n < last; ++n)
         {
-          const T* const from = cubes.maxima.data() + j * sj + k * sk;
-          T* const to = const_cast<T*>(bricks.row<T>(j, k));
-          for (int i = 0; i < n.x / 2; ++i)
-          {
-            to[i] = std::max(from[2 * i * si], from[(2 * i + 1) * si]);
-          }
-          if (n.x % 2)
-          {
-            to[n.x / 2] = from[(n.x - 1) * si];
-          }
+          this->lookAt(static_cast<int>(n % pairs), static_cast<int>(n / pairs), scratch);
         }
+      });
+    Extremes<T> all;
+    for (const Scratch& scratch : this->Scratches)
+    {
+      const Extremes<T>& part = scratch.extremes;
+      all.low = std::min(all.low, part.low);
+      all.high = std::max(all.high, part.high);
+      all.special = all.special || part.special;
+    }
+    return all;
+  }
+
+private:
+  static constexpr int Edge = 4;
+  static_assert(BrickWidth == 2 * Edge && BrickHeight == Edge && BrickDepth == Edge);
+
+  struct Scratch
+  {
+    std::vector<T> columns, cubes[2];
+    Extremes<T> extremes;
+  };
+
+  void open(int axis)
+  {
+    const glm::ivec3& n = this->Count;
+    BrickMaxima& bricks = this->Bricks[axis];
+    bricks.count = { ((axis == 0 ? n.y : n.x) + 1) / 2, axis == 2 ? n.y : n.z, n[axis] };
+    bricks.bytes.resize(std::size_t(bricks.count.x) * bricks.count.y * bricks.count.z * sizeof(T) +
+      2 * BrickMaxima::Padding);
+  }
+
+  T* row(int axis, int j, int k) const { return const_cast<T*>(this->Bricks[axis].row<T>(j, k)); }
+
+  /// Rows 2 pair and, if there is one, 2 pair + 1 of the cubes at z.
+  void lookAt(int pair, int z, Scratch& scratch) const
+  {
+    const int y = 2 * pair;
+    const bool isPair = y + 1 < this->Count.y;
+    for (int n = 0; n < (isPair ? 2 : 1); ++n)
+    {
+      std::vector<T>& cubes = scratch.cubes[n];
+      this->findCubes(y + n, z, scratch, cubes);
+      if (this->Bricks)
+      {
+        // Along axes 1 and 2 two cubes along x make a brick.
+        T* const bricks = this->row(2, y + n, z);
+        join(cubes.data(), this->Count.x, bricks);
+        std::copy(bricks, bricks + this->Bricks[2].count.x, this->row(1, z, y + n));
       }
-    });
-}
+    }
+    if (this->Bricks)
+    {
+      // Along axis 0 two along y do.
+      const T *const a = scratch.cubes[0].data(), *const b = scratch.cubes[isPair ? 1 : 0].data();
+      const std::ptrdiff_t slice =
+        std::ptrdiff_t(this->Bricks[0].count.x) * this->Bricks[0].count.y;
+      T* const bricks = this->row(0, z, 0) + pair;
+      for (int x = 0; x < this->Count.x; ++x)
+      {
+        bricks[x * slice] = std::max(a[x], b[x]);
+      }
+    }
+  }
+
+  /// The largest of each two cubes, and the last one as it is if it is left alone.
+  static void join(const T* cubes, int count, T* bricks)
+  {
+    for (int i = 0; i < count / 2; ++i)
+    {
+      bricks[i] = std::max(cubes[2 * i], cubes[2 * i + 1]);
+    }
+    if (count % 2)
+    {
+      bricks[count / 2] = cubes[count - 1];
+    }
+  }
+
+  void findCubes(int y, int z, Scratch& scratch, std::vector<T>& cubes) const
+  {
+    const glm::ivec3& size = this->Volume.dimensions;
+    const T* const voxels = static_cast<const T*>(this->Volume.voxels);
+    const VoxelLoops<T>& loops = kernelsFor(bestInstructionSet());
+    scratch.columns.assign(std::size_t(this->Count.x) * Edge, lowest<T>());
+    for (int j = y * Edge; j < std::min((y + 1) * Edge, size.y); ++j)
+    {
+      const T* rows[Edge]; // several streams through memory keep the processor busy
+      int count = 0;
+      for (int k = z * Edge; k < std::min((z + 1) * Edge, size.z); ++k)
+      {
+        rows[count++] = voxels + (std::ptrdiff_t(k) * size.y + j) * size.x;
+      }
+      loops.survey(rows, count, size.x, scratch.columns.data(), scratch.extremes.low,
+        scratch.extremes.special);
+    }
+    cubes.resize(this->Count.x);
+    loops.largestOfFour(scratch.columns.data(), cubes.data(), this->Count.x);
+    T high = scratch.extremes.high;
+    for (const T& cube : cubes)
+    {
+      high = std::max(high, cube);
+    }
+    scratch.extremes.high = high;
+  }
+
+  const VoxelArray& Volume;
+  BrickMaxima* Bricks;
+  glm::ivec3 Count; ///< of cubes
+  vtkSMPThreadLocal<Scratch> Scratches;
+};
 }
 
 template <class T>
 void VolumeIndex::survey()
 {
-  Cubes<T> cubes(this->Volume.dimensions);
-  vtkSMPThreadLocal<Extremes<T>> extremes;
-  vtkSMPThreadLocal<std::vector<T>> columns;
-  vtkSMPTools::For(0, std::ptrdiff_t(cubes.count.y) * cubes.count.z,
-    [&](vtkIdType first, vtkIdType last)
-    {
-      for (vtkIdType row = first; row < last; ++row)
-      {
-        surveyRow(this->Volume, static_cast<int>(row % cubes.count.y),
-          static_cast<int>(row / cubes.count.y), columns.Local(), cubes, extremes.Local());
-      }
-    });
-  Extremes<T> all;
-  for (const Extremes<T>& part : extremes)
-  {
-    all.low = std::min(all.low, part.low);
-    all.high = std::max(all.high, part.high);
-    all.special = all.special || part.special;
-  }
-  this->ValueRange = { static_cast<double>(all.low), static_cast<double>(all.high), all.special };
+  const bool fits = this->brickSize() <= this->Budget;
+  const Extremes<T> extremes = Survey<T>(this->Volume, fits ? this->Bricks.data() : nullptr)();
+  this->ValueRange = { static_cast<double>(extremes.low), static_cast<double>(extremes.high),
+    extremes.special };
   // Walks of volumes with NaN or infinities leave nothing out.
-  this->BricksMade = !all.special && this->brickSize() <= this->Budget;
-  for (int k = 0; k < 3 && this->BricksMade; ++k)
+  this->BricksMade = fits && !extremes.special;
+  if (!this->BricksMade)
   {
-    bricksFromCubes(cubes, { k == 0 ? 1 : 0, k == 2 ? 1 : 2, k }, this->Bricks[k]);
+    this->Bricks = {};
   }
 }
 
