@@ -142,10 +142,8 @@ private:
   void open(int axis)
   {
     const glm::ivec3& n = this->Count;
-    BrickMaxima& bricks = this->Bricks[axis];
-    bricks.count = { ((axis == 0 ? n.y : n.x) + 1) / 2, axis == 2 ? n.y : n.z, n[axis] };
-    bricks.bytes.resize(std::size_t(bricks.count.x) * bricks.count.y * bricks.count.z * sizeof(T) +
-      2 * BrickMaxima::Padding);
+    this->Bricks[axis].template open<T>(
+      { ((axis == 0 ? n.y : n.x) + 1) / 2, axis == 2 ? n.y : n.z, n[axis] });
   }
 
   T* row(int axis, int j, int k) const { return const_cast<T*>(this->Bricks[axis].row<T>(j, k)); }
@@ -423,7 +421,7 @@ std::size_t VolumeIndex::memorySize() const
   std::size_t size = this->CopySize;
   for (const BrickMaxima& bricks : this->Bricks)
   {
-    size += bricks.bytes.size();
+    size += bricks.size;
   }
   for (const auto& lines : this->Lines)
   {

@@ -11,6 +11,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <memory>
@@ -54,12 +55,24 @@ struct BrickMaxima
   static constexpr std::size_t Padding = 128;
 
   glm::ivec3 count{ 0 }; ///< bricks along i, j and k
-  std::vector<unsigned char> bytes;
+  std::unique_ptr<unsigned char[]> bytes;
+  std::size_t size = 0; ///< of all of it
+
+  /// Room for so many bricks, which are left unset: the pages come when the threads set them.
+  template <class T>
+  void open(const glm::ivec3& bricks)
+  {
+    this->count = bricks;
+    this->size = std::size_t(bricks.x) * bricks.y * bricks.z * sizeof(T) + 2 * Padding;
+    this->bytes.reset(new unsigned char[this->size]);
+    std::fill_n(this->bytes.get(), Padding, static_cast<unsigned char>(0));
+    std::fill_n(this->bytes.get() + this->size - Padding, Padding, static_cast<unsigned char>(0));
+  }
 
   template <class T>
   const T* row(int j, int k) const
   {
-    return reinterpret_cast<const T*>(this->bytes.data() + Padding) +
+    return reinterpret_cast<const T*>(this->bytes.get() + Padding) +
       (std::ptrdiff_t(k) * this->count.y + j) * this->count.x;
   }
 };

@@ -41,11 +41,11 @@ double Median(std::vector<double> values)
   return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// The seconds that each view took, pass by pass.
+/// The seconds that each view took, pass by pass, and the image axis that it was projected along.
 class ViewTimes
 {
 public:
-  explicit ViewTimes(int views) : Seconds(views) {}
+  explicit ViewTimes(int views) : Seconds(views), Axes(views, -1) {}
 
   /// The frame counts through the views, pass by pass; this is the stage's number of the view.
   int GetView(std::size_t frame) const
@@ -55,17 +55,30 @@ public:
     return static_cast<int>(middle * BenchmarkStage::NumberOfViews / (2 * views));
   }
 
-  void Add(std::size_t frame, double seconds)
+  /// @param axis  -1 if there is none
+  void Add(std::size_t frame, double seconds, int axis)
   {
     this->Seconds[frame % this->Seconds.size()].push_back(seconds);
+    this->Axes[frame % this->Axes.size()] = axis;
   }
 
   void Report(benchmark::State& state) const
   {
-    std::vector<double> views;
-    for (const std::vector<double>& passes : this->Seconds)
+    std::vector<double> views, ofAxes[3];
+    for (std::size_t view = 0; view < this->Seconds.size(); ++view)
     {
-      views.push_back(1e3 * Median(passes));
+      views.push_back(1e3 * Median(this->Seconds[view]));
+      if (this->Axes[view] >= 0)
+      {
+        ofAxes[this->Axes[view]].push_back(views.back());
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (!ofAxes[axis].empty())
+      {
+        state.counters["axis" + std::to_string(axis) + "_ms"] = Median(ofAxes[axis]);
+      }
     }
     state.counters["views"] = static_cast<double>(views.size());
     state.counters["median_ms"] = Median(views);
@@ -74,7 +87,13 @@ public:
 
 private:
   std::vector<std::vector<double>> Seconds;
+  std::vector<int> Axes;
 };
+
+int GetAxis(vtkSplattingMIPVolumeMapper* splatting)
+{
+  return splatting ? splatting->GetPrincipalAxis() : -1;
+}
 
 /// Draws a frame that is not measured with every kind of mapper, because shaders are compiled once
 /// in the life of a program, and whoever came first would pay for it.
@@ -151,7 +170,7 @@ void Rotate(benchmark::State& state, const BenchmarkRotation& rotation, Function
     stage.LookFrom(times.GetView(frame));
     const double seconds = chooseSeconds(stage.MeasureFrame());
     state.SetIterationTime(seconds);
-    times.Add(frame++, seconds);
+    times.Add(frame++, seconds, GetAxis(splatting));
   }
   times.Report(state);
   if (const char* fault = FindFault(splatting, before + frame))
@@ -268,7 +287,7 @@ void MeasureRecoloring(benchmark::State& state, const BenchmarkVolume& volume, i
     stage.SetWhite(frame % 2 ? 1.0 : 0.8);
     const double seconds = stage.MeasureFrame();
     state.SetIterationTime(seconds);
-    times.Add(frame++, seconds);
+    times.Add(frame++, seconds, GetAxis(splatting));
   }
   times.Report(state);
   state.counters["share"] = state.counters["median_ms"] / Median(turns);

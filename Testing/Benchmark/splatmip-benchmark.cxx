@@ -64,7 +64,8 @@ MAPPER   preview, standard, high, exact: the modes of vtkSplattingMIPVolumeMappe
          gpu: vtkOpenGLGPUVolumeRayCastMapper, linear
 
 Everything goes through the same two turns of the camera, 36 views in all; slow mappers and big
-volumes through a part of them, evenly spaced (counter views). The summary comes last; where
+volumes through a part of them, evenly spaced (counter views); counters axis0_ms to axis2_ms are the
+medians over the views along each axis of the image. The summary comes last; where
 --benchmark_format is not console, on the standard error stream. It is made from the single runs,
 so there is none with --benchmark_report_aggregates_only.
 
