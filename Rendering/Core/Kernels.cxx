@@ -60,7 +60,7 @@ struct SurveyBlock
   int count;
   T* maxima;
   Pack<T>& low;
-  Pack<Integer<T>>& finite;
+  Pack<Integer<T>>& odd;
   template <int V>
   inline void run(std::ptrdiff_t x) const
   {
@@ -82,7 +82,7 @@ struct SurveyBlock
         if constexpr (!std::numeric_limits<T>::is_integer)
         {
           // Only NaN and infinities are no zero when subtracted from themselves.
-          this->finite &= value - value == 0;
+          this->odd |= value - value != 0;
         }
       }
     }
@@ -99,8 +99,8 @@ template <class T>
 void survey(const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low, bool& special)
 {
   Pack<T> least = Pack<T>{} + low;
-  Pack<Integer<T>> finite = ~Pack<Integer<T>>{};
-  blocks<T>(n, SurveyBlock<T>{ rows, count, maxima, least, finite },
+  Pack<Integer<T>> odd{};
+  blocks<T>(n, SurveyBlock<T>{ rows, count, maxima, least, odd },
     [&](std::ptrdiff_t x)
     {
       T high = maxima[x];
@@ -109,7 +109,7 @@ void survey(const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low
         const T value = rows[r][x];
         high = larger(value, high);
         low = smaller(value, low);
-        special = special || !(static_cast<T>(value - value) == static_cast<T>(0));
+        special = special || static_cast<T>(value - value) != static_cast<T>(0);
       }
       maxima[x] = high;
     });
@@ -118,7 +118,7 @@ void survey(const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low
   {
     low = smaller(lanes[lane], low);
   }
-  special = special || anyOf(~finite);
+  special = special || anyOf(odd);
 }
 
 template <class T>
