@@ -28,6 +28,33 @@ void testViews(Checks& check, int views, std::uint64_t seed)
       " ", volume.size[2]);
   }
 }
+
+/// Rows of a kilobyte or more, which along the second axis are read slice by slice.
+template <class T>
+void testLongRows(Checks& check, std::uint64_t seed)
+{
+  reference::Random random(seed);
+  for (int n = 0; n < 6; ++n)
+  {
+    const std::array<int, 3> size = { 1024 / static_cast<int>(sizeof(T)) + random.uniform(0, 40),
+      random.uniform(6, 40), random.uniform(6, 40) };
+    const auto volume = wholeRangeNoise<T>(size, random.bits());
+    const splatting::ShearWarp geometry(
+      viewWithShear(size, 1, random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)));
+    const auto expected = reference::exactTraversal(volume, referenceView(geometry));
+    splatting::ProjectionSettings settings;
+    settings.quality = splatting::Quality::Preview;
+    settings.acceleration = splatting::Acceleration::Dense;
+    for (int set = 0; set < 4; ++set)
+    {
+      settings.instructionSet = static_cast<splatting::InstructionSet>(set);
+      check(sameBits(expected, toReference<T>(project(volume, geometry, settings))),
+        "long rows, type ", int(splatting::scalarTypeOf<T>()), ", view ", n, ", instruction set ",
+        set, ": the preview is not the traversal; shear ", geometry.shear().x, " ",
+        geometry.shear().y, ", size ", size[0], " ", size[1], " ", size[2]);
+    }
+  }
+}
 }
 
 int TestPreview(int, char*[])
@@ -35,7 +62,12 @@ int TestPreview(int, char*[])
   Checks check;
   std::uint64_t seed = 100;
   forEachType(
-    [&](auto* null) { testViews<std::remove_pointer_t<decltype(null)>>(check, 250, ++seed); });
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      testViews<T>(check, 250, ++seed);
+      testLongRows<T>(check, seed);
+    });
   // A volume of several bands and blocks of registers.
   reference::Random random(5);
   for (int n = 0; n < 12; ++n)
