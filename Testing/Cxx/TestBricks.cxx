@@ -32,8 +32,7 @@ template <class T>
 T largestIn(const reference::Volume<T>& volume, const std::array<int, 3>& axes,
   const std::array<int, 3>& begin, const std::array<int, 3>& edges)
 {
-  T largest = volume.at({ 0, 0, 0 });
-  bool isFirst = true;
+  T largest = splatting::leastValue<T>();
   std::array<int, 3> end;
   for (int a = 0; a < 3; ++a)
   {
@@ -49,9 +48,7 @@ T largestIn(const reference::Volume<T>& volume, const std::array<int, 3>& axes,
         place[axes[0]] = i;
         place[axes[1]] = j;
         place[axes[2]] = k;
-        const T voxel = volume.at(place);
-        largest = isFirst ? voxel : std::max(largest, voxel);
-        isFirst = false;
+        largest = std::max(largest, volume.at(place));
       }
     }
   }
