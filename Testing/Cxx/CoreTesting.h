@@ -32,12 +32,14 @@ public:
     if (!condition && ++this->Failures <= 20)
     {
       std::cerr << "ERROR: ";
-      (std::cerr << ... << message) << std::endl;
+      (std::cerr << ... << message) << reference::howToRepeat() << std::endl;
     }
     return condition;
   }
-  int result() const
+  int result()
   {
+    (*this)(reference::onlyScene().empty() || reference::scenesRun() > 0, "There is no scene ",
+      reference::onlyScene());
     if (this->Failures)
     {
       std::cerr << this->Failures << " checks failed" << std::endl;

@@ -35,15 +35,17 @@ bool Checks::operator()(bool condition, const std::string& what)
 {
   if (!condition)
   {
-    std::cout << "FAILED: " << what << std::endl;
+    std::cout << "FAILED: " << what << reference::howToRepeat() << std::endl;
     ++this->Failures;
   }
   return condition;
 }
 
 //------------------------------------------------------------------------------
-int Checks::exitCode() const
+int Checks::exitCode()
 {
+  (*this)(reference::onlyScene().empty() || reference::scenesRun() > 0,
+    "there is no scene " + reference::onlyScene());
   return this->Failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -47,7 +47,7 @@ public:
    * Returns the condition.
    */
   bool operator()(bool condition, const std::string& what);
-  int exitCode() const;
+  int exitCode();
 
 private:
   int Failures = 0;

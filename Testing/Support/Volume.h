@@ -11,6 +11,8 @@
 #ifndef reference_Volume_h
 #define reference_Volume_h
 
+#include "Random.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,48 +56,6 @@ struct Volume
     return p[0] >= 0 && p[0] < this->size[0] && p[1] >= 0 && p[1] < this->size[1] && p[2] >= 0 &&
       p[2] < this->size[2];
   }
-};
-
-/**
- * Sebastiano Vigna's splitmix64: 64 random bits per call, any seed.
- */
-class Random
-{
-public:
-  explicit Random(std::uint64_t seed) : State(seed) {}
-
-  std::uint64_t bits()
-  {
-    this->State += 0x9E3779B97F4A7C15u;
-    std::uint64_t z = this->State;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-  }
-
-  /**
-   * Uniform in [low, high]; for floating types in [low, high) up to rounding.
-   */
-  template <class T>
-  T uniform(T low, T high)
-  {
-    if constexpr (std::is_floating_point<T>::value)
-    {
-      const double unit = static_cast<double>(this->bits() >> 11) * 0x1p-53;
-      return static_cast<T>(low + (static_cast<double>(high) - low) * unit);
-    }
-    else
-    {
-      // Unsigned 64-bit arithmetic wraps to the right result for signed types too. The range of a
-      // 64-bit type has 2^64 values, a number that itself wraps to 0.
-      const std::uint64_t first = static_cast<std::uint64_t>(low);
-      const std::uint64_t count = static_cast<std::uint64_t>(high) - first + 1;
-      return static_cast<T>(first + (count == 0 ? this->bits() : this->bits() % count));
-    }
-  }
-
-private:
-  std::uint64_t State;
 };
 
 /**
