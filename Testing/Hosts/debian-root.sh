@@ -1,0 +1,75 @@
+# SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Functions for scripts that test on another Debian than the machine's: to be sourced. A root is a
+# small Debian in a folder of its own, made once by mmdebstrap and kept for the next run. Needs root.
+
+roots=${SPLATTINGMIP_ROOTS:-/var/cache/splattingmip}
+
+# make_root NAME SUITE PACKAGE ...
+#
+# Makes $roots/NAME, a Debian SUITE (such as bookworm) with these packages, unless it is there. The
+# list of packages is written when all is installed: what was interrupted, or has other packages, is
+# made anew.
+make_root() {
+  local root=$roots/$1 suite=$2 list lock
+  shift 2
+  list=$(IFS=,; echo "$suite,$*")
+  mkdir -p "$roots"
+  exec {lock}>"$root.lock"
+  flock "$lock"
+  if [[ $(cat "$root/installed-packages" 2>/dev/null || true) != "$list" ]]; then
+    if [[ -e $root && ! -e $root/installed-packages && ! -e $root/unfinished ]]; then
+      echo "$root holds something else: name another folder in SPLATTINGMIP_ROOTS." >&2
+      return 1
+    fi
+    if ! command -v mmdebstrap >/dev/null; then
+      apt-get update -qq
+      DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends mmdebstrap >/dev/null
+    fi
+    echo "Making a Debian $suite in $root (some minutes, once)"
+    rm -rf --one-file-system "$root"
+    mkdir -p "$root"
+    touch "$root/unfinished"
+    mmdebstrap --quiet --mode=root --format=directory --variant=apt --skip=check/empty \
+      --dpkgopt=force-unsafe-io --include="${list#*,}" "$suite" "$root"
+    echo "$list" >"$root/installed-packages"
+    rm "$root/unfinished"
+  fi
+  flock -u "$lock"
+}
+
+# in_root NAME COMMAND [ARGUMENT ...]
+#
+# Runs the command in the root, with /proc, /dev and /dev/shm of its own where the kernel lets us: they are
+# mounted in a namespace that ends with the command, so that nothing is left mounted.
+in_root() {
+  local root=$roots/$1
+  shift
+  cp /etc/resolv.conf "$root/etc/resolv.conf"
+  local clean=(env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 HWLOC_HIDE_ERRORS=2)
+  if unshare --mount --pid --fork true 2>/dev/null; then
+    unshare --mount --pid --fork --kill-child bash -c '
+      root=$1
+      shift
+      mount -t proc proc "$root/proc"
+      mount --rbind /dev "$root/dev"
+      mount -t tmpfs -o mode=1777 tmpfs "$root/tmp"
+      exec chroot "$root" "$@"' in_root "$root" "${clean[@]}" "$@"
+  else
+    chroot "$root" "${clean[@]}" "$@"
+  fi
+}
+
+# copy_source NAME PATH ...
+#
+# Copies these paths of this project into the root's folder /splattingmip/source. Files keep their
+# times, so that only what changed is built again.
+copy_source() {
+  local root=$roots/$1 source_dir
+  source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+  shift
+  rm -rf "$root/splattingmip/source"
+  mkdir -p "$root/splattingmip/source"
+  tar -C "$source_dir" -c "$@" | tar -C "$root/splattingmip/source" -x
+}
