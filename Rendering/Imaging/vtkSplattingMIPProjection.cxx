@@ -23,6 +23,7 @@
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkVersionMacros.h"
 
 #include <algorithm>
 #include <cmath>
@@ -235,7 +236,11 @@ bool vtkSplattingMIPProjection::Internals::GoOn(vtkSplattingMIPProjection* self,
     this->Told = share;
     self->UpdateProgress(std::min(share, 1.0));
   }
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
+  return !self->CheckAbort();
+#else
   return !self->GetAbortExecute();
+#endif
 }
 
 //------------------------------------------------------------------------------
@@ -282,12 +287,15 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
   output->SetExtent(0, size.x - 1, 0, size.y - 1, 0, this->Turn.Views() - 1);
   output->SetSpacing(spacing.x, spacing.y, this->Turn.AngleStep());
   output->SetOrigin(-0.5 * (size.x - 1) * spacing.x, -0.5 * (size.y - 1) * spacing.y, 0.0);
-  // VTK would say it in several sentences, or throw.
+  // VTK would say it in several sentences, or throw. Compilers may leave out a new-expression whose
+  // memory nobody uses, but not a call.
   constexpr std::size_t located = 3 * sizeof(int) + sizeof(float) + 3 * sizeof(double);
   const std::size_t bytes = (std::size_t(vtkDataArray::GetDataTypeSize(type)) * components +
                               (this->Choice.locations ? located : 0)) *
     static_cast<std::size_t>(output->GetNumberOfPoints());
-  if (!std::unique_ptr<char[]>(new (std::nothrow) char[bytes]))
+  void* const memory = ::operator new(bytes, std::nothrow);
+  ::operator delete(memory);
+  if (!memory)
   {
     return false;
   }

@@ -26,8 +26,9 @@
  * Rays are parallel, or those of a perspective Camera. They end with the volume: a camera's
  * clipping range means nothing here. Slab and Cropping leave out parts of the volume.
  *
- * Progress goes from 0 to 1 over all views. AbortExecute is looked at between bands of image rows;
- * the output is empty then, and Modified() makes the next Update() project again. What cannot be
+ * Progress goes from 0 to 1 over all views. AbortExecute is looked at between bands of image rows,
+ * with VTK 9.3 and newer that of the filters upstream, too (vtkAlgorithm::CheckAbort()); the output
+ * is empty then, and AbortExecuteOff() makes the next Update() project again. What cannot be
  * projected gives one error, a sentence that says what to do, and an empty output.
  *
  * The same input gives the same bits, whatever the number of threads or the instruction set; each
