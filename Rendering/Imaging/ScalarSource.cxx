@@ -12,6 +12,7 @@
 #include "vtkRectilinearGrid.h"
 #include "vtkSOADataArrayTemplate.h"
 #include "vtkTimerLog.h"
+#include "vtkVersionMacros.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,21 +39,48 @@ splatting::ScalarType sizedType()
   }
 }
 
-/// Where a component lies of an array that holds one component after the other; nullptr for others.
+/// Whether an array of separate components has them so. From VTK 9.3 to 9.6 it may interleave them,
+/// from the start or from the first GetVoidPointer() on, and does not always tell.
 template <class T>
-const void* separateComponentOf(vtkDataArray* array, int component)
+bool isSeparate(vtkSOADataArrayTemplate<T>* array)
 {
-  auto* const separate = vtkSOADataArrayTemplate<T>::SafeDownCast(array);
-  return separate ? separate->GetComponentArrayPointer(component) : nullptr;
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0) &&                                            \
+  VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 7, 0)
+  struct Storage : vtkSOADataArrayTemplate<T>
+  {
+    static bool isSeparate(vtkSOADataArrayTemplate<T>* array)
+    {
+      return array->*(&Storage::StorageType) == Storage::SOA;
+    }
+  };
+  return Storage::isSeparate(array);
+#else
+  return array != nullptr;
+#endif
 }
 
-const void* separateComponent(vtkDataArray* array, int component)
+/// A component of an array, without a place if it is stored in an unusual way.
+template <class T>
+splatting::StridedVoxels componentOf(vtkDataArray* array, int component)
+{
+  const splatting::ScalarType type = scalarTypeOfVtk(array->GetDataType());
+  auto* const structure = vtkSOADataArrayTemplate<T>::SafeDownCast(array);
+  if (structure && isSeparate(structure))
+  {
+    return { structure->GetComponentArrayPointer(component), type, 1 };
+  }
+  const bool isInterleaved = structure || array->HasStandardMemoryLayout();
+  return { isInterleaved ? array->GetVoidPointer(component) : nullptr, type,
+    array->GetNumberOfComponents() };
+}
+
+splatting::StridedVoxels componentOf(vtkDataArray* array, int component)
 {
   switch (array->GetDataType())
   {
-    vtkTemplateMacro(return separateComponentOf<VTK_TT>(array, component));
+    vtkTemplateMacro(return componentOf<VTK_TT>(array, component));
   }
-  return nullptr;
+  return { nullptr, splatting::ScalarType::Float32, 1 };
 }
 
 std::ptrdiff_t count(const glm::ivec3& size)
@@ -254,9 +282,8 @@ std::string ScalarSource::FindScalars(vtkDataSet* input, const ScalarChoice& cho
   }
   // The image's time includes its arrays'. Images may share an array, and an array may be given
   // another buffer without a word.
-  key = { input, timeOf(input), scalars,
-    scalars->HasStandardMemoryLayout() ? scalars->GetVoidPointer(0) : separateComponent(scalars, 0),
-    choice.vectorMode, choice.vectorComponent, cells, choice.independentComponents, choice.mask,
+  key = { input, timeOf(input), scalars, componentOf(scalars, 0).voxels, choice.vectorMode,
+    choice.vectorComponent, cells, choice.independentComponents, choice.mask,
     choice.mask ? choice.mask->GetMTime() : 0 };
   key.DropIdle();
   return {};
@@ -310,8 +337,7 @@ bool ScalarSource::IsMagnitude() const
 std::vector<splatting::StridedVoxels> ScalarSource::ChosenComponents()
 {
   vtkDataArray* scalars = this->Examined.scalars;
-  const bool isSeparate = !scalars->HasStandardMemoryLayout() && separateComponent(scalars, 0);
-  if (!scalars->HasStandardMemoryLayout() && !isSeparate)
+  if (!componentOf(scalars, 0).voxels)
   {
     this->Packed.TakeReference(vtkDataArray::CreateDataArray(this->VtkType));
     this->Packed->DeepCopy(scalars);
@@ -323,8 +349,7 @@ std::vector<splatting::StridedVoxels> ScalarSource::ChosenComponents()
   std::vector<splatting::StridedVoxels> components;
   for (int c = first; c < (one ? first + 1 : available); ++c)
   {
-    components.push_back({ isSeparate ? separateComponent(scalars, c) : scalars->GetVoidPointer(c),
-      scalarTypeOfVtk(this->VtkType), isSeparate ? 1 : available });
+    components.push_back(componentOf(scalars, c));
   }
   return components;
 }

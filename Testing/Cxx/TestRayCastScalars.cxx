@@ -5,7 +5,6 @@
 #include "ScalarTesting.h"
 
 #include "vtkCommand.h"
-#include "vtkSOADataArrayTemplate.h"
 
 using namespace scalartesting;
 
@@ -33,19 +32,9 @@ void testSeparateComponents(stage::Stage& stage, int components, stage::Checks& 
   const Size size = { 128, 128, 128 };
   const vtkIdType voxels = voxelsOf(size);
   const auto together = noiseArray(VTK_FLOAT, voxels, components, 5);
-  vtkNew<vtkSOADataArrayTemplate<float>> separate;
-  separate->SetNumberOfComponents(components);
-  separate->SetNumberOfTuples(voxels);
-  for (vtkIdType n = 0; n < voxels; ++n)
-  {
-    for (int c = 0; c < components; ++c)
-    {
-      separate->SetComponent(n, c, together->GetComponent(n, c));
-    }
-  }
   const std::string name = std::to_string(components) + " components, one after the other: ";
   const stage::Pixels truth = seen(stage, stage::splatting(plainImage(size, together)));
-  const auto mapper = stage::splatting(plainImage(size, separate));
+  const auto mapper = stage::splatting(plainImage(size, separated<float>(together)));
   const stage::Pixels picture = seen(stage, mapper);
   check(mapper->GetLastRenderUsedRayCasting(), name + "ray cast.");
   check(!isBlack(truth) && picture == truth, name + "the picture of an ordinary array.");
