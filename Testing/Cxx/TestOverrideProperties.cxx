@@ -294,6 +294,7 @@ std::vector<Exception> exceptions()
             value / 4 % 2, value / 8, 0, value % 4, value % 4 == 1 ? 0.25 : 1.0);
         }
         stage.property->SetTransferFunction2D(table);
+        stage.property->SetTransferFunctionMode(vtkVolumeProperty::TF_2D); // since 9.2 not implied
       } },
     { "Shader code",
       [](Gpu*, stage::Stage& stage)
