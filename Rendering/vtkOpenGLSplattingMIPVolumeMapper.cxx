@@ -168,9 +168,9 @@ bool takesCopies(vtkOpenGLRenderWindow* window, Place& place)
   vtkOpenGLState* const state = window->GetState();
   int samples = 0, second = GL_NONE, viewport[4] = {}, scissor[4] = {};
   unsigned char mask[4] = {};
-  glGetIntegerv(GL_SAMPLE_BUFFERS, &samples);
-  glGetIntegerv(GL_DRAW_BUFFER1, &second);
-  glGetBooleanv(GL_COLOR_WRITEMASK, mask);
+  state->vtkglGetIntegerv(GL_SAMPLE_BUFFERS, &samples);
+  state->vtkglGetIntegerv(GL_DRAW_BUFFER1, &second);
+  state->vtkglGetBooleanv(GL_COLOR_WRITEMASK, mask);
   state->vtkglGetIntegerv(GL_VIEWPORT, viewport);
   state->vtkglGetIntegerv(GL_SCISSOR_BOX, scissor);
   const bool cuts =
