@@ -8,6 +8,7 @@ The installed folder for VTK_AUTOLOAD_PATH, the built program.cxx, and a folder 
 gates that were built for other VTKs.
 """
 
+import importlib.util
 import os
 import shutil
 import subprocess
@@ -103,39 +104,6 @@ class TestAutoload(unittest.TestCase):
         self.assertEqual(run.pixels, splatted(MAXIMUM))
         self.assertIn('SPLATTINGMIP_QUALITY is "best", which is taken as high', run.messages)
 
-    def test_vedo(self):
-        command = [sys.executable, str(HERE / "vedo_script.py")]
-        plain = Run(command)
-        self.assertEqual(plain.code, 0, plain.messages)
-        run = Run(command, FOLDER)
-        self.assertEqual(run.code, 0, run.messages)
-        self.assertIn(SPLATTED, run.log)
-        # They differ by what averages differ from samples, about a twentieth of the contrast; an
-        # empty picture would differ by all of it.
-        self.assertNotEqual(run.pixels, plain.pixels)
-        difference = sum(abs(a - b) for a, b in zip(run.pixels, plain.pixels)) / len(plain.pixels)
-        contrast = sum(abs(a - plain.pixels[0]) for a in plain.pixels) / len(plain.pixels)
-        self.assertLess(difference, 0.1 * contrast)
-
-    def test_example_of_vedo(self):
-        """It opens a window with two volumes and stays there."""
-        self.assertTrue(VEDO_EXAMPLE.exists(), "The package python3-vedo-examples is missing.")
-        with tempfile.TemporaryDirectory() as scratch:
-            log = Path(scratch, "log")
-            environment = dict(
-                os.environ, VTK_AUTOLOAD_PATH=str(FOLDER), SPLATTINGMIP_LOG=str(log)
-            )
-            environment.pop("PYTHONPATH", None)
-            with subprocess.Popen([sys.executable, str(VEDO_EXAMPLE)], env=environment) as example:
-                end = time.monotonic() + 60
-                lines = []
-                while len(lines) < 2 and example.poll() is None and time.monotonic() < end:
-                    time.sleep(0.1)
-                    text = log.read_text() if log.exists() else ""
-                    lines = [line for line in text.splitlines() if SPLATTED in line]
-                example.kill()
-            self.assertEqual(len(lines), 2)
-
     def refused(self, folder):
         """Returns what VTK says; the program goes on as without the folder."""
         for command in self.programs(MAXIMUM):
@@ -188,6 +156,49 @@ class TestAutoload(unittest.TestCase):
             done.stdout.split(),
             ["vtkSplattingMIPGPUVolumeRayCastMapper", "vtkOpenGLGPUVolumeRayCastMapper"],
         )
+
+
+@unittest.skipUnless(
+    importlib.util.find_spec("vedo"), "There is no vedo: install python3-vedo."
+)
+class TestAutoloadVedo(unittest.TestCase):
+    def test_vedo(self):
+        command = [sys.executable, str(HERE / "vedo_script.py")]
+        plain = Run(command)
+        self.assertEqual(plain.code, 0, plain.messages)
+        run = Run(command, FOLDER)
+        self.assertEqual(run.code, 0, run.messages)
+        self.assertIn(SPLATTED, run.log)
+        # They differ by what averages differ from samples, about a twentieth of the contrast; an
+        # empty picture would differ by all of it.
+        self.assertNotEqual(run.pixels, plain.pixels)
+        difference = sum(abs(a - b) for a, b in zip(run.pixels, plain.pixels)) / len(plain.pixels)
+        contrast = sum(abs(a - plain.pixels[0]) for a in plain.pixels) / len(plain.pixels)
+        self.assertLess(difference, 0.1 * contrast)
+
+
+@unittest.skipUnless(
+    VEDO_EXAMPLE.exists(),
+    f"There is no {VEDO_EXAMPLE}: install python3-vedo-examples, documentation included.",
+)
+class TestAutoloadVedoExample(unittest.TestCase):
+    def test_example(self):
+        """It opens a window with two volumes and stays there."""
+        with tempfile.TemporaryDirectory() as scratch:
+            log = Path(scratch, "log")
+            environment = dict(
+                os.environ, VTK_AUTOLOAD_PATH=str(FOLDER), SPLATTINGMIP_LOG=str(log)
+            )
+            environment.pop("PYTHONPATH", None)
+            with subprocess.Popen([sys.executable, str(VEDO_EXAMPLE)], env=environment) as example:
+                end = time.monotonic() + 60
+                lines = []
+                while len(lines) < 2 and example.poll() is None and time.monotonic() < end:
+                    time.sleep(0.1)
+                    text = log.read_text() if log.exists() else ""
+                    lines = [line for line in text.splitlines() if SPLATTED in line]
+                example.kill()
+            self.assertEqual(len(lines), 2)
 
 
 if __name__ == "__main__":
