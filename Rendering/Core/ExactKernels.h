@@ -80,7 +80,7 @@ inline R peakOf(const R (&b)[4], R inner, R none)
   const R b01 = s * b[0] + t * b[1], b12 = s * b[1] + t * b[2], b23 = s * b[2] + t * b[3];
   const R value = s * (s * b01 + t * b12) + t * (s * b12 + t * b23);
   // What is no number compares with nothing.
-  return (t > zero) & (t < A(1)) ? smaller(value, inner) : none;
+  return ((t > zero) & (t < A(1))) ? smaller(value, inner) : none;
 }
 
 /// A register of elements of type A, or one of them, of type R.

@@ -149,9 +149,9 @@ public:
       const glm::dvec2& column = this->Columns[u0 + x];
       const double enter = std::max(row.x, column.x), leave = std::min(row.y, column.y);
       // Voxels that a ray crosses are centred up to half a slice outside its reach.
-      const bool whole = (enter >= leave) |
-        ((depths.near[x] <= std::max(enter - 0.5, this->Ends.x)) &
-          (depths.far[x] >= std::min(leave + 0.5, this->Ends.y)));
+      const bool coversStart = depths.near[x] <= std::max(enter - 0.5, this->Ends.x);
+      const bool coversEnd = depths.far[x] >= std::min(leave + 0.5, this->Ends.y);
+      const bool whole = (enter >= leave) | (coversStart & coversEnd);
       depths.near[x] = whole ? this->Ends.x : depths.near[x];
       depths.far[x] = whole ? this->Ends.y : depths.far[x];
     }

@@ -99,7 +99,7 @@ inline void takeSamples(P* __restrict image, const P* __restrict samples,
   for (std::ptrdiff_t x = 0; x < n; ++x)
   {
     const bool counts = (!Masked || mask[x] != 0) & (samples[x] == samples[x]);
-    image[x] = counts & take(x) ? samples[x] : image[x];
+    image[x] = (counts & take(x)) ? samples[x] : image[x];
   }
 }
 
@@ -132,7 +132,7 @@ void climb(P* __restrict image, unsigned char* __restrict ended, P threshold,
     const bool counts = (!Masked || mask[x] != 0) & (samples[x] == samples[x]);
     const bool ends = counts & (image[x] >= threshold) & (samples[x] < image[x]);
     ended[x] = static_cast<unsigned char>(ended[x] | static_cast<unsigned char>(ends));
-    image[x] = counts & (ended[x] == 0) & !(samples[x] <= image[x]) ? samples[x] : image[x];
+    image[x] = (counts & (ended[x] == 0) & !(samples[x] <= image[x])) ? samples[x] : image[x];
   }
 }
 
@@ -231,7 +231,7 @@ void shade(A* __restrict image, const Shade<A>& s, const A* __restrict samples,
     const A factor = s.ambient + (A(1) - place / static_cast<A>(end - begin + 1)) * s.changeRate;
     const A sample = s.low + (samples[x] - s.low) * factor;
     const bool counts = (!Masked || mask[x] != 0) & (sample == sample);
-    image[x] = counts & !(sample <= image[x]) ? sample : image[x];
+    image[x] = (counts & !(sample <= image[x])) ? sample : image[x];
   }
 }
 

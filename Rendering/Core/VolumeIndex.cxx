@@ -146,7 +146,10 @@ private:
       { ((axis == 0 ? n.y : n.x) + 1) / 2, axis == 2 ? n.y : n.z, n[axis] });
   }
 
-  T* row(int axis, int j, int k) const { return const_cast<T*>(this->Bricks[axis].row<T>(j, k)); }
+  T* row(int axis, int j, int k) const
+  {
+    return const_cast<T*>(this->Bricks[axis].template row<T>(j, k));
+  }
 
   /// Rows 2 pair and, if there is one, 2 pair + 1 of the cubes at z.
   void lookAt(int pair, int z, Scratch& scratch) const

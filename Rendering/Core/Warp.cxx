@@ -353,18 +353,22 @@ void forSpans(std::size_t count, const glm::dvec3& start, int width, const Shown
   const Show& show, const Skip& skip)
 {
   // Images meet at lines: the one that begins first has the pixels that two show.
-  std::array<std::pair<int, std::size_t>, MostImages> order;
+  std::array<std::size_t, MostImages> order;
   std::array<Span, MostImages> spans;
   for (std::size_t n = 0; n < count; ++n)
   {
     spans[n] = shownOf(n).cut({ 0, width }, start);
-    order[n] = { spans[n].begin, n };
+    std::size_t place = n;
+    for (; place > 0 && spans[n].begin < spans[order[place - 1]].begin; --place)
+    {
+      order[place] = order[place - 1];
+    }
+    order[place] = n;
   }
-  std::sort(order.begin(), order.begin() + count);
   int done = 0;
   for (std::size_t n = 0; n < count; ++n)
   {
-    const std::size_t which = order[n].second;
+    const std::size_t which = order[n];
     const Span row{ std::max(spans[which].begin, done), spans[which].end };
     if (!row.empty())
     {

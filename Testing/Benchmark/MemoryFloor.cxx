@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MemoryFloor.h"
 
-#include "vtkSMPThreadLocal.h"
 #include "vtkSMPTools.h"
 #include "vtkType.h"
 
 #include <algorithm>
+#include <atomic>
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define HAS_AVX2_LOOP
@@ -53,14 +53,17 @@ unsigned char SearchBlock(const unsigned char* bytes, std::size_t count)
 unsigned char LargestByte(const unsigned char* bytes, std::size_t count)
 {
   constexpr std::size_t block = std::size_t(1) << 18;
-  vtkSMPThreadLocal<unsigned char> largest(0);
+  std::atomic<unsigned char> largest{ 0 };
   const auto search = [&](vtkIdType first, vtkIdType last)
   {
     const std::size_t begin = static_cast<std::size_t>(first) * block;
     const std::size_t end = std::min(count, static_cast<std::size_t>(last) * block);
-    unsigned char& mine = largest.Local();
-    mine = std::max(mine, SearchBlock(bytes + begin, end - begin));
+    const unsigned char found = SearchBlock(bytes + begin, end - begin);
+    unsigned char known = largest;
+    while (found > known && !largest.compare_exchange_weak(known, found))
+    {
+    }
   };
   vtkSMPTools::For(0, static_cast<vtkIdType>((count + block - 1) / block), search);
-  return *std::max_element(largest.begin(), largest.end());
+  return largest;
 }
