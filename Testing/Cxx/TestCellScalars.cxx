@@ -9,6 +9,7 @@
 #include "vtkRenderer.h"
 
 #include <cmath>
+#include <iostream>
 
 using namespace scalartesting;
 

@@ -7,6 +7,7 @@
 #include "Footprint.h"
 
 #include <cmath>
+#include <iostream>
 
 using namespace coretesting;
 using splatting::Kernel;

@@ -14,6 +14,8 @@
 #include "vtkUniformGrid.h"
 #include "vtkVolumeProperty.h"
 
+#include <iostream>
+
 using namespace scalartesting;
 
 namespace

@@ -5,6 +5,8 @@
 // definition in index space: from afar, from nearby and from inside the volume and what cuts it.
 #include "CutScenes.h"
 
+#include <iostream>
+
 using namespace cutscenes;
 
 namespace

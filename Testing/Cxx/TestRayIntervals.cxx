@@ -6,6 +6,8 @@
 // watertight in any view.
 #include "CutScenes.h"
 
+#include <iostream>
+
 using namespace cutscenes;
 
 namespace
