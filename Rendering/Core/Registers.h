@@ -213,12 +213,20 @@ private:
 template <class T>
 inline Pack<Accumulator<T>> loadWidened(const T* p)
 {
-  Pack<Accumulator<T>> out;
-  for (std::ptrdiff_t x = 0; x < width<Accumulator<T>>; ++x)
+  using A = Accumulator<T>;
+  if constexpr (std::is_same_v<T, A>)
   {
-    reinterpret_cast<Accumulator<T>*>(&out)[x] = static_cast<Accumulator<T>>(p[x]);
+    return load(p);
   }
-  return out;
+  else
+  {
+    A out[width<A>];
+    for (std::ptrdiff_t x = 0; x < width<A>; ++x)
+    {
+      out[x] = static_cast<A>(p[x]);
+    }
+    return load(out);
+  }
 }
 
 #if defined(__AVX512F__)
