@@ -4,16 +4,20 @@
 #
 # build-on-debian.sh FOLDER [CMAKE OPTION ...]
 #
-# Installs what Debian 12 needs to build and run this project, as far as it is missing (with sudo
-# where the caller is not root), then configures and builds it in FOLDER.
+# Installs what Debian 12 or 13 needs to build and run this project, as far as it is missing (with
+# sudo where the caller is not root), then configures and builds it in FOLDER. The variables CC and
+# CXX choose the compiler, as in CMake.
 set -euo pipefail
 
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build_dir=$1
 shift
 
+compiler=g++
+[[ ${CXX:-} != *clang* ]] || compiler=clang
+
 packages=(
-  cmake ninja-build g++ pkgconf ccache xz-utils
+  cmake ninja-build "$compiler" pkgconf ccache xz-utils
   libvtk9-dev python3-vtk9 libglm-dev          # the module and its Python package
   libcli11-dev libvtk-dicom-dev                # splatmip
   libgif-dev                                   # its turns as GIF

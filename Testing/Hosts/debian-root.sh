@@ -15,6 +15,10 @@ make_root() {
   local root=$roots/$1 suite=$2 list lock
   shift 2
   list=$(IFS=,; echo "$suite,$*")
+  if ((EUID != 0)); then
+    echo "Tests in another Debian need root, for chroot: run them with sudo." >&2
+    return 1
+  fi
   mkdir -p "$roots"
   exec {lock}>"$root.lock"
   flock "$lock"
@@ -61,15 +65,15 @@ in_root() {
   fi
 }
 
-# copy_source NAME PATH ...
+# copy_source NAME
 #
-# Copies these paths of this project into the root's folder /splattingmip/source. Files keep their
-# times, so that only what changed is built again.
+# Copies this project into the root's folder /splattingmip/source. Files keep their times, so that
+# only what changed is built again.
 copy_source() {
   local root=$roots/$1 source_dir
   source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-  shift
-  rm -rf "$root/splattingmip/source"
   mkdir -p "$root/splattingmip/source"
-  tar -C "$source_dir" -c "$@" | tar -C "$root/splattingmip/source" -x
+  find "$root/splattingmip/source" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
+  tar -C "$source_dir" -c CMakeLists.txt LICENSE README.md vtk.module Module Rendering Testing Examples |
+    tar -C "$root/splattingmip/source" -x
 }
