@@ -6,15 +6,19 @@
 
 roots=${SPLATTINGMIP_ROOTS:-/var/cache/splattingmip}
 
-# make_root NAME SUITE PACKAGE ...
+# make_root NAME SUITE [--MMDEBSTRAP_OPTION=VALUE ...] PACKAGE ...
 #
-# Makes $roots/NAME, a Debian SUITE (such as bookworm) with these packages, unless it is there. The
-# list of packages is written when all is installed: what was interrupted, or has other packages, is
-# made anew.
+# Makes $roots/NAME, a Debian SUITE (such as bookworm) with these packages, unless it is there. What it
+# is made of is written down when all is installed: what was interrupted, or is made of something
+# else, is made anew.
 make_root() {
-  local root=$roots/$1 suite=$2 list lock
+  local root=$roots/$1 suite=$2 list lock options=(--variant=apt)
   shift 2
-  list=$(IFS=,; echo "$suite,$*")
+  while [[ $1 == --* ]]; do
+    options+=("$1")
+    shift
+  done
+  list=$(IFS=,; echo "$suite,${options[*]},$*")
   if ((EUID != 0)); then
     echo "Tests in another Debian need root, for chroot: run them with sudo." >&2
     return 1
@@ -35,8 +39,8 @@ make_root() {
     rm -rf --one-file-system "$root"
     mkdir -p "$root"
     touch "$root/unfinished"
-    mmdebstrap --quiet --mode=root --format=directory --variant=apt --skip=check/empty \
-      --dpkgopt=force-unsafe-io --include="${list#*,}" "$suite" "$root"
+    mmdebstrap --quiet --mode=root --format=directory --skip=check/empty \
+      --dpkgopt=force-unsafe-io "${options[@]}" --include="$(IFS=,; echo "$*")" "$suite" "$root"
     echo "$list" >"$root/installed-packages"
     rm "$root/unfinished"
   fi
