@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# test-arm64.sh [CTEST OPTION ...]
+#
+# Compiles the module for 64-bit ARM on Debian 12 and runs the core's tests, emulated by QEMU. VTK for
+# ARM is unpacked into a folder, not installed: nothing but the tests is emulated. Needs root.
+set -euo pipefail
+
+((EUID == 0)) || exec sudo bash "${BASH_SOURCE[0]}" "$@"
+source "$(dirname "${BASH_SOURCE[0]}")/debian-root.sh"
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+build_dir=$source_dir/build/arm64
+
+apt-get update -qq
+DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+  cmake ninja-build ccache g++-aarch64-linux-gnu qemu-user >/dev/null
+make_root arm64 bookworm --architectures=arm64 --variant=extract libvtk9-dev libglm-dev libc6-dev
+
+target=$roots/arm64
+cmake -S "$source_dir" -B "$build_dir" -G Ninja -Wno-dev \
+  -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 \
+  -DCMAKE_C_COMPILER=aarch64-linux-gnu-gcc -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ \
+  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache \
+  -DCMAKE_CROSSCOMPILING_EMULATOR="qemu-aarch64;-L;$target" \
+  -DCMAKE_SYSROOT="$target" -DCMAKE_FIND_ROOT_PATH="$target" \
+  -DCMAKE_LIBRARY_ARCHITECTURE=aarch64-linux-gnu \
+  -DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY \
+  -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY \
+  -DSPLATTINGMIP_WRAP_PYTHON=OFF -DSPLATTINGMIP_BUILD_EXAMPLES=OFF
+cmake --build "$build_dir" --target vtkRenderingSplattingMIPCoreCxxTests
+SPLATTINGMIP_TEST_SCENES=${SPLATTINGMIP_TEST_SCENES:-2} \
+  ctest --test-dir "$build_dir" -j2 --output-on-failure --timeout 3600 -L core "$@"
