@@ -25,12 +25,15 @@ packages=(
   paraview-dev python3-paraview
   cmake ninja-build g++ ccache libglm-dev
   xvfb xauth libgl1-mesa-dri
-  libdouble-conversion-dev libfreetype-dev libglew-dev libjpeg-dev liblz4-dev liblzma-dev
-  libopenmpi-dev libpng-dev libpython3-dev libtiff-dev libutfcpp-dev libxml2-dev
+  libdouble-conversion-dev libfreetype-dev libglew-dev libhdf5-dev libjpeg-dev liblz4-dev liblzma-dev
+  libnetcdf-dev libopenmpi-dev libpng-dev libpython3-dev libtiff-dev libutfcpp-dev libxml2-dev
 )
 root=paraview-$suite
 make_root "$root" "$suite" "${packages[@]}"
 copy_source "$root"
+# In Debian 13 ParaView's CMake package asks for Python modules by names that they do not have.
+in_root "$root" find /usr/lib/python3/dist-packages -name "*.cpython-*-linux-gnu.so" -exec bash -c \
+  'for file; do ln -sf "${file##*/}" "${file%%.cpython-*}.so"; done' names {} +
 in_root "$root" cmake -S /splattingmip/source -B /splattingmip/build -G Ninja -Wno-dev \
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DSPLATTINGMIP_BUILD_PARAVIEW_PLUGIN=ON \
   "${cmake_options[@]}"
