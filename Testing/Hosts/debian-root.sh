@@ -63,7 +63,9 @@ in_root() {
       mount -t proc proc "$root/proc"
       mount --rbind /dev "$root/dev"
       mount -t tmpfs -o mode=1777 tmpfs "$root/tmp"
-      exec chroot "$root" "$@"' in_root "$root" "${clean[@]}" "$@"
+      # Not exec: xvfb-run would wait for ever, as Xvfb tells nothing to a parent that is process 1.
+      chroot "$root" "$@"
+      exit $?' in_root "$root" "${clean[@]}" "$@"
   else
     chroot "$root" "${clean[@]}" "$@"
   fi
