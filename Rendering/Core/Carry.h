@@ -8,7 +8,10 @@
 #define splattingCarry_h
 
 #include "PerspectiveFootprints.h"
+#include "SliceSampler.h"
 #include "Worksheets.h"
+
+#include <vtkSMPTools.h>
 
 namespace splatting
 {
@@ -103,6 +106,32 @@ Accumulator<T> carriedAverage(const PermutedVoxels<T>& voxels,
     }
   }
   return static_cast<Accumulator<T>>(sum / weight);
+}
+
+/// Fills an image with valueAt(voxels, u, v, step) of the other volume, where there is a winner.
+template <class T, class F>
+void carryValues(const Carrying& c, const F& valueAt)
+{
+  using A = Accumulator<T>;
+  const PermutedVoxels<T> voxels(c.other, c.geometry);
+  ShearImage& image = c.image;
+  const auto fill = [&](int v, auto* row)
+  {
+    using P = std::remove_pointer_t<decltype(row)>;
+    const std::int32_t* const winners = &c.projected.winners[std::size_t(v) * image.width];
+    for (int u = 0; u < image.width; ++u)
+    {
+      row[u] = winners[u] < 0 ? P(0) : static_cast<P>(valueAt(voxels, u, v, winners[u]));
+    }
+  };
+  vtkSMPTools::For(0, image.height, TileHeight,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (int v = static_cast<int>(begin); v < end; ++v)
+      {
+        image.type == scalarTypeOf<T>() ? fill(v, image.row<T>(v)) : fill(v, image.row<A>(v));
+      }
+    });
 }
 }
 

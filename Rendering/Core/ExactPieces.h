@@ -34,6 +34,10 @@ struct FieldRange
   double begin, end;
 };
 
+/// Half of what a worksheet weighs where its slice ends are its neighbour's voxels.
+template <class A>
+constexpr A ExactShare = A(0.5);
+
 /**
  * A piece of the rays' path through slice k, half a slice to either side of its middle, in one
  * cell.

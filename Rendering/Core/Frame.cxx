@@ -3,6 +3,7 @@
 #include "Frame.h"
 
 #include "Cuts.h"
+#include "WalkSpace.h"
 
 #include <vtkSMPTools.h>
 

@@ -11,8 +11,6 @@
 #include "ShearImage.h"
 #include "VolumeIndex.h"
 
-#include <vtkSMPThreadLocal.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -43,7 +41,6 @@ struct SliceGeometry
 struct PerspectiveSteps
 {
   FanSteps columns, rows;
-  FanWindows windows; ///< of the columns; for preview only
 
   /// The voxels of one pixel's ray in slice k; those outside the volume may be closer than they
   /// are.
@@ -69,18 +66,10 @@ private:
 };
 
 class CutMap;
-
-/// Work space of outlineImage().
-struct OutlineSpace
-{
-  struct Rows
-  {
-    std::vector<std::int16_t> first, last;
-    std::vector<unsigned char> slice;
-  };
-  CrossedSlices crossed;
-  vtkSMPThreadLocal<Rows> rows;
-};
+class Watch;
+struct OutlineSpace;
+struct ProjectionSettings;
+struct WalkSpace;
 
 /// Sets size and spans of an image and, if samples are left out, its mask.
 void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
@@ -99,25 +88,42 @@ constexpr T greatestValue()
   return Limits::has_infinity ? Limits::infinity() : Limits::max();
 }
 
-/// One projection of a volume of type T.
-template <class T>
+/// Tiles that a walk met, and those that it splatted.
+struct TileCount
+{
+  std::int64_t met = 0;
+  std::int64_t splatted = 0;
+};
+
+/// One projection of a volume, whatever the type of its voxels.
 struct Frame
 {
+  VolumeIndex& index;
+  const ProjectionSettings& settings;
   const ShearWarp& geometry;
+  const ShearWarp& whole; // of which `geometry` is a part, or the same
   const Kernels& kernels;
-  Slices slices; // those that are walked at present
   VolumeIndex::Range range;
   const std::vector<SliceGeometry>& sliceGeometry;
   const PerspectiveSteps& steps;
   const CutMap& cuts;
   double floor; // as in ProjectionSettings
   ShearImage& image;
-  const ShearWarp& whole; // of which `geometry` is a part, or the same
+  WalkSpace& space;
+  Watch& watch;
+  /// How it is walked: all samples, ray by ray; or along chains; or with bricks; or densely.
+  bool byRays;
+  const LineIndex* lines;
+  const BrickMaxima* bricks;
+
+  Slices slices = {}; // those that are walked at present
   /// If the image tells its winners: where each pixel's value comes from, see orderOfStep().
   std::int16_t* orders = nullptr;
   /// Whether slices are walked from the viewer on: of equal samples the first one met wins.
   bool nearestFirst = false;
+  TileCount count = {};
 
+  template <class T>
   const T* voxelRow(int j, int k) const
   {
     return static_cast<const T*>(this->slices.voxels) + j * this->slices.rowStride +
@@ -152,6 +158,9 @@ struct Frame
 
 /// Slices of a volume whose steps Frame::orders can hold.
 constexpr int MostNoted = std::numeric_limits<std::int16_t>::max() / StepsPerSlice;
+
+/// Most layers that walks take together where they note winners.
+constexpr int LayersTogether = 4;
 
 /// How far beyond the volume worksheets may read: a footprint and the drift of a slice. Less than a
 /// tile.
@@ -217,7 +226,7 @@ T roundedDown(double x)
 
 /// What pixels of a preview start from: no voxel is less.
 template <class T>
-T previewFloor(const Frame<T>& frame)
+T previewFloor(const Frame& frame)
 {
   // The range's double need not be a 64-bit integer's exact value.
   constexpr bool exact = !std::numeric_limits<T>::is_integer || sizeof(T) < 8;

@@ -54,10 +54,10 @@ class LinePreview
 {
 public:
   /// @param storage  outlives this, and is kept for the next frame
-  LinePreview(const Frame<T>& frame, const LineIndex& index, std::vector<LineReach>& storage)
+  LinePreview(const Frame& frame, const LineIndex& index, std::vector<LineReach>& storage)
     : Shared(frame),
       Index(index),
-      Floor(previewFloor(frame)),
+      Floor(previewFloor<T>(frame)),
       Reaches(storage)
   {
     storage.clear();
@@ -285,7 +285,7 @@ private:
     return u;
   }
 
-  const Frame<T>& Shared;
+  const Frame& Shared;
   const LineIndex& Index;
   T Floor;
   const std::vector<LineReach>& Reaches;

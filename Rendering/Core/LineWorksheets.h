@@ -22,7 +22,7 @@ public:
   using typename ParallelWorksheets<T>::Target;
 
   /// @param index  in rows, of all voxels
-  LineWorksheets(const Frame<T>& frame, const std::vector<SliceFootprint<A>>& footprints,
+  LineWorksheets(const Frame& frame, const std::vector<SliceFootprint<A>>& footprints,
     const WorksheetReach<A>& reach, int depth, const LineIndex& index)
     : ParallelWorksheets<T>(frame, footprints, reach, depth),
       Index(index)

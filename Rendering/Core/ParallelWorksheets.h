@@ -18,22 +18,24 @@ class ParallelWorksheets : public WorksheetLayers<T>
 public:
   using typename WorksheetLayers<T>::A;
   using typename WorksheetLayers<T>::Target;
-  static constexpr bool Perspective = false;
 
-  ParallelWorksheets(const Frame<T>& frame, const std::vector<SliceFootprint<A>>& footprints,
+  ParallelWorksheets(const Frame& frame, const std::vector<SliceFootprint<A>>& footprints,
     const WorksheetReach<A>& reach, int depth)
-    : WorksheetLayers<T>(frame, reach, depth),
+    : WorksheetLayers<T>(frame, false, reach, depth),
       Footprints(footprints)
   {
     this->Notes = true;
   }
 
-  const Window& window(int layer) const { return this->Reach.layers[layer].window; }
+  Window window(int layer) const override { return this->Reach.layers[layer].window; }
 
   /// Rounding can take a worksheet beyond its largest voxel by slack() times the larger of that and
   /// magnitude(): 75 products and sums, and a few operations for the bound itself. Sums of 8-bit
   /// voxels are exact.
-  A slack() const { return sizeof(T) == 1 ? A(0) : 90 * std::numeric_limits<A>::epsilon() / 2; }
+  A slack() const override
+  {
+    return sizeof(T) == 1 ? A(0) : 90 * std::numeric_limits<A>::epsilon() / 2;
+  }
 
 protected:
   Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
@@ -122,7 +124,7 @@ protected:
     splat.base = this->Base;
     splat.ahead = k + step >= 0 && k + step < size.z ? step * this->Shared.slices.sliceStride : 0;
     splat.partCount = 1;
-    splat.parts[0] = { this->Shared.voxelRow(rows.begin + dj, k) + columns.begin + di,
+    splat.parts[0] = { this->Shared.template voxelRow<T>(rows.begin + dj, k) + columns.begin + di,
       part.weights.data(), part.rows, part.columns };
     loops.splatVoxels(splat);
     this->splatRim(k, first, rows.begin, span, target, patch);

@@ -2,53 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Project.h"
 
-#include "BandWalk.h"
-#include "Carry.h"
-#include "LineWalk.h"
-#include "LineWorksheets.h"
-#include "ParallelWorksheets.h"
-#include "PerspectiveExact.h"
-#include "PerspectivePreview.h"
-#include "PerspectiveWorksheets.h"
 #include "Piece.h"
-#include "RayWalk.h"
-#include "WinnerFinder.h"
+#include "SliceSampler.h"
+#include "WalkSpace.h"
 
-#include <vtkSMPThreadLocal.h>
-#include <vtkSMPTools.h>
-
-#include <functional>
-#include <tuple>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+#include <vector>
 
 namespace splatting
 {
 namespace
 {
-/// Rows of a band: many, for long streams through memory, but enough bands for all threads.
-int bandHeight(int rows)
-{
-  const int share = rows / (4 * vtkSMPTools::GetEstimatedNumberOfThreads());
-  return std::clamp(share / TileHeight * TileHeight, 2 * TileHeight, 8 * TileHeight);
-}
-
-/// Not a template: threads are started in one place, whatever is projected.
-void forBands(int height, int rows, Watch& watch, const std::function<void(int v0, int v1)>& body)
-{
-  const int bands = (height + rows - 1) / rows;
-  watch.begin(bands);
-  vtkSMPTools::For(0, bands, 1,
-    [&](vtkIdType first, vtkIdType last)
-    {
-      for (vtkIdType b = first; b < last && !watch.stopped(); ++b)
-      {
-        const int v0 = static_cast<int>(b) * rows;
-        body(v0, std::min(v0 + rows, height));
-        watch.bandDone();
-      }
-    });
-  watch.ask();
-}
-
 /// The chains that a projection needs.
 LineEncoding encodingFor(const ProjectionSettings& settings, const glm::ivec3& size)
 {
@@ -66,9 +34,6 @@ LineEncoding encodingFor(const ProjectionSettings& settings, const glm::ivec3& s
   }
   return encoding;
 }
-
-/// Slices that are transposed at a time where there is no memory for a copy of all.
-constexpr int ChunkDepth = 8 * BrickDepth;
 
 /// A share of tiles above which skipping the others does not pay: the plain walk reads memory in
 /// order, which is worth more where little is computed, or where registers are wide and compute it
@@ -113,19 +78,21 @@ bool looksAtAll(
     (settings.keepWinners && (range.special || geometry.size().z > MostNoted));
 }
 
-/// Room for what a reduction keeps of each pixel.
-void openState(const ShearImage& image, Reduction reduction, RayState& state)
+/// What voxels are summed in.
+ScalarType accumulatorOf(ScalarType voxels)
 {
+  return dispatch(voxels,
+    [](auto* null) { return scalarTypeOf<Accumulator<std::remove_pointer_t<decltype(null)>>>(); });
+}
+
+/// Room for pixels: samples, or what worksheets are summed in.
+void openImage(const ProjectionSettings& settings, ScalarType voxels, ShearImage& image)
+{
+  const bool samples = settings.quality == Quality::Preview && !computesWith(settings.reduction);
   const std::size_t pixels = std::size_t(image.width) * image.height;
-  if (reduction == Reduction::Mean)
-  {
-    state.sums.resize(pixels);
-    state.counts.resize(pixels);
-  }
-  if (reduction == Reduction::Local)
-  {
-    state.ended.resize(pixels);
-  }
+  image.type = samples ? voxels : accumulatorOf(voxels);
+  image.bytes.resize(pixels * sizeOf(image.type));
+  image.winners.resize(settings.keepWinners ? pixels : 0);
 }
 
 void learn(Experience& experience, Acceleration used, const TileCount& count)
@@ -144,26 +111,13 @@ void learn(Experience& experience, Acceleration used, const TileCount& count)
 
 struct Projector::Scratch
 {
-  vtkSMPThreadLocal<BandScratch> bands;
+  /// Made when they are first used.
+  std::array<std::array<std::unique_ptr<ProjectionMode>, 2>, 4> modes; // parallel, perspective
+  std::unique_ptr<ProjectionMode> chains;
+  WalkSpace walks;
   std::vector<SliceGeometry> slices;
-  PreviewStorage previewLayers;
-  std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> footprints;
-  std::tuple<PerspectiveFootprints<float>, PerspectiveFootprints<double>> perspectiveFootprints;
-  std::tuple<std::vector<ExactPath<float>>, std::vector<ExactPath<double>>> paths;
-  std::vector<Span> field;
-  std::tuple<std::array<FanCells<float>, 2>, std::array<FanCells<double>, 2>> cells;
-  std::tuple<WorksheetReach<float>, WorksheetReach<double>> reach;
   PerspectiveSteps steps;
-  std::vector<unsigned char> none;
   CutMap cuts;
-  OutlineSpace outline;
-  RayState rays;
-  vtkSMPThreadLocal<RayScratch> rayBands;
-  std::vector<std::int16_t> orders;
-  vtkSMPThreadLocal<WinnerScratch> winners;
-  std::vector<unsigned char> chunk;
-  std::vector<LineReach> lineReaches;
-  vtkSMPThreadLocal<LineScratch> lines;
   // Of pieces only:
   ShearWarp part;
   Cuts partCuts;
@@ -176,292 +130,19 @@ Projector::Projector() : Memory(new Scratch) {}
 
 Projector::~Projector() = default;
 
-/// Calls body(slices, isFirst, isLast) with frame.slices set: for all slices, or, where these would
-/// need a copy that there is no memory for, for some at a time, from the last on if reversed.
-template <class T, class Body>
-void Projector::forSlices(
-  VolumeIndex& index, Frame<T>& frame, int beyond, bool reversed, Body&& body)
+ProjectionMode& Projector::mode(Quality quality, bool perspective)
 {
-  const int axis = frame.geometry.principalAxis(), depth = frame.geometry.size().z;
-  if (index.hasSlices(axis))
+  using Make = std::unique_ptr<ProjectionMode> (*)();
+  static constexpr Make make[4][2] = { { &makePreview, &makePerspectivePreview },
+    { &makeWorksheets, &makePerspectiveWorksheets },
+    { &makeWorksheets, &makePerspectiveWorksheets }, { &makeExact, &makePerspectiveExact } };
+  const int q = static_cast<int>(quality);
+  std::unique_ptr<ProjectionMode>& mode = this->Memory->modes[q][perspective];
+  if (!mode)
   {
-    frame.slices = index.slices(axis);
-    body(Span{ 0, depth }, true, true);
-    return;
+    mode = make[q][perspective]();
   }
-  const int chunks = (depth + ChunkDepth - 1) / ChunkDepth;
-  for (int c = 0; c < chunks && !this->stopped(); ++c)
-  {
-    const int first = (reversed ? chunks - 1 - c : c) * ChunkDepth;
-    const Span slices{ first, std::min(first + ChunkDepth, depth) };
-    this->Observer.setPart(double(c) / chunks, double(c + 1) / chunks);
-    frame.slices = index.someSlices(std::max(slices.begin - beyond, 0),
-      std::min(slices.end + beyond, depth), this->Memory->chunk);
-    body(slices, c == 0, c == chunks - 1);
-  }
-}
-
-template <class T, class Layers>
-void Projector::walk(
-  VolumeIndex& index, Frame<T>& frame, const Layers& layers, Acceleration used, TileCount& count)
-{
-  using P = typename Layers::Pixel;
-  const bool notes = frame.image.keepsWinners();
-  if (notes)
-  {
-    this->openNotes(frame);
-  }
-  const bool preview = std::is_same_v<P, T> && Layers::Beyond == 0;
-  const WinnerFinder<Layers> finder(frame, layers, this->Memory->outline.crossed, preview);
-  const BrickMaxima* const bricks =
-    used == Acceleration::Bricks ? &index.bricks(frame.geometry.principalAxis()) : nullptr;
-  frame.nearestFirst = notes && !bricks;
-  this->forSlices(index, frame, Layers::Beyond, notes && frame.geometry.reversed(),
-    [&](const Span& slices, bool isFirst, bool isLast)
-    {
-      forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
-        [&](int v0, int v1)
-        {
-          if (isFirst)
-          {
-            openRows<P>(frame.image, layers.floor(), v0, v1);
-            if (notes)
-            {
-              openOrders(frame, v0, v1);
-            }
-          }
-          BandWalk<Layers> band(frame, layers, this->Memory->bands.Local(), slices, v0, v1);
-          bricks ? band.walkBricks(*bricks) : band.walkDensely();
-          if (isLast)
-          {
-            if (notes)
-            {
-              finder.find(v0, v1, this->Memory->winners.Local());
-            }
-            layers.finish(v0, v1);
-            closeRows<P>(frame.image, v0, v1);
-          }
-        });
-    });
-  for (BandScratch& band : this->Memory->bands)
-  {
-    count.met += band.count.met;
-    count.splatted += band.count.splatted;
-    band.count = {};
-  }
-}
-
-/// Room for what walks note of winners.
-template <class T>
-void Projector::openNotes(Frame<T>& frame)
-{
-  this->Memory->orders.resize(frame.image.winners.size());
-  frame.orders = this->Memory->orders.data();
-  this->Memory->outline.crossed.reset(frame.sliceGeometry, frame.image.width);
-}
-
-template <class T, class Layers>
-void Projector::walkRays(
-  VolumeIndex& index, Frame<T>& frame, const Layers& layers, const ProjectionSettings& settings)
-{
-  using Walk = RayWalk<Layers>;
-  const bool computes = Walk::computes(settings.reduction);
-  RayState& state = this->Memory->rays;
-  openState(frame.image, settings.reduction, state);
-  const Walk walk(frame, layers, settings, state);
-  this->forSlices(index, frame, Layers::Beyond, walk.isReversed(),
-    [&](const Span& slices, bool isFirst, bool isLast)
-    {
-      forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
-        [&](int v0, int v1)
-        {
-          if (isFirst)
-          {
-            walk.open(v0, v1);
-          }
-          walk.walk(slices, v0, v1, this->Memory->rayBands.Local());
-          if (isLast)
-          {
-            walk.close(v0, v1);
-            computes ? closeRows<typename Walk::A>(frame.image, v0, v1)
-                     : closeRows<typename Walk::P>(frame.image, v0, v1);
-          }
-        });
-    });
-}
-
-template <class T>
-void Projector::previewLines(const Frame<T>& frame, const LineIndex& lines)
-{
-  const LinePreview<T> preview(frame, lines, this->Memory->lineReaches);
-  // All bands look through sorted chains: there must be no more bands than threads.
-  const int height = frame.image.height, threads = vtkSMPTools::GetEstimatedNumberOfThreads();
-  const int rows = lines.encoding().order == LineOrder::Lines ? bandHeight(height)
-                                                              : (height + threads - 1) / threads;
-  forBands(height, rows, this->Observer,
-    [&](int v0, int v1)
-    {
-      openRows<T>(frame.image, previewFloor(frame), v0, v1);
-      preview.splat(v0, v1, this->Memory->lines.Local());
-      closeRows<T>(frame.image, v0, v1);
-    });
-}
-
-template <class T>
-void Projector::splatLines(const Frame<T>& frame, const LineIndex& lines, bool standard)
-{
-  using A = Accumulator<T>;
-  const LineWorksheets<T> worksheets(frame,
-    std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints),
-    std::get<WorksheetReach<A>>(this->Memory->reach), standard ? 0 : 1, lines);
-  const Span slices{ 0, frame.geometry.size().z };
-  forBands(frame.image.height, bandHeight(frame.image.height), this->Observer,
-    [&](int v0, int v1)
-    {
-      openRows<A>(frame.image, worksheets.floor(), v0, v1);
-      BandWalk<LineWorksheets<T>>(frame, worksheets, this->Memory->bands.Local(), slices, v0, v1)
-        .walkDensely();
-      worksheets.finish(v0, v1);
-      closeRows<A>(frame.image, v0, v1);
-    });
-}
-
-template <class T>
-void Projector::projectType(VolumeIndex& index, const ProjectionSettings& settings,
-  Acceleration used, const LineIndex* lines, Frame<T>& frame)
-{
-  using A = Accumulator<T>;
-  ShearImage& image = frame.image;
-  const bool preview = settings.quality == Quality::Preview;
-  const bool standard = settings.quality == Quality::Standard;
-  const bool exact = settings.quality == Quality::Exact;
-  const bool samples = preview && !RayWalk<PreviewLayers<T>>::computes(settings.reduction);
-  image.type = samples ? scalarTypeOf<T>() : scalarTypeOf<A>();
-  image.bytes.resize(std::size_t(image.width) * image.height * (samples ? sizeof(T) : sizeof(A)));
-  image.winners.resize(settings.keepWinners ? std::size_t(image.width) * image.height : 0);
-  auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
-  auto& reach = std::get<WorksheetReach<A>>(this->Memory->reach);
-  const Kernel kernel = standard ? Kernel{ Reconstruction::Box } : settings.kernel;
-  const bool perspective = frame.geometry.isPerspective();
-  auto& own = std::get<PerspectiveFootprints<A>>(this->Memory->perspectiveFootprints);
-  auto& paths = std::get<std::vector<ExactPath<A>>>(this->Memory->paths);
-  auto& cells = std::get<std::array<FanCells<A>, 2>>(this->Memory->cells);
-  if (exact && perspective)
-  {
-    cells[0].find(frame.whole, frame.geometry, 0);
-    cells[1].find(frame.whole, frame.geometry, 1);
-    findExactReach(frame.geometry, reach);
-  }
-  else if (exact)
-  {
-    findExactPaths(frame.whole, frame.geometry, paths);
-    findFieldSpans(frame.whole, this->Memory->field);
-    findReach(paths, reach);
-  }
-  else if (!preview && perspective)
-  {
-    own.find(frame.whole, frame.geometry, kernel, frame.kernels);
-    findReach(frame.geometry, own, reach);
-  }
-  else if (!preview)
-  {
-    findFootprints(frame.geometry, kernel, settings.footprintSampling, weightBits<T>, footprints);
-    findReach(frame.sliceGeometry, footprints, reach);
-  }
-  if (lines)
-  {
-    preview ? this->previewLines(frame, *lines) : this->splatLines(frame, *lines, standard);
-    return;
-  }
-  const auto splat = [&](const auto& layers)
-  {
-    if (looksAtAll(settings, frame.range, frame.geometry))
-    {
-      this->walkRays(index, frame, layers, settings);
-      return;
-    }
-    TileCount count;
-    this->walk(index, frame, layers, used, count);
-    if (!this->stopped())
-    {
-      learn(index.experience(frame.geometry.principalAxis(), static_cast<int>(settings.quality),
-              !frame.cuts.none()),
-        used, count);
-    }
-  };
-  const int depth = standard ? 0 : 1;
-  if (preview && perspective)
-  {
-    const VoxelLoops<T>& loops = frame.kernels;
-    this->Memory->steps.windows.find(this->Memory->steps.columns, loops.group, sizeof(T));
-    splat(PerspectivePreview<T>(frame, this->Memory->none));
-  }
-  else if (preview)
-  {
-    splat(PreviewLayers<T>(frame, this->Memory->previewLayers));
-  }
-  else if (exact && perspective)
-  {
-    splat(PerspectiveExact<T>(frame, cells[0], cells[1], reach));
-  }
-  else if (exact)
-  {
-    splat(ExactWorksheets<T>(frame, paths, this->Memory->field, reach));
-  }
-  else if (perspective)
-  {
-    splat(PerspectiveWorksheets<T>(frame, own, reach, depth));
-  }
-  else
-  {
-    splat(ParallelWorksheets<T>(frame, footprints, reach, depth));
-  }
-}
-
-template <class T>
-void Projector::carryType(const VoxelArray& other, const ShearWarp& geometry,
-  const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image)
-{
-  using A = Accumulator<T>;
-  const bool preview = settings.quality == Quality::Preview;
-  const std::vector<SliceGeometry>& slices = this->Memory->slices;
-  const auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Memory->footprints);
-  const auto& own = std::get<PerspectiveFootprints<A>>(this->Memory->perspectiveFootprints);
-  const bool perspective = geometry.isPerspective();
-  const PermutedVoxels<T> voxels(other, geometry);
-  const auto voxel = [&](int u, int v, int k, int step)
-  {
-    return perspective ? carriedVoxel(voxels, geometry, u, v, step)
-                       : carriedVoxel(voxels, slices[k].path, u, v, step);
-  };
-  const auto average = [&](int u, int v, int k)
-  {
-    return perspective ? carriedAverage<T>(voxels, own, u, v, k)
-                       : carriedAverage<T>(voxels, footprints[k], u, v, k);
-  };
-  image.type = projected.type;
-  image.bytes.resize(projected.bytes.size());
-  image.special = std::numeric_limits<T>::has_quiet_NaN;
-  const auto fill = [&](int v, auto* row)
-  {
-    using P = std::remove_pointer_t<decltype(row)>;
-    const std::int32_t* const winners = &projected.winners[std::size_t(v) * projected.width];
-    for (int u = 0; u < image.width; ++u)
-    {
-      const int step = winners[u], k = std::max(step, 0) / StepsPerSlice;
-      row[u] = step < 0 ? P(0)
-        : preview       ? static_cast<P>(voxel(u, v, k, step))
-                        : static_cast<P>(average(u, v, k));
-    }
-  };
-  vtkSMPTools::For(0, image.height, TileHeight,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      for (int v = static_cast<int>(begin); v < end; ++v)
-      {
-        image.type == scalarTypeOf<T>() ? fill(v, image.row<T>(v)) : fill(v, image.row<A>(v));
-      }
-    });
+  return *mode;
 }
 
 void Projector::carry(const VoxelArray& other, const ShearWarp& geometry,
@@ -471,12 +152,11 @@ void Projector::carry(const VoxelArray& other, const ShearWarp& geometry,
   image.height = projected.height;
   image.spans = projected.spans;
   image.mask = projected.mask;
-  dispatch(other.type,
-    [&](auto* null)
-    {
-      this->carryType<std::remove_pointer_t<decltype(null)>>(
-        other, geometry, settings, projected, image);
-    });
+  image.type = projected.type;
+  image.bytes.resize(projected.bytes.size());
+  image.special = other.type == ScalarType::Float32 || other.type == ScalarType::Float64;
+  this->mode(settings.quality, geometry.isPerspective())
+    .carry({ other, geometry, this->Memory->slices, projected, image });
 }
 
 /// What can be used at all of what was asked for.
@@ -526,7 +206,7 @@ void Projector::outline(const ShearWarp& geometry, const ProjectionSettings& set
   Scratch& memory = *this->Memory;
   this->findWhole(geometry, settings);
   memory.wholeCuts.reset(cuts, geometry, { 0, geometry.size().z });
-  outlineImage(geometry, memory.wholeSlices, memory.wholeCuts, memory.outline, image);
+  outlineImage(geometry, memory.wholeSlices, memory.wholeCuts, memory.walks.outline, image);
 }
 
 /// The geometry of a piece of a volume, and its cuts.
@@ -551,11 +231,12 @@ void Projector::countSteps(const ShearWarp& whole, const ShearWarp& geometry,
   {
     this->findWhole(whole, settings);
   }
-  memory.outline.crossed.reset(isPart ? memory.wholeSlices : memory.slices, width);
-  memory.rays.crossed.findCrossed(memory.outline.crossed, width, height, cuts.intervals);
+  memory.walks.outline.crossed.reset(isPart ? memory.wholeSlices : memory.slices, width);
+  memory.walks.rays.crossed.findCrossed(
+    memory.walks.outline.crossed, width, height, cuts.intervals);
   if (isPart)
   {
-    memory.rays.crossed.setShifted(memory.rays.crossed, geometry.first().z);
+    memory.walks.rays.crossed.setShifted(memory.walks.rays.crossed, geometry.first().z);
   }
 }
 
@@ -582,7 +263,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
   {
     keepInterior(whole, geometry, settings.quality, memory.slices);
   }
-  outlineImage(geometry, memory.slices, memory.cuts, memory.outline, image);
+  outlineImage(geometry, memory.slices, memory.cuts, memory.walks.outline, image);
   if (settings.reduction == Reduction::DepthShaded)
   {
     this->countSteps(whole, geometry, settings, cuts, image.width, image.height);
@@ -595,14 +276,28 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
       ? choose(index, geometry, !memory.cuts.none(), settings)
       : settings.acceleration,
     index, settings, geometry, cuts, lines);
-  dispatch(index.volume().type,
-    [&](auto* null)
+  openImage(settings, index.volume().type, image);
+  const bool byRays = looksAtAll(settings, range, geometry);
+  const bool skips = used == Acceleration::Bricks;
+  Frame frame{ index, settings, geometry, whole, kernelsFor(settings.instructionSet), range,
+    memory.slices, memory.steps, memory.cuts, settings.floor, image, memory.walks, this->Observer,
+    byRays, lines, skips ? &index.bricks(geometry.principalAxis()) : nullptr };
+  if (lines)
+  {
+    if (!memory.chains)
     {
-      using T = std::remove_pointer_t<decltype(null)>;
-      Frame<T> frame{ geometry, kernelsFor(settings.instructionSet), {}, range, memory.slices,
-        memory.steps, memory.cuts, settings.floor, image, whole };
-      this->projectType(index, settings, used, lines, frame);
-    });
+      memory.chains = makeChains();
+    }
+    memory.chains->project(frame);
+    return used;
+  }
+  this->mode(settings.quality, geometry.isPerspective()).project(frame);
+  if (!byRays && !this->stopped())
+  {
+    learn(index.experience(
+            geometry.principalAxis(), static_cast<int>(settings.quality), !memory.cuts.none()),
+      used, frame.count);
+  }
   return used;
 }
 }

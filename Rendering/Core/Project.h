@@ -50,6 +50,12 @@ enum class Reduction
   Local        ///< the first local maximum, from the viewer, at or above a threshold
 };
 
+/// Whether samples are computed with, so that the image's scalars are of type Accumulator<T>.
+inline bool computesWith(Reduction reduction)
+{
+  return reduction == Reduction::Mean || reduction == Reduction::DepthShaded;
+}
+
 /// Whether it matters which end of a ray is nearest to the viewer.
 inline bool isOrdered(Reduction reduction)
 {
@@ -105,9 +111,7 @@ struct ProjectionSettings
   }
 };
 
-template <class T>
-struct Frame;
-struct TileCount;
+class ProjectionMode;
 
 /**
  * Projects volumes. Holds the threads' work space between frames.
@@ -160,26 +164,7 @@ private:
     const ProjectionSettings& settings, const Cuts& cuts, int width, int height);
   Acceleration possible(Acceleration wanted, VolumeIndex& index, const ProjectionSettings& settings,
     const ShearWarp& geometry, const Cuts& cuts, const LineIndex*& lines);
-  template <class T>
-  void projectType(VolumeIndex& index, const ProjectionSettings& settings, Acceleration used,
-    const LineIndex* lines, Frame<T>& frame);
-  template <class T, class Layers>
-  void walk(
-    VolumeIndex& index, Frame<T>& frame, const Layers& layers, Acceleration used, TileCount& count);
-  template <class T, class Body>
-  void forSlices(VolumeIndex& index, Frame<T>& frame, int beyond, bool reversed, Body&& body);
-  template <class T>
-  void openNotes(Frame<T>& frame);
-  template <class T>
-  void carryType(const VoxelArray& other, const ShearWarp& geometry,
-    const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image);
-  template <class T, class Layers>
-  void walkRays(
-    VolumeIndex& index, Frame<T>& frame, const Layers& layers, const ProjectionSettings& settings);
-  template <class T>
-  void previewLines(const Frame<T>& frame, const LineIndex& lines);
-  template <class T>
-  void splatLines(const Frame<T>& frame, const LineIndex& lines, bool standard);
+  ProjectionMode& mode(Quality quality, bool perspective);
 
   struct Scratch;
   std::unique_ptr<Scratch> Memory;

@@ -12,22 +12,24 @@
 
 #include "Cuts.h"
 #include "Frame.h"
+#include "Project.h"
+#include "WalkSpace.h"
 
 #include <vector>
 
 namespace splatting
 {
-/// A thread's work space.
-struct WinnerScratch
+/// Before a walk: room for what walks note of winners.
+inline void openNotes(Frame& frame)
 {
-  std::vector<std::int16_t> first, last;
-  std::vector<unsigned char> mask;
-};
+  frame.space.orders.resize(frame.image.winners.size());
+  frame.orders = frame.space.orders.data();
+  frame.space.outline.crossed.reset(frame.sliceGeometry, frame.image.width);
+}
 
-/// Before a walk: no pixel has won anything, and none takes what is no more than the floor; those
+/// And no pixel has won anything, and none takes what is no more than the floor; those
 /// without samples never will.
-template <class T>
-void openOrders(const Frame<T>& frame, int v0, int v1)
+inline void openOrders(const Frame& frame, int v0, int v1)
 {
   const ShearImage& image = frame.image;
   for (int v = v0; v < v1; ++v)
@@ -45,25 +47,22 @@ void openOrders(const Frame<T>& frame, int v0, int v1)
   }
 }
 
-template <class Stack>
+/// In an image with pixels of type P.
+template <class P>
 class WinnerFinder
 {
 public:
-  using T = typename Stack::Voxel;
-  using P = typename Stack::Pixel;
-
+  /// @param floor    what pixels start from
   /// @param crossed  for the frame's slices
-  /// @param preview  whether samples are voxels
-  WinnerFinder(
-    const Frame<T>& frame, const Stack& layers, const CrossedSlices& crossed, bool preview)
+  WinnerFinder(const Frame& frame, P floor, const CrossedSlices& crossed)
     : Shared(frame),
       Crossed(crossed),
-      Floor(layers.floor()),
-      Preview(preview)
+      Floor(floor),
+      Preview(frame.settings.quality == Quality::Preview)
   {
   }
 
-  /// Before Layers::finish().
+  /// Before SliceSampler::finish().
   void find(int v0, int v1, WinnerScratch& scratch) const
   {
     for (int v = v0; v < v1; ++v)
@@ -240,7 +239,7 @@ private:
     std::replace(winners, winners + image.width, UnknownWinner, -1);
   }
 
-  const Frame<T>& Shared;
+  const Frame& Shared;
   const CrossedSlices& Crossed;
   P Floor;
   bool Preview;

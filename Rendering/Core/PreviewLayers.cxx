@@ -1,22 +1,21 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Preview mode: the voxels that rays cross, in layers of BrickDepth slices. The rows of a layer's
- * slices are read side by side: that keeps several streams through memory busy, and a pixel is
- * loaded and stored once for all of them.
- */
-#ifndef splattingPreviewLayers_h
-#define splattingPreviewLayers_h
+#include "Carry.h"
+#include "SliceSampler.h"
 
-#include "Cuts.h"
-#include "Frame.h"
-#include "Patch.h"
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <type_traits>
+#include <vector>
 
 namespace splatting
 {
-/// Most layers that walks take together where they note winners.
-constexpr int LayersTogether = 4;
-
+namespace
+{
 /// The paths of all slices of a layer; from the viewer on if winners are noted.
 struct PreviewLayer
 {
@@ -51,25 +50,21 @@ struct PreviewStorage
   std::vector<PreviewLayer> layers, groups;
 };
 
+/**
+ * Preview mode: the voxels that rays cross, in layers of BrickDepth slices. The rows of a layer's
+ * slices are read side by side: that keeps several streams through memory busy, and a pixel is
+ * loaded and stored once for all of them.
+ */
 template <class T>
-class PreviewLayers
+class PreviewLayers : public SliceSampler<T, T>
 {
 public:
-  using Voxel = T;
-  using Pixel = T;
-  static constexpr bool Perspective = false;
-  /// How many slices beyond its own a layer reads.
-  static constexpr int Beyond = 0;
-  /// Rows that cut layers are walked for at a time.
-  static constexpr int RowsTogether = 32;
-  /// Pixels whose multiples runs had best begin and end at.
-  static constexpr int RunUnit = TileWidth;
-  /// Whether splatAll() takes SliceRuns.
-  static constexpr bool TakesSliceRuns = true;
+  using typename SliceSampler<T, T>::Samples;
 
   /// `storage` outlives this, and is kept for the next frame.
-  PreviewLayers(const Frame<T>& frame, PreviewStorage& storage)
-    : Shared(frame),
+  PreviewLayers(const Frame& frame, PreviewStorage& storage)
+    : SliceSampler<T, T>({ false, 0, 32, TileWidth, true }),
+      Shared(frame),
       Layers(storage.layers),
       Groups(storage.groups)
   {
@@ -86,22 +81,16 @@ public:
     }
   }
 
-  const Window& window(int layer) const { return this->Layers[layer].window; }
+  Window window(int layer) const override { return this->Layers[layer].window; }
 
-  /// Of Frame::orders, the least that a layer gives.
-  std::int16_t orderOf(int z) const { return this->Shared.nearestOrder(z); }
-
-  /// Takes a layer's voxels into the pixels of some rows and runs of columns, as far as the bits
-  /// or the slices' runs (if there are any) say.
   void splat(int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits,
-    Patch& patch, const SliceRuns* cuts = nullptr) const
+    const SliceRuns* cuts, Patch& patch) const override
   {
     this->splatLayer(this->Layers[z], v0, v1, runs, {}, { bits, cuts }, {}, patch);
   }
 
-  /// The same for all layers of some rows; to be opened once.
-  void open(int, int, const Span&, Patch&) const {}
-  void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const
+  void open(int, int, const Span&, Patch&) const override {}
+  void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const override
   {
     for (int r = 0, end = 0; r < count; r = end)
     {
@@ -131,12 +120,8 @@ public:
     }
   }
 
-  /// Calls f(step, v, pixels, samples, nullptr) for all samples of some slices and of pixels in
-  /// some rows and columns, in the order of the rays if they come from the first slice, or else
-  /// reversed. Steps as in ShearImage::winners.
-  template <class F>
-  void forSamples(
-    const Span& slices, bool reversed, int v0, int v1, const Span& columns, Patch&, F&& f) const
+  void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns, Patch&,
+    const Samples& f) const override
   {
     for (int n = 0; n < slices.end - slices.begin; ++n)
     {
@@ -151,11 +136,10 @@ public:
     }
   }
 
-  /// The same for all pixels of some rows, which are one run, and all voxels of some layers, in the
-  /// order of memory: slice after slice, or, where rows of all slices lie side by side, a few rows
-  /// through all of them. Or, if there are `cuts`, the pixels that these say.
-  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch,
-    const SliceRuns* cuts = nullptr) const
+  /// In the order of memory: slice after slice, or, where rows of all slices lie side by side, a
+  /// few rows through all of them.
+  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
+    const SliceRuns* cuts, Patch& patch) const override
   {
     const RowCuts by{ {}, cuts };
     const Slices& slices = this->Shared.slices;
@@ -184,12 +168,9 @@ public:
     }
   }
 
-  /// Voxels are taken as they are.
-  Accumulator<T> base() const { return 0; }
+  T floor() const override { return previewFloor<T>(this->Shared); }
 
-  T floor() const { return previewFloor(this->Shared); }
-
-  void finish(int, int) const {}
+  void finish(int, int) const override {}
 
 private:
   using Layer = PreviewLayer;
@@ -358,7 +339,7 @@ private:
 
   std::int16_t orderOf(const Layer& layer) const
   {
-    return this->orderOf(layer.taps[0].k / BrickDepth);
+    return this->Shared.nearestOrder(layer.taps[0].k / BrickDepth);
   }
 
   void findRims(Layer& layer) const
@@ -442,7 +423,7 @@ private:
     for (int t = firstTap; t < endTap; ++t)
     {
       const Layer::Tap& tap = layer.taps[t];
-      sweep.rows[t - firstTap] = this->Shared.voxelRow(v0 + tap.dj, tap.k) + tap.di;
+      sweep.rows[t - firstTap] = this->Shared.template voxelRow<T>(v0 + tap.dj, tap.k) + tap.di;
     }
     sweep.runs = runs.first;
     sweep.runCount = runs.count;
@@ -558,15 +539,48 @@ private:
       const Span pixels = common(span, { -path.di[t], size.x - path.di[t] });
       if (j >= 0 && j < size.y && !pixels.empty())
       {
-        f(t, pixels, this->Shared.voxelRow(j, k) + path.di[t] + pixels.begin);
+        f(t, pixels, this->Shared.template voxelRow<T>(j, k) + path.di[t] + pixels.begin);
       }
     }
   }
 
-  const Frame<T>& Shared;
+  const Frame& Shared;
   const std::vector<Layer>& Layers;
   const std::vector<Layer>& Groups; ///< none if they are not to be used
 };
+
+class PreviewMode : public ProjectionMode
+{
+public:
+  void project(Frame& frame) override
+  {
+    dispatch(frame.index.volume().type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        walk(frame, PreviewLayers<T>(frame, this->Layers));
+      });
+  }
+
+  void carry(const Carrying& c) const override
+  {
+    dispatch(c.other.type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        carryValues<T>(c,
+          [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
+          { return carriedVoxel(voxels, c.slices[step / StepsPerSlice].path, u, v, step); });
+      });
+  }
+
+private:
+  PreviewStorage Layers;
+};
 }
 
-#endif
+std::unique_ptr<ProjectionMode> makePreview()
+{
+  return std::make_unique<PreviewMode>();
+}
+}

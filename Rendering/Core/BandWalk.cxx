@@ -1,5 +1,24 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "SliceSampler.h"
+#include "TileRuns.h"
+#include "WalkSpace.h"
+#include "WinnerFinder.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <type_traits>
+#include <vector>
+
+namespace splatting
+{
+namespace
+{
+static_assert(TileWidth == BrickWidth && TileHeight == BrickHeight);
+
 /**
  * In which order a band of image rows meets the layers of slices, and what it leaves out.
  *
@@ -13,58 +32,18 @@
  * Where rays are cut, runs of pixels say where a slice counts or, where one run does not tell, bits
  * which slices of a layer count for a pixel. Tiles that have none are left out.
  */
-#ifndef splattingBandWalk_h
-#define splattingBandWalk_h
-
-#include "Cuts.h"
-#include "PreviewLayers.h"
-#include "Worksheets.h"
-
-#include <cstdint>
-#include <cstring>
-#include <numeric>
-
-namespace splatting
-{
-static_assert(TileWidth == BrickWidth && TileHeight == BrickHeight);
-
-/// Tiles that a walk met, and those that it splatted.
-struct TileCount
-{
-  std::int64_t met = 0;
-  std::int64_t splatted = 0;
-};
-
-/// A thread's work space.
-struct BandScratch
-{
-  Patch patch;
-  std::vector<unsigned char> voxelBounds, bounds, minima, flags;
-  std::vector<int> order;
-  std::vector<double> scores;
-  std::vector<Span> runs;
-  std::vector<RowRuns> rows;
-  BandCuts cuts;
-  SliceRuns sliceRuns;
-  std::vector<unsigned char> mask;
-  std::vector<unsigned char> brickRow;
-  std::vector<std::int16_t> farthest;
-  std::vector<Span> tileWindows;
-  TileCount count;
-};
-
-template <class Layers>
+template <class T, class P>
 class BandWalk
 {
 public:
-  using T = typename Layers::Voxel;
-  using P = typename Layers::Pixel;
+  using Layers = SliceSampler<T, P>;
 
   /// @param some  the slices to walk; whole layers
-  BandWalk(const Frame<T>& frame, const Layers& layers, BandScratch& scratch, const Span& some,
-    int v0, int v1)
+  BandWalk(const Frame& frame, const Layers& layers, BandScratch& scratch, const Span& some, int v0,
+    int v1)
     : Shared(frame),
       Stack(layers),
+      Traits(layers.traits()),
       Scratch(scratch),
       V0(v0),
       V1(v1)
@@ -73,8 +52,8 @@ public:
     this->Range = { slices.begin / BrickDepth,
       slices.empty() ? slices.begin / BrickDepth : (slices.end - 1) / BrickDepth + 1 };
     const int layersInAll = (frame.geometry.size().z + BrickDepth - 1) / BrickDepth;
-    this->Known = { std::max(this->Range.begin - Layers::Beyond, 0),
-      std::min(this->Range.end + Layers::Beyond, layersInAll) };
+    this->Known = { std::max(this->Range.begin - this->Traits.beyond, 0),
+      std::min(this->Range.end + this->Traits.beyond, layersInAll) };
     this->Tiles = (frame.image.width + TileWidth - 1) / TileWidth;
     this->Groups = (v1 - v0 + TileHeight - 1) / TileHeight;
   }
@@ -85,7 +64,7 @@ public:
     runs.assign(1, { 0, this->Shared.image.width });
     if (this->Shared.cuts.none())
     {
-      this->Stack.splatAll(this->Range, this->V0, this->V1, runs, this->Scratch.patch);
+      this->Stack.splatAll(this->Range, this->V0, this->V1, runs, nullptr, this->Scratch.patch);
       return;
     }
     if (this->Shared.range.special)
@@ -93,14 +72,11 @@ public:
       this->walkSamples();
       return;
     }
-    if constexpr (Layers::TakesSliceRuns)
+    if (this->Traits.takesSliceRuns && this->findSliceRuns())
     {
-      if (this->findSliceRuns())
-      {
-        this->Stack.splatAll(
-          this->Range, this->V0, this->V1, runs, this->Scratch.patch, &this->Scratch.sliceRuns);
-        return;
-      }
+      this->Stack.splatAll(
+        this->Range, this->V0, this->V1, runs, &this->Scratch.sliceRuns, this->Scratch.patch);
+      return;
     }
     this->openBits();
     this->walkCut();
@@ -166,7 +142,7 @@ private:
   /// voxels.
   void walkCut()
   {
-    constexpr int together = Layers::RowsTogether / TileHeight;
+    const int together = this->Traits.rowsTogether / TileHeight;
     this->Scratch.rows.resize(together);
     for (int first = 0; first < this->Groups; first += together)
     {
@@ -229,7 +205,7 @@ private:
     {
       return;
     }
-    this->HasSliceRuns = Layers::TakesSliceRuns && this->findSliceRuns();
+    this->HasSliceRuns = this->Traits.takesSliceRuns && this->findSliceRuns();
     if (!this->HasSliceRuns)
     {
       this->openBits();
@@ -259,21 +235,15 @@ private:
     {
       for (int g = 0; g < this->Groups; ++g)
       {
-        if constexpr (Layers::Perspective)
-        {
-          this->takeOwnBricks(bricks, z, g, this->voxelBounds(z, g));
-        }
-        else
-        {
-          this->takeBricks(bricks, z, g, this->voxelBounds(z, g));
-        }
+        this->Traits.perspective ? this->takeOwnBricks(bricks, z, g, this->voxelBounds(z, g))
+                                 : this->takeBricks(bricks, z, g, this->voxelBounds(z, g));
       }
     }
-    if constexpr (Layers::Beyond == 0) // voxels as they are
+    if (this->Traits.beyond == 0) // voxels as they are
     {
       this->Scratch.bounds.swap(this->Scratch.voxelBounds);
     }
-    else
+    else if constexpr (std::is_same_v<P, Accumulator<T>>)
     {
       this->Scratch.bounds.resize(count * sizeof(P));
       const VoxelLoops<T>& loops = this->Shared.kernels;
@@ -290,7 +260,7 @@ private:
   /// Beyond the ends of rows of bricks others are read: that makes some bounds higher, not wrong.
   void takeBricks(const BrickMaxima& bricks, int z, int group, T* out)
   {
-    const Window& window = this->Stack.window(z);
+    const Window window = this->Stack.window(z);
     // Where worksheets read beyond the volume they repeat its outermost voxels.
     const int bottom = this->firstRow(group), top = bottom + this->rowsOf(group) - 1;
     const int last = this->Shared.geometry.size().y - 1;
@@ -491,17 +461,15 @@ private:
     const P* const minima = this->minimaOf(group);
     unsigned char* const flags = this->openFlags();
     this->Shared.orders ? loops.exceedsOrTies(bounds, minima, this->farthestOf(group),
-                            this->Stack.orderOf(z), flags, this->Tiles)
+                            this->Shared.nearestOrder(z), flags, this->Tiles)
                         : loops.exceeds(bounds, minima, flags, this->Tiles);
     this->splatFlagged(z, group);
   }
 
-  static constexpr int Word = 64;
-
   /// One flag for each tile of a group, and zeros up to the next word.
   unsigned char* openFlags()
   {
-    this->Scratch.flags.resize((this->Tiles + Word - 1) / Word * Word);
+    this->Scratch.flags.resize((this->Tiles + FlagsPerWord - 1) / FlagsPerWord * FlagsPerWord);
     std::fill(this->Scratch.flags.begin() + this->Tiles, this->Scratch.flags.end(),
       static_cast<unsigned char>(0));
     return this->Scratch.flags.data();
@@ -511,13 +479,10 @@ private:
   void splatFlagged(int z, int group)
   {
     const int v0 = this->firstRow(group), v1 = v0 + this->rowsOf(group);
-    if constexpr (Layers::TakesSliceRuns)
+    if (this->HasSliceRuns)
     {
-      if (this->HasSliceRuns)
-      {
-        this->splatFlaggedCut(z, v0, v1);
-        return;
-      }
+      this->splatFlaggedCut(z, v0, v1);
+      return;
     }
     SliceBits bits;
     if (!this->Shared.cuts.none())
@@ -527,7 +492,7 @@ private:
     this->findRuns(this->Scratch.runs);
     if (!this->Scratch.runs.empty())
     {
-      this->Stack.splat(z, v0, v1, this->Scratch.runs, bits, this->Scratch.patch);
+      this->Stack.splat(z, v0, v1, this->Scratch.runs, bits, nullptr, this->Scratch.patch);
     }
   }
 
@@ -554,73 +519,20 @@ private:
       const bool isCut =
         runs.front().begin - beside < hull.all.begin || runs.back().end + beside > hull.all.end;
       this->Stack.splat(
-        z, v0, v1, runs, {}, this->Scratch.patch, isCut ? &this->Scratch.sliceRuns : nullptr);
+        z, v0, v1, runs, {}, isCut ? &this->Scratch.sliceRuns : nullptr, this->Scratch.patch);
     }
   }
 
   /// The runs of tiles with flags.
   void findRuns(std::vector<Span>& runs)
   {
-    runs.clear();
-    for (int first = 0; first < this->Tiles; first += Word)
-    {
-      std::uint64_t tiles = packed(this->Scratch.flags.data() + first);
-      // Small gaps cost less than a second start.
-      tiles |= ((tiles << 1) & (tiles >> 1)) | ((tiles << 1) & (tiles >> 2)) |
-        ((tiles << 2) & (tiles >> 1));
-      addRuns(first, tiles, runs);
-    }
+    this->Scratch.count.splatted += findTileRuns(this->Scratch.flags.data(), this->Tiles,
+      this->Traits.runUnit, this->Shared.image.width, runs);
   }
 
-  void addRuns(int first, std::uint64_t tiles, std::vector<Span>& runs)
-  {
-    while (tiles)
-    {
-      const int begin = trailingZeros(tiles);
-      const std::uint64_t rest = ~(tiles >> begin);
-      const int length = rest ? trailingZeros(rest) : 64;
-      tiles = begin + length < 64 ? tiles >> (begin + length) << (begin + length) : 0;
-      this->Scratch.count.splatted += length;
-      constexpr int unit = Layers::RunUnit;
-      const int u = (first + begin) * TileWidth;
-      runs.push_back({ u / unit * unit,
-        std::min((u + length * TileWidth + unit - 1) / unit * unit, this->Shared.image.width) });
-    }
-  }
-
-  /// Bit n is byte n, which is 0 or 1.
-  static std::uint64_t packed(const unsigned char* flags)
-  {
-    std::uint64_t bits = 0;
-    for (int n = 0; n < 8; ++n)
-    {
-      std::uint64_t eight = 0;
-      for (int byte = 0; byte < 8; ++byte) // compilers make this one load
-      {
-        eight |= std::uint64_t(flags[8 * n + byte]) << (8 * byte);
-      }
-      // The product's highest byte has bit 0 of each byte.
-      bits |= (eight * 0x0102040810204080u) >> 56 << (8 * n);
-    }
-    return bits;
-  }
-
-  static int trailingZeros(std::uint64_t word)
-  {
-#if defined(__GNUC__)
-    return __builtin_ctzll(word);
-#else
-    int n = 0;
-    for (; !(word & 1); word >>= 1)
-    {
-      ++n;
-    }
-    return n;
-#endif
-  }
-
-  const Frame<T>& Shared;
+  const Frame& Shared;
   const Layers& Stack;
+  const SamplerTraits& Traits;
   BandScratch& Scratch;
   int V0, V1;
   Span Range; // of layers that are walked
@@ -631,4 +543,54 @@ private:
 };
 }
 
-#endif
+template <class T, class P>
+void walkBands(Frame& frame, const SliceSampler<T, P>& sampler)
+{
+  WalkSpace& space = frame.space;
+  const bool notes = frame.image.keepsWinners();
+  if (notes)
+  {
+    openNotes(frame);
+  }
+  const WinnerFinder<P> finder(frame, sampler.floor(), space.outline.crossed);
+  frame.nearestFirst = notes && !frame.bricks;
+  forSlices(frame, sampler.traits().beyond, notes && frame.geometry.reversed(),
+    [&](const Span& slices, bool isFirst, bool isLast)
+    {
+      forBands(frame.image.height, bandHeight(frame.image.height), frame.watch,
+        [&](int v0, int v1)
+        {
+          if (isFirst)
+          {
+            openRows<P>(frame.image, sampler.floor(), v0, v1);
+            if (notes)
+            {
+              openOrders(frame, v0, v1);
+            }
+          }
+          BandWalk<T, P> band(frame, sampler, space.bands.Local(), slices, v0, v1);
+          frame.bricks ? band.walkBricks(*frame.bricks) : band.walkDensely();
+          if (isLast)
+          {
+            if (notes)
+            {
+              finder.find(v0, v1, space.winners.Local());
+            }
+            sampler.finish(v0, v1);
+            closeRows<P>(frame.image, v0, v1);
+          }
+        });
+    });
+  for (BandScratch& band : space.bands)
+  {
+    frame.count.met += band.count.met;
+    frame.count.splatted += band.count.splatted;
+    band.count = {};
+  }
+}
+
+#define VOXELS(T) template void walkBands(Frame&, const SliceSampler<T, T>&);
+#define WORKSHEETS(T) template void walkBands(Frame&, const SliceSampler<T, Accumulator<T>>&);
+SPLATTING_TYPES(VOXELS)
+SPLATTING_INTEGERS(WORKSHEETS) // others are of their voxels' type
+}

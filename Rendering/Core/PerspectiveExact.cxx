@@ -1,16 +1,20 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Exact mode in perspective views: as ExactWorksheets, but each pixel's ray runs through the cells
- * in its own way.
- */
-#ifndef splattingPerspectiveExact_h
-#define splattingPerspectiveExact_h
-
-#include "ExactWorksheets.h"
+#include "ExactPieces.h"
 #include "FanCells.h"
+#include "Worksheets.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <tuple>
+#include <type_traits>
 
 namespace splatting
+{
+namespace
 {
 /// What the layers of an image read, as far as WorksheetLayers asks for it.
 template <class A>
@@ -25,36 +29,38 @@ void findExactReach(const ShearWarp& geometry, WorksheetReach<A>& reach)
   reach.columns = reach.rows = 16;
 }
 
+/**
+ * Exact mode in perspective views: as ExactWorksheets, but each pixel's ray runs through the cells
+ * in its own way.
+ */
 template <class T>
 class PerspectiveExact : public WorksheetLayers<T>
 {
 public:
   using typename WorksheetLayers<T>::A;
   using typename WorksheetLayers<T>::Target;
-  static constexpr bool Perspective = true;
 
-  PerspectiveExact(const Frame<T>& frame, const FanCells<A>& columns, const FanCells<A>& rows,
+  PerspectiveExact(const Frame& frame, const FanCells<A>& columns, const FanCells<A>& rows,
     const WorksheetReach<A>& reach)
-    : WorksheetLayers<T>(frame, reach, 1),
+    : WorksheetLayers<T>(frame, true, reach, 1),
       Columns(columns),
       Rows(rows),
       Depths(frame.whole, 2)
   {
   }
 
-  /// As in PerspectiveWorksheets.
-  Span columnsOf(int z, const Span& pixels) const
+  Span columnsOf(int z, const Span& pixels) const override
   {
     return this->Columns.voxels(this->readers(slicesOfLayer(z, this->size())), pixels);
   }
-  Span rowsOf(int z, const Span& pixels) const
+  Span rowsOf(int z, const Span& pixels) const override
   {
     return this->Rows.voxels(this->readers(slicesOfLayer(z, this->size())), pixels);
   }
 
   /// As in ParallelWorksheets, of three interpolations one after the other, with up to five
   /// roundings each, and the mean of three.
-  A slack() const { return 60 * std::numeric_limits<A>::epsilon() / 2; }
+  A slack() const override { return 60 * std::numeric_limits<A>::epsilon() / 2; }
 
 protected:
   Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
@@ -151,6 +157,34 @@ private:
   const FanCells<A>& Rows;
   FieldRange Depths;
 };
+
+class PerspectiveExactMode : public ProjectionMode
+{
+public:
+  void project(Frame& frame) override
+  {
+    dispatch(frame.index.volume().type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        using A = Accumulator<T>;
+        auto& cells = std::get<std::array<FanCells<A>, 2>>(this->Cells);
+        auto& reach = std::get<WorksheetReach<A>>(this->Reach);
+        cells[0].find(frame.whole, frame.geometry, 0);
+        cells[1].find(frame.whole, frame.geometry, 1);
+        findExactReach(frame.geometry, reach);
+        walk(frame, PerspectiveExact<T>(frame, cells[0], cells[1], reach));
+      });
+  }
+
+private:
+  std::tuple<std::array<FanCells<float>, 2>, std::array<FanCells<double>, 2>> Cells;
+  std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
+};
 }
 
-#endif
+std::unique_ptr<ProjectionMode> makePerspectiveExact()
+{
+  return std::make_unique<PerspectiveExactMode>();
+}
+}

@@ -1,34 +1,38 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Preview mode in perspective views: the voxels that rays cross, each ray its own.
- */
-#ifndef splattingPerspectivePreview_h
-#define splattingPerspectivePreview_h
+#include "Carry.h"
+#include "SliceSampler.h"
 
-#include "Cuts.h"
-#include "Frame.h"
-#include "Patch.h"
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <type_traits>
+#include <vector>
 
 namespace splatting
 {
-template <class T>
-class PerspectivePreview
+namespace
 {
-public:
-  using Voxel = T;
-  using Pixel = T;
-  static constexpr bool Perspective = true;
-  /// As in PreviewLayers.
-  static constexpr int Beyond = 0;
-  static constexpr int RowsTogether = 32;
+/**
+ * Preview mode in perspective views: the voxels that rays cross, each ray its own.
+ */
+template <class T>
+class PerspectivePreview : public SliceSampler<T, T>
+{
   static constexpr int RunUnit = 64 / sizeof(T);
-  /// Whether splatAll() takes SliceRuns.
-  static constexpr bool TakesSliceRuns = false;
   static_assert(RunUnit % TileWidth == 0);
 
-  /// @param none  work space
-  PerspectivePreview(const Frame<T>& frame, std::vector<unsigned char>& none) : Shared(frame)
+public:
+  using typename SliceSampler<T, T>::Samples;
+
+  /// @param windows  of the columns
+  /// @param none     work space
+  PerspectivePreview(
+    const Frame& frame, const FanWindows& windows, std::vector<unsigned char>& none)
+    : SliceSampler<T, T>({ true, 0, 32, RunUnit, false }),
+      Shared(frame),
+      Windows(windows)
   {
     // A row without voxels, and a register of them.
     const std::size_t count = std::max<std::size_t>(frame.geometry.size().x, 64);
@@ -37,21 +41,17 @@ public:
     std::fill_n(reinterpret_cast<T*>(none.data()), count, leastValue<T>());
   }
 
-  /// The voxels that some columns (or rows) of pixels read in a layer, from first to last; they may
-  /// lie outside the volume.
-  Span columnsOf(int z, const Span& pixels) const
+  Span columnsOf(int z, const Span& pixels) const override
   {
     return this->Shared.steps.columns.voxels(this->slices(z), pixels);
   }
-  Span rowsOf(int z, const Span& pixels) const
+  Span rowsOf(int z, const Span& pixels) const override
   {
     return this->Shared.steps.rows.voxels(this->slices(z), pixels);
   }
 
-  std::int16_t orderOf(int z) const { return this->Shared.nearestOrder(z); }
-
-  void splat(
-    int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits, Patch& patch) const
+  void splat(int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits,
+    const SliceRuns*, Patch& patch) const override
   {
     const Span slices = this->slices(z);
     const int count = slices.end - slices.begin;
@@ -77,31 +77,29 @@ public:
     }
   }
 
-  void open(int, int, const Span&, Patch&) const {}
-  void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const
+  void open(int, int, const Span&, Patch&) const override {}
+  void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const override
   {
     for (int r = 0; r < count; ++r)
     {
       if (!rows[r].runs.empty())
       {
-        this->splat(z, rows[r].v0, rows[r].v1, rows[r].runs, rows[r].bits, patch);
+        this->splat(z, rows[r].v0, rows[r].v1, rows[r].runs, rows[r].bits, nullptr, patch);
       }
     }
   }
 
-  void splatAll(
-    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const
+  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all, const SliceRuns*,
+    Patch& patch) const override
   {
     for (int n = 0; n < layers.end - layers.begin; ++n)
     {
-      this->splat(this->Shared.nth(layers, n), v0, v1, all, {}, patch);
+      this->splat(this->Shared.nth(layers, n), v0, v1, all, {}, nullptr, patch);
     }
   }
 
-  /// As PreviewLayers::forSamples(), and f(..., present): which of the pixels have that step.
-  template <class F>
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
-    Patch& patch, F&& f) const
+    Patch& patch, const Samples& f) const override
   {
     const Span some = common(slices, this->Shared.geometry.slices());
     for (int n = 0; n < some.end - some.begin; ++n)
@@ -124,9 +122,8 @@ public:
     }
   }
 
-  Accumulator<T> base() const { return 0; }
-  T floor() const { return previewFloor(this->Shared); }
-  void finish(int, int) const {}
+  T floor() const override { return previewFloor<T>(this->Shared); }
+  void finish(int, int) const override {}
 
 private:
   Span slices(int z) const
@@ -159,9 +156,9 @@ private:
   {
     const PerspectiveSteps& steps = this->Shared.steps;
     const FanSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
-    const FanWindows::Picks entry = steps.windows.entering(k), exit = steps.windows.leaving(k);
+    const FanWindows::Picks entry = this->Windows.entering(k), exit = this->Windows.leaving(k);
     CrossedSlice<T> s;
-    s.voxels = this->Shared.voxelRow(0, k);
+    s.voxels = this->Shared.template voxelRow<T>(0, k);
     s.firstRow = rows.first + v0;
     s.lastRow = rows.last + v0;
     s.rowTime = rows.time + v0;
@@ -209,8 +206,9 @@ private:
     const RayLoops<T>& loops = this->Shared.kernels;
     const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
     this->forSamples({ k, k + 1 }, false, v0, v1, { 0, this->Shared.image.width }, patch,
-      [&](int, int v, const Span& pixels, const T* samples, unsigned char* present)
+      [&](int, int v, const Span& pixels, const T* samples, const unsigned char*)
       {
+        unsigned char* const present = patch.present.data();
         for (int u = pixels.begin; bits.origin && u < pixels.end; ++u)
         {
           present[u - pixels.begin] &= (*bits.at(u, v) & bit) != 0;
@@ -233,8 +231,8 @@ private:
     T* const out = reinterpret_cast<T*>(patch.worksheet.data());
     const int j0 = rows.first[v], j1 = rows.last[v];
     const bool inside[2] = { j0 >= 0 && j0 < size.y, j1 >= 0 && j1 < size.y };
-    const T* const first = this->Shared.voxelRow(inside[0] ? j0 : 0, k);
-    const T* const last = this->Shared.voxelRow(inside[1] ? j1 : 0, k);
+    const T* const first = this->Shared.template voxelRow<T>(inside[0] ? j0 : 0, k);
+    const T* const last = this->Shared.template voxelRow<T>(inside[1] ? j1 : 0, k);
     unsigned any = 0;
     for (int x = 0; x < count; ++x)
     {
@@ -257,9 +255,46 @@ private:
     return any != 0;
   }
 
-  const Frame<T>& Shared;
+  const Frame& Shared;
+  const FanWindows& Windows;
   const T* None;
+};
+
+class PerspectivePreviewMode : public ProjectionMode
+{
+public:
+  void project(Frame& frame) override
+  {
+    dispatch(frame.index.volume().type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        const VoxelLoops<T>& loops = frame.kernels;
+        this->Windows.find(frame.steps.columns, loops.group, sizeof(T));
+        walk(frame, PerspectivePreview<T>(frame, this->Windows, this->None));
+      });
+  }
+
+  void carry(const Carrying& c) const override
+  {
+    dispatch(c.other.type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        carryValues<T>(c,
+          [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
+          { return carriedVoxel(voxels, c.geometry, u, v, step); });
+      });
+  }
+
+private:
+  FanWindows Windows;
+  std::vector<unsigned char> None;
 };
 }
 
-#endif
+std::unique_ptr<ProjectionMode> makePerspectivePreview()
+{
+  return std::make_unique<PerspectivePreviewMode>();
+}
+}

@@ -1,17 +1,20 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Standard and high mode in perspective views. The weights of a pixel are products, so a slice's
- * worksheet is made in two steps: its rows of voxels are weighed into rows of pixels, which the
- * image's rows then weigh.
- */
-#ifndef splattingPerspectiveWorksheets_h
-#define splattingPerspectiveWorksheets_h
-
+#include "Carry.h"
 #include "PerspectiveFootprints.h"
 #include "Worksheets.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <tuple>
+#include <type_traits>
+
 namespace splatting
+{
+namespace
 {
 /// What the layers of an image read, as far as WorksheetLayers asks for it.
 template <class A>
@@ -36,17 +39,21 @@ void findReach(
   reach.columns = reach.rows = 16;
 }
 
+/**
+ * Standard and high mode in perspective views. The weights of a pixel are products, so a slice's
+ * worksheet is made in two steps: its rows of voxels are weighed into rows of pixels, which the
+ * image's rows then weigh.
+ */
 template <class T>
 class PerspectiveWorksheets : public WorksheetLayers<T>
 {
 public:
   using A = Accumulator<T>;
-  static constexpr bool Perspective = true;
 
   /// @param depth  how many slices beyond its own a footprint reads
-  PerspectiveWorksheets(const Frame<T>& frame, const PerspectiveFootprints<A>& footprints,
+  PerspectiveWorksheets(const Frame& frame, const PerspectiveFootprints<A>& footprints,
     const WorksheetReach<A>& reach, int depth)
-    : WorksheetLayers<T>(frame, reach, depth),
+    : WorksheetLayers<T>(frame, true, reach, depth),
       Own(footprints)
   {
     // Rows of voxels that two pieces need are widened, blended and weighed twice.
@@ -54,19 +61,17 @@ public:
     this->Notes = true;
   }
 
-  /// The voxels of a layer that some columns (or rows) of pixels read, from first to last; they may
-  /// lie outside the volume.
-  Span columnsOf(int z, const Span& pixels) const
+  Span columnsOf(int z, const Span& pixels) const override
   {
     return this->Own.columns.voxels(this->readers(this->slicesOf(z)), pixels);
   }
-  Span rowsOf(int z, const Span& pixels) const
+  Span rowsOf(int z, const Span& pixels) const override
   {
     return this->Own.rows.voxels(this->readers(this->slicesOf(z)), pixels);
   }
 
   /// As in ParallelWorksheets, of up to 3 + 5 + 15 products and sums and the weights' own rounding.
-  A slack() const { return 60 * std::numeric_limits<A>::epsilon() / 2; }
+  A slack() const override { return 60 * std::numeric_limits<A>::epsilon() / 2; }
 
 private:
   using typename WorksheetLayers<T>::Target;
@@ -236,6 +241,46 @@ private:
 
   const PerspectiveFootprints<A>& Own;
 };
+
+class PerspectiveWorksheetsMode : public ProjectionMode
+{
+public:
+  void project(Frame& frame) override
+  {
+    dispatch(frame.index.volume().type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        using A = Accumulator<T>;
+        auto& own = std::get<PerspectiveFootprints<A>>(this->Footprints);
+        auto& reach = std::get<WorksheetReach<A>>(this->Reach);
+        own.find(frame.whole, frame.geometry, worksheetKernel(frame.settings), frame.kernels);
+        findReach(frame.geometry, own, reach);
+        walk(frame, PerspectiveWorksheets<T>(frame, own, reach, worksheetDepth(frame.settings)));
+      });
+  }
+
+  void carry(const Carrying& c) const override
+  {
+    dispatch(c.other.type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        const auto& own = std::get<PerspectiveFootprints<Accumulator<T>>>(this->Footprints);
+        carryValues<T>(c,
+          [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
+          { return carriedAverage<T>(voxels, own, u, v, step / StepsPerSlice); });
+      });
+  }
+
+private:
+  std::tuple<PerspectiveFootprints<float>, PerspectiveFootprints<double>> Footprints;
+  std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
+};
 }
 
-#endif
+std::unique_ptr<ProjectionMode> makePerspectiveWorksheets()
+{
+  return std::make_unique<PerspectiveWorksheetsMode>();
+}
+}

@@ -1,21 +1,20 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Exact mode: a slice's worksheet is the maximum of the trilinear field along each ray's path from
- * half a slice before its middle to half a slice behind.
- */
-#ifndef splattingExactWorksheets_h
-#define splattingExactWorksheets_h
-
 #include "ExactPieces.h"
 #include "Worksheets.h"
 
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
 namespace splatting
 {
-/// Half of what a worksheet weighs where its slice ends are its neighbour's voxels.
-template <class A>
-constexpr A ExactShare = A(0.5);
-
+namespace
+{
 template <class A>
 void findReach(const std::vector<ExactPath<A>>& paths, WorksheetReach<A>& reach)
 {
@@ -47,27 +46,30 @@ void findReach(const std::vector<ExactPath<A>>& paths, WorksheetReach<A>& reach)
   }
 }
 
+/**
+ * Exact mode: a slice's worksheet is the maximum of the trilinear field along each ray's path from
+ * half a slice before its middle to half a slice behind.
+ */
 template <class T>
 class ExactWorksheets : public WorksheetLayers<T>
 {
 public:
   using typename WorksheetLayers<T>::A;
   using typename WorksheetLayers<T>::Target;
-  static constexpr bool Perspective = false;
 
   /// @param field  of each row the pixels that see the field, see findFieldSpans()
-  ExactWorksheets(const Frame<T>& frame, const std::vector<ExactPath<A>>& paths,
+  ExactWorksheets(const Frame& frame, const std::vector<ExactPath<A>>& paths,
     const std::vector<Span>& field, const WorksheetReach<A>& reach)
-    : WorksheetLayers<T>(frame, reach, 1),
+    : WorksheetLayers<T>(frame, false, reach, 1),
       Paths(paths),
       Field(field)
   {
   }
 
-  const Window& window(int layer) const { return this->Reach.layers[layer].window; }
+  Window window(int layer) const override { return this->Reach.layers[layer].window; }
 
   /// As in ParallelWorksheets, of 8 products and sums and the weights' own rounding.
-  A slack() const { return 24 * std::numeric_limits<A>::epsilon() / 2; }
+  A slack() const override { return 24 * std::numeric_limits<A>::epsilon() / 2; }
 
 protected:
   Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
@@ -116,6 +118,35 @@ private:
   const std::vector<ExactPath<A>>& Paths;
   const std::vector<Span>& Field;
 };
+
+class ExactMode : public ProjectionMode
+{
+public:
+  void project(Frame& frame) override
+  {
+    dispatch(frame.index.volume().type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        using A = Accumulator<T>;
+        auto& paths = std::get<std::vector<ExactPath<A>>>(this->Paths);
+        auto& reach = std::get<WorksheetReach<A>>(this->Reach);
+        findExactPaths(frame.whole, frame.geometry, paths);
+        findFieldSpans(frame.whole, this->Field);
+        findReach(paths, reach);
+        walk(frame, ExactWorksheets<T>(frame, paths, this->Field, reach));
+      });
+  }
+
+private:
+  std::tuple<std::vector<ExactPath<float>>, std::vector<ExactPath<double>>> Paths;
+  std::vector<Span> Field;
+  std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
+};
 }
 
-#endif
+std::unique_ptr<ProjectionMode> makeExact()
+{
+  return std::make_unique<ExactMode>();
+}
+}

@@ -1,59 +1,37 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "SliceSampler.h"
+#include "WalkSpace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+namespace splatting
+{
+namespace
+{
 /**
  * MIP's relatives: projections that look at every sample of a ray, densely and, where that matters,
  * in the order of the ray.
  */
-#ifndef splattingRayWalk_h
-#define splattingRayWalk_h
-
-#include "Cuts.h"
-#include "PreviewLayers.h"
-#include "Project.h"
-#include "Worksheets.h"
-
-#include <cmath>
-
-namespace splatting
-{
-/// What is known of all pixels between slices, besides the image.
-struct RayState
-{
-  std::vector<unsigned char> ended; ///< Reduction::Local: whether the maximum is found
-  std::vector<double> sums;         ///< Reduction::Mean
-  std::vector<std::int32_t> counts; ///< likewise
-  RayIntervals crossed;             ///< Reduction::DepthShaded: the slices that count
-};
-
-/// A thread's work space.
-struct RayScratch
-{
-  Patch patch;
-  std::vector<unsigned char> mask, widened, before;
-};
-
-template <class Layers>
+template <class T, class P>
 class RayWalk
 {
 public:
-  using T = typename Layers::Voxel;
-  using P = typename Layers::Pixel; // of samples
+  using Layers = SliceSampler<T, P>;
   using A = Accumulator<T>;
 
-  RayWalk(const Frame<T>& frame, const Layers& layers, const ProjectionSettings& settings,
-    RayState& state)
+  RayWalk(const Frame& frame, const Layers& layers)
     : Shared(frame),
       Stack(layers),
-      Settings(settings),
-      State(state),
+      Settings(frame.settings),
+      State(frame.space.rays),
       Base(layers.base())
   {
-  }
-
-  /// The image's scalars are samples, or, where these are computed with, of type A.
-  static bool computes(Reduction reduction)
-  {
-    return reduction == Reduction::Mean || reduction == Reduction::DepthShaded;
   }
 
   void open(int v0, int v1) const
@@ -157,8 +135,8 @@ private:
   /// Takes samples and remembers where they have won.
   void takeAndNote(const Row& row, const P* samples, RayScratch& scratch) const
   {
-    computes(this->Settings.reduction) ? this->noteBeside<A>(row, samples, scratch)
-                                       : this->noteBeside<P>(row, samples, scratch);
+    computesWith(this->Settings.reduction) ? this->noteBeside<A>(row, samples, scratch)
+                                           : this->noteBeside<P>(row, samples, scratch);
   }
   template <class Q>
   void noteBeside(const Row& row, const P* samples, RayScratch& scratch) const
@@ -299,12 +277,58 @@ private:
       std::ptrdiff_t(v1 - v0) * image.width);
   }
 
-  const Frame<T>& Shared;
+  const Frame& Shared;
   const Layers& Stack;
   const ProjectionSettings& Settings;
   RayState& State;
   A Base;
 };
+
+/// Room for what a reduction keeps of each pixel.
+void openState(const ShearImage& image, Reduction reduction, RayState& state)
+{
+  const std::size_t pixels = std::size_t(image.width) * image.height;
+  if (reduction == Reduction::Mean)
+  {
+    state.sums.resize(pixels);
+    state.counts.resize(pixels);
+  }
+  if (reduction == Reduction::Local)
+  {
+    state.ended.resize(pixels);
+  }
+}
 }
 
-#endif
+template <class T, class P>
+void walkRays(Frame& frame, const SliceSampler<T, P>& sampler)
+{
+  const Reduction reduction = frame.settings.reduction;
+  openState(frame.image, reduction, frame.space.rays);
+  const RayWalk<T, P> walk(frame, sampler);
+  forSlices(frame, sampler.traits().beyond, walk.isReversed(),
+    [&](const Span& slices, bool isFirst, bool isLast)
+    {
+      forBands(frame.image.height, bandHeight(frame.image.height), frame.watch,
+        [&](int v0, int v1)
+        {
+          if (isFirst)
+          {
+            walk.open(v0, v1);
+          }
+          walk.walk(slices, v0, v1, frame.space.rayBands.Local());
+          if (isLast)
+          {
+            walk.close(v0, v1);
+            computesWith(reduction) ? closeRows<Accumulator<T>>(frame.image, v0, v1)
+                                    : closeRows<P>(frame.image, v0, v1);
+          }
+        });
+    });
+}
+
+#define VOXELS(T) template void walkRays(Frame&, const SliceSampler<T, T>&);
+#define WORKSHEETS(T) template void walkRays(Frame&, const SliceSampler<T, Accumulator<T>>&);
+SPLATTING_TYPES(VOXELS)
+SPLATTING_INTEGERS(WORKSHEETS) // others are of their voxels' type
+}
