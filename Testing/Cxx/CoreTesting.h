@@ -10,15 +10,22 @@
 #include "PerspectiveProjection.h"
 #include "Project.h"
 #include "Projection.h"
+#include "Random.h"
 #include "ShearWarp.h"
 #include "Volume.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
 #include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
 
 namespace coretesting
 {
@@ -50,6 +57,75 @@ public:
 private:
   int Failures = 0;
 };
+
+/**
+ * Counts the scenes of a series that show something, so that no test passes because there was
+ * nothing to see.
+ */
+class Sightings
+{
+public:
+  void add(bool isSeen)
+  {
+    ++this->Scenes;
+    this->Seen += isSeen;
+  }
+  /// Whether as many scenes show it as may be expected where it is in at least `share` of all:
+  /// fewer come once in 10^9 series by chance. A scene that is run alone says nothing of its
+  /// series.
+  bool areEnough(double share) const
+  {
+    double chance = 0.0; // of so many or fewer: the binomial distribution
+    for (int n = 0; n <= this->Seen && chance < 1e-9; ++n)
+    {
+      const double ways = std::lgamma(this->Scenes + 1.0) - std::lgamma(n + 1.0) -
+        std::lgamma(this->Scenes - n + 1.0);
+      chance += std::exp(ways + n * std::log(share) + (this->Scenes - n) * std::log1p(-share));
+    }
+    return !reference::onlyScene().empty() || chance >= 1e-9;
+  }
+  friend std::ostream& operator<<(std::ostream& stream, const Sightings& sightings)
+  {
+    return stream << sightings.Seen << " of " << sightings.Scenes << " scenes";
+  }
+
+private:
+  int Scenes = 0, Seen = 0;
+};
+
+/// The name of a series of scenes that there is for each voxel type.
+template <class T>
+std::string seriesOf(const std::string& scenes)
+{
+  return scenes + ", type " + std::to_string(static_cast<int>(splatting::scalarTypeOf<T>()));
+}
+
+/// All of them; those that the processor lacks are the best that it has.
+inline constexpr splatting::InstructionSet instructionSets[] = {
+  splatting::InstructionSet::Baseline, splatting::InstructionSet::AVX2,
+  splatting::InstructionSet::AVX512, splatting::InstructionSet::AVX512VBMI
+};
+
+inline splatting::InstructionSet anyInstructionSet(reference::Random& random)
+{
+  return instructionSets[random.uniform(0, 3)];
+}
+
+inline splatting::Acceleration anyAcceleration(reference::Random& random)
+{
+  return static_cast<splatting::Acceleration>(random.uniform(0, 5));
+}
+
+/// Any in a box.
+inline glm::dvec3 anyVector(reference::Random& random, double low, double high)
+{
+  glm::dvec3 v;
+  for (int a = 0; a < 3; ++a)
+  {
+    v[a] = random.uniform(low, high);
+  }
+  return v;
+}
 
 inline glm::ivec3 toGlm(const std::array<int, 3>& size)
 {
@@ -84,12 +160,11 @@ inline splatting::View randomView(const std::array<int, 3>& size, reference::Ran
   m = glm::scale(m, glm::dvec3(0.02, 0.02, 0.001));
   for (int turn = 0; turn < 3; ++turn)
   {
-    const glm::dvec3 axis(
-      random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(0.1, 1.0));
+    const glm::dvec3 axis{ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
+      random.uniform(0.1, 1.0) };
     m = glm::rotate(m, random.uniform(0.0, 6.3), glm::normalize(axis));
   }
-  m = glm::scale(
-    m, glm::dvec3(random.uniform(0.3, 3.0), random.uniform(0.3, 3.0), random.uniform(0.3, 3.0)));
+  m = glm::scale(m, anyVector(random, 0.3, 3.0));
   view.indexToClip = glm::translate(m, -0.5 * glm::dvec3(view.dimensions - 1));
   return view;
 }
@@ -101,8 +176,7 @@ inline splatting::View randomPerspective(const std::array<int, 3>& size, referen
   splatting::View view;
   view.dimensions = toGlm(size);
   view.viewport = { random.uniform(20, 200), random.uniform(20, 200) };
-  const glm::dvec3 spacing(
-    random.uniform(0.5, 2.0), random.uniform(0.5, 2.0), random.uniform(0.5, 2.0));
+  const glm::dvec3 spacing = anyVector(random, 0.5, 2.0);
   const double reach = std::pow(10.0, random.uniform(-1.0, 2.5));
   glm::dvec3 eye, focus;
   for (int a = 0; a < 3; ++a)
@@ -114,9 +188,12 @@ inline splatting::View randomPerspective(const std::array<int, 3>& size, referen
   {
     // Where rays meet edges, and look along an axis or a diagonal.
     eye = glm::round(2.0 * eye) / 2.0;
-    focus = eye + glm::dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    for (int a = 0; a < 3; ++a)
+    {
+      focus[a] = eye[a] + random.uniform(-1, 1);
+    }
   }
-  const glm::dvec3 up(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.9);
+  const glm::dvec3 up{ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.9 };
   const double angle = glm::radians(random.uniform(5.0, 120.0));
   const double top = 0.1 * std::tan(0.5 * angle), right = top * view.viewport.x / view.viewport.y;
   const double shift = random.uniform(0, 1) ? random.uniform(-0.5, 0.5) : 0.0;
@@ -161,7 +238,8 @@ inline splatting::ShearWarp randomPerspectiveImage(
   std::vector<splatting::ShearWarp> images;
   while (images.empty())
   {
-    splatting::ShearWarp::factorise(randomPerspective(size, random), images, anySampling(random));
+    const splatting::View view = randomPerspective(size, random);
+    splatting::ShearWarp::factorise(view, images, anySampling(random));
   }
   return images[random.uniform(0, static_cast<int>(images.size()) - 1)];
 }
@@ -177,9 +255,13 @@ inline double specialShear(reference::Random& random)
 /// Half of the views are random, half have special shears.
 inline splatting::View anyView(const std::array<int, 3>& size, reference::Random& random)
 {
-  return random.uniform(0, 1)
-    ? randomView(size, random)
-    : viewWithShear(size, random.uniform(0, 2), specialShear(random), specialShear(random));
+  if (random.uniform(0, 1))
+  {
+    return randomView(size, random);
+  }
+  const int axis = random.uniform(0, 2);
+  const double shearX = specialShear(random), shearY = specialShear(random);
+  return viewWithShear(size, axis, shearX, shearY);
 }
 
 inline std::array<int, 3> randomSize(reference::Random& random, int largest)
@@ -196,11 +278,17 @@ reference::Volume<T> wholeRangeNoise(const std::array<int, 3>& size, std::uint64
     Limits::is_integer ? Limits::max() : T(1));
 }
 
+template <class T>
+reference::Volume<T> wholeRangeNoise(const std::array<int, 3>& size, reference::Random& random)
+{
+  return wholeRangeNoise<T>(size, random.bits());
+}
+
 /// Noise; of floating point one volume in three has NaN and infinities, some of them mostly NaN.
 template <class T>
 reference::Volume<T> volumeWithOddValues(const std::array<int, 3>& size, reference::Random& random)
 {
-  reference::Volume<T> volume = wholeRangeNoise<T>(size, random.bits());
+  reference::Volume<T> volume = wholeRangeNoise<T>(size, random);
   if constexpr (std::numeric_limits<T>::has_infinity)
   {
     const int share = random.uniform(0, 2) == 0 ? random.uniform(1, 9) : 0;
