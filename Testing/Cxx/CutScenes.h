@@ -73,7 +73,7 @@ constexpr double MeshDoubt = 1e-5;
 
 inline glm::dvec3 randomVector(Random& random)
 {
-  return { random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0) };
+  return coretesting::anyVector(random, -1.0, 1.0);
 }
 
 inline glm::dvec3 randomPoint(Random& random, const glm::ivec3& size)
@@ -573,7 +573,7 @@ inline Mesh randomBlob(Random& random, const glm::ivec3& size, double bumps)
 {
   const int rings = random.uniform(3, 9), sectors = random.uniform(3, 11);
   const glm::dvec3 centre = randomPoint(random, size);
-  const glm::dmat3 stretch(randomVector(random), randomVector(random), randomVector(random));
+  const glm::dmat3 stretch{ randomVector(random), randomVector(random), randomVector(random) };
   Mesh mesh;
   const auto add = [&](double polar, double azimuth)
   {
@@ -670,6 +670,49 @@ enum Cutter
   Bumpy = 4,
   Depth = 8
 };
+
+/// What scenes are cut by, and the name of their series.
+struct Series
+{
+  int cutters;
+  const char* name;
+};
+
+inline const Series allSeries[] = { { HalfSpaces, "half-spaces" }, { Convex, "convex surfaces" },
+  { Bumpy, "bumpy surfaces" }, { Depth, "depth buffers" },
+  { HalfSpaces | Bumpy | Depth, "all cutters" } };
+
+/// Compares `count` scenes and judges that they show what they are made for.
+template <class F>
+void compareSeries(const Series& series, int count, F&& randomScene, Checks& check)
+{
+  Counts all;
+  coretesting::Sightings cut, thin, hidden, sure;
+  reference::forScenes(series.name, count,
+    [&](int, Random& random)
+    {
+      Counts counts;
+      compare(randomScene(random, series.cutters), counts, check);
+      cut.add(counts.cut > 0 && counts.kept > 0);
+      thin.add(counts.thin > 0);
+      hidden.add(counts.hidden > 0);
+      sure.add(20 * counts.doubtful <= counts.rays);
+      all.rays += counts.rays;
+      all.doubtful += counts.doubtful;
+      all.cut += counts.cut;
+      all.kept += counts.kept;
+    });
+  std::cout << series.name << ": " << all.rays << " rays, " << all.doubtful << " left out, "
+            << all.cut << " samples cut, " << all.kept << " kept; some cut and some kept in " << cut
+            << ", intervals thinner than a slice in " << thin << ", hidden pixels in " << hidden
+            << ", next to no ray left out in " << sure << std::endl;
+  check(cut.areEnough(0.3), series.name, ": some samples are cut and some kept in only ", cut);
+  check(!(series.cutters & HalfSpaces) || thin.areEnough(0.2), series.name,
+    ": intervals thinner than a slice in only ", thin);
+  check(!(series.cutters & Depth) || hidden.areEnough(0.3), series.name, ": hidden pixels in only ",
+    hidden);
+  check(sure.areEnough(0.6), series.name, ": next to no ray is left out in only ", sure);
+}
 }
 
 #endif
