@@ -20,52 +20,53 @@ Case randomCase(const std::array<int, 3>& size, reference::Random& random)
 }
 
 template <class T>
-void testType(Checks& check, std::uint64_t seed)
+void testType(Checks& check, Comparisons& comparisons)
 {
-  reference::Random random(seed);
-  Count preview[5], averages[5];
-  for (int n = 0; n < 80; ++n)
-  {
-    const auto volume = randomVolume<T>(random, 12, Quality::Preview);
-    testReductions(
-      check, volume, volume, randomCase(volume.size, random), Quality::Preview, random, preview);
-  }
-  for (int n = 0; n < 40; ++n)
-  {
-    const Quality quality = n % 2 ? Quality::Standard : Quality::High;
-    const auto volume = randomVolume<T>(random, 6, quality);
-    testReductions(check, volume, reference::toDouble(volume), randomCase(volume.size, random),
-      quality, random, averages);
-  }
-  judgeCounts<T>(check, preview, averages);
+  reference::forScenes(seriesOf<T>("previews"), 80,
+    [&](int, reference::Random& random)
+    {
+      const auto volume = randomVolume<T>(random, 12, Quality::Preview);
+      testReductions(check, volume, volume, randomCase(volume.size, random), Quality::Preview,
+        random, comparisons);
+    });
+  reference::forScenes(seriesOf<T>("averages"), 40,
+    [&](int n, reference::Random& random)
+    {
+      const Quality quality = n % 2 ? Quality::Standard : Quality::High;
+      const auto volume = randomVolume<T>(random, 6, quality);
+      testReductions(check, volume, reference::toDouble(volume), randomCase(volume.size, random),
+        quality, random, comparisons);
+    });
 }
 
 /// Volumes of several bands, blocks of registers and bricks; threads.
 template <class T>
-void testLarge(Checks& check, std::uint64_t seed)
+void testLarge(Checks& check)
 {
-  reference::Random random(seed);
-  const auto volume = wholeRangeNoise<T>({ 75, 50, 41 }, seed);
-  for (int n = 0; n < 4; ++n)
-  {
-    Case c = randomCase(volume.size, random);
-    c.cuts.halfSpaces = randomHalfSpaces(random, volume.size);
-    if (n % 2)
+  reference::forScenes(seriesOf<T>("large volumes"), 4,
+    [&](int, reference::Random& random)
     {
-      cropAtRandom(random, volume.size, c.cuts);
-    }
-    testLargeVolume(check, volume, c, random);
-  }
+      const auto volume = wholeRangeNoise<T>({ 75, 50, 41 }, random);
+      Case c = randomCase(volume.size, random);
+      c.cuts.halfSpaces = randomHalfSpaces(random, volume.size);
+      if (random.uniform(0, 1))
+      {
+        cropAtRandom(random, volume.size, c.cuts);
+      }
+      testLargeVolume(check, volume, c, random);
+    });
 }
 }
 
 int TestPerspectiveReductions(int, char*[])
 {
   Checks check;
-  std::uint64_t seed = 1900;
-  forEachType([&](auto* null) { testType<std::remove_pointer_t<decltype(null)>>(check, ++seed); });
-  testLarge<std::uint8_t>(check, 1);
-  testLarge<std::int32_t>(check, 2);
-  testLarge<float>(check, 3);
+  Comparisons comparisons;
+  forEachType(
+    [&](auto* null) { testType<std::remove_pointer_t<decltype(null)>>(check, comparisons); });
+  comparisons.judge(check);
+  testLarge<std::uint8_t>(check);
+  testLarge<std::int32_t>(check);
+  testLarge<float>(check);
   return check.result();
 }

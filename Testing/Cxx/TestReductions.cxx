@@ -47,113 +47,118 @@ Case caseOf(const splatting::View& view, int sampling = 1)
 /// Of a view from any side.
 Case randomCase(Checks& check, const std::array<int, 3>& size, reference::Random& random)
 {
-  const Case c = caseOf(viewFromAnySide(size, random), anySampling(random));
+  const splatting::View view = viewFromAnySide(size, random);
+  const Case c = caseOf(view, anySampling(random));
   check(c.geometry.reversed() == c.reversed, "the viewer is on another side");
   return c;
 }
 
 template <class T>
-void testType(Checks& check, std::uint64_t seed)
+void testType(Checks& check, Comparisons& comparisons)
 {
-  reference::Random random(seed);
-  Count preview[5], averages[5];
-  for (int n = 0; n < 80; ++n)
-  {
-    const auto volume = randomVolume<T>(random, 12, Quality::Preview);
-    testReductions(check, volume, volume, randomCase(check, volume.size, random), Quality::Preview,
-      random, preview);
-  }
-  for (int n = 0; n < 24; ++n)
-  {
-    const Quality quality = n % 2 ? Quality::Standard : Quality::High;
-    const auto volume = randomVolume<T>(random, 6, quality);
-    testReductions(check, volume, reference::toDouble(volume),
-      randomCase(check, volume.size, random), quality, random, averages);
-  }
-  judgeCounts<T>(check, preview, averages);
+  reference::forScenes(seriesOf<T>("previews"), 80,
+    [&](int, reference::Random& random)
+    {
+      const auto volume = randomVolume<T>(random, 12, Quality::Preview);
+      testReductions(check, volume, volume, randomCase(check, volume.size, random),
+        Quality::Preview, random, comparisons);
+    });
+  reference::forScenes(seriesOf<T>("averages"), 24,
+    [&](int n, reference::Random& random)
+    {
+      const Quality quality = n % 2 ? Quality::Standard : Quality::High;
+      const auto volume = randomVolume<T>(random, 6, quality);
+      testReductions(check, volume, reference::toDouble(volume),
+        randomCase(check, volume.size, random), quality, random, comparisons);
+    });
 }
 
 /// Volumes of several bands, blocks of registers and bricks; threads.
 template <class T>
-void testLarge(Checks& check, std::uint64_t seed)
+void testLarge(Checks& check)
 {
-  reference::Random random(seed);
-  const auto volume = wholeRangeNoise<T>({ 75, 50, 41 }, seed);
-  for (int n = 0; n < 4; ++n)
-  {
-    const int axis = n % 3; // from both sides along the first one, where slices may be transposed
-    splatting::View view =
-      viewWithShear(volume.size, axis, random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
-    view.indexToClip[axis][2] *= n % 2 ? 1.0 : -1.0;
-    Case c = caseOf(view);
-    c.cuts.halfSpaces = randomHalfSpaces(random, volume.size);
-    if (axis)
+  reference::forScenes(seriesOf<T>("large volumes"), 4,
+    [&](int, reference::Random& random)
     {
-      cropAtRandom(random, volume.size, c.cuts);
-    }
-    testLargeVolume(check, volume, c, random);
-  }
+      const auto volume = wholeRangeNoise<T>({ 75, 50, 41 }, random);
+      // From both sides along the first axis, too, where slices may be transposed.
+      const int axis = random.uniform(0, 2);
+      const double shearX = random.uniform(-1.0, 1.0), shearY = random.uniform(-1.0, 1.0);
+      splatting::View view = viewWithShear(volume.size, axis, shearX, shearY);
+      view.indexToClip[axis][2] *= random.uniform(0, 1) ? 1.0 : -1.0;
+      Case c = caseOf(view);
+      c.cuts.halfSpaces = randomHalfSpaces(random, volume.size);
+      if (random.uniform(0, 1))
+      {
+        cropAtRandom(random, volume.size, c.cuts);
+      }
+      testLargeVolume(check, volume, c, random);
+    });
 }
 
 /// What holds between pictures.
 void testRelations(Checks& check)
 {
-  reference::Random random(8);
-  int differ[5] = {};
-  for (int n = 0; n < 30; ++n)
-  {
-    const auto volume = wholeRangeNoise<std::int16_t>(randomSize(random, 9), random.bits());
-    splatting::View view = viewFromAnySide(volume.size, random);
-    Case c = caseOf(view);
-    c.settings.quality = static_cast<Quality>(n % 3);
-    for (int column = 0; column < 4; ++column)
+  Sightings differ[5];
+  reference::forScenes("relations", 30,
+    [&](int n, reference::Random& random)
     {
-      view.indexToClip[column][2] *= -1.0;
-    }
-    Case far = caseOf(view);
-    for (Reduction reduction : reductions)
-    {
-      c.settings.reduction = far.settings.reduction = reduction;
-      far.settings.quality = c.settings.quality;
-      differ[int(reduction)] += !sameImages(projected(volume, c), projected(volume, far));
-    }
-    c.settings.reduction = Reduction::Maximum;
-    const splatting::ShearImage maximum = projected(volume, c);
-    c.settings.reduction = Reduction::Local;
-    c.settings.threshold = 1e9;
-    check(sameImages(projected(volume, c), maximum), "no local maximum, and not the maximum");
-    auto negative = volume;
-    for (auto& voxel : negative.voxels)
-    {
-      voxel = static_cast<std::int16_t>(~voxel); // -1 - voxel
-    }
-    c.settings.quality = Quality::Preview;
-    c.settings.reduction = Reduction::Maximum;
-    auto negated = toReference<std::int16_t>(projected(negative, c));
-    for (std::size_t p = 0; p < negated.value.size(); ++p)
-    {
-      negated.value[p] = static_cast<std::int16_t>(negated.hit[p] ? ~negated.value[p] : 0);
-    }
-    c.settings.reduction = Reduction::Minimum;
-    check(sameBits(toReference<std::int16_t>(projected(volume, c)), negated),
-      "the minimum is not the negative's maximum");
-  }
-  check(!differ[int(Reduction::Maximum)] && !differ[int(Reduction::Minimum)] &&
-      differ[int(Reduction::Mean)] == 0,
-    "the far side has another maximum, minimum or mean");
-  check(differ[int(Reduction::DepthShaded)] > 20 && differ[int(Reduction::Local)] > 10,
-    "depth shades and local maxima are the same from the far side");
+      const auto volume = wholeRangeNoise<std::int16_t>(randomSize(random, 9), random);
+      splatting::View view = viewFromAnySide(volume.size, random);
+      Case c = caseOf(view);
+      c.settings.quality = static_cast<Quality>(n % 3);
+      for (int column = 0; column < 4; ++column)
+      {
+        view.indexToClip[column][2] *= -1.0;
+      }
+      Case far = caseOf(view);
+      for (Reduction reduction : reductions)
+      {
+        c.settings.reduction = far.settings.reduction = reduction;
+        far.settings.quality = c.settings.quality;
+        const bool isSame = sameImages(projected(volume, c), projected(volume, far));
+        differ[int(reduction)].add(!isSame);
+        check(isSame || reduction == Reduction::DepthShaded || reduction == Reduction::Local,
+          "the far side has another maximum, minimum or mean");
+      }
+      c.settings.reduction = Reduction::Maximum;
+      const splatting::ShearImage maximum = projected(volume, c);
+      c.settings.reduction = Reduction::Local;
+      c.settings.threshold = 1e9;
+      check(sameImages(projected(volume, c), maximum), "no local maximum, and not the maximum");
+      auto negative = volume;
+      for (auto& voxel : negative.voxels)
+      {
+        voxel = static_cast<std::int16_t>(~voxel); // -1 - voxel
+      }
+      c.settings.quality = Quality::Preview;
+      c.settings.reduction = Reduction::Maximum;
+      auto negated = toReference<std::int16_t>(projected(negative, c));
+      for (std::size_t p = 0; p < negated.value.size(); ++p)
+      {
+        negated.value[p] = static_cast<std::int16_t>(negated.hit[p] ? ~negated.value[p] : 0);
+      }
+      c.settings.reduction = Reduction::Minimum;
+      check(sameBits(toReference<std::int16_t>(projected(volume, c)), negated),
+        "the minimum is not the negative's maximum");
+    });
+  const Sightings& shades = differ[int(Reduction::DepthShaded)];
+  const Sightings& hills = differ[int(Reduction::Local)];
+  check(shades.areEnough(0.4) && hills.areEnough(0.2),
+    "the far side has other depth shades in only ", shades, ", other local maxima in ", hills);
 }
 }
 
 int TestReductions(int, char*[])
 {
   Checks check;
-  std::uint64_t seed = 900;
-  forEachType([&](auto* null) { testType<std::remove_pointer_t<decltype(null)>>(check, ++seed); });
-  testLarge<std::uint8_t>(check, 1);
-  testLarge<std::int32_t>(check, 2);
-  testLarge<float>(check, 3);
+  Comparisons comparisons;
+  forEachType(
+    [&](auto* null) { testType<std::remove_pointer_t<decltype(null)>>(check, comparisons); });
+  comparisons.judge(check);
+  testLarge<std::uint8_t>(check);
+  testLarge<std::int32_t>(check);
+  testLarge<float>(check);
   testRelations(check);
   return check.result();
 }
