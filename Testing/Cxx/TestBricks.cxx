@@ -118,27 +118,28 @@ void testRange(Checks& check, const reference::Volume<T>& volume, bool hasRoom)
 }
 
 template <class T>
-void test(Checks& check, reference::Random& random)
+void testType(Checks& check)
 {
-  // One row, less than a register and several of them; and any shape.
-  for (const std::array<int, 3>& size :
-    { std::array<int, 3>{ 1, 1, 1 }, { 7, 1, 2 }, { 3, 9, 5 }, { 64, 8, 4 }, { 149, 5, 6 } })
-  {
-    testMaxima(check, wholeRangeNoise<T>(size, random.bits()));
-  }
-  for (int n = 0; n < 20; ++n)
-  {
-    const std::array<int, 3> size = randomSize(random, 40);
-    testMaxima(check, wholeRangeNoise<T>(size, random.bits()));
-    testRange(check, volumeWithOddValues<T>(size, random), random.uniform(0, 3) > 0);
-  }
+  // Several registers, less than one, and one row.
+  const std::array<int, 3> sizes[] = { { 149, 5, 6 }, { 3, 9, 5 }, { 64, 8, 4 }, { 7, 1, 2 },
+    { 1, 1, 1 } };
+  reference::forScenes(seriesOf<T>("shapes"), 5,
+    [&](int n, reference::Random& random)
+    { testMaxima(check, wholeRangeNoise<T>(sizes[n], random)); });
+  reference::forScenes(seriesOf<T>("any shape"), 20,
+    [&](int, reference::Random& random)
+    {
+      const std::array<int, 3> size = randomSize(random, 40);
+      testMaxima(check, wholeRangeNoise<T>(size, random));
+      const bool hasRoom = random.uniform(0, 3) > 0;
+      testRange(check, volumeWithOddValues<T>(size, random), hasRoom);
+    });
 }
 }
 
 int TestBricks(int, char*[])
 {
   Checks check;
-  reference::Random random(4711);
-  forEachType([&](auto* null) { test<std::remove_pointer_t<decltype(null)>>(check, random); });
+  forEachType([&](auto* null) { testType<std::remove_pointer_t<decltype(null)>>(check); });
   return check.result();
 }
