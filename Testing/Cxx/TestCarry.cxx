@@ -99,70 +99,70 @@ const std::int32_t* winnerOf(const reference::Volume<std::int32_t>& volume,
 
 void testPreview(Checks& check)
 {
-  reference::Random random(31);
-  for (int n = 0; n < 300; ++n)
-  {
-    const std::array<int, 3> size = randomSize(random, 12);
-    // Few values: ties are common.
-    const auto volume = reference::uniformNoise<std::int32_t>(size, random.bits(), -3, 3);
-    const splatting::ShearWarp geometry(anyView(size, random));
-    splatting::Cropping cropping = anyCropping(size, random);
-    for (auto& planes : cropping.planes)
+  reference::forScenes("previews", 300,
+    [&](int, reference::Random& random)
     {
-      planes[1] = std::max(planes[1], planes[0] + 1.0); // not thinner than a slice
-    }
-    splatting::ProjectionSettings settings;
-    settings.quality = Quality::Preview;
-    settings.reduction = random.uniform(0, 1) ? Reduction::Maximum : Reduction::Minimum;
-    const Projected found = projectAndCarry(volume, places(size), geometry, settings, cropping);
-    bool same = true;
-    for (int v = 0; v < found.image.height && same; ++v)
-    {
-      for (int u = 0; u < found.image.width && same; ++u)
+      const std::array<int, 3> size = randomSize(random, 12);
+      // Few values: ties are common.
+      const auto volume = reference::uniformNoise<std::int32_t>(size, random.bits(), -3, 3);
+      const splatting::ShearWarp geometry(anyView(size, random));
+      splatting::Cropping cropping = anyCropping(size, random);
+      for (auto& planes : cropping.planes)
       {
-        const std::int32_t* const winner =
-          winnerOf(volume, geometry, cropping, settings.reduction, u, v);
-        same = found.image.covers(u, v) == (winner != nullptr) &&
-          (!winner || found.carried.row<std::int32_t>(v)[u] == winner - volume.voxels.data());
+        planes[1] = std::max(planes[1], planes[0] + 1.0); // not thinner than a slice
       }
-    }
-    check(same, "preview, view ", n, ": another voxel is carried");
-  }
+      splatting::ProjectionSettings settings;
+      settings.quality = Quality::Preview;
+      settings.reduction = random.uniform(0, 1) ? Reduction::Maximum : Reduction::Minimum;
+      const Projected found = projectAndCarry(volume, places(size), geometry, settings, cropping);
+      bool same = true;
+      for (int v = 0; v < found.image.height && same; ++v)
+      {
+        for (int u = 0; u < found.image.width && same; ++u)
+        {
+          const std::int32_t* const winner =
+            winnerOf(volume, geometry, cropping, settings.reduction, u, v);
+          same = found.image.covers(u, v) == (winner != nullptr) &&
+            (!winner || found.carried.row<std::int32_t>(v)[u] == winner - volume.voxels.data());
+        }
+      }
+      check(same, "another voxel is carried");
+    });
 }
 
 /// Carried by itself, a volume gives its own projection.
 template <class T>
-void testItself(Checks& check, std::uint64_t seed)
+void testItself(Checks& check)
 {
   using A = splatting::Accumulator<T>;
-  reference::Random random(seed);
-  for (int n = 0; n < 40; ++n)
-  {
-    const auto volume = wholeRangeNoise<T>(randomSize(random, 10), random.bits());
-    const splatting::ShearWarp geometry(anyView(volume.size, random));
-    splatting::ProjectionSettings settings;
-    settings.quality = random.uniform(0, 1) ? Quality::Standard : Quality::High;
-    settings.reduction = static_cast<Reduction>(random.uniform(0, 1));
-    const Projected found =
-      projectAndCarry(volume, volume, geometry, settings, anyCropping(volume.size, random));
-    const auto range = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
-    const double bound = errorBound<T>(
-      settings.quality, static_cast<double>(*range.first), static_cast<double>(*range.second));
-    double worst = 0.0;
-    for (int v = 0; v < found.image.height; ++v)
+  reference::forScenes(seriesOf<T>("itself"), 40,
+    [&](int, reference::Random& random)
     {
-      for (int u = 0; u < found.image.width; ++u)
+      const auto volume = wholeRangeNoise<T>(randomSize(random, 10), random);
+      const splatting::ShearWarp geometry(anyView(volume.size, random));
+      splatting::ProjectionSettings settings;
+      settings.quality = random.uniform(0, 1) ? Quality::Standard : Quality::High;
+      settings.reduction = static_cast<Reduction>(random.uniform(0, 1));
+      const Projected found =
+        projectAndCarry(volume, volume, geometry, settings, anyCropping(volume.size, random));
+      const auto range = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
+      const double bound = errorBound<T>(
+        settings.quality, static_cast<double>(*range.first), static_cast<double>(*range.second));
+      double worst = 0.0;
+      for (int v = 0; v < found.image.height; ++v)
       {
-        if (found.image.covers(u, v))
+        for (int u = 0; u < found.image.width; ++u)
         {
-          worst = std::max(
-            worst, std::abs(double(found.carried.row<A>(v)[u]) - double(found.image.row<A>(v)[u])));
+          if (found.image.covers(u, v))
+          {
+            worst = std::max(worst,
+              std::abs(double(found.carried.row<A>(v)[u]) - double(found.image.row<A>(v)[u])));
+          }
         }
       }
-    }
-    check(worst <= 2.0 * bound, "type ", int(splatting::scalarTypeOf<T>()), ", view ", n,
-      ": what is carried is ", worst, " from the projection, more than ", 2.0 * bound);
-  }
+      check(worst <= 2.0 * bound, "type ", int(splatting::scalarTypeOf<T>()),
+        ": what is carried is ", worst, " from the projection, more than ", 2.0 * bound);
+    });
 }
 }
 
@@ -170,8 +170,6 @@ int TestCarry(int, char*[])
 {
   Checks check;
   testPreview(check);
-  std::uint64_t seed = 50;
-  forEachType(
-    [&](auto* null) { testItself<std::remove_pointer_t<decltype(null)>>(check, ++seed); });
+  forEachType([&](auto* null) { testItself<std::remove_pointer_t<decltype(null)>>(check); });
   return check.result();
 }
