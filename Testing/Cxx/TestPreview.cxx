@@ -10,75 +10,75 @@ using namespace coretesting;
 namespace
 {
 template <class T>
-void testViews(Checks& check, int views, std::uint64_t seed)
+void testViews(Checks& check)
 {
-  reference::Random random(seed);
-  for (int n = 0; n < views; ++n)
-  {
-    const reference::Volume<T> volume = volumeWithOddValues<T>(randomSize(random, 12), random);
-    const splatting::ShearWarp geometry(anyView(volume.size, random), anySampling(random));
-    splatting::ProjectionSettings settings;
-    settings.quality = splatting::Quality::Preview;
-    settings.instructionSet = static_cast<splatting::InstructionSet>(random.uniform(0, 2));
-    const auto expected = reference::exactTraversal(volume, referenceView(geometry));
-    const auto found = toReference<T>(project(volume, geometry, settings));
-    check(sameBits(expected, found), "type ", int(splatting::scalarTypeOf<T>()), ", view ", n,
-      ": the preview is not the traversal; axis ", geometry.principalAxis(), ", shear ",
-      geometry.shear().x, " ", geometry.shear().y, ", size ", volume.size[0], " ", volume.size[1],
-      " ", volume.size[2]);
-  }
+  reference::forScenes(seriesOf<T>("previews"), 250,
+    [&](int, reference::Random& random)
+    {
+      const reference::Volume<T> volume = volumeWithOddValues<T>(randomSize(random, 12), random);
+      const splatting::View view = anyView(volume.size, random);
+      const splatting::ShearWarp geometry(view, anySampling(random));
+      splatting::ProjectionSettings settings;
+      settings.quality = splatting::Quality::Preview;
+      settings.instructionSet = anyInstructionSet(random);
+      const auto expected = reference::exactTraversal(volume, referenceView(geometry));
+      const auto found = toReference<T>(project(volume, geometry, settings));
+      check(sameBits(expected, found), "type ", int(splatting::scalarTypeOf<T>()),
+        ": the preview is not the traversal; axis ", geometry.principalAxis(), ", shear ",
+        geometry.shear().x, " ", geometry.shear().y, ", size ", volume.size[0], " ", volume.size[1],
+        " ", volume.size[2]);
+    });
 }
 
 /// Rows of a kilobyte or more, which along the second axis are read slice by slice.
 template <class T>
-void testLongRows(Checks& check, std::uint64_t seed)
+void testLongRows(Checks& check)
 {
-  reference::Random random(seed);
-  for (int n = 0; n < 6; ++n)
-  {
-    const std::array<int, 3> size = { 1024 / static_cast<int>(sizeof(T)) + random.uniform(0, 40),
-      random.uniform(6, 40), random.uniform(6, 40) };
-    const auto volume = wholeRangeNoise<T>(size, random.bits());
-    const splatting::ShearWarp geometry(
-      viewWithShear(size, 1, random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)));
-    const auto expected = reference::exactTraversal(volume, referenceView(geometry));
-    splatting::ProjectionSettings settings;
-    settings.quality = splatting::Quality::Preview;
-    settings.acceleration = splatting::Acceleration::Dense;
-    for (int set = 0; set < 4; ++set)
+  reference::forScenes(seriesOf<T>("long rows"), 6,
+    [&](int, reference::Random& random)
     {
-      settings.instructionSet = static_cast<splatting::InstructionSet>(set);
-      check(sameBits(expected, toReference<T>(project(volume, geometry, settings))),
-        "long rows, type ", int(splatting::scalarTypeOf<T>()), ", view ", n, ", instruction set ",
-        set, ": the preview is not the traversal; shear ", geometry.shear().x, " ",
-        geometry.shear().y, ", size ", size[0], " ", size[1], " ", size[2]);
-    }
-  }
+      const std::array<int, 3> size = { 1024 / static_cast<int>(sizeof(T)) + random.uniform(0, 40),
+        random.uniform(6, 40), random.uniform(6, 40) };
+      const auto volume = wholeRangeNoise<T>(size, random);
+      const double shearX = random.uniform(-1.0, 1.0), shearY = random.uniform(-1.0, 1.0);
+      const splatting::ShearWarp geometry(viewWithShear(size, 1, shearX, shearY));
+      const auto expected = reference::exactTraversal(volume, referenceView(geometry));
+      splatting::ProjectionSettings settings;
+      settings.quality = splatting::Quality::Preview;
+      settings.acceleration = splatting::Acceleration::Dense;
+      for (splatting::InstructionSet set : instructionSets)
+      {
+        settings.instructionSet = set;
+        check(sameBits(expected, toReference<T>(project(volume, geometry, settings))),
+          "long rows, type ", int(splatting::scalarTypeOf<T>()), ", ", splatting::nameOf(set),
+          ": the preview is not the traversal; shear ", geometry.shear().x, " ", geometry.shear().y,
+          ", size ", size[0], " ", size[1], " ", size[2]);
+      }
+    });
 }
 }
 
 int TestPreview(int, char*[])
 {
   Checks check;
-  std::uint64_t seed = 100;
   forEachType(
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
-      testViews<T>(check, 250, ++seed);
-      testLongRows<T>(check, seed);
+      testViews<T>(check);
+      testLongRows<T>(check);
     });
   // A volume of several bands and blocks of registers.
-  reference::Random random(5);
-  for (int n = 0; n < 12; ++n)
-  {
-    const auto volume = wholeRangeNoise<std::uint8_t>({ 150, 70, 90 }, random.bits());
-    const splatting::ShearWarp geometry(anyView(volume.size, random));
-    splatting::ProjectionSettings settings;
-    settings.quality = splatting::Quality::Preview;
-    check(sameBits(reference::exactTraversal(volume, referenceView(geometry)),
-            toReference<std::uint8_t>(project(volume, geometry, settings))),
-      "large volume, view ", n, ": the preview is not the traversal");
-  }
+  reference::forScenes("large volumes", 12,
+    [&](int, reference::Random& random)
+    {
+      const auto volume = wholeRangeNoise<std::uint8_t>({ 150, 70, 90 }, random);
+      const splatting::ShearWarp geometry(anyView(volume.size, random));
+      splatting::ProjectionSettings settings;
+      settings.quality = splatting::Quality::Preview;
+      check(sameBits(reference::exactTraversal(volume, referenceView(geometry)),
+              toReference<std::uint8_t>(project(volume, geometry, settings))),
+        "large volume: the preview is not the traversal");
+    });
   return check.result();
 }
