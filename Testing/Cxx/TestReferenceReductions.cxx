@@ -109,111 +109,112 @@ reference::RayCuts randomCuts(reference::Random& random, const std::array<int, 3
 /// same samples in the other order.
 void testCuts(Checks& check)
 {
-  reference::Random random(3);
-  for (int n = 0; n < 60; ++n)
-  {
-    const auto volume = wholeRangeNoise<std::int16_t>(randomSize(random, 8), random.bits());
-    const reference::ShearView view =
-      referenceView(splatting::ShearWarp(anyView(volume.size, random)));
-    const auto grid = reference::makeShearGrid(volume.size, view);
-    const auto rays = reference::voxelSamples(volume, view);
-    reference::RayCuts cuts = randomCuts(random, volume.size);
-    const reference::RayCutter all(grid, view, cuts);
-    const reference::RayCutter none(grid, view, {});
-    for (int u = 0; u < grid.width; ++u)
+  reference::forScenes("cuts", 60,
+    [&](int, reference::Random& random)
     {
-      const int v = random.uniform(0, grid.height - 1);
-      const auto& samples = rays[std::size_t(v) * grid.width + u];
-      const auto whole = reference::cutRay(samples, all, u, v, false);
-      const auto far = reference::cutRay(samples, all, u, v, true);
-      check(reference::cutRay(samples, none, u, v, false).samples.size() == samples.size(),
-        "something cuts without cuts");
-      check(whole.slices == far.slices && whole.samples.size() == far.samples.size() &&
-          reference::largest(whole)[0].value == reference::largest(far)[0].value,
-        "the two sides see other samples");
-      const bool reversed =
-        std::equal(whole.samples.begin(), whole.samples.end(), far.samples.rbegin(),
-          [&](const auto& a, const auto& b)
-          { return a.value == b.value && a.number == whole.slices - 1 - b.number; });
-      check(reversed, "the far side's order is not the reverse");
-      std::size_t parts = 0;
-      for (int region = 0; region < 27; ++region)
+      const auto volume = wholeRangeNoise<std::int16_t>(randomSize(random, 8), random);
+      const reference::ShearView view =
+        referenceView(splatting::ShearWarp(anyView(volume.size, random)));
+      const auto grid = reference::makeShearGrid(volume.size, view);
+      const auto rays = reference::voxelSamples(volume, view);
+      reference::RayCuts cuts = randomCuts(random, volume.size);
+      const reference::RayCutter all(grid, view, cuts);
+      const reference::RayCutter none(grid, view, {});
+      for (int u = 0; u < grid.width; ++u)
       {
-        cuts.regions = 1u << region;
-        const reference::RayCutter one(grid, view, cuts);
-        parts += reference::cutRay(samples, one, u, v, false).samples.size();
+        const int v = random.uniform(0, grid.height - 1);
+        const auto& samples = rays[std::size_t(v) * grid.width + u];
+        const auto whole = reference::cutRay(samples, all, u, v, false);
+        const auto far = reference::cutRay(samples, all, u, v, true);
+        check(reference::cutRay(samples, none, u, v, false).samples.size() == samples.size(),
+          "something cuts without cuts");
+        check(whole.slices == far.slices && whole.samples.size() == far.samples.size() &&
+            reference::largest(whole)[0].value == reference::largest(far)[0].value,
+          "the two sides see other samples");
+        const bool reversed =
+          std::equal(whole.samples.begin(), whole.samples.end(), far.samples.rbegin(),
+            [&](const auto& a, const auto& b)
+            { return a.value == b.value && a.number == whole.slices - 1 - b.number; });
+        check(reversed, "the far side's order is not the reverse");
+        std::size_t parts = 0;
+        for (int region = 0; region < 27; ++region)
+        {
+          cuts.regions = 1u << region;
+          const reference::RayCutter one(grid, view, cuts);
+          parts += reference::cutRay(samples, one, u, v, false).samples.size();
+        }
+        cuts.regions = (1u << 27) - 1;
+        check(parts == whole.samples.size(), "regions overlap or have gaps");
+        check(reference::depthShaded(reference::toDouble(whole), 7.0, 1.0, 0.0)[0].value ==
+            double(reference::largest(whole)[0].value),
+          "shades where there are none");
       }
-      cuts.regions = (1u << 27) - 1;
-      check(parts == whole.samples.size(), "regions overlap or have gaps");
-      check(reference::depthShaded(reference::toDouble(whole), 7.0, 1.0, 0.0)[0].value ==
-          double(reference::largest(whole)[0].value),
-        "shades where there are none");
-    }
-  }
+    });
 }
 
 /// Two planes closer than slices leave one slice, wherever they are; so does a thin middle region.
 void testThinCuts(Checks& check)
 {
-  reference::Random random(4);
   const std::array<int, 3> size{ 6, 7, 9 };
-  const auto volume = wholeRangeNoise<std::uint8_t>(size, 1);
-  for (int n = 0; n < 100; ++n)
-  {
-    const reference::ShearView view{ 2, { 0.25, -0.5 } };
-    const auto grid = reference::makeShearGrid(size, view);
-    const int u = grid.width / 2, v = grid.height / 2;
-    const double depth = random.uniform(2.0, 6.0);
-    const int nearest = int(std::floor(depth + 0.505));
-    reference::RayCuts planes;
-    planes.halfSpaces = { { 0, 0, 1, -depth }, { 0, 0, -1, depth + 0.01 } };
-    reference::RayCuts regions;
-    regions.planes = { { { -1, 9 }, { -1, 9 }, { depth, depth + 0.01 } } };
-    regions.regions = 1u << 13;
-    const reference::RayCutter planesCut(grid, view, planes), regionsCut(grid, view, regions);
-    for (int k = 0; k < size[2]; ++k)
+  reference::forScenes("thin cuts", 100,
+    [&](int, reference::Random& random)
     {
-      check(planesCut.inHalfSpaces(u, v, k) == (k == nearest), "planes ", depth, ", slice ", k);
-      check(regionsCut.inRegions(u, v, k) == (k == nearest), "region ", depth, ", slice ", k);
-    }
-  }
+      const reference::ShearView view{ 2, { 0.25, -0.5 } };
+      const auto grid = reference::makeShearGrid(size, view);
+      const int u = grid.width / 2, v = grid.height / 2;
+      const double depth = random.uniform(2.0, 6.0);
+      const int nearest = int(std::floor(depth + 0.505));
+      reference::RayCuts planes;
+      planes.halfSpaces = { { 0, 0, 1, -depth }, { 0, 0, -1, depth + 0.01 } };
+      reference::RayCuts regions;
+      regions.planes = { { { -1, 9 }, { -1, 9 }, { depth, depth + 0.01 } } };
+      regions.regions = 1u << 13;
+      const reference::RayCutter planesCut(grid, view, planes), regionsCut(grid, view, regions);
+      for (int k = 0; k < size[2]; ++k)
+      {
+        check(planesCut.inHalfSpaces(u, v, k) == (k == nearest), "planes ", depth, ", slice ", k);
+        check(regionsCut.inRegions(u, v, k) == (k == nearest), "region ", depth, ", slice ", k);
+      }
+    });
 }
 
 /// The mirrored volume seen from the other side is the same ray for ray.
 void testMirror(Checks& check)
 {
-  reference::Random random(5);
-  for (int n = 0; n < 20; ++n)
-  {
-    const auto volume = wholeRangeNoise<std::uint8_t>(randomSize(random, 8), random.bits());
-    const reference::ShearView view =
-      referenceView(splatting::ShearWarp(anyView(volume.size, random)));
-    reference::AxisSymmetry mirror;
-    mirror.sign[view.axis] = -1;
-    const auto mirrored = reference::transformed(volume, mirror);
-    const auto mirroredView = reference::transformed(view, mirror);
-    const auto grid = reference::makeShearGrid(volume.size, view);
-    const auto rays = reference::voxelSamples(volume, view);
-    const auto mirroredRays = reference::voxelSamples(mirrored, mirroredView);
-    const reference::RayCutter cutter(grid, view, {});
-    int differ = 0;
-    for (int v = 0; v < grid.height; ++v)
+  Sightings differing;
+  reference::forScenes("mirrors", 20,
+    [&](int, reference::Random& random)
     {
-      for (int u = 0; u < grid.width; ++u)
+      const auto volume = wholeRangeNoise<std::uint8_t>(randomSize(random, 8), random);
+      const reference::ShearView view =
+        referenceView(splatting::ShearWarp(anyView(volume.size, random)));
+      reference::AxisSymmetry mirror;
+      mirror.sign[view.axis] = -1;
+      const auto mirrored = reference::transformed(volume, mirror);
+      const auto mirroredView = reference::transformed(view, mirror);
+      const auto grid = reference::makeShearGrid(volume.size, view);
+      const auto rays = reference::voxelSamples(volume, view);
+      const auto mirroredRays = reference::voxelSamples(mirrored, mirroredView);
+      const reference::RayCutter cutter(grid, view, {});
+      int differ = 0;
+      for (int v = 0; v < grid.height; ++v)
       {
-        const std::size_t pixel = std::size_t(v) * grid.width + u;
-        const auto local = [&](const auto& all, bool reversed)
+        for (int u = 0; u < grid.width; ++u)
         {
-          return reference::firstLocalMaximum(
-            reference::cutRay(all[pixel], cutter, u, v, reversed), 128.0, 0.0)[0];
-        };
-        const auto own = local(rays, false), other = local(mirroredRays, true);
-        check(own.hit == other.hit && own.value == other.value, "a mirror changes local maxima");
-        differ += own.value != local(rays, true).value;
+          const std::size_t pixel = std::size_t(v) * grid.width + u;
+          const auto local = [&](const auto& all, bool reversed)
+          {
+            return reference::firstLocalMaximum(
+              reference::cutRay(all[pixel], cutter, u, v, reversed), 128.0, 0.0)[0];
+          };
+          const auto own = local(rays, false), other = local(mirroredRays, true);
+          check(own.hit == other.hit && own.value == other.value, "a mirror changes local maxima");
+          differ += own.value != local(rays, true).value;
+        }
       }
-    }
-    check(differ > 0 || grid.size[2] < 3, "both sides see the same first local maxima");
-  }
+      differing.add(differ > 0);
+    });
+  check(differing.areEnough(0.3), "both sides see other first local maxima in only ", differing);
 }
 }
 
