@@ -115,61 +115,61 @@ bool meetsBox(
 
 void testLinearImages(Checks& check)
 {
-  reference::Random random(41);
-  for (int n = 0; n < 60; ++n)
-  {
-    // Three volumes in four are one voxel thick along an axis.
-    auto size = randomSize(random, 40);
-    if (n % 4 < 3)
+  reference::forScenes("linear images", 60,
+    [&](int n, reference::Random& random)
     {
-      size[n % 4] = 1;
-    }
-    const splatting::View view = anyView(size, random);
-    const splatting::ShearWarp geometry(view);
-    const double a = random.uniform(-1.0, 1.0), b = random.uniform(-1.0, 1.0);
-    const auto f = [=](double u, double v) { return a * u + b * v; };
-    const std::vector<splatting::ShearImage> images{ imageOf(geometry, f) };
-    const splatting::ShearImage& image = images.front();
-    const splatting::ColorTable table = countingTable(-400.0, 400.0);
-    splatting::Picture picture;
-    splatting::Warper warper;
-    warper.warp(images, { geometry }, table, view.viewport,
-      static_cast<splatting::InstructionSet>(random.uniform(0, 2)), picture);
-    for (int y = 0; y < view.viewport.y; ++y)
-    {
-      for (int x = 0; x < view.viewport.x; ++x)
+      // Three volumes in four are one voxel thick along an axis.
+      auto size = randomSize(random, 40);
+      if (n % 4 < 3)
       {
-        const std::uint32_t color = colorAt(picture, x, y);
-        // Rays within a thousandth of a voxel of the rim may go either way.
-        if (!meetsBox(view, geometry, x, y, 1e-3))
-        {
-          check(color == 0, "a pixel outside the volume has a colour");
-          continue;
-        }
-        if (!meetsBox(view, geometry, x, y, -1e-3))
-        {
-          continue;
-        }
-        if (!check(color != 0, "a pixel inside the volume is transparent, view ", n))
-        {
-          continue;
-        }
-        const glm::dvec2 p(geometry.screenToShear() * glm::dvec3(x, y, 1.0));
-        // At the rim the last samples stand for missing neighbours, up to a pixel away in u and v.
-        bool rim = false;
-        for (int corner = 0; corner < 4; ++corner)
-        {
-          rim = rim ||
-            !image.covers(int(std::floor(p.x)) + corner % 2, int(std::floor(p.y)) + corner / 2);
-        }
-        const double bound =
-          (rim ? std::abs(a) + std::abs(b) : 0.0) + 800.0 / 65535 + 800.0 * 0x1p-22;
-        const double found = (double(color) - 1.0) * 800.0 / 65535 - 400.0;
-        check(
-          std::abs(found - f(p.x, p.y)) <= bound, "a linear image is off by ", found - f(p.x, p.y));
+        size[n % 4] = 1;
       }
-    }
-  }
+      const splatting::View view = anyView(size, random);
+      const splatting::ShearWarp geometry(view);
+      const double a = random.uniform(-1.0, 1.0), b = random.uniform(-1.0, 1.0);
+      const auto f = [=](double u, double v) { return a * u + b * v; };
+      const std::vector<splatting::ShearImage> images{ imageOf(geometry, f) };
+      const splatting::ShearImage& image = images.front();
+      const splatting::ColorTable table = countingTable(-400.0, 400.0);
+      splatting::Picture picture;
+      splatting::Warper warper;
+      warper.warp(images, { geometry }, table, view.viewport, anyInstructionSet(random), picture);
+      for (int y = 0; y < view.viewport.y; ++y)
+      {
+        for (int x = 0; x < view.viewport.x; ++x)
+        {
+          const std::uint32_t color = colorAt(picture, x, y);
+          // Rays within a thousandth of a voxel of the rim may go either way.
+          if (!meetsBox(view, geometry, x, y, 1e-3))
+          {
+            check(color == 0, "a pixel outside the volume has a colour");
+            continue;
+          }
+          if (!meetsBox(view, geometry, x, y, -1e-3))
+          {
+            continue;
+          }
+          if (!check(color != 0, "a pixel inside the volume is transparent"))
+          {
+            continue;
+          }
+          const glm::dvec2 p(geometry.screenToShear() * glm::dvec3(x, y, 1.0));
+          // At the rim the last samples stand for missing neighbours, up to a pixel away in u and
+          // v.
+          bool rim = false;
+          for (int corner = 0; corner < 4; ++corner)
+          {
+            rim = rim ||
+              !image.covers(int(std::floor(p.x)) + corner % 2, int(std::floor(p.y)) + corner / 2);
+          }
+          const double bound =
+            (rim ? std::abs(a) + std::abs(b) : 0.0) + 800.0 / 65535 + 800.0 * 0x1p-22;
+          const double found = (double(color) - 1.0) * 800.0 / 65535 - 400.0;
+          check(std::abs(found - f(p.x, p.y)) <= bound, "a linear image is off by ",
+            found - f(p.x, p.y));
+        }
+      }
+    });
 }
 
 void testOddPixels(Checks& check)
@@ -446,40 +446,44 @@ std::vector<splatting::ShearImage> noiseImages(
 
 void testPerspective(Checks& check)
 {
-  reference::Random random(43);
   const splatting::ColorTable table = countingTable(0.0, 1.0);
-  splatting::Warper warper;
-  std::vector<splatting::ShearWarp> geometries;
-  PixelCounts counts;
-  std::size_t mostImages = 0;
-  for (int n = 0; n < 500; ++n)
-  {
-    auto size = randomSize(random, 30);
-    if (n % 6 < 3)
+  Sightings shown, beside, many;
+  reference::forScenes("perspective", 500,
+    [&](int n, reference::Random& random)
     {
-      size[n % 3] = 1;
-    }
-    splatting::View view = randomPerspective(size, random);
-    view.showsBoxes = n % 4 == 0;
-    splatting::ShearWarp::factorise(view, geometries);
-    mostImages = std::max(mostImages, geometries.size());
-    std::vector<splatting::ShearImage> images = noiseImages(geometries, random);
-    images.resize(images.size() + random.uniform(0, 2)); // spare ones
-    for (bool special : { false, true }) // where all pixels go the way of those near holes
-    {
-      for (splatting::ShearImage& image : images)
+      splatting::Warper warper;
+      std::vector<splatting::ShearWarp> geometries;
+      PixelCounts counts;
+      auto size = randomSize(random, 30);
+      if (n % 6 < 3)
       {
-        image.special = special;
+        size[n % 3] = 1;
       }
-      splatting::Picture picture;
-      warper.warp(images, geometries, table, view.viewport,
-        static_cast<splatting::InstructionSet>(random.uniform(0, 2)), picture);
-      checkPerspectivePicture(check, view, geometries, images, picture, counts);
-    }
-  }
-  check(mostImages >= 4, "only ", mostImages, " images");
-  check(counts.shown > 200000 && counts.beside > 200000, "only ", counts.shown, " pixels shown, ",
-    counts.beside, " beside the volume");
+      splatting::View view = randomPerspective(size, random);
+      view.showsBoxes = n % 4 == 0;
+      splatting::ShearWarp::factorise(view, geometries);
+      std::vector<splatting::ShearImage> images = noiseImages(geometries, random);
+      images.resize(images.size() + random.uniform(0, 2)); // spare ones
+      for (bool special : { false, true }) // where all pixels go the way of those near holes
+      {
+        for (splatting::ShearImage& image : images)
+        {
+          image.special = special;
+        }
+        splatting::Picture picture;
+        warper.warp(images, geometries, table, view.viewport, anyInstructionSet(random), picture);
+        checkPerspectivePicture(check, view, geometries, images, picture, counts);
+      }
+
+      shown.add(counts.shown > 0);
+      beside.add(counts.beside > 0);
+      many.add(geometries.size() >= 3);
+    });
+  std::cout << "perspective: the volume is shown in " << shown << ", pixels beside it in " << beside
+            << ", three or more images in " << many << std::endl;
+  check(shown.areEnough(0.3) && beside.areEnough(0.3) && many.areEnough(0.02),
+    "the volume is shown in only ", shown, ", pixels beside it in ", beside,
+    ", three or more images in ", many);
 }
 
 /// A view from a place in index space, its middle ray along `direction`. Along axes and between
@@ -501,118 +505,116 @@ void testSeams(Checks& check)
 {
   const glm::dvec3 slope(0.11, -0.13, 0.17);
   const auto f = [&](const glm::dvec3& d) { return 0.5 + glm::dot(slope, glm::normalize(d)); };
-  reference::Random random(47);
   const splatting::ColorTable table = countingTable(0.0, 1.0);
   const glm::dvec3 z(0.0, 0.0, 1.0);
   const std::array<int, 3> size{ 31, 27, 35 };
-  std::vector<splatting::View> views;
-  for (const glm::dvec3& eye : { glm::dvec3(15.0, 13.0, 17.0), glm::dvec3(7.3, 20.1, 11.9),
-         glm::dvec3(-3.0, 13.0, 17.0), glm::dvec3(-9.0, -9.0, -9.0) })
-  {
-    for (int n = 0; n < 12; ++n)
+  // From the first five places, along these directions, one to five images show the volume.
+  const glm::dvec3 eyes[] = { { -30.0, 13.0, 17.0 }, { -30.0, -20.0, 17.0 }, { -9.0, -9.0, -9.0 },
+    { -3.0, 13.0, 17.0 }, { 15.0, 13.0, 17.0 }, { 7.3, 20.1, 11.9 } };
+  const glm::dvec3 directions[] = { { 1.0, 0.0, 0.0 }, { 1.0, 1.0, 0.0 }, { 1.0, 1.0, 1.0 }, z, z };
+  Sightings shown;
+  reference::forScenes("seams", 54,
+    [&](int n, reference::Random& random)
     {
-      const glm::dvec3 direction = n == 0 ? z
-        : n == 1                          ? glm::dvec3(1.0, 0.0, 0.0)
-        : n == 2                          ? glm::dvec3(1.0, 1.0, 0.0)
-        : n == 3                          ? glm::dvec3(1.0, 1.0, 1.0)
-                 : glm::dvec3(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
-                     random.uniform(-1.0, 1.0));
-      const glm::dvec3 up = n == 0 ? glm::dvec3(0.0, 1.0, 0.0) : z;
-      views.push_back(wideView(size, eye, direction, up, n % 3 == 2 ? 129 : 65));
-    }
-  }
-  std::array<int, 7> viewsOf{};
-  int shown = 0;
-  for (const splatting::View& view : views)
-  {
-    std::vector<splatting::ShearWarp> geometries;
-    splatting::ShearWarp::factorise(view, geometries);
-    ++viewsOf[geometries.size()];
-    std::vector<splatting::ShearImage> images;
-    double step = 0.0; // of slopes
-    for (const splatting::ShearWarp& geometry : geometries)
-    {
-      const auto atPixel = [&](int u, int v)
+      // Each place with each direction; half of the views are random.
+      const int place = n % 6, way = (n + n / 6) % 9;
+      const glm::dvec3 direction = n < 5 ? directions[n]
+        : way < 4                        ? directions[way]
+                                         : anyVector(random, -1.0, 1.0);
+      const glm::dvec3 up = direction == z ? glm::dvec3(0.0, 1.0, 0.0) : z;
+      const splatting::View view =
+        wideView(size, eyes[place], direction, up, random.uniform(0, 2) ? 65 : 129);
+      bool isShown = false;
+      std::vector<splatting::ShearWarp> geometries;
+      splatting::ShearWarp::factorise(view, geometries);
+      check(n >= 5 || int(geometries.size()) == n + 1, "place ", n, " has ", geometries.size(),
+        " images");
+      std::vector<splatting::ShearImage> images;
+      double step = 0.0; // of slopes
+      for (const splatting::ShearWarp& geometry : geometries)
       {
-        const double forwards = geometry.reversed() ? -1.0 : 1.0;
-        const glm::dvec3 d(
-          forwards * geometry.columns().slope[u], forwards * geometry.rows().slope[v], forwards);
-        glm::dvec3 direction;
-        for (int a = 0; a < 3; ++a)
+        const auto atPixel = [&](int u, int v)
         {
-          direction[geometry.axes()[a]] = d[a];
+          const double forwards = geometry.reversed() ? -1.0 : 1.0;
+          const glm::dvec3 d(
+            forwards * geometry.columns().slope[u], forwards * geometry.rows().slope[v], forwards);
+          glm::dvec3 direction;
+          for (int a = 0; a < 3; ++a)
+          {
+            direction[geometry.axes()[a]] = d[a];
+          }
+          return f(direction);
+        };
+        images.push_back(imageOf(geometry, atPixel));
+        for (int v = 0; v < geometry.height(); ++v)
+        {
+          // Beside the volume, too: all points have four neighbours.
+          images.back().spans[v] = { 0, geometry.width() };
+          for (int u = 0; u < geometry.width(); ++u)
+          {
+            images.back().row<float>(v)[u] = static_cast<float>(atPixel(u, v));
+          }
         }
-        return f(direction);
-      };
-      images.push_back(imageOf(geometry, atPixel));
-      for (int v = 0; v < geometry.height(); ++v)
+        step = std::max(step, geometry.pitch() / std::abs(geometry.reference() - geometry.eye().z));
+      }
+      splatting::Picture picture;
+      splatting::Warper().warp(
+        images, geometries, table, view.viewport, splatting::bestInstructionSet(), picture);
+      const Camera camera(view);
+      // Second derivatives of each component of a direction with regard to a slope are at most 1.
+      const double bound =
+        step * step / 4.0 * (std::abs(slope.x) + std::abs(slope.y) + std::abs(slope.z)) +
+        Misplaced * step + Rounded;
+      for (int y = 0; y < view.viewport.y; ++y)
       {
-        // Beside the volume, too: all points have four neighbours.
-        images.back().spans[v] = { 0, geometry.width() };
-        for (int u = 0; u < geometry.width(); ++u)
+        for (int x = 0; x < view.viewport.x; ++x)
         {
-          images.back().row<float>(v)[u] = static_cast<float>(atPixel(u, v));
+          const std::uint32_t color = colorAt(picture, x, y);
+          const glm::dvec3 ray = camera.direction(x, y);
+          isShown |= color != 0;
+          check(
+            color != 0 || !meets(shownBox(view), camera.eye, ray, -0.01), "a gap at ", x, ", ", y);
+          const double off = (double(color) - 1.0) / 65535 - f(ray);
+          check(color == 0 || std::abs(off) <= bound, "a seam: ", off, " at ", x, ", ", y,
+            ", not within ", bound);
         }
       }
-      step = std::max(step, geometry.pitch() / std::abs(geometry.reference() - geometry.eye().z));
-    }
-    splatting::Picture picture;
-    splatting::Warper().warp(
-      images, geometries, table, view.viewport, splatting::bestInstructionSet(), picture);
-    const Camera camera(view);
-    // Second derivatives of each component of a direction with regard to a slope are at most 1.
-    const double bound =
-      step * step / 4.0 * (std::abs(slope.x) + std::abs(slope.y) + std::abs(slope.z)) +
-      Misplaced * step + Rounded;
-    for (int y = 0; y < view.viewport.y; ++y)
-    {
-      for (int x = 0; x < view.viewport.x; ++x)
-      {
-        const std::uint32_t color = colorAt(picture, x, y);
-        const glm::dvec3 ray = camera.direction(x, y);
-        shown += color != 0;
-        check(
-          color != 0 || !meets(shownBox(view), camera.eye, ray, -0.01), "a gap at ", x, ", ", y);
-        const double off = (double(color) - 1.0) / 65535 - f(ray);
-        check(color == 0 || std::abs(off) <= bound, "a seam: ", off, " at ", x, ", ", y,
-          ", not within ", bound);
-      }
-    }
-  }
-  for (int n = 1; n <= 5; ++n)
-  {
-    check(viewsOf[n] > 0, "no view with ", n, " images");
-  }
-  check(shown > 100000, "only ", shown, " pixels shown");
+
+      shown.add(isShown);
+    });
+  std::cout << "seams: the volume is shown in " << shown << std::endl;
+  check(shown.areEnough(0.3), "the volume is shown in only ", shown);
 }
 
 void testEveryWayGivesTheSameBits(Checks& check)
 {
-  reference::Random random(53);
-  const splatting::ColorTable table = countingTable(0.0, 1.0);
-  const splatting::View view =
-    wideView({ 31, 27, 35 }, { 7.0, 13.0, 17.0 }, { 1.0, 0.3, 0.8 }, { 0.0, 0.0, 1.0 }, 257);
-  std::vector<splatting::ShearWarp> geometries;
-  splatting::ShearWarp::factorise(view, geometries);
-  const std::vector<splatting::ShearImage> images = noiseImages(geometries, random);
-  splatting::Picture expected;
-  splatting::Warper().warp(
-    images, geometries, table, view.viewport, splatting::InstructionSet::Baseline, expected);
-  for (auto set : { splatting::InstructionSet::Baseline, splatting::InstructionSet::AVX2,
-         splatting::InstructionSet::AVX512, splatting::InstructionSet::AVX512VBMI })
-  {
-    for (int threads : { 1, 2 })
+  reference::forScenes("every way", 1,
+    [&](int, reference::Random& random)
     {
-      vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
-        [&]
+      const splatting::ColorTable table = countingTable(0.0, 1.0);
+      const splatting::View view =
+        wideView({ 31, 27, 35 }, { 7.0, 13.0, 17.0 }, { 1.0, 0.3, 0.8 }, { 0.0, 0.0, 1.0 }, 257);
+      std::vector<splatting::ShearWarp> geometries;
+      splatting::ShearWarp::factorise(view, geometries);
+      const std::vector<splatting::ShearImage> images = noiseImages(geometries, random);
+      splatting::Picture expected;
+      splatting::Warper().warp(
+        images, geometries, table, view.viewport, splatting::InstructionSet::Baseline, expected);
+      for (splatting::InstructionSet set : instructionSets)
+      {
+        for (int threads : { 1, 2 })
         {
-          splatting::Picture picture;
-          splatting::Warper().warp(images, geometries, table, view.viewport, set, picture);
-          check(picture.pixels == expected.pixels, splatting::nameOf(set), " with ", threads,
-            " threads gives other bits");
-        });
-    }
-  }
+          vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
+            [&]
+            {
+              splatting::Picture picture;
+              splatting::Warper().warp(images, geometries, table, view.viewport, set, picture);
+              check(picture.pixels == expected.pixels, splatting::nameOf(set), " with ", threads,
+                " threads gives other bits");
+            });
+        }
+      }
+    });
 }
 }
 
