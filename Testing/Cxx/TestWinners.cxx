@@ -22,6 +22,11 @@ using splatting::Reduction;
 
 namespace
 {
+std::string nameOf(const char* series, bool perspective)
+{
+  return std::string(series) + (perspective ? ", in perspective" : "");
+}
+
 /// A view with one or more shear images, and what cuts it.
 struct Scene
 {
@@ -41,8 +46,7 @@ Scene anyScene(
   }
   if (mayBeCut && random.uniform(0, 2) == 0)
   {
-    const glm::dvec3 normal(
-      random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+    const glm::dvec3 normal = anyVector(random, -1.0, 1.0);
     const glm::dvec3 middle = 0.5 * glm::dvec3(scene.view.dimensions - 1);
     scene.view.halfSpaces.emplace_back(normal, -glm::dot(normal, middle) + 0.1);
   }
@@ -205,68 +209,67 @@ void comparePreview(Checks& check, const reference::Volume<T>& volume, const Sce
 }
 
 template <class T>
-void testPreview(Checks& check, bool perspective, std::uint64_t seed)
+void testPreview(Checks& check, bool perspective)
 {
-  reference::Random random(seed);
-  for (int n = 0; n < 40; ++n)
-  {
-    const auto volume = volumeWithTies<T>(random);
-    const Scene scene = anyScene(volume.size, perspective, random);
-    splatting::ProjectionSettings settings;
-    settings.quality = Quality::Preview;
-    settings.reduction = random.uniform(0, 3) ? Reduction::Maximum : Reduction::Minimum;
-    settings.acceleration = static_cast<Acceleration>(random.uniform(0, 5));
-    comparePreview(check, volume, scene, settings,
-      winningVoxels(volume, scene, settings.reduction == Reduction::Minimum),
-      "preview, view " + std::to_string(n) + (perspective ? " in perspective" : ""));
-  }
+  reference::forScenes(seriesOf<T>(nameOf("previews", perspective)), 40,
+    [&](int, reference::Random& random)
+    {
+      const auto volume = volumeWithTies<T>(random);
+      const Scene scene = anyScene(volume.size, perspective, random);
+      splatting::ProjectionSettings settings;
+      settings.quality = Quality::Preview;
+      settings.reduction = random.uniform(0, 3) ? Reduction::Maximum : Reduction::Minimum;
+      settings.acceleration = anyAcceleration(random);
+      comparePreview(check, volume, scene, settings,
+        winningVoxels(volume, scene, settings.reduction == Reduction::Minimum), "preview");
+    });
 }
 
 /// Rows of pixels that fill registers, and volumes deep enough for pairs of layers: there previews
 /// note winners by other loops, which are each instruction set's own.
 template <class T>
-void testLongRows(Checks& check, std::uint64_t seed)
+void testLongRows(Checks& check)
 {
-  reference::Random random(seed);
-  for (int n = 0; n < 12; ++n)
-  {
-    std::array<int, 3> size;
-    for (int a = 0; a < 3; ++a)
+  reference::forScenes(seriesOf<T>("long rows"), 12,
+    [&](int n, reference::Random& random)
     {
-      size[a] = a == n % 3 ? random.uniform(64, 300) : random.uniform(9, 36);
-    }
-    const auto volume = withTies<T>(size, random);
-    const Scene scene = anyScene(size, false, random, n % 2 == 0);
-    const Voxels expected = winningVoxels(volume, scene, false);
-    for (int way = 0; way < 8; ++way)
-    {
-      splatting::ProjectionSettings settings;
-      settings.quality = Quality::Preview;
-      settings.acceleration = way % 2 ? Acceleration::Bricks : Acceleration::Dense;
-      settings.instructionSet = static_cast<splatting::InstructionSet>(way / 2);
-      comparePreview(check, volume, scene, settings, expected,
-        "long rows, view " + std::to_string(n) + ", way " + std::to_string(way));
-    }
-  }
+      std::array<int, 3> size;
+      for (int a = 0; a < 3; ++a)
+      {
+        size[a] = a == n % 3 ? random.uniform(64, 300) : random.uniform(9, 36);
+      }
+      const auto volume = withTies<T>(size, random);
+      const Scene scene = anyScene(size, false, random, n % 2 == 0);
+      const Voxels expected = winningVoxels(volume, scene, false);
+      for (int way = 0; way < 8; ++way)
+      {
+        splatting::ProjectionSettings settings;
+        settings.quality = Quality::Preview;
+        settings.acceleration = way % 2 ? Acceleration::Bricks : Acceleration::Dense;
+        settings.instructionSet = instructionSets[way / 2];
+        comparePreview(
+          check, volume, scene, settings, expected, "long rows, way " + std::to_string(way));
+      }
+    });
 }
 
 /// More slices than walks have notes for.
 void testDeepVolume(Checks& check)
 {
-  reference::Random random(21);
-  const std::array<int, 3> size = { 3, 4, 11000 };
-  const auto volume = withTies<std::uint8_t>(size, random);
-  for (bool reversed : { false, true })
-  {
-    Scene scene;
-    scene.view = viewWithShear(size, 2, 1e-3, -2e-4);
-    scene.view.indexToClip[2][2] = reversed ? 1e-4 : -1e-4;
-    splatting::ShearWarp::factorise(scene.view, scene.images);
-    splatting::ProjectionSettings settings;
-    settings.quality = Quality::Preview;
-    comparePreview(
-      check, volume, scene, settings, winningVoxels(volume, scene, false), "deep volume");
-  }
+  reference::forScenes("deep volumes", 2,
+    [&](int n, reference::Random& random)
+    {
+      const std::array<int, 3> size = { 3, 4, 11000 };
+      const auto volume = withTies<std::uint8_t>(size, random);
+      Scene scene;
+      scene.view = viewWithShear(size, 2, 1e-3, -2e-4);
+      scene.view.indexToClip[2][2] = n % 2 ? 1e-4 : -1e-4;
+      splatting::ShearWarp::factorise(scene.view, scene.images);
+      splatting::ProjectionSettings settings;
+      settings.quality = Quality::Preview;
+      comparePreview(
+        check, volume, scene, settings, winningVoxels(volume, scene, false), "deep volume");
+    });
 }
 
 /// What a voxel weighs in an average: that of a volume where it alone is 1.
@@ -313,270 +316,274 @@ void testShare(Checks& check, const reference::Volume<T>& volume, const Scene& s
 }
 
 template <class T>
-void testAverages(Checks& check, bool perspective, std::uint64_t seed)
+void testAverages(Checks& check, bool perspective)
 {
-  reference::Random random(seed);
-  for (int n = 0; n < 12; ++n)
-  {
-    const auto volume = wholeRangeNoise<T>(randomSize(random, 9), random.bits());
-    const Scene scene = anyScene(volume.size, perspective, random);
-    const Mode mode = modes()[random.uniform(0, 2)];
-    splatting::ProjectionSettings settings = settingsOf(mode);
-    settings.reduction = random.uniform(0, 3) ? Reduction::Maximum : Reduction::Minimum;
-    settings.acceleration = static_cast<Acceleration>(random.uniform(0, 5));
-    const auto images = projectScene(volume, scene, settings);
-    const auto range = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
-    const double low = static_cast<double>(*range.first), high = static_cast<double>(*range.second);
-    for (std::size_t m = 0; m < images.size(); ++m)
+  reference::forScenes(seriesOf<T>(nameOf("averages", perspective)), 12,
+    [&](int n, reference::Random& random)
     {
-      const splatting::ShearWarp& geometry = scene.images[m];
-      const auto exact = reference::toDouble(volume);
-      const auto rays = perspective
-        ? reference::slabSamples(exact, referenceRays(geometry), mode.reference)
-        : reference::slabSamples(exact, referenceView(geometry), mode.reference);
-      const double bound = perspective
-        ? perspectiveErrorBound<T>(referenceRays(geometry), mode.reference, low, high)
-        : errorBound<T>(mode.quality, low, high);
-      const reference::RayCutter cutter = cutterOf(geometry, volume.size, scene);
-      const bool smallest = settings.reduction == Reduction::Minimum;
-      for (int v = 0; v < geometry.rayCount().y; ++v)
+      const auto volume = wholeRangeNoise<T>(randomSize(random, 9), random);
+      const Scene scene = anyScene(volume.size, perspective, random);
+      const Mode mode = modes()[random.uniform(0, 2)];
+      splatting::ProjectionSettings settings = settingsOf(mode);
+      settings.reduction = random.uniform(0, 3) ? Reduction::Maximum : Reduction::Minimum;
+      settings.acceleration = anyAcceleration(random);
+      const auto images = projectScene(volume, scene, settings);
+      const auto range = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
+      const double low = static_cast<double>(*range.first),
+                   high = static_cast<double>(*range.second);
+      for (std::size_t m = 0; m < images.size(); ++m)
       {
-        for (int u = 0; u < geometry.rayCount().x; ++u)
+        const splatting::ShearWarp& geometry = scene.images[m];
+        const auto exact = reference::toDouble(volume);
+        const auto rays = perspective
+          ? reference::slabSamples(exact, referenceRays(geometry), mode.reference)
+          : reference::slabSamples(exact, referenceView(geometry), mode.reference);
+        const double bound = perspective
+          ? perspectiveErrorBound<T>(referenceRays(geometry), mode.reference, low, high)
+          : errorBound<T>(mode.quality, low, high);
+        const reference::RayCutter cutter = cutterOf(geometry, volume.size, scene);
+        const bool smallest = settings.reduction == Reduction::Minimum;
+        for (int v = 0; v < geometry.rayCount().y; ++v)
         {
-          const std::size_t at = std::size_t(v) * geometry.width() + u;
-          const int winner =
-            reference::winnerOf(rays[at], cutter, u, v, geometry.reversed(), smallest);
-          const int step = images[m].winners[at];
-          if (!check((winner >= 0) == (step >= 0), "averages: one has a sample"))
+          for (int u = 0; u < geometry.rayCount().x; ++u)
           {
-            return;
+            const std::size_t at = std::size_t(v) * geometry.width() + u;
+            const int winner =
+              reference::winnerOf(rays[at], cutter, u, v, geometry.reversed(), smallest);
+            const int step = images[m].winners[at];
+            if (!check((winner >= 0) == (step >= 0), "averages: one has a sample"))
+            {
+              return;
+            }
+            const auto own = std::find_if(rays[at].begin(), rays[at].end(),
+              [=](const auto& s) { return s.slice == step / splatting::StepsPerSlice; });
+            check(step < 0 ||
+                (own != rays[at].end() &&
+                  std::abs(own->value - rays[at][winner].value) <= 2.0 * bound),
+              "averages, pixel ", u, " ", v, ": slice ", step / splatting::StepsPerSlice,
+              " has not the extremum");
           }
-          const auto own = std::find_if(rays[at].begin(), rays[at].end(),
-            [=](const auto& s) { return s.slice == step / splatting::StepsPerSlice; });
-          check(step < 0 ||
-              (own != rays[at].end() &&
-                std::abs(own->value - rays[at][winner].value) <= 2.0 * bound),
-            "averages, view ", n, ", pixel ", u, " ", v, ": slice ",
-            step / splatting::StepsPerSlice, " has not the extremum");
         }
-      }
-      if (!smallest && n < 4 && sizeof(T) == 1)
-      {
-        std::vector<glm::ivec3> voxels;
-        splatting::findVoxels(located(volume, scene, images, settings), m, voxels);
-        const int u = geometry.rayCount().x / 2, v = geometry.rayCount().y / 2;
-        const std::size_t at = std::size_t(v) * geometry.width() + u;
-        if (images[m].winners[at] >= 0)
+        if (!smallest && n < 4 && sizeof(T) == 1)
         {
-          testShare(check, volume, scene, mode, voxels[at], m, u, v,
-            images[m].winners[at] / splatting::StepsPerSlice);
+          std::vector<glm::ivec3> voxels;
+          splatting::findVoxels(located(volume, scene, images, settings), m, voxels);
+          const int u = geometry.rayCount().x / 2, v = geometry.rayCount().y / 2;
+          const std::size_t at = std::size_t(v) * geometry.width() + u;
+          if (images[m].winners[at] >= 0)
+          {
+            testShare(check, volume, scene, mode, voxels[at], m, u, v,
+              images[m].winners[at] / splatting::StepsPerSlice);
+          }
         }
       }
-    }
-  }
+    });
 }
 
 /// Footprints in the midst of a volume, which are looked at in another way than those at its rim.
 void testWholeFootprints(Checks& check)
 {
-  reference::Random random(78);
-  for (int n = 0; n < 9; ++n)
-  {
-    const auto volume = reference::uniformNoise<std::uint8_t>({ 13, 13, 2 }, random.bits(), 0, 255);
-    Scene scene;
-    scene.view = viewWithShear(volume.size, 2, specialShear(random), specialShear(random));
-    scene.images.emplace_back(scene.view, n % 3 == 2 ? 2 : 1);
-    const Mode mode = modes()[n % 3];
-    splatting::ProjectionSettings settings = settingsOf(mode);
-    const auto images = projectScene(volume, scene, settings);
-    std::vector<glm::ivec3> voxels;
-    splatting::findVoxels(located(volume, scene, images, settings), 0, voxels);
-    const int u = scene.images[0].width() / 2, v = scene.images[0].height() / 2;
-    const std::size_t at = std::size_t(v) * scene.images[0].width() + u;
-    testShare(check, volume, scene, mode, voxels[at], 0, u, v,
-      images[0].winners[at] / splatting::StepsPerSlice);
-  }
+  reference::forScenes("whole footprints", 9,
+    [&](int n, reference::Random& random)
+    {
+      const auto volume =
+        reference::uniformNoise<std::uint8_t>({ 13, 13, 2 }, random.bits(), 0, 255);
+      Scene scene;
+      const double shearX = specialShear(random), shearY = specialShear(random);
+      scene.view = viewWithShear(volume.size, 2, shearX, shearY);
+      scene.images.emplace_back(scene.view, n % 3 == 2 ? 2 : 1);
+      const Mode mode = modes()[n % 3];
+      splatting::ProjectionSettings settings = settingsOf(mode);
+      const auto images = projectScene(volume, scene, settings);
+      std::vector<glm::ivec3> voxels;
+      splatting::findVoxels(located(volume, scene, images, settings), 0, voxels);
+      const int u = scene.images[0].width() / 2, v = scene.images[0].height() / 2;
+      const std::size_t at = std::size_t(v) * scene.images[0].width() + u;
+      testShare(check, volume, scene, mode, voxels[at], 0, u, v,
+        images[0].winners[at] / splatting::StepsPerSlice);
+    });
 }
 
 /// Slices that are all alike: the nearest one wins.
 void testEqualSlices(Checks& check)
 {
-  reference::Random random(77);
-  for (int n = 0; n < 48; ++n)
-  {
-    const int axis = n % 3;
-    const std::array<int, 3> size = { 21, 22, 23 };
-    const auto noise = reference::uniformNoise<std::uint8_t>(size, random.bits(), 0, 255);
-    auto volume = noise;
-    for (int k = 0; k < size[2]; ++k)
+  reference::forScenes("equal slices", 48,
+    [&](int n, reference::Random& random)
     {
-      for (int j = 0; j < size[1]; ++j)
+      const int axis = n % 3;
+      const std::array<int, 3> size = { 21, 22, 23 };
+      const auto noise = reference::uniformNoise<std::uint8_t>(size, random.bits(), 0, 255);
+      auto volume = noise;
+      for (int k = 0; k < size[2]; ++k)
       {
-        for (int i = 0; i < size[0]; ++i)
+        for (int j = 0; j < size[1]; ++j)
         {
-          std::array<int, 3> at = { i, j, k }, first = at;
-          first[axis] = 0;
-          volume.at(at) = noise.at(first);
+          for (int i = 0; i < size[0]; ++i)
+          {
+            std::array<int, 3> at = { i, j, k }, first = at;
+            first[axis] = 0;
+            volume.at(at) = noise.at(first);
+          }
         }
       }
-    }
-    Scene scene;
-    scene.view = viewWithShear(size, axis, 0.0, 0.0);
-    scene.view.indexToClip[axis][2] = n % 2 ? 1e-3 : -1e-3;
-    splatting::ShearWarp::factorise(scene.view, scene.images);
-    splatting::ProjectionSettings settings;
-    settings.quality = static_cast<Quality>(n / 3 % 4);
-    settings.acceleration = n % 5 ? Acceleration::Bricks : Acceleration::Dense;
-    const auto images = projectScene(volume, scene, settings);
-    const int nearest = scene.images[0].reversed() ? size[axis] - 1 : 0;
-    check(std::all_of(images[0].winners.begin(), images[0].winners.end(),
-            [=](int step) { return step < 0 || step / splatting::StepsPerSlice == nearest; }),
-      "equal slices, view ", n, ": not the nearest one");
-  }
+      Scene scene;
+      scene.view = viewWithShear(size, axis, 0.0, 0.0);
+      scene.view.indexToClip[axis][2] = n % 2 ? 1e-3 : -1e-3;
+      splatting::ShearWarp::factorise(scene.view, scene.images);
+      splatting::ProjectionSettings settings;
+      settings.quality = static_cast<Quality>(n / 3 % 4);
+      settings.acceleration = n % 5 ? Acceleration::Bricks : Acceleration::Dense;
+      const auto images = projectScene(volume, scene, settings);
+      const int nearest = scene.images[0].reversed() ? size[axis] - 1 : 0;
+      check(std::all_of(images[0].winners.begin(), images[0].winners.end(),
+              [=](int step) { return step < 0 || step / splatting::StepsPerSlice == nearest; }),
+        "equal slices: not the nearest one");
+    });
 }
 
 /// Where the exact mode's maximum lies: the field has it there.
 void testExact(Checks& check, bool perspective)
 {
-  reference::Random random(123);
-  for (int n = 0; n < 40; ++n)
-  {
-    const auto volume =
-      reference::uniformNoise<std::int16_t>(randomSize(random, 8), random.bits(), -500, 500);
-    Scene scene;
-    while (scene.images.empty())
+  reference::forScenes(nameOf("exact", perspective), 40,
+    [&](int, reference::Random& random)
     {
-      scene.view =
-        perspective ? randomPerspective(volume.size, random) : anyView(volume.size, random);
-      splatting::ShearWarp::factorise(scene.view, scene.images);
-    }
-    splatting::ProjectionSettings settings;
-    settings.quality = Quality::Exact;
-    const auto images = projectScene(volume, scene, settings);
-    const auto exact = reference::toDouble(volume);
-    const splatting::Locator locator(located(volume, scene, images, settings));
-    for (std::size_t m = 0; m < images.size(); ++m)
-    {
-      const splatting::ShearWarp& geometry = scene.images[m];
-      for (int v = 0; v < geometry.rayCount().y; ++v)
+      const std::array<int, 3> size = randomSize(random, 8);
+      const auto volume = reference::uniformNoise<std::int16_t>(size, random.bits(), -500, 500);
+      Scene scene;
+      while (scene.images.empty())
       {
-        for (int u = 0; u < geometry.rayCount().x; ++u)
+        scene.view =
+          perspective ? randomPerspective(volume.size, random) : anyView(volume.size, random);
+        splatting::ShearWarp::factorise(scene.view, scene.images);
+      }
+      splatting::ProjectionSettings settings;
+      settings.quality = Quality::Exact;
+      const auto images = projectScene(volume, scene, settings);
+      const auto exact = reference::toDouble(volume);
+      const splatting::Locator locator(located(volume, scene, images, settings));
+      for (std::size_t m = 0; m < images.size(); ++m)
+      {
+        const splatting::ShearWarp& geometry = scene.images[m];
+        for (int v = 0; v < geometry.rayCount().y; ++v)
         {
-          const auto ray = perspective
-            ? reference::fieldRay(referenceRays(geometry), u, v)
-            : reference::fieldRay(volume.size, referenceView(geometry), u, v);
-          const splatting::Span& slices = geometry.slices();
-          const auto depths =
-            reference::depthsInField(volume.size, ray, reference::FieldDomain::Centres,
-              geometry.faces(slices.begin).x, geometry.faces(slices.end - 1).y);
-          if (depths[1] - depths[0] < 1e-2)
+          for (int u = 0; u < geometry.rayCount().x; ++u)
           {
-            continue;
+            const auto ray = perspective
+              ? reference::fieldRay(referenceRays(geometry), u, v)
+              : reference::fieldRay(volume.size, referenceView(geometry), u, v);
+            const splatting::Span& slices = geometry.slices();
+            const auto depths =
+              reference::depthsInField(volume.size, ray, reference::FieldDomain::Centres,
+                geometry.faces(slices.begin).x, geometry.faces(slices.end - 1).y);
+            if (depths[1] - depths[0] < 1e-2)
+            {
+              continue;
+            }
+            const double maximum = reference::fieldMaximum(exact, ray, depths[0], depths[1]);
+            // Off the screen's ray: at the shear pixel's own.
+            const double z = locator.depthOf({ static_cast<int>(m), u, v });
+            std::array<double, 3> point;
+            for (int a = 0; a < 2; ++a)
+            {
+              point[geometry.axes()[a]] = ray.at[a] + ray.slope[a] * (z - ray.start);
+            }
+            point[geometry.axes()[2]] = z;
+            check(reference::fieldAt(exact, point) >= maximum - 1e-2, "exact, pixel ", u, " ", v,
+              ": ", reference::fieldAt(exact, point), " at ", z, ", not ", maximum);
           }
-          const double maximum = reference::fieldMaximum(exact, ray, depths[0], depths[1]);
-          // Off the screen's ray: at the shear pixel's own.
-          const double z = locator.depthOf({ static_cast<int>(m), u, v });
-          std::array<double, 3> point;
-          for (int a = 0; a < 2; ++a)
-          {
-            point[geometry.axes()[a]] = ray.at[a] + ray.slope[a] * (z - ray.start);
-          }
-          point[geometry.axes()[2]] = z;
-          check(reference::fieldAt(exact, point) >= maximum - 1e-2, "exact, view ", n, ", pixel ",
-            u, " ", v, ": ", reference::fieldAt(exact, point), " at ", z, ", not ", maximum);
         }
       }
-    }
-  }
+    });
 }
 
 template <class T>
-void testInvariance(Checks& check, bool perspective, std::uint64_t seed)
+void testInvariance(Checks& check, bool perspective)
 {
-  reference::Random random(seed);
-  for (int n = 0; n < 8; ++n)
-  {
-    const auto volume = volumeWithTies<T>(random);
-    const Scene scene = anyScene(volume.size, perspective, random);
-    splatting::ProjectionSettings settings;
-    settings.quality = static_cast<Quality>(n % 4);
-    settings.acceleration = Acceleration::Dense;
-    const auto expected = projectScene(volume, scene, settings);
-    splatting::ProjectionSettings plain = settings;
-    for (int way = 0; way < 6; ++way)
+  reference::forScenes(seriesOf<T>(nameOf("invariance", perspective)), 8,
+    [&](int n, reference::Random& random)
     {
-      settings.acceleration = way % 2 ? Acceleration::Bricks : Acceleration::Dense;
-      settings.instructionSet = static_cast<splatting::InstructionSet>(way / 2);
-      std::vector<splatting::ShearImage> found;
-      vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 + way % 3 },
-        [&]() { found = projectScene(volume, scene, settings); });
-      for (std::size_t m = 0; m < found.size(); ++m)
+      const auto volume = volumeWithTies<T>(random);
+      const Scene scene = anyScene(volume.size, perspective, random);
+      splatting::ProjectionSettings settings;
+      settings.quality = static_cast<Quality>(n % 4);
+      settings.acceleration = Acceleration::Dense;
+      const auto expected = projectScene(volume, scene, settings);
+      splatting::ProjectionSettings plain = settings;
+      for (int way = 0; way < 8; ++way)
       {
-        check(found[m].winners == expected[m].winners && sameImages(found[m], expected[m]),
-          "quality ", n % 4, ", view ", n, ", way ", way, ": other winners");
-        check(
-          sameImages(found[m],
-            project(volume, scene.images[m], plain, scene.view.halfSpaces, scene.view.cropping)),
-          "quality ", n % 4, ", view ", n, ", way ", way, ": winners change the image");
+        settings.acceleration = way % 2 ? Acceleration::Bricks : Acceleration::Dense;
+        settings.instructionSet = instructionSets[way / 2];
+        std::vector<splatting::ShearImage> found;
+        vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 + way % 3 },
+          [&]() { found = projectScene(volume, scene, settings); });
+        for (std::size_t m = 0; m < found.size(); ++m)
+        {
+          check(found[m].winners == expected[m].winners && sameImages(found[m], expected[m]),
+            "quality ", n % 4, ", way ", way, ": other winners");
+          check(
+            sameImages(found[m],
+              project(volume, scene.images[m], plain, scene.view.halfSpaces, scene.view.cropping)),
+            "quality ", n % 4, ", way ", way, ": winners change the image");
+        }
       }
-    }
-  }
+    });
 }
 
 /// Points lie on the rays of their pixels, in their slices, and next to their voxels.
 void testPoints(Checks& check, bool perspective)
 {
-  reference::Random random(55);
-  for (int n = 0; n < 60; ++n)
-  {
-    const auto volume =
-      reference::uniformNoise<std::uint8_t>(randomSize(random, 12), random.bits(), 0, 255);
-    const Scene scene = anyScene(volume.size, perspective, random);
-    splatting::ProjectionSettings settings;
-    settings.quality = static_cast<Quality>(n % 4);
-    const auto images = projectScene(volume, scene, settings);
-    const splatting::Locator locator(located(volume, scene, images, settings));
-    const glm::ivec2& size = scene.view.viewport;
-    std::vector<int> voxels(std::size_t(3) * size.x * size.y);
-    std::vector<float> clipDepths(std::size_t(size.x) * size.y);
-    std::vector<double> positions(voxels.size());
-    splatting::Locator::Arrays arrays;
-    arrays.voxels = voxels.data();
-    arrays.positions = positions.data();
-    arrays.clipDepths = clipDepths.data();
-    locator.fill({ 0, 0 }, size, arrays);
-    // A square and its ray may be as far from the shear pixel's as half a pixel, and that half a
-    // voxel and a slice's drift from the voxel; footprints of high reach two voxels more.
-    const double reach = settings.quality == Quality::Preview ? 2.01 : 3.01;
-    for (int y = 0; y < size.y; ++y)
+  reference::forScenes(nameOf("points", perspective), 60,
+    [&](int n, reference::Random& random)
     {
-      for (int x = 0; x < size.x; ++x)
+      const std::array<int, 3> size = randomSize(random, 12);
+      const auto volume = reference::uniformNoise<std::uint8_t>(size, random.bits(), 0, 255);
+      const Scene scene = anyScene(volume.size, perspective, random);
+      splatting::ProjectionSettings settings;
+      settings.quality = static_cast<Quality>(n % 4);
+      const auto images = projectScene(volume, scene, settings);
+      const splatting::Locator locator(located(volume, scene, images, settings));
+      const glm::ivec2& viewport = scene.view.viewport;
+      std::vector<int> voxels(std::size_t(3) * viewport.x * viewport.y);
+      std::vector<float> clipDepths(std::size_t(viewport.x) * viewport.y);
+      std::vector<double> positions(voxels.size());
+      splatting::Locator::Arrays arrays;
+      arrays.voxels = voxels.data();
+      arrays.positions = positions.data();
+      arrays.clipDepths = clipDepths.data();
+      locator.fill({ 0, 0 }, viewport, arrays);
+      // A square and its ray may be as far from the shear pixel's as half a pixel, and that half a
+      // voxel and a slice's drift from the voxel; footprints of high reach two voxels more.
+      const double reach = settings.quality == Quality::Preview ? 2.01 : 3.01;
+      for (int y = 0; y < viewport.y; ++y)
       {
-        const std::size_t at = std::size_t(y) * size.x + x;
-        const glm::dvec3 point(positions[3 * at], positions[3 * at + 1], positions[3 * at + 2]);
-        const glm::ivec3 voxel(voxels[3 * at], voxels[3 * at + 1], voxels[3 * at + 2]);
-        glm::dvec3 picked;
-        const bool has = locator.find({ x, y }, picked);
-        check(has == (voxel.x >= 0) && has == (point.x == point.x), "arrays differ");
-        if (!has)
+        for (int x = 0; x < viewport.x; ++x)
         {
-          continue;
+          const std::size_t at = std::size_t(y) * viewport.x + x;
+          const glm::dvec3 point(positions[3 * at], positions[3 * at + 1], positions[3 * at + 2]);
+          const glm::ivec3 voxel(voxels[3 * at], voxels[3 * at + 1], voxels[3 * at + 2]);
+          glm::dvec3 picked;
+          const bool has = locator.find({ x, y }, picked);
+          check(has == (voxel.x >= 0) && has == (point.x == point.x), "arrays differ");
+          if (!has)
+          {
+            continue;
+          }
+          const glm::dvec4 clip = scene.view.indexToClip * glm::dvec4(point, 1.0);
+          const glm::dvec2 shown =
+            (glm::dvec2(clip) / clip.w + 1.0) * 0.5 * glm::dvec2(viewport) - 0.5;
+          // Points may be next to the eye, before any near plane.
+          const double rounding = 1e-6 / std::min(std::abs(clip.w), 1.0);
+          check(picked == point && glm::length(shown - glm::dvec2(x, y)) < 10.0 * rounding,
+            "the point is not on the ray of pixel ", x, " ", y, ": ", shown.x, " ", shown.y);
+          const double depth = 0.5 * clip.z / clip.w + 0.5;
+          check(std::abs(clipDepths[at] - depth) < rounding * std::max(1.0, std::abs(depth)),
+            "another depth: ", clipDepths[at], ", not ", depth);
+          const glm::dvec3 way = glm::abs(point - glm::dvec3(voxel));
+          check(std::max({ way.x, way.y, way.z }) <= reach, "pixel ", x, " ", y, ": the point is ",
+            way.x, " ", way.y, " ", way.z, " from its voxel");
         }
-        const glm::dvec4 clip = scene.view.indexToClip * glm::dvec4(point, 1.0);
-        const glm::dvec2 shown = (glm::dvec2(clip) / clip.w + 1.0) * 0.5 * glm::dvec2(size) - 0.5;
-        // Points may be next to the eye, before any near plane.
-        const double rounding = 1e-6 / std::min(std::abs(clip.w), 1.0);
-        check(picked == point && glm::length(shown - glm::dvec2(x, y)) < 10.0 * rounding, "view ",
-          n, ": the point is not on the ray of pixel ", x, " ", y, ": ", shown.x, " ", shown.y);
-        const double depth = 0.5 * clip.z / clip.w + 0.5;
-        check(std::abs(clipDepths[at] - depth) < rounding * std::max(1.0, std::abs(depth)),
-          "another depth: ", clipDepths[at], ", not ", depth);
-        const glm::dvec3 way = glm::abs(point - glm::dvec3(voxel));
-        check(std::max({ way.x, way.y, way.z }) <= reach, "view ", n, ", pixel ", x, " ", y,
-          ": the point is ", way.x, " ", way.y, " ", way.z, " from its voxel");
       }
-    }
-  }
+    });
 }
 }
 
@@ -585,24 +592,24 @@ int TestWinners(int, char*[])
   Checks check;
   for (bool perspective : { false, true })
   {
-    testPreview<std::uint8_t>(check, perspective, 1);
-    testPreview<std::int16_t>(check, perspective, 2);
-    testPreview<std::uint64_t>(check, perspective, 3);
-    testPreview<float>(check, perspective, 4);
-    testAverages<std::uint8_t>(check, perspective, 5);
-    testAverages<std::int16_t>(check, perspective, 6);
-    testAverages<float>(check, perspective, 7);
-    testInvariance<std::uint8_t>(check, perspective, 9);
-    testInvariance<float>(check, perspective, 10);
+    testPreview<std::uint8_t>(check, perspective);
+    testPreview<std::int16_t>(check, perspective);
+    testPreview<std::uint64_t>(check, perspective);
+    testPreview<float>(check, perspective);
+    testAverages<std::uint8_t>(check, perspective);
+    testAverages<std::int16_t>(check, perspective);
+    testAverages<float>(check, perspective);
+    testInvariance<std::uint8_t>(check, perspective);
+    testInvariance<float>(check, perspective);
     testExact(check, perspective);
     testPoints(check, perspective);
   }
-  testLongRows<std::uint8_t>(check, 11);
-  testLongRows<std::int8_t>(check, 12);
-  testLongRows<std::int16_t>(check, 13);
-  testLongRows<std::uint32_t>(check, 14);
-  testLongRows<float>(check, 15);
-  testLongRows<double>(check, 16);
+  testLongRows<std::uint8_t>(check);
+  testLongRows<std::int8_t>(check);
+  testLongRows<std::int16_t>(check);
+  testLongRows<std::uint32_t>(check);
+  testLongRows<float>(check);
+  testLongRows<double>(check);
   testDeepVolume(check);
   testWholeFootprints(check);
   testEqualSlices(check);
