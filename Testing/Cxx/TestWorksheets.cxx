@@ -43,38 +43,39 @@ double largestError(const reference::Volume<T>& volume, const splatting::ShearWa
 
 /// Rows that fill several registers, with every instruction set.
 template <class T>
-void testLongRows(Checks& check, std::uint64_t seed)
+void testLongRows(Checks& check)
 {
-  reference::Random random(seed);
-  for (int way = 0; way < 8; ++way)
-  {
-    const auto volume = wholeRangeNoise<T>(
-      { random.uniform(70, 150), random.uniform(3, 9), random.uniform(2, 4) }, random.bits());
-    const splatting::ShearWarp geometry(viewWithShear(
-      volume.size, 2, 0.01 * random.uniform(-99, 99), 0.01 * random.uniform(-99, 99)));
-    const double low = double(*std::min_element(volume.voxels.begin(), volume.voxels.end()));
-    const double high = double(*std::max_element(volume.voxels.begin(), volume.voxels.end()));
-    Mode mode = modes()[way % 2];
-    const double bound = errorBound<T>(mode.quality, low, high) +
-      2e-13 * std::max(std::abs(low), std::abs(high)) + 1e-300;
-    const auto set = static_cast<splatting::InstructionSet>(way / 2);
-    const double error = largestError(volume, geometry, mode, bound, set);
-    check(error <= 1.0, "long rows of type ", int(splatting::scalarTypeOf<T>()), ", mode ",
-      int(mode.quality), ", instruction set ", int(set), ": error of ", error, " bounds");
-  }
+  reference::forScenes(seriesOf<T>("long rows"), 8,
+    [&](int way, reference::Random& random)
+    {
+      const std::array<int, 3> size{ random.uniform(70, 150), random.uniform(3, 9),
+        random.uniform(2, 4) };
+      const auto volume = wholeRangeNoise<T>(size, random);
+      const double shearX = 0.01 * random.uniform(-99, 99), shearY = 0.01 * random.uniform(-99, 99);
+      const splatting::ShearWarp geometry(viewWithShear(size, 2, shearX, shearY));
+      const double low = double(*std::min_element(volume.voxels.begin(), volume.voxels.end()));
+      const double high = double(*std::max_element(volume.voxels.begin(), volume.voxels.end()));
+      Mode mode = modes()[way % 2];
+      const double bound = errorBound<T>(mode.quality, low, high) +
+        2e-13 * std::max(std::abs(low), std::abs(high)) + 1e-300;
+      const splatting::InstructionSet set = instructionSets[way / 2];
+      const double error = largestError(volume, geometry, mode, bound, set);
+      check(error <= 1.0, "long rows of type ", int(splatting::scalarTypeOf<T>()), ", mode ",
+        int(mode.quality), ", ", splatting::nameOf(set), ": error of ", error, " bounds");
+    });
 }
 
 template <class T>
-void testType(Checks& check, std::uint64_t seed)
+void testType(Checks& check)
 {
-  reference::Random random(seed);
   double worst = 0.0;
-  for (int n = 0; n < 4; ++n)
-  {
-    for (const Mode& mode : modes())
+  reference::forScenes(seriesOf<T>("averages"), 20,
+    [&](int n, reference::Random& random)
     {
-      const auto volume = wholeRangeNoise<T>(randomSize(random, 6), random.bits());
-      const splatting::ShearWarp geometry(anyView(volume.size, random), anySampling(random));
+      const Mode mode = modes()[n % 5];
+      const auto volume = wholeRangeNoise<T>(randomSize(random, 6), random);
+      const splatting::View view = anyView(volume.size, random);
+      const splatting::ShearWarp geometry(view, anySampling(random));
       const double low = double(*std::min_element(volume.voxels.begin(), volume.voxels.end()));
       const double high = double(*std::max_element(volume.voxels.begin(), volume.voxels.end()));
       // The reference itself is good to some rounding errors of double.
@@ -85,8 +86,7 @@ void testType(Checks& check, std::uint64_t seed)
       check(error <= 1.0, "type ", int(splatting::scalarTypeOf<T>()), ", mode ", int(mode.quality),
         ": error of ", error, " bounds; axis ", geometry.principalAxis(), ", shear ",
         geometry.shear().x, " ", geometry.shear().y);
-    }
-  }
+    });
   std::cout << "type " << int(splatting::scalarTypeOf<T>()) << ": largest error " << worst
             << " of the bound" << std::endl;
 }
@@ -94,23 +94,22 @@ void testType(Checks& check, std::uint64_t seed)
 /// NaN voxels are left out; infinities are values.
 void testOddValues(Checks& check)
 {
-  reference::Random random(17);
-  for (int n = 1; n < 10; ++n)
-  {
-    for (const Mode& mode : modes())
+  reference::forScenes("NaN", 45,
+    [&](int n, reference::Random& random)
     {
-      auto volume = wholeRangeNoise<double>(randomSize(random, 5), random.bits());
+      const Mode mode = modes()[n % 5];
+      const int share = 1 + n % 9; // out of ten
+      auto volume = wholeRangeNoise<double>(randomSize(random, 5), random);
       for (double& voxel : volume.voxels)
       {
-        voxel = random.uniform(0, 9) < n ? std::numeric_limits<double>::quiet_NaN() : voxel;
+        voxel = random.uniform(0, 9) < share ? std::numeric_limits<double>::quiet_NaN() : voxel;
       }
       const splatting::ShearWarp geometry(randomView(volume.size, random));
       // Dividing by the weight that is left magnifies the weights' rounding (75 x 2^-48) where
       // little is left; a weight of 1e-6 in all is rare in random views, and allowed for.
       const double error = largestError(volume, geometry, mode, 75 * 0x1p-48 / 1e-6);
       check(error <= 1.0, "NaN volume: error of ", error, " bounds");
-    }
-  }
+    });
   reference::Volume<float> volume({ 7, 7, 3 }, 1.0f);
   volume.at(3, 3, 1) = std::numeric_limits<float>::infinity();
   volume.at(1, 1, 1) = std::numeric_limits<float>::quiet_NaN();
@@ -126,23 +125,24 @@ void testOddValues(Checks& check)
 }
 
 template <class T>
-void testConstant(Checks& check, std::uint64_t seed)
+void testConstant(Checks& check)
 {
-  reference::Random random(seed);
   using Limits = std::numeric_limits<T>;
-  const T value = random.uniform<T>(Limits::lowest() / 2, Limits::max() / 2);
   using A = splatting::Accumulator<T>;
-  for (const Mode& mode : modes())
-  {
-    const reference::Volume<T> volume(randomSize(random, 9), value);
-    const splatting::ShearWarp geometry(anyView(volume.size, random));
-    const auto image = toReference<A>(project(volume, geometry, settingsOf(mode)));
-    for (std::size_t p = 0; p < image.value.size(); ++p)
+  reference::forScenes(seriesOf<T>("constant volumes"), 5,
+    [&](int, reference::Random& random)
     {
-      check(!image.hit[p] || image.value[p] == static_cast<A>(value),
-        "a constant volume is not that constant");
-    }
-  }
+      const Mode mode = modes()[random.uniform(0, 4)];
+      const T value = random.uniform<T>(Limits::lowest() / 2, Limits::max() / 2);
+      const reference::Volume<T> volume(randomSize(random, 9), value);
+      const splatting::ShearWarp geometry(anyView(volume.size, random));
+      const auto image = toReference<A>(project(volume, geometry, settingsOf(mode)));
+      for (std::size_t p = 0; p < image.value.size(); ++p)
+      {
+        check(!image.hit[p] || image.value[p] == static_cast<A>(value),
+          "a constant volume is not that constant");
+      }
+    });
 }
 
 /// [CS98], Fig. 1: a pixel half-way between two voxels sees their average, not half of either.
@@ -178,14 +178,13 @@ void testFigure1(Checks& check)
 int TestWorksheets(int, char*[])
 {
   Checks check;
-  std::uint64_t seed = 30;
   forEachType(
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
-      testType<T>(check, ++seed);
-      testLongRows<T>(check, seed);
-      testConstant<T>(check, seed);
+      testType<T>(check);
+      testLongRows<T>(check);
+      testConstant<T>(check);
     });
   testOddValues(check);
   testFigure1(check);
