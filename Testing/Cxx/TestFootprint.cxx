@@ -22,14 +22,20 @@ const Kernel kernels[] = { { Reconstruction::Box, 1.0 }, { Reconstruction::Hat, 
 
 glm::dvec2 anyShear(reference::Random& random)
 {
-  return random.uniform(0, 1) ? glm::dvec2(specialShear(random), specialShear(random))
-                              : glm::dvec2(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+  if (random.uniform(0, 1))
+  {
+    return { specialShear(random), specialShear(random) };
+  }
+  return { random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0) };
 }
 
 glm::dvec2 anyFraction(reference::Random& random)
 {
-  return random.uniform(0, 3) ? glm::dvec2(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5))
-                              : glm::dvec2(random.uniform(-1, 1) / 2.0, 0.0);
+  if (random.uniform(0, 3))
+  {
+    return { random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5) };
+  }
+  return { random.uniform(-1, 1) / 2.0, 0.0 };
 }
 
 /// The definition, by the midpoint rule in x, y and z over pixel and slice.
@@ -84,12 +90,12 @@ double largestDifference(const WeightTable& a, const WeightTable& b)
   return largest;
 }
 
-void testClosedForm(Checks& check, reference::Random& random)
+void testClosedForm(Checks& check)
 {
-  for (const Kernel& kernel : kernels)
-  {
-    for (int n = 0; n < 12; ++n)
+  reference::forScenes("closed form", 60,
+    [&](int n, reference::Random& random)
     {
+      const Kernel& kernel = kernels[n % 5];
       const glm::dvec2 shear = anyShear(random), fraction = anyFraction(random);
       const double width = 1.0 / anySampling(random);
       const WeightTable weights = splatting::closedFormWeights(kernel, shear, fraction, width);
@@ -110,47 +116,47 @@ void testClosedForm(Checks& check, reference::Random& random)
           check(std::abs(w - direct[c + 1][dj + 2][di + 2] / sum) < bound, "weight ", w,
             " is not the integral ", direct[c + 1][dj + 2][di + 2] / sum);
         });
-    }
-  }
+    });
 }
 
-void testPromises(Checks& check, reference::Random& random)
+void testPromises(Checks& check)
 {
-  for (int n = 0; n < 2000; ++n)
-  {
-    const Kernel& kernel = kernels[random.uniform(0, 4)];
-    const glm::dvec2 shear = anyShear(random), fraction = anyFraction(random);
-    const int perVoxel = anySampling(random);
-    WeightTable weights;
-    if (n % 10 == 0)
+  reference::forScenes("promises", 2000,
+    [&](int n, reference::Random& random)
     {
-      const splatting::GeneralTable table(kernel, shear, random.uniform(1, 12), perVoxel);
-      weights = table.weights(fraction);
-    }
-    else
-    {
-      weights = splatting::closedFormWeights(kernel, shear, fraction, 1.0 / perVoxel);
-    }
-    check(std::abs(sumOf(weights) - 1.0) < 1e-14, "weights sum to ", sumOf(weights));
-    forEachWeight(weights,
-      [&](int c, int di, int dj, double w)
+      const Kernel& kernel = kernels[random.uniform(0, 4)];
+      const glm::dvec2 shear = anyShear(random), fraction = anyFraction(random);
+      const int perVoxel = anySampling(random);
+      WeightTable weights;
+      if (n % 10 == 0)
       {
-        check(w >= 0.0, "a weight is negative: ", w);
-        const bool narrow = kernel.shape == Reconstruction::Box;
-        check(!narrow || w == 0.0 || (c == 0 && std::abs(di) <= 1 && std::abs(dj) <= 1),
-          "standard mode needs more than 3 x 3 weights");
-      });
-    for (int bits : { 16, 24, 48 })
-    {
-      double sum = 0.0;
-      for (const splatting::Tap& tap : splatting::quantisedTaps(weights, bits))
-      {
-        check(tap.weight > 0.0, "a rounded weight is not positive: ", tap.weight);
-        sum += tap.weight; // exact: multiples of 2^-bits up to 1
+        const splatting::GeneralTable table(kernel, shear, random.uniform(1, 12), perVoxel);
+        weights = table.weights(fraction);
       }
-      check(sum == 1.0, "rounded weights do not sum to 1 but to ", sum);
-    }
-  }
+      else
+      {
+        weights = splatting::closedFormWeights(kernel, shear, fraction, 1.0 / perVoxel);
+      }
+      check(std::abs(sumOf(weights) - 1.0) < 1e-14, "weights sum to ", sumOf(weights));
+      forEachWeight(weights,
+        [&](int c, int di, int dj, double w)
+        {
+          check(w >= 0.0, "a weight is negative: ", w);
+          const bool narrow = kernel.shape == Reconstruction::Box;
+          check(!narrow || w == 0.0 || (c == 0 && std::abs(di) <= 1 && std::abs(dj) <= 1),
+            "standard mode needs more than 3 x 3 weights");
+        });
+      for (int bits : { 16, 24, 48 })
+      {
+        double sum = 0.0;
+        for (const splatting::Tap& tap : splatting::quantisedTaps(weights, bits))
+        {
+          check(tap.weight > 0.0, "a rounded weight is not positive: ", tap.weight);
+          sum += tap.weight; // exact: multiples of 2^-bits up to 1
+        }
+        check(sum == 1.0, "rounded weights do not sum to 1 but to ", sum);
+      }
+    });
 }
 
 /// The kernels that sum to one do so by themselves at every depth; seen through the closed form.
@@ -173,30 +179,57 @@ void testPartitionOfUnity(Checks& check)
   }
 }
 
+/// How far a digitised weight may be off: a pixel's border cuts sub-pixels that the table counts
+/// whole, an error of half a sub-pixel along each of its four sides, times the largest
+/// thickness, 1.
+double digitisedBound(int sampling)
+{
+  return 2.0 / sampling;
+}
+
+/// The largest error of a digitised weight.
+double digitisedError(const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction,
+  int sampling, int perVoxel)
+{
+  const splatting::GeneralTable table(kernel, shear, sampling, perVoxel);
+  return largestDifference(
+    table.weights(fraction), splatting::closedFormWeights(kernel, shear, fraction, 1.0 / perVoxel));
+}
+
+void testDigitised(Checks& check)
+{
+  reference::forScenes("digitised", 60,
+    [&](int n, reference::Random& random)
+    {
+      const glm::dvec2 shear = anyShear(random), fraction = anyFraction(random);
+      const int sampling = random.uniform(4, 12);
+      const double error =
+        digitisedError(kernels[n % 3], shear, fraction, sampling, anySampling(random));
+      check(error <= digitisedBound(sampling), "a digitised weight is off by ", error);
+    });
+}
+
+/// The larger the tables, the closer they come, over views that fill the range evenly.
 void testDigitisedConverges(Checks& check, int perVoxel)
 {
   const char* names[] = { "standard", "trilinear", "cosine bell" };
+  const auto share = [](double step) { return 2.0 * (step - std::floor(step)) - 1.0; };
   for (int k = 0; k < 3; ++k)
   {
     double before = 1.0;
-    for (int sampling : { 4, 8, 16, 32 })
+    for (int sampling = 4; sampling * perVoxel <= 32; sampling *= 2)
     {
-      reference::Random random(3); // the same views for every N
       double largest = 0.0;
-      for (int n = 0; n < 40; ++n)
+      for (int n = 0; n < 20; ++n)
       {
-        const glm::dvec2 shear(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
-        const glm::dvec2 fraction(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
-        const splatting::GeneralTable table(kernels[k], shear, sampling, perVoxel);
-        largest = std::max(largest,
-          largestDifference(table.weights(fraction),
-            splatting::closedFormWeights(kernels[k], shear, fraction, 1.0 / perVoxel)));
+        const glm::dvec2 shear(share(n * std::sqrt(2.0)), share(n * std::sqrt(3.0)));
+        const glm::dvec2 fraction(0.5 * share(n * std::sqrt(5.0)), 0.5 * share(n * std::sqrt(7.0)));
+        largest =
+          std::max(largest, digitisedError(kernels[k], shear, fraction, sampling, perVoxel));
       }
       std::cout << names[k] << ", " << sampling << " x " << sampling
                 << " sub-pixels: weights are off by at most " << largest << std::endl;
-      // A pixel's border cuts sub-pixels that the table counts whole: an error of half a sub-pixel
-      // along each of its four sides, times the largest thickness, 1.
-      check(largest <= 2.0 / sampling, "a digitised weight is off by ", largest);
+      check(largest <= digitisedBound(sampling), "a digitised weight is off by ", largest);
       // Pixels as wide as voxels share their borders with them; others cut them anywhere.
       check(
         largest < (perVoxel == 1 ? 0.75 : 1.0) * before, "the digitised weights do not converge");
@@ -209,10 +242,10 @@ void testDigitisedConverges(Checks& check, int perVoxel)
 int TestFootprint(int, char*[])
 {
   Checks check;
-  reference::Random random(11);
-  testClosedForm(check, random);
-  testPromises(check, random);
+  testClosedForm(check);
+  testPromises(check);
   testPartitionOfUnity(check);
+  testDigitised(check);
   testDigitisedConverges(check, 1);
   testDigitisedConverges(check, 2);
   testDigitisedConverges(check, 4);
