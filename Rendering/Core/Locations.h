@@ -75,7 +75,6 @@ private:
     const std::vector<std::vector<glm::ivec3>>& voxels, const Arrays& arrays) const;
 
   Located Source;
-  glm::dmat4 ClipToIndex;
 };
 
 /// The voxel of each pixel of a shear image with winners, -1 for none.

@@ -606,21 +606,29 @@ void findShearPixels(const std::vector<ShearImage>& images,
     {
       for (vtkIdType y = first; y < last; ++y)
       {
-        const glm::dvec3 start(origin.x, origin.y + static_cast<double>(y), 1.0);
+        // From the viewport's edge on, so that a pixel that two images show is the same one's in
+        // any rectangle.
+        const glm::dvec3 start(0.0, origin.y + static_cast<double>(y), 1.0);
         ShearPixel* const row = out + y * size.x;
         forSpans(
-          geometries.size(), start, size.x,
+          geometries.size(), start, origin.x + size.x,
           [&](std::size_t n) -> const Outline& { return shown[n]; },
           [&](std::size_t n, const Span& span)
           {
             const glm::dmat3& m = geometries[n].screenToShear();
-            for (int x = span.begin; x < span.end; ++x)
+            for (int x = std::max(span.begin, origin.x); x < span.end; ++x)
             {
-              row[x] = nearestPixel(
-                images[n], static_cast<int>(n), m * glm::dvec3(origin.x + x, start.y, 1.0));
+              row[x - origin.x] =
+                nearestPixel(images[n], static_cast<int>(n), m * glm::dvec3(x, start.y, 1.0));
             }
           },
-          [&](const Span& span) { std::fill(row + span.begin, row + span.end, ShearPixel{}); });
+          [&](const Span& span)
+          {
+            for (int x = std::max(span.begin, origin.x); x < span.end; ++x)
+            {
+              row[x - origin.x] = ShearPixel{};
+            }
+          });
       }
     });
 }
