@@ -294,32 +294,33 @@ private:
 
   glm::ivec2 inFootprint(int u, int v, int k) const
   {
-    const glm::ivec2 last = glm::ivec2(this->Geometry.size()) - 1;
+    const glm::ivec3 last = this->Geometry.size() - 1;
     const double from =
       this->Source.settings.reduction == Reduction::Minimum ? this->Source.high : this->Source.low;
     if (!this->Geometry.isPerspective())
     {
       const glm::ivec2 low = glm::ivec2(u, v) - this->Footprints[k].nearest - MostReach;
       const glm::ivec2 high = low + 2 * MostReach;
-      if (low.x >= 0 && low.y >= 0 && high.x <= last.x && high.y <= last.y)
+      if (low.x >= 0 && low.y >= 0 && high.x <= last.x && high.y <= last.y && k > 0 && k < last.z)
       {
         return this->inWholeFootprint(u, v, k, from);
       }
     }
+    // The outermost voxels are met again beyond the rim, those of the outermost slices as well.
     LargestShare shares;
-    const auto add = [&](int i, int j, double weight)
+    const auto add = [&](int i, int j, int slice, double weight)
     {
-      const glm::ivec2 voxel = glm::clamp(glm::ivec2(i, j), glm::ivec2(0), last);
+      const glm::ivec3 voxel = glm::clamp(glm::ivec3(i, j, slice), glm::ivec3(0), last);
       const T value = this->Voxels.at(voxel.x, voxel.y, k);
-      if (weight > 0.0 && value == value)
+      if (voxel.z == k && weight > 0.0 && value == value)
       {
-        shares.add(voxel, weight, static_cast<double>(value));
+        shares.add(glm::ivec2(voxel), weight, static_cast<double>(value));
       }
     };
     if (this->Geometry.isPerspective())
     {
       this->Own.forVoxels(
-        u, v, k, [&](int i, int j, int s, double weight) { s == k ? add(i, j, weight) : void(); });
+        u, v, k, [&](int i, int j, int slice, double weight) { add(i, j, slice, weight); });
     }
     else
     {
@@ -327,11 +328,8 @@ private:
       for (int t = 0; t < footprint.taps.size(); ++t)
       {
         const Tap& tap = footprint.taps[t];
-        if (tap.slice == 0)
-        {
-          add(u - footprint.nearest.x + tap.di, v - footprint.nearest.y + tap.dj,
-            footprint.weights[t]);
-        }
+        add(u - footprint.nearest.x + tap.di, v - footprint.nearest.y + tap.dj, k + tap.slice,
+          footprint.weights[t]);
       }
     }
     return shares.voxel(from);
@@ -425,11 +423,7 @@ void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec
     });
 }
 
-Locator::Locator(const Located& located)
-  : Source(located),
-    ClipToIndex(glm::inverse(located.view.indexToClip))
-{
-}
+Locator::Locator(const Located& located) : Source(located) {}
 
 double Locator::depthOf(const ShearPixel& shown) const
 {
@@ -463,14 +457,18 @@ glm::dvec3 Locator::point(const glm::dvec2& pixel, const ShearPixel& shown) cons
     z = geometry.reversed() ? std::min(z, geometry.eye().z - nearest)
                             : std::max(z, geometry.eye().z + nearest);
   }
-  const int axis = geometry.principalAxis();
-  // The ray of the pixel is a + s b, in homogeneous coordinates.
+  // The ray is where two planes meet: those of the pixel's column and row. They alone make no use
+  // of clip depths, which would cost digits.
+  const std::array<int, 3>& axes = geometry.axes();
   const glm::dvec2 clip = (2.0 * pixel + 1.0) / glm::dvec2(this->Source.view.viewport) - 1.0;
-  const glm::dvec4 a = this->ClipToIndex * glm::dvec4(clip, 0.0, 1.0), b = this->ClipToIndex[2];
-  const double s = (z * a.w - a[axis]) / (b[axis] - z * b.w);
-  const glm::dvec4 p = a + s * b;
-  glm::dvec3 point = glm::dvec3(p) / p.w;
-  point[axis] = z;
+  const glm::dmat4 rows = glm::transpose(this->Source.view.indexToClip);
+  const glm::dvec4 x = rows[0] - clip.x * rows[3], y = rows[1] - clip.y * rows[3];
+  const double p = -(x[axes[2]] * z + x.w), q = -(y[axes[2]] * z + y.w);
+  const double determinant = x[axes[0]] * y[axes[1]] - x[axes[1]] * y[axes[0]];
+  glm::dvec3 point;
+  point[axes[0]] = (p * y[axes[1]] - q * x[axes[1]]) / determinant;
+  point[axes[1]] = (q * x[axes[0]] - p * y[axes[0]]) / determinant;
+  point[axes[2]] = z;
   return point;
 }
 
