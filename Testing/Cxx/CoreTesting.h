@@ -428,6 +428,45 @@ double largestDifference(const reference::Image<P>& a, const reference::Image<P>
   return largest;
 }
 
+/// Whether a ray of a perspective image passes the volume, grown by `margin` voxels.
+inline bool meets(const splatting::ShearWarp& image, int u, int v, double margin)
+{
+  double near = image.faces(image.slices().begin).x, far = image.faces(image.slices().end - 1).y;
+  for (int a = 0; a < 2; ++a)
+  {
+    const splatting::Fan& fan = a == 0 ? image.columns() : image.rows();
+    const int n = a == 0 ? u : v;
+    const double low = -0.5 - margin - fan.at[n];
+    const double high = image.size()[a] - 0.5 + margin - fan.at[n];
+    const double first = low / fan.slope[n], second = high / fan.slope[n];
+    near = std::max(near, image.reference() + std::min(first, second));
+    far = std::min(far, image.reference() + std::max(first, second));
+  }
+  return near <= far;
+}
+
+/// More than a few roundings of rays.
+constexpr double GrazeWidth = 1e-5;
+
+/// Takes the pixels off an image that it may count to the volume although their rays pass beside an
+/// edge of it, see ShearImage::spans.
+template <class T, class IsHit>
+void forgetGrazes(const splatting::ShearWarp& image, IsHit&& isHit, reference::Image<T>& found)
+{
+  for (int v = 0; image.isPerspective() && v < image.rayCount().y; ++v)
+  {
+    for (int u = 1; u + 1 < image.rayCount().x; ++u)
+    {
+      if (found.isHit(u, v) && !isHit(u, v) && found.isHit(u - 1, v) &&
+        meets(image, u, v, GrazeWidth))
+      {
+        found.at(u, v) = T();
+        found.hit[found.index(u, v)] = 0;
+      }
+    }
+  }
+}
+
 /// Calls f with a null pointer to each voxel type.
 template <class F>
 void forEachType(F&& f)
@@ -530,6 +569,37 @@ double perspectiveErrorBound(
   const double rounding = std::is_same_v<splatting::Accumulator<T>, float> ? 0x1p-24 : 0x1p-53;
   return (weights[0] + weights[1]) * (high - low) +
     (3 + 5 + 45) * rounding * std::max(std::abs(low), std::abs(high));
+}
+
+/**
+ * Compares pixels with samples of averages over volumes of values from -1 to 1 and NaN, which are
+ * left out: S / W, of the sum S of weighted values and the sum W of their weights. Where these are
+ * off by no more than e each, S / W is off by no more than 2 e / (W - e): what is divided by little
+ * is magnified. Of a ray's slices the least W counts, and where it is next to e nothing is sure.
+ *
+ * @param bound  of averages without NaN: at least 2 e
+ */
+inline void compareWithNaN(Checks& check, const reference::RaySamples<double>& samples,
+  const reference::Image<double>& found, double bound, const std::string& name)
+{
+  if (!check(samples.size() == found.value.size(), name, ": another size"))
+  {
+    return;
+  }
+  for (std::size_t p = 0; p < samples.size(); ++p)
+  {
+    double least = 1.0, value = -std::numeric_limits<double>::infinity();
+    for (const auto& sample : samples[p])
+    {
+      least = std::min(least, sample.weight > 0.0 ? sample.weight : 1.0);
+      value = sample.weight > 0.0 ? std::max(value, sample.value) : value;
+    }
+    const bool sure = least > 100.0 * bound;
+    check(!sure || (found.hit[p] != 0) == std::isfinite(value), name,
+      ": a pixel of NaN, or not; weight ", least);
+    check(!sure || !found.hit[p] || std::abs(found.value[p] - value) <= 2.0 * bound / least, name,
+      ": ", found.value[p], ", not ", value, "; weight ", least);
+  }
 }
 }
 

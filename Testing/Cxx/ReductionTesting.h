@@ -368,11 +368,13 @@ int wrongPixels(const splatting::ShearImage& image, const reference::RaySamples<
     [&](auto* null)
     {
       using P = std::remove_pointer_t<decltype(null)>;
-      const reference::Image<P> found = toReference<P>(image);
+      reference::Image<P> found = toReference<P>(image);
       if (found.value.size() != rays.size())
       {
         return std::max(1, found.width * found.height);
       }
+      forgetGrazes(
+        c.geometry, [&](int u, int v) { return !rays[found.index(u, v)].empty(); }, found);
       int wrong = 0;
       for (int v = 0; v < found.height; ++v)
       {
