@@ -496,6 +496,17 @@ inline void compareRay(const Oracle& oracle, const RayIntervals& intervals, int 
     " to ", last(expected), ": inside from ", stretch.begin, " to ", stretch.end);
 }
 
+/// Whether a ray meets a box, but not a narrower one: it has next to nothing in the box, and
+/// rounding decides in which slice.
+inline bool meetsEdge(const Oracle& oracle, int u, int v, const std::vector<glm::dvec4>& wide,
+  const std::vector<glm::dvec4>& narrow)
+{
+  const glm::dvec3 from = oracle.point(u, v, 0.0);
+  const glm::dvec3 step = oracle.point(u, v, 1.0) - from;
+  const Stretch outer = inside(wide, from, step), inner = inside(narrow, from, step);
+  return outer.begin <= outer.end && !(inner.begin <= inner.end);
+}
+
 /// Calls f with each ray of an image that meets the volume, and the slices that it crosses.
 template <class F>
 void forEachRay(const Oracle& oracle, const ShearWarp& image, F&& f)

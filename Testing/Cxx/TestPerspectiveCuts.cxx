@@ -90,6 +90,11 @@ Scene randomScene(Random& random, int cutters)
   return scene;
 }
 
+bool isWithin(const glm::dvec3& p, const glm::dvec3& low, const glm::dvec3& high)
+{
+  return glm::all(glm::lessThan(low, p)) && glm::all(glm::lessThan(p, high));
+}
+
 /// Half of the boxes have their corners at voxels' corners; some hold the eye, which is at such
 /// places, too.
 void testBoxes(Checks& check)
@@ -124,25 +129,29 @@ void testBoxes(Checks& check)
       int rays = 0, doubtful = 0;
       for (std::size_t image = 0; image < a.images.size(); ++image)
       {
-        const glm::dvec3& eye = a.images[image].eye();
-        const std::array<int, 3>& axes = a.images[image].axes();
-        bool isInside = true;
+        glm::dvec3 eye;
         for (int m = 0; m < 3; ++m)
         {
-          isInside &= eye[m] > low[axes[m]] && eye[m] < high[axes[m]];
+          eye[a.images[image].axes()[m]] = a.images[image].eye()[m];
         }
-        isHolding |= isInside;
-        forEachRay(Oracle(planes, a.images[image]), a.images[image],
+        isHolding |= isWithin(eye, low, high);
+        // For an eye on a face rounding decides whether the box holds it.
+        const bool isOnFace =
+          isWithin(eye, low - width, high + width) && !isWithin(eye, low + width, high - width);
+        const Oracle oracle(planes, a.images[image]);
+        forEachRay(oracle, a.images[image],
           [&](int u, int v, const std::vector<int>& crossed)
           {
             const auto slicesOf = [&](const Found& found)
             { return left(found.intervals[image], u, v, crossed); };
             // Rays that meet an edge are for rounding to decide.
-            const bool isDoubtful = slicesOf(c) != slicesOf(d);
+            const bool isDoubtful = isOnFace || slicesOf(c) != slicesOf(d) ||
+              meetsEdge(oracle, u, v, wide.view.halfSpaces, narrow.view.halfSpaces);
             ++rays;
             doubtful += isDoubtful;
             check(isDoubtful || slicesOf(a) == slicesOf(b), "A surface cuts pixel ", u, ", ", v,
-              " as planes do.");
+              " as planes do. Eye ", eye.x, " ", eye.y, " ", eye.z, ", box ", low.x, " ", low.y,
+              " ", low.z, " to ", high.x, " ", high.y, " ", high.z);
           });
       }
       holding.add(isHolding);

@@ -91,13 +91,16 @@ void testBoxes(Checks& check)
       int rays = 0, doubtful = 0;
       const ShearWarp& image = a.images[0];
       const bool isStraight = image.shear() == glm::dvec2(0.0);
-      forEachRay(Oracle(planes, image), image,
+      const Oracle oracle(planes, image);
+      forEachRay(oracle, image,
         [&](int u, int v, const std::vector<int>& crossed)
         {
           const auto slicesOf = [&](const Found& found)
           { return left(found.intervals[0], u, v, crossed); };
           // Rays along a face are inside; those that meet an edge are for rounding to decide.
-          const bool isDoubtful = !isStraight && slicesOf(c) != slicesOf(d);
+          const bool isDoubtful = !isStraight &&
+            (slicesOf(c) != slicesOf(d) ||
+              meetsEdge(oracle, u, v, wide.view.halfSpaces, narrow.view.halfSpaces));
           ++rays;
           doubtful += isDoubtful;
           check(isDoubtful || slicesOf(a) == slicesOf(b), "A surface cuts pixel ", u, ", ", v,
