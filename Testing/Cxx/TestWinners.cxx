@@ -386,14 +386,15 @@ void testAverages(Checks& check, bool perspective)
     });
 }
 
-/// Footprints in the midst of a volume, which are looked at in another way than those at its rim.
+/// Footprints in the midst of a slice, which are looked at in another way than those at the rim,
+/// and outermost slices, whose voxels are met again beyond them.
 void testWholeFootprints(Checks& check)
 {
-  reference::forScenes("whole footprints", 9,
+  reference::forScenes("whole footprints", 36,
     [&](int n, reference::Random& random)
     {
-      const auto volume =
-        reference::uniformNoise<std::uint8_t>({ 13, 13, 5 }, random.bits(), 0, 255);
+      const std::array<int, 3> size{ 13, 13, random.uniform(1, 5) };
+      const auto volume = reference::uniformNoise<std::uint8_t>(size, random.bits(), 0, 255);
       Scene scene;
       const double shearX = specialShear(random), shearY = specialShear(random);
       scene.view = viewWithShear(volume.size, 2, shearX, shearY);
