@@ -100,6 +100,13 @@ private:
   int Count = 2;
 };
 
+/// A lone sub-pixel has its centre half-way between two voxels, where the narrowest bells end: it
+/// would see nothing.
+int leastSampling(const Kernel& kernel)
+{
+  return kernel.shape == Reconstruction::CosineBell && kernel.radius <= 0.5 ? 2 : 1;
+}
+
 void normalise(WeightTable& weights)
 {
   double sum = 0.0;
@@ -243,7 +250,7 @@ WeightTable closedFormWeights(
 GeneralTable::GeneralTable(
   const Kernel& kernel, const glm::dvec2& shear, int sampling, int perVoxel)
   : Shear(shear),
-    Sampling(sampling * perVoxel),
+    Sampling(std::max(sampling, leastSampling(kernel)) * perVoxel),
     Half(0.5 / perVoxel)
 {
   // The sheared voxel covers support * (1 + |shear|) on either side: 2 x 2 pixels for a box, 4 x 4
