@@ -246,6 +246,7 @@ template <class A>
 struct Shade
 {
   A low, ambient, changeRate;
+  A none; ///< what stands where there is no sample; NaN does so always
   std::int32_t k;
   bool reversed; ///< whether the ray comes from the last slice
   const std::int16_t* first;

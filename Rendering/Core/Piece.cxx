@@ -293,4 +293,18 @@ void decode(ShearImage& image, ScalarType type, Reduction reduction)
   dispatch(
     type, [&](auto* null) { decodeType<std::remove_pointer_t<decltype(null)>>(image, reduction); });
 }
+
+void fillEmpty(ShearImage& image, double low)
+{
+  const auto fill = [&](auto none)
+  {
+    using A = decltype(none);
+    forRows<A>(image,
+      [&](int, A* row) { std::replace(row, row + image.width, none, static_cast<A>(low)); });
+  };
+  if (!image.special)
+  {
+    image.type == ScalarType::Float32 ? fill(leastValue<float>()) : fill(leastValue<double>());
+  }
+}
 }

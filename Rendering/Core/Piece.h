@@ -85,6 +85,9 @@ void blank(
  * @param type  of the image's pixels
  */
 void decode(ShearImage& image, ScalarType type, Reduction reduction);
+
+/// After decode(), the lowest voxel where a depth-shaded image has no sample, as in RayWalk.
+void fillEmpty(ShearImage& image, double low);
 }
 
 #endif

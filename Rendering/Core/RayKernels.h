@@ -230,7 +230,7 @@ void shade(A* __restrict image, const Shade<A>& s, const A* __restrict samples,
     const A place = static_cast<A>(s.reversed ? end - s.k : s.k - begin);
     const A factor = s.ambient + (A(1) - place / static_cast<A>(end - begin + 1)) * s.changeRate;
     const A sample = s.low + (samples[x] - s.low) * factor;
-    const bool counts = (!Masked || mask[x] != 0) & (sample == sample);
+    const bool counts = (!Masked || mask[x] != 0) & (sample == sample) & !(samples[x] == s.none);
     image[x] = (counts & !(sample <= image[x])) ? sample : image[x];
   }
 }

@@ -247,7 +247,8 @@ private:
   {
     const double low = this->Shared.range.low;
     return { std::isfinite(low) ? static_cast<A>(low) - this->Base : A(0),
-      static_cast<A>(this->Settings.ambient), static_cast<A>(this->Settings.changeRate), k,
+      static_cast<A>(this->Settings.ambient), static_cast<A>(this->Settings.changeRate),
+      this->Shared.image.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>(), k,
       this->Shared.geometry.reversed(), this->State.crossed.first(v) + pixels.begin,
       this->State.crossed.last(v) + pixels.begin };
   }
@@ -269,12 +270,20 @@ private:
     }
   }
 
+  /// In exact mode cuts can leave a ray slices in which it passes beside the field: then there is
+  /// no sample, and the pixel shows the lowest voxel, as that of a global maximum does.
   void addBase(int v0, int v1) const
   {
     const WorksheetLoops<A>& loops = this->Shared.kernels;
     ShearImage& image = this->Shared.image;
-    loops.finish(image.row<A>(v0), this->Base, leastValue<A>(), greatestValue<A>(),
-      std::ptrdiff_t(v1 - v0) * image.width);
+    A* const begin = image.row<A>(v0);
+    const std::ptrdiff_t count = std::ptrdiff_t(v1 - v0) * image.width;
+    loops.finish(begin, this->Base, leastValue<A>(), greatestValue<A>(), count);
+    // Pixels of a piece wait for the others' samples.
+    if (&this->Shared.geometry == &this->Shared.whole && !image.special)
+    {
+      std::replace(begin, begin + count, leastValue<A>(), static_cast<A>(this->Shared.range.low));
+    }
   }
 
   const Frame& Shared;

@@ -430,6 +430,10 @@ void ComponentProjector::Exchange(const std::vector<splatting::ShearWarp>& geome
     for (Channel& channel : this->Channels)
     {
       this->Ranks->Reduce(channel.Images[n], geometries[n], settings.reduction);
+      if (settings.reduction == splatting::Reduction::DepthShaded)
+      {
+        splatting::fillEmpty(channel.Images[n], channel.Range.low);
+      }
       this->OutlineWhole(channel, n, geometries[n], settings, cuts[n]);
     }
   }

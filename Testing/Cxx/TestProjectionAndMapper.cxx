@@ -56,7 +56,8 @@ double largestDifference(stage::Stage& stage, vtkImageData* projection)
     for (int x = 0; x < Width; ++x)
     {
       const double value = projection->GetScalarComponentAsDouble(x, y, 0, 0);
-      largest = std::max(largest, std::abs(value - gray.at(x, y)));
+      const double difference = std::abs(value - gray.at(x, y));
+      largest = difference <= largest ? largest : difference; // NaN counts
     }
   }
   return largest;
@@ -103,6 +104,59 @@ bool sameLocations(vtkImageData* a, vtkImageData* b)
   }
   return wrong == 0 && samples > 0;
 }
+
+/// A mode and kernel by number, the rest at random.
+void chooseAtRandom(
+  vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, int n, reference::Random& random)
+{
+  mapper->SetQualityMode(n % 4);
+  mapper->SetKernel(n / 3 % 2);
+  mapper->SetBlendMode(random.uniform(1, 3));
+  mapper->SetMaximumType(random.uniform(0, 2));
+  mapper->SetLocalMaximumThreshold(100.0);
+  mapper->SetSlab(random.uniform(0, 2) == 0);
+  mapper->SetSlabCenter(image->GetCenter());
+  mapper->SetSlabThickness(20.0);
+  mapper->SetCropping(random.uniform(0, 2) == 0);
+  mapper->SetCroppingRegionFlags(VTK_CROP_INVERTED_CROSS);
+  const double* const b = image->GetBounds();
+  mapper->SetCroppingRegionPlanes(0.7 * b[0] + 0.3 * b[1], 0.2 * b[0] + 0.8 * b[1],
+    0.6 * b[2] + 0.4 * b[3], 0.3 * b[2] + 0.7 * b[3], 0.6 * b[4] + 0.4 * b[5],
+    0.3 * b[4] + 0.7 * b[5]);
+  mapper->SetRecordLocations(mapper->GetBlendMode() != vtkVolumeMapper::AVERAGE_INTENSITY_BLEND);
+}
+
+/// A depth-shaded maximum without shades is the maximum, also where cuts leave a ray nothing of
+/// what exact mode sees, and whatever shades would be.
+void testWithoutShades(
+  vtkSplattingMIPProjection* filter, const std::string& view, stage::Checks& check)
+{
+  filter->SetMaximumType(vtkSplattingMIPProjection::GLOBAL);
+  filter->Update();
+  vtkNew<vtkImageData> maximum;
+  maximum->DeepCopy(filter->GetOutput());
+  const auto difference = [&](double ambient)
+  {
+    filter->SetMaximumType(vtkSplattingMIPProjection::DEPTH_SHADED);
+    filter->SetDepthShadingAmbient(ambient);
+    filter->SetDepthShadingChangeRate(0.0);
+    filter->Update();
+    double largest = 0.0;
+    for (vtkIdType n = 0; n < maximum->GetNumberOfPoints(); ++n)
+    {
+      const double off = std::abs(maximum->GetPointData()->GetScalars()->GetComponent(n, 0) -
+        filter->GetOutput()->GetPointData()->GetScalars()->GetComponent(n, 0));
+      largest = off <= largest ? largest : off;
+    }
+    return largest;
+  };
+  // The lowest voxel is subtracted and added again, by each of four pixels that are interpolated.
+  check(difference(1.0) <= 255.0 * 8.0 * 0x1p-24, "without shades it is the maximum" + view);
+  // Bytes times -1 have the lowest one for their maximum, or less where rays see no such voxel.
+  check(difference(-1.0) <= 2.0 * 255.0, "what makes bright samples dark" + view + " is finite");
+  filter->SetDepthShadingAmbient(0.3);
+  filter->SetDepthShadingChangeRate(0.7);
+}
 }
 
 int TestProjectionAndMapper(int, char*[])
@@ -120,42 +174,36 @@ int TestProjectionAndMapper(int, char*[])
   filter->SetInputData(image);
   filter->SetOutputSize(Width, Height);
   double worst = 0.0;
-  for (int n = 0; n < 48; ++n)
-  {
-    stage.viewAngle = n % 3 == 2 ? 35.0 : 0.0;
-    stage.look({ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(0.1, 1.0) },
-      { 0.1, 1.0, 0.2 }, random.uniform(0.6, 1.2));
-    mapper->SetQualityMode(n % 4);
-    mapper->SetKernel(n / 3 % 2);
-    mapper->SetBlendMode(random.uniform(1, 3));
-    mapper->SetMaximumType(random.uniform(0, 2));
-    mapper->SetLocalMaximumThreshold(100.0);
-    mapper->SetSlab(random.uniform(0, 2) == 0);
-    mapper->SetSlabCenter(image->GetCenter());
-    mapper->SetSlabThickness(20.0);
-    mapper->SetCropping(random.uniform(0, 2) == 0);
-    mapper->SetCroppingRegionFlags(VTK_CROP_INVERTED_CROSS);
-    const double* const b = image->GetBounds();
-    mapper->SetCroppingRegionPlanes(0.7 * b[0] + 0.3 * b[1], 0.2 * b[0] + 0.8 * b[1],
-      0.6 * b[2] + 0.4 * b[3], 0.3 * b[2] + 0.7 * b[3], 0.6 * b[4] + 0.4 * b[5],
-      0.3 * b[4] + 0.7 * b[5]);
-    mapper->SetRecordLocations(mapper->GetBlendMode() != vtkVolumeMapper::AVERAGE_INTENSITY_BLEND);
-    copyChoices(mapper, filter);
-    filter->SetCamera(stage.renderer->GetActiveCamera());
-    filter->Update();
-    const double difference = largestDifference(stage, filter->GetOutput());
-    worst = std::max(worst, difference);
-    const std::string view = " of view " + std::to_string(n) + ", mode " +
-      std::to_string(mapper->GetQualityMode()) + ", blend " +
-      std::to_string(mapper->GetBlendMode()) + ", type " + std::to_string(mapper->GetMaximumType());
-    // Half a level, 1/16 of one that the table has, and what places in the picture are rounded by.
-    check(difference < 0.6, "pictures" + view + " differ by " + std::to_string(difference));
-    check(sameShearImages(filter->GetShearImage(), mapper->GetShearImage()),
-      "shear images" + view + " are the same");
-    check(
-      !mapper->GetRecordLocations() || sameLocations(filter->GetOutput(), mapper->GetLocations()),
-      "locations" + view + " are the same");
-  }
+  reference::forScenes("views", 48,
+    [&](int n, reference::Random& own)
+    {
+      stage.viewAngle = n % 3 == 2 ? 35.0 : 0.0;
+      const stage::Vector direction = { own.uniform(-1.0, 1.0), own.uniform(-1.0, 1.0),
+        own.uniform(0.1, 1.0) };
+      stage.look(direction, { 0.1, 1.0, 0.2 }, own.uniform(0.6, 1.2));
+      chooseAtRandom(mapper, image, n, own);
+      copyChoices(mapper, filter);
+      filter->SetCamera(stage.renderer->GetActiveCamera());
+      filter->Update();
+      const double difference = largestDifference(stage, filter->GetOutput());
+      worst = std::max(worst, difference);
+      const std::string view = " of view " + std::to_string(n) + ", mode " +
+        std::to_string(mapper->GetQualityMode()) + ", blend " +
+        std::to_string(mapper->GetBlendMode()) + ", type " +
+        std::to_string(mapper->GetMaximumType());
+      // Half a level, 1/16 of one that the table has, and what places in the picture are rounded
+      // by.
+      check(difference < 0.6, "pictures" + view + " differ by " + std::to_string(difference));
+      check(sameShearImages(filter->GetShearImage(), mapper->GetShearImage()),
+        "shear images" + view + " are the same");
+      check(
+        !mapper->GetRecordLocations() || sameLocations(filter->GetOutput(), mapper->GetLocations()),
+        "locations" + view + " are the same");
+      if (mapper->GetBlendMode() == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND)
+      {
+        testWithoutShades(filter, view, check);
+      }
+    });
   std::cout << "largest difference " << worst << " gray levels\n";
   return check.exitCode();
 }
