@@ -59,11 +59,16 @@ inline void placeAtRandom(vtkImageData* image, reference::Random& random)
     extent[2 * a] = first;
   }
   image->SetExtent(extent);
-  image->SetSpacing(random.uniform(0.5, 2.0), random.uniform(0.5, 2.0), random.uniform(0.5, 2.0));
-  image->SetOrigin(
-    random.uniform(-50.0, 50.0), random.uniform(-50.0, 50.0), random.uniform(-50.0, 50.0));
-  const glm::dmat4 turn =
-    glm::rotate(glm::dmat4(1.0), random.uniform(0.0, 6.3), randomDirection(random));
+  double spacing[3], origin[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    spacing[a] = random.uniform(0.5, 2.0);
+    origin[a] = random.uniform(-50.0, 50.0);
+  }
+  image->SetSpacing(spacing);
+  image->SetOrigin(origin);
+  const double angle = random.uniform(0.0, 6.3);
+  const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), angle, randomDirection(random));
   for (int r = 0; r < 3; ++r)
   {
     for (int c = 0; c < 3; ++c)

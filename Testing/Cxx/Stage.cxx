@@ -269,9 +269,14 @@ void placeAtRandom(vtkImageData* image, reference::Random& random)
     extent[2 * a + 1] = extent[2 * a] + size[a] - 1;
   }
   image->SetExtent(extent);
-  image->SetSpacing(random.uniform(0.6, 1.4), random.uniform(0.6, 1.4), random.uniform(0.6, 1.4));
-  image->SetOrigin(
-    random.uniform(-90.0, 90.0), random.uniform(-90.0, 90.0), random.uniform(-90.0, 90.0));
+  Vector spacing, origin;
+  for (int a = 0; a < 3; ++a)
+  {
+    spacing[a] = random.uniform(0.6, 1.4);
+    origin[a] = random.uniform(-90.0, 90.0);
+  }
+  image->SetSpacing(spacing.data());
+  image->SetOrigin(origin.data());
 }
 
 //------------------------------------------------------------------------------

@@ -67,31 +67,31 @@ void testSlices(Checks& check, Filter* turn, vtkImageData* image, vtkIdType proj
 
 void testViews(Checks& check)
 {
-  reference::Random random(5);
-  for (int n = 0; n < 4; ++n)
-  {
-    const auto image = someImage(random);
-    const auto turn = projectiontesting::projectionOf(image);
-    turn->SetOutputSize(40, 32);
-    turn->SetQualityMode(n);
-    turn->SetNumberOfViews(9);
-    turn->SetBackgroundValue(-1024.0);
-    testSlices(check, turn, image, 9);
-    turn->SetNumberOfViews(12); // opposite views share projections
-    testSlices(check, turn, image, 6);
-    turn->SlabOn();
-    turn->SetSlabThickness(5.0);
-    turn->SetSlabCenter(image->GetCenter());
-    testSlices(check, turn, image, 6);
-    turn->SlabOff();
-    turn->SetMaximumTypeToDepthShaded(); // but not where the viewer's side matters
-    testSlices(check, turn, image, 12);
-    turn->SetMaximumTypeToGlobal();
-    turn->SetTotalAngle(-90.0);
-    turn->SetRotationAxis(0.3, -0.2, 1.0);
-    turn->SetOutputSpacing(0.7, 1.1);
-    testSlices(check, turn, image, 12);
-  }
+  reference::forScenes("turns", 4,
+    [&](int n, reference::Random& random)
+    {
+      const auto image = someImage(random);
+      const auto turn = projectiontesting::projectionOf(image);
+      turn->SetOutputSize(40, 32);
+      turn->SetQualityMode(n);
+      turn->SetNumberOfViews(9);
+      turn->SetBackgroundValue(-1024.0);
+      testSlices(check, turn, image, 9);
+      turn->SetNumberOfViews(12); // opposite views share projections
+      testSlices(check, turn, image, 6);
+      turn->SlabOn();
+      turn->SetSlabThickness(5.0);
+      turn->SetSlabCenter(image->GetCenter());
+      testSlices(check, turn, image, 6);
+      turn->SlabOff();
+      turn->SetMaximumTypeToDepthShaded(); // but not where the viewer's side matters
+      testSlices(check, turn, image, 12);
+      turn->SetMaximumTypeToGlobal();
+      turn->SetTotalAngle(-90.0);
+      turn->SetRotationAxis(0.3, -0.2, 1.0);
+      turn->SetOutputSpacing(0.7, 1.1);
+      testSlices(check, turn, image, 12);
+    });
 }
 
 void testPerspective(Checks& check)
