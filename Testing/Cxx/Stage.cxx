@@ -17,6 +17,7 @@
 #include "vtkPointData.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkTesting.h"
 #include "vtkThreadedImageAlgorithm.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
@@ -44,11 +45,18 @@ bool Checks::operator()(bool condition, const std::string& what)
 }
 
 //------------------------------------------------------------------------------
+void Checks::skip(const std::string& file)
+{
+  std::cout << "skipped: no data (" << file << ")" << std::endl;
+  this->Skips = true;
+}
+
+//------------------------------------------------------------------------------
 int Checks::exitCode()
 {
   (*this)(reference::onlyScene().empty() || reference::scenesRun() > 0,
     "there is no scene " + reference::onlyScene());
-  return this->Failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return this->Failures > 0 ? EXIT_FAILURE : this->Skips ? VTK_SKIP_RETURN_CODE : EXIT_SUCCESS;
 }
 
 //------------------------------------------------------------------------------

@@ -47,10 +47,18 @@ public:
    * Returns the condition.
    */
   bool operator()(bool condition, const std::string& what);
+  /**
+   * Says that something is left out, as this file of test data is missing.
+   */
+  void skip(const std::string& file);
+  /**
+   * Of a test that skips something and has nothing else to say, VTK_SKIP_RETURN_CODE.
+   */
   int exitCode();
 
 private:
   int Failures = 0;
+  bool Skips = false;
 };
 
 /**

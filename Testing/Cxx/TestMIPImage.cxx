@@ -234,11 +234,12 @@ int TestMIPImage(int argc, char* argv[])
     std::cout << "There is no scene " << sceneName << " with mode " << mode << "." << std::endl;
     return EXIT_FAILURE;
   }
+  stage::Checks check;
   const vtkSmartPointer<vtkImageData> image = imageOf(*scene, argc, argv);
   if (!image)
   {
-    std::cout << "skipped: no data (" << scene->file << ")" << std::endl;
-    return VTK_SKIP_RETURN_CODE;
+    check.skip(scene->file);
+    return check.exitCode();
   }
   stage::Stage stage(Size, Size);
   stage.setGrayRamp(scene->black, scene->white);
@@ -254,7 +255,6 @@ int TestMIPImage(int argc, char* argv[])
   mapper->SetQualityMode(mode == "preview" ? vtkSplattingMIPVolumeMapper::PREVIEW
       : mode == "standard"                 ? vtkSplattingMIPVolumeMapper::STANDARD
                                            : vtkSplattingMIPVolumeMapper::HIGH);
-  stage::Checks check;
   check(mapper->GetQualityModeAsString() == mode, "The mode is named as it is.");
   judge(*expected, readBaseline(stage::argument(argc, argv, "-V")), stage.gray(), check);
   check(vtkRegressionTestImageThreshold(stage.window, threshold(*expected)) == vtkTesting::PASSED,
