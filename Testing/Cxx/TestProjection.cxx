@@ -112,6 +112,18 @@ reference::Outcome<double> reduced(
   }
 }
 
+/// Whether a half-space leaves out some of a voxel. One that does not cuts nothing: slices count of
+/// which a ray crosses voxels, although it may cross their middle outside the volume.
+bool cutsVoxels(const glm::dvec4& h, vtkImageData* image)
+{
+  double least = h.w;
+  for (int a = 0; a < 3; ++a)
+  {
+    least += std::min(-0.5 * h[a], (image->GetDimensions()[a] - 0.5) * h[a]);
+  }
+  return least < 0.0;
+}
+
 /// The filter's slab and cropping in index space.
 reference::RayCuts cutsOf(Filter* filter, vtkImageData* image)
 {
@@ -126,7 +138,10 @@ reference::RayCuts cutsOf(Filter* filter, vtkImageData* image)
       const glm::dvec4 h =
         glm::dvec4(side * normal, 0.5 * filter->GetSlabThickness() - side * place) *
         indexToWorld(image);
-      cuts.halfSpaces.push_back({ h.x, h.y, h.z, h.w });
+      if (cutsVoxels(h, image))
+      {
+        cuts.halfSpaces.push_back({ h.x, h.y, h.z, h.w });
+      }
     }
   }
   if (filter->GetCropping())

@@ -356,6 +356,7 @@ int TestScalarGrids(int, char*[])
       testUnequalSteps(false, stage, check);
       testModifiedCoordinates(stage, check);
     }
+    stage.viewAngle = 0.0;
     testLimit(stage, check);
     testLimitOfAxis(stage, check);
   }
