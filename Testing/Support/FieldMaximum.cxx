@@ -10,7 +10,7 @@ namespace reference
 {
 namespace
 {
-double fieldOnRay(const Volume<double>& volume, const FieldRay& ray, double z)
+std::array<double, 3> pointOnRay(const FieldRay& ray, double z)
 {
   std::array<double, 3> point;
   point[ray.axes[2]] = z;
@@ -18,7 +18,12 @@ double fieldOnRay(const Volume<double>& volume, const FieldRay& ray, double z)
   {
     point[ray.axes[a]] = ray.at[a] + ray.slope[a] * (z - ray.start);
   }
-  return fieldAt(volume, point);
+  return point;
+}
+
+double fieldOnRay(const Volume<double>& volume, const FieldRay& ray, double z)
+{
+  return fieldAt(volume, pointOnRay(ray, z));
 }
 }
 
@@ -102,6 +107,30 @@ double maximumInCell(const Volume<double>& volume, const FieldRay& ray, double n
 }
 }
 
+namespace
+{
+/// Whether one of the voxels about a point of the ray is larger, or no number: no mean of them is
+/// larger than they are.
+bool mayExceed(const Volume<double>& volume, const FieldRay& ray, double z, double value)
+{
+  const std::array<double, 3> point = pointOnRay(ray, z);
+  for (int n = 0; n < 8; ++n)
+  {
+    std::array<int, 3> voxel;
+    for (int a = 0; a < 3; ++a)
+    {
+      voxel[a] =
+        std::clamp(static_cast<int>(std::floor(point[a])) + (n >> a & 1), 0, volume.size[a] - 1);
+    }
+    if (!(volume.at(voxel) <= value))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+}
+
 double fieldMaximum(const Volume<double>& volume, const FieldRay& ray, double near, double far)
 {
   std::vector<double> depths{ near, far };
@@ -122,7 +151,10 @@ double fieldMaximum(const Volume<double>& volume, const FieldRay& ray, double ne
   double largest = fieldOnRay(volume, ray, near);
   for (std::size_t n = 0; n + 1 < depths.size(); ++n)
   {
-    largest = std::max(largest, maximumInCell(volume, ray, depths[n], depths[n + 1]));
+    if (mayExceed(volume, ray, 0.5 * (depths[n] + depths[n + 1]), largest))
+    {
+      largest = std::max(largest, maximumInCell(volume, ray, depths[n], depths[n + 1]));
+    }
   }
   return largest;
 }
