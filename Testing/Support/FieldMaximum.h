@@ -4,11 +4,10 @@
  * @file    FieldMaximum.h
  * @brief   the maximum of the trilinear field along rays, by brute force
  *
- * The field is sampled at 65 points of each cell that a ray passes (unless no voxel of it is larger
- * than what has been found), and refined where a sample is
- * no less than its neighbours. Between samples a cubic's maximum is missed only if a minimum lies
- * there, too, that differs by no more than 64^-3 of the cubic's leading coefficient. Shares no code
- * with the module.
+ * The field is sampled at 65 points of each cell that a ray passes, unless no voxel of it is larger
+ * than what has been found, and refined where a sample is no less than its neighbours. Between
+ * samples a cubic's maximum is missed only if a minimum lies there, too, that differs by no more
+ * than 64^-3 of the cubic's leading coefficient. Shares no code with the module.
  */
 #ifndef reference_FieldMaximum_h
 #define reference_FieldMaximum_h
