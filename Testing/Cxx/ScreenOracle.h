@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -150,11 +151,10 @@ public:
   /// two axes are so nearly as near to the rays that either may be the principal one.
   bool look(Stage& stage, vtkImageData* image, vtkSplattingMIPVolumeMapper* mapper)
   {
-    this->Rays.clear();
     this->Known.clear();
     this->Mapper = mapper;
-    this->Rays.emplace_back(stage, image);
-    const auto begin = this->Rays[0].begin(0, 0), end = this->Rays[0].end(0, 0);
+    this->Rays.emplace(stage, image);
+    const auto begin = this->Rays->begin(0, 0), end = this->Rays->end(0, 0);
     std::array<double, 3> d;
     for (int a = 0; a < 3; ++a)
     {
@@ -176,14 +176,13 @@ public:
       largest = std::max(largest, std::abs(shear));
     }
     this->Grid = reference::makeShearGrid(this->Volume.size, this->View);
-    this->Cutter.clear();
-    this->Cutter.emplace_back(this->Grid, this->View, croppingOf(mapper, image));
+    this->Cutter.emplace(this->Grid, this->View, croppingOf(mapper, image));
     return largest < 0.999;
   }
 
   Pixel pixel(int x, int y)
   {
-    const auto point = this->Rays[0].begin(x, y);
+    const auto point = this->Rays->begin(x, y);
     Pixel result;
     const double inside = this->lengthInside(point);
     result.isCertain = std::abs(inside) > 1e-5;
@@ -291,7 +290,7 @@ private:
         samples.push_back(this->sampleAt(u, v, slice, low, high));
       }
     }
-    const auto cut = reference::cutRay(samples, this->Cutter[0], u, v, this->Direction[k] < 0.0);
+    const auto cut = reference::cutRay(samples, *this->Cutter, u, v, this->Direction[k] < 0.0);
     return this->Known
       .emplace(
         std::make_pair(u, v), Ray{ !crossed.empty(), reduced(cut, this->Lowest, this->Mapper) })
@@ -303,8 +302,8 @@ private:
   const Bytes Least, Most;
   const double Lowest;
   vtkSplattingMIPVolumeMapper* Mapper = nullptr;
-  std::vector<ScreenRays> Rays;             // one
-  std::vector<reference::RayCutter> Cutter; // one
+  std::optional<ScreenRays> Rays;
+  std::optional<reference::RayCutter> Cutter;
   std::array<double, 3> Direction;
   reference::ShearView View;
   reference::ShearGrid Grid;
