@@ -288,15 +288,23 @@ void placeAtRandom(vtkImageData* image, reference::Random& random)
 }
 
 //------------------------------------------------------------------------------
-reference::Volume<std::uint8_t> blobsAndTubes(const std::array<int, 3>& size, int count)
+reference::Volume<std::uint8_t> blobsAndTubes(
+  const std::array<int, 3>& size, int count, reference::Random& random)
 {
   reference::Volume<std::uint8_t> volume(size);
-  reference::Random random(3);
   for (int number = 0; number < count; ++number)
   {
     draw(volume, randomCapsule(random, size, number));
   }
   return volume;
+}
+
+//------------------------------------------------------------------------------
+reference::Volume<std::uint8_t> blobsAndTubes(const std::array<int, 3>& size, int count)
+{
+  // What the environment adds is taken away again.
+  reference::Random random(3 - reference::Random::shift());
+  return blobsAndTubes(size, count, random);
 }
 
 //------------------------------------------------------------------------------

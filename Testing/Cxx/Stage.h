@@ -139,6 +139,12 @@ void placeAtRandom(vtkImageData* image, reference::Random& random);
  * nothing within 5 voxels of the border, so that it does not matter where rays end. At least 32
  * voxels along each axis.
  */
+reference::Volume<std::uint8_t> blobsAndTubes(
+  const std::array<int, 3>& size, int count, reference::Random& random);
+/**
+ * The same ones whatever SPLATTINGMIP_TEST_SEED is, for tests that know what their pictures look
+ * like.
+ */
 reference::Volume<std::uint8_t> blobsAndTubes(const std::array<int, 3>& size, int count);
 
 vtkSmartPointer<vtkSplattingMIPVolumeMapper> splatting(vtkImageData* image);

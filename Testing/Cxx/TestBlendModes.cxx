@@ -65,7 +65,9 @@ void compareWithDefinition(stage::Stage& stage, vtkImageData* image, Mapper* map
 /// negative. Previews show structures up to half a voxel off, at the voxels that rays cross.
 void testMinimumAgainstRayCaster(stage::Stage& stage, stage::Checks& check)
 {
-  const Bytes positive = stage::blobsAndTubes({ 72, 80, 88 }, 60), volume = negative(positive);
+  reference::Random blobs(3);
+  const Bytes positive = stage::blobsAndTubes({ 72, 80, 88 }, 60, blobs);
+  const Bytes volume = negative(positive);
   const std::array<stage::Envelope, 3> envelopes = { stage::Envelope(positive, Mapper::PREVIEW),
     stage::Envelope(positive, Mapper::STANDARD), stage::Envelope(positive, Mapper::HIGH) };
   stage::Definition definition(volume);
@@ -222,7 +224,8 @@ struct SlicesOfRay
  */
 void testAverageAgainstRayCaster(stage::Stage& stage, stage::Checks& check)
 {
-  const Bytes volume = stage::blobsAndTubes({ 72, 80, 88 }, 60);
+  reference::Random blobs(3);
+  const Bytes volume = stage::blobsAndTubes({ 72, 80, 88 }, 60, blobs);
   stage::Definition definition(volume);
   const auto image = stage::toImageData(volume);
   const double white = *std::max_element(volume.voxels.begin(), volume.voxels.end());

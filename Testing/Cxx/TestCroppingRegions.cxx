@@ -121,7 +121,8 @@ void compareWithDefinition(stage::Stage& stage, vtkImageData* image, Mapper* map
 
 void testAgainstRayCasters(stage::Stage& stage, stage::Checks& check)
 {
-  const Bytes volume = stage::blobsAndTubes({ 64, 56, 60 }, 40);
+  reference::Random blobs(3);
+  const Bytes volume = stage::blobsAndTubes({ 64, 56, 60 }, 40, blobs);
   const auto image = stage::toImageData(volume);
   stage::Definition definition(volume);
   const int named[] = { VTK_CROP_SUBVOLUME, VTK_CROP_FENCE, VTK_CROP_INVERTED_FENCE, VTK_CROP_CROSS,

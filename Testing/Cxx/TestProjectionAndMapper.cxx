@@ -163,7 +163,7 @@ int TestProjectionAndMapper(int, char*[])
 {
   stage::Checks check;
   reference::Random random(11);
-  const auto image = stage::toImageData(stage::blobsAndTubes({ 40, 36, 44 }, 12));
+  const auto image = stage::toImageData(stage::blobsAndTubes({ 40, 36, 44 }, 12, random));
   stage::placeAtRandom(image, random);
   const auto mapper = stage::splatting(image);
   mapper->AutoAdjustSampleDistancesOff();

@@ -466,7 +466,8 @@ void testDirectionMatrices(
 int TestRegistration(int, char*[])
 {
   stage::Checks check;
-  const auto volume = stage::blobsAndTubes({ 72, 80, 88 }, 60);
+  reference::Random random(3);
+  const auto volume = stage::blobsAndTubes({ 72, 80, 88 }, 60, random);
   const auto image = stage::toImageData(volume);
   stage::Stage stage(Width, Height);
   testPropMatrices(stage, volume, image, check);

@@ -41,7 +41,10 @@ inline std::uint64_t seedShift()
 class Random
 {
 public:
-  explicit Random(std::uint64_t seed) : State(seed + seedShift() * 1000003) {}
+  explicit Random(std::uint64_t seed) : State(seed + shift()) {}
+
+  /// What SPLATTINGMIP_TEST_SEED adds to all seeds.
+  static std::uint64_t shift() { return seedShift() * 1000003; }
 
   std::uint64_t bits()
   {
