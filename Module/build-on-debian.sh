@@ -23,6 +23,7 @@ packages=(
   libgif-dev                                   # its turns as GIF
   libavformat-dev libavcodec-dev libavutil-dev # its turns as AVI
   libbenchmark-dev                             # the benchmark
+  dpkg-dev file help2man                       # Debian packages
   python3-numpy                                # tests and examples in Python
   python3-vedo python3-vedo-examples           # programs of others, for the tests
   xvfb xauth libgl1-mesa-dri                   # OpenGL without a display

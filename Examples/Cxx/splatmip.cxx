@@ -430,7 +430,8 @@ void Run(const Options& options)
 
 int main(int argc, char* argv[])
 {
-  CLI::App app("Maximum intensity projection of a volume by splatting in sheared object space");
+  CLI::App app(
+    "Maximum intensity projection of a volume by splatting in sheared object space", "splatmip");
   try
   {
     Run(ParseOptions(app, argc, argv));

@@ -8,13 +8,13 @@ roots=${SPLATTINGMIP_ROOTS:-/var/cache/splattingmip}
 
 # make_root NAME SUITE [--MMDEBSTRAP_OPTION=VALUE ...] PACKAGE ...
 #
-# Makes $roots/NAME, a Debian SUITE (such as bookworm) with these packages, unless it is there. What it
+# Makes $roots/NAME, a Debian SUITE (such as bookworm) with these packages (or with apt alone), unless it is there. What it
 # is made of is written down when all is installed: what was interrupted, or is made of something
 # else, is made anew.
 make_root() {
   local root=$roots/$1 suite=$2 list lock options=(--variant=apt)
   shift 2
-  while [[ $1 == --* ]]; do
+  while [[ ${1:-} == --* ]]; do
     options+=("$1")
     shift
   done
@@ -40,11 +40,19 @@ make_root() {
     mkdir -p "$root"
     touch "$root/unfinished"
     mmdebstrap --quiet --mode=root --format=directory --skip=check/empty \
-      --dpkgopt=force-unsafe-io "${options[@]}" --include="$(IFS=,; echo "$*")" "$suite" "$root"
+      --dpkgopt=force-unsafe-io "${options[@]}" ${*:+--include="$(IFS=,; echo "$*")"} "$suite" "$root"
     echo "$list" >"$root/installed-packages"
     rm "$root/unfinished"
   fi
   flock -u "$lock"
+}
+
+# copy_root FROM TO
+#
+# Makes $roots/TO a copy of $roots/FROM, whatever it was before.
+copy_root() {
+  rm -rf --one-file-system "${roots:?}/$2"
+  cp -a --reflink=auto "$roots/$1" "$roots/$2"
 }
 
 # in_root NAME COMMAND [ARGUMENT ...]
