@@ -8,9 +8,9 @@ roots=${SPLATTINGMIP_ROOTS:-/var/cache/splattingmip}
 
 # make_root NAME SUITE [--MMDEBSTRAP_OPTION=VALUE ...] PACKAGE ...
 #
-# Makes $roots/NAME, a Debian SUITE (such as bookworm) with these packages (or with apt alone), unless it is there. What it
-# is made of is written down when all is installed: what was interrupted, or is made of something
-# else, is made anew.
+# Makes $roots/NAME, a Debian SUITE (such as bookworm) with these packages, or with apt alone, unless it
+# is there. What it is made of is written down when all is installed: what was interrupted, or is made
+# of something else, is made anew.
 make_root() {
   local root=$roots/$1 suite=$2 list lock options=(--variant=apt)
   shift 2
