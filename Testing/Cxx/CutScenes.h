@@ -298,17 +298,17 @@ private:
     const glm::dvec4 farthest = this->ClipToIndex * glm::dvec4(place, 1.0, 1.0);
     const glm::dvec3 from = glm::dvec3(nearest) / nearest.w;
     const glm::dvec3 direction = glm::dvec3(farthest) / farthest.w - from;
-    // Rays enter and leave through the planes that they do not run along, beside the body, too.
-    std::vector<glm::dvec4> crossed;
-    std::copy_if(body.begin(), body.end(), std::back_inserter(crossed),
-      [&](const glm::dvec4& h)
-      {
-        const glm::dvec3 normal(h);
-        return std::abs(glm::dot(normal, direction)) >
-          1e-9 * glm::length(normal) * glm::length(direction);
-      });
     if (!this->Geometry.isPerspective())
     {
+      // Rays enter and leave through the planes that they do not run along, beside the body, too.
+      std::vector<glm::dvec4> crossed;
+      std::copy_if(body.begin(), body.end(), std::back_inserter(crossed),
+        [&](const glm::dvec4& h)
+        {
+          const glm::dvec3 normal(h);
+          return std::abs(glm::dot(normal, direction)) >
+            1e-9 * glm::length(normal) * glm::length(direction);
+        });
       return inside(crossed, from, direction);
     }
     const double w0 = (this->Source.view.indexToClip * glm::dvec4(from, 1.0)).w;
@@ -317,10 +317,10 @@ private:
     const auto depthAt = [&](double t)
     { return t < Infinity ? this->depthOf(glm::dvec4(from + t * direction, 1.0)) : t; };
     Stretch result{ -Infinity, Infinity };
-    for (const glm::dvec4& h : crossed)
+    for (const glm::dvec4& h : body)
     {
       // From the eye on: what is outside there is entered, perhaps, what is inside is left, and
-      // planes through the eye are neither.
+      // planes through the eye are neither. Rays along a plane never come to it.
       const Stretch one = inside({ h }, from, direction);
       const double value = glm::dot(h, glm::dvec4(from + eye * direction, 1.0));
       if (value < -1e-9)
