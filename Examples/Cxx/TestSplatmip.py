@@ -248,6 +248,31 @@ class TestPictures(SplatmipTest):
         self.assertIn("window 400, level -50", text)
         self.assertNotIn(" ms", text)
 
+    def test_modes(self):
+        """Each mode shows the bright block where it is, and from aslant a picture of its own."""
+        path = write_vti(self.path("a.vti"))
+
+        def show(mode, *arguments):
+            picture, text = self.draw(path, "--mode", mode, *arguments, "--size", "128x128",
+                                      "--window", "1000", "--level", "500", "--output", "a.png")
+            self.assertEqual(picture.GetDimensions(), (128, 128, 1))
+            pixels = vtk_to_numpy(picture.GetPointData().GetScalars())
+            return pixels.reshape(128, 128, -1)[:100, :, 0], text  # without the label
+
+        pictures = set()
+        for mode in ("preview", "standard", "high", "exact"):
+            pixels, text = show(mode, "--azimuth", "0", "--elevation", "0")
+            self.assertRegex(text, rf"(?m)^{mode} .* ms .* ms \((nearest|linear)\)")
+            self.assertGreater(pixels[:50, 66:].max(), 250, mode)
+            # A footprint and the warp reach 2.5 voxels beyond the block.
+            self.assertEqual(pixels[:, :56].max(), 0, mode)
+            self.assertEqual(pixels[66:, :].max(), 0, mode)
+            pixels, text = show(mode, "--azimuth", "20", "--elevation", "10", "--no-timing")
+            self.assertNotIn(" ms", text)
+            self.assertGreater(pixels.max(), 250, mode)
+            pictures.add(pixels.tobytes())
+        self.assertEqual(len(pictures), 4)
+
     def test_version(self):
         result = self.run_program("--version")
         self.assertEqual(result.returncode, 0)

@@ -107,7 +107,9 @@ void DeclareImageOptions(CLI::App& app, Options& options)
       "A .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz file, or the folder of a DICOM "
       "series; without it, a built-in CT of a stented aorta")
     ->type_name("FILE");
-  app.add_option("--mode", options.Mode, "Quality mode, or all three side by side")
+  app
+    .add_option(
+      "--mode", options.Mode, "Quality mode, or preview, standard and high (all) side by side")
     ->check(CLI::IsMember({ "preview", "standard", "high", "exact", "all" }))
     ->type_name("MODE")
     ->capture_default_str();
@@ -269,13 +271,12 @@ private:
 
 void WritePictures(MIPScene& scene, const Options& options)
 {
-  std::vector<int> modes;
-  for (int mode = 0; mode < 3; ++mode)
+  std::vector<int> modes = { vtkSplattingMIPVolumeMapper::PREVIEW,
+    vtkSplattingMIPVolumeMapper::STANDARD, vtkSplattingMIPVolumeMapper::HIGH };
+  if (options.Mode != "all")
   {
-    if (options.Mode == "all" || options.Mode == ModeNames[mode])
-    {
-      modes.push_back(mode);
-    }
+    modes = { static_cast<int>(
+      std::find(ModeNames.begin(), ModeNames.end(), options.Mode) - ModeNames.begin()) };
   }
   std::unique_ptr<TimeTable> table;
   if (!options.NoTiming)
