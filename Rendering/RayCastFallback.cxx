@@ -77,7 +77,7 @@ void RayCastFallback::RenderOnGpu(vtkSplattingMIPVolumeMapper* settings, vtkImag
   copySettings(settings, image, this->GpuMapper.Get());
   this->GpuMapper->SetCroppingRegionPlanes(settings->GetCroppingRegionPlanes());
   this->GpuMapper->SetInputData(image);
-  this->GpuMapper->Render(renderer, volume);
+  this->GpuMapper->Render(renderer, this->StandIn.Volume(volume, renderer));
 }
 
 void RayCastFallback::FindMask(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image,
@@ -109,7 +109,7 @@ void RayCastFallback::Update(
 {
   this->UpdateImage(image);
   this->UpdateMatrix(image, volume);
-  this->Volume->SetProperty(volume->GetProperty());
+  this->Volume->SetProperty(this->StandIn.Property(volume));
   this->UpdateSettings(settings, image);
 }
 

@@ -3,6 +3,7 @@
 #ifndef RayCastFallback_h
 #define RayCastFallback_h
 
+#include "VolumeStandIn.h"
 #include "Warp.h"
 
 #include "vtkNew.h"
@@ -29,7 +30,8 @@ public:
   RayCastFallback();
   ~RayCastFallback();
 
-  /// Render the image's point scalars as the mapper, the volume's property and its matrix ask.
+  /// Render the image's point scalars as the mapper, the volume's property and its matrix ask. The
+  /// property is only read.
   void Render(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, vtkRenderer* renderer,
     vtkVolume* volume);
   /// The picture that Render() would draw: white where it is not transparent. Takes as long.
@@ -54,6 +56,7 @@ private:
   vtkNew<vtkImageData> Image;
   vtkNew<vtkMatrix4x4> Matrix;
   vtkNew<vtkVolume> Volume;
+  VolumeStandIn StandIn;
   // What Image was copied from, and when: the ray caster prepares anew what changes.
   vtkImageData* ImageSource = nullptr;
   vtkMTimeType ImageTime = 0;

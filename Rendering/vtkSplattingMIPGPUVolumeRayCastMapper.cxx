@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSplattingMIPGPUVolumeRayCastMapper.h"
 
+#include "VolumeStandIn.h"
 #include "vtkOpenGLSplattingMIPVolumeMapper.h"
 
 #include "vtkCommand.h"
+#include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
 #include "vtkLogger.h"
@@ -15,6 +17,7 @@
 #include "vtkOutputWindow.h"
 #include "vtkShaderProperty.h"
 #include "vtkVersion.h"
+#include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
@@ -119,7 +122,8 @@ int vtkSplattingMIPGPUVolumeRayCastMapper::GetGlobalQualityMode()
 //------------------------------------------------------------------------------
 vtkSplattingMIPGPUVolumeRayCastMapper::vtkSplattingMIPGPUVolumeRayCastMapper()
   : LastRenderUsedSplatting(false),
-    LoggedReason("")
+    LoggedReason(""),
+    StandIn(new VolumeStandIn)
 {
   this->SplattingMapper->SetQualityMode(globalQualityMode);
   using Self = vtkSplattingMIPGPUVolumeRayCastMapper;
@@ -195,6 +199,30 @@ void vtkSplattingMIPGPUVolumeRayCastMapper::CopySettings()
 }
 
 //------------------------------------------------------------------------------
+// Whether a component is shown by a gray function, which the superclass would replace for good. The
+// volumes of a vtkMultiVolume are VTK's business.
+bool vtkSplattingMIPGPUVolumeRayCastMapper::HasGrays(vtkVolume* vol)
+{
+  int cells = 0;
+  vtkDataArray* const scalars = vol->IsA("vtkMultiVolume")
+    ? nullptr
+    : vtkAbstractVolumeMapper::GetScalars(this->GetInput(0), this->ScalarMode,
+        this->ArrayAccessMode, this->ArrayId, this->ArrayName, cells);
+  vtkVolumeProperty* const property = vol->GetProperty();
+  const int count = !scalars               ? 0
+    : property->GetIndependentComponents() ? scalars->GetNumberOfComponents()
+                                           : 1;
+  for (int i = 0; i < std::min(count, VTK_MAX_VRCOMP); ++i)
+  {
+    if (property->GetColorChannels(i) == 1)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
 // The superclass's Render() has brought the input up to date and invokes the events.
 void vtkSplattingMIPGPUVolumeRayCastMapper::GPURender(vtkRenderer* ren, vtkVolume* vol)
 {
@@ -211,7 +239,7 @@ void vtkSplattingMIPGPUVolumeRayCastMapper::GPURender(vtkRenderer* ren, vtkVolum
   this->LastRenderUsedSplatting = !reason;
   if (reason)
   {
-    this->Superclass::GPURender(ren, vol);
+    this->Superclass::GPURender(ren, this->HasGrays(vol) ? this->StandIn->Volume(vol, ren) : vol);
     return;
   }
   this->SplattingMapper->Render(ren, vol);

@@ -21,6 +21,10 @@
  *   the shader, such as vtkDualDepthPeelingPass;
  * - RenderToImage.
  *
+ * Gray functions are left to the superclass as RGB functions of the same values, in a copy of the
+ * property: it knows no others, and would put one into the property for good. Of a vtkMultiVolume
+ * it gets the properties themselves.
+ *
  * The splatting mapper gets this mapper's input and, before each render, its BlendMode, Cropping,
  * CroppingRegionPlanes, CroppingRegionFlags, ClippingPlanes, ScalarMode, the selected array,
  * FinalColorWindow, FinalColorLevel, AutoAdjustSampleDistances and a binary MaskInput. What does
@@ -57,6 +61,9 @@
 #include "vtkOpenGLGPUVolumeRayCastMapper.h"
 #include "vtkRenderingSplattingMIPModule.h" // for the export macro
 
+#include <memory> // for the stand-in
+
+class VolumeStandIn;
 class vtkOpenGLSplattingMIPVolumeMapper;
 class vtkSplattingMIPVolumeMapper;
 
@@ -117,6 +124,7 @@ protected:
   const char* ReasonNotToSplat(vtkVolume* vol);
 
   void CopySettings();
+  bool HasGrays(vtkVolume* vol);
   void ForwardMessage(vtkObject* caller, unsigned long event, void* text);
   void ForwardProgress(vtkObject* caller, unsigned long event, void* done);
 
@@ -128,6 +136,7 @@ private:
 
   vtkNew<vtkOpenGLSplattingMIPVolumeMapper> SplattingMapper;
   const char* LoggedReason; // what the log says last; "" before
+  std::unique_ptr<VolumeStandIn> StandIn;
 };
 
 #endif

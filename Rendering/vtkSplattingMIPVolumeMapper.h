@@ -27,7 +27,8 @@
  * Other blend modes are passed, with the same settings but slab and bounding surface, to an
  * internal vtkFixedPointVolumeRayCastMapper (COMPOSITE) or vtkGPUVolumeRayCastMapper (the others);
  * a warning says so once. Hidden voxels and NaN have the lowest value there, and cells end at their
- * centres.
+ * centres. They get a copy of the volume's property, in which gray functions are RGB functions of
+ * the same values: VTK's GPU mapper knows no others, and would put one into the property for good.
  *
  * Which scalars: those that ScalarMode, SelectScalarArray and VectorMode choose. Of 1 to 4
  * independent components (vtkVolumeProperty::IndependentComponents) each has a maximum of its own;
