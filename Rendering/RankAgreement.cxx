@@ -10,6 +10,7 @@
 #include "vtkCommunicator.h"
 #include "vtkDataSet.h"
 #include "vtkImageData.h"
+#include "vtkMapper.h" // for VTK_GET_ARRAY_BY_ID
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
@@ -17,6 +18,7 @@
 #include "vtkPlaneCollection.h"
 #include "vtkPolyData.h"
 #include "vtkRenderer.h"
+#include "vtkScalarsToColors.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
@@ -62,6 +64,40 @@ private:
   std::uint64_t Value = 14695981039346656037u;
 };
 
+void addScalars(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+{
+  number.add(mapper->GetScalarMode());
+  number.add(mapper->GetArrayAccessMode());
+  if (mapper->GetArrayAccessMode() == VTK_GET_ARRAY_BY_ID)
+  {
+    number.add(mapper->GetArrayId());
+  }
+  else if (const char* const name = mapper->GetArrayName())
+  {
+    number.add(name, static_cast<int>(std::strlen(name)));
+  }
+  number.add(mapper->GetVectorMode());
+  number.add(mapper->GetVectorComponent());
+}
+
+void addDepthCoding(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+{
+  number.add(mapper->GetDepthCoding());
+  number.add(mapper->GetDepthCodingRange(), 2);
+  if (vtkScalarsToColors* const colors = mapper->GetDepthCodingColors())
+  {
+    constexpr int samples = 64; // all colours of a table would take too long
+    const double* const range = colors->GetRange();
+    number.add(range, 2);
+    for (int n = 0; n <= samples; ++n)
+    {
+      number.add(colors->MapValue(range[0] + (range[1] - range[0]) * n / samples), 4);
+    }
+  }
+}
+
+/// All but DisplayOnRootOnly, which each rank may do as it likes, and IndexMemoryBudget, which
+/// changes no picture.
 void addSettings(vtkSplattingMIPVolumeMapper* mapper, Number& number)
 {
   number.add(mapper->GetBlendMode());
@@ -77,7 +113,15 @@ void addSettings(vtkSplattingMIPVolumeMapper* mapper, Number& number)
   number.add(mapper->GetCullBelowWindow());
   number.add(mapper->GetAutoAdjustSampleDistances());
   number.add(mapper->GetShearImageSampling());
-  number.add(mapper->GetRecordLocations() || mapper->GetDepthCoding() || mapper->GetWriteDepth());
+  number.add(mapper->GetLocalMaximumThreshold());
+  number.add(mapper->GetAverageIPScalarRange(), 2);
+  number.add(mapper->GetAcceleration());
+  number.add(mapper->GetLineTolerance());
+  number.add(mapper->GetEliminateInvisible());
+  number.add(mapper->GetIntermixIntersectingGeometry());
+  number.add(mapper->GetRecordLocations());
+  number.add(mapper->GetWriteDepth());
+  number.add(mapper->GetWriteDepthOpacity());
 }
 
 void addCuts(vtkSplattingMIPVolumeMapper* mapper, Number& number)
@@ -215,6 +259,8 @@ std::uint64_t viewNumber(
   number.add(volume->GetMatrix()->GetData(), 16);
   number.add(volume->GetProperty()->GetIndependentComponents());
   addSettings(mapper, number);
+  addScalars(mapper, number);
+  addDepthCoding(mapper, number);
   addCuts(mapper, number);
   return number.get();
 }

@@ -722,7 +722,8 @@ public:
    *
    * Render() is collective then: all ranks must render as often, or wait for each other for ever.
    * GetBounds() are those of the whole, so that a frustum culls on all ranks or on none. What is
-   * wrong on one rank is told by all, and all skip the frame.
+   * wrong on one rank is told by all, and all skip the frame, as they do where ranks differ in a
+   * setting that changes the picture.
    *
    * Projected are global and depth-shaded maxima and minima of independent components; anything
    * else is refused with a sentence, as are rectilinear grids. Chains are walked as bricks, without
