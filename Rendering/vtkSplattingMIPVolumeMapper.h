@@ -116,6 +116,8 @@
  * depth shading and local maxima, 4 for dependent components, 16 for a bounding surface; per pixel
  * of the screen 4 for depths.
  *
+ * An axis has at most 16384 voxels: walks number the slices along a ray in 16 bits.
+ *
  * Objects are made through VTK's object factory; the class that New() returns draws with OpenGL.
  *
  * @sa vtkFixedPointVolumeRayCastMapper vtkGPUVolumeRayCastMapper vtkVolumeProperty
