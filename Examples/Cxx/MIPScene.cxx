@@ -64,13 +64,16 @@ void SetColors(vtkVolumeProperty* property, const LookSettings& look)
   property->SetScalarOpacity(opaque);
 }
 
+/// Voxels that tell what a volume looks like.
+constexpr vtkIdType FewVoxels = 1000000;
+
 /**
- * Up to a million finite values, evenly spread over the volume.
+ * The finite ones of so many values, or somewhat more, evenly spread over the volume.
  */
-std::vector<double> SampleValues(vtkDataArray* scalars)
+std::vector<double> SampleValues(vtkDataArray* scalars, vtkIdType voxels)
 {
   const vtkIdType count = scalars->GetNumberOfTuples();
-  const vtkIdType step = std::max<vtkIdType>(1, count / 1000000);
+  const vtkIdType step = std::max<vtkIdType>(1, count / voxels);
   std::vector<double> values;
   for (vtkIdType i = 0; i < count; i += step)
   {
@@ -130,10 +133,16 @@ void ChooseWindowLevel(vtkImageData* image, double& window, double& level)
 {
   window = 1.0;
   level = 0.5;
-  std::vector<double> values = SampleValues(image->GetPointData()->GetScalars());
+  vtkDataArray* const scalars = image->GetPointData()->GetScalars();
+  std::vector<double> values = SampleValues(scalars, FewVoxels);
   if (values.empty())
   {
-    return;
+    values = SampleValues(scalars, scalars->GetNumberOfTuples()); // few are numbers
+  }
+  if (values.empty())
+  {
+    throw std::runtime_error(
+      "the volume has no finite value, so that there is nothing to show; see what wrote it.");
   }
   double low = GetQuantile(values, 0.5);
   double high = GetQuantile(values, 0.9995);

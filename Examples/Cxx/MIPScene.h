@@ -67,7 +67,7 @@ std::vector<std::string> GetColormapNames();
 /**
  * Black at the median value, white at the value that one voxel in 2000 exceeds: the maximum
  * of a ray is seldom below the one, and a few outliers do not decide the other. The whole range
- * where these two are equal.
+ * where these two are equal. Throws a sentence if no value is finite.
  */
 void ChooseWindowLevel(vtkImageData* image, double& window, double& level);
 

@@ -534,6 +534,23 @@ class TestRefusals(SplatmipTest):
         self.assert_refused(write_with(
             vtk.vtkXMLImageDataWriter(), image, self.path("a.vti")), word="point data")
 
+    def test_no_numbers(self):
+        """Of NaN alone there is no picture; a few numbers among a million are found."""
+        image = vtk.vtkImageData()
+        image.SetDimensions(160, 160, 160)
+        image.AllocateScalars(vtk.VTK_FLOAT, 1)
+        scalars = image.GetPointData().GetScalars()
+        scalars.SetName("intensity")
+        scalars.Fill(float("nan"))
+        path = write_with(vtk.vtkXMLImageDataWriter(), image, self.path("a.vti"))
+        self.assert_refused(path, word="no finite value")
+        self.assert_refused(path, "--rotate", "2", "--out", "turn.png", word="no finite value")
+        self.assertEqual(os.listdir(self.scratch.name), ["a.vti"])
+        scalars.SetValue(160 ** 3 // 2 + 1, 7.0)
+        write_with(vtk.vtkXMLImageDataWriter(), image, path)
+        _, text = self.draw(path, "--no-timing", "--mode", "preview", "--size", "50x50")
+        self.assertIn("level 7\n", text)
+
     def test_options(self):
         self.assert_refused("--mode", "best", code=2)
         self.assert_refused("--size", "12", code=2)
