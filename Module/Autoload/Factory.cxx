@@ -6,8 +6,8 @@
 // otherwise say by calls:
 //
 // SPLATTINGMIP_QUALITY  preview, standard, high (the default) or exact
-// SPLATTINGMIP_LOG      a file to which VTK's log of verbosity up to 1 is appended: which mapper
-//                       renders, beside all warnings and errors
+// SPLATTINGMIP_LOG      a file, in a folder that is there, to which VTK's log of verbosity up to 1
+//                       is appended: which mapper renders, beside all warnings and errors
 #include "vtkLogger.h"
 #include "vtkObjectFactory.h"
 #include "vtkSplattingMIPGPUVolumeRayCastMapper.h"
@@ -15,6 +15,7 @@
 #include "vtkVersion.h"
 
 #include <cstdlib>
+#include <fstream>
 #include <string>
 
 namespace
@@ -35,6 +36,24 @@ std::string valueOf(const char* variable)
 {
   const char* const value = std::getenv(variable);
   return value ? value : "";
+}
+
+/// VTK's logger would make folders that are missing.
+void setLog(const std::string& file)
+{
+  if (file.empty())
+  {
+    return;
+  }
+  if (!std::ofstream(file, std::ios::app))
+  {
+    vtkGenericWarningMacro(<< "SPLATTINGMIP_LOG is \"" << file
+                           << "\", which cannot be written, so that nothing is logged: name a file "
+                              "in a folder that is there.");
+    return;
+  }
+  vtkLogger::SetInternalVerbosityLevel(vtkLogger::VERBOSITY_1);
+  vtkLogger::LogToFile(file.c_str(), vtkLogger::APPEND, vtkLogger::VERBOSITY_1);
 }
 
 void setQuality(const std::string& quality)
@@ -63,12 +82,7 @@ void setQuality(const std::string& quality)
 
 extern "C" VTK_ABI_EXPORT vtkObjectFactory* splattingmip_new_factory()
 {
-  const std::string file = valueOf("SPLATTINGMIP_LOG");
-  if (!file.empty())
-  {
-    vtkLogger::SetInternalVerbosityLevel(vtkLogger::VERBOSITY_1);
-    vtkLogger::LogToFile(file.c_str(), vtkLogger::APPEND, vtkLogger::VERBOSITY_1);
-  }
+  setLog(valueOf("SPLATTINGMIP_LOG"));
   setQuality(valueOf("SPLATTINGMIP_QUALITY"));
   vtkSplattingMIPGPUVolumeRayCastMapper::GlobalOverrideOn();
   return EmptyFactory::New();

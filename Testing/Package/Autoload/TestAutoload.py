@@ -104,6 +104,25 @@ class TestAutoload(unittest.TestCase):
         self.assertEqual(run.pixels, splatted(MAXIMUM))
         self.assertIn('SPLATTINGMIP_QUALITY is "best", which is taken as high', run.messages)
 
+    def test_log_that_cannot_be_written(self):
+        """No folder is made for it, the program is told, and is splatted for all the same."""
+        with tempfile.TemporaryDirectory() as scratch:
+            log = Path(scratch, "missing", "log")
+            pixels = Path(scratch, "pixels")
+            done = subprocess.run(
+                [str(PROGRAM), str(MAXIMUM), str(pixels)],
+                env=dict(os.environ, VTK_AUTOLOAD_PATH=str(FOLDER), SPLATTINGMIP_LOG=str(log)),
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                timeout=120,
+            )
+            self.assertEqual(done.returncode, 0, done.stdout)
+            self.assertFalse(log.parent.exists())
+            self.assertEqual(done.stdout.count("SPLATTINGMIP_LOG"), 1, done.stdout)
+            self.assertIn("name a file in a folder that is there", done.stdout)
+            self.assertEqual(pixels.read_bytes(), splatted(MAXIMUM))
+
     def refused(self, folder):
         """Returns what VTK says; the program goes on as without the folder."""
         for command in self.programs(MAXIMUM):
