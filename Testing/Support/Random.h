@@ -8,7 +8,7 @@
  *
  * - SPLATTINGMIP_TEST_SEED=n (default 0): other random numbers for each n. A test must pass for
  *   any n.
- * - SPLATTINGMIP_TEST_SCENES=p (default 100): p percent of each series' scenes, at least one.
+ * - SPLATTINGMIP_TEST_SCENES=p (default 25): p percent of each series' scenes, at least one.
  * - SPLATTINGMIP_TEST_SCENE=SERIES/NUMBER: this scene alone. A check that fails prints the name.
  */
 #ifndef reference_Random_h
@@ -125,7 +125,7 @@ inline int& scenesRun()
 inline int scenesOf(int count)
 {
   static const char* const text = std::getenv("SPLATTINGMIP_TEST_SCENES");
-  static const double percent = text ? std::strtod(text, nullptr) : 100.0;
+  static const double percent = text ? std::strtod(text, nullptr) : 25.0;
   const int scenes = static_cast<int>(count * percent / 100.0);
   return scenes > 1 ? scenes : 1;
 }
