@@ -82,7 +82,7 @@ part_sanitizers() {
 
 part_threads() {
   build threads "${sanitized_options[@]}" -DSPLATTINGMIP_SANITIZE=thread
-  TSAN_OPTIONS="halt_on_error=1 suppressions=$testing_dir/Hosts/thread-suppressions.txt" \
+  TSAN_OPTIONS=halt_on_error=1 \
     VTK_SMP_BACKEND_IN_USE=STDThread VTK_SMP_MAX_THREADS=4 SPLATTINGMIP_TEST_SCENES=5 \
     run_tests threads -L core
 }
