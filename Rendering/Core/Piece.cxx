@@ -299,8 +299,8 @@ void fillEmpty(ShearImage& image, double low)
   const auto fill = [&](auto none)
   {
     using A = decltype(none);
-    forRows<A>(image,
-      [&](int, A* row) { std::replace(row, row + image.width, none, static_cast<A>(low)); });
+    forRows<A>(
+      image, [&](int, A* row) { std::replace(row, row + image.width, none, static_cast<A>(low)); });
   };
   if (!image.special)
   {
