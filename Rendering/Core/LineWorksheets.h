@@ -184,8 +184,10 @@ private:
   {
     A worksheet[StripHeight];
     std::fill_n(worksheet, StripHeight, leastValue<A>());
-    const Splat<A> splat = this->splatOf(
-      k, v0, v1, { run.begin, run.begin + 1 }, { worksheet - v0 - run.begin, 1, {}, 0 }, patch);
+    Splat<A> splat = this->splatOf(
+      k, v0, v1, { run.begin, run.begin + 1 }, { target.origin, target.stride }, patch);
+    splat.image = worksheet;
+    splat.imageStride = 1;
     const WorksheetLoops<A>& loops = this->Shared.kernels;
     loops.splat(splat);
     for (int v = v0; v < v1; ++v)
