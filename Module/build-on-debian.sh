@@ -2,22 +2,27 @@
 # SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# build-on-debian.sh FOLDER [CMAKE OPTION ...]
+# build-on-debian.sh FOLDER [CMAKE OPTION ...] [--target NAME ...]
 #
 # Installs what Debian 12 or 13 needs to build and run this project, as far as it is missing (with
-# sudo where the caller is not root), then configures and builds it in FOLDER. The variables CC and
-# CXX choose the compiler, as in CMake.
+# sudo where the caller is not root), then configures it in FOLDER and builds all of it or the targets
+# named. The variables CC and CXX choose the compiler, as in CMake.
 set -euo pipefail
 
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build_dir=$1
 shift
+cmake_options=()
+while (($#)) && [[ $1 != --target ]]; do
+  cmake_options+=("$1")
+  shift
+done
 
-compiler=g++
-[[ ${CXX:-} != *clang* ]] || compiler=clang
+compiler=(g++)
+[[ ${CXX:-} != *clang* ]] || compiler=(clang libclang-rt-dev) # which has the sanitizers
 
 packages=(
-  cmake ninja-build "$compiler" pkgconf ccache xz-utils
+  cmake ninja-build "${compiler[@]}" pkgconf ccache xz-utils
   libvtk9-dev python3-vtk9 libglm-dev          # the module and its Python package
   libcli11-dev libvtk-dicom-dev                # splatmip
   libgif-dev                                   # its turns as GIF
@@ -46,5 +51,5 @@ if ((${#missing[@]})); then
 fi
 
 cmake -S "$source_dir" -B "$build_dir" -G Ninja -Wno-dev \
-  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"
-cmake --build "$build_dir"
+  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "${cmake_options[@]}"
+cmake --build "$build_dir" "$@"
