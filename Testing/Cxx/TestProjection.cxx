@@ -443,8 +443,8 @@ int TestProjection(int, char*[])
   Count all;
   coretesting::forEachType(
     [&](auto* null) { testType<std::remove_pointer_t<decltype(null)>>(check, all); });
-  check(
-    all.hits > 600 || !reference::onlyScene().empty(), "only ", all.hits, " pixels with a sample");
+  // Eight scenes of each type; fewer may miss more.
+  check(all.hits > 600 || reference::scenesRun() < 80, "only ", all.hits, " pixels with a sample");
   testLibraries(check);
   return check.result();
 }
