@@ -18,6 +18,8 @@ make_root() {
     options+=("$1")
     shift
   done
+  # Mirrors of unstable may be some days old, whose lists apt would refuse as expired, now and in the root.
+  [[ $suite != sid ]] || options+=('--aptopt=Acquire::Check-Valid-Until "false"')
   list=$(IFS=,; echo "$suite,${options[*]},$*")
   if ((EUID != 0)); then
     echo "Tests in another Debian need root, for chroot: run them with sudo." >&2
@@ -39,10 +41,14 @@ make_root() {
     rm -rf --one-file-system "$root"
     mkdir -p "$root"
     touch "$root/unfinished"
+    # What fails ends here, whether or not the caller has set -e.
     mmdebstrap --quiet --mode=root --format=directory --skip=check/empty \
-      --dpkgopt=force-unsafe-io "${options[@]}" ${*:+--include="$(IFS=,; echo "$*")"} "$suite" "$root"
-    echo "$list" >"$root/installed-packages"
-    rm "$root/unfinished"
+      --dpkgopt=force-unsafe-io "${options[@]}" ${*:+--include="$(IFS=,; echo "$*")"} "$suite" "$root" &&
+      echo "$list" >"$root/installed-packages" && rm "$root/unfinished" || {
+      echo "No Debian $suite could be made in $root: see above." >&2
+      flock -u "$lock"
+      return 1
+    }
   fi
   flock -u "$lock"
 }
