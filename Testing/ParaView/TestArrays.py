@@ -133,9 +133,12 @@ class TestArrays(Stage.Test):
 
     def test_transform(self):
         self.open(scalars=self.volume)
-        self.display.Position = [3, -2, 0]
+        # ParaView 5.13 has renamed it.
+        renamed = "Translation" in self.display.ListProperties()
+        move = "Translation" if renamed else "Position"
+        setattr(self.display, move, [3, -2, 0])
         pixels = Stage.picture(self.view)
-        self.display.Position = [0, 0, 0]
+        setattr(self.display, move, [0, 0, 0])
         moved = numpy.roll(Stage.picture(self.view), (-2, 3), axis=(0, 1))
         numpy.testing.assert_array_equal(pixels[5:-5, 5:-5], moved[5:-5, 5:-5])
 
