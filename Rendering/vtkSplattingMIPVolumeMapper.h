@@ -308,7 +308,8 @@ public:
   ///@{
   /**
    * The radius r of the cosine bell in voxels, default 1, clamped to [0.5, 1.5] (a wider bell would
-   * leave the 5x5 weights). r = 1 sums to one by itself, other radii are normalised.
+   * leave the 5x5 weights). r = 1 sums to one by itself, other radii are normalised. Below 0.501,
+   * FootprintSampling 1 is as 2: the bell would end before a lone sub-pixel's centre.
    */
   vtkSetClampMacro(KernelRadius, double, 0.5, 1.5);
   vtkGetMacro(KernelRadius, double);

@@ -100,11 +100,11 @@ private:
   int Count = 2;
 };
 
-/// A lone sub-pixel has its centre half-way between two voxels, where the narrowest bells end: it
-/// would see nothing.
+/// A lone sub-pixel has its centre half-way between two voxels, where the narrowest bells end, or
+/// are zero but for rounding: it would see nothing.
 int leastSampling(const Kernel& kernel)
 {
-  return kernel.shape == Reconstruction::CosineBell && kernel.radius <= 0.5 ? 2 : 1;
+  return kernel.shape == Reconstruction::CosineBell && kernel.radius < 0.501 ? 2 : 1;
 }
 
 void normalise(WeightTable& weights)

@@ -159,17 +159,6 @@ void testPromises(Checks& check)
     });
 }
 
-/// Sub-pixels that lie where a kernel ends.
-void testNarrowest(Checks& check)
-{
-  const splatting::GeneralTable table({ Reconstruction::CosineBell, 0.5 }, glm::dvec2(0.0), 1, 1);
-  for (const glm::dvec2& fraction : { glm::dvec2(0.0), glm::dvec2(0.3, -0.5) })
-  {
-    check(std::abs(sumOf(table.weights(fraction)) - 1.0) < 1e-14,
-      "the narrowest kernel's weights sum to ", sumOf(table.weights(fraction)));
-  }
-}
-
 /// The kernels that sum to one do so by themselves at every depth; seen through the closed form.
 void testPartitionOfUnity(Checks& check)
 {
@@ -255,7 +244,6 @@ int TestFootprint(int, char*[])
   Checks check;
   testClosedForm(check);
   testPromises(check);
-  testNarrowest(check);
   testPartitionOfUnity(check);
   testDigitised(check);
   testDigitisedConverges(check, 1);

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Every kernel, table and view gives weights that sum to one, so that a volume of one value shows
+// that value, along chains, too.
+#include "CoreTesting.h"
+#include "Footprint.h"
+
+#include <cmath>
+
+using namespace coretesting;
+using splatting::Acceleration;
+using splatting::GeneralTable;
+using splatting::Kernel;
+using splatting::Quality;
+using splatting::Reconstruction;
+using splatting::WeightTable;
+
+namespace
+{
+const double radii[] = { 0.5, std::nextafter(0.5, 1.0), 0.5 + 1e-12, 0.5 + 1e-9, 0.5 + 1e-7,
+  0.5 + 1e-5, std::nextafter(0.501, 0.0), 0.501, 0.51, 1.0, 1.5 };
+const double shears[] = { 0.0, 0x1p-24, -0x1p-24, 1e-12, 0.5, -1.0 };
+const double fractions[] = { -0.5, -1.0 / 3.0, -0.25, -0.125, 0.0, 0x1p-24, 1.0 / 6.0, 0.25, 0.37,
+  std::nextafter(0.5, 0.0) };
+
+double sumOf(const WeightTable& weights)
+{
+  double sum = 0.0;
+  for (const auto& slice : weights)
+  {
+    for (const auto& row : slice)
+    {
+      for (double weight : row)
+      {
+        sum += weight;
+      }
+    }
+  }
+  return sum;
+}
+
+void checkWeights(Checks& check, const GeneralTable& table, const Kernel& kernel, int sampling,
+  int perVoxel, const glm::dvec2& shear)
+{
+  for (double x : fractions)
+  {
+    for (double y : { fractions[0], x, 0.25 })
+    {
+      const WeightTable weights = table.weights({ x, y });
+      check(std::abs(sumOf(weights) - 1.0) < 1e-13 && splatting::quantisedTaps(weights, 16).size(),
+        "kernel ", int(kernel.shape), " of radius ", kernel.radius, ", ", sampling, " sub-pixels, ",
+        perVoxel, " pixels per voxel, shear ", shear.x, " ", shear.y, ", fraction ", x, " ", y,
+        ": weights sum to ", sumOf(weights));
+    }
+  }
+}
+
+std::vector<Kernel> allKernels()
+{
+  std::vector<Kernel> kernels{ { Reconstruction::Box }, { Reconstruction::Hat } };
+  for (double radius : radii)
+  {
+    kernels.push_back({ Reconstruction::CosineBell, radius });
+  }
+  return kernels;
+}
+
+void testWeights(Checks& check, const Kernel& kernel, int sampling, int perVoxel)
+{
+  for (double x : shears)
+  {
+    for (double y : { 0.0, x, 0.5 })
+    {
+      checkWeights(check, GeneralTable(kernel, { x, y }, sampling, perVoxel), kernel, sampling,
+        perVoxel, { x, y });
+    }
+  }
+}
+
+void testAllWeights(Checks& check)
+{
+  for (const Kernel& kernel : allKernels())
+  {
+    for (int sampling : { 1, 2, 3, 4, 7 })
+    {
+      for (int perVoxel : { 1, 2, 4 })
+      {
+        testWeights(check, kernel, sampling, perVoxel);
+      }
+    }
+  }
+}
+
+const std::array<int, 3> size{ 50, 9, 8 };
+
+/// One value everywhere is seen everywhere, and chains have the bits of the dense walk.
+template <class T>
+void testPicture(
+  Checks& check, const splatting::ShearWarp& geometry, splatting::ProjectionSettings settings)
+{
+  const auto noise = wholeRangeNoise<T>(size, 5);
+  settings.acceleration = Acceleration::Dense;
+  const auto expected = project(noise, geometry, settings);
+  for (Acceleration acceleration : { Acceleration::Dense, Acceleration::Bricks, Acceleration::Lines,
+         Acceleration::SortedLines, Acceleration::SortedVolume, Acceleration::Auto })
+  {
+    settings.acceleration = acceleration;
+    check(sameImages(expected, project(noise, geometry, settings)), "type ",
+      int(splatting::scalarTypeOf<T>()), ": acceleration ", int(acceleration), " differs");
+    const auto image = toReference<splatting::Accumulator<T>>(
+      project(reference::Volume<T>(size, T(77)), geometry, settings));
+    bool isFlat = true;
+    for (std::size_t n = 0; n < image.value.size(); ++n)
+    {
+      isFlat = isFlat && (!image.hit[n] || image.value[n] == 77);
+    }
+    check(isFlat, "type ", int(splatting::scalarTypeOf<T>()), ", acceleration ", int(acceleration),
+      ": a volume of 77 does not show 77");
+  }
+}
+
+template <class T>
+void testPictures(Checks& check)
+{
+  splatting::ProjectionSettings settings;
+  settings.kernel = { Reconstruction::CosineBell, 0.5 };
+  settings.footprintSampling = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (double shear : { 0.0, 0.5 })
+    {
+      const splatting::ShearWarp geometry(viewWithShear(size, axis, 0.0, shear));
+      for (Quality quality : { Quality::Standard, Quality::High })
+      {
+        settings.quality = quality;
+        testPicture<T>(check, geometry, settings);
+      }
+    }
+  }
+}
+}
+
+int TestFootprintSettings(int, char*[])
+{
+  Checks check;
+  testAllWeights(check);
+  testPictures<std::uint8_t>(check);
+  testPictures<std::int16_t>(check);
+  testPictures<float>(check);
+  testPictures<std::int64_t>(check);
+  testPictures<double>(check);
+  return check.result();
+}
