@@ -55,7 +55,7 @@ private:
     auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Footprints);
     auto& reach = std::get<WorksheetReach<A>>(this->Reach);
     findFootprints(frame.geometry, worksheetKernel(frame.settings),
-      frame.settings.footprintSampling, weightBits<T>, footprints);
+      frame.settings.footprintSampling, weightBits<T>, this->Table, footprints);
     findReach(frame.sliceGeometry, footprints, reach);
     walk(frame,
       LineWorksheets<T>(frame, footprints, reach, worksheetDepth(frame.settings), *frame.lines));
@@ -63,6 +63,7 @@ private:
 
   std::vector<LineReach> Reaches;
   vtkSMPThreadLocal<LineScratch> Scratch;
+  GeneralTable Table;
   std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> Footprints;
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
 };

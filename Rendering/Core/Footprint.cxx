@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Footprint.h"
 
+#include <vtkSMPTools.h>
+
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -247,31 +251,48 @@ WeightTable closedFormWeights(
   return weights;
 }
 
-GeneralTable::GeneralTable(
-  const Kernel& kernel, const glm::dvec2& shear, int sampling, int perVoxel)
-  : Shear(shear),
-    Sampling(std::max(sampling, leastSampling(kernel)) * perVoxel),
-    Half(0.5 / perVoxel)
+void GeneralTable::set(const Kernel& kernel, const glm::dvec2& shear, int sampling, int perVoxel)
 {
+  const int perPixel = std::max(sampling, leastSampling(kernel));
+  if (this->Of == kernel && this->Shear == shear && this->PerPixel == perPixel &&
+    this->Sampling == perPixel * perVoxel)
+  {
+    return;
+  }
+  this->Of = kernel;
+  this->Shear = shear;
+  this->PerPixel = 0; // until it is made: there may be no memory for it
+  this->Sampling = perPixel * perVoxel;
+  this->Half = 0.5 / perVoxel;
   // The sheared voxel covers support * (1 + |shear|) on either side: 2 x 2 pixels for a box, 4 x 4
   // for the trilinear kernel [CS98, section 3].
   const double s = kernel.support();
   const double reach = s * (1.0 + std::max(std::abs(shear.x), std::abs(shear.y)));
   this->Voxels = 2 * static_cast<int>(std::ceil(reach));
   const int n = this->Voxels * this->Sampling;
-  for (int part = -1; part <= 1; ++part)
+  for (auto& entries : this->Entries)
   {
-    auto& entries = this->Entries[part + 1];
     entries.resize(static_cast<std::size_t>(n) * n);
-    for (int y = 0; y < n; ++y)
-    {
-      for (int x = 0; x < n; ++x)
-      {
-        const glm::dvec2 p = (glm::dvec2(x, y) + 0.5) / double(this->Sampling) - 0.5 * this->Voxels;
-        entries[static_cast<std::size_t>(y) * n + x] = this->entry(kernel, part, p);
-      }
-    }
   }
+  vtkSMPTools::For(0, 3 * n, 8,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType row = first; row < last; ++row)
+      {
+        const int part = static_cast<int>(row / n), y = static_cast<int>(row % n);
+        for (int x = 0; x < n; ++x)
+        {
+          this->Entries[part][static_cast<std::size_t>(y) * n + x] =
+            this->entry(kernel, part - 1, { this->place(x), this->place(y) });
+        }
+      }
+    });
+  this->PerPixel = perPixel;
+}
+
+double GeneralTable::place(int subPixel) const
+{
+  return (subPixel + 0.5) / this->Sampling - 0.5 * this->Voxels;
 }
 
 double GeneralTable::entry(const Kernel& kernel, int part, const glm::dvec2& p) const
@@ -300,8 +321,32 @@ double GeneralTable::entry(const Kernel& kernel, int part, const glm::dvec2& p) 
   const auto add = [&](double z, double share)
   { sum += share * kernel(z) * kernel(p.x - this->Shear.x * z) * kernel(p.y - this->Shear.y * z); };
   breaks.forEachPiece(
-    [&](double begin, double end) { integrate(ruleFor(kernel), begin, end, add); });
+    [&](double begin, double end)
+    {
+      const double z = 0.5 * (begin + end);
+      const glm::dvec2 q = glm::abs(p - this->Shear * z);
+      if (std::abs(z) <= support && q.x <= support && q.y <= support) // else all of it is 0
+      {
+        integrate(ruleFor(kernel), begin, end, add);
+      }
+    });
   return sum;
+}
+
+/// The first of a pixel's sub-pixels, of all that there would be if the table had no end: the pixel
+/// is `pixel` voxels from the one nearest to the voxel, which lies at `centre`.
+int GeneralTable::firstOf(int pixel, double centre) const
+{
+  const auto isBefore = [&](int n) { return this->place(n) + centre - pixel < -this->Half; };
+  const double begin = pixel - this->Half - centre + 0.5 * this->Voxels;
+  int n = static_cast<int>(std::ceil(begin * this->Sampling - 0.5)); // but for rounding
+  for (; isBefore(n); ++n)
+  {
+  }
+  for (; !isBefore(n - 1); --n)
+  {
+  }
+  return n;
 }
 
 WeightTable GeneralTable::weights(const glm::dvec2& fraction) const
@@ -312,25 +357,21 @@ WeightTable GeneralTable::weights(const glm::dvec2& fraction) const
   {
     // The voxel lies at d + fraction of slice k's frame, and c shears away in its own. Pixels are a
     // voxel apart; between them there is room where they are narrower.
-    constexpr int none = 3;
     const glm::dvec2 centre = fraction + double(c) * this->Shear;
-    const auto pixel = [&](int index, int axis)
+    for (int dj = -2; dj <= 2; ++dj)
     {
-      const double p = (index + 0.5) / this->Sampling - 0.5 * this->Voxels + centre[axis];
-      const double nearest = std::floor(p + 0.5);
-      const bool inside = p - nearest >= -this->Half && p - nearest < this->Half;
-      return inside ? static_cast<int>(nearest) : none;
-    };
-    for (int y = 0; y < n; ++y)
-    {
-      const int dj = -pixel(y, 1);
-      for (int x = 0; x < n; ++x)
+      const int row = this->firstOf(-dj, centre.y);
+      for (int di = -2; di <= 2; ++di)
       {
-        const int di = -pixel(x, 0);
-        if (std::abs(di) <= 2 && std::abs(dj) <= 2)
+        const int column = this->firstOf(-di, centre.x);
+        double& sum = weights[c + 1][dj + 2][di + 2];
+        for (int y = std::max(row, 0); y < std::min(row + this->PerPixel, n); ++y)
         {
-          weights[c + 1][dj + 2][di + 2] +=
-            this->Entries[c + 1][static_cast<std::size_t>(y) * n + x];
+          const double* const entries = &this->Entries[c + 1][static_cast<std::size_t>(y) * n];
+          for (int x = std::max(column, 0); x < std::min(column + this->PerPixel, n); ++x)
+          {
+            sum += entries[x];
+          }
         }
       }
     }

@@ -70,21 +70,25 @@ WeightTable closedFormWeights(
 
 /**
  * The paper's way: a general table of the sheared voxel's thickness, weighted by h, at the
- * mid-points of sub-pixels, N x N for each pixel, made once per view; a slice's weights are sums
- * over the sub-pixels that fall into a pixel.
+ * mid-points of sub-pixels, N x N for each pixel, made once per view: a table that is set again to
+ * what it is of stays as it is. A slice's weights are sums over the sub-pixels that fall into a
+ * pixel. Each pixel has weight, however narrow the kernel.
  */
 class GeneralTable
 {
 public:
-  GeneralTable() = default;
   /// For pixels 1 / perVoxel voxels wide.
-  GeneralTable(const Kernel& kernel, const glm::dvec2& shear, int sampling, int perVoxel);
+  void set(const Kernel& kernel, const glm::dvec2& shear, int sampling, int perVoxel);
   WeightTable weights(const glm::dvec2& fraction) const;
 
 private:
+  double place(int subPixel) const;
   double entry(const Kernel& kernel, int part, const glm::dvec2& p) const;
+  int firstOf(int pixel, double centre) const;
 
+  Kernel Of;
   glm::dvec2 Shear{ 0.0 };
+  int PerPixel = 0;                           // sub-pixels along the side of a pixel
   int Sampling = 0;                           // sub-pixels along the side of a voxel
   double Half = 0.5;                          // a pixel, in voxels
   int Voxels = 0;                             // the table covers Voxels x Voxels voxels

@@ -223,7 +223,7 @@ class VoxelFinder
 public:
   using A = Accumulator<T>;
 
-  VoxelFinder(const Located& located, const ShearWarp& geometry)
+  VoxelFinder(const Located& located, const ShearWarp& geometry, GeneralTable& table)
     : Source(located),
       Geometry(geometry),
       Voxels(located.volume, Geometry)
@@ -240,8 +240,8 @@ public:
       this->Geometry.isPerspective()
         ? this->Own.find(
             this->Geometry, this->Geometry, kernel, kernelsFor(settings.instructionSet))
-        : findFootprints(
-            this->Geometry, kernel, settings.footprintSampling, weightBits<T>, this->Footprints);
+        : findFootprints(this->Geometry, kernel, settings.footprintSampling, weightBits<T>, table,
+            this->Footprints);
     }
   }
 
@@ -394,6 +394,7 @@ void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec
       const int phases = geometry.phases();
       std::vector<ShearWarp> parts(std::size_t(phases) * phases);
       std::vector<std::unique_ptr<VoxelFinder<T>>> finders;
+      GeneralTable table;
       for (int p = 0; p < phases * phases; ++p)
       {
         if (phases > 1)
@@ -401,7 +402,7 @@ void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec
           geometry.takePhase({ p % phases, p / phases }, parts[p]);
         }
         finders.push_back(
-          std::make_unique<VoxelFinder<T>>(located, phases > 1 ? parts[p] : geometry));
+          std::make_unique<VoxelFinder<T>>(located, phases > 1 ? parts[p] : geometry, table));
       }
       vtkSMPTools::For(0, projected.height, 8,
         [&](vtkIdType first, vtkIdType last)

@@ -26,7 +26,7 @@ public:
         auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Footprints);
         auto& reach = std::get<WorksheetReach<A>>(this->Reach);
         findFootprints(frame.geometry, worksheetKernel(frame.settings),
-          frame.settings.footprintSampling, weightBits<T>, footprints);
+          frame.settings.footprintSampling, weightBits<T>, this->Table, footprints);
         findReach(frame.sliceGeometry, footprints, reach);
         walk(
           frame, ParallelWorksheets<T>(frame, footprints, reach, worksheetDepth(frame.settings)));
@@ -51,6 +51,7 @@ public:
   }
 
 private:
+  GeneralTable Table;
   std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> Footprints;
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
 };

@@ -101,14 +101,12 @@ bool same(const Span& a, const Span& b)
 
 template <class A>
 void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int sampling, int weightBits,
-  std::vector<SliceFootprint<A>>& footprints)
+  GeneralTable& table, std::vector<SliceFootprint<A>>& footprints)
 {
   const glm::dvec2 shear = geometry.shear();
-  GeneralTable table;
   if (sampling > 0)
   {
-    table = GeneralTable(
-      kernel, shear, sampling, static_cast<int>(std::lround(1.0 / geometry.pixelSize())));
+    table.set(kernel, shear, sampling, static_cast<int>(std::lround(1.0 / geometry.pixelSize())));
   }
   footprints.resize(geometry.size().z);
   vtkSMPTools::For(0, geometry.size().z, 8,
@@ -172,9 +170,9 @@ void findReach(const std::vector<SliceGeometry>& slices,
 }
 
 template void findFootprints(
-  const ShearWarp&, const Kernel&, int, int, std::vector<SliceFootprint<float>>&);
+  const ShearWarp&, const Kernel&, int, int, GeneralTable&, std::vector<SliceFootprint<float>>&);
 template void findFootprints(
-  const ShearWarp&, const Kernel&, int, int, std::vector<SliceFootprint<double>>&);
+  const ShearWarp&, const Kernel&, int, int, GeneralTable&, std::vector<SliceFootprint<double>>&);
 template void findReach(const std::vector<SliceGeometry>&,
   const std::vector<SliceFootprint<float>>&, WorksheetReach<float>&);
 template void findReach(const std::vector<SliceGeometry>&,

@@ -44,10 +44,11 @@ constexpr int weightBits = sizeof(T) == 1 ? 16
   : std::is_same_v<Accumulator<T>, float> ? 24
                                           : 48;
 
-/// The footprints of all slices; `sampling` as ProjectionSettings::footprintSampling.
+/// The footprints of all slices; `sampling` as ProjectionSettings::footprintSampling. The table is
+/// set if it is needed, and of use again for other phases and frames of the same view.
 template <class A>
 void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int sampling, int weightBits,
-  std::vector<SliceFootprint<A>>& footprints);
+  GeneralTable& table, std::vector<SliceFootprint<A>>& footprints);
 
 /// What the worksheets of all slices read.
 template <class A>

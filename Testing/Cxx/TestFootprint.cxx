@@ -130,7 +130,8 @@ void testPromises(Checks& check)
       WeightTable weights;
       if (n % 10 == 0)
       {
-        const splatting::GeneralTable table(kernel, shear, random.uniform(1, 12), perVoxel);
+        splatting::GeneralTable table;
+        table.set(kernel, shear, random.uniform(1, 12), perVoxel);
         weights = table.weights(fraction);
       }
       else
@@ -191,7 +192,8 @@ double digitisedBound(int sampling)
 double digitisedError(const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction,
   int sampling, int perVoxel)
 {
-  const splatting::GeneralTable table(kernel, shear, sampling, perVoxel);
+  splatting::GeneralTable table;
+  table.set(kernel, shear, sampling, perVoxel);
   return largestDifference(
     table.weights(fraction), splatting::closedFormWeights(kernel, shear, fraction, 1.0 / perVoxel));
 }
