@@ -34,6 +34,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <set>
 #include <string>
 
@@ -94,6 +95,7 @@ public:
     return this->Ranks.AreMany() ? this->Ranks.Grid() : this->Source.Grid();
   }
   void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
+  void GiveBack();
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
   bool AreAsBefore(bool ordered) const;
   bool HasImage() const { return this->Components.IsProjected() && !this->Images.empty(); }
@@ -384,6 +386,21 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfIgnored(vtkSplattingMIPVolume
 }
 
 //------------------------------------------------------------------------------
+// Holds nothing, after a frame that there was no memory for.
+void vtkSplattingMIPVolumeMapper::Internals::GiveBack()
+{
+  this->Source.HoldNothing(VTK_VOID);
+  this->Components.HoldNothing();
+  this->Picture = {};
+  this->ShearImageOutput = nullptr;
+  if (this->RayCaster)
+  {
+    this->RayCaster->ReleaseGraphicsResources(this->Window);
+    this->RayCaster = nullptr;
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
@@ -398,18 +415,32 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
   in.Locations.Forget();
-  std::string problem = in.Problem(this, vol);
-  if (in.Ranks.AreMany())
+  std::string problem;
+  try
   {
-    problem = in.ProblemOfRanks(this, ren, vol, problem);
+    problem = in.Problem(this, vol);
+    if (in.Ranks.AreMany())
+    {
+      problem = in.ProblemOfRanks(this, ren, vol, problem);
+    }
+    if (problem.empty())
+    {
+      problem = in.ProblemOfSettings(this, vol);
+    }
+    if (problem.empty())
+    {
+      problem = this->RenderBySplatting(ren, vol);
+    }
   }
-  if (problem.empty())
+  catch (const std::bad_alloc&)
   {
-    problem = in.ProblemOfSettings(this, vol);
-  }
-  if (problem.empty())
-  {
-    problem = this->RenderBySplatting(ren, vol);
+    problem = ScalarSource::NoMemory;
+    in.GiveBack();
+    if (in.Ranks.AreMany())
+    {
+      vtkErrorMacro(<< problem);
+      throw; // the other ranks wait for this one
+    }
   }
   if (in.Reported.Update(ren, vol, problem))
   {

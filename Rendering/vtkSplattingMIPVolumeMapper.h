@@ -114,7 +114,9 @@
  * footprints (about 3 kB a slice); for each thread some rows of voxels and the bounds of a band of
  * tiles; per pixel of the shear image up to 9 bytes where rays are cut, 12 for averages, 5 for
  * depth shading and local maxima, 4 for dependent components, 16 for a bounding surface; per pixel
- * of the screen 4 for depths.
+ * of the screen 4 for depths. Where all this does not fit into the machine's memory, an error says
+ * so, nothing is drawn, and what the mapper holds is given back; the next frame tries again. (With
+ * several ranks std::bad_alloc goes on to the caller as well, for the others wait.)
  *
  * An axis has at most 16384 voxels: walks number the slices along a ray in 16 bits.
  *

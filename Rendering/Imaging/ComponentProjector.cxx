@@ -76,6 +76,19 @@ void ComponentProjector::LookAtNothing(splatting::ScalarType type, std::size_t c
 }
 
 //------------------------------------------------------------------------------
+void ComponentProjector::HoldNothing()
+{
+  this->Channels.clear();
+  this->Channels.resize(1);
+  this->Layer = {};
+  this->Plane = {};
+  this->Dependent = false;
+  this->Version = 0;
+  this->Projected = false;
+  this->Colored = false;
+}
+
+//------------------------------------------------------------------------------
 const splatting::VolumeIndex::Range& ComponentProjector::RangeOfPiece(std::size_t component)
 {
   Channel& channel = this->Channels[component];

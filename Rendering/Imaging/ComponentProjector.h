@@ -39,6 +39,9 @@ public:
   /// In place of LookAt() on a rank that holds nothing of a volume of this type.
   void LookAtNothing(splatting::ScalarType type, std::size_t components);
 
+  /// As before the first volume: gives back what it holds, whatever state that is in.
+  void HoldNothing();
+
   /// What volumes hold, and of a piece the range of its own voxels.
   std::size_t NumberOfComponents() const { return this->Channels.size(); }
   bool AreDependent() const { return this->Dependent; }

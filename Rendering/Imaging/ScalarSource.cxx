@@ -183,6 +183,11 @@ splatting::ScalarType scalarTypeOfVtk(int vtkType)
 }
 
 //------------------------------------------------------------------------------
+const char* const ScalarSource::NoMemory =
+  "There is not enough memory to project this volume: make room, lower IndexMemoryBudget, or show "
+  "a part of the volume or fewer components.";
+
+//------------------------------------------------------------------------------
 ScalarSource::ScalarSource() = default;
 
 //------------------------------------------------------------------------------
@@ -394,6 +399,7 @@ void ScalarSource::Update()
     return;
   }
   const double start = vtkTimerLog::GetUniversalTime();
+  this->Volumed = {};
   this->Volumes.clear();
   this->Copies.clear();
   this->Packed = nullptr;
@@ -518,6 +524,7 @@ void ScalarSource::MakeImage()
   this->StandIn->SetOrigin(origin.x, origin.y, origin.z);
   this->StandIn->SetSpacing(grid.spacing.x, grid.spacing.y, grid.spacing.z);
   this->StandInCopy = nullptr;
+  this->Imaged = {};
   vtkDataArray* scalars = this->Examined.scalars;
   if (!this->IsInputArray())
   {

@@ -58,6 +58,9 @@ public:
    */
   std::string Examine(vtkDataSet* input, const ScalarChoice& choice);
 
+  /// What to say where copies, or what is made of them, do not fit.
+  static const char* const NoMemory;
+
   const VolumeGrid& Grid() const { return this->Place.grid; }
   /// The array that is projected, or has the components that are.
   vtkDataArray* Scalars() const { return this->Examined.scalars; }
@@ -74,7 +77,7 @@ public:
   vtkIdType Version() const { return this->NumberOfUpdates; }
   /// Valid after Update(), as long as the input.
   const splatting::VoxelArray& Volume(int component) const { return this->Volumes[component]; }
-  /// There is no volume here, but elsewhere, of this type.
+  /// There is no volume here, but perhaps elsewhere, of this type.
   void HoldNothing(int vtkType);
   /// VTK's name for the type of a volume, or of what is projected from it.
   int VtkTypeOf(splatting::ScalarType type) const;

@@ -49,6 +49,7 @@ public:
   bool ProjectView(vtkSplattingMIPProjection* self, const splatting::View& view);
   bool PlaceOutput(vtkImageData* output);
   void Locate(const splatting::View& view, int n);
+  std::string ProjectInput(vtkSplattingMIPProjection* self, vtkImageData* output);
   std::string ProjectViews(vtkSplattingMIPProjection* self, vtkImageData* output);
 
   ScalarSource Source;
@@ -309,6 +310,18 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
 }
 
 //------------------------------------------------------------------------------
+// The projections of an input that passed the gate. Returns what is wrong, or nothing.
+std::string vtkSplattingMIPProjection::Internals::ProjectInput(
+  vtkSplattingMIPProjection* self, vtkImageData* output)
+{
+  this->Components.LookAt(this->Source);
+  this->Components.SetBudget(static_cast<std::size_t>(self->IndexMemoryBudget));
+  return this->PlaceOutput(output)
+    ? this->ProjectViews(self, output)
+    : "There is no memory for the output: choose fewer pixels or views.";
+}
+
+//------------------------------------------------------------------------------
 // Fills the slices of the output. Returns what is wrong, or nothing; not all are filled after an
 // abort.
 std::string vtkSplattingMIPProjection::Internals::ProjectViews(
@@ -430,14 +443,17 @@ int vtkSplattingMIPProjection::RequestData(
   vtkDataArray* const array = this->GetInputArrayToProcess(0, inputs, association);
   in.ShearImageOutput = nullptr;
   this->NumberOfProjections = 0;
-  std::string problem = in.Problem(this, array, association, input);
-  if (problem.empty())
+  std::string problem;
+  try
   {
-    in.Components.LookAt(in.Source);
-    in.Components.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget));
-    problem = in.PlaceOutput(output)
-      ? in.ProjectViews(this, output)
-      : "There is no memory for the output: choose fewer pixels or views.";
+    problem = in.Problem(this, array, association, input);
+    problem = problem.empty() ? in.ProjectInput(this, output) : problem;
+  }
+  catch (const std::bad_alloc&)
+  {
+    in.Source.HoldNothing(VTK_VOID);
+    in.Components.HoldNothing();
+    problem = ScalarSource::NoMemory;
   }
   if (!problem.empty())
   {

@@ -37,7 +37,8 @@
  * viewer's side.
  *
  * Memory besides input and output: see GetIndexMemorySize() and vtkSplattingMIPVolumeMapper. It is
- * kept for the next Update().
+ * kept for the next Update(). Where there is not enough of it, an error says so, the output is
+ * empty, and all of it is given back.
  *
  * @sa vtkSplattingMIPVolumeMapper vtkImageSlabReslice
  */
