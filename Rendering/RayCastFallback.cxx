@@ -38,7 +38,7 @@ void copySettings(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, Ma
 }
 }
 
-RayCastFallback::RayCastFallback()
+RayCastFallback::RayCastFallback(int components) : Components(components)
 {
   this->Mapper->AutoAdjustSampleDistancesOff();
   this->Mapper->SetInputData(this->Image);

@@ -27,7 +27,9 @@ class vtkWindow;
 class RayCastFallback
 {
 public:
-  RayCastFallback();
+  /// For images with so many components only: VTK's ray casters keep tables for as many, and write
+  /// beyond them where there are more.
+  explicit RayCastFallback(int components);
   ~RayCastFallback();
 
   /// Render the image's point scalars as the mapper, the volume's property and its matrix ask. The
@@ -42,6 +44,8 @@ public:
   /// Whether the mapper for a blend mode is vtkGPUVolumeRayCastMapper, which draws into selections
   /// by itself.
   static bool IsForGpu(int blendMode);
+
+  const int Components;
 
 private:
   void RenderOnGpu(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image,

@@ -96,6 +96,7 @@ public:
   }
   void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
   void GiveBack();
+  void DropRayCaster();
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
   bool AreAsBefore(bool ordered) const;
   bool HasImage() const { return this->Components.IsProjected() && !this->Images.empty(); }
@@ -393,6 +394,12 @@ void vtkSplattingMIPVolumeMapper::Internals::GiveBack()
   this->Components.HoldNothing();
   this->Picture = {};
   this->ShearImageOutput = nullptr;
+  this->DropRayCaster();
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::Internals::DropRayCaster()
+{
   if (this->RayCaster)
   {
     this->RayCaster->ReleaseGraphicsResources(this->Window);
@@ -447,10 +454,9 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< problem);
   }
   // The old scalars would stay in memory with it.
-  if (in.RayCaster && !this->LastRenderUsedRayCasting && !in.Source.HasImage())
+  if (!this->LastRenderUsedRayCasting && !in.Source.HasImage())
   {
-    in.RayCaster->ReleaseGraphicsResources(in.Window);
-    in.RayCaster = nullptr;
+    in.DropRayCaster();
   }
   this->Timer->StopTimer();
   this->TimeToDraw = this->Timer->GetElapsedTime();
@@ -592,18 +598,15 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
                     << (isForGpu ? "vtkGPUVolumeRayCastMapper" : "vtkFixedPointVolumeRayCastMapper")
                     << ", because the blend mode is no intensity projection.");
   }
-  if (!in.RayCaster)
+  // The ray caster's constructor needs an implementation of the display and does not ask whether
+  // there is one.
+  if (!in.RayCaster && !vtkSmartPointer<vtkRayCastImageDisplayHelper>::New())
   {
-    // Its constructor needs an implementation of the display and does not ask whether there is one.
-    if (!vtkSmartPointer<vtkRayCastImageDisplayHelper>::New())
-    {
-      vtkErrorMacro(<< "There is no OpenGL for vtkFixedPointVolumeRayCastMapper, which is needed "
-                       "because the blend mode is no intensity projection: initialise "
-                       "VTK::RenderingVolumeOpenGL2 with vtk_module_autoinit or "
-                       "VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2).");
-      return;
-    }
-    in.RayCaster = std::make_unique<RayCastFallback>();
+    vtkErrorMacro(<< "There is no OpenGL for vtkFixedPointVolumeRayCastMapper, which is needed "
+                     "because the blend mode is no intensity projection: initialise "
+                     "VTK::RenderingVolumeOpenGL2 with vtk_module_autoinit or "
+                     "VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2).");
+    return;
   }
   in.WarnOfIgnored(this);
   this->LastRenderUsedRayCasting = true;
@@ -611,6 +614,15 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
   if (!image)
   {
     return; // no voxel is shown
+  }
+  const int components = image->GetNumberOfScalarComponents();
+  if (in.RayCaster && in.RayCaster->Components != components)
+  {
+    in.DropRayCaster();
+  }
+  if (!in.RayCaster)
+  {
+    in.RayCaster = std::make_unique<RayCastFallback>(components);
   }
   if (ren->GetSelector() && !isForGpu)
   {

@@ -4,7 +4,10 @@
 // Which scalars a ray caster gets where nothing is splatted: those of plain arrays, from any.
 #include "ScalarTesting.h"
 
+#include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkVolumeProperty.h"
 
 using namespace scalartesting;
 
@@ -71,6 +74,30 @@ void testNothingShown(stage::Stage& stage, stage::Checks& check)
   }
 }
 
+/// More components than in the frame before, though the property stays as it is.
+void testMoreComponents(stage::Stage& stage, stage::Checks& check)
+{
+  const Size size = { 20, 16, 24 };
+  for (int c = 1; c < 4; ++c)
+  {
+    stage.property->SetColor(c, stage.property->GetRGBTransferFunction(0));
+    stage.property->SetScalarOpacity(c, stage.property->GetScalarOpacity(0));
+  }
+  for (int blendMode : { vtkVolumeMapper::COMPOSITE_BLEND, vtkVolumeMapper::ADDITIVE_BLEND })
+  {
+    const std::string name = "Blend mode " + std::to_string(blendMode) + ": ";
+    const auto one = plainImage(size, noiseArray(VTK_UNSIGNED_CHAR, voxelsOf(size), 1, 6));
+    const auto four = plainImage(size, noiseArray(VTK_UNSIGNED_CHAR, voxelsOf(size), 4, 7));
+    const auto mapper = stage::splatting(one), fresh = stage::splatting(four);
+    const stage::Pixels first = seen(stage, mapper, blendMode);
+    mapper->SetInputData(four);
+    const stage::Pixels second = seen(stage, mapper, blendMode);
+    check(second == seen(stage, fresh, blendMode), name + "four components in place of one.");
+    mapper->SetInputData(one);
+    check(first == seen(stage, mapper, blendMode), name + "one component in place of four.");
+  }
+}
+
 /// A volume that was ray cast does not stay in memory when there is another one, or none.
 void testRelease(stage::Stage& stage, stage::Checks& check)
 {
@@ -130,5 +157,6 @@ int TestRayCastScalars(int, char*[])
   testSeparateComponents(stage, 3, check);
   testNothingShown(stage, check);
   testRelease(stage, check);
+  testMoreComponents(stage, check);
   return check.exitCode();
 }
