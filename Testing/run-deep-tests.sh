@@ -11,6 +11,7 @@
 #                     own tests, short runs of the benchmark and of the paper's experiments
 #   scenes            four times as many random scenes as the quick tests
 #   seeds             random tests with ten new numbers, which it prints
+#   walk              10,000 random walks of mapper and filter, with ten new numbers
 #   sanitizers        the address and undefined behaviour sanitizers
 #   threads           the thread sanitizer, with VTK's STDThread backend
 #   clang             the quick tests, built by Clang; warnings are errors
@@ -53,14 +54,25 @@ part_scenes() {
   SPLATTINGMIP_TEST_SCENES=100 run_tests tests -L 'core|render'
 }
 
-part_seeds() {
-  local seed
-  build tests
+# with_new_seeds COMMAND: ten times, each with other random numbers
+with_new_seeds() {
+  local -x SPLATTINGMIP_TEST_SEED
   for _ in {1..10}; do
-    seed=$((RANDOM * 32768 + RANDOM))
-    echo "SPLATTINGMIP_TEST_SEED=$seed"
-    SPLATTINGMIP_TEST_SEED=$seed run_tests tests -L 'core|render'
+    SPLATTINGMIP_TEST_SEED=$((RANDOM * 32768 + RANDOM))
+    echo "SPLATTINGMIP_TEST_SEED=$SPLATTINGMIP_TEST_SEED"
+    "$@"
   done
+}
+
+part_seeds() {
+  build tests
+  with_new_seeds run_tests tests -L 'core|render'
+}
+
+part_walk() {
+  build tests
+  # 125 % of 800 walks, ten times.
+  SPLATTINGMIP_TEST_SCENES=125 with_new_seeds run_tests tests -V -R TestWalk
 }
 
 # build_sanitized FOLDER SANITIZERS TARGET ...
