@@ -42,6 +42,8 @@ public:
   bool AreKept() const { return this->Present == this->Kept; }
   /// The present cuts are those of a projection. They are no longer to be had.
   void Keep() { std::swap(this->Present, this->Kept); }
+  /// Those that were kept.
+  const std::vector<splatting::Cuts>& OfProjection() const { return this->Kept; }
 
   /// Clears the pixels of a picture that other things hide.
   void Hide(splatting::Picture& picture) const;

@@ -538,6 +538,10 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
                     << " bytes): this volume is projected without it. Raise the budget.");
   }
   in.BudgetReported = exceeds;
+  if (in.Components.IsProjected())
+  {
+    in.Components.FindRim(in.Images, in.Cuts.OfProjection(), view);
+  }
   if (in.Components.IsProjected() && (!this->DisplayOnRootOnly || in.Ranks.IsRoot()))
   {
     in.Components.Warp(in.Images, view, in.Picture);

@@ -84,4 +84,17 @@ SliceRegions regionsOf(const Cropping& cropping, const ShearWarp& geometry, int 
   }
   return regions;
 }
+
+bool isShown(const Cropping& cropping, const ShearWarp& geometry, const glm::dvec2& at, int k)
+{
+  const std::array<int, 3>& axes = geometry.axes();
+  const int strides[3] = { 1, 3, 9 };
+  int bit = strides[axes[2]] * regionOfSlice(cropping.planes[axes[2]], k);
+  for (int a = 0; a < 2; ++a)
+  {
+    const glm::dvec2 planes = widened(cropping.planes[axes[a]]);
+    bit += strides[axes[a]] * (at[a] < planes[0] ? 0 : at[a] <= planes[1] ? 1 : 2);
+  }
+  return cropping.flags >> bit & 1u;
+}
 }

@@ -37,6 +37,9 @@ struct SliceRegions
  * the nearest slice is in it. Of slices that do not lie before the eye no region is shown.
  */
 SliceRegions regionsOf(const Cropping& cropping, const ShearWarp& geometry, int k);
+
+/// The same of one ray, `at` being (i, j) where it crosses the middle of slice k.
+bool isShown(const Cropping& cropping, const ShearWarp& geometry, const glm::dvec2& at, int k);
 }
 
 #endif

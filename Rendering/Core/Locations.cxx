@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Locations.h"
 
-#include "Carry.h"
-#include "ExactPieces.h"
+#include "FieldOnRay.h"
 
 #include <vtkSMPTools.h>
 
@@ -70,150 +69,21 @@ private:
   int Count = 0;
 };
 
-/// The trilinear field along the ray of a shear pixel, outermost voxels repeated.
+/// Where the trilinear field along the ray of a shear pixel is largest (or least) in slice k; the
+/// nearest to the viewer of such places.
 template <class T>
-class FieldOnRay
+double extremumOf(
+  const PermutedVoxels<T>& voxels, const ShearWarp& geometry, int u, int v, int k, bool least)
 {
-public:
-  FieldOnRay(const PermutedVoxels<T>& voxels, const ShearWarp& geometry, int u, int v)
-    : Voxels(voxels),
-      Geometry(geometry),
-      U(u),
-      V(v)
-  {
-  }
-
-  /// Where it is largest (or least) in slice k; the nearest to the viewer of such places.
-  double extremum(int k, bool least) const
-  {
-    std::vector<double>& cuts = this->cutsOf(k);
-    if (cuts.size() < 2)
-    {
-      return k;
-    }
-    double place = k, best = -std::numeric_limits<double>::infinity();
-    const auto take = [&](double z, double value)
-    {
-      value = least ? -value : value;
-      if (value > best)
-      {
-        best = value;
-        place = z;
-      }
-    };
-    for (std::size_t n = 0; n + 1 < cuts.size(); ++n)
-    {
-      this->takePiece(cuts[n], cuts[n + 1], take);
-    }
-    return place;
-  }
-
-private:
-  /// The places between which it is a cubic, from the viewer on.
-  std::vector<double>& cutsOf(int k) const
-  {
-    thread_local std::vector<double> cuts;
-    const glm::dvec2 faces = this->Geometry.faces(k);
-    double low = faces.x, high = faces.y;
-    cuts.clear();
-    for (int a = 0; a < 3; ++a)
-    {
-      const FieldRange range(this->Geometry, a);
-      const glm::dvec2 at = this->inAxis(a, faces.x, faces.y);
-      const double slope = faces.y > faces.x ? (at.y - at.x) / (faces.y - faces.x) : 0.0;
-      if (slope == 0.0)
-      {
-        high = range.begin <= at.x && at.x <= range.end ? high : low - 1.0;
-        continue;
-      }
-      const double begin = faces.x + (range.begin - at.x) / slope;
-      const double end = faces.x + (range.end - at.x) / slope;
-      low = std::max(low, std::min(begin, end));
-      high = std::min(high, std::max(begin, end));
-      const double first = std::ceil(std::min(at.x, at.y)), last = std::max(at.x, at.y);
-      for (double n = first; n <= last; ++n)
-      {
-        cuts.push_back(faces.x + (n - at.x) / slope);
-      }
-    }
-    if (!(low < high))
-    {
-      cuts.clear();
-      return cuts;
-    }
-    cuts.erase(
-      std::remove_if(cuts.begin(), cuts.end(), [=](double z) { return !(low < z && z < high); }),
-      cuts.end());
-    cuts.push_back(low);
-    cuts.push_back(high);
-    std::sort(cuts.begin(), cuts.end());
-    if (this->Geometry.reversed())
-    {
-      std::reverse(cuts.begin(), cuts.end());
-    }
-    return cuts;
-  }
-
-  glm::dvec2 inAxis(int a, double from, double to) const
-  {
-    return a == 2 ? glm::dvec2(from, to)
-                  : glm::dvec2(this->Geometry.onRay(this->U, this->V, from)[a],
-                      this->Geometry.onRay(this->U, this->V, to)[a]);
-  }
-
-  /// Both ends of a cubic and its extrema in between.
-  template <class Take>
-  void takePiece(double from, double to, Take&& take) const
-  {
-    double f[4]; // at equal distances
-    for (int n = 0; n < 4; ++n)
-    {
-      f[n] = this->value(from + (to - from) * n / 3.0, 0.5 * (from + to));
-    }
-    // c0 + c1 t + c2 t^2 + c3 t^3 for t from 0 to 1.
-    const double c1 = -5.5 * f[0] + 9.0 * f[1] - 4.5 * f[2] + f[3];
-    const double c2 = 9.0 * f[0] - 22.5 * f[1] + 18.0 * f[2] - 4.5 * f[3];
-    const double c3 = -4.5 * f[0] + 13.5 * f[1] - 13.5 * f[2] + 4.5 * f[3];
-    take(from, f[0]);
-    const double a = 3.0 * c3, root = c2 * c2 - a * c1;
-    if (root >= 0.0)
-    {
-      const double q = -(c2 + (c2 < 0.0 ? -std::sqrt(root) : std::sqrt(root)));
-      double t[2] = { a != 0.0 ? q / a : -1.0, q != 0.0 ? c1 / q : -1.0 };
-      std::sort(t, t + 2);
-      for (double x : t)
-      {
-        if (x > 0.0 && x < 1.0)
-        {
-          take(from + x * (to - from), f[0] + x * (c1 + x * (c2 + x * c3)));
-        }
-      }
-    }
-    take(to, f[3]);
-  }
-
-  /// @param within  a place in the same cell
-  double value(double z, double within) const
-  {
-    const glm::dvec2 at = this->Geometry.onRay(this->U, this->V, z);
-    const glm::dvec2 cell = this->Geometry.onRay(this->U, this->V, within);
-    const int i = static_cast<int>(std::floor(cell.x)), j = static_cast<int>(std::floor(cell.y)),
-              k = static_cast<int>(std::floor(within));
-    const double x = at.x - i, y = at.y - j, t = z - k;
-    double sum = 0.0;
-    for (int n = 0; n < 8; ++n)
-    {
-      const int a = n & 1, b = n >> 1 & 1, c = n >> 2;
-      sum += (a ? x : 1.0 - x) * (b ? y : 1.0 - y) * (c ? t : 1.0 - t) *
-        static_cast<double>(this->Voxels.at(i + a, j + b, k + c));
-    }
-    return sum;
-  }
-
-  const PermutedVoxels<T>& Voxels;
-  const ShearWarp& Geometry;
-  int U, V;
-};
+  const FieldRay ray = rayOfPixel(geometry, u, v);
+  const glm::dvec2 depths = depthsInField(geometry, ray), faces = geometry.faces(k);
+  Extremum best{ static_cast<double>(k) };
+  FieldOnRay<T>(voxels, geometry, glm::ivec3(0))
+    .take(
+      ray, { std::max(depths.x, faces.x), std::min(depths.y, faces.y) }, least,
+      [](int) { return true; }, best);
+  return best.depth;
+}
 
 /// Finds the voxels of the winners of a shear image, or of one of its phases; (i, j, k) as its axes
 /// are permuted.
@@ -286,7 +156,7 @@ private:
   glm::ivec3 atExtremum(int u, int v, int k) const
   {
     const bool least = this->Source.settings.reduction == Reduction::Minimum;
-    const double z = FieldOnRay<T>(this->Voxels, this->Geometry, u, v).extremum(k, least);
+    const double z = extremumOf<T>(this->Voxels, this->Geometry, u, v, k, least);
     const glm::dvec2 at = this->Geometry.onRay(u, v, z);
     return glm::clamp(
       glm::ivec3(glm::round(glm::dvec3(at, z))), glm::ivec3(0), this->Geometry.size() - 1);
@@ -441,8 +311,8 @@ double Locator::depthOf(const ShearPixel& shown) const
     {
       using T = std::remove_pointer_t<decltype(null)>;
       const PermutedVoxels<T> voxels(this->Source.volume, geometry);
-      depth = FieldOnRay<T>(voxels, geometry, shown.u, shown.v)
-                .extremum(k, this->Source.settings.reduction == Reduction::Minimum);
+      depth = extremumOf<T>(voxels, geometry, shown.u, shown.v, k,
+        this->Source.settings.reduction == Reduction::Minimum);
     });
   return depth;
 }

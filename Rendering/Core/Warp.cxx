@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Warp.h"
 
+#include "Outline.h"
+
 #include <vtkSMPTools.h>
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,173 +18,6 @@ namespace splatting
 {
 namespace
 {
-/// A box of a volume with its axes permuted.
-struct Box
-{
-  glm::dvec3 low, high;
-};
-
-/// The box that the picture shows: all of the voxels' boxes, or voxel centre to voxel centre and a
-/// single voxel's whole thickness.
-Box shownBox(const ShearWarp& geometry)
-{
-  const glm::dvec3 last(geometry.size() - 1);
-  const glm::dvec3 thin = geometry.showsBoxes()
-    ? glm::dvec3(1.0)
-    : glm::dvec3(glm::equal(geometry.size(), glm::ivec3(1)));
-  return { -0.5 * thin, last + 0.5 * thin };
-}
-
-/// A box that pixels have samples in whose rays cross it.
-Box sampledBox(const ShearWarp& geometry)
-{
-  const Span& slices = geometry.slices();
-  Box box{ glm::dvec3(-0.5), glm::dvec3(geometry.size()) - 0.5 };
-  box.low.z = geometry.faces(slices.begin).x;
-  box.high.z = geometry.faces(slices.end - 1).y;
-  if (geometry.isPerspective())
-  {
-    // Rays are rounded: by 2^-21 of a voxel, and 2^-25 for each slice from the farthest one. With
-    // twice as much they cross voxels over a positive length.
-    const double rounding = 0x1p-20 + 0x1p-24 * geometry.size().z;
-    box.low += glm::dvec3(rounding, rounding, 0.0);
-    box.high -= glm::dvec3(rounding, rounding, 0.0);
-  }
-  return box;
-}
-
-/**
- * A convex part of the screen, bounded by the lines (a, b, c) where a x + b y + c = 0.
- */
-class Outline
-{
-public:
-  /// Of the screen pixels that an image shows.
-  explicit Outline(const ShearWarp& geometry) : Geometry(geometry) {}
-
-  /// Keeps pixels of the image where a u + b v + c >= 0, off the line by `inset` along both u and
-  /// v.
-  void add(glm::dvec3 line, double inset)
-  {
-    line.z -= inset * (std::abs(line.x) + std::abs(line.y));
-    this->Lines.push_back(line * this->Geometry.screenToShear());
-  }
-
-  /// Keeps what the image shows of a box.
-  void add(const Box& box, double inset)
-  {
-    // Its outline are the edges between faces of which the viewer sees one; none from inside.
-    for (int edge = 0; edge < 12; ++edge)
-    {
-      const int a = edge / 4, b = (a + 1) % 3, c = (a + 2) % 3;
-      const bool highB = edge & 1, highC = edge & 2;
-      if (this->faces(box, b, highB) == this->faces(box, c, highC))
-      {
-        continue;
-      }
-      glm::dvec3 corner = box.low;
-      corner[b] = highB ? box.high[b] : box.low[b];
-      corner[c] = highC ? box.high[c] : box.low[c];
-      const glm::dvec3 begin = this->Geometry.pixelOf(corner);
-      corner[a] = box.high[a];
-      const glm::dvec3 end = this->Geometry.pixelOf(corner);
-      const glm::dvec3 middle = this->Geometry.pixelOf(0.5 * (box.low + box.high));
-      const glm::dvec3 line = glm::cross(begin, end - begin);
-      this->add(glm::dot(line, middle - begin) < 0.0 ? -line : line, inset);
-    }
-  }
-
-  /// The x in `row` for which the point (x, 0, 0) from `start` is inside.
-  Span cut(Span row, const glm::dvec3& start) const
-  {
-    for (const glm::dvec3& line : this->Lines)
-    {
-      if (row.empty())
-      {
-        return {};
-      }
-      const double at = glm::dot(line, start), low = row.begin, high = row.end;
-      if (line.x > 0.0)
-      {
-        row.begin = static_cast<int>(std::ceil(std::clamp(-at / line.x, low, high)));
-      }
-      else if (line.x < 0.0)
-      {
-        row.end = static_cast<int>(std::floor(std::clamp(-at / line.x, low - 1.0, high - 1.0))) + 1;
-      }
-      else if (at < 0.0)
-      {
-        return {};
-      }
-    }
-    return row;
-  }
-
-  /// What is inside of a polygon of pixels (x, y, 1).
-  std::vector<glm::dvec3> cut(std::vector<glm::dvec3> polygon) const
-  {
-    for (const glm::dvec3& line : this->Lines)
-    {
-      polygon = clipped(polygon, line);
-    }
-    return polygon;
-  }
-
-private:
-  /// Whether the viewer is beyond a face of a box, or on it.
-  bool faces(const Box& box, int axis, bool high) const
-  {
-    if (this->Geometry.isPerspective())
-    {
-      const double eye = this->Geometry.eye()[axis];
-      return high ? eye >= box.high[axis] : eye <= box.low[axis];
-    }
-    const glm::dvec3 direction(-this->Geometry.shear(), 1.0);
-    return high ? direction[axis] < 0.0 : direction[axis] > 0.0;
-  }
-
-  const ShearWarp& Geometry;
-  std::vector<glm::dvec3> Lines;
-};
-
-/// The pixels of the screen that an image shows something in.
-Outline shownBy(const ShearWarp& geometry)
-{
-  // Rims that fall on pixel centres must not flicker with rounding errors.
-  constexpr double rounding = 1e-8;
-  Outline shown(geometry);
-  shown.add(shownBox(geometry), -rounding);
-  if (geometry.isPerspective())
-  {
-    // Where slopes are at most 1. Both images have what lies between two.
-    const double forwards = geometry.reversed() ? -1.0 : 1.0;
-    const glm::dvec3 low = geometry.pixelOf(geometry.eye() + glm::dvec3(-1.0, -1.0, forwards));
-    const glm::dvec3 high = geometry.pixelOf(geometry.eye() + glm::dvec3(1.0, 1.0, forwards));
-    const double overlap = rounding + 1e-12 * (high.x - low.x);
-    shown.add({ 1.0, 0.0, -low.x }, -overlap);
-    shown.add({ -1.0, 0.0, high.x }, -overlap);
-    shown.add({ 0.0, 1.0, -low.y }, -overlap);
-    shown.add({ 0.0, -1.0, high.y }, -overlap);
-  }
-  return shown;
-}
-
-/// The pixels of the screen whose four neighbours in the image are samples, if it has no holes.
-Outline withinSamples(const ShearWarp& geometry)
-{
-  constexpr double rounding = 1e-6;
-  Outline inside(geometry);
-  inside.add(sampledBox(geometry), 1.0 + rounding); // neighbours are at most one pixel away
-  if (geometry.isPerspective())
-  {
-    inside.add({ 1.0, 0.0, 0.0 }, rounding);
-    inside.add({ -1.0, 0.0, geometry.rayCount().x - 1.0 }, rounding);
-    inside.add({ 0.0, 1.0, 0.0 }, rounding);
-    inside.add({ 0.0, -1.0, geometry.rayCount().y - 1.0 }, rounding);
-  }
-  return inside;
-}
-
 /// What becomes of the rows' scalars: their colours, ...
 template <class A>
 struct ColorSink
@@ -233,13 +66,18 @@ struct WarpSource
   const ShearImage& image;
   const A* pixels;
   const ShearWarp& geometry;
+  const FieldRim& rim;
+  std::size_t number; // of the image
   Outline shown, inside;
 
-  WarpSource(const Sink& s, const ShearImage& i, const A* p, const ShearWarp& g)
+  WarpSource(const Sink& s, const ShearImage& i, const A* p, const ShearWarp& g, const FieldRim& r,
+    std::size_t n)
     : sink(s),
       image(i),
       pixels(p),
       geometry(g),
+      rim(r),
+      number(n),
       shown(shownBy(g)),
       inside(withinSamples(g))
   {
@@ -284,8 +122,10 @@ void forNeighbours(const ShearImage& image, const glm::dvec2& p, F&& f)
 }
 
 /// Where a neighbour may be missing, NaN or infinite: interpolates between those that count.
+/// @param own  what the pixel shows instead, if it is a number
 template <class A, class Sink>
-typename Sink::Pixel warpPoint(const WarpSource<A, Sink>& source, const glm::dvec3& homogeneous)
+typename Sink::Pixel warpPoint(
+  const WarpSource<A, Sink>& source, const glm::dvec3& homogeneous, A own)
 {
   const ShearImage& image = source.image;
   const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
@@ -315,32 +155,39 @@ typename Sink::Pixel warpPoint(const WarpSource<A, Sink>& source, const glm::dve
     return source.sink.empty;
   }
   const double average = sum / weight;
-  const A value = std::isfinite(average) ? static_cast<A>(average) : nearest;
+  const A value = own == own ? own : std::isfinite(average) ? static_cast<A>(average) : nearest;
   typename Sink::Pixel pixel;
   source.sink.put(&value, &pixel, 1);
   return pixel;
 }
 
-/// The pixels of a row, `start` being the first, that one image shows.
+/// The pixels of row y, `start` being the first, that one image shows.
 template <class A, class Sink>
-void warpSpan(const WarpSource<A, Sink>& source, const glm::dvec3& start, const Span& row,
+void warpSpan(const WarpSource<A, Sink>& source, const glm::dvec3& start, int y, const Span& row,
   typename Sink::Pixel* out)
 {
   const glm::dmat3& m = source.geometry.screenToShear();
   const glm::dvec3 first = m * start, step = m[0];
-  const Span plain = source.hasHoles() ? Span{} : source.inside.cut(row, start);
-  const int plainBegin = plain.empty() ? row.end : plain.begin;
-  const int plainEnd = plain.empty() ? row.end : plain.end;
-  for (int x = row.begin; x < plainBegin; ++x)
+  const auto warpPoints = [&](int begin, int end)
   {
-    out[x] = warpPoint(source, first + double(x) * step);
+    for (int x = begin; x < end; ++x)
+    {
+      const A own = source.rim.template value<A>(source.number, x, y);
+      out[x] = warpPoint(source, first + double(x) * step, own);
+    }
+  };
+  const Span plain = source.hasHoles()
+    ? Span{}
+    : source.inside.cut(common(row, source.rim.inside(source.number, y, row)), start);
+  if (plain.empty())
+  {
+    warpPoints(row.begin, row.end);
+    return;
   }
+  warpPoints(row.begin, plain.begin);
   warpInside(
-    source, first + double(plainBegin) * step, step, out + plainBegin, plainEnd - plainBegin);
-  for (int x = plainEnd; x < row.end; ++x)
-  {
-    out[x] = warpPoint(source, first + double(x) * step);
-  }
+    source, first + double(plain.begin) * step, step, out + plain.begin, plain.end - plain.begin);
+  warpPoints(plain.end, row.end);
 }
 
 /// Of a view: one for each direction of each axis.
@@ -381,13 +228,13 @@ void forSpans(std::size_t count, const glm::dvec3& start, int width, const Shown
 }
 
 template <class A, class Sink>
-void warpRow(const std::vector<WarpSource<A, Sink>>& sources, const glm::dvec3& start, int width,
-  typename Sink::Pixel* out)
+void warpRow(const std::vector<WarpSource<A, Sink>>& sources, const glm::dvec3& start, int y,
+  int width, typename Sink::Pixel* out)
 {
   const auto empty = sources.front().sink.empty;
   forSpans(
     sources.size(), start, width, [&](std::size_t n) -> const Outline& { return sources[n].shown; },
-    [&](std::size_t n, const Span& row) { warpSpan(sources[n], start, row, out); },
+    [&](std::size_t n, const Span& row) { warpSpan(sources[n], start, y, row, out); },
     [&](const Span& row) { std::fill(out + row.begin, out + row.end, empty); });
 }
 
@@ -425,7 +272,7 @@ void warpRows(const std::vector<WarpSource<A, Sink>>& sources, const Picture& pl
       for (vtkIdType y = first; y < last; ++y)
       {
         const glm::dvec3 start(place.origin.x, place.origin.y + static_cast<double>(y), 1.0);
-        warpRow(sources, start, place.size.x, pixels + y * stride);
+        warpRow(sources, start, static_cast<int>(y), place.size.x, pixels + y * stride);
       }
     });
 }
@@ -442,7 +289,7 @@ Rectangle boundsOf(const ShearWarp& geometry, const glm::dvec2& viewport)
   if (!geometry.isPerspective())
   {
     // What the image shows is symmetric about the middle of the volume.
-    const Box box = shownBox(geometry);
+    const Cuboid box = shownBox(geometry);
     const glm::dvec3 size = box.high - box.low;
     const glm::dvec2 s = glm::abs(geometry.shear());
     const glm::dvec2 half = 0.5 * (glm::dvec2(size) + s * size.z) / geometry.pitch();
@@ -533,14 +380,14 @@ const Accumulator<T>* widenedPixels(
 template <class T, class Sink>
 void warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   const Kernels& kernels, const Sink& sink, std::vector<std::vector<unsigned char>>& widened,
-  const Picture& place, typename Sink::Pixel* pixels, std::ptrdiff_t stride)
+  const Picture& place, typename Sink::Pixel* pixels, std::ptrdiff_t stride, const FieldRim& rim)
 {
   using A = Accumulator<T>;
   std::vector<WarpSource<A, Sink>> sources;
   for (std::size_t n = 0; n < geometries.size(); ++n)
   {
     const A* const own = widenedPixels<T>(images[n], kernels, widened[n]);
-    sources.emplace_back(sink, images[n], own, geometries[n]);
+    sources.emplace_back(sink, images[n], own, geometries[n], rim, n);
   }
   warpRows(sources, place, pixels, stride);
 }
@@ -548,7 +395,7 @@ void warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWa
 
 void Warper::warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   const ColorTable& table, const glm::ivec2& viewport, InstructionSet instructionSet,
-  Picture& picture)
+  Picture& picture, const FieldRim& rim)
 {
   placePicture(geometries, viewport, picture);
   picture.pixels.resize(std::size_t(picture.size.x) * picture.size.y);
@@ -564,13 +411,13 @@ void Warper::warp(const std::vector<ShearImage>& images, const std::vector<Shear
       using T = std::remove_pointer_t<decltype(null)>;
       const ColorSink<Accumulator<T>> sink(kernels, table);
       warpImages<T>(images, geometries, kernels, sink, this->Widened, picture,
-        picture.pixels.data(), picture.size.x);
+        picture.pixels.data(), picture.size.x, rim);
     });
 }
 
 void Warper::warpScalars(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, const glm::ivec2& viewport,
-  InstructionSet instructionSet, double background, void* scalars)
+  InstructionSet instructionSet, double background, void* scalars, const FieldRim& rim)
 {
   Picture place;
   placePicture(geometries, viewport, place);
@@ -588,7 +435,8 @@ void Warper::warpScalars(const std::vector<ShearImage>& images,
       const ScalarSink<A> sink{ kernels, static_cast<A>(background) };
       A* const first =
         static_cast<A*>(scalars) + std::ptrdiff_t(place.origin.y) * viewport.x + place.origin.x;
-      warpImages<T>(images, geometries, kernels, sink, this->Widened, place, first, viewport.x);
+      warpImages<T>(
+        images, geometries, kernels, sink, this->Widened, place, first, viewport.x, rim);
     });
 }
 

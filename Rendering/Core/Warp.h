@@ -6,6 +6,7 @@
 #ifndef splattingWarp_h
 #define splattingWarp_h
 
+#include "FieldRim.h"
 #include "Kernels.h"
 #include "ShearImage.h"
 
@@ -87,10 +88,11 @@ public:
    * without a sample are transparent.
    * @param images      all of one type; those behind the last geometry are left alone
    * @param geometries  as ShearWarp::factorise() gives them
+   * @param rim         values of pixels that are not interpolated, found for this view
    */
   void warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
     const ColorTable& table, const glm::ivec2& viewport, InstructionSet instructionSet,
-    Picture& picture);
+    Picture& picture, const FieldRim& rim = {});
 
   /**
    * The same as scalars, to a whole viewport's, row after row from the bottom. Pixels that would be
@@ -98,7 +100,8 @@ public:
    * @param scalars  of type averageType() of the images' type
    */
   void warpScalars(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
-    const glm::ivec2& viewport, InstructionSet instructionSet, double background, void* scalars);
+    const glm::ivec2& viewport, InstructionSet instructionSet, double background, void* scalars,
+    const FieldRim& rim = {});
 
 private:
   /// Preview images in the accumulator's type.

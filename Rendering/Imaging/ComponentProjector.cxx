@@ -482,6 +482,27 @@ double ComponentProjector::ShareOfAll(double done) const
 }
 
 //------------------------------------------------------------------------------
+void ComponentProjector::FindRim(const std::vector<splatting::ShearWarp>& geometries,
+  const std::vector<splatting::Cuts>& cuts, const splatting::View& view)
+{
+  const glm::ivec3 first = this->Ranks ? this->Ranks->First() : glm::ivec3(0);
+  for (Channel& channel : this->Channels)
+  {
+    channel.Rim.clear();
+    if (geometries.empty() || !splatting::hasFieldRim(channel.Settings))
+    {
+      continue;
+    }
+    channel.Rim.find(
+      channel.Images, geometries, { channel.Index.volume(), first, &cuts }, view.viewport);
+    if (this->Ranks && channel.Rim.values().width > 0)
+    {
+      this->Ranks->Reduce(channel.Rim.values(), geometries.front(), splatting::Reduction::Maximum);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 void ComponentProjector::Warp(const std::vector<splatting::ShearWarp>& geometries,
   const splatting::View& view, splatting::Picture& picture)
 {
@@ -489,7 +510,7 @@ void ComponentProjector::Warp(const std::vector<splatting::ShearWarp>& geometrie
   {
     const bool first = &channel == &this->Channels.front();
     this->Warper.warp(channel.Images, geometries, channel.Colors, view.viewport,
-      channel.Settings.instructionSet, first ? picture : this->Layer);
+      channel.Settings.instructionSet, first ? picture : this->Layer, channel.Rim);
     if (first)
     {
       continue;
@@ -516,7 +537,7 @@ void ComponentProjector::WarpScalars(const std::vector<splatting::ShearWarp>& ge
     using A = std::remove_pointer_t<decltype(values)>;
     std::fill_n(values, pixels, static_cast<A>(background));
     this->Warper.warpScalars(channel.Images, geometries, view.viewport,
-      channel.Settings.instructionSet, background, values);
+      channel.Settings.instructionSet, background, values, channel.Rim);
   };
   const auto interleave = [&](auto* to)
   {

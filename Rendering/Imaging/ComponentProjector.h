@@ -84,6 +84,12 @@ public:
   /// The images no longer show what they should.
   void Forget() { this->Projected = false; }
 
+  /// Before the pictures of a view: finds what exact mode shows at the rim of the field.
+  /// Collective.
+  /// @param cuts  of the projection, for each image
+  void FindRim(const std::vector<splatting::ShearWarp>& geometries,
+    const std::vector<splatting::Cuts>& cuts, const splatting::View& view);
+
   /// The picture of the images in a view with these geometries.
   void Warp(const std::vector<splatting::ShearWarp>& geometries, const splatting::View& view,
     splatting::Picture& picture);
@@ -127,7 +133,8 @@ private:
     splatting::ProjectionSettings Settings;
     std::vector<splatting::ShearImage> Images; // at least as many as the view has
     splatting::ShearImage Phase;               // the present part of one of them
-    splatting::VolumeIndex::Range Range;       // of what was projected
+    splatting::FieldRim Rim;
+    splatting::VolumeIndex::Range Range; // of what was projected
     splatting::Acceleration Used = splatting::Acceleration::Dense;
 
     double FloorOfWindow() const;

@@ -359,6 +359,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     {
       return {};
     }
+    this->Components.FindRim(this->Images, this->CutsBefore, view);
     this->Components.WarpScalars(
       this->Images, view, self->BackgroundValue, output->GetScalarPointer(0, 0, n));
     if (this->Components.HasWinners())

@@ -28,6 +28,9 @@ struct Oracle
   reference::ShearView view;
   std::vector<unsigned char> meets, hit, known;
   std::vector<double> values;
+  // Of exact mode:
+  reference::Volume<double> volume;
+  std::vector<double> ways; ///< of rays through the field
 };
 
 /// A parallel view in index space: a ray through `corner + x across + y up` runs along `direction`.
@@ -174,6 +177,7 @@ Oracle oracleOf(
     ? reference::voxelSamples(exact, oracle.view)
     : reference::slabSamples(exact, oracle.view, kernelOf(filter));
   const reference::RayCutter cutter(oracle.grid, oracle.view, cutsOf(filter, image));
+  oracle.volume = isExact ? exact : reference::Volume<double>();
   const double lowest = reference::lowestVoxel(volume);
   const bool reversed = rays.direction[oracle.view.axis] < 0.0;
   for (int v = 0; v < oracle.grid.height; ++v)
@@ -191,6 +195,7 @@ Oracle oracleOf(
         const auto depths =
           reference::depthsInField(volume.size, ray, reference::FieldDomain::Centres, -0.5, end);
         known = own.empty() || depths[1] - depths[0] > 1e-6;
+        oracle.ways.push_back(depths[1] - depths[0]);
         outcome.value =
           known && !own.empty() ? reference::fieldMaximum(exact, ray, depths[0], depths[1]) : 0.0;
       }
@@ -226,6 +231,46 @@ struct Expected
   double value = 0.0;
 };
 
+/// How exact mode's rays about a pixel run through the field.
+struct Ways
+{
+  double shortest = HUGE_VAL, longest = 0.0;
+  bool certain = true;
+
+  void add(double way, double weight)
+  {
+    this->certain = this->certain && (weight > 1e-9 || weight == 0.0) && std::abs(way) > 1e-6;
+    this->shortest = weight > 0.0 ? std::min(this->shortest, way) : this->shortest;
+    this->longest = weight > 0.0 ? std::max(this->longest, way) : this->longest;
+  }
+};
+
+/// At the rim of the field a pixel shows what its own ray finds.
+void expectOwnRay(const Oracle& oracle, const Rays& rays, const glm::dvec3& point, const Ways& ways,
+  Expected& expected)
+{
+  reference::FieldRay ray;
+  ray.axes = oracle.grid.axes;
+  ray.start = point[ray.axes[2]];
+  for (int a = 0; a < 2; ++a)
+  {
+    ray.at[a] = point[ray.axes[a]];
+    ray.slope[a] = rays.direction[ray.axes[a]] / rays.direction[ray.axes[2]];
+  }
+  const auto depths = reference::depthsInField(
+    oracle.volume.size, ray, reference::FieldDomain::Centres, -0.5, oracle.grid.size[2] - 0.5);
+  const double own = depths[1] - depths[0];
+  const double share = ways.shortest / ways.longest;
+  expected.certain = expected.certain && ways.certain &&
+    (ways.shortest < 0.0 || (std::abs(own - 3.0) > 1e-5 && std::abs(share - 0.5) > 1e-5));
+  if (ways.shortest < 0.0 || (own < 3.0 && share < 0.5))
+  {
+    expected.certain = expected.certain && own > 1e-5;
+    expected.value =
+      own > 1e-5 ? reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]) : 0.0;
+  }
+}
+
 Expected expectedPixel(
   const Oracle& oracle, const std::array<int, 3>& size, const Rays& rays, const glm::dvec3& point)
 {
@@ -244,16 +289,23 @@ Expected expectedPixel(
     oracle.view.sampling * (point[axes[1]] + oracle.grid.margin[1] + oracle.view.shear[1] * depth);
   const int u = static_cast<int>(std::floor(pu)), v = static_cast<int>(std::floor(pv));
   double sum = 0.0, weight = 0.0, lost = 0.0;
+  Ways ways;
   for (int n = 0; n < 4; ++n)
   {
     const int i = u + n % 2, j = v + n / 2;
+    const double w = std::abs(u + 1 - n % 2 - pu) * std::abs(v + 1 - n / 2 - pv);
     if (i < 0 || j < 0 || i >= oracle.grid.width || j >= oracle.grid.height)
     {
+      ways.add(-1.0, w);
       continue;
     }
     const std::size_t pixel = std::size_t(j) * oracle.grid.width + i;
-    const double w = std::abs(u + 1 - n % 2 - pu) * std::abs(v + 1 - n / 2 - pv);
-    expected.certain = expected.certain && (oracle.known[pixel] || w < 1e-9);
+    const bool isExact = !oracle.ways.empty();
+    if (isExact)
+    {
+      ways.add(oracle.ways[pixel], w);
+    }
+    expected.certain = expected.certain && (oracle.known[pixel] || isExact || w < 1e-9);
     if (oracle.meets[pixel])
     {
       (oracle.hit[pixel] ? weight : lost) += w;
@@ -263,6 +315,10 @@ Expected expectedPixel(
   expected.certain = expected.certain && std::abs(lost - 0.5) > 1e-5 && weight > 1e-5;
   expected.hit = weight > 1e-5 && lost <= 0.5;
   expected.value = sum / weight;
+  if (!oracle.ways.empty() && expected.hit)
+  {
+    expectOwnRay(oracle, rays, point, ways, expected);
+  }
   return expected;
 }
 
