@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AVIFilm.h"
 
+#include "ProgressLine.h"
+
 extern "C"
 {
 #include <libavcodec/avcodec.h>
@@ -228,8 +230,11 @@ private:
 void WriteAVI(vtkImageData* slices, const Palette& palette, int rate, const std::string& path)
 {
   AVIFile file(path, slices->GetDimensions(), palette, rate);
-  for (int n = 0; n < slices->GetDimensions()[2]; ++n)
+  const int count = slices->GetDimensions()[2];
+  ProgressLine line("writing");
+  for (int n = 0; n < count; ++n)
   {
+    line.Show(double(n) / count);
     file.Add(static_cast<unsigned char*>(slices->GetScalarPointer(0, 0, n)));
   }
   file.Close();

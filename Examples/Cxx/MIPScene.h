@@ -3,6 +3,8 @@
 #ifndef MIPScene_h
 #define MIPScene_h
 
+#include "Look.h"
+#include "View.h"
 #include "VolumeReader.h"
 
 #include "vtkFixedPointVolumeRayCastMapper.h"
@@ -14,62 +16,12 @@
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
-#include <array>
 #include <string>
-#include <vector>
-
-class vtkColorTransferFunction;
-class vtkTransform;
 
 /**
- * From where the volume is seen: with all angles 0 from the patient's front, head up. Degrees.
+ * Throws a sentence where a window cannot be opened; X would end the program.
  */
-struct ViewSettings
-{
-  std::array<int, 2> Size = { 400, 600 };
-  double Azimuth = 20.0;   // the camera goes round to the patient's left
-  double Elevation = 10.0; // the camera rises
-  double Roll = 0.0;       // the camera turns clockwise
-  double Zoom = 1.0;       // 1: the volume's box just fits
-};
-
-/**
- * How values become colours: Window wide around Level, in Colormap.
- */
-struct LookSettings
-{
-  double Window = 1.0;
-  double Level = 0.5;
-  std::string Colormap = "gray";
-};
-
-/**
- * The colours of values.
- */
-vtkSmartPointer<vtkColorTransferFunction> MakeColors(const LookSettings& look);
-
-/**
- * The camera's frame as a turn of the front view's: x to the right, y away, z up.
- */
-vtkSmartPointer<vtkTransform> MakeViewTurn(const ViewSettings& view, double azimuth);
-
-/**
- * The parallel scale with which a box, oriented as the volume is, fits into the view.
- */
-double GetFittingScale(
-  const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view, vtkTransform* turn);
-
-/**
- * The names that LookSettings::Colormap may have.
- */
-std::vector<std::string> GetColormapNames();
-
-/**
- * Black at the median value, white at the value that one voxel in 2000 exceeds: the maximum
- * of a ray is seldom below the one, and a few outliers do not decide the other. The whole range
- * where these two are equal. Throws a sentence if no value is finite.
- */
-void ChooseWindowLevel(vtkImageData* image, double& window, double& level);
+void CheckDisplay();
 
 /**
  * One volume in one window under a parallel camera, drawn by either mapper.
@@ -101,11 +53,6 @@ public:
    */
   double MeasureFrame(const std::string& what);
   static const int NumberOfTimedFrames = 7;
-
-  /**
-   * A picture (RGB) of the current view with a label in its corner.
-   */
-  vtkSmartPointer<vtkImageData> TakePicture(const std::string& label);
 
   void SetLabel(const std::string& label);
 

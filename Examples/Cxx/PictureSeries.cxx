@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PictureSeries.h"
 
+#include "ProgressLine.h"
+
 #include "vtkNew.h"
 #include "vtkPNGWriter.h"
 #include "vtkSmartPointer.h"
@@ -24,32 +26,24 @@
 
 namespace
 {
-/// One slice in colours.
-vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette, int n)
+/// The file of one of numbered pictures.
+std::string NumberName(const std::string& path, int n)
 {
-  const int* const size = slices->GetDimensions();
-  auto picture = vtkSmartPointer<vtkImageData>::New();
-  picture->SetDimensions(size[0], size[1], 1);
-  picture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  const auto* const from = static_cast<unsigned char*>(slices->GetScalarPointer(0, 0, n));
-  auto* const to = static_cast<unsigned char*>(picture->GetScalarPointer());
-  for (vtkIdType p = 0; p < picture->GetNumberOfPoints(); ++p)
-  {
-    std::copy_n(palette[from[p]].data(), 3, to + 3 * p);
-  }
-  return picture;
+  const std::filesystem::path name(path);
+  char number[16];
+  std::snprintf(number, sizeof(number), "-%05d", n);
+  return (name.parent_path() / (name.stem().string() + number + name.extension().string()))
+    .string();
 }
 
 void WritePNGs(vtkImageData* slices, const Palette& palette, const std::string& path)
 {
-  const std::filesystem::path name(path);
-  for (int n = 0; n < slices->GetDimensions()[2]; ++n)
+  const int count = slices->GetDimensions()[2];
+  ProgressLine line("writing");
+  for (int n = 0; n < count; ++n)
   {
-    char number[16];
-    std::snprintf(number, sizeof(number), "-%05d", n);
-    const auto file =
-      name.parent_path() / (name.stem().string() + number + name.extension().string());
-    WritePNG(Paint(slices, palette, n), file.string());
+    line.Show(double(n) / count);
+    WritePNG(Paint(slices, palette, n), NumberName(path, n));
   }
 }
 
@@ -65,8 +59,11 @@ void WriteTheora(vtkImageData* slices, const Palette& palette, int rate, const s
   writer->SetRate(rate);
   writer->SetQuality(2);
   writer->SubsamplingOff();
-  for (int n = 0; n < slices->GetDimensions()[2]; ++n)
+  const int count = slices->GetDimensions()[2];
+  ProgressLine line("writing");
+  for (int n = 0; n < count; ++n)
   {
+    line.Show(double(n) / count);
     writer->SetInputData(Paint(slices, palette, n));
     if (n == 0)
     {
@@ -163,8 +160,11 @@ private:
 void WriteGIF(vtkImageData* slices, const Palette& palette, int rate, const std::string& path)
 {
   GIFFile file(path, slices->GetDimensions(), palette);
-  for (int n = 0; n < slices->GetDimensions()[2]; ++n)
+  const int count = slices->GetDimensions()[2];
+  ProgressLine line("writing");
+  for (int n = 0; n < count; ++n)
   {
+    line.Show(double(n) / count);
     file.Add(static_cast<unsigned char*>(slices->GetScalarPointer(0, 0, n)),
       std::max(2, (100 + rate / 2) / rate)); // browsers take less for more
   }
@@ -182,6 +182,36 @@ std::runtime_error CannotWrite(const std::string& path)
 {
   return std::runtime_error(
     path + ": this cannot be written; give a file in a folder that you may write to (--output).");
+}
+
+void CheckWritable(const std::string& path, bool isNumbered)
+{
+  const std::string name = isNumbered ? NumberName(path, 0) : path;
+  std::error_code error;
+  const bool isThere = std::filesystem::exists(name, error);
+  if (!std::ofstream(name, std::ios::binary | std::ios::app))
+  {
+    throw CannotWrite(name);
+  }
+  if (!isThere)
+  {
+    std::filesystem::remove(name, error);
+  }
+}
+
+vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette, int n)
+{
+  const int* const size = slices->GetDimensions();
+  auto picture = vtkSmartPointer<vtkImageData>::New();
+  picture->SetDimensions(size[0], size[1], 1);
+  picture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  const auto* const from = static_cast<unsigned char*>(slices->GetScalarPointer(0, 0, n));
+  auto* const to = static_cast<unsigned char*>(picture->GetScalarPointer());
+  for (vtkIdType p = 0; p < picture->GetNumberOfPoints(); ++p)
+  {
+    std::copy_n(palette[from[p]].data(), 3, to + 3 * p);
+  }
+  return picture;
 }
 
 void WritePNG(vtkImageData* image, const std::string& path)

@@ -3,17 +3,27 @@
 #ifndef PictureSeries_h
 #define PictureSeries_h
 
-#include "vtkImageData.h"
+#include "Look.h"
 
-#include <array>
+#include "vtkImageData.h"
+#include "vtkSmartPointer.h"
+
 #include <stdexcept>
 #include <string>
-#include <vector>
-
-using Palette = std::array<std::array<unsigned char, 3>, 256>;
 
 /// What every writer throws whose file cannot be made or filled.
 std::runtime_error CannotWrite(const std::string& path);
+
+/**
+ * Throws that if a picture, or the first of numbered ones, cannot be written: to be asked before
+ * the work. What is not there yet is not there afterwards.
+ */
+void CheckWritable(const std::string& path, bool isNumbered);
+
+/**
+ * One of the slices in the palette's colours.
+ */
+vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette, int n);
 
 /**
  * Encode in memory and write by hand, so that a failure is one sentence and not VTK's report.

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Turn.h"
+#include "Projector.h"
 
 #include "ProgressLine.h"
 
 #include "vtkCallbackCommand.h"
-#include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkMatrix3x3.h"
@@ -54,7 +53,8 @@ double LargestScale(const Volume& volume, const ViewSettings& view, int views)
 }
 }
 
-Turn::Turn(const Volume& volume, const LookSettings& look, const ViewSettings& view, int views)
+Projector::Projector(
+  const Volume& volume, const LookSettings& look, const ViewSettings& view, int views)
   : Look(look)
 {
   this->Projection->SetInputData(Orient(volume));
@@ -69,10 +69,10 @@ Turn::Turn(const Volume& volume, const LookSettings& look, const ViewSettings& v
   this->Projection->SetBackgroundValue(look.Level - look.Window);
 }
 
-vtkSmartPointer<vtkImageData> Turn::Project()
+vtkSmartPointer<vtkImageData> Projector::Project(const std::string& what)
 {
   using Clock = std::chrono::steady_clock;
-  ProgressLine line("projecting");
+  ProgressLine line(what);
   vtkNew<vtkCallbackCommand> tell;
   tell->SetClientData(&line);
   tell->SetCallback([](vtkObject*, unsigned long, void* client, void* data)
@@ -99,19 +99,4 @@ vtkSmartPointer<vtkImageData> Turn::Project()
     to[p] = static_cast<unsigned char>(std::lround(std::clamp(place, 0.0, 255.0)));
   }
   return bytes;
-}
-
-Palette Turn::GetPalette() const
-{
-  const auto colors = MakeColors(this->Look);
-  Palette palette;
-  for (int n = 0; n < 256; ++n)
-  {
-    const double value = this->Look.Level + this->Look.Window * (n / 255.0 - 0.5);
-    double rgb[3];
-    colors->GetColor(value, rgb);
-    std::transform(rgb, rgb + 3, palette[n].begin(),
-      [](double c) { return static_cast<unsigned char>(std::lround(255.0 * c)); });
-  }
-  return palette;
 }

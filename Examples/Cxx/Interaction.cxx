@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Interaction.h"
+
+#include "Comparison.h"
+#include "MIPScene.h"
+
+#include "vtkCommand.h"
+#include "vtkInteractorStyleTrackballCamera.h"
+#include "vtkObjectFactory.h"
+#include "vtkRenderWindowInteractor.h"
+
+namespace
+{
+/**
+ * The trackball, with keys for the modes in place of VTK's usual keys.
+ */
+class ModeKeys : public vtkInteractorStyleTrackballCamera
+{
+public:
+  static ModeKeys* New();
+  vtkTypeMacro(ModeKeys, vtkInteractorStyleTrackballCamera);
+
+  void OnChar() override
+  {
+    const std::string keys = "123psh";
+    const std::size_t key = keys.find(this->Interactor->GetKeyCode());
+    if (key != std::string::npos)
+    {
+      this->Scene->UseSplatting(static_cast<int>(key % 3));
+      this->Interactor->Render();
+    }
+    else if (this->Interactor->GetKeyCode() == 'q')
+    {
+      this->Interactor->TerminateApp();
+    }
+  }
+
+  MIPScene* Scene = nullptr;
+
+protected:
+  ModeKeys() = default;
+  ~ModeKeys() override = default;
+
+private:
+  ModeKeys(const ModeKeys&) = delete;
+  void operator=(const ModeKeys&) = delete;
+};
+
+vtkStandardNewMacro(ModeKeys);
+
+/**
+ * After a frame that projected anew: say the mode and how long the volume took, and draw once more
+ * for the label to be seen. That frame re-uses the projection, so there is no third.
+ */
+class LabelUpdate : public vtkCommand
+{
+public:
+  static LabelUpdate* New() { return new LabelUpdate; }
+
+  void Execute(vtkObject*, unsigned long, void*) override
+  {
+    vtkSplattingMIPVolumeMapper* mapper = this->Scene->GetSplatting();
+    if (mapper->GetNumberOfProjections() != this->NumberOfProjections)
+    {
+      this->NumberOfProjections = mapper->GetNumberOfProjections();
+      this->Scene->SetLabel(
+        ModeNames[mapper->GetQualityMode()] + "  " + FormatTime(1000.0 * mapper->GetTimeToDraw()));
+      this->Scene->GetWindow()->Render();
+    }
+  }
+
+  MIPScene* Scene = nullptr;
+  vtkIdType NumberOfProjections = 0;
+};
+}
+
+void Interact(const Volume& volume, const LookSettings& look, const Options& options)
+{
+  MIPScene scene(volume, look, options.View, false);
+  scene.GetSplatting()->SetKernel(options.Kernel);
+  scene.GetSplatting()->SetKernelRadius(options.KernelRadius);
+  scene.UseSplatting(options.Modes.front());
+  vtkNew<LabelUpdate> label;
+  label->Scene = &scene;
+  scene.GetWindow()->AddObserver(vtkCommand::EndEvent, label);
+
+  vtkNew<ModeKeys> keys;
+  keys->Scene = &scene;
+  vtkNew<vtkRenderWindowInteractor> interactor;
+  interactor->SetRenderWindow(scene.GetWindow());
+  interactor->SetInteractorStyle(keys);
+  scene.GetWindow()->SetWindowName("splatmip: 1 preview, 2 standard, 3 high, q quit");
+  scene.GetWindow()->Render();
+  interactor->Start();
+  scene.GetWindow()->RemoveObserver(label);
+}

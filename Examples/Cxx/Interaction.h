@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef Interaction_h
+#define Interaction_h
+
+#include "Options.h"
+#include "VolumeReader.h"
+
+/**
+ * Shows a volume in a window until the user closes it.
+ */
+void Interact(const Volume& volume, const LookSettings& look, const Options& options);
+
+#endif

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Look.h"
+
+#include "vtkDataArray.h"
+#include "vtkPointData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+
+namespace
+{
+struct ColorPoint
+{
+  double Position, Red, Green, Blue;
+};
+
+struct NamedColormap
+{
+  std::string Name;
+  std::vector<ColorPoint> Points;
+};
+
+const std::vector<NamedColormap>& GetColormaps()
+{
+  static const std::vector<NamedColormap> maps = {
+    { "gray", { { 0, 0, 0, 0 }, { 1, 1, 1, 1 } } },
+    { "inverted", { { 0, 1, 1, 1 }, { 1, 0, 0, 0 } } },
+    { "hot", { { 0, 0, 0, 0 }, { 0.375, 1, 0, 0 }, { 0.75, 1, 1, 0 }, { 1, 1, 1, 1 } } },
+    { "bone",
+      { { 0, 0, 0, 0 }, { 0.375, 0.33, 0.33, 0.45 }, { 0.75, 0.66, 0.78, 0.78 }, { 1, 1, 1, 1 } } },
+  };
+  return maps;
+}
+
+const NamedColormap& FindColormap(const std::string& name)
+{
+  for (const NamedColormap& map : GetColormaps())
+  {
+    if (map.Name == name)
+    {
+      return map;
+    }
+  }
+  throw std::runtime_error("there is no colormap " + name + "; see splatmip --help.");
+}
+
+/// Voxels that tell what a volume looks like.
+constexpr vtkIdType FewVoxels = 1000000;
+
+/**
+ * The finite ones of so many values, or somewhat more, evenly spread over the volume.
+ */
+std::vector<double> SampleValues(vtkDataArray* scalars, vtkIdType voxels)
+{
+  const vtkIdType count = scalars->GetNumberOfTuples();
+  const vtkIdType step = std::max<vtkIdType>(1, count / voxels);
+  std::vector<double> values;
+  for (vtkIdType i = 0; i < count; i += step)
+  {
+    const double value = scalars->GetComponent(i, 0);
+    if (std::isfinite(value))
+    {
+      values.push_back(value);
+    }
+  }
+  return values;
+}
+
+double GetQuantile(std::vector<double>& values, double fraction)
+{
+  const auto place =
+    values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+}
+
+vtkSmartPointer<vtkColorTransferFunction> MakeColors(const LookSettings& look)
+{
+  const double low = look.Level - 0.5 * look.Window;
+  auto colors = vtkSmartPointer<vtkColorTransferFunction>::New();
+  for (const ColorPoint& point : FindColormap(look.Colormap).Points)
+  {
+    colors->AddRGBPoint(low + point.Position * look.Window, point.Red, point.Green, point.Blue);
+  }
+  return colors;
+}
+
+Palette MakePalette(const LookSettings& look)
+{
+  const auto colors = MakeColors(look);
+  Palette palette;
+  for (int n = 0; n < 256; ++n)
+  {
+    const double value = look.Level + look.Window * (n / 255.0 - 0.5);
+    double rgb[3];
+    colors->GetColor(value, rgb);
+    std::transform(rgb, rgb + 3, palette[n].begin(),
+      [](double c) { return static_cast<unsigned char>(std::lround(255.0 * c)); });
+  }
+  return palette;
+}
+
+std::vector<std::string> GetColormapNames()
+{
+  std::vector<std::string> names;
+  for (const NamedColormap& map : GetColormaps())
+  {
+    names.push_back(map.Name);
+  }
+  return names;
+}
+
+void ChooseWindowLevel(vtkImageData* image, double& window, double& level)
+{
+  window = 1.0;
+  level = 0.5;
+  vtkDataArray* const scalars = image->GetPointData()->GetScalars();
+  std::vector<double> values = SampleValues(scalars, FewVoxels);
+  if (values.empty())
+  {
+    values = SampleValues(scalars, scalars->GetNumberOfTuples()); // few are numbers
+  }
+  if (values.empty())
+  {
+    throw std::runtime_error(
+      "the volume has no finite value, so that there is nothing to show; see what wrote it.");
+  }
+  double low = GetQuantile(values, 0.5);
+  double high = GetQuantile(values, 0.9995);
+  if (!(low < high))
+  {
+    low = *std::min_element(values.begin(), values.end());
+    high = *std::max_element(values.begin(), values.end());
+  }
+  window = low < high ? high - low : 1.0;
+  level = low < high ? 0.5 * (low + high) : low;
+}

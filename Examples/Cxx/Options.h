@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef Options_h
+#define Options_h
+
+#include "Look.h"
+#include "View.h"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+/**
+ * The names of the quality modes, in the order of vtkSplattingMIPProjection::QualityModes.
+ */
+extern const std::vector<std::string> ModeNames;
+
+/**
+ * What the command line asks for.
+ */
+struct Options
+{
+  std::string Input;         // empty: the built-in volume
+  std::vector<int> Modes;    // one, but for stills side by side
+  int Kernel = 0;            // of vtkSplattingMIPProjection::Kernels
+  double KernelRadius = 1.0; // voxels
+  ViewSettings View;         //
+  LookSettings Look;         // of which the user has given
+  bool HasWindow = false;    // this
+  bool HasLevel = false;     // and this
+  std::string Output;        // an absolute path
+  bool Compare = false;      // with the ray caster
+  bool Interactive = false;  // in a window
+  int Rotate = 0;            // views, or 0
+  int Rate = 12;             // views per second
+};
+
+/**
+ * Throws CLI::Success for --help and --version, CLI::ParseError for what makes no sense.
+ */
+Options ParseOptions(CLI::App& app, int argc, char* argv[]);
+
+#endif

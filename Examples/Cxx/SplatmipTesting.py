@@ -1,0 +1,149 @@
+# SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of the program splatmip share: volumes in files, and how to run the program.
+
+    python3 TestSplatmip....py PROGRAM [unittest's arguments]
+"""
+import gzip
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+PROGRAM = ""
+SIZE = (10, 12, 14)
+
+
+def make_image(x_of_left=1):
+    """A dark image, coordinates as the patient's, with a bright block at the left and the feet."""
+    image = vtk.vtkImageData()
+    image.SetDimensions(*SIZE)
+    image.SetSpacing(1.5, 1.0, 2.0)
+    image.AllocateScalars(vtk.VTK_SHORT, 1)
+    image.GetPointData().GetScalars().SetName("intensity")
+    image.GetPointData().GetScalars().Fill(0)
+    for k in range(1, 5):
+        for j in range(4, 8):
+            for i in range(1, 4):
+                x = SIZE[0] - 1 - i if x_of_left else i
+                image.SetScalarComponentFromDouble(x, j, k, 0, 1000)
+    return image
+
+
+def get_bytes(image):
+    return bytes(memoryview(image.GetPointData().GetScalars()))
+
+
+def write_with(writer, image, path):
+    writer.SetInputData(image)
+    writer.SetFileName(path)
+    writer.Write()
+    return path
+
+
+def write_file(path, data):
+    with open(path, "wb") as file:
+        file.write(data)
+    return path
+
+
+def write_vti(path):
+    return write_with(vtk.vtkXMLImageDataWriter(), make_image(), path)
+
+
+def write_vtk(path):
+    return write_with(vtk.vtkDataSetWriter(), make_image(), path)
+
+
+def write_meta(path):
+    """A .mha file, or a .mhd file with the voxels in a file of its own."""
+    return write_with(vtk.vtkMetaImageWriter(), make_image(), path)
+
+
+def write_nifti(path):
+    """NIfTI counts x to the patient's right."""
+    return write_with(vtk.vtkNIFTIImageWriter(), make_image(x_of_left=0), path)
+
+
+def write_nrrd(path, encoding="raw", space="left-posterior-superior", x_of_left=1,
+               directions="(1.5,0,0) (0,1,0) (0,0,2)"):
+    data = get_bytes(make_image(x_of_left))
+    data = gzip.compress(data) if encoding == "gzip" else data
+    header = f"""NRRD0004
+type: short
+dimension: 3
+space: {space}
+sizes: {SIZE[0]} {SIZE[1]} {SIZE[2]}
+space directions: {directions}
+kinds: domain domain domain
+endian: little
+encoding: {encoding}
+"""
+    if path.endswith(".nhdr"):
+        write_file(path + ".raw", data)
+        return write_file(path, (header + f"data file: {os.path.basename(path)}.raw\n").encode())
+    return write_file(path, header.encode() + b"\n" + data)
+
+
+def read_picture(reader, path):
+    """Rows from the top, of pixels of three colours."""
+    reader.SetFileName(path)
+    reader.Update()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    return pixels.reshape(height, width, 3)[::-1].astype(float)
+
+
+class SplatmipTest(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+
+    def path(self, name):
+        return os.path.join(self.scratch.name, name)
+
+    def run_program(self, *arguments, has_display=False):
+        environment = {k: v for k, v in os.environ.items() if has_display or k != "DISPLAY"}
+        return subprocess.run([PROGRAM, *arguments], cwd=self.scratch.name, capture_output=True,
+                              text=True, errors="replace", timeout=300, check=False,
+                              env=environment)
+
+    def draw(self, *arguments, has_display=False):
+        """Run the program and return the picture, which it must have announced, and the text."""
+        result = self.run_program(*arguments, has_display=has_display)
+        self.assertEqual((result.returncode, result.stderr), (0, ""), result.stdout)
+        last = result.stdout.splitlines()[-1]
+        self.assertTrue(last.startswith("picture: "), result.stdout)
+        path = last[len("picture: "):]
+        self.assertTrue(os.path.isabs(path))
+        return read_picture(vtk.vtkPNGReader(), path), result.stdout
+
+    def draw_block(self, path, *arguments):
+        """Seen from the front, left is right and the feet are at the bottom. Returns the text."""
+        pixels, text = self.draw(path, "--mode", "preview", "--size", "128x128", "--azimuth", "0",
+                                 "--elevation", "0", "--output", "a.png", *arguments)
+        self.assertEqual(pixels.shape, (128, 128, 3))
+        self.assertGreater(pixels[78:, 66:].max(), 200)
+        self.assertLess(pixels[78:, :62].max(), 50)
+        self.assertLess(pixels[12:62, 66:].max(), 50)
+        return text
+
+    def assert_refused(self, *arguments, word="", code=1):
+        """One sentence on stderr, nothing else, and the exit status."""
+        result = self.run_program(*arguments)
+        self.assertEqual(result.returncode, code, (arguments, result.stderr))
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertTrue(result.stderr.startswith("splatmip: "), result.stderr)
+        self.assertTrue(result.stderr.endswith(".\n"), result.stderr)
+        self.assertIn(word, result.stderr)
+
+
+def main():
+    global PROGRAM
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
