@@ -96,9 +96,16 @@ void DeclareVolumeOptions(CLI::App& app, Options& options)
 {
   app
     .add_option("file", options.Input,
-      "A .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz file, or the folder of a DICOM "
-      "series; without it, a built-in CT of a stented aorta")
+      "A .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz file, or a DICOM file, a DICOMDIR "
+      "or "
+      "a folder with DICOM files; without it, a built-in CT of a stented aorta")
     ->type_name("FILE");
+  Group group(app, "Which volume");
+  group.Add("--series", options.Read.Series, "NUMBER", Between(1, 99999),
+    "Of several DICOM series, as their list counts them; default: the largest, or that of the "
+    "file");
+  group.Add("--frame", options.Read.Frame, "NUMBER", Between(1, 99999),
+    "Of several volumes at the same place, such as times or echoes; default: the first");
 }
 
 void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)

@@ -5,6 +5,7 @@
 
 #include "Look.h"
 #include "View.h"
+#include "VolumeReader.h"
 
 #include <CLI/CLI.hpp>
 
@@ -22,6 +23,7 @@ extern const std::vector<std::string> ModeNames;
 struct Options
 {
   std::string Input;         // empty: the built-in volume
+  ReadSettings Read;         // what of it
   std::vector<int> Modes;    // one, but for stills side by side
   int Kernel = 0;            // of vtkSplattingMIPProjection::Kernels
   double KernelRadius = 1.0; // voxels

@@ -8,9 +8,9 @@
 #include <string>
 
 /**
- * Writes a text into the top left corner of a picture in RGB, without OpenGL: white, or black on
- * paper.
+ * Writes a text into the top left corner of each slice of bytes, with the brightest, without
+ * OpenGL.
  */
-void DrawLabel(vtkImageData* picture, const std::string& text, bool isOnPaper);
+void DrawLabel(vtkImageData* slices, const std::string& text);
 
 #endif

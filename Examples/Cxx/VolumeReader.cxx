@@ -3,41 +3,28 @@
 #include "VolumeReader.h"
 
 #include "FileHeaders.h"
-#include "ProgressLine.h"
 #include "QuietReading.h"
+#include "Reading.h"
 #include "SplatmipAorta.h" // made from aorta-stent.vti by the build
+#ifdef SPLATMIP_HAS_DICOM
+#include "DICOMSeries.h"
+#include "DICOMVolume.h"
+#endif
 
-#include "vtkAlgorithm.h"
-#include "vtkCallbackCommand.h"
-#include "vtkCommand.h"
 #include "vtkDataArray.h"
-#include "vtkErrorCode.h"
 #include "vtkImageExtractComponents.h"
-#include "vtkInformation.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMetaImageReader.h"
 #include "vtkNIFTIImageReader.h"
 #include "vtkNew.h"
 #include "vtkNrrdReader.h"
 #include "vtkPointData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStructuredPointsReader.h"
 #include "vtkXMLImageDataReader.h"
-
-#ifdef SPLATMIP_HAS_DICOM
-#include "vtkDICOMDirectory.h"
-#include "vtkDICOMMetaData.h"
-#include "vtkDICOMParser.h"
-#include "vtkDICOMReader.h"
-#include "vtkStringArray.h"
-#endif
-
-#include <vtksys/SystemInformation.hxx>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <new>
@@ -46,59 +33,6 @@
 
 namespace
 {
-[[noreturn]] void Refuse(const std::string& path, const std::string& reason)
-{
-  throw std::runtime_error(path + ": " + reason);
-}
-
-[[noreturn]] void RefuseDamaged(const std::string& path, const QuietReading& quiet)
-{
-  Refuse(path,
-    "damaged, incomplete or not what its name says" + quiet.GetReason() +
-      "; check it, or export the volume again.");
-}
-
-/**
- * The number of voxels that a reader has announced. A damaged header can ask for any amount of
- * memory: refuse before it is allocated.
- */
-std::uintmax_t CheckExtent(vtkInformation* info, const std::string& path, const QuietReading& quiet)
-{
-  const int* extent = info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
-  double voxels = 1.0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double first = extent ? extent[2 * axis] : 0.0;
-    const double last = extent ? extent[2 * axis + 1] : -1.0;
-    if (last < first)
-    {
-      RefuseDamaged(path, quiet);
-    }
-    voxels *= last - first + 1.0;
-  }
-  vtksys::SystemInformation machine;
-  machine.RunMemoryCheck();
-  const double mebibytes = static_cast<double>(machine.GetTotalPhysicalMemory());
-  if (voxels > mebibytes * 1024.0 * 1024.0)
-  {
-    Refuse(path,
-      "the header asks for more voxels than this machine has bytes of memory; it is damaged, or "
-      "the volume must be reduced first.");
-  }
-  return static_cast<std::uintmax_t>(voxels);
-}
-
-void ShowProgress(vtkObject* caller, unsigned long, void* line, void*)
-{
-  static_cast<ProgressLine*>(line)->Show(static_cast<vtkAlgorithm*>(caller)->GetProgress());
-}
-
-template <class Reader>
-bool HasFailed(Reader* reader, const QuietReading& quiet)
-{
-  return quiet.HasErrors() || reader->GetErrorCode() != vtkErrorCode::NoError;
-}
-
 /**
  * Refuse what VTK's readers of text headers cannot be trusted with.
  */
@@ -124,46 +58,6 @@ bool EndsXML(const std::string& path)
   file.seekg(-static_cast<std::streamoff>(tail.size()), std::ios::end);
   file.read(&tail[0], static_cast<std::streamsize>(tail.size()));
   return tail.find("</VTKFile>") != std::string::npos;
-}
-
-/**
- * Run a reader to its image; whatever goes wrong becomes one sentence. The header, where the format
- * has one, tells whether the data are complete.
- */
-vtkSmartPointer<vtkImageData> Run(vtkAlgorithm* reader, const std::string& path,
-  const QuietReading& quiet, const TextHeader* header = nullptr)
-{
-  ProgressLine line("reading " + std::filesystem::path(path).filename().string());
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetCallback(ShowProgress);
-  observer->SetClientData(&line);
-  reader->AddObserver(vtkCommand::ProgressEvent, observer);
-
-  reader->UpdateInformation();
-  vtkInformation* info = reader->GetOutputInformation(0);
-  if (HasFailed(reader, quiet) || !info)
-  {
-    RefuseDamaged(path, quiet);
-  }
-  const std::uintmax_t voxels = CheckExtent(info, path, quiet);
-  const auto components =
-    static_cast<std::uintmax_t>(vtkImageData::GetNumberOfScalarComponents(info));
-  const int bytes = vtkDataArray::GetDataTypeSize(vtkImageData::GetScalarType(info));
-  if (header && !header->HasData(voxels * components, static_cast<std::uintmax_t>(bytes)))
-  {
-    RefuseDamaged(path, quiet);
-  }
-  reader->Update();
-  reader->RemoveObserver(observer);
-
-  auto* image = vtkImageData::SafeDownCast(reader->GetOutputDataObject(0));
-  if (HasFailed(reader, quiet) || !image || image->GetNumberOfPoints() < 1)
-  {
-    RefuseDamaged(path, quiet);
-  }
-  auto copy = vtkSmartPointer<vtkImageData>::New();
-  copy->ShallowCopy(image);
-  return copy;
 }
 
 /**
@@ -231,7 +125,7 @@ Volume ReadXML(const std::string& path, const QuietReading& quiet)
   vtkNew<vtkXMLImageDataReader> reader;
   reader->SetFileName(path.c_str());
   Volume volume;
-  volume.Image = Run(reader, path, quiet);
+  volume.Image = RunReader(reader, path, quiet);
   return volume;
 }
 
@@ -240,7 +134,7 @@ Volume ReadLegacy(const std::string& path, const QuietReading& quiet)
   vtkNew<vtkStructuredPointsReader> reader;
   reader->SetFileName(path.c_str());
   Volume volume;
-  volume.Image = Run(reader, path, quiet);
+  volume.Image = RunReader(reader, path, quiet);
   return volume;
 }
 
@@ -251,7 +145,7 @@ Volume ReadMeta(const std::string& path, const QuietReading& quiet)
   Volume volume;
   const TextHeader header(path);
   CheckHeader(header, path, quiet);
-  volume.Image = Run(reader, path, quiet, &header);
+  volume.Image = RunReader(reader, path, quiet, &header);
   volume.Orientation = ParseOrientation(header.Get("TransformMatrix"));
   return volume;
 }
@@ -263,7 +157,7 @@ Volume ReadNRRD(const std::string& path, const QuietReading& quiet)
   Volume volume;
   const TextHeader header(path);
   CheckHeader(header, path, quiet);
-  volume.Image = Run(reader, path, quiet, &header);
+  volume.Image = RunReader(reader, path, quiet, &header);
   const std::string space = header.Get("space");
   const bool isRAS = space.find("right-anterior-superior") != std::string::npos ||
     space.find("RAS") != std::string::npos;
@@ -280,75 +174,11 @@ Volume ReadNIFTI(const std::string& path, const QuietReading& quiet)
   vtkNew<vtkNIFTIImageReader> reader;
   reader->SetFileName(path.c_str());
   Volume volume;
-  volume.Image = Run(reader, path, quiet);
+  volume.Image = RunReader(reader, path, quiet);
   vtkMatrix4x4* sform = reader->GetSFormMatrix();
   volume.Orientation = MakeOrientation(sform ? sform : reader->GetQFormMatrix(), true);
   return volume;
 }
-
-#ifdef SPLATMIP_HAS_DICOM
-/**
- * vtk-dicom 0.8 ends the program when bytes after the pixels look like elements of group 0, as
- * zeros do, and another file of the series has none.
- */
-void CheckDICOMFile(const std::string& path, const QuietReading& quiet)
-{
-  vtkNew<vtkDICOMMetaData> elements;
-  vtkNew<vtkDICOMParser> parser;
-  parser->SetFileName(path.c_str());
-  parser->SetMetaData(elements);
-  parser->Update();
-  if (HasFailed(parser.Get(), quiet) || elements->Begin() == elements->End() ||
-    elements->Begin()->GetTag().GetGroup() == 0)
-  {
-    RefuseDamaged(path, quiet);
-  }
-}
-
-Volume ReadDICOM(const std::string& path, const QuietReading& quiet)
-{
-  vtkNew<vtkDICOMDirectory> directory;
-  directory->SetDirectoryName(path.c_str());
-  directory->RequirePixelDataOn();
-  directory->Update();
-  if (HasFailed(directory.Get(), quiet))
-  {
-    RefuseDamaged(path, quiet);
-  }
-  const int numberOfSeries = directory->GetNumberOfSeries();
-  if (numberOfSeries < 1)
-  {
-    Refuse(path, "no DICOM images in this folder; give the folder of a CT or MR series.");
-  }
-  vtkStringArray* files = directory->GetFileNamesForSeries(0);
-  for (int i = 1; i < numberOfSeries; ++i)
-  {
-    vtkStringArray* candidate = directory->GetFileNamesForSeries(i);
-    files = candidate->GetNumberOfValues() > files->GetNumberOfValues() ? candidate : files;
-  }
-  for (vtkIdType i = 0; i < files->GetNumberOfValues(); ++i)
-  {
-    CheckDICOMFile(files->GetValue(i), quiet);
-  }
-  vtkNew<vtkDICOMReader> reader;
-  reader->SetFileNames(files);
-  reader->SetMemoryRowOrderToFileNative();
-  Volume volume;
-  volume.Image = Run(reader, path, quiet);
-  volume.Orientation = MakeOrientation(reader->GetPatientMatrix());
-  if (numberOfSeries > 1)
-  {
-    volume.Note = "the largest of " + std::to_string(numberOfSeries) + " series";
-  }
-  return volume;
-}
-#else
-Volume ReadDICOM(const std::string& path, const QuietReading&)
-{
-  Refuse(path,
-    "this build has no DICOM reader; build it with vtk-dicom, or convert the series to .nrrd.");
-}
-#endif
 
 /**
  * Move the direction matrix, if the reader set one, from the image to the prop's matrix, and put
@@ -400,12 +230,28 @@ void FinishScalars(Volume& volume, const std::string& path)
     first->SetComponents(0);
     first->Update();
     volume.Image = first->GetOutput();
-    volume.Note = "the first of " + std::to_string(components) + " components";
+    volume.Notes.push_back("the first of " + std::to_string(components) + " components");
   }
 }
 
+#ifndef SPLATMIP_HAS_DICOM
+bool IsDICOMFile(const std::string&)
+{
+  return false;
+}
+
+Volume ReadDICOM(const std::string& path, const ReadSettings&, const QuietReading&)
+{
+  Refuse(path,
+    "this build has no DICOM reader; build it with vtk-dicom, or convert the series to .nrrd.");
+}
+#endif
+
 using ReadFunction = Volume (*)(const std::string&, const QuietReading&);
 
+/**
+ * By the end of the name; nullptr if it is none of those.
+ */
 ReadFunction ChooseReader(const std::string& path)
 {
   static const struct
@@ -428,9 +274,24 @@ ReadFunction ChooseReader(const std::string& path)
       return format.Read;
     }
   }
-  Refuse(path,
-    "unknown kind of file; give a .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz file, or "
-    "the folder of a DICOM series.");
+  return nullptr;
+}
+
+Volume ReadAny(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
+{
+  std::error_code error;
+  const ReadFunction read = ChooseReader(path);
+  if (std::filesystem::is_directory(path, error) || (!read && IsDICOMFile(path)))
+  {
+    return ReadDICOM(path, settings, quiet);
+  }
+  if (!read)
+  {
+    Refuse(path,
+      "unknown kind of file; give a .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz file, "
+      "or a DICOM file, a DICOMDIR or a folder with DICOM files.");
+  }
+  return read(path, quiet);
 }
 
 /**
@@ -458,16 +319,13 @@ void CheckFile(const std::string& path)
 }
 }
 
-Volume ReadVolume(const std::string& path)
+Volume ReadVolume(const std::string& path, const ReadSettings& settings)
 {
   CheckFile(path);
-  std::error_code error;
-  const bool isFolder = std::filesystem::is_directory(path, error);
-  const ReadFunction read = isFolder ? ReadDICOM : ChooseReader(path);
   try
   {
     QuietReading quiet;
-    Volume volume = read(path, quiet);
+    Volume volume = ReadAny(path, settings, quiet);
     FinishGeometry(volume);
     FinishScalars(volume, path);
     volume.Name = std::filesystem::path(path).filename().string();
@@ -492,7 +350,7 @@ Volume ReadBuiltInVolume()
   reader->SetInputString(
     std::string(reinterpret_cast<const char*>(SplatmipAorta), sizeof(SplatmipAorta)));
   Volume volume;
-  volume.Image = Run(reader, name, quiet);
+  volume.Image = RunReader(reader, name, quiet);
   FinishGeometry(volume);
   FinishScalars(volume, name);
   volume.Name = "aorta-stent (built in)";

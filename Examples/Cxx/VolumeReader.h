@@ -8,6 +8,16 @@
 #include "vtkSmartPointer.h"
 
 #include <string>
+#include <vector>
+
+/**
+ * What of a file with several volumes is wanted: numbers from 1 on, or 0 for the usual ones.
+ */
+struct ReadSettings
+{
+  int Series = 0;
+  int Frame = 0;
+};
 
 /**
  * A volume that is ready to be rendered.
@@ -26,18 +36,24 @@ struct Volume
   vtkSmartPointer<vtkMatrix4x4> Orientation;
 
   /**
-   * What to call the volume, and what the user should know of it; may be empty.
+   * What to call the volume, and what the user should know of it, a line each.
    */
   std::string Name;
-  std::string Note;
+  std::vector<std::string> Notes;
+
+  /**
+   * What whoever sees a picture must know, in a few words; may be empty.
+   */
+  std::string Caution;
 };
 
 /**
  * Read a .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz file or, where this build has
- * vtk-dicom, the largest series of a DICOM folder. Throws std::runtime_error with one sentence that
- * says what is wrong and what to do; nothing else is printed.
+ * vtk-dicom, a series of a folder, of a DICOMDIR, or that of a DICOM file: the largest, unless the
+ * settings name one. Throws std::runtime_error with one sentence that says what is wrong and what
+ * to do; nothing else is printed.
  */
-Volume ReadVolume(const std::string& path);
+Volume ReadVolume(const std::string& path, const ReadSettings& settings);
 
 /**
  * The volume that is part of the program: CT angiography of a stented abdominal aorta.

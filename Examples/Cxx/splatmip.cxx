@@ -39,9 +39,12 @@ LookSettings CompleteLook(const Options& options, vtkImageData* image)
 void PrintVolume(const Volume& volume, const LookSettings& look)
 {
   const int* size = volume.Image->GetDimensions();
-  std::printf("%s: %d x %d x %d voxels, %s", volume.Name.c_str(), size[0], size[1], size[2],
+  std::printf("%s: %d x %d x %d voxels, %s\n", volume.Name.c_str(), size[0], size[1], size[2],
     volume.Image->GetScalarTypeAsString());
-  std::printf("%s%s\n", volume.Note.empty() ? "" : ", ", volume.Note.c_str());
+  for (const std::string& note : volume.Notes)
+  {
+    std::printf("%s\n", note.c_str());
+  }
   std::printf("shown with window %g, level %g\n", look.Window, look.Level);
   std::fflush(stdout);
 }
@@ -71,9 +74,10 @@ void WriteStill(const Volume& volume, const LookSettings& look, const Options& o
     std::string label = ModeNames[mode];
     label += comparison ? "  " + FormatTime(comparison->AddMode(mode)) : "";
     projector.GetProjection()->SetQualityMode(mode);
-    const auto picture = Paint(projector.Project("projecting, " + ModeNames[mode]), palette, 0);
-    DrawLabel(picture, label, look.Colormap == "inverted");
-    row->AddInputData(picture);
+    label += volume.Caution.empty() ? "" : "\n" + volume.Caution;
+    const auto bytes = projector.Project("projecting, " + ModeNames[mode]);
+    DrawLabel(bytes, label);
+    row->AddInputData(Paint(bytes, palette, 0));
   }
   row->Update();
   WritePNG(row->GetOutput(), options.Output);
@@ -90,6 +94,7 @@ void WriteTurn(const Volume& volume, const LookSettings& look, const Options& op
     options.View.Size[0], options.View.Size[1], projector.GetSeconds(),
     options.Rotate / projector.GetSeconds(), vtkSMPTools::GetEstimatedNumberOfThreads(),
     projector.GetProjection()->GetInstructionSet());
+  DrawLabel(views, volume.Caution);
   WriteSeries(views, MakePalette(look), options.Rate, options.Output);
   std::printf("\nturn: %s\n", options.Output.c_str());
 }
@@ -113,7 +118,8 @@ void CheckBeforehand(const Options& options)
 void Run(const Options& options)
 {
   CheckBeforehand(options);
-  const Volume volume = options.Input.empty() ? ReadBuiltInVolume() : ReadVolume(options.Input);
+  const Volume volume =
+    options.Input.empty() ? ReadBuiltInVolume() : ReadVolume(options.Input, options.Read);
   const LookSettings look = CompleteLook(options, volume.Image);
   PrintVolume(volume, look);
   if (options.Interactive)

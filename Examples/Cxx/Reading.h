@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef Reading_h
+#define Reading_h
+
+#include "FileHeaders.h"
+#include "QuietReading.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkErrorCode.h"
+#include "vtkImageData.h"
+#include "vtkSmartPointer.h"
+
+#include <string>
+
+/**
+ * Throws a sentence about a file.
+ */
+[[noreturn]] void Refuse(const std::string& path, const std::string& reason);
+[[noreturn]] void RefuseDamaged(const std::string& path, const QuietReading& quiet);
+
+/**
+ * A damaged header can ask for any amount of memory: refuse before it is allocated.
+ */
+void CheckMemory(double voxels, const std::string& path);
+
+template <class Reader>
+bool HasFailed(Reader* reader, const QuietReading& quiet)
+{
+  return quiet.HasErrors() || reader->GetErrorCode() != vtkErrorCode::NoError;
+}
+
+/**
+ * Run one of VTK's readers to its image; whatever goes wrong becomes one sentence. The header,
+ * where the format has one, tells whether the data are complete.
+ */
+vtkSmartPointer<vtkImageData> RunReader(vtkAlgorithm* reader, const std::string& path,
+  const QuietReading& quiet, const TextHeader* header = nullptr);
+
+#endif
