@@ -21,6 +21,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <utility>
 
 namespace
 {
@@ -361,12 +362,7 @@ std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
 {
   CheckCounts(frames, places);
   const std::size_t count = places[0].size();
-  if (static_cast<std::size_t>(number) > count)
-  {
-    Refuse(frames[0].File->Path,
-      "there is no frame " + std::to_string(number) + ", for this is one of " +
-        std::to_string(count) + (count == 1 ? " volume" : " volumes") + "; see --frame.");
-  }
+  CheckFrame(frames[0].File->Path, number, static_cast<int>(count));
   std::vector<std::size_t> order;
   const std::size_t chosen = number > 0 ? static_cast<std::size_t>(number) - 1 : 0;
   for (const auto& [tag, name] : TimeTags)
@@ -415,4 +411,21 @@ vtkImageData* ReadPixels(DICOMFile& file, const QuietReading& quiet)
     values->SetComponent(i, 0, scale * values->GetComponent(i, 0));
   }
   return image;
+}
+
+void FindWindow(const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& order,
+  double& window, double& level)
+{
+  std::set<std::pair<double, double>> found;
+  for (const std::size_t i : order)
+  {
+    found.emplace(Get(*frames[i].File, frames[i].Number, DC::WindowWidth).AsDouble(),
+      Get(*frames[i].File, frames[i].Number, DC::WindowCenter).AsDouble());
+  }
+  const auto [width, center] = *found.begin();
+  if (found.size() == 1 && width > 0.0 && std::isfinite(width) && std::isfinite(center))
+  {
+    window = width;
+    level = center;
+  }
 }

@@ -55,6 +55,13 @@ std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
   const std::vector<std::vector<std::size_t>>& places, int number, std::vector<std::string>& notes);
 
 /**
+ * The window that all these frames want to be shown with, the first if they give several; what is
+ * passed stays as it is if they differ or give none.
+ */
+void FindWindow(const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& order,
+  double& window, double& level);
+
+/**
  * The values of a file's frames, in the unit that it gives.
  */
 vtkImageData* ReadPixels(DICOMFile& file, const QuietReading& quiet);

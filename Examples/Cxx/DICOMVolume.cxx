@@ -167,6 +167,7 @@ Volume ReadDICOM(const std::string& path, const ReadSettings& settings, const Qu
     volume.Notes.push_back(
       "the first of " + std::to_string(files.front()->Components) + " components");
   }
+  FindWindow(frames, order, volume.Window, volume.Level);
   PlaceVolume(volume, planes[order[0]], grid, files.front()->Thickness);
   return volume;
 }

@@ -84,6 +84,23 @@ bool IsNIFTIType(std::uint64_t code, std::uint64_t bits)
   const auto type = types.find(code);
   return type != types.end() && type->second == bits;
 }
+
+/**
+ * The .hdr that belongs to an .img, either of which may be compressed.
+ */
+std::string FindNIFTIHeader(const std::string& path)
+{
+  std::filesystem::path name(path);
+  name = name.extension() == ".gz" ? name.replace_extension() : name;
+  const std::string ending = name.extension().string();
+  if (!StartsWith(ending, ".img"))
+  {
+    return path;
+  }
+  name.replace_extension(ending == ".IMG" ? ".HDR" : ".hdr");
+  std::error_code error;
+  return std::filesystem::exists(name, error) ? name.string() : name.string() + ".gz";
+}
 }
 
 TextHeader::TextHeader(const std::string& path) : Path(path)
@@ -115,9 +132,14 @@ std::string TextHeader::Get(const std::string& key) const
   return field == this->Fields.end() ? "" : field->second;
 }
 
+int TextHeader::GetDimension() const
+{
+  return std::atoi((this->Get("dimension") + this->Get("NDims")).c_str());
+}
+
 bool TextHeader::IsSound() const
 {
-  const int dimension = std::atoi((this->Get("dimension") + this->Get("NDims")).c_str());
+  const int dimension = this->GetDimension();
   std::istringstream sizes(this->Get("sizes") + this->Get("DimSize"));
   int found = 0;
   for (int size = 0; sizes >> size && size > 0; ++found)
@@ -125,7 +147,7 @@ bool TextHeader::IsSound() const
   }
   const bool hasEmptyName = (this->Fields.count("data file") || this->Fields.count("datafile")) &&
     this->GetDataFile().empty();
-  return this->IsText && !hasEmptyName && dimension >= 2 && dimension <= 4 && found == dimension;
+  return this->IsText && !hasEmptyName && dimension >= 2 && dimension <= 3 && found == dimension;
 }
 
 bool TextHeader::IsSplit() const
@@ -160,8 +182,8 @@ std::string TextHeader::GetDataFile() const
 
 bool HasSoundNIFTIHeader(const std::string& path)
 {
-  unsigned char header[80] = {};            // up to the end of the sizes, in either version
-  gzFile file = gzopen(path.c_str(), "rb"); // reads uncompressed files as they are
+  unsigned char header[80] = {}; // up to the end of the sizes, in either version
+  gzFile file = gzopen(FindNIFTIHeader(path).c_str(), "rb"); // reads uncompressed files, too
   const int found = file ? gzread(file, header, sizeof(header)) : 0;
   if (file)
   {
@@ -189,4 +211,34 @@ bool HasSoundNIFTIHeader(const std::string& path)
     isSound = isSound && readSize(axis) >= 1 && readSize(axis) <= 32767;
   }
   return isSound;
+}
+
+bool HasSoundTIFFPages(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  const auto readNumber = [&](int bytes, bool isLittle)
+  {
+    unsigned char digits[8] = {};
+    file.read(reinterpret_cast<char*>(digits), bytes);
+    std::uint64_t value = 0;
+    for (int i = 0; i < bytes; ++i)
+    {
+      value = value * 256 + digits[isLittle ? bytes - 1 - i : i];
+    }
+    return value;
+  };
+  const bool isLittle = readNumber(2, true) == 0x4949;
+  const bool isBig = readNumber(2, isLittle) == 43; // BigTIFF has wider numbers, and two more
+  file.seekg(isBig ? 8 : 4);
+  const int bytes = isBig ? 8 : 4;
+  std::uint64_t page = readNumber(bytes, isLittle);
+  const bool hasPage = page != 0;
+  for (int n = 0; n < 1000000 && file && page != 0; ++n) // damaged pages may run in a circle
+  {
+    file.seekg(static_cast<std::streamoff>(page));
+    const std::uint64_t entries = readNumber(isBig ? 8 : 2, isLittle);
+    file.seekg(static_cast<std::streamoff>(entries * (isBig ? 20 : 12)), std::ios::cur);
+    page = readNumber(bytes, isLittle);
+  }
+  return hasPage && file && page == 0;
 }

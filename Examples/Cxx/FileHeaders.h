@@ -25,7 +25,12 @@ public:
   std::string Get(const std::string& key) const;
 
   /**
-   * Whether the header is text to its end and gives a size for each of two to four dimensions.
+   * The number of dimensions, or 0.
+   */
+  int GetDimension() const;
+
+  /**
+   * Whether the header is text to its end and gives a size for each of two or three dimensions.
    */
   bool IsSound() const;
 
@@ -50,8 +55,14 @@ private:
 };
 
 /**
- * Whether a NIfTI file, compressed or not, begins with a header with three sizes and a known type.
+ * Whether a NIfTI file, or the .hdr of an .img, compressed or not, begins with a header with three
+ * sizes and a known type.
  */
 bool HasSoundNIFTIHeader(const std::string& path);
+
+/**
+ * Whether a TIFF file has all pages that it announces: VTK shows those that are left of a cut file.
+ */
+bool HasSoundTIFFPages(const std::string& path);
 
 #endif

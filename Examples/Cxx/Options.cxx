@@ -96,7 +96,8 @@ void DeclareVolumeOptions(CLI::App& app, Options& options)
 {
   app
     .add_option("file", options.Input,
-      "A .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz file, or a DICOM file, a DICOMDIR "
+      "A .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .hdr, .img or .tif file, or a DICOM "
+      "file, a DICOMDIR "
       "or "
       "a folder with DICOM files; without it, a built-in CT of a stented aorta")
     ->type_name("FILE");
@@ -125,8 +126,8 @@ void DeclareLookOptions(CLI::App& app, Options& options)
 {
   Group group(app, "How values are shown");
   group.Add("--window", options.Look.Window, "VALUE", Between(1e-30, 1e30),
-    "Range of values from black to white; default: from the median value to the one that one voxel "
-    "in 2000 exceeds");
+    "Range of values from black to white; default: the file's, or from the median value to the one "
+    "that one voxel in 2000 exceeds");
   group.Add("--level", options.Look.Level, "VALUE", Between(-1e30, 1e30),
     "Value in the middle of that range");
   group.AddChoice("--colormap", options.Look.Colormap, "COLORMAP", GetColormapNames(), "Colours");

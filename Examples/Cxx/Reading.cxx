@@ -59,6 +59,16 @@ void RefuseDamaged(const std::string& path, const QuietReading& quiet)
       "; check it, or export the volume again.");
 }
 
+void CheckFrame(const std::string& path, int number, int count)
+{
+  if (number > count)
+  {
+    Refuse(path,
+      "there is no volume " + std::to_string(number) + " here, only " + std::to_string(count) +
+        "; give another --frame.");
+  }
+}
+
 void CheckMemory(double voxels, const std::string& path)
 {
   vtksys::SystemInformation machine;

@@ -24,6 +24,11 @@
  */
 void CheckMemory(double voxels, const std::string& path);
 
+/**
+ * Refuse a number (from 1 on, or 0 for any) of a volume that a file does not have.
+ */
+void CheckFrame(const std::string& path, int number, int count);
+
 template <class Reader>
 bool HasFailed(Reader* reader, const QuietReading& quiet)
 {

@@ -64,9 +64,14 @@ def write_meta(path):
     return write_with(vtk.vtkMetaImageWriter(), make_image(), path)
 
 
-def write_nifti(path):
-    """NIfTI counts x to the patient's right."""
-    return write_with(vtk.vtkNIFTIImageWriter(), make_image(x_of_left=0), path)
+def write_nifti(path, image=None, has_form=True, **settings):
+    """NIfTI counts x to the patient's right. The settings are those of VTK's writer."""
+    writer = vtk.vtkNIFTIImageWriter()
+    if has_form:
+        writer.SetQFormMatrix(vtk.vtkMatrix4x4())
+    for name, value in settings.items():
+        getattr(writer, "Set" + name)(value)
+    return write_with(writer, image or make_image(x_of_left=0), path)
 
 
 def write_nrrd(path, encoding="raw", space="left-posterior-superior", x_of_left=1,

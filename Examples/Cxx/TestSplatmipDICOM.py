@@ -206,7 +206,7 @@ class TestDuplicates(DICOMTest):
         self.assertIn("volume 1 of 2 (--frame chooses), echo time 9\n", text)
         text = self.assert_right(self.folder, "--frame", "2", values=make_wedge() // 2)
         self.assertIn("volume 2 of 2 (--frame chooses), echo time 10\n", text)
-        self.assert_refused(self.folder, "--frame", "3", word="there is no frame 3")
+        self.assert_refused(self.folder, "--frame", "3", word="there is no volume 3 here, only 2")
         os.remove(self.name(4))
         self.assert_refused(self.folder, word="there are 1 slice at (0, 0, 8) mm, and 2 at most")
         for fields in self.slices:
@@ -232,6 +232,19 @@ class TestValues(DICOMTest):
             half = make_wedge()[k] // 2 + 5
             self.slices[k].update(RescaleSlope=2, RescaleIntercept=-10, PixelData=half.tobytes())
         self.assert_right(self.write())
+
+    def test_window(self):
+        """The file's, in its values, where all slices agree."""
+        for fields in self.slices:
+            fields.update(RescaleSlope=2, RescaleIntercept=-100, WindowWidth=[300, 7],
+                          WindowCenter=[150, 9])
+        _, text = self.draw(self.write(), "--output", "a.png")
+        self.assertIn("shown with window 300, level 150\n", text)
+        _, text = self.draw(self.folder, "--output", "a.png", "--level", "99")
+        self.assertIn("shown with window 300, level 99\n", text)
+        self.slices[3]["WindowWidth"] = 301
+        _, text = self.draw(self.write(), "--output", "a.png")
+        self.assertNotIn("window 30", text)
 
     def test_other_samples(self):
         self.slices[5].update(SamplesPerPixel=3, PhotometricInterpretation="RGB",

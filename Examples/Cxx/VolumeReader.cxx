@@ -3,6 +3,8 @@
 #include "VolumeReader.h"
 
 #include "FileHeaders.h"
+#include "NIFTIVolume.h"
+#include "Orientation.h"
 #include "QuietReading.h"
 #include "Reading.h"
 #include "SplatmipAorta.h" // made from aorta-stent.vti by the build
@@ -15,11 +17,11 @@
 #include "vtkImageExtractComponents.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMetaImageReader.h"
-#include "vtkNIFTIImageReader.h"
 #include "vtkNew.h"
 #include "vtkNrrdReader.h"
 #include "vtkPointData.h"
 #include "vtkStructuredPointsReader.h"
+#include "vtkTIFFReader.h"
 #include "vtkXMLImageDataReader.h"
 
 #include <algorithm>
@@ -42,6 +44,10 @@ void CheckHeader(const TextHeader& header, const std::string& path, const QuietR
   {
     Refuse(path, "the data are in several files; save the volume as one file.");
   }
+  if (header.GetDimension() > 3)
+  {
+    Refuse(path, "it has more than three dimensions; save one volume of it, or take NIfTI.");
+  }
   if (!header.IsSound())
   {
     RefuseDamaged(path, quiet);
@@ -58,40 +64,6 @@ bool EndsXML(const std::string& path)
   file.seekg(-static_cast<std::streamoff>(tail.size()), std::ios::end);
   file.read(&tail[0], static_cast<std::streamsize>(tail.size()));
   return tail.find("</VTKFile>") != std::string::npos;
-}
-
-/**
- * The matrix whose columns are the image axes in patient coordinates, or the identity where they do
- * not span space. Files that count from left to right and back to front (RAS) are turned to LPS.
- */
-vtkSmartPointer<vtkMatrix4x4> MakeOrientation(const double axes[3][3], bool isRAS = false)
-{
-  auto matrix = vtkSmartPointer<vtkMatrix4x4>::New();
-  for (int column = 0; column < 3; ++column)
-  {
-    const double* axis = axes[column];
-    const double length = std::hypot(axis[0], axis[1], axis[2]);
-    for (int row = 0; row < 3; ++row)
-    {
-      const double sign = isRAS && row < 2 ? -1.0 : 1.0;
-      matrix->SetElement(row, column, sign * axis[row] / length);
-    }
-  }
-  if (!(std::fabs(matrix->Determinant()) > 1e-3)) // so that it catches NaN as well
-  {
-    matrix->Identity();
-  }
-  return matrix;
-}
-
-vtkSmartPointer<vtkMatrix4x4> MakeOrientation(vtkMatrix4x4* columns, bool isRAS = false)
-{
-  double axes[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
-  for (int i = 0; columns && i < 9; ++i)
-  {
-    axes[i / 3][i % 3] = columns->GetElement(i % 3, i / 3);
-  }
-  return MakeOrientation(axes, isRAS);
 }
 
 /**
@@ -116,8 +88,9 @@ vtkSmartPointer<vtkMatrix4x4> ParseOrientation(std::string numbers, bool isRAS =
   return MakeOrientation(axes, isRAS);
 }
 
-Volume ReadXML(const std::string& path, const QuietReading& quiet)
+Volume ReadXML(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
+  CheckFrame(path, settings.Frame, 1);
   if (!EndsXML(path))
   {
     RefuseDamaged(path, quiet);
@@ -129,8 +102,9 @@ Volume ReadXML(const std::string& path, const QuietReading& quiet)
   return volume;
 }
 
-Volume ReadLegacy(const std::string& path, const QuietReading& quiet)
+Volume ReadLegacy(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
+  CheckFrame(path, settings.Frame, 1);
   vtkNew<vtkStructuredPointsReader> reader;
   reader->SetFileName(path.c_str());
   Volume volume;
@@ -138,8 +112,9 @@ Volume ReadLegacy(const std::string& path, const QuietReading& quiet)
   return volume;
 }
 
-Volume ReadMeta(const std::string& path, const QuietReading& quiet)
+Volume ReadMeta(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
+  CheckFrame(path, settings.Frame, 1);
   vtkNew<vtkMetaImageReader> reader;
   reader->SetFileName(path.c_str());
   Volume volume;
@@ -150,8 +125,9 @@ Volume ReadMeta(const std::string& path, const QuietReading& quiet)
   return volume;
 }
 
-Volume ReadNRRD(const std::string& path, const QuietReading& quiet)
+Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
+  CheckFrame(path, settings.Frame, 1);
   vtkNew<vtkNrrdReader> reader;
   reader->SetFileName(path.c_str());
   Volume volume;
@@ -165,18 +141,25 @@ Volume ReadNRRD(const std::string& path, const QuietReading& quiet)
   return volume;
 }
 
-Volume ReadNIFTI(const std::string& path, const QuietReading& quiet)
+/**
+ * A stack of pages.
+ */
+Volume ReadTIFF(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
-  if (!HasSoundNIFTIHeader(path))
+  CheckFrame(path, settings.Frame, 1);
+  if (!HasSoundTIFFPages(path))
   {
     RefuseDamaged(path, quiet);
   }
-  vtkNew<vtkNIFTIImageReader> reader;
+  vtkNew<vtkTIFFReader> reader;
   reader->SetFileName(path.c_str());
+  reader->SetOrientationType(4); // the first row first, as in DICOM, wherever it would be shown
   Volume volume;
   volume.Image = RunReader(reader, path, quiet);
-  vtkMatrix4x4* sform = reader->GetSFormMatrix();
-  volume.Orientation = MakeOrientation(sform ? sform : reader->GetQFormMatrix(), true);
+  volume.Image->SetSpacing(1.0, 1.0, 1.0);
+  volume.Notes.push_back("TIFF does not say how large voxels are and how they lie: cubes of 1 mm, "
+                         "pages from the feet on, seen from the feet");
+  volume.Caution = "voxel size unknown";
   return volume;
 }
 
@@ -203,7 +186,12 @@ void FinishGeometry(Volume& volume)
   for (double& length : spacing)
   {
     length = std::fabs(length);
-    length = length > 1e-9 && length < 1e9 ? length : 1.0;
+    if (!(length > 1e-9 && length < 1e9))
+    {
+      length = 1.0;
+      volume.Notes.push_back("the file does not say how large voxels are: 1 mm was taken");
+      volume.Caution = "voxel size unknown";
+    }
   }
   image->SetSpacing(spacing);
 }
@@ -247,7 +235,7 @@ Volume ReadDICOM(const std::string& path, const ReadSettings&, const QuietReadin
 }
 #endif
 
-using ReadFunction = Volume (*)(const std::string&, const QuietReading&);
+using ReadFunction = Volume (*)(const std::string&, const ReadSettings&, const QuietReading&);
 
 /**
  * By the end of the name; nullptr if it is none of those.
@@ -260,7 +248,9 @@ ReadFunction ChooseReader(const std::string& path)
     ReadFunction Read;
   } formats[] = { { ".vti", ReadXML }, { ".vtk", ReadLegacy }, { ".mha", ReadMeta },
     { ".mhd", ReadMeta }, { ".nrrd", ReadNRRD }, { ".nhdr", ReadNRRD }, { ".nii", ReadNIFTI },
-    { ".nii.gz", ReadNIFTI } };
+    { ".nii.gz", ReadNIFTI }, { ".hdr", ReadNIFTI }, { ".img", ReadNIFTI },
+    { ".hdr.gz", ReadNIFTI }, { ".img.gz", ReadNIFTI }, { ".tif", ReadTIFF },
+    { ".tiff", ReadTIFF } };
 
   std::string lower = path;
   std::transform(lower.begin(), lower.end(), lower.begin(),
@@ -288,10 +278,15 @@ Volume ReadAny(const std::string& path, const ReadSettings& settings, const Quie
   if (!read)
   {
     Refuse(path,
-      "unknown kind of file; give a .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz file, "
+      "unknown kind of file; give a .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .hdr, "
+      ".img or .tif file, "
       "or a DICOM file, a DICOMDIR or a folder with DICOM files.");
   }
-  return read(path, quiet);
+  if (settings.Series > 0)
+  {
+    Refuse(path, "this is not DICOM and has no series; leave --series out.");
+  }
+  return read(path, settings, quiet);
 }
 
 /**

@@ -45,13 +45,19 @@ struct Volume
    * What whoever sees a picture must know, in a few words; may be empty.
    */
   std::string Caution;
+
+  /**
+   * How the file wants to be shown, in its values; the window is 0 if it does not say.
+   */
+  double Window = 0.0;
+  double Level = 0.0;
 };
 
 /**
- * Read a .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz file or, where this build has
- * vtk-dicom, a series of a folder, of a DICOMDIR, or that of a DICOM file: the largest, unless the
- * settings name one. Throws std::runtime_error with one sentence that says what is wrong and what
- * to do; nothing else is printed.
+ * Read a .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .hdr, .img, .tif or .tiff file or,
+ * where this build has vtk-dicom, a series of a folder, of a DICOMDIR, or that of a DICOM file: the
+ * largest, unless the settings name one. Throws std::runtime_error with one sentence that says what
+ * is wrong and what to do; nothing else is printed.
  */
 Volume ReadVolume(const std::string& path, const ReadSettings& settings);
 

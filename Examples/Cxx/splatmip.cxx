@@ -26,11 +26,17 @@
 
 namespace
 {
-LookSettings CompleteLook(const Options& options, vtkImageData* image)
+/**
+ * What the user wants, else what the file does, else what the values suggest.
+ */
+LookSettings CompleteLook(const Options& options, const Volume& volume)
 {
   LookSettings look = options.Look;
-  double window, level;
-  ChooseWindowLevel(image, window, level);
+  double window = volume.Window, level = volume.Level;
+  if (window <= 0.0)
+  {
+    ChooseWindowLevel(volume.Image, window, level);
+  }
   look.Window = options.HasWindow ? look.Window : window;
   look.Level = options.HasLevel ? look.Level : level;
   return look;
@@ -120,7 +126,7 @@ void Run(const Options& options)
   CheckBeforehand(options);
   const Volume volume =
     options.Input.empty() ? ReadBuiltInVolume() : ReadVolume(options.Input, options.Read);
-  const LookSettings look = CompleteLook(options, volume.Image);
+  const LookSettings look = CompleteLook(options, volume);
   PrintVolume(volume, look);
   if (options.Interactive)
   {
