@@ -1,9 +1,20 @@
 # SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Stills: modes, options, what is said, and when."""
+import math
 import os
 
+import numpy
+import vtk
+
 import SplatmipTesting as splatmip
+
+
+# Colour maps as --colormap has them: place from black to white, red, green, blue.
+COLORMAPS = {
+    "inverted": [(0, 1, 1, 1), (1, 0, 0, 0)],
+    "hot": [(0, 0, 0, 0), (0.375, 1, 0, 0), (0.75, 1, 1, 0), (1, 1, 1, 1)],
+    "bone": [(0, 0, 0, 0), (0.375, 0.33, 0.33, 0.45), (0.75, 0.66, 0.78, 0.78), (1, 1, 1, 1)]}
 
 
 class TestPictures(splatmip.SplatmipTest):
@@ -98,6 +109,78 @@ class TestPictures(splatmip.SplatmipTest):
         for command in commands:
             for option in filter(lambda word: word.startswith("--"), command):
                 self.assertRegex(options, rf"(?m)^  {option}\b")
+
+
+class TestOptions(splatmip.SplatmipTest):
+    SIDE = 200
+
+    def setUp(self):
+        """A small block to the left, the back and the feet of the middle."""
+        super().setUp()
+        image = vtk.vtkImageData()
+        image.SetDimensions(41, 41, 41)
+        image.AllocateScalars(vtk.VTK_SHORT, 1)
+        scalars = image.GetPointData().GetScalars()
+        scalars.SetName("intensity")
+        scalars.Fill(0)
+        self.block = numpy.array([8, 5, -11])  # from the middle, mm: left, back, head
+        for offset in numpy.ndindex(3, 3, 3):
+            image.SetScalarComponentFromDouble(*(int(n) for n in 19 + self.block + offset), 0, 1000)
+        self.file = splatmip.write_with(vtk.vtkXMLImageDataWriter(), image, self.path("b.vti"))
+
+    def show(self, *arguments):
+        options = dict(zip(arguments[::2], arguments[1::2]))
+        options = {"--azimuth": 0, "--elevation": 0, "--window": 1000, "--level": 500,
+                   "--mode": "high", "--size": f"{self.SIDE}x{self.SIDE}",
+                   "--output": "a.png", **options}
+        words = [str(word) for item in options.items() for word in item]
+        return self.draw(self.file, *words)[0]
+
+    def find(self, *arguments):
+        """Where the block is, in pixels to the right of and above the middle."""
+        pixels = self.show(*arguments)[20:, :, 0]
+        rows, columns = numpy.nonzero(pixels > 100)
+        self.assertGreater(len(rows), 5)
+        middle = 0.5 * (self.SIDE - 1)
+        return numpy.array([columns.mean() - middle, middle - 20 - rows.mean()])
+
+    def assert_seen(self, right, up, *arguments):
+        """The block is where a camera with these axes sees it: 1.1 / 20 of half the side fits."""
+        found, wanted = self.find(*arguments), numpy.array([self.block @ right, self.block @ up])
+        # At most the diagonal of the box fits into the half; a block's middle is known to a pixel.
+        scale = numpy.linalg.norm(found) / numpy.linalg.norm(wanted)
+        self.assertGreater(scale, 0.5 * self.SIDE / (1.1 * math.sqrt(3) * 20) - 0.1)
+        self.assertLess(scale, 0.5 * self.SIDE / (1.1 * 20) + 0.1)
+        self.assertLess(abs(found - scale * wanted).max(), 1.5, (arguments, found, wanted))
+
+    def test_view(self):
+        for degrees in (-120, -30, 0, 45, 90, 180):
+            c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+            self.assert_seen([c, s, 0], [0, 0, 1], "--azimuth", degrees)
+            self.assert_seen([1, 0, 0], [0, s, c], "--elevation", degrees)
+            self.assert_seen([c, 0, -s], [s, 0, c], "--roll", degrees)
+
+    def test_zoom(self):
+        once, half = self.find(), self.find("--zoom", 0.5)
+        self.assertLess(abs(0.5 * once - half).max(), 1)
+
+    def test_window(self):
+        pixels, brighter = self.show(), self.show("--window", 500, "--level", 250)
+        clipped = self.show("--window", 500, "--level", 750)
+        rows = slice(20, None)  # below the label
+        self.assertLessEqual(abs(numpy.clip(2 * pixels, 0, 255) - brighter)[rows].max(), 1.5)
+        self.assertLessEqual(abs(numpy.clip(2 * pixels - 255, 0, 255) - clipped)[rows].max(), 1.5)
+
+    def test_colormap(self):
+        gray = self.show()
+        self.assertGreater(len(numpy.unique(gray)), 20)
+        self.assertEqual(numpy.ptp(gray, axis=2).max(), 0)
+        for name, points in COLORMAPS.items():
+            places, *colors = numpy.array(points).T
+            expected = numpy.stack([numpy.interp(gray[:, :, 0] / 255, places, color)
+                                    for color in colors], axis=2)
+            found = self.show("--colormap", name)
+            self.assertLessEqual(abs(found - 255 * expected).max(), 1, name)
 
 
 if __name__ == "__main__":
