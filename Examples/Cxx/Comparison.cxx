@@ -14,10 +14,8 @@ std::string FormatTime(double milliseconds)
 }
 
 Comparison::Comparison(const Volume& volume, const LookSettings& look, const Options& options)
-  : Scene(volume, look, options.View, true)
+  : Scene(volume, options.Projection, look, options.View, true)
 {
-  this->Scene.GetSplatting()->SetKernel(options.Kernel);
-  this->Scene.GetSplatting()->SetKernelRadius(options.KernelRadius);
   std::printf("\nWhole frame, view to pixels: median of %d frames of %d x %d, turned by one "
               "degree each; %d threads, %s\n",
     MIPScene::NumberOfTimedFrames, options.View.Size[0], options.View.Size[1],

@@ -77,9 +77,7 @@ public:
 
 void Interact(const Volume& volume, const LookSettings& look, const Options& options)
 {
-  MIPScene scene(volume, look, options.View, false);
-  scene.GetSplatting()->SetKernel(options.Kernel);
-  scene.GetSplatting()->SetKernelRadius(options.KernelRadius);
+  MIPScene scene(volume, options.Projection, look, options.View, false);
   scene.UseSplatting(options.Modes.front());
   vtkNew<LabelUpdate> label;
   label->Scene = &scene;

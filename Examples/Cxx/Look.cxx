@@ -4,6 +4,7 @@
 
 #include "vtkDataArray.h"
 #include "vtkPointData.h"
+#include "vtkSplattingMIPProjection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -114,7 +115,7 @@ std::vector<std::string> GetColormapNames()
   return names;
 }
 
-void ChooseWindowLevel(vtkImageData* image, double& window, double& level)
+void ChooseWindowLevel(vtkImageData* image, int blendMode, double& window, double& level)
 {
   window = 1.0;
   level = 0.5;
@@ -129,8 +130,10 @@ void ChooseWindowLevel(vtkImageData* image, double& window, double& level)
     throw std::runtime_error(
       "the volume has no finite value, so that there is nothing to show; see what wrote it.");
   }
-  double low = GetQuantile(values, 0.5);
-  double high = GetQuantile(values, 0.9995);
+  const bool isMinimum = blendMode == vtkSplattingMIPProjection::MINIMUM_INTENSITY_BLEND;
+  const bool isMean = blendMode == vtkSplattingMIPProjection::AVERAGE_INTENSITY_BLEND;
+  double low = GetQuantile(values, isMinimum ? 0.0005 : isMean ? 0.05 : 0.5);
+  double high = GetQuantile(values, isMinimum ? 0.5 : isMean ? 0.95 : 0.9995);
   if (!(low < high))
   {
     low = *std::min_element(values.begin(), values.end());

@@ -38,10 +38,11 @@ using Palette = std::array<std::array<unsigned char, 3>, 256>;
 Palette MakePalette(const LookSettings& look);
 
 /**
- * Black at the median value, white at the value that one voxel in 2000 exceeds: the maximum
- * of a ray is seldom below the one, and a few outliers do not decide the other. The whole range
- * where these two are equal. Throws a sentence if no value is finite.
+ * Of maxima black at the median value, white at the value that one voxel in 2000 exceeds: the
+ * maximum of a ray is seldom below the one, and a few outliers do not decide the other. Of minima
+ * the other way round, of means what lies between a twentieth of the voxels and another. The whole
+ * range where these two are equal. Throws a sentence if no value is finite.
  */
-void ChooseWindowLevel(vtkImageData* image, double& window, double& level);
+void ChooseWindowLevel(vtkImageData* image, int blendMode, double& window, double& level);
 
 #endif

@@ -36,8 +36,8 @@ void CheckDisplay()
   }
 }
 
-MIPScene::MIPScene(
-  const Volume& volume, const LookSettings& look, const ViewSettings& view, bool isOffScreen)
+MIPScene::MIPScene(const Volume& volume, const ProjectionSettings& settings,
+  const LookSettings& look, const ViewSettings& view, bool isOffScreen)
   : View(view)
 {
   for (vtkVolumeMapper* mapper : { static_cast<vtkVolumeMapper*>(this->Splatting),
@@ -69,6 +69,9 @@ MIPScene::MIPScene(
   this->Window->SetSize(view.Size[0], view.Size[1]);
   this->Window->AddRenderer(this->Renderer);
   this->FitCamera(view.Azimuth);
+  std::array<double, 3> center;
+  this->Renderer->GetActiveCamera()->GetFocalPoint(center.data());
+  Apply(settings, center, this->Splatting.Get());
 }
 
 void MIPScene::UseSplatting(int qualityMode)

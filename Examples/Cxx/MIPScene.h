@@ -4,6 +4,7 @@
 #define MIPScene_h
 
 #include "Look.h"
+#include "ProjectionSettings.h"
 #include "View.h"
 #include "VolumeReader.h"
 
@@ -29,8 +30,8 @@ void CheckDisplay();
 class MIPScene
 {
 public:
-  MIPScene(
-    const Volume& volume, const LookSettings& look, const ViewSettings& view, bool isOffScreen);
+  MIPScene(const Volume& volume, const ProjectionSettings& settings, const LookSettings& look,
+    const ViewSettings& view, bool isOffScreen);
 
   vtkRenderWindow* GetWindow() { return this->Window; }
   vtkSplattingMIPVolumeMapper* GetSplatting() { return this->Splatting; }

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 const std::vector<std::string> ModeNames = { "preview", "standard", "high", "exact" };
@@ -25,9 +26,28 @@ struct Words
 {
   std::string Mode = "all";
   std::string Kernel = "trilinear";
+  std::string Blend = "max";
+  std::vector<double> Crop;
+  std::string View;
   std::string Size = "400x600";
   std::string Output = "splatmip.png";
 };
+
+/// Azimuth and elevation of --view.
+const std::vector<std::pair<std::string, std::pair<double, double>>> Sides = {
+  { "anterior", { 0, 0 } }, { "posterior", { 180, 0 } }, { "left", { 90, 0 } },
+  { "right", { -90, 0 } }, { "superior", { 0, 90 } }, { "inferior", { 0, -90 } }
+};
+
+std::vector<std::string> GetSides()
+{
+  std::vector<std::string> names;
+  for (const auto& side : Sides)
+  {
+    names.push_back(side.first);
+  }
+  return names;
+}
 
 /**
  * What CLI11 asks of a check: nothing if the text is fine, else what is wrong with it.
@@ -117,9 +137,25 @@ void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
   group.AddChoice("--kernel", words.Kernel, "KERNEL", { "trilinear", "cosine-bell" },
     "Reconstruction kernel of mode high");
   group
-    .Add("--kernel-radius", options.KernelRadius, "VOXELS", Between(0.5, 1.5),
+    .Add("--kernel-radius", options.Projection.KernelRadius, "VOXELS", Between(0.5, 1.5),
       "Radius of the cosine bell in voxels, 0.5 to 1.5")
     ->capture_default_str();
+  group.AddChoice("--blend", words.Blend, "BLEND", { "max", "min", "mean" },
+    "Of the values along each ray the largest, the least or the mean");
+  group.AddFlag("--depth-shading", options.Projection.DepthShading,
+    "Dim what lies farther away, before the largest is found");
+  group.Add("--slab", options.Projection.Slab, "MM", Between(1e-6, 1e9),
+    "Only a slab so thick across the view, in the middle of the volume");
+  group
+    .Add("--slab-offset", options.Projection.SlabOffset, "MM", Between(-1e9, 1e9),
+      "Move the slab so far to the viewer")
+    ->needs("--slab");
+  group
+    .Add("--crop", words.Crop, "MM", Between(-1e9, 1e9),
+      "Only a box, by six numbers: from and to along each axis of the volume, from its first voxel "
+      "on")
+    ->expected(6)
+    ->delimiter(',');
 }
 
 void DeclareLookOptions(CLI::App& app, Options& options)
@@ -137,13 +173,17 @@ void DeclareViewOptions(CLI::App& app, Options& options, Words& words)
 {
   const CLI::Validator angle = Between(-360.0, 360.0);
   Group group(app, "From where");
+  CLI::Option* const view = group.Add("--view", words.View, "SIDE", CLI::IsMember(GetSides()),
+    "From one side of the patient, in place of --azimuth and --elevation");
   group
     .Add("--azimuth", options.View.Azimuth, "DEGREES", angle,
       "Degrees that the camera goes round, from the patient's front to the left side")
-    ->capture_default_str();
+    ->capture_default_str()
+    ->excludes(view);
   group
     .Add("--elevation", options.View.Elevation, "DEGREES", angle, "Degrees that the camera rises")
-    ->capture_default_str();
+    ->capture_default_str()
+    ->excludes(view);
   group
     .Add("--roll", options.View.Roll, "DEGREES", angle, "Degrees that the camera turns clockwise")
     ->capture_default_str();
@@ -175,14 +215,6 @@ void DeclareOutputOptions(CLI::App& app, Options& options, Words& words)
     "Open a window instead: drag to turn, 1, 2 and 3 switch the mode, q quits");
 }
 
-void RequireOneResult(const Options& options)
-{
-  if (options.Interactive + options.Compare + (options.Rotate > 0) > 1)
-  {
-    throw CLI::ValidationError("--rotate, --compare, --interactive", "choose one of them");
-  }
-}
-
 void CheckOutputName(const Options& options)
 {
   const bool isPNG = std::filesystem::path(options.Output).extension() == ".png";
@@ -207,11 +239,66 @@ std::vector<int> ChooseModes(const std::string& name, bool isOne)
                    vtkSplattingMIPProjection::STANDARD, vtkSplattingMIPProjection::HIGH };
 }
 
+void TranslateWords(const Words& words, Options& options)
+{
+  std::sscanf(words.Size.c_str(), "%5dx%5d", &options.View.Size[0], &options.View.Size[1]);
+  for (const auto& [name, angles] : Sides)
+  {
+    if (name == words.View)
+    {
+      std::tie(options.View.Azimuth, options.View.Elevation) = angles;
+    }
+  }
+  ProjectionSettings& settings = options.Projection;
+  settings.Kernel = words.Kernel == "cosine-bell" ? vtkSplattingMIPProjection::COSINE_BELL
+                                                  : vtkSplattingMIPProjection::TRILINEAR;
+  settings.BlendMode = words.Blend == "min" ? vtkSplattingMIPProjection::MINIMUM_INTENSITY_BLEND
+    : words.Blend == "mean"                 ? vtkSplattingMIPProjection::AVERAGE_INTENSITY_BLEND
+                                            : vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
+  settings.Cropping = !words.Crop.empty();
+  std::copy(words.Crop.begin(), words.Crop.end(), settings.Crop.begin());
+}
+
+/**
+ * Refuse what does not go together.
+ */
+void CheckCombinations(const Options& options)
+{
+  const ProjectionSettings& settings = options.Projection;
+  const bool isMaximum = settings.BlendMode == vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
+  if (options.Interactive + options.Compare + (options.Rotate > 0) > 1)
+  {
+    throw CLI::ValidationError("--rotate, --compare, --interactive", "choose one of them");
+  }
+  if (options.Compare &&
+    (!isMaximum || settings.DepthShading || settings.Slab > 0.0 || settings.Cropping))
+  {
+    throw CLI::ValidationError("--compare",
+      "it times maxima of the whole volume: leave --blend, --depth-shading, --slab "
+      "and --crop out");
+  }
+  if (settings.DepthShading && !isMaximum)
+  {
+    throw CLI::ValidationError("--depth-shading", "it is for maxima: leave --blend out");
+  }
+  if (settings.SlabOffset != 0.0 && (options.Interactive || options.Rotate > 0))
+  {
+    throw CLI::ValidationError("--slab-offset", "it is for stills: views turn about the middle");
+  }
+  for (int axis = 0; axis < 3 && settings.Cropping; ++axis)
+  {
+    if (!(settings.Crop[2 * axis] < settings.Crop[2 * axis + 1]))
+    {
+      throw CLI::ValidationError("--crop", "each pair of numbers must rise, as in 0,50,0,50,20,80");
+    }
+  }
+}
+
 const char* const Examples = R"(Examples:
   splatmip scan.nii.gz --mode high --azimuth 30 --output scan.png
       a picture, the camera 30 degrees to the patient's left
-  splatmip dicom-folder --mode exact --window 600 --level 300
-      the largest series in a folder, white from the value 600 on
+  splatmip dicom-folder --mode exact --view left --slab 30 --window 600 --level 300
+      30 mm in the middle of the largest series in a folder, white from the value 600 on
   splatmip dicom-folder --rotate 36 --output turn.gif
       a film once round the patient)";
 }
@@ -231,13 +318,11 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
   app.parse(argc, argv);
 
   options.Modes = ChooseModes(words.Mode, options.Interactive || options.Rotate > 0);
-  options.Kernel = words.Kernel == "cosine-bell" ? vtkSplattingMIPProjection::COSINE_BELL
-                                                 : vtkSplattingMIPProjection::TRILINEAR;
-  std::sscanf(words.Size.c_str(), "%5dx%5d", &options.View.Size[0], &options.View.Size[1]);
+  TranslateWords(words, options);
   options.Output = std::filesystem::absolute(words.Output).string();
   options.HasWindow = app.count("--window") > 0;
   options.HasLevel = app.count("--level") > 0;
-  RequireOneResult(options);
+  CheckCombinations(options);
   CheckOutputName(options);
   return options;
 }

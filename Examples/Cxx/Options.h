@@ -4,6 +4,7 @@
 #define Options_h
 
 #include "Look.h"
+#include "ProjectionSettings.h"
 #include "View.h"
 #include "VolumeReader.h"
 
@@ -22,20 +23,19 @@ extern const std::vector<std::string> ModeNames;
  */
 struct Options
 {
-  std::string Input;         // empty: the built-in volume
-  ReadSettings Read;         // what of it
-  std::vector<int> Modes;    // one, but for stills side by side
-  int Kernel = 0;            // of vtkSplattingMIPProjection::Kernels
-  double KernelRadius = 1.0; // voxels
-  ViewSettings View;         //
-  LookSettings Look;         // of which the user has given
-  bool HasWindow = false;    // this
-  bool HasLevel = false;     // and this
-  std::string Output;        // an absolute path
-  bool Compare = false;      // with the ray caster
-  bool Interactive = false;  // in a window
-  int Rotate = 0;            // views, or 0
-  int Rate = 12;             // views per second
+  std::string Input;             // empty: the built-in volume
+  ReadSettings Read;             // what of it
+  std::vector<int> Modes;        // one, but for stills side by side
+  ProjectionSettings Projection; //
+  ViewSettings View;             //
+  LookSettings Look;             // of which the user has given
+  bool HasWindow = false;        // this
+  bool HasLevel = false;         // and this
+  std::string Output;            // an absolute path
+  bool Compare = false;          // with the ray caster
+  bool Interactive = false;      // in a window
+  int Rotate = 0;                // views, or 0
+  int Rate = 12;                 // views per second
 };
 
 /**

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace
@@ -53,11 +54,12 @@ double LargestScale(const Volume& volume, const ViewSettings& view, int views)
 }
 }
 
-Projector::Projector(
-  const Volume& volume, const LookSettings& look, const ViewSettings& view, int views)
+Projector::Projector(const Volume& volume, const ProjectionSettings& settings,
+  const LookSettings& look, const ViewSettings& view, int views)
   : Look(look)
 {
-  this->Projection->SetInputData(Orient(volume));
+  const auto image = Orient(volume);
+  this->Projection->SetInputData(image);
   const auto turn = MakeViewTurn(view, view.Azimuth);
   this->Projection->SetViewDirection(turn->TransformDoubleVector(0.0, 1.0, 0.0));
   this->Projection->SetViewUp(turn->TransformDoubleVector(0.0, 0.0, 1.0));
@@ -66,7 +68,15 @@ Projector::Projector(
   this->Projection->SetOutputSize(view.Size[0], view.Size[1]);
   const double spacing = 2.0 * LargestScale(volume, view, views) / view.Size[1];
   this->Projection->SetOutputSpacing(spacing, spacing);
-  this->Projection->SetBackgroundValue(look.Level - look.Window);
+  this->Projection->SetBackgroundValue(std::numeric_limits<double>::quiet_NaN());
+  std::array<double, 3> center;
+  image->GetCenter(center.data());
+  const double* const away = this->Projection->GetViewDirection();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    center[axis] -= settings.SlabOffset * away[axis];
+  }
+  Apply(settings, center, this->Projection.Get());
 }
 
 vtkSmartPointer<vtkImageData> Projector::Project(const std::string& what)
@@ -93,10 +103,17 @@ vtkSmartPointer<vtkImageData> Projector::Project(const std::string& what)
   auto* const to = static_cast<unsigned char*>(bytes->GetScalarPointer());
   vtkDataArray* const scalars = found->GetPointData()->GetScalars();
   const double low = this->Look.Level - 0.5 * this->Look.Window;
+  bool isEmpty = true;
   for (vtkIdType p = 0; p < found->GetNumberOfPoints(); ++p)
   {
     const double place = 255.0 * (scalars->GetComponent(p, 0) - low) / this->Look.Window;
-    to[p] = static_cast<unsigned char>(std::lround(std::clamp(place, 0.0, 255.0)));
+    to[p] = static_cast<unsigned char>(place > 0.0 ? std::lround(std::min(place, 255.0)) : 0);
+    isEmpty = isEmpty && std::isnan(place);
+  }
+  if (isEmpty && (this->Projection->GetSlab() || this->Projection->GetCropping()))
+  {
+    throw std::runtime_error(
+      "nothing of the volume is in the picture; see --crop and --slab-offset.");
   }
   return bytes;
 }

@@ -4,6 +4,7 @@
 #define Projector_h
 
 #include "Look.h"
+#include "ProjectionSettings.h"
 #include "View.h"
 #include "VolumeReader.h"
 
@@ -19,13 +20,14 @@
 class Projector
 {
 public:
-  Projector(const Volume& volume, const LookSettings& look, const ViewSettings& view, int views);
+  Projector(const Volume& volume, const ProjectionSettings& settings, const LookSettings& look,
+    const ViewSettings& view, int views);
 
   vtkSplattingMIPProjection* GetProjection() { return this->Projection; }
 
   /**
    * Views as bytes, which are places in the look's palette. What says in the progress line what is
-   * done. Throws std::runtime_error.
+   * done. Throws std::runtime_error if nothing of the volume is seen.
    */
   vtkSmartPointer<vtkImageData> Project(const std::string& what);
 

@@ -129,12 +129,12 @@ class TestOptions(splatmip.SplatmipTest):
         self.file = splatmip.write_with(vtk.vtkXMLImageDataWriter(), image, self.path("b.vti"))
 
     def show(self, *arguments):
-        options = dict(zip(arguments[::2], arguments[1::2]))
         options = {"--azimuth": 0, "--elevation": 0, "--window": 1000, "--level": 500,
-                   "--mode": "high", "--size": f"{self.SIDE}x{self.SIDE}",
-                   "--output": "a.png", **options}
-        words = [str(word) for item in options.items() for word in item]
-        return self.draw(self.file, *words)[0]
+                   "--mode": "high", "--size": f"{self.SIDE}x{self.SIDE}", "--output": "a.png"}
+        for name in {"--azimuth", "--elevation"} if "--view" in arguments else arguments:
+            options.pop(name, None)
+        words = [*(word for item in options.items() for word in item), *arguments]
+        return self.draw(self.file, *(str(word) for word in words))[0]
 
     def find(self, *arguments):
         """Where the block is, in pixels to the right of and above the middle."""
@@ -159,6 +159,88 @@ class TestOptions(splatmip.SplatmipTest):
             self.assert_seen([c, s, 0], [0, 0, 1], "--azimuth", degrees)
             self.assert_seen([1, 0, 0], [0, s, c], "--elevation", degrees)
             self.assert_seen([c, 0, -s], [s, 0, c], "--roll", degrees)
+
+    def test_sides(self):
+        head, back = [0, 0, 1], [0, 1, 0]
+        for side, right, up in (("anterior", [1, 0, 0], head), ("posterior", [-1, 0, 0], head),
+                                ("left", back, head), ("right", [0, -1, 0], head),
+                                ("superior", [1, 0, 0], back), ("inferior", [1, 0, 0], [0, -1, 0])):
+            self.assert_seen(right, up, "--view", side)
+        self.assert_refused("--view", "left", "--azimuth", "7", word="--view", code=2)
+
+    def assert_shown(self, is_shown, *arguments):
+        brightest = self.show(*arguments)[20:].max()
+        self.assertEqual(brightest > 100, is_shown, (arguments, brightest))
+
+    def test_slab(self):
+        """The block lies 4 to 6 mm behind the middle."""
+        self.assert_shown(False, "--slab", 5)
+        self.assert_shown(True, "--slab", 11)
+        self.assert_shown(True, "--slab", 3, "--slab-offset", -5)
+        self.assert_shown(False, "--slab", 3, "--slab-offset", 5)
+        self.assert_shown(True, "--slab", 3, "--slab-offset", 5, "--azimuth", 180)
+        self.assert_refused("--slab-offset", "5", word="--slab", code=2)
+        self.assert_refused("--slab", "3", "--slab-offset", "5", "--rotate", "9",
+                            word="stills", code=2)
+
+    def test_crop(self):
+        """The block's middle is voxel (28, 25, 9) of 41 in each direction."""
+        for axis, place in enumerate((28, 25, 9)):
+            whole = [0, 40, 0, 40, 0, 40]
+            for low, high in ((place - 3, place + 3), (place + 3, 40), (0, place - 3)):
+                whole[2 * axis:2 * axis + 2] = low, high
+                self.assert_shown(low < place < high, "--crop", ",".join(map(str, whole)))
+        self.assert_refused("--crop", "0,40,0,40,9,9", word="must rise", code=2)
+        self.assert_refused("--crop", "0,40,0,40", code=2)
+        self.assert_fails("--crop", "100,140,0,40,0,40", word="nothing of the volume")
+
+    def assert_fails(self, *arguments, word):
+        """After the volume is told of."""
+        result = self.run_program(self.file, *arguments)
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, rf"^splatmip: .*{word}.*\.\n$")
+
+    def test_blends(self):
+        """The block is 3 of 41 voxels deep; minima do not see it, until all else is brighter."""
+        self.assertGreater(self.show("--blend", "max")[20:].max(), 250)
+        self.assertEqual(self.show("--blend", "min")[20:].max(), 0)
+        self.assertLess(abs(self.show("--blend", "mean")[20:].max() - 255 * 3 / 41), 2)
+        shift = vtk.vtkImageShiftScale()
+        reader = vtk.vtkXMLImageDataReader()
+        reader.SetFileName(self.file)
+        shift.SetInputConnection(reader.GetOutputPort())
+        shift.SetScale(-1)
+        shift.SetShift(-1000)
+        shift.Update()
+        splatmip.write_with(vtk.vtkXMLImageDataWriter(), shift.GetOutput(), self.file)
+        pixels = self.show("--blend", "min")[20:, :, 0]
+        self.assertEqual(pixels[80, 100], 255)
+        rows, columns = numpy.nonzero((pixels < 10) & (abs(numpy.arange(200) - 100) < 60))
+        inside = (rows > 15) & (rows < 160)
+        self.assertLess(abs(columns[inside].mean() - 100 - 8 * 4.5), 4)
+
+    def test_depth_shading(self):
+        """From the back the block is nearer, and brighter."""
+        front, back = (self.show("--depth-shading", "--azimuth", angle)[20:].max()
+                       for angle in (0, 180))
+        self.assertGreater(front, 20)
+        self.assertGreater(back, front + 10)
+        self.assert_refused("--depth-shading", "--blend", "min", word="for maxima", code=2)
+
+    def test_looks_of_blends(self):
+        """Where nothing is said, of minima and means something is seen, too."""
+        wavelet = vtk.vtkRTAnalyticSource()
+        wavelet.Update()
+        path = splatmip.write_with(
+            vtk.vtkXMLImageDataWriter(), wavelet.GetOutput(), self.path("w.vti"))
+        for blend in ("max", "min", "mean"):
+            pixels, _ = self.draw(path, "--blend", blend, "--mode", "standard", "--output", "a.png")
+            self.assertGreater(pixels[60:].std(), 20, blend)
+
+    def test_compare_refuses(self):
+        for words in (("--slab", "5"), ("--blend", "mean"), ("--crop", "0,1,0,1,0,1"),
+                      ("--depth-shading",)):
+            self.assert_refused("--compare", *words, word="whole volume", code=2)
 
     def test_zoom(self):
         once, half = self.find(), self.find("--zoom", 0.5)

@@ -35,7 +35,7 @@ LookSettings CompleteLook(const Options& options, const Volume& volume)
   double window = volume.Window, level = volume.Level;
   if (window <= 0.0)
   {
-    ChooseWindowLevel(volume.Image, window, level);
+    ChooseWindowLevel(volume.Image, options.Projection.BlendMode, window, level);
   }
   look.Window = options.HasWindow ? look.Window : window;
   look.Level = options.HasLevel ? look.Level : level;
@@ -55,12 +55,6 @@ void PrintVolume(const Volume& volume, const LookSettings& look)
   std::fflush(stdout);
 }
 
-void UseKernel(Projector& projector, const Options& options)
-{
-  projector.GetProjection()->SetKernel(options.Kernel);
-  projector.GetProjection()->SetKernelRadius(options.KernelRadius);
-}
-
 /**
  * The modes side by side.
  */
@@ -71,8 +65,7 @@ void WriteStill(const Volume& volume, const LookSettings& look, const Options& o
   {
     comparison = std::make_unique<Comparison>(volume, look, options);
   }
-  Projector projector(volume, look, options.View, 1);
-  UseKernel(projector, options);
+  Projector projector(volume, options.Projection, look, options.View, 1);
   const Palette palette = MakePalette(look);
   vtkNew<vtkImageAppend> row;
   for (const int mode : options.Modes)
@@ -92,8 +85,7 @@ void WriteStill(const Volume& volume, const LookSettings& look, const Options& o
 
 void WriteTurn(const Volume& volume, const LookSettings& look, const Options& options)
 {
-  Projector projector(volume, look, options.View, options.Rotate);
-  UseKernel(projector, options);
+  Projector projector(volume, options.Projection, look, options.View, options.Rotate);
   projector.GetProjection()->SetQualityMode(options.Modes.front());
   const auto views = projector.Project("projecting");
   std::printf("\n%d views of %d x %d in %.2f s, %.0f per second; %d threads, %s\n", options.Rotate,
