@@ -132,6 +132,8 @@ void PlaceVolume(Volume& volume, const SlicePlane& plane, const SliceGrid& grid,
 {
   volume.Image->SetSpacing(
     plane.Spacing[0], plane.Spacing[1], grid.Step > 0.0 ? grid.Step : thickness);
+  volume.IsOriented = true;
+  volume.IsInMillimeters = true;
   volume.Orientation = vtkSmartPointer<vtkMatrix4x4>::New();
   for (int row = 0; row < 3; ++row)
   {

@@ -47,16 +47,19 @@ vtkSmartPointer<vtkImageData> Scale(vtkImageData* image, double slope, double in
 }
 
 /**
- * The columns of an sform may be longer than 1: voxels are larger then than the header's pixdim.
+ * Millimetres: the header may count in metres or micrometres, and the columns of an sform may be
+ * longer than 1, so that voxels are larger than the header's pixdim.
  */
-void ScaleSpacing(vtkImageData* image, vtkMatrix4x4* columns)
+void ScaleSpacing(vtkImageData* image, vtkMatrix4x4* columns, int unit)
 {
   double spacing[3];
   image->GetSpacing(spacing);
   for (int axis = 0; axis < 3; ++axis)
   {
-    spacing[axis] *= std::hypot(
-      columns->GetElement(0, axis), columns->GetElement(1, axis), columns->GetElement(2, axis));
+    spacing[axis] *= unit == 1 ? 1000.0 : unit == 3 ? 0.001 : 1.0;
+    spacing[axis] *= columns ? std::hypot(columns->GetElement(0, axis),
+                                 columns->GetElement(1, axis), columns->GetElement(2, axis))
+                             : 1.0;
   }
   image->SetSpacing(spacing);
 }
@@ -66,11 +69,10 @@ void PlaceVolume(Volume& volume, vtkNIFTIImageReader* reader)
   vtkMatrix4x4* const columns =
     reader->GetSFormMatrix() ? reader->GetSFormMatrix() : reader->GetQFormMatrix();
   volume.Orientation = MakeOrientation(columns, true);
-  if (columns)
-  {
-    ScaleSpacing(volume.Image, columns);
-  }
-  else
+  volume.IsOriented = columns != nullptr;
+  volume.IsInMillimeters = true;
+  ScaleSpacing(volume.Image, columns, reader->GetNIFTIHeader()->GetXYZTUnits() & 7);
+  if (!columns)
   {
     volume.Notes.push_back("the file does not say how the patient lies; left and right may be "
                            "exchanged");

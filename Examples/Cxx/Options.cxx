@@ -208,6 +208,10 @@ void DeclareOutputOptions(CLI::App& app, Options& options, Words& words)
     "unless --mode names one)");
   group.Add("--rate", options.Rate, "VIEWS", Between(1, 50), "Views per second of a GIF or film")
     ->capture_default_str();
+  group.AddFlag("--no-marks", options.NoMarks,
+    "Leave out the letters for the patient's sides and the scale bar, which are there where the "
+    "file "
+    "says how the patient lies and how large voxels are");
   group.AddFlag("--compare", options.Compare,
     "Also time the modes beside VTK's ray caster, which takes a while, in a window (needs a "
     "display)");

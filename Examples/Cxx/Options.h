@@ -32,6 +32,7 @@ struct Options
   bool HasWindow = false;        // this
   bool HasLevel = false;         // and this
   std::string Output;            // an absolute path
+  bool NoMarks = false;          // sides and scale bar
   bool Compare = false;          // with the ray caster
   bool Interactive = false;      // in a window
   int Rotate = 0;                // views, or 0

@@ -4,6 +4,7 @@
 #define Picture_h
 
 #include "vtkImageData.h"
+#include "vtkSplattingMIPProjection.h"
 
 #include <string>
 
@@ -12,5 +13,16 @@
  * OpenGL.
  */
 void DrawLabel(vtkImageData* slices, const std::string& text);
+
+/**
+ * Writes the patient's sides at the edges of each view of a projection, as DICOM names them: R and
+ * L, A and P, H and F (head, feet), and further letters where an edge is more than 15 degrees off.
+ */
+void DrawSides(vtkImageData* slices, vtkSplattingMIPProjection* projection);
+
+/**
+ * Draws a bar of 1, 2 or 5 times a power of ten millimetres at the bottom right.
+ */
+void DrawScaleBar(vtkImageData* slices, double millimetersPerPixel);
 
 #endif

@@ -130,7 +130,7 @@ class SplatmipTest(unittest.TestCase):
     def draw_block(self, path, *arguments):
         """Seen from the front, left is right and the feet are at the bottom. Returns the text."""
         pixels, text = self.draw(path, "--mode", "preview", "--size", "128x128", "--azimuth", "0",
-                                 "--elevation", "0", "--output", "a.png", *arguments)
+                                 "--elevation", "0", "--no-marks", "--output", "a.png", *arguments)
         self.assertEqual(pixels.shape, (128, 128, 3))
         self.assertGreater(pixels[78:, 66:].max(), 200)
         self.assertLess(pixels[78:, :62].max(), 50)

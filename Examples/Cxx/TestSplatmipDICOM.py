@@ -53,7 +53,7 @@ class DICOMTest(splatmip.SplatmipTest):
         pixels, text = self.draw(
             path, "--mode", "high", "--size", "128x128", "--azimuth", str(azimuth), "--elevation",
             "0", "--window", str(window), "--level", str(window / 2), "--output", "a.png",
-            *arguments)
+            "--no-marks", *arguments)
         return pixels[24:, :, 0], text
 
     def show_expected(self, values=None, spacing=(1.5, 1.0, 2.0), **options):
@@ -265,6 +265,13 @@ class TestFrames(DICOMTest):
                 GridFrameOffsetVector=[start + 2 * k for k in range(14)])
             pixels, _ = self.show(folder, window=0.84)
             self.assertLessEqual(abs(pixels - self.show_expected()).max(), 1)
+
+    def test_dose_from_the_head(self):
+        """The patient's z counts where the normal points to the feet."""
+        folder = self.write_frames(
+            ImageOrientationPatient=(1, 0, 0, 0, -1, 0), ImagePositionPatient=(0, 0, 30),
+            GridFrameOffsetVector=[30 + 2 * k for k in range(14)])
+        self.assert_right(folder)
 
     def test_uneven_dose(self):
         offsets = [2 * k for k in range(14)]

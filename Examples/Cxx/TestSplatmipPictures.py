@@ -265,5 +265,60 @@ class TestOptions(splatmip.SplatmipTest):
             self.assertLessEqual(abs(found - 255 * expected).max(), 1, name)
 
 
+class TestMarks(splatmip.SplatmipTest):
+    SIZE = 240
+
+    def show(self, *arguments, name="a.nrrd"):
+        """What the marks have added, the label left out."""
+        with_marks, without = (
+            self.draw(self.path(name), "--mode", "preview", "--size", f"{self.SIZE}x{self.SIZE}",
+                      "--output", "a.png", *arguments, *more)[0][:, :, 0]
+            for more in ((), ("--no-marks",)))
+        return with_marks - without
+
+    def cut(self, marks):
+        """The letters at the left, the right, the top and the bottom, less the room around."""
+        half = slice(self.SIZE // 2 - 20, self.SIZE // 2 + 20)
+        parts = [marks[half, :40], marks[half, -40:], marks[:20, half], marks[-20:, half]]
+        cut = []
+        for part in parts:
+            rows, columns = part.any(axis=1).nonzero()[0], part.any(axis=0).nonzero()[0]
+            self.assertGreater(len(rows), 3)
+            cut.append(part[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1])
+        return cut
+
+    def test_sides(self):
+        """Six letters, the same wherever they are."""
+        splatmip.write_nrrd(self.path("a.nrrd"))
+        views = {"anterior": "RLHF", "posterior": "LRHF", "left": "APHF", "right": "PAHF",
+                 "superior": "RLPA", "inferior": "RLAP"}
+        letters = {}
+        for view, names in views.items():
+            for name, pixels in zip(names, self.cut(self.show("--view", view))):
+                shape = (pixels > 127).tobytes()
+                self.assertEqual(letters.setdefault(name, shape), shape, (view, name))
+        self.assertEqual(len(set(letters.values())), 6)
+        straight = self.cut(self.show("--view", "anterior"))
+        near = self.cut(self.show("--azimuth", "14", "--elevation", "0"))
+        aslant = self.cut(self.show("--azimuth", "20", "--elevation", "0"))
+        self.assertTrue((near[0] == straight[0]).all())
+        self.assertGreater(aslant[0].shape[1], 1.5 * straight[0].shape[1])  # RA
+
+    def test_scale_bar(self):
+        """The 26 mm of 14 voxels fit into the height with a rim of a tenth; a bar of 5 mm."""
+        splatmip.write_nrrd(self.path("a.nrrd"))
+        marks = self.show("--view", "anterior")
+        row = marks[-4, self.SIZE // 2 + 20:]
+        pixels = self.SIZE / (1.1 * 26)  # of a mm
+        self.assertLess(abs((row > 0).sum() - 5 * pixels), 1.5)
+        row = self.show("--view", "anterior", "--zoom", "4")[-4, self.SIZE // 2 + 20:]
+        self.assertLess(abs((row > 0).sum() - 4 * 1 * pixels), 1.5)
+
+    def test_unknown(self):
+        """Nothing is claimed that the file does not say."""
+        splatmip.write_vti(self.path("a.vti"))
+        self.assertFalse(self.show(name="a.vti").any())
+
+
 if __name__ == "__main__":
     splatmip.main()

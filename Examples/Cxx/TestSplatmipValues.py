@@ -25,7 +25,7 @@ def patch(path, **fields):
 class TestNIfTI(splatmip.SplatmipTest):
     def show(self, path, *arguments):
         pixels, text = self.draw(path, "--mode", "high", "--size", "128x128", "--output", "a.png",
-                                 *arguments)
+                                 "--no-marks", *arguments)
         return pixels[24:], text
 
     def look(self, *arguments, path="a.nii"):
@@ -59,6 +59,17 @@ class TestNIfTI(splatmip.SplatmipTest):
                      sform_code=1)
         found, _ = self.show(path)
         self.assertTrue((found == expected).all())
+
+    def test_unit_of_length(self):
+        """The scale bar knows micrometres."""
+        def bar(unit, zoom):
+            path = splatmip.write_nifti(self.path("u.nii"))
+            with open(path, "r+b") as file:
+                file.seek(123)
+                file.write(bytes([unit]))
+            return self.draw(path, "--output", "u.png", "--zoom", str(zoom))[0][-60:]
+        self.assertTrue((bar(2, 1) == bar(0, 1)).all())
+        self.assertFalse((bar(2, 1) == bar(3, 1)).all())
 
     def test_no_form(self):
         path = splatmip.write_nifti(self.path("a.nii"), has_form=False)

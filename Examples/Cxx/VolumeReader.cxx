@@ -122,6 +122,8 @@ Volume ReadMeta(const std::string& path, const ReadSettings& settings, const Qui
   CheckHeader(header, path, quiet);
   volume.Image = RunReader(reader, path, quiet, &header);
   volume.Orientation = ParseOrientation(header.Get("TransformMatrix"));
+  volume.IsOriented = !header.Get("TransformMatrix").empty();
+  volume.IsInMillimeters = !header.Get("ElementSpacing").empty();
   return volume;
 }
 
@@ -138,6 +140,9 @@ Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const Qui
   const bool isRAS = space.find("right-anterior-superior") != std::string::npos ||
     space.find("RAS") != std::string::npos;
   volume.Orientation = ParseOrientation(header.Get("space directions"), isRAS);
+  const std::string unit = header.Get("space units");
+  volume.IsOriented = !space.empty();
+  volume.IsInMillimeters = !space.empty() && (unit.empty() || unit.find("mm") == 1);
   return volume;
 }
 
@@ -191,6 +196,7 @@ void FinishGeometry(Volume& volume)
       length = 1.0;
       volume.Notes.push_back("the file does not say how large voxels are: 1 mm was taken");
       volume.Caution = "voxel size unknown";
+      volume.IsInMillimeters = false;
     }
   }
   image->SetSpacing(spacing);

@@ -42,6 +42,12 @@ struct Volume
   std::vector<std::string> Notes;
 
   /**
+   * Whether the file says how the patient lies, and how large voxels are.
+   */
+  bool IsOriented = false;
+  bool IsInMillimeters = false;
+
+  /**
    * What whoever sees a picture must know, in a few words; may be empty.
    */
   std::string Caution;

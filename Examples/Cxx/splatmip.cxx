@@ -56,6 +56,21 @@ void PrintVolume(const Volume& volume, const LookSettings& look)
 }
 
 /**
+ * What the picture of a file that knows can say.
+ */
+void DrawMarks(vtkImageData* slices, Projector& projector, const Volume& volume)
+{
+  if (volume.IsOriented)
+  {
+    DrawSides(slices, projector.GetProjection());
+  }
+  if (volume.IsInMillimeters)
+  {
+    DrawScaleBar(slices, projector.GetProjection()->GetOutputSpacing()[0]);
+  }
+}
+
+/**
  * The modes side by side.
  */
 void WriteStill(const Volume& volume, const LookSettings& look, const Options& options)
@@ -76,6 +91,10 @@ void WriteStill(const Volume& volume, const LookSettings& look, const Options& o
     label += volume.Caution.empty() ? "" : "\n" + volume.Caution;
     const auto bytes = projector.Project("projecting, " + ModeNames[mode]);
     DrawLabel(bytes, label);
+    if (!options.NoMarks)
+    {
+      DrawMarks(bytes, projector, volume);
+    }
     row->AddInputData(Paint(bytes, palette, 0));
   }
   row->Update();
@@ -93,6 +112,10 @@ void WriteTurn(const Volume& volume, const LookSettings& look, const Options& op
     options.Rotate / projector.GetSeconds(), vtkSMPTools::GetEstimatedNumberOfThreads(),
     projector.GetProjection()->GetInstructionSet());
   DrawLabel(views, volume.Caution);
+  if (!options.NoMarks)
+  {
+    DrawMarks(views, projector, volume);
+  }
   WriteSeries(views, MakePalette(look), options.Rate, options.Output);
   std::printf("\nturn: %s\n", options.Output.c_str());
 }
