@@ -153,7 +153,7 @@ void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
   group
     .Add("--crop", words.Crop, "MM", Between(-1e9, 1e9),
       "Only a box, by six numbers: from and to along each axis of the volume, from its first voxel "
-      "on")
+      "on, as in 0,200,0,200,50,150")
     ->expected(6)
     ->delimiter(',');
 }

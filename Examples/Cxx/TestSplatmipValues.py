@@ -117,18 +117,23 @@ class TestNIfTI(splatmip.SplatmipTest):
 class TestOthers(splatmip.SplatmipTest):
     def test_tiff(self):
         """A stack of pages; without a size voxels are cubes, which is told."""
-        cast = vtk.vtkImageCast()
-        cast.SetInputData(splatmip.make_image())
-        cast.SetOutputScalarTypeToUnsignedShort()
-        cast.Update()
-        path = splatmip.write_with(vtk.vtkTIFFWriter(), cast.GetOutput(), self.path("a.tif"))
-        pixels, text = self.draw(path, "--mode", "preview", "--size", "280x280", "--azimuth", "0",
-                                 "--elevation", "0", "--output", "a.png")
-        self.assertIn("10 x 12 x 14 voxels, unsigned short\nTIFF does not say how large", text)
-        block = numpy.argwhere(pixels[40:, :, 0] > 127)
-        width, height = numpy.ptp(block, axis=0)[::-1]
-        self.assertLess(abs(height / width - 4 / 3), 0.15)  # 3 x 4 voxels
-        self.assertGreater(block[:, 1].min(), 140)
+        image = vtk.vtkImageData()
+        image.SetDimensions(*splatmip.SIZE)
+        image.AllocateScalars(vtk.VTK_UNSIGNED_SHORT, 1)
+        image.GetPointData().GetScalars().Fill(0)
+        for i, j, k in numpy.ndindex(3, 4, 4):  # to the left, the back and the feet
+            row = 7 + j  # from the top, where a page shows the front; VTK counts from the bottom
+            image.SetScalarComponentFromDouble(6 + i, 11 - row, 1 + k, 0, 1000)
+        path = splatmip.write_with(vtk.vtkTIFFWriter(), image, self.path("a.tif"))
+        for view in ("anterior", "left"):
+            pixels, text = self.draw(path, "--mode", "preview", "--size", "280x280", "--view", view,
+                                     "--output", "a.png")
+            self.assertIn("10 x 12 x 14 voxels, unsigned short\nTIFF does not say how", text)
+            block = numpy.argwhere(pixels[40:, :, 0] > 127)
+            height, width = numpy.ptp(block, axis=0)
+            self.assertLess(abs(height / width - (4 / 3 if view == "anterior" else 1)), 0.15)
+            self.assertGreater(block[:, 1].min(), 140, view)
+            self.assertGreater(block[:, 0].min(), 100, view)
         with open(path, "rb") as file:
             data = file.read()
         self.assert_refused(splatmip.write_file(path, data[:len(data) // 2]))
