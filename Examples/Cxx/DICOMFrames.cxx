@@ -48,11 +48,11 @@ vtkDICOMValue Get(const DICOMFile& file, int frame, vtkDICOMTag tag)
 std::vector<double> GetNumbers(const DICOMFile& file, int frame, vtkDICOMTag tag, std::size_t count)
 {
   const vtkDICOMValue value = Get(file, frame, tag);
-  std::vector<double> numbers(count);
   if (value.GetNumberOfValues() != count)
   {
     return {};
   }
+  std::vector<double> numbers(count);
   value.GetValues(numbers.data(), count);
   return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })
     ? numbers
@@ -204,7 +204,8 @@ SlicePlane FindPlane(const DICOMFile& file, int frame)
 void CheckFrames(const DICOMFile& file, const std::vector<Vector3>& offsets)
 {
   const int count = GetNumberOfFrames(file);
-  const bool isPlaced = Get(file, 0, DC::PerFrameFunctionalGroupsSequence).IsValid();
+  const vtkDICOMValue groups = Get(file, 0, DC::PerFrameFunctionalGroupsSequence);
+  const bool isPlaced = groups.GetNumberOfValues() == static_cast<std::size_t>(count);
   if (count > 1 && offsets.empty() && !isPlaced)
   {
     Refuse(file.Path,

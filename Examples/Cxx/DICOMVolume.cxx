@@ -132,6 +132,7 @@ void PlaceVolume(Volume& volume, const SlicePlane& plane, const SliceGrid& grid,
 {
   volume.Image->SetSpacing(
     plane.Spacing[0], plane.Spacing[1], grid.Step > 0.0 ? grid.Step : thickness);
+  volume.Origin = plane.Position;
   volume.IsOriented = true;
   volume.IsInMillimeters = true;
   volume.Orientation = vtkSmartPointer<vtkMatrix4x4>::New();

@@ -47,6 +47,14 @@ vtkSmartPointer<vtkImageData> Scale(vtkImageData* image, double slope, double in
 }
 
 /**
+ * How long one of the header's units of length is: metres, millimetres or micrometres.
+ */
+double GetMillimeters(int unit)
+{
+  return unit == 1 ? 1000.0 : unit == 3 ? 0.001 : 1.0;
+}
+
+/**
  * Millimetres: the header may count in metres or micrometres, and the columns of an sform may be
  * longer than 1, so that voxels are larger than the header's pixdim.
  */
@@ -56,7 +64,7 @@ void ScaleSpacing(vtkImageData* image, vtkMatrix4x4* columns, int unit)
   image->GetSpacing(spacing);
   for (int axis = 0; axis < 3; ++axis)
   {
-    spacing[axis] *= unit == 1 ? 1000.0 : unit == 3 ? 0.001 : 1.0;
+    spacing[axis] *= GetMillimeters(unit);
     spacing[axis] *= columns ? std::hypot(columns->GetElement(0, axis),
                                  columns->GetElement(1, axis), columns->GetElement(2, axis))
                              : 1.0;
@@ -71,7 +79,13 @@ void PlaceVolume(Volume& volume, vtkNIFTIImageReader* reader)
   volume.Orientation = MakeOrientation(columns, true);
   volume.IsOriented = columns != nullptr;
   volume.IsInMillimeters = true;
-  ScaleSpacing(volume.Image, columns, reader->GetNIFTIHeader()->GetXYZTUnits() & 7);
+  const int unit = reader->GetNIFTIHeader()->GetXYZTUnits() & 7;
+  ScaleSpacing(volume.Image, columns, unit);
+  for (int axis = 0; columns && axis < 3; ++axis)
+  {
+    volume.Origin[axis] =
+      (axis < 2 ? -1.0 : 1.0) * GetMillimeters(unit) * columns->GetElement(axis, 3);
+  }
   if (!columns)
   {
     volume.Notes.push_back("the file does not say how the patient lies; left and right may be "

@@ -3,6 +3,7 @@
 #include "Options.h"
 
 #include "PictureSeries.h"
+#include "ValueFile.h"
 
 #include "vtkSplattingMIPProjection.h"
 #include "vtkVersion.h"
@@ -200,7 +201,8 @@ void DeclareOutputOptions(CLI::App& app, Options& options, Words& words)
   Group group(app, "What comes out");
   group
     .Add("--output,--out", words.Output, "FILE", CLI::Validator(),
-      "The picture to write, .png; with --rotate .gif, .avi or .ogv (films), or .png (numbered "
+      "The picture to write, .png, or its values in the file's unit, .nii, .nii.gz or .mha; with "
+      "--rotate .gif, .avi or .ogv (films), or .png (numbered "
       "pictures)")
     ->capture_default_str();
   group.Add("--rotate", options.Rotate, "VIEWS", Between(2, 3600),
@@ -222,9 +224,10 @@ void DeclareOutputOptions(CLI::App& app, Options& options, Words& words)
 void CheckOutputName(const Options& options)
 {
   const bool isPNG = std::filesystem::path(options.Output).extension() == ".png";
+  const bool isStill = isPNG || (IsValueFile(options.Output) && !options.Compare);
   const std::string fault = options.Rotate > 0 ? CheckSeriesName(options.Output)
-    : isPNG                                    ? ""
-                                               : "not a name that ends in .png";
+    : isStill                                  ? ""
+              : "not a name that ends in .png, or for values in .nii, .nii.gz or .mha";
   if (!fault.empty())
   {
     throw CLI::ValidationError("--output", fault);
@@ -321,7 +324,8 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
   app.footer(Examples);
   app.parse(argc, argv);
 
-  options.Modes = ChooseModes(words.Mode, options.Interactive || options.Rotate > 0);
+  options.Modes =
+    ChooseModes(words.Mode, options.Interactive || options.Rotate > 0 || IsValueFile(words.Output));
   TranslateWords(words, options);
   options.Output = std::filesystem::absolute(words.Output).string();
   options.HasWindow = app.count("--window") > 0;

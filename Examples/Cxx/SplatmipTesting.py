@@ -11,6 +11,7 @@ import sys
 import tempfile
 import unittest
 
+import numpy
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
@@ -75,7 +76,7 @@ def write_nifti(path, image=None, has_form=True, **settings):
 
 
 def write_nrrd(path, encoding="raw", space="left-posterior-superior", x_of_left=1,
-               directions="(1.5,0,0) (0,1,0) (0,0,2)"):
+               directions="(1.5,0,0) (0,1,0) (0,0,2)", origin="(0,0,0)"):
     data = get_bytes(make_image(x_of_left))
     data = gzip.compress(data) if encoding == "gzip" else data
     header = f"""NRRD0004
@@ -84,6 +85,7 @@ dimension: 3
 space: {space}
 sizes: {SIZE[0]} {SIZE[1]} {SIZE[2]}
 space directions: {directions}
+space origin: {origin}
 kinds: domain domain domain
 endian: little
 encoding: {encoding}
@@ -101,6 +103,31 @@ def read_picture(reader, path):
     width, height, _ = reader.GetOutput().GetDimensions()
     pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
     return pixels.reshape(height, width, 3)[::-1].astype(float)
+
+
+def read_values(path):
+    """Rows from the bottom, and the matrix from columns and rows to the patient (LPS)."""
+    place = numpy.eye(4)
+    if path.endswith(".mha"):
+        with open(path, "rb") as file:
+            data = file.read()
+        header, values = data.split(b"ElementDataFile = LOCAL\n")
+        fields = dict(line.split(" = ") for line in header.decode().splitlines())
+        size = [int(n) for n in fields["DimSize"].split()]
+        place[:3, :3] = numpy.reshape(fields["TransformMatrix"].split(), (3, 3)).astype(float).T
+        place[:3, :3] *= numpy.array(fields["ElementSpacing"].split(), float)
+        place[:3, 3] = fields["Offset"].split()
+        return numpy.frombuffer(values, numpy.float32).reshape(size[1], size[0]), place
+    reader = vtk.vtkNIFTIImageReader()
+    reader.SetFileName(path)
+    reader.Update()
+    form, image = reader.GetSFormMatrix(), reader.GetOutput()
+    for row, column in numpy.ndindex(3, 4):
+        sign = -1 if row < 2 else 1
+        length = image.GetSpacing()[column] if column < 3 else 1
+        place[row, column] = sign * length * form.GetElement(row, column)
+    values = vtk_to_numpy(image.GetPointData().GetScalars())
+    return values.reshape(image.GetDimensions()[1::-1]), place
 
 
 class SplatmipTest(unittest.TestCase):
@@ -136,6 +163,12 @@ class SplatmipTest(unittest.TestCase):
         self.assertLess(pixels[78:, :62].max(), 50)
         self.assertLess(pixels[12:62, 66:].max(), 50)
         return text
+
+    def assert_center(self, path, center):
+        """The middle of the plane of values."""
+        self.run_program(path, "--output", self.path("v.mha"), "--size", "64x64")
+        _, matrix = read_values(self.path("v.mha"))
+        self.assertLess(abs((matrix @ [31.5, 31.5, 0, 1])[:3] - center).max(), 1e-3, path)
 
     def assert_refused(self, *arguments, word="", code=1):
         """One sentence on stderr, nothing else, and the exit status."""

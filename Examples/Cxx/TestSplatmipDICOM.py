@@ -78,6 +78,12 @@ class TestGeometry(DICOMTest):
         splatmip.write_file(self.path("series/README.txt"), b"Not an image.")
         self.assert_right(self.folder)
 
+    def test_origin(self):
+        for fields in self.slices:
+            place = fields["ImagePositionPatient"]
+            fields["ImagePositionPatient"] = (12, -34, 56 + place[2])
+        self.assert_center(self.write(), [18.75, -28.5, 69])
+
     def test_missing(self):
         """What is missing is interpolated, and told in the text and in the picture."""
         whole, _ = self.draw(self.write(), "--mode", "high", "--output", "a.png")

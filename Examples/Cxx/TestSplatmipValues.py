@@ -161,5 +161,90 @@ class TestOthers(splatmip.SplatmipTest):
             self.assert_refused(path, "--series", "2", word="this is not DICOM")
 
 
+class TestValueFiles(splatmip.SplatmipTest):
+    def write_volume(self, origin):
+        """A cube of 5 voxels of -321 at (5, 4, 8), in an oblique stack of -900; returns its place."""
+        values = numpy.full((20, 15, 13), -900, numpy.int16)
+        values[6:11, 2:7, 3:8] = -321
+        turn = vtk.vtkTransform()
+        turn.RotateWXYZ(50, 1, 2, 3)
+        axes = numpy.array([turn.TransformVector(*axis) for axis in numpy.eye(3)])
+        axes *= numpy.array([1.5, 1.0, 2.0])[:, None]
+        vectors = " ".join("(" + ",".join(map(repr, axis.tolist())) + ")" for axis in axes)
+        header = f"""NRRD0004
+type: short
+dimension: 3
+space: left-posterior-superior
+sizes: 13 15 20
+space directions: {vectors}
+space origin: ({origin[0]},{origin[1]},{origin[2]})
+endian: little
+encoding: raw
+
+"""
+        splatmip.write_file(self.path("a.nrrd"), header.encode() + values.tobytes())
+        return numpy.array(origin) + numpy.array([5, 4, 8]) @ axes
+
+    def check(self, name, *arguments):
+        """Values and places are the patient's: the cube lies behind its picture."""
+        place = self.write_volume((12, -34, 56))
+        result = self.run_program(self.path("a.nrrd"), "--output", name, "--size", "90x120",
+                                  *arguments)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(result.stdout.splitlines()[-1], "values: " + self.path(name))
+        values, matrix = splatmip.read_values(self.path(name))
+        self.assertEqual(values.shape, (120, 90))
+        self.assertLess(abs(numpy.nanmax(values) + 321), 1)
+        self.assertTrue(numpy.isnan(values[0, 0]))
+        self.assertLess(abs(numpy.nanmin(values) + 900), 1)
+        rows, columns = numpy.nonzero(numpy.nan_to_num(values, nan=-900) > -600)
+        seen = matrix @ [columns.mean(), rows.mean(), 0, 1]
+        away = matrix[:3, 2] / numpy.linalg.norm(matrix[:3, 2])
+        aside = place - seen[:3]
+        aside -= (aside @ away) * away
+        self.assertLess(numpy.linalg.norm(aside), numpy.linalg.norm(matrix[:3, 0]))
+        return matrix
+
+    def test_values(self):
+        for name in ("v.nii", "v.nii.gz", "v.mha"):
+            matrix = self.check(name, "--view", "anterior", "--mode", "high")
+            axes = matrix[:3, :3] / numpy.linalg.norm(matrix[:3, :3], axis=0)
+            self.assertLess(abs(axes - [[1, 0, 0], [0, 0, -1], [0, 1, 0]]).max(), 1e-6)
+            self.check(name, "--azimuth", "70", "--elevation", "-25", "--roll", "40")
+        self.assertAlmostEqual(
+            numpy.linalg.norm(self.check("v.nii", "--slab", "90")[:3, 2]), 90, 4)
+
+    def test_origins(self):
+        """Of each format: the picture goes through the middle of the volume."""
+        image = splatmip.make_image()
+        image.SetOrigin(12, -34, 56)
+        form = vtk.vtkMatrix4x4()
+        form.DeepCopy([-1, 0, 0, -12, 0, -1, 0, 34, 0, 0, 1, 56, 0, 0, 0, 1])
+        splatmip.write_with(vtk.vtkXMLImageDataWriter(), image, self.path("a.vti"))
+        splatmip.write_with(vtk.vtkDataSetWriter(), image, self.path("a.vtk"))
+        splatmip.write_with(vtk.vtkMetaImageWriter(), image, self.path("a.mha"))
+        image.SetOrigin(0, 0, 0)
+        splatmip.write_nifti(self.path("a.nii"), image, has_form=False, QFormMatrix=form)
+        for space, place in (("left-posterior-superior", "(12,-34,56)"),
+                             ("right-anterior-superior", "(-12,34,56)")):
+            name = space[:4] + ".nrrd"
+            turned = "(1.5,0,0) (0,1,0) (0,0,2)"
+            turned = turned if place[1] == "1" else "(-1.5,0,0) (0,-1,0) (0,0,2)"
+            splatmip.write_nrrd(self.path(name), space=space, directions=turned, origin=place)
+        for name in ("a.vti", "a.vtk", "a.mha", "a.nii", "left.nrrd", "righ.nrrd"):
+            self.assert_center(self.path(name), [18.75, -28.5, 69])
+
+    def test_read_again(self):
+        """What is written can be read."""
+        self.check("v.nii.gz", "--view", "left")
+        _, text = self.draw(self.path("v.nii.gz"), "--view", "left", "--output", "a.png")
+        self.assertIn("90 x 120 x 1 voxels, float", text)
+
+    def test_refusals(self):
+        self.assert_refused("--output", "v.nii", "--compare", word=".png", code=2)
+        self.assert_refused("--output", "v.nii", "--rotate", "5", word=".gif", code=2)
+        self.assert_refused("--output", "no/v.nii", word="no/v.nii: this cannot be written")
+
+
 if __name__ == "__main__":
     splatmip.main()

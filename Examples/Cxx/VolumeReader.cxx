@@ -88,6 +88,19 @@ vtkSmartPointer<vtkMatrix4x4> ParseOrientation(std::string numbers, bool isRAS =
   return MakeOrientation(axes, isRAS);
 }
 
+/**
+ * A place of three numbers, or 0.
+ */
+std::array<double, 3> ParseOrigin(std::string numbers, bool isRAS = false)
+{
+  std::replace_if(
+    numbers.begin(), numbers.end(), [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
+  std::istringstream stream(numbers);
+  std::array<double, 3> origin = {};
+  stream >> origin[0] >> origin[1] >> origin[2];
+  return isRAS ? std::array<double, 3>{ -origin[0], -origin[1], origin[2] } : origin;
+}
+
 Volume ReadXML(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
   CheckFrame(path, settings.Frame, 1);
@@ -99,6 +112,7 @@ Volume ReadXML(const std::string& path, const ReadSettings& settings, const Quie
   reader->SetFileName(path.c_str());
   Volume volume;
   volume.Image = RunReader(reader, path, quiet);
+  volume.Image->GetOrigin(volume.Origin.data());
   return volume;
 }
 
@@ -109,6 +123,7 @@ Volume ReadLegacy(const std::string& path, const ReadSettings& settings, const Q
   reader->SetFileName(path.c_str());
   Volume volume;
   volume.Image = RunReader(reader, path, quiet);
+  volume.Image->GetOrigin(volume.Origin.data());
   return volume;
 }
 
@@ -122,6 +137,7 @@ Volume ReadMeta(const std::string& path, const ReadSettings& settings, const Qui
   CheckHeader(header, path, quiet);
   volume.Image = RunReader(reader, path, quiet, &header);
   volume.Orientation = ParseOrientation(header.Get("TransformMatrix"));
+  volume.Origin = ParseOrigin(header.Get("Offset") + header.Get("Position") + header.Get("Origin"));
   volume.IsOriented = !header.Get("TransformMatrix").empty();
   volume.IsInMillimeters = !header.Get("ElementSpacing").empty();
   return volume;
@@ -140,6 +156,7 @@ Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const Qui
   const bool isRAS = space.find("right-anterior-superior") != std::string::npos ||
     space.find("RAS") != std::string::npos;
   volume.Orientation = ParseOrientation(header.Get("space directions"), isRAS);
+  volume.Origin = ParseOrigin(header.Get("space origin"), isRAS);
   const std::string unit = header.Get("space units");
   volume.IsOriented = !space.empty();
   volume.IsInMillimeters = !space.empty() && (unit.empty() || unit.find("mm") == 1);
@@ -185,7 +202,11 @@ void FinishGeometry(Volume& volume)
     volume.Orientation = MakeOrientation(axes);
   }
   image->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
-  image->SetOrigin(0.0, 0.0, 0.0); // of no use here, and a damaged one may be not a number
+  image->SetOrigin(0.0, 0.0, 0.0);
+  for (double& place : volume.Origin)
+  {
+    place = std::isfinite(place) ? place : 0.0;
+  }
   double spacing[3];
   image->GetSpacing(spacing);
   for (double& length : spacing)

@@ -7,6 +7,7 @@
 #include "vtkMatrix4x4.h"
 #include "vtkSmartPointer.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,11 @@ struct Volume
    * the volume's prop matrix, because vtkFixedPointVolumeRayCastMapper ignores direction matrices.
    */
   vtkSmartPointer<vtkMatrix4x4> Orientation;
+
+  /**
+   * Where the first voxel lies in the patient (LPS), as far as the file says; Image has it at 0.
+   */
+  std::array<double, 3> Origin = {};
 
   /**
    * What to call the volume, and what the user should know of it, a line each.

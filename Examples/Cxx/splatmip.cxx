@@ -12,6 +12,7 @@
 #include "Picture.h"
 #include "PictureSeries.h"
 #include "Projector.h"
+#include "ValueFile.h"
 #include "VolumeReader.h"
 
 #include "vtkImageAppend.h"
@@ -71,7 +72,7 @@ void DrawMarks(vtkImageData* slices, Projector& projector, const Volume& volume)
 }
 
 /**
- * The modes side by side.
+ * The modes side by side, or the values of one.
  */
 void WriteStill(const Volume& volume, const LookSettings& look, const Options& options)
 {
@@ -82,6 +83,14 @@ void WriteStill(const Volume& volume, const LookSettings& look, const Options& o
   }
   Projector projector(volume, options.Projection, look, options.View, 1);
   const Palette palette = MakePalette(look);
+  if (IsValueFile(options.Output))
+  {
+    projector.GetProjection()->SetQualityMode(options.Modes.front());
+    projector.Project("projecting");
+    WriteValues(projector.GetProjection(), volume.Origin, options.Output);
+    std::printf("\nvalues: %s\n", options.Output.c_str());
+    return;
+  }
   vtkNew<vtkImageAppend> row;
   for (const int mode : options.Modes)
   {
