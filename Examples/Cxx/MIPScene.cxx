@@ -5,12 +5,14 @@
 #include "ProgressLine.h"
 
 #include "vtkCamera.h"
+#include "vtkMath.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkTextProperty.h"
 #include "vtkTransform.h"
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -104,6 +106,14 @@ void MIPScene::FitCamera(double azimuth)
   this->Prop->GetMapper()->GetBounds(box);
   camera->SetParallelScale(
     GetFittingScale(box, this->Prop->GetUserMatrix(), this->View, turn) / this->View.Zoom);
+  if (this->View.Perspective > 0.0)
+  {
+    const auto fit = FitPerspective(box, this->Prop->GetUserMatrix(), this->View);
+    camera->ParallelProjectionOff();
+    camera->SetViewAngle(vtkMath::DegreesFromRadians(
+      2.0 * std::atan(fit.HalfHeight / this->View.Zoom / fit.Distance)));
+    camera->Dolly(camera->GetDistance() / fit.Distance);
+  }
   this->Renderer->ResetCameraClippingRange(bounds);
 }
 

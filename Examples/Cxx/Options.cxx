@@ -192,6 +192,8 @@ void DeclareViewOptions(CLI::App& app, Options& options, Words& words)
     .Add("--zoom", options.View.Zoom, "FACTOR", Between(0.01, 1000.0),
       "Enlargement; 1 fits the volume")
     ->capture_default_str();
+  group.Add("--perspective", options.View.Perspective, "DEGREES", Between(1.0, 120.0),
+    "The angle in which the eye sees the volume; without it rays are parallel");
   group.Add("--size", words.Size, "WxH", CLI::Validator(CheckSize, ""), "Pixels of each picture")
     ->capture_default_str();
 }

@@ -5,6 +5,7 @@
 #include "ProgressLine.h"
 
 #include "vtkCallbackCommand.h"
+#include "vtkCamera.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkMatrix3x3.h"
@@ -60,22 +61,31 @@ Projector::Projector(const Volume& volume, const ProjectionSettings& settings,
 {
   const auto image = Orient(volume);
   this->Projection->SetInputData(image);
-  const auto turn = MakeViewTurn(view, view.Azimuth);
-  this->Projection->SetViewDirection(turn->TransformDoubleVector(0.0, 1.0, 0.0));
-  this->Projection->SetViewUp(turn->TransformDoubleVector(0.0, 0.0, 1.0));
-  this->Projection->SetRotationAxis(0.0, 0.0, 1.0);
-  this->Projection->SetNumberOfViews(views);
-  this->Projection->SetOutputSize(view.Size[0], view.Size[1]);
-  const double spacing = 2.0 * LargestScale(volume, view, views) / view.Size[1];
-  this->Projection->SetOutputSpacing(spacing, spacing);
-  this->Projection->SetBackgroundValue(std::numeric_limits<double>::quiet_NaN());
   std::array<double, 3> center;
   image->GetCenter(center.data());
-  const double* const away = this->Projection->GetViewDirection();
+  const auto turn = MakeViewTurn(view, view.Azimuth);
+  const double* const away = turn->TransformDoubleVector(0.0, 1.0, 0.0);
+  const auto fit = FitPerspective(volume.Image->GetBounds(), volume.Orientation, view);
+  const double distance = view.Perspective > 0.0 ? fit.Distance : 1.0;
+  vtkNew<vtkCamera> camera;
+  camera->SetParallelProjection(view.Perspective <= 0.0);
+  camera->SetFocalPoint(center.data());
+  camera->SetPosition(
+    center[0] - distance * away[0], center[1] - distance * away[1], center[2] - distance * away[2]);
   for (int axis = 0; axis < 3; ++axis)
   {
     center[axis] -= settings.SlabOffset * away[axis];
   }
+  camera->SetViewUp(turn->TransformDoubleVector(0.0, 0.0, 1.0));
+  this->Projection->SetCamera(camera);
+  this->Projection->SetRotationAxis(0.0, 0.0, 1.0);
+  this->Projection->SetNumberOfViews(views);
+  this->Projection->SetOutputSize(view.Size[0], view.Size[1]);
+  const double halfHeight =
+    view.Perspective > 0.0 ? fit.HalfHeight / view.Zoom : LargestScale(volume, view, views);
+  const double spacing = 2.0 * halfHeight / view.Size[1];
+  this->Projection->SetOutputSpacing(spacing, spacing);
+  this->Projection->SetBackgroundValue(std::numeric_limits<double>::quiet_NaN());
   Apply(settings, center, this->Projection.Get());
 }
 

@@ -242,6 +242,20 @@ class TestOptions(splatmip.SplatmipTest):
                       ("--depth-shading",)):
             self.assert_refused("--compare", *words, word="whole volume", code=2)
 
+    def test_perspective(self):
+        """The eye is where it sees the volume's sphere in the angle, the block 5 mm behind it."""
+        eye = math.sqrt(3) * 20 / math.sin(math.radians(30))
+        scale = 0.5 * self.SIDE / math.tan(math.radians(30))
+        for azimuth, right, depth in ((0, 8, 5), (180, -8, -5)):
+            found = self.find("--perspective", 60, "--azimuth", azimuth)
+            wanted = numpy.array([right, -11]) * scale / (eye + depth)
+            self.assertLess(abs(found - wanted).max(), 0.7, (azimuth, found, wanted))
+        once, half = self.find("--perspective", 60), self.find("--perspective", 60, "--zoom", 0.5)
+        self.assertLess(abs(0.5 * once - half).max(), 1)
+        self.assert_refused("--perspective", "150", word="from 1 to 120", code=2)
+        self.draw(self.file, "--perspective", "30", "--mode", "preview", "--compare", "--output",
+                  "a.png", has_display=True)
+
     def test_zoom(self):
         once, half = self.find(), self.find("--zoom", 0.5)
         self.assertLess(abs(0.5 * once - half).max(), 1)

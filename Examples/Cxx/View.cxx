@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "View.h"
 
+#include "vtkMath.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,21 +16,53 @@ vtkSmartPointer<vtkTransform> MakeViewTurn(const ViewSettings& view, double azim
   return turn;
 }
 
+namespace
+{
+/**
+ * Half of four of a box's diagonals; the other four mirror these.
+ */
+std::array<std::array<double, 4>, 4> GetDiagonals(const double box[6], vtkMatrix4x4* orientation)
+{
+  std::array<std::array<double, 4>, 4> diagonals;
+  for (int edge = 0; edge < 4; ++edge)
+  {
+    double* const diagonal = diagonals[edge].data();
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      diagonal[axis] = 0.5 * (box[2 * axis + 1] - box[2 * axis]);
+    }
+    diagonal[1] *= edge & 1 ? -1.0 : 1.0;
+    diagonal[2] *= edge & 2 ? -1.0 : 1.0;
+    diagonal[3] = 0.0;
+    orientation->MultiplyPoint(diagonal, diagonal);
+  }
+  return diagonals;
+}
+}
+
 double GetFittingScale(
   const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view, vtkTransform* turn)
 {
   const double aspect = double(view.Size[0]) / view.Size[1];
   double scale = 0.0;
-  for (int edge = 0; edge < 4; ++edge)
+  for (const auto& diagonal : GetDiagonals(box, orientation))
   {
-    // Half the diagonals of the box; the other four mirror these.
-    double diagonal[4] = { 0.5 * (box[1] - box[0]), 0.5 * (box[3] - box[2]),
-      0.5 * (box[5] - box[4]), 0.0 };
-    diagonal[1] *= edge & 1 ? -1.0 : 1.0;
-    diagonal[2] *= edge & 2 ? -1.0 : 1.0;
-    orientation->MultiplyPoint(diagonal, diagonal);
-    const double* seen = turn->GetLinearInverse()->TransformDoubleVector(diagonal);
+    const double* seen = turn->GetLinearInverse()->TransformDoubleVector(diagonal.data());
     scale = std::max({ scale, std::fabs(seen[2]), std::fabs(seen[0]) / aspect });
   }
   return scale > 0.0 ? 1.1 * scale : 1.0; // a rim for the label
+}
+
+PerspectiveFit FitPerspective(
+  const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view)
+{
+  double radius = 0.0;
+  for (const auto& diagonal : GetDiagonals(box, orientation))
+  {
+    radius = std::max(radius, std::hypot(diagonal[0], diagonal[1], diagonal[2]));
+  }
+  radius = radius > 0.0 ? radius : 1.0;
+  const double half = 0.5 * vtkMath::RadiansFromDegrees(view.Perspective);
+  const double aspect = std::min(1.0, double(view.Size[0]) / view.Size[1]);
+  return { radius / std::sin(half), radius / std::cos(half) / aspect };
 }

@@ -19,6 +19,7 @@ struct ViewSettings
   double Elevation = 10.0; // the camera rises
   double Roll = 0.0;       // the camera turns clockwise
   double Zoom = 1.0;       // 1: the volume's box just fits
+  double Perspective = 0;  // the angle in which its sphere is seen, or 0 for parallel rays
 };
 
 /**
@@ -31,5 +32,18 @@ vtkSmartPointer<vtkTransform> MakeViewTurn(const ViewSettings& view, double azim
  */
 double GetFittingScale(
   const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view, vtkTransform* turn);
+
+/**
+ * Of a perspective view: how far the eye is from the middle of a box, and half the height of what
+ * is seen there, at zoom 1.
+ */
+struct PerspectiveFit
+{
+  double Distance;
+  double HalfHeight;
+};
+
+PerspectiveFit FitPerspective(
+  const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view);
 
 #endif
