@@ -130,39 +130,45 @@ Kinds FindKinds(const std::vector<SlicePlane>& planes, Alike areAlike)
 }
 
 /**
- * The end of the sentence about an odd slice.
+ * Refuse planes of several kinds; what says in what the odd one differs from the usual one.
  */
-std::string AgainstOthers(const Kinds& kinds, std::size_t count)
+template <class Alike, class Difference>
+void RequireAlike(const std::vector<SlicePlane>& planes, Alike areAlike, Difference what)
 {
-  const std::size_t others = kinds.NumberOfOdd - 1;
-  const std::string more = others ? " (nor do " + std::to_string(others) + " more)" : "";
-  return ", and does not fit most of the " + std::to_string(count) + " slices" + more +
-    "; move what does not belong to the volume out of the folder, or choose another series.";
+  const Kinds kinds = FindKinds(planes, areAlike);
+  if (kinds.Odd == kinds.Usual)
+  {
+    return;
+  }
+  std::ostringstream text;
+  text << "this slice, " << At(*kinds.Odd) << ", ";
+  what(text, *kinds.Odd, *kinds.Usual);
+  text << ", and does not fit most of the " << planes.size() << " slices";
+  if (kinds.NumberOfOdd > 1)
+  {
+    text << " (nor do " << kinds.NumberOfOdd - 1 << " more)";
+  }
+  text << "; move what does not belong to the volume out of the folder, or choose another series.";
+  RefusePlane(*kinds.Odd, text.str());
 }
 
 void CheckAlike(const std::vector<SlicePlane>& planes)
 {
-  std::ostringstream text;
-  Kinds kinds = FindKinds(planes, HaveSameOrientation);
-  if (kinds.Odd != kinds.Usual)
-  {
-    text << " is turned by " << GetAngle(*kinds.Odd, *kinds.Usual) << " degrees";
-  }
-  else if ((kinds = FindKinds(planes, HaveSameSize)).Odd != kinds.Usual)
-  {
-    text << " has " << kinds.Odd->Size[0] << " x " << kinds.Odd->Size[1] << " pixels, not "
-         << kinds.Usual->Size[0] << " x " << kinds.Usual->Size[1];
-  }
-  else if ((kinds = FindKinds(planes, HaveSameSpacing)).Odd != kinds.Usual)
-  {
-    text << " has pixels of " << kinds.Odd->Spacing[0] << " x " << kinds.Odd->Spacing[1]
-         << " mm, not " << kinds.Usual->Spacing[0] << " x " << kinds.Usual->Spacing[1];
-  }
-  if (kinds.Odd != kinds.Usual)
-  {
-    RefusePlane(*kinds.Odd,
-      "this slice, " + At(*kinds.Odd) + "," + text.str() + AgainstOthers(kinds, planes.size()));
-  }
+  RequireAlike(planes, HaveSameOrientation,
+    [](std::ostream& text, const SlicePlane& odd, const SlicePlane& usual)
+    { text << "is turned by " << GetAngle(odd, usual) << " degrees"; });
+  RequireAlike(planes, HaveSameSize,
+    [](std::ostream& text, const SlicePlane& odd, const SlicePlane& usual)
+    {
+      text << "has " << odd.Size[0] << " x " << odd.Size[1] << " pixels, not " << usual.Size[0]
+           << " x " << usual.Size[1];
+    });
+  RequireAlike(planes, HaveSameSpacing,
+    [](std::ostream& text, const SlicePlane& odd, const SlicePlane& usual)
+    {
+      text << "has pixels of " << odd.Spacing[0] << " x " << odd.Spacing[1] << " mm, not "
+           << usual.Spacing[0] << " x " << usual.Spacing[1];
+    });
 }
 
 double GetMedian(std::vector<double> values)
