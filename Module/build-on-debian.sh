@@ -30,6 +30,7 @@ packages=(
   libbenchmark-dev                             # the benchmark
   dpkg-dev file help2man                       # Debian packages
   python3-numpy                                # tests and examples in Python
+  libgdcm-tools                                # makes a DICOMDIR, for the tests
   python3-vedo python3-vedo-examples           # programs of others, for the tests
   xvfb xauth libgl1-mesa-dri                   # OpenGL without a display
   openmpi-bin                                  # mpiexec, for the tests of several ranks
