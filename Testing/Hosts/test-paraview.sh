@@ -25,9 +25,11 @@ packages=(
   paraview-dev python3-paraview
   cmake ninja-build g++ ccache libglm-dev
   xvfb xauth libgl1-mesa-dri
-  libdouble-conversion-dev libfreetype-dev libglew-dev libhdf5-dev libjpeg-dev liblz4-dev liblzma-dev
-  libnetcdf-dev libopenmpi-dev libpng-dev libpython3-dev libtiff-dev libutfcpp-dev libxml2-dev
+  libdouble-conversion-dev libfreetype-dev libglew-dev libjpeg-dev liblz4-dev liblzma-dev
+  libopenmpi-dev libpng-dev libpython3-dev libtiff-dev libutfcpp-dev
 )
+# That of ParaView 5.11 does without these.
+[[ $suite == bookworm ]] || packages+=(libhdf5-dev libnetcdf-dev libxml2-dev)
 root=paraview-$suite
 make_root "$root" "$suite" "${packages[@]}"
 copy_source "$root"
