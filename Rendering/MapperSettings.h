@@ -3,7 +3,7 @@
 #ifndef MapperSettings_h
 #define MapperSettings_h
 
-#include "Project.h"
+#include "Projection/Project.h"
 
 class vtkSplattingMIPVolumeMapper;
 class vtkVolumeProperty;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSplattingMIPGPUVolumeRayCastMapper.h"
 
-#include "VolumeStandIn.h"
+#include "Scene/VolumeStandIn.h"
 #include "vtkOpenGLSplattingMIPVolumeMapper.h"
 
 #include "vtkCommand.h"

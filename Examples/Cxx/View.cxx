@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "View.h"
+#include "Geometry/View.h"
 
 #include "vtkMath.h"
 

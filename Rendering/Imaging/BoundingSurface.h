@@ -3,7 +3,7 @@
 #ifndef BoundingSurface_h
 #define BoundingSurface_h
 
-#include "ClosedSurface.h"
+#include "Clipping/ClosedSurface.h"
 
 #include "vtkType.h"
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ComponentProjector.h"
 
-#include "Piece.h"
 #include "PieceExchange.h"
+#include "Projection/Piece.h"
 #include "ScalarSource.h"
-#include "VoxelCopies.h"
+#include "Volume/VoxelCopies.h"
 
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"

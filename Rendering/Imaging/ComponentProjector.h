@@ -3,10 +3,10 @@
 #ifndef ComponentProjector_h
 #define ComponentProjector_h
 
-#include "Locations.h"
-#include "Project.h"
+#include "Display/Warp.h"
+#include "Projection/Locations.h"
+#include "Projection/Project.h"
 #include "TransferFunctions.h"
-#include "Warp.h"
 
 #include "vtkType.h"
 

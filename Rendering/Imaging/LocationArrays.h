@@ -3,7 +3,7 @@
 #ifndef LocationArrays_h
 #define LocationArrays_h
 
-#include "Locations.h"
+#include "Projection/Locations.h"
 
 class vtkImageData;
 

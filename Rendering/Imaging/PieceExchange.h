@@ -3,7 +3,7 @@
 #ifndef PieceExchange_h
 #define PieceExchange_h
 
-#include "Project.h"
+#include "Projection/Project.h"
 
 #include <glm/vec3.hpp>
 

@@ -3,7 +3,7 @@
 #ifndef ProjectionChoice_h
 #define ProjectionChoice_h
 
-#include "Project.h"
+#include "Projection/Project.h"
 
 /**
  * How a volume is projected, as the properties of vtkSplattingMIPProjection and

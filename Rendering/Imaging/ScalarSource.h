@@ -3,8 +3,8 @@
 #ifndef ScalarSource_h
 #define ScalarSource_h
 
+#include "Volume/VoxelCopies.h"
 #include "VolumeGrid.h"
-#include "VoxelCopies.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"

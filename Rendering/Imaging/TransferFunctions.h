@@ -3,7 +3,7 @@
 #ifndef TransferFunctions_h
 #define TransferFunctions_h
 
-#include "Warp.h"
+#include "Display/Warp.h"
 
 class vtkVolumeProperty;
 

@@ -6,7 +6,7 @@
 #ifndef VolumeGrid_h
 #define VolumeGrid_h
 
-#include "VoxelCopies.h"
+#include "Volume/VoxelCopies.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>

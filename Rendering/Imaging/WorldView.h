@@ -6,7 +6,7 @@
 #ifndef WorldView_h
 #define WorldView_h
 
-#include "View.h"
+#include "Geometry/View.h"
 #include "VolumeGrid.h"
 
 class vtkMatrix4x4;

@@ -3,7 +3,7 @@
 #include "PaperElimination.h"
 
 #include "PaperRenderer.h"
-#include "Project.h"
+#include "Projection/Project.h"
 
 #include <algorithm>
 #include <chrono>

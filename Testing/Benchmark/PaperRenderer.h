@@ -7,11 +7,11 @@
 #ifndef PaperRenderer_h
 #define PaperRenderer_h
 
+#include "Display/Warp.h"
 #include "PaperScene.h"
 #include "Projection.h"
-#include "ShearImage.h"
-#include "VolumeIndex.h"
-#include "Warp.h"
+#include "Projection/ShearImage.h"
+#include "Volume/VolumeIndex.h"
 
 #include <cstdint>
 #include <functional>

@@ -6,8 +6,8 @@
 #ifndef PaperScene_h
 #define PaperScene_h
 
+#include "Geometry/View.h"
 #include "TimedProjection.h"
-#include "View.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>

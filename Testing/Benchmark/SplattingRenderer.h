@@ -4,7 +4,7 @@
 #define SplattingRenderer_h
 
 #include "PaperRenderer.h"
-#include "Project.h"
+#include "Projection/Project.h"
 
 /**
  * How the volume is held for splatting.

@@ -7,11 +7,11 @@
 #ifndef CoreTesting_h
 #define CoreTesting_h
 
+#include "Geometry/ShearWarp.h"
 #include "PerspectiveProjection.h"
-#include "Project.h"
 #include "Projection.h"
+#include "Projection/Project.h"
 #include "Random.h"
-#include "ShearWarp.h"
 #include "Volume.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -9,9 +9,9 @@
 
 #include "CoreTesting.h"
 
-#include "ClosedSurface.h"
-#include "RayIntervals.h"
-#include "SceneDepth.h"
+#include "Clipping/ClosedSurface.h"
+#include "Clipping/RayIntervals.h"
+#include "Clipping/SceneDepth.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

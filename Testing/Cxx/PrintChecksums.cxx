@@ -5,7 +5,7 @@
 // processors must print the same: test-arm64.sh compares them. Scenes are made of what IEEE 754
 // rounds correctly (no sines but those of cosine bells, which are the product's own).
 #include "CoreTesting.h"
-#include "Warp.h"
+#include "Display/Warp.h"
 
 #include <cstring>
 #include <iomanip>

@@ -7,8 +7,8 @@
 #ifndef ReductionTesting_h
 #define ReductionTesting_h
 
+#include "Clipping/Cuts.h"
 #include "CoreTesting.h"
-#include "Cuts.h"
 #include "Reductions.h"
 
 #include <vtkSMPTools.h>

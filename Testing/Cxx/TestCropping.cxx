@@ -7,7 +7,7 @@
 #include "CoreTesting.h"
 #include "Reductions.h"
 
-#include "Cuts.h"
+#include "Clipping/Cuts.h"
 
 #include <algorithm>
 #include <cmath>

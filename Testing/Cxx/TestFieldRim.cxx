@@ -4,9 +4,9 @@
 // What exact mode shows on the screen is the largest value that the field has on the
 // pixel's own ray: to rounding at the rim of the field, and elsewhere as well as the four rays of
 // the shear image tell that a pixel is interpolated between.
+#include "Display/FieldRim.h"
+#include "Display/Warp.h"
 #include "ExactTesting.h"
-#include "FieldRim.h"
-#include "Warp.h"
 
 #include <glm/matrix.hpp>
 

@@ -4,7 +4,7 @@
 // Footprint weights: against direct numerical integration, digitised against closed form, and the
 // promises that all of them make.
 #include "CoreTesting.h"
-#include "Footprint.h"
+#include "Sampling/Footprint.h"
 
 #include <cmath>
 #include <iostream>

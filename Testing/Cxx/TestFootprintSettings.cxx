@@ -4,7 +4,7 @@
 // Every kernel, table and view gives weights that sum to one, so that a volume of one value shows
 // that value, along chains, too. A frame with general tables makes its table once.
 #include "CoreTesting.h"
-#include "Footprint.h"
+#include "Sampling/Footprint.h"
 
 #include <chrono>
 #include <cmath>

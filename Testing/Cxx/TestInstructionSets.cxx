@@ -5,7 +5,7 @@
 // what they give, and none may be compared with itself unnoticed.
 #include "CoreTesting.h"
 
-#include "Kernels.h"
+#include "Kernels/Kernels.h"
 
 #include <cstdint>
 #include <string>

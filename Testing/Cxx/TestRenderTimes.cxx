@@ -4,7 +4,7 @@
 // The choice of quality modes by times of frames that are made up.
 #include "CoreTesting.h"
 
-#include "RenderTimes.h"
+#include "Common/RenderTimes.h"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 // samples and infinities do not spread. In perspective views each pixel is what a slow, independent
 // look-up in the image of its ray gives, and images meet without seams.
 #include "CoreTesting.h"
-#include "Warp.h"
+#include "Display/Warp.h"
 
 #include <vtkSMPTools.h>
 

@@ -7,7 +7,7 @@
 // the screen lie on the rays of their pixels.
 #include "CoreTesting.h"
 #include "FieldMaximum.h"
-#include "Locations.h"
+#include "Projection/Locations.h"
 #include "Winners.h"
 
 #include <vtkSMPTools.h>

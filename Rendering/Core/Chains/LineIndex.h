@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The line-encoded index [CS98, section 4]: the rows of all slices along one principal axis, cut
+ * into chains of voxels with the same value.
+ */
+#ifndef splattingLineIndex_h
+#define splattingLineIndex_h
+
+#include "Common/ScalarType.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace splatting
+{
+struct Slices;
+
+/// How chains are stored.
+enum class LineOrder
+{
+  Lines,       ///< row by row
+  SortedLines, ///< slice by slice, high values first
+  SortedVolume ///< all of them, high values first
+};
+
+/**
+ * What chains hold.
+ *
+ * Delta encoding. A chain's value d differs from each of its voxels x by at most
+ *
+ *   dv(x) = tolerance / 255 * (high - x),   high the volume's largest voxel:
+ *
+ * `tolerance` grey levels of 255 at the low end of the range, nothing at its high end. Hence a
+ * pixel P of the exact picture becomes one within P - dv(P) and P + dv(P), in all modes: with
+ * c = tolerance / 255 <= 1, d lies between x - c (high - x) and x + c (high - x). Both are
+ * non-decreasing affine functions of x. Such functions commute with averages whose weights are
+ * non-negative and sum to one, and with maxima, so that the same bounds hold for worksheets, with x
+ * replaced by the exact worksheet, and then for pixels. (Standard and high mode add the rounding
+ * errors of their sums.)
+ *
+ * Elimination of invisible voxels [Mroz, Hauser, Groeller 2000]. Left out is what cannot change the
+ * preview along this axis from any direction, exactly. Let
+ *
+ *   up(i, j, k) = min over the 3 x 3 voxels (i', j') around (i, j) of
+ *                 max(value(i', j', k + 1), up(i', j', k + 1)),
+ *
+ * voxels beyond the volume counting as the lowest value, and down() likewise towards k - 1. A ray
+ * that crosses voxel (i, j, k) over a positive length is at less than 3/2 from (i, j) in each
+ * direction when it enters slice k + 1, because it moves by at most one voxel per slice: it enters
+ * by one of the 3 x 3, which the preview counts. By induction every ray through the voxel meets a
+ * value of at least up() in the slices above and of at least down() in those below. A voxel is left
+ * out if up() >= value or down() > value. The voxel that outdoes it on a ray may be left out as
+ * well, but has a greater value, or the same value in a higher slice; so some voxel at the end of
+ * this chain stays. Where half-spaces cut samples away, and where voxels are averaged, this is not
+ * valid.
+ */
+struct LineEncoding
+{
+  LineOrder order = LineOrder::Lines;
+  double tolerance = 0.0; ///< of delta encoding, 0 to 255; 0: chains of equal voxels
+  bool eliminate = false; ///< whether invisible voxels are left out
+
+  bool operator==(const LineEncoding& other) const
+  {
+    return this->order == other.order && this->tolerance == other.tolerance &&
+      this->eliminate == other.eliminate;
+  }
+};
+
+/// Chains of one row of voxels, side by side.
+template <class T>
+struct LineRow
+{
+  const T* values;          ///< leastValue where voxels were left out
+  const std::uint8_t* last; ///< the chain's length less one
+  std::ptrdiff_t count;
+};
+
+/// Voxels (i, j) to (i + last, j) of a slice.
+struct SliceChain
+{
+  std::uint16_t i, j, last;
+};
+
+/// The same in slice k.
+struct VolumeChain
+{
+  std::uint16_t i, j, last, k;
+};
+
+/// Chains with the same value, in the order of k, j and i.
+template <class T, class Chain>
+struct ChainRun
+{
+  T value;
+  const Chain* begin;
+  const Chain* end;
+};
+
+/**
+ * The index of a volume without NaN and infinities along one axis. Chains of the lowest value that
+ * the type has cannot change a picture, and sorted orders have none.
+ */
+class LineIndex
+{
+public:
+  /// Voxels along each axis of a volume that sorted orders can hold.
+  static constexpr int MostSorted = 1 << 16;
+
+  /// Told how much is done, from 0 to 1, by the thread that builds; returns whether to go on. An
+  /// index that was given up holds no encoding.
+  using Progress = std::function<bool(double)>;
+
+  LineIndex() = default;
+  LineIndex(ScalarType type, const Slices& slices, const glm::ivec3& size,
+    const LineEncoding& encoding, const Progress& progress = {});
+
+  bool holds(const LineEncoding& encoding) const
+  {
+    return this->Made && this->Encoding == encoding;
+  }
+  const LineEncoding& encoding() const { return this->Encoding; }
+  std::size_t chainCount() const;
+  /// Voxels that were left out.
+  std::size_t hiddenCount() const { return this->HiddenCount; }
+  std::size_t memorySize() const;
+
+  /// LineOrder::Lines: a row of a slice.
+  template <class T>
+  LineRow<T> row(int j, int k) const
+  {
+    const std::size_t place = std::size_t(k) * (this->Height + 1) + j;
+    const std::size_t first = this->SliceStarts[k] + this->RowStarts[place];
+    return { this->values<T>() + first, this->Lasts.data() + first,
+      std::ptrdiff_t(this->RowStarts[place + 1]) - std::ptrdiff_t(this->RowStarts[place]) };
+  }
+
+  /// Sorted orders: the runs [runsOf(k), runsOf(k + 1)) of a slice, or of the volume for k = 0.
+  std::size_t runsOf(int k) const { return this->SliceStarts[k]; }
+  template <class T, class Chain>
+  ChainRun<T, Chain> run(std::size_t r) const
+  {
+    const Chain* const all = this->chains(static_cast<const Chain*>(nullptr));
+    return { this->values<T>()[r], all + this->RunStarts[r], all + this->RunStarts[r + 1] };
+  }
+
+private:
+  template <class T>
+  class Builder;
+
+  template <class T>
+  const T* values() const
+  {
+    return reinterpret_cast<const T*>(this->Values.data());
+  }
+  const SliceChain* chains(const SliceChain*) const { return this->SliceChains.data(); }
+  const VolumeChain* chains(const VolumeChain*) const { return this->VolumeChains.data(); }
+
+  LineEncoding Encoding;
+  bool Made = false;
+  int Height = 0;
+  std::size_t HiddenCount = 0;
+  std::vector<unsigned char> Values;    // of chains or, if sorted, of runs
+  std::vector<std::size_t> SliceStarts; // each slice's first chain or run
+  std::vector<std::uint32_t> RowStarts; // each row's first chain in its slice
+  std::vector<std::uint8_t> Lasts;      // of chains in rows
+  std::vector<std::size_t> RunStarts;   // each run's first chain
+  std::vector<SliceChain> SliceChains;
+  std::vector<VolumeChain> VolumeChains;
+};
+}
+
+#endif

@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Standard and high mode from chains of voxels [CS98, section 4]: the full footprint where chains
+ * begin and end. Between, where each row that it reads lies in one chain, pixels side by side have
+ * the same worksheet: it is computed once, by the same operations in the same order, and so has the
+ * same bits.
+ */
+#ifndef splattingLineWorksheets_h
+#define splattingLineWorksheets_h
+
+#include "Chains/LineIndex.h"
+#include "Sampling/ParallelWorksheets.h"
+
+namespace splatting
+{
+template <class T>
+class LineWorksheets : public ParallelWorksheets<T>
+{
+public:
+  using typename ParallelWorksheets<T>::A;
+  using typename ParallelWorksheets<T>::Target;
+
+  /// @param index  in rows, of all voxels
+  LineWorksheets(const Frame& frame, const std::vector<SliceFootprint<A>>& footprints,
+    const WorksheetReach<A>& reach, int depth, const LineIndex& index)
+    : ParallelWorksheets<T>(frame, footprints, reach, depth),
+      Index(index)
+  {
+  }
+
+protected:
+  void loadSheet(const Patch::Sheet& sheet, Patch& patch) const override
+  {
+    patch.resizeRunEnds();
+    const int last = this->Shared.geometry.size().y - 1;
+    for (int j = sheet.j; j < sheet.j + sheet.rows; ++j)
+    {
+      const int row = std::clamp(j, 0, last);
+      if (j > sheet.j && row == std::clamp(j - 1, 0, last))
+      {
+        const A* const from = patch.voxel<A>(sheet.i, j - 1, sheet.slice);
+        const std::uint16_t* const ends = patch.runEnd(sheet.i, j - 1, sheet.slice);
+        std::copy(from, from + sheet.columns, patch.voxel<A>(sheet.i, j, sheet.slice));
+        std::copy(ends, ends + sheet.columns, patch.runEnd(sheet.i, j, sheet.slice));
+      }
+      else
+      {
+        this->decode(this->Index.template row<T>(row, sheet.slice), sheet,
+          patch.voxel<A>(sheet.i, j, sheet.slice), patch.runEnd(sheet.i, j, sheet.slice));
+      }
+    }
+  }
+
+  /// Chains need not have the volume's own voxels.
+  bool splatOwn(int, int, int, int, const Span&, const Target&, Patch&) const override
+  {
+    return false;
+  }
+
+  void splatRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  {
+    for (int v = first; v < end; v += StripHeight)
+    {
+      this->splatStrip(k, v, std::min(v + StripHeight, end), span, target, patch);
+    }
+  }
+
+private:
+  /// Rows of pixels whose footprints are looked at together: as many as a register block has.
+  static constexpr int StripHeight = 4;
+  /// Pixels from which on a run of the same worksheet pays, and those of a register.
+  static constexpr int LeastRun = 32, Register = 16;
+
+  /// Voxels that the footprint reads in one row of the patch, seen from the strip's first pixel.
+  struct ReadRow
+  {
+    const std::uint16_t* ends;
+    int column, columns;
+  };
+  struct ReadRows
+  {
+    std::array<ReadRow, 3 * (5 + StripHeight - 1)> rows;
+    int count = 0;
+  };
+
+  /// Writes the columns of a sheet, and for each of them where the run of its value ends.
+  void decode(
+    const LineRow<T>& chains, const Patch::Sheet& sheet, A* voxels, std::uint16_t* ends) const
+  {
+    int begin = 0, end = 0; // of the run so far
+    A value = 0;
+    const auto write = [&]
+    {
+      std::fill(voxels + begin, voxels + end, value);
+      std::fill(ends + begin, ends + end, static_cast<std::uint16_t>(end));
+    };
+    int i = 0;
+    for (std::ptrdiff_t c = 0; c < chains.count && end < sheet.columns; ++c)
+    {
+      i += chains.last[c] + 1;
+      // Beyond the volume the outermost voxels are repeated.
+      const int next = c + 1 < chains.count ? std::min(i - sheet.i, sheet.columns) : sheet.columns;
+      if (next <= end)
+      {
+        continue;
+      }
+      const A nextValue = static_cast<A>(chains.values[c]) - this->Base;
+      if (nextValue != value)
+      {
+        write();
+        begin = end;
+      }
+      value = nextValue;
+      end = next;
+    }
+    write();
+  }
+
+  void splatStrip(int k, int v0, int v1, const Span& span, const Target& target, Patch& patch) const
+  {
+    const ReadRows rows = this->readRows(k, v0, v1, span.begin, patch);
+    int done = span.begin;
+    for (int u = span.begin; u < span.end;)
+    {
+      int length = std::numeric_limits<int>::max();
+      int skipped = 0;
+      for (int r = 0; r < rows.count && skipped == 0; ++r)
+      {
+        const ReadRow& row = rows.rows[r];
+        const int column = row.column + u - span.begin;
+        const int left = row.ends[column] - column; // columns of the same value
+        length = std::min(length, left - row.columns + 1);
+        skipped = length < LeastRun ? left : 0;
+      }
+      if (skipped > 0)
+      {
+        u += skipped; // no long run starts before that
+        continue;
+      }
+      const int end = std::min(u + length, span.end);
+      this->splatMixed(k, v0, v1, { done, u }, span, target, patch);
+      this->splatRun(k, v0, v1, { u, end }, target, patch);
+      done = u = end;
+    }
+    this->splatMixed(k, v0, v1, { done, span.end }, span, target, patch);
+  }
+
+  ReadRows readRows(int k, int v0, int v1, int u, Patch& patch) const
+  {
+    const SliceFootprint<A>& footprint = this->Footprints[k];
+    const int last = this->Shared.geometry.size().z - 1;
+    ReadRows result;
+    for (int p = 0; p < footprint.partCount; ++p)
+    {
+      const FootprintPart<A>& part = footprint.parts[p];
+      const int slice = std::clamp(k + part.slice, 0, last);
+      const Patch::Sheet& sheet = patch.sheet(slice);
+      const int j = v0 - footprint.nearest.y + part.dj;
+      for (int r = 0; r < part.rows + v1 - v0 - 1; ++r)
+      {
+        result.rows[result.count++] = { patch.runEnd(sheet.i, j + r, slice),
+          u - footprint.nearest.x + part.di - sheet.i, part.columns };
+      }
+    }
+    return result;
+  }
+
+  /// Pixels with worksheets of their own: a whole register of them if the span has as many.
+  void splatMixed(
+    int k, int v0, int v1, Span pixels, const Span& span, const Target& target, Patch& patch) const
+  {
+    if (!pixels.empty())
+    {
+      pixels.end = std::min(std::max(pixels.end, pixels.begin + Register), span.end);
+      pixels.begin = std::max(std::min(pixels.begin, pixels.end - Register), span.begin);
+      ParallelWorksheets<T>::splatRows(k, v0, v1, pixels, target, patch);
+    }
+  }
+
+  /// Pixels with the same worksheet in each row.
+  void splatRun(int k, int v0, int v1, const Span& run, const Target& target, Patch& patch) const
+  {
+    A worksheet[StripHeight];
+    std::fill_n(worksheet, StripHeight, leastValue<A>());
+    Splat<A> splat = this->splatOf(
+      k, v0, v1, { run.begin, run.begin + 1 }, { target.origin, target.stride }, patch);
+    splat.image = worksheet;
+    splat.imageStride = 1;
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    loops.splat(splat);
+    for (int v = v0; v < v1; ++v)
+    {
+      A* const row = target.at(0, v);
+      const A value = worksheet[v - v0];
+      for (int u = run.begin; u < run.end; ++u)
+      {
+        row[u] = std::max(row[u], value);
+      }
+    }
+  }
+
+  const LineIndex& Index;
+};
+}
+
+#endif

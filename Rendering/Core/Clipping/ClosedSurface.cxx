@@ -1,0 +1,329 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Clipping/ClosedSurface.h"
+
+#include <vtkSMPTools.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace splatting
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+/// The integers in [low, high], cut to [0, size). Both bounds may be infinite.
+Span integersIn(double low, double high, int size)
+{
+  const double limit = size;
+  return { static_cast<int>(std::ceil(std::clamp(low, 0.0, limit))),
+    static_cast<int>(std::floor(std::clamp(high, -1.0, limit - 1.0))) + 1 };
+}
+
+/// The largest rounding error of what rays pass at the reference, and of their slopes: those of a
+/// ray and of two that it is interpolated between.
+constexpr double PlaceRounding = 0x1p-20, SlopeRounding = 0x1p-24;
+
+double largest(const glm::dvec3& p)
+{
+  return std::max({ std::abs(p.x), std::abs(p.y), std::abs(p.z) });
+}
+
+double sumOfSizes(const glm::dvec3& p)
+{
+  return std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
+}
+
+/// Depths of all pixels.
+struct SurfaceRows
+{
+  double *near, *far;
+};
+
+/// A triangle of (i, j, k), and how the rays of an image meet it.
+class Triangle
+{
+public:
+  Triangle(const ShearWarp& geometry, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
+    : Geometry(geometry),
+      Corners{ a, b, c },
+      Normal(glm::cross(b - a, c - a))
+  {
+    this->Low = std::min({ a.z, b.z, c.z });
+    this->High = std::max({ a.z, b.z, c.z });
+    double reach = std::max({ largest(a), largest(b), largest(c) });
+    if (geometry.isPerspective())
+    {
+      const glm::dvec3& eye = geometry.eye();
+      const double distance = std::max({ largest(a - eye), largest(b - eye), largest(c - eye) });
+      this->Facing = glm::dot(this->Normal, a - eye) / (geometry.reversed() ? -distance : distance);
+      reach = std::max(reach, largest(eye));
+      const double z = geometry.reference();
+      this->Margin = PlaceRounding +
+        SlopeRounding * std::max({ std::abs(a.z - z), std::abs(b.z - z), std::abs(c.z - z) });
+      double& end = geometry.reversed() ? this->High : this->Low;
+      end = geometry.reversed() ? std::min(end, eye.z) : std::max(end, eye.z);
+    }
+    else
+    {
+      const glm::dvec3 ray(geometry.columns().slope[0], geometry.rows().slope[0], 1.0);
+      this->Facing = glm::dot(this->Normal, ray);
+    }
+    // Larger than what rounding does to the distance between a ray and an edge.
+    this->Margin += 1e-9 * (1.0 + reach);
+  }
+
+  /// Whether no ray meets the triangle, or it has no more than edges for them.
+  bool isUnseen() const
+  {
+    const double longest =
+      std::max({ largest(this->edge(0)), largest(this->edge(1)), largest(this->edge(2)) });
+    return !(std::abs(this->Facing) > this->Margin * longest) || this->Low > this->High;
+  }
+
+  /// The rows of pixels that may see the triangle.
+  Span rows() const
+  {
+    double low = Infinity, high = -Infinity;
+    for (const glm::dvec3& corner : this->Corners)
+    {
+      const glm::dvec2 range =
+        this->Geometry.isPerspective() ? this->rowsOf(corner) : this->parallelRowsOf(corner);
+      low = std::min(low, range.x);
+      high = std::max(high, range.y);
+    }
+    return integersIn(low, high, this->Geometry.height());
+  }
+
+  /// Widens the depths of the pixels that the triangle covers in some rows.
+  void cover(const Span& rows, SurfaceRows depths) const
+  {
+    const Side sides[] = { this->side(0), this->side(1), this->side(2) };
+    for (int v = rows.begin; v < rows.end; ++v)
+    {
+      const std::size_t row = std::size_t(v) * this->Geometry.width();
+      this->cover(v, this->pixels(sides, v), depths.near + row, depths.far + row);
+    }
+  }
+
+private:
+  glm::dvec3 edge(int e) const { return this->Corners[(e + 1) % 3] - this->Corners[e]; }
+
+  glm::dvec2 parallelRowsOf(const glm::dvec3& corner) const
+  {
+    const Fan& rows = this->Geometry.rows();
+    const double v =
+      corner.y - rows.at[0] - rows.slope[0] * (corner.z - this->Geometry.reference());
+    return { v - this->Margin, v + this->Margin };
+  }
+
+  /// Of a perspective view: all if the point does not lie well before the eye.
+  glm::dvec2 rowsOf(const glm::dvec3& corner) const
+  {
+    const glm::dvec3 place = corner - this->Geometry.eye();
+    const double far = this->Geometry.reference() - this->Geometry.eye().z;
+    const double ratio = far / place.z;
+    if (!(ratio > 0.0 && ratio < 1e12))
+    {
+      return { -Infinity, Infinity };
+    }
+    const double v = (this->Geometry.eye().y + place.y * ratio - this->Geometry.rows().at[0]) /
+      this->Geometry.pitch();
+    // Rounding matters most near the eye, where rays are close together.
+    const double rounding = (this->Margin + SlopeRounding * std::abs(far)) * std::max(ratio, 1.0) /
+      this->Geometry.pitch();
+    return { v - rounding, v + rounding };
+  }
+
+  /// What rays are compared with an edge by.
+  struct Side
+  {
+    glm::dvec3 corner, edge; // in the sense of rotation in which rays see it
+    double depth, tolerance;
+  };
+
+  Side side(int e) const
+  {
+    const glm::dvec3 edge = this->Facing > 0.0 ? this->edge(e) : -this->edge(e);
+    return { this->Corners[e], edge, this->Corners[e].z - this->Geometry.reference(),
+      this->Margin * sumOfSizes(edge) };
+  }
+
+  /// The pixels of row v that the triangle covers.
+  Span pixels(const Side (&sides)[3], int v) const
+  {
+    const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
+    const int last = this->Geometry.rayCount().x - 1;
+    double low = -Infinity, high = Infinity;
+    for (const Side& s : sides)
+    {
+      // The volume between a ray and an edge is not negative if the ray passes inside. Along the
+      // row it is linear, but for what the rays are rounded by.
+      const double q = rows.at[v] + rows.slope[v] * s.depth - s.corner.y;
+      const double across = s.edge.z * rows.slope[v] - s.edge.y;
+      const double turned = across * s.depth - s.edge.z * q;
+      const double rest = s.edge.x * q - across * s.corner.x;
+      const auto inside = [&](int u)
+      { return across * columns.at[u] + turned * columns.slope[u] + rest; };
+      const double begin = inside(0), rise = inside(last) - begin;
+      const double start = begin + s.tolerance;
+      if (rise > 0.0)
+      {
+        low = std::max(low, -start * last / rise);
+      }
+      else if (rise < 0.0)
+      {
+        high = std::min(high, -start * last / rise);
+      }
+      else if (start < 0.0)
+      {
+        return {};
+      }
+    }
+    return integersIn(low, high, last + 1);
+  }
+
+  void cover(int v, const Span& pixels, double* near, double* far) const
+  {
+    const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
+    const glm::dvec3 &a = this->Corners[0], &n = this->Normal;
+    const double depth = a.z - this->Geometry.reference();
+    const double rest = n.y * (rows.at[v] + rows.slope[v] * depth - a.y);
+    const double speed = n.y * rows.slope[v] + n.z;
+    for (int u = pixels.begin; u < pixels.end; ++u)
+    {
+      const double distance = n.x * (columns.at[u] + columns.slope[u] * depth - a.x) + rest;
+      // Steep triangles would leave their own depths beside their edges.
+      const double z =
+        std::clamp(a.z - distance / (n.x * columns.slope[u] + speed), this->Low, this->High);
+      near[u] = std::min(near[u], z);
+      far[u] = std::max(far[u], z);
+    }
+  }
+
+  const ShearWarp& Geometry;
+  glm::dvec3 Corners[3];
+  glm::dvec3 Normal;
+  double Facing; // more than 0 if rays see the corners in the sense of rotation from i to j
+  double Margin = 0.0, Low, High;
+};
+
+/// Whether a half-line from the origin along +z, or -z, meets a triangle. All triangles that share
+/// an edge decide in the same way on which side of it the line passes, however it is rounded.
+bool isMet(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, bool reversed)
+{
+  const glm::dvec3* const corners[] = { &a, &b, &c };
+  bool isInside = false;
+  for (int e = 0; e < 3; ++e)
+  {
+    const glm::dvec3* low = corners[e];
+    const glm::dvec3* high = corners[(e + 1) % 3];
+    if (low->y > high->y)
+    {
+      std::swap(low, high);
+    }
+    isInside ^= low->y <= 0.0 && high->y > 0.0 && low->x * high->y - high->x * low->y > 0.0;
+  }
+  const glm::dvec3 normal = glm::cross(b - a, c - a);
+  const double z = std::clamp(
+    glm::dot(normal, a) / normal.z, std::min({ a.z, b.z, c.z }), std::max({ a.z, b.z, c.z }));
+  return isInside && (reversed ? z < 0.0 : z > 0.0);
+}
+}
+
+void ClosedSurface::reset(std::vector<glm::dvec3> points, std::vector<glm::ivec3> triangles)
+{
+  this->Points = std::move(points);
+  this->Triangles = std::move(triangles);
+  for (SurfaceDepths& depths : this->Projections)
+  {
+    depths.Valid = false;
+  }
+}
+
+const SurfaceDepths& ClosedSurface::project(const ShearWarp& geometry)
+{
+  const int direction =
+    geometry.isPerspective() ? 2 * geometry.principalAxis() + geometry.reversed() : 0;
+  SurfaceDepths& depths = this->Projections[direction];
+  if (!depths.Valid || !geometry.sameShear(depths.Geometry) ||
+    geometry.eye() != depths.Geometry.eye())
+  {
+    depths.Valid = true;
+    depths.Geometry = geometry;
+    this->permute(geometry.axes());
+    this->findRows(geometry);
+    this->findDepths(depths);
+  }
+  return depths;
+}
+
+void ClosedSurface::permute(const std::array<int, 3>& axes)
+{
+  this->Places.resize(this->Points.size());
+  std::transform(this->Points.begin(), this->Points.end(), this->Places.begin(),
+    [&](const glm::dvec3& p) { return glm::dvec3(p[axes[0]], p[axes[1]], p[axes[2]]); });
+}
+
+void ClosedSurface::findRows(const ShearWarp& geometry)
+{
+  this->Rows.resize(this->Triangles.size());
+  std::transform(this->Triangles.begin(), this->Triangles.end(), this->Rows.begin(),
+    [&](const glm::ivec3& t)
+    {
+      const Triangle triangle(geometry, this->Places[t[0]], this->Places[t[1]], this->Places[t[2]]);
+      return triangle.isUnseen() ? Span{} : triangle.rows();
+    });
+}
+
+void ClosedSurface::findDepths(SurfaceDepths& depths) const
+{
+  const ShearWarp& geometry = depths.Geometry;
+  const std::size_t width = geometry.width();
+  const glm::dvec2 beginning = this->beginning(geometry);
+  depths.Near.resize(width * geometry.height());
+  depths.Far.resize(depths.Near.size());
+  vtkSMPTools::For(0, geometry.height(), 32,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      std::fill_n(&depths.Near[begin * width], (end - begin) * width, beginning.x);
+      std::fill_n(&depths.Far[begin * width], (end - begin) * width, beginning.y);
+      for (std::size_t t = 0; t < this->Triangles.size(); ++t)
+      {
+        const int first = std::max(this->Rows[t].begin, static_cast<int>(begin));
+        const int last = std::min(this->Rows[t].end, static_cast<int>(end));
+        if (first < last)
+        {
+          const glm::ivec3& corners = this->Triangles[t];
+          const Triangle triangle(
+            geometry, this->Places[corners[0]], this->Places[corners[1]], this->Places[corners[2]]);
+          triangle.cover({ first, last }, { depths.Near.data(), depths.Far.data() });
+        }
+      }
+    });
+}
+
+/// What the near and far depths of all rays begin with.
+glm::dvec2 ClosedSurface::beginning(const ShearWarp& geometry) const
+{
+  glm::dvec2 result(Infinity, -Infinity);
+  const glm::dvec3& eye = geometry.eye();
+  bool isInside = false;
+  for (std::size_t t = 0; geometry.isPerspective() && t < this->Triangles.size(); ++t)
+  {
+    const glm::ivec3& corners = this->Triangles[t];
+    isInside ^= isMet(this->Places[corners[0]] - eye, this->Places[corners[1]] - eye,
+      this->Places[corners[2]] - eye, geometry.reversed());
+  }
+  if (isInside)
+  {
+    (geometry.reversed() ? result.y : result.x) = eye.z;
+  }
+  return result;
+}
+}

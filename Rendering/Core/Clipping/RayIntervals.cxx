@@ -1,0 +1,327 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Clipping/RayIntervals.h"
+
+#include "Clipping/ClosedSurface.h"
+#include "Clipping/SceneDepth.h"
+
+#include <vtkSMPTools.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace splatting
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr double Rounding = DepthLimits::Rounding;
+constexpr double Before = DepthLimits::Before, Beyond = DepthLimits::Beyond;
+
+/// The half-spaces as Depths::cut() and cutFan() take them.
+std::vector<glm::dvec4> asSeen(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces)
+{
+  const std::array<int, 3>& axes = geometry.axes();
+  std::vector<glm::dvec4> result;
+  for (const glm::dvec4& h : halfSpaces)
+  {
+    result.push_back(geometry.isPerspective() ? glm::dvec4(h[axes[0]], h[axes[1]], h[axes[2]], h.w)
+                                              : geometry.inPixels(h));
+  }
+  return result;
+}
+
+/// Near and far depths of some pixels in a row, in slices.
+struct Depths
+{
+  static constexpr int Most = 256;
+
+  void reset(double low, double high, int count)
+  {
+    std::fill_n(this->near, count, low);
+    std::fill_n(this->far, count, high);
+  }
+
+  /// By a half-space of the pixels of a parallel image.
+  void cut(const CutLoops& loops, const glm::dvec4 h, int u0, int v, int count)
+  {
+    // h.x u + rest + h.z z >= 0
+    const double rest = h.y * v + h.w;
+    const double size = glm::length(glm::dvec3(h));
+    if (std::abs(h.z) <= 1e-14 * size)
+    {
+      const double least = -Rounding * (size + std::abs(h.w));
+      for (int x = 0; x < count; ++x)
+      {
+        this->far[x] = h.x * (u0 + x) + rest < least ? -Infinity : this->far[x];
+      }
+      return;
+    }
+    const PlaneRow plane{ h.x, rest, -1.0 / h.z, u0 };
+    h.z > 0.0 ? loops.beginAtPlane(plane, this->near, count)
+              : loops.endAtPlane(plane, this->far, count);
+  }
+
+  /// By a half-space of (i, j, k), for the rays of a perspective image.
+  void cutFan(const glm::dvec4 h, const ShearWarp& geometry, int u0, int v, int count)
+  {
+    // (h.x slope + rest) (z - reference) + h.x at + start >= 0
+    const double* const at = geometry.columns().at.data() + u0;
+    const double* const slope = geometry.columns().slope.data() + u0;
+    const double reference = geometry.reference();
+    const double rest = h.y * geometry.rows().slope[v] + h.z;
+    const double start = h.y * geometry.rows().at[v] + h.z * reference + h.w;
+    const double size = glm::length(glm::dvec3(h));
+    const double level = 1e-14 * size, least = -Rounding * (size + std::abs(h.w));
+    // Most planes bound a whole row in the same sense; speeds change linearly along its rays.
+    const int last = std::clamp(geometry.rayCount().x - 1 - u0, 0, count - 1);
+    const double speeds[] = { h.x * slope[0] + rest, h.x * slope[last] + rest };
+    const bool begins = std::min(speeds[0], speeds[1]) > level;
+    if (begins || std::max(speeds[0], speeds[1]) < -level)
+    {
+      double* const bounds = begins ? this->near : this->far;
+      const double sense = begins ? 1.0 : -1.0;
+      for (int x = 0; x < count; ++x)
+      {
+        const double z = reference - (h.x * at[x] + start) / (h.x * slope[x] + rest);
+        bounds[x] = sense * std::max(sense * bounds[x], sense * z);
+      }
+      return;
+    }
+    for (int x = 0; x < count; ++x)
+    {
+      const double speed = h.x * slope[x] + rest, value = h.x * at[x] + start;
+      const double z = reference - value / speed;
+      const double nearer = std::max(this->near[x], z), farther = std::min(this->far[x], z);
+      const double outside = value < least ? -Infinity : this->far[x];
+      this->near[x] = speed > level ? nearer : this->near[x];
+      this->far[x] = speed > level ? this->far[x] : speed < -level ? farther : outside;
+    }
+  }
+
+  void cut(const double* nearest, const double* farthest, int count)
+  {
+    for (int x = 0; x < count; ++x)
+    {
+      this->near[x] = std::max(this->near[x], nearest[x]);
+      this->far[x] = std::min(this->far[x], farthest[x]);
+    }
+  }
+
+  double near[Most], far[Most];
+};
+
+/// Where rays begin and end, and where they enter and leave the voxels' boxes.
+class Reach
+{
+public:
+  explicit Reach(const ShearWarp& geometry)
+  {
+    if (geometry.isPerspective())
+    {
+      double& eye = geometry.reversed() ? this->Ends.y : this->Ends.x;
+      eye = std::clamp(geometry.eye().z, Before, Beyond);
+    }
+  }
+
+  /// To be called before openWhole().
+  void findVolume(const ShearWarp& geometry)
+  {
+    const Span& slices = geometry.slices();
+    this->All = { geometry.faces(slices.begin).x, geometry.faces(slices.end - 1).y };
+    find(geometry.columns(), geometry.reference(), geometry.size().x, this->Columns);
+    find(geometry.rows(), geometry.reference(), geometry.size().y, this->Rows);
+  }
+
+  /// The depths between which there are rays at all.
+  const glm::dvec2& ends() const { return this->Ends; }
+
+  /// Opens the rays that lose no sample, or have none.
+  void openWhole(int u0, int v, int count, Depths& depths) const
+  {
+    const glm::dvec2 row = { std::max(this->All.x, this->Rows[v].x),
+      std::min(this->All.y, this->Rows[v].y) };
+    for (int x = 0; x < count; ++x)
+    {
+      const glm::dvec2& column = this->Columns[u0 + x];
+      const double enter = std::max(row.x, column.x), leave = std::min(row.y, column.y);
+      // Voxels that a ray crosses are centred up to half a slice outside its reach.
+      const bool coversStart = depths.near[x] <= std::max(enter - 0.5, this->Ends.x);
+      const bool coversEnd = depths.far[x] >= std::min(leave + 0.5, this->Ends.y);
+      const bool whole = (enter >= leave) | (coversStart & coversEnd);
+      depths.near[x] = whole ? this->Ends.x : depths.near[x];
+      depths.far[x] = whole ? this->Ends.y : depths.far[x];
+    }
+  }
+
+private:
+  /// Between which depths the rays of each column (or row) are in the volume's.
+  static void find(const Fan& fan, double reference, int size, std::vector<glm::dvec2>& reach)
+  {
+    reach.resize(fan.at.size());
+    for (std::size_t n = 0; n < reach.size(); ++n)
+    {
+      const double low = -0.5 - fan.at[n], high = size - 0.5 - fan.at[n], slope = fan.slope[n];
+      if (std::abs(slope) > 1e-14)
+      {
+        reach[n] = reference +
+          glm::dvec2(std::min(low / slope, high / slope), std::max(low / slope, high / slope));
+      }
+      else
+      {
+        const double rounding = Rounding * (1.0 + size);
+        reach[n] = { -Infinity, low <= rounding && high >= -rounding ? Infinity : -Infinity };
+      }
+    }
+  }
+
+  glm::dvec2 Ends{ Before, Beyond }, All{ 0.0 };
+  std::vector<glm::dvec2> Columns, Rows;
+};
+}
+
+void RayIntervals::clear()
+{
+  this->Width = 0;
+  this->First.clear();
+  this->Last.clear();
+}
+
+void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces,
+  ClosedSurface* surface, const SceneDepth* depth, InstructionSet set)
+{
+  if (halfSpaces.empty() && !surface && !depth)
+  {
+    this->clear();
+    return;
+  }
+  this->Width = geometry.width();
+  const std::size_t pixels = std::size_t(this->Width) * geometry.height();
+  this->First.resize(pixels);
+  this->Last.resize(pixels);
+  Reach reach(geometry);
+  if (surface || depth)
+  {
+    reach.findVolume(geometry);
+  }
+  const CutLoops& loops = kernelsFor(set);
+  const Span slices = geometry.slices();
+  const std::vector<glm::dvec4> planes = asSeen(geometry, halfSpaces);
+  const SurfaceDepths* const hull = surface ? &surface->project(geometry) : nullptr;
+  std::atomic<bool> isCut(false);
+  vtkSMPTools::For(0, geometry.height(), 16,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      Depths depths;
+      bool lost = false;
+      for (int v = static_cast<int>(begin); v < end; ++v)
+      {
+        for (int u = 0; u < this->Width; u += Depths::Most)
+        {
+          const int count = std::min(Depths::Most, this->Width - u);
+          depths.reset(reach.ends().x, reach.ends().y, count);
+          for (const glm::dvec4& h : planes)
+          {
+            if (geometry.isPerspective())
+            {
+              depths.cutFan(h, geometry, u, v, count);
+            }
+            else
+            {
+              depths.cut(loops, h, u, v, count);
+            }
+          }
+          if (hull)
+          {
+            depths.cut(hull->near(v) + u, hull->far(v) + u, count);
+          }
+          if (depth)
+          {
+            depth->endRays(geometry, u, v, count, depths.near, depths.far);
+          }
+          if (surface || depth)
+          {
+            // Half-spaces that cut nothing are not there in the first place.
+            reach.openWhole(u, v, count, depths);
+          }
+          const std::size_t first = std::size_t(v) * this->Width + u;
+          lost |= loops.slicesBetween(depths.near, depths.far, slices.begin, slices.end,
+            &this->First[first], &this->Last[first], count);
+        }
+      }
+      if (lost)
+      {
+        isCut = true;
+      }
+    });
+  if (!isCut)
+  {
+    this->clear();
+  }
+}
+
+void RayIntervals::takePhase(const RayIntervals& whole, int phases, const glm::ivec2& phase)
+{
+  this->Width = whole.Width / phases;
+  const int height = static_cast<int>(whole.First.size()) / whole.Width / phases;
+  this->First.resize(std::size_t(this->Width) * height);
+  this->Last.resize(this->First.size());
+  vtkSMPTools::For(0, height, 16,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (int v = static_cast<int>(begin); v < end; ++v)
+      {
+        const std::int16_t* const first = whole.first(v * phases + phase.y) + phase.x;
+        const std::int16_t* const last = whole.last(v * phases + phase.y) + phase.x;
+        const std::size_t row = std::size_t(v) * this->Width;
+        for (int u = 0; u < this->Width; ++u)
+        {
+          this->First[row + u] = first[u * phases];
+          this->Last[row + u] = last[u * phases];
+        }
+      }
+    });
+}
+
+void RayIntervals::findCrossed(
+  const CrossedSlices& crossed, int width, int height, const RayIntervals& within)
+{
+  this->Width = width;
+  this->First.resize(std::size_t(width) * height);
+  this->Last.resize(this->First.size());
+  vtkSMPTools::For(0, height, 16,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (int v = static_cast<int>(begin); v < end; ++v)
+      {
+        std::int16_t* const first = &this->First[std::size_t(v) * width];
+        std::int16_t* const last = &this->Last[std::size_t(v) * width];
+        crossed.find(v, first, last);
+        for (int u = 0; u < width && !within.empty(); ++u)
+        {
+          first[u] = std::max(first[u], within.first(v)[u]);
+          last[u] = std::min(last[u], within.last(v)[u]);
+        }
+      }
+    });
+}
+
+void RayIntervals::setShifted(const RayIntervals& other, int firstSlice)
+{
+  this->Width = other.Width;
+  this->First.resize(other.First.size());
+  this->Last.resize(other.Last.size());
+  vtkSMPTools::For(0, static_cast<vtkIdType>(this->First.size()), 1 << 14,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType n = begin; n < end; ++n)
+      {
+        this->First[n] = static_cast<std::int16_t>(other.First[n] - firstSlice);
+        this->Last[n] = static_cast<std::int16_t>(other.Last[n] - firstSlice);
+      }
+    });
+}
+}

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Clipping/SceneDepth.h"
+
+#include <vtkSMPTools.h>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace splatting
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr double Rounding = 0x1p-21;
+}
+
+float* SceneDepth::allocate(const glm::ivec2& origin, const glm::ivec2& size)
+{
+  this->clear(); // in case there is no memory
+  this->Samples.resize(std::size_t(std::max(size.x, 0)) * std::max(size.y, 0));
+  this->Origin = origin;
+  this->Size = size;
+  return this->Samples.data();
+}
+
+void SceneDepth::place(const View& view)
+{
+  // What lies before the eye has a positive w.
+  const glm::dmat4 m = view.indexToClip / (isParallel(view) ? view.indexToClip[3][3] : 1.0);
+  this->Viewport = view.viewport;
+  this->ClipToIndex = glm::inverse(m);
+  this->ClipZ = { m[0][2], m[1][2], m[2][2], m[3][2] };
+  this->ClipW = { m[0][3], m[1][3], m[2][3], m[3][3] };
+  const glm::dvec3 last(view.dimensions - 1);
+  const glm::dvec3 half(0.5);
+  for (Body* body : { &this->Shown, &this->Voxels })
+  {
+    body->fronts.clear();
+    body->backs.clear();
+    for (const glm::dvec4& h : view.halfSpaces)
+    {
+      this->addHalfSpace(h, *body);
+    }
+  }
+  this->addBox(-half, last + half, this->Voxels);
+  // An axis with one voxel is as thick as that voxel.
+  const glm::dvec3 thin =
+    view.showsBoxes ? glm::dvec3(1.0) : glm::dvec3(glm::equal(last, glm::dvec3(0.0)));
+  this->addBox(-half * thin, last + half * thin, this->Shown);
+}
+
+void SceneDepth::addBox(const glm::dvec3& low, const glm::dvec3& high, Body& body) const
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    glm::dvec4 plane(0.0, 0.0, 0.0, -low[a]);
+    plane[a] = 1.0;
+    this->addHalfSpace(plane, body);
+    plane = { 0.0, 0.0, 0.0, high[a] };
+    plane[a] = -1.0;
+    this->addHalfSpace(plane, body);
+  }
+}
+
+void SceneDepth::addHalfSpace(const glm::dvec4& h, Body& body) const
+{
+  // Planes are planes in the clip cube, too: dot(plane, (x, y, depth, 1)) >= 0, from -1 to 1.
+  const glm::dvec4 plane = h * this->ClipToIndex;
+  const glm::dvec4& deeper = this->ClipToIndex[2];
+  const double rounding = 1e-12 *
+    (glm::length(glm::dvec3(h)) * glm::length(glm::dvec3(deeper)) + std::abs(h.w * deeper.w));
+  // Rays that run along a plane, or begin in it, neither enter nor leave through it.
+  if (!(std::abs(plane.z) > rounding))
+  {
+    return;
+  }
+  const glm::dvec2 step = 1.0 / glm::dvec2(this->Viewport);
+  const glm::dvec2 slope = -glm::dvec2(plane) / plane.z;
+  const double start = 0.5 * (1.0 - plane.w / plane.z + glm::dot(slope, step - 1.0));
+  (plane.z > 0.0 ? body.fronts : body.backs).emplace_back(slope * step, start);
+}
+
+double SceneDepth::Body::entry(const glm::dvec3& pixel) const
+{
+  double depth = -Infinity;
+  for (const glm::dvec3& front : this->fronts)
+  {
+    depth = std::max(depth, glm::dot(front, pixel));
+  }
+  return depth;
+}
+
+double SceneDepth::Body::exit(const glm::dvec3& pixel) const
+{
+  double depth = Infinity;
+  for (const glm::dvec3& back : this->backs)
+  {
+    depth = std::min(depth, glm::dot(back, pixel));
+  }
+  return depth;
+}
+
+float SceneDepth::at(const glm::ivec2& pixel) const
+{
+  const glm::ivec2 p = pixel - this->Origin;
+  return this->Samples[std::size_t(p.y) * this->Size.x + p.x];
+}
+
+/// Whether a depth lies inside the volume.
+bool SceneDepth::endsRay(const glm::ivec2& pixel, double depth) const
+{
+  const glm::dvec3 p(pixel, 1.0);
+  double entry = this->Shown.entry(p), exit = this->Shown.exit(p);
+  if (entry > exit)
+  {
+    // Beside the picture, where pixels at its rim interpolate.
+    entry = this->Voxels.entry(p);
+    exit = this->Voxels.exit(p);
+  }
+  return depth > entry + Rounding && depth < exit - Rounding;
+}
+
+void SceneDepth::endRays(
+  const ShearWarp& geometry, int u, int v, int count, double* near, double* far) const
+{
+  if (this->empty())
+  {
+    return;
+  }
+  const std::array<int, 3>& axes = geometry.axes();
+  const glm::ivec2 last = this->Origin + this->Size - 1;
+  for (int x = 0; x < count; ++x)
+  {
+    const glm::dvec3 seen = geometry.shearToScreen() * glm::dvec3(u + x, v, 1.0);
+    if (!(seen.z > 0.0))
+    {
+      continue; // behind the viewport's plane
+    }
+    const glm::ivec2 pixel(glm::clamp(
+      glm::floor(glm::dvec2(seen) / seen.z + 0.5), glm::dvec2(this->Origin), glm::dvec2(last)));
+    const double depth = this->at(pixel);
+    if (depth >= 1.0 || !this->endsRay(pixel, depth))
+    {
+      continue;
+    }
+    // What is deeper than that, a half-space, along the ray.
+    const glm::dvec4 deeper = this->ClipZ - (2.0 * depth - 1.0) * this->ClipW;
+    const glm::dvec3 h(deeper[axes[0]], deeper[axes[1]], deeper[axes[2]]);
+    const double reference = geometry.reference();
+    const double speed =
+      glm::dot(h, glm::dvec3(geometry.columns().slope[u + x], geometry.rows().slope[v], 1.0));
+    const double z = reference -
+      (glm::dot(h, glm::dvec3(geometry.onRay(u + x, v, reference), reference)) + deeper.w) / speed;
+    if (speed > 0.0)
+    {
+      far[x] = std::min(far[x], z);
+    }
+    else if (speed < 0.0)
+    {
+      near[x] = std::max(near[x], z);
+    }
+  }
+}
+
+void SceneDepth::hide(Picture& picture) const
+{
+  const glm::ivec2 begin = glm::max(this->Origin, picture.origin);
+  const glm::ivec2 end = glm::min(this->Origin + this->Size, picture.origin + picture.size);
+  if (this->empty() || begin.x >= end.x || begin.y >= end.y)
+  {
+    return;
+  }
+  vtkSMPTools::For(begin.y, end.y, 16,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (int y = static_cast<int>(first); y < last; ++y)
+      {
+        std::uint32_t* const row = picture.pixels.data() +
+          std::ptrdiff_t(y - picture.origin.y) * picture.size.x - picture.origin.x;
+        for (int x = begin.x; x < end.x; ++x)
+        {
+          const double depth = this->at({ x, y });
+          if (depth < 1.0 && depth <= this->Shown.entry({ x, y, 1.0 }) + Rounding)
+          {
+            row[x] = 0;
+          }
+        }
+      }
+    });
+}
+}

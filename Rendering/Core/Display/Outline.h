@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Which pixels of the screen show a box, row by row.
+ */
+#ifndef splattingOutline_h
+#define splattingOutline_h
+
+#include "Geometry/ShearWarp.h"
+
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+namespace splatting
+{
+/// A box of a volume with its axes permuted.
+struct Cuboid
+{
+  glm::dvec3 low, high;
+};
+
+/// The box that the picture shows: all of the voxels' boxes, or voxel centre to voxel centre and a
+/// single voxel's whole thickness. Exact mode's field is known there.
+Cuboid shownBox(const ShearWarp& geometry);
+
+/**
+ * A convex part of the screen, bounded by the lines (a, b, c) where a x + b y + c = 0.
+ */
+class Outline
+{
+public:
+  /// Of the screen pixels that an image shows. The geometry must outlive its use.
+  explicit Outline(const ShearWarp& geometry) : Geometry(geometry) {}
+
+  /// Keeps pixels of the image where a u + b v + c >= 0, off the line by `inset` along both u and
+  /// v.
+  void add(glm::dvec3 line, double inset);
+
+  /// Keeps what the image shows of a box.
+  void add(const Cuboid& box, double inset);
+
+  /// The x in `row` for which the point (x, 0, 0) from `start` is inside.
+  Span cut(Span row, const glm::dvec3& start) const;
+
+  /// What is inside of a polygon of pixels (x, y, 1).
+  std::vector<glm::dvec3> cut(std::vector<glm::dvec3> polygon) const;
+
+private:
+  bool faces(const Cuboid& box, int axis, bool high) const;
+
+  const ShearWarp& Geometry;
+  std::vector<glm::dvec3> Lines;
+};
+
+/// The pixels of the screen that an image shows something in.
+Outline shownBy(const ShearWarp& geometry);
+
+/// The pixels of the screen whose four neighbours in the image are samples, if it has no holes.
+Outline withinSamples(const ShearWarp& geometry);
+}
+
+#endif

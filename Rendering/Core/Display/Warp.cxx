@@ -1,0 +1,483 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Display/Warp.h"
+
+#include "Display/Outline.h"
+
+#include <vtkSMPTools.h>
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+namespace splatting
+{
+namespace
+{
+/// What becomes of the rows' scalars: their colours, ...
+template <class A>
+struct ColorSink
+{
+  using Pixel = std::uint32_t;
+  static constexpr Pixel empty = 0;
+
+  const WorksheetLoops<A>& loops;
+  const ColorTable& table;
+  A low, scale;
+  std::int32_t last;
+
+  ColorSink(const WorksheetLoops<A>& l, const ColorTable& t)
+    : loops(l),
+      table(t),
+      low(static_cast<A>(t.low)),
+      scale(0),
+      last(static_cast<std::int32_t>(t.colors.size()) - 1)
+  {
+    this->scale = static_cast<A>(t.high > t.low ? this->last / (t.high - t.low) : 0.0);
+  }
+  void put(const A* values, Pixel* out, std::ptrdiff_t n) const
+  {
+    this->loops.lookUp(
+      values, this->low, this->scale, this->last, this->table.colors.data(), out, n);
+  }
+};
+
+/// ... or they themselves.
+template <class A>
+struct ScalarSink
+{
+  using Pixel = A;
+
+  const WorksheetLoops<A>& loops;
+  A empty;
+
+  void put(const A* values, Pixel* out, std::ptrdiff_t n) const { std::copy_n(values, n, out); }
+};
+
+/// Everything that they share of one image.
+template <class A, class Sink>
+struct WarpSource
+{
+  const Sink& sink;
+  const ShearImage& image;
+  const A* pixels;
+  const ShearWarp& geometry;
+  const FieldRim& rim;
+  std::size_t number; // of the image
+  Outline shown, inside;
+
+  WarpSource(const Sink& s, const ShearImage& i, const A* p, const ShearWarp& g, const FieldRim& r,
+    std::size_t n)
+    : sink(s),
+      image(i),
+      pixels(p),
+      geometry(g),
+      rim(r),
+      number(n),
+      shown(shownBy(g)),
+      inside(withinSamples(g))
+  {
+  }
+  bool hasHoles() const { return !this->image.mask.empty() || this->image.special; }
+};
+
+/// Where all four neighbours of all points are samples.
+template <class A, class Sink>
+void warpInside(const WarpSource<A, Sink>& source, const glm::dvec3& start, const glm::dvec3& step,
+  typename Sink::Pixel* out, int n)
+{
+  constexpr int chunk = 256; // stays in the first-level cache
+  A values[chunk];
+  const WorksheetLoops<A>& loops = source.sink.loops;
+  const auto interpolate =
+    source.geometry.isPerspective() ? loops.interpolateProjective : loops.interpolate;
+  for (int x = 0; x < n; x += chunk)
+  {
+    const int count = std::min(chunk, n - x);
+    const glm::dvec3 p = start + double(x) * step;
+    interpolate(source.pixels, source.image.width, &p.x, &step.x, values, count);
+    source.sink.put(values, out + x, count);
+  }
+}
+
+/// Calls f(u, v, weight) for the pixels in the volume between which a point is interpolated.
+template <class F>
+void forNeighbours(const ShearImage& image, const glm::dvec2& p, F&& f)
+{
+  // Points on the line between two images may round out of theirs, where they have no neighbours.
+  const int u = static_cast<int>(std::floor(p.x)), v = static_cast<int>(std::floor(p.y));
+  const double fu = p.x - u, fv = p.y - v;
+  for (int n = 0; n < 4; ++n)
+  {
+    const int i = n & 1, j = n >> 1;
+    if (image.meetsVolume(u + i, v + j))
+    {
+      f(u + i, v + j, (i ? fu : 1.0 - fu) * (j ? fv : 1.0 - fv));
+    }
+  }
+}
+
+/// Where a neighbour may be missing, NaN or infinite: interpolates between those that count.
+/// @param own  what the pixel shows instead, if it is a number
+template <class A, class Sink>
+typename Sink::Pixel warpPoint(
+  const WarpSource<A, Sink>& source, const glm::dvec3& homogeneous, A own)
+{
+  const ShearImage& image = source.image;
+  const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
+  double sum = 0.0, weight = 0.0, lost = 0.0, largest = -1.0;
+  A nearest = 0;
+  forNeighbours(image, p,
+    [&](int u, int v, double w)
+    {
+      const A value = source.pixels[std::ptrdiff_t(v) * image.width + u];
+      if (value != value || !image.covers(u, v))
+      {
+        lost += w;
+        return;
+      }
+      sum += w * value;
+      weight += w;
+      if (w > largest)
+      {
+        largest = w;
+        nearest = value;
+      }
+    });
+  // Where samples are missing inside the volume, the picture ends half-way to the last one; at the
+  // volume's rim it ends with the silhouette.
+  if (weight <= 0.0 || lost > 0.5)
+  {
+    return source.sink.empty;
+  }
+  const double average = sum / weight;
+  const A value = own == own ? own : std::isfinite(average) ? static_cast<A>(average) : nearest;
+  typename Sink::Pixel pixel;
+  source.sink.put(&value, &pixel, 1);
+  return pixel;
+}
+
+/// The pixels of row y, `start` being the first, that one image shows.
+template <class A, class Sink>
+void warpSpan(const WarpSource<A, Sink>& source, const glm::dvec3& start, int y, const Span& row,
+  typename Sink::Pixel* out)
+{
+  const glm::dmat3& m = source.geometry.screenToShear();
+  const glm::dvec3 first = m * start, step = m[0];
+  const auto warpPoints = [&](int begin, int end)
+  {
+    for (int x = begin; x < end; ++x)
+    {
+      const A own = source.rim.template value<A>(source.number, x, y);
+      out[x] = warpPoint(source, first + double(x) * step, own);
+    }
+  };
+  const Span plain = source.hasHoles()
+    ? Span{}
+    : source.inside.cut(common(row, source.rim.inside(source.number, y, row)), start);
+  if (plain.empty())
+  {
+    warpPoints(row.begin, row.end);
+    return;
+  }
+  warpPoints(row.begin, plain.begin);
+  warpInside(
+    source, first + double(plain.begin) * step, step, out + plain.begin, plain.end - plain.begin);
+  warpPoints(plain.end, row.end);
+}
+
+/// Of a view: one for each direction of each axis.
+constexpr std::size_t MostImages = 6;
+
+/// Calls show(n, row) for the pixels of a row, `start` being the first, that image n shows, and
+/// skip(row) for those that none does.
+template <class ShownOf, class Show, class Skip>
+void forSpans(std::size_t count, const glm::dvec3& start, int width, const ShownOf& shownOf,
+  const Show& show, const Skip& skip)
+{
+  // Images meet at lines: the one that begins first has the pixels that two show.
+  std::array<std::size_t, MostImages> order;
+  std::array<Span, MostImages> spans;
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    spans[n] = shownOf(n).cut({ 0, width }, start);
+    std::size_t place = n;
+    for (; place > 0 && spans[n].begin < spans[order[place - 1]].begin; --place)
+    {
+      order[place] = order[place - 1];
+    }
+    order[place] = n;
+  }
+  int done = 0;
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    const std::size_t which = order[n];
+    const Span row{ std::max(spans[which].begin, done), spans[which].end };
+    if (!row.empty())
+    {
+      skip(Span{ done, row.begin });
+      show(which, row);
+      done = row.end;
+    }
+  }
+  skip(Span{ done, width });
+}
+
+template <class A, class Sink>
+void warpRow(const std::vector<WarpSource<A, Sink>>& sources, const glm::dvec3& start, int y,
+  int width, typename Sink::Pixel* out)
+{
+  const auto empty = sources.front().sink.empty;
+  forSpans(
+    sources.size(), start, width, [&](std::size_t n) -> const Outline& { return sources[n].shown; },
+    [&](std::size_t n, const Span& row) { warpSpan(sources[n], start, y, row, out); },
+    [&](const Span& row) { std::fill(out + row.begin, out + row.end, empty); });
+}
+
+/// Of the shear pixels that a point's value is interpolated between, the nearest.
+ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& homogeneous)
+{
+  const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
+  ShearPixel nearest;
+  double lost = 0.0, largest = -1.0;
+  forNeighbours(image, p,
+    [&](int u, int v, double w)
+    {
+      if (image.winners[std::size_t(v) * image.width + u] < 0)
+      {
+        lost += w;
+      }
+      else if (w > largest)
+      {
+        largest = w;
+        nearest = { number, u, v };
+      }
+    });
+  return lost > 0.5 ? ShearPixel{} : nearest;
+}
+
+/// The pixels of a part of a viewport, of which `pixels` is the first and the next row lies a
+/// stride further.
+template <class A, class Sink>
+void warpRows(const std::vector<WarpSource<A, Sink>>& sources, const Picture& place,
+  typename Sink::Pixel* pixels, std::ptrdiff_t stride)
+{
+  vtkSMPTools::For(0, place.size.y, 16,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType y = first; y < last; ++y)
+      {
+        const glm::dvec3 start(place.origin.x, place.origin.y + static_cast<double>(y), 1.0);
+        warpRow(sources, start, static_cast<int>(y), place.size.x, pixels + y * stride);
+      }
+    });
+}
+
+/// Corners of a rectangle of viewport pixels.
+struct Rectangle
+{
+  glm::dvec2 low, high;
+};
+
+/// Has all pixels that an image shows something in, and perhaps some beside them.
+Rectangle boundsOf(const ShearWarp& geometry, const glm::dvec2& viewport)
+{
+  if (!geometry.isPerspective())
+  {
+    // What the image shows is symmetric about the middle of the volume.
+    const Cuboid box = shownBox(geometry);
+    const glm::dvec3 size = box.high - box.low;
+    const glm::dvec2 s = glm::abs(geometry.shear());
+    const glm::dvec2 half = 0.5 * (glm::dvec2(size) + s * size.z) / geometry.pitch();
+    const glm::dvec3 centre = 0.5 * glm::dvec3(geometry.size() - 1);
+    const glm::dmat3& m = geometry.shearToScreen();
+    const glm::dvec2 middle(m * geometry.pixelOf(centre));
+    const glm::dvec2 reach = glm::dvec2(glm::abs(m[0]) * half.x + glm::abs(m[1]) * half.y);
+    return { middle - reach, middle + reach };
+  }
+  const glm::dvec2 last = viewport - 1.0;
+  Rectangle bounds{ viewport, glm::dvec2(-2.0) };
+  for (const glm::dvec3& corner : shownBy(geometry).cut(
+         { { 0.0, 0.0, 1.0 }, { last.x, 0.0, 1.0 }, { last, 1.0 }, { 0.0, last.y, 1.0 } }))
+  {
+    bounds.low = glm::min(bounds.low, glm::dvec2(corner));
+    bounds.high = glm::max(bounds.high, glm::dvec2(corner));
+  }
+  return bounds;
+}
+}
+
+void placePicture(
+  const std::vector<ShearWarp>& images, const glm::ivec2& viewport, Picture& picture)
+{
+  const glm::dvec2 limit(viewport);
+  glm::dvec2 low = limit, high(0.0);
+  for (const ShearWarp& image : images)
+  {
+    const Rectangle bounds = boundsOf(image, limit);
+    low = glm::min(low, glm::clamp(glm::floor(bounds.low), glm::dvec2(0.0), limit));
+    high = glm::max(high, glm::clamp(glm::ceil(bounds.high) + 1.0, glm::dvec2(0.0), limit));
+  }
+  picture.origin = glm::ivec2(low);
+  picture.size = glm::max(glm::ivec2(high) - picture.origin, glm::ivec2(0));
+}
+
+void addSaturated(const Picture& layer, Picture& sum)
+{
+  const auto* const from = reinterpret_cast<const unsigned char*>(layer.pixels.data());
+  auto* const to = reinterpret_cast<unsigned char*>(sum.pixels.data());
+  vtkSMPTools::For(0, static_cast<vtkIdType>(4 * sum.pixels.size()), 1 << 16,
+    [=](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType n = first; n < last; ++n)
+      {
+        to[n] = static_cast<unsigned char>(std::min(to[n] + from[n], 255));
+      }
+    });
+}
+
+void multiplyByOpacity(const Picture& opacity, Picture& picture)
+{
+  const auto* const from = reinterpret_cast<const unsigned char*>(opacity.pixels.data());
+  auto* const to = reinterpret_cast<unsigned char*>(picture.pixels.data());
+  vtkSMPTools::For(0, static_cast<vtkIdType>(picture.pixels.size()), 1 << 14,
+    [=](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType n = 4 * first; n < 4 * last; ++n)
+      {
+        to[n] = static_cast<unsigned char>((to[n] * from[n | 3] + 127) / 255);
+      }
+    });
+}
+
+namespace
+{
+/// The pixels of an image in the accumulator's type, `widened` being a place for them.
+template <class T>
+const Accumulator<T>* widenedPixels(
+  const ShearImage& image, const VoxelLoops<T>& loops, std::vector<unsigned char>& widened)
+{
+  using A = Accumulator<T>;
+  if constexpr (std::is_same_v<T, A>)
+  {
+    return image.row<T>(0);
+  }
+  else
+  {
+    const std::size_t count = std::size_t(image.width) * image.height;
+    widened.resize(count * sizeof(A));
+    A* const pixels = reinterpret_cast<A*>(widened.data());
+    loops.widen(image.row<T>(0), 0, pixels, 0, A(0), static_cast<std::ptrdiff_t>(count), 1, 0);
+    return pixels;
+  }
+}
+
+/// Warps images of voxels of type T, which are widened in `widened`.
+template <class T, class Sink>
+void warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+  const Kernels& kernels, const Sink& sink, std::vector<std::vector<unsigned char>>& widened,
+  const Picture& place, typename Sink::Pixel* pixels, std::ptrdiff_t stride, const FieldRim& rim)
+{
+  using A = Accumulator<T>;
+  std::vector<WarpSource<A, Sink>> sources;
+  for (std::size_t n = 0; n < geometries.size(); ++n)
+  {
+    const A* const own = widenedPixels<T>(images[n], kernels, widened[n]);
+    sources.emplace_back(sink, images[n], own, geometries[n], rim, n);
+  }
+  warpRows(sources, place, pixels, stride);
+}
+}
+
+void Warper::warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+  const ColorTable& table, const glm::ivec2& viewport, InstructionSet instructionSet,
+  Picture& picture, const FieldRim& rim)
+{
+  placePicture(geometries, viewport, picture);
+  picture.pixels.resize(std::size_t(picture.size.x) * picture.size.y);
+  if (picture.pixels.empty())
+  {
+    return;
+  }
+  this->Widened.resize(std::max(this->Widened.size(), geometries.size()));
+  const Kernels& kernels = kernelsFor(instructionSet);
+  dispatch(images.front().type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      const ColorSink<Accumulator<T>> sink(kernels, table);
+      warpImages<T>(images, geometries, kernels, sink, this->Widened, picture,
+        picture.pixels.data(), picture.size.x, rim);
+    });
+}
+
+void Warper::warpScalars(const std::vector<ShearImage>& images,
+  const std::vector<ShearWarp>& geometries, const glm::ivec2& viewport,
+  InstructionSet instructionSet, double background, void* scalars, const FieldRim& rim)
+{
+  Picture place;
+  placePicture(geometries, viewport, place);
+  if (place.size.x < 1 || place.size.y < 1)
+  {
+    return;
+  }
+  this->Widened.resize(std::max(this->Widened.size(), geometries.size()));
+  const Kernels& kernels = kernelsFor(instructionSet);
+  dispatch(images.front().type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      using A = Accumulator<T>;
+      const ScalarSink<A> sink{ kernels, static_cast<A>(background) };
+      A* const first =
+        static_cast<A*>(scalars) + std::ptrdiff_t(place.origin.y) * viewport.x + place.origin.x;
+      warpImages<T>(
+        images, geometries, kernels, sink, this->Widened, place, first, viewport.x, rim);
+    });
+}
+
+void findShearPixels(const std::vector<ShearImage>& images,
+  const std::vector<ShearWarp>& geometries, const glm::ivec2& origin, const glm::ivec2& size,
+  ShearPixel* out)
+{
+  std::vector<Outline> shown;
+  for (const ShearWarp& geometry : geometries)
+  {
+    shown.push_back(shownBy(geometry));
+  }
+  vtkSMPTools::For(0, size.y, 16,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType y = first; y < last; ++y)
+      {
+        // From the viewport's edge on, so that a pixel that two images show is the same one's in
+        // any rectangle.
+        const glm::dvec3 start(0.0, origin.y + static_cast<double>(y), 1.0);
+        ShearPixel* const row = out + y * size.x;
+        forSpans(
+          geometries.size(), start, origin.x + size.x,
+          [&](std::size_t n) -> const Outline& { return shown[n]; },
+          [&](std::size_t n, const Span& span)
+          {
+            const glm::dmat3& m = geometries[n].screenToShear();
+            for (int x = std::max(span.begin, origin.x); x < span.end; ++x)
+            {
+              row[x - origin.x] =
+                nearestPixel(images[n], static_cast<int>(n), m * glm::dvec3(x, start.y, 1.0));
+            }
+          },
+          [&](const Span& span)
+          {
+            for (int x = std::max(span.begin, origin.x); x < span.end; ++x)
+            {
+              row[x - origin.x] = ShearPixel{};
+            }
+          });
+      }
+    });
+}
+}

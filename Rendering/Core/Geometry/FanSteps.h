@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Which voxels the rays of a perspective image meet: in one slice all rows of pixels share what the
+ * columns do, and all columns what the rows do.
+ */
+#ifndef splattingFanSteps_h
+#define splattingFanSteps_h
+
+#include "Geometry/ShearWarp.h"
+#include "Kernels/Kernels.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace splatting
+{
+/**
+ * The steps of a fan from voxel to voxel, in all slices that an image sees.
+ */
+class FanSteps
+{
+public:
+  /// @param a  0 for columns, 1 for rows
+  void find(const ShearWarp& geometry, int a, const FanLoops& loops);
+
+  /// What the rays do in slice k, one element per pixel and some more that are outside the volume.
+  struct Slice
+  {
+    /// The voxels in which rays enter the slice and leave it: neighbours or the same. Outside the
+    /// volume -1, or the number of voxels.
+    const std::int32_t *first, *last;
+    /// How far from the entry, as a share of a slice, rays change from the one to the other.
+    const double* time;
+    /// The same, rounded down to multiples of 2^-15; -1 where rays stay in one voxel.
+    const std::int16_t* tick;
+  };
+  Slice slice(int k) const
+  {
+    const std::size_t at = std::size_t(k - this->Slices.begin) * this->Padded;
+    return { &this->First[at], &this->Last[at], &this->Time[at], &this->Tick[at] };
+  }
+
+  /// The voxels from the first to the last that some pixels meet in some slices; may be one outside
+  /// the volume at either end.
+  Span voxels(const Span& slices, const Span& pixels) const;
+
+  /// The pixels that enter or leave slice k in the volume, and those that do both.
+  struct Reach
+  {
+    Span some, all;
+  };
+  const Reach& reach(int k) const { return this->Reaches[k - this->Slices.begin]; }
+
+private:
+  friend class FanWindows;
+  Span Slices;
+  int Count = 0, Size = 0;
+  std::ptrdiff_t Padded = 0;
+  std::vector<std::int32_t> First, Last;
+  std::vector<double> Time;
+  std::vector<std::int16_t> Tick;
+  std::vector<Reach> Reaches;
+};
+
+/**
+ * The same for loops that pick voxels for a register of pixels out of a few registers of voxels:
+ * pixels are no wider than voxels, so that a group of pixels meets no more voxels than it has
+ * pixels.
+ */
+class FanWindows
+{
+public:
+  /// @param group  pixels that pick from one register, see VoxelLoops::group
+  /// @param bytes  of a voxel
+  void find(const FanSteps& steps, int group, int bytes);
+
+  /// Where a group of pixels picks from, for all groups, and which of these voxels each pixel
+  /// takes: integers as wide as voxels, negative for pixels outside the volume.
+  struct Picks
+  {
+    const std::int32_t* base;
+    const void* lanes;
+  };
+  Picks entering(int k) const { return this->picks(k, 0); }
+  Picks leaving(int k) const { return this->picks(k, 1); }
+
+private:
+  template <class Lane>
+  void fill(const std::int32_t* voxels, std::size_t row, const FanSteps& steps);
+  Picks picks(int k, int end) const
+  {
+    const std::size_t row = 2 * std::size_t(k - this->First) + end;
+    return { &this->Bases[row * this->Groups],
+      &this->Lanes[row * this->Groups * this->Group * this->Bytes] };
+  }
+
+  int First = 0, Group = 1, Groups = 0, Bytes = 1;
+  std::vector<std::int32_t> Bases;
+  std::vector<unsigned char> Lanes;
+};
+}
+
+#endif

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Where rays are cut, and the slices that are left. For Kernels.cxx only, which says why all of
+ * this is in an anonymous namespace.
+ */
+#ifndef splattingDepthKernels_h
+#define splattingDepthKernels_h
+
+#include "Kernels/Kernels.h"
+#include "Kernels/Registers.h"
+
+namespace splatting
+{
+namespace
+{
+/// Without a function call on the baseline of x86-64. For doubles far below 2^51.
+template <class D>
+inline D nearestInteger(D x)
+{
+  constexpr double unit = 0x1.8p52;
+  return (x + unit) - unit;
+}
+
+void beginAtPlane(const PlaneRow& plane, double* __restrict near, std::ptrdiff_t n)
+{
+  for (int x = 0; x < n; ++x)
+  {
+    near[x] = larger((plane.slope * (plane.u + x) + plane.rest) * plane.scale, near[x]);
+  }
+}
+
+void endAtPlane(const PlaneRow& plane, double* __restrict far, std::ptrdiff_t n)
+{
+  for (int x = 0; x < n; ++x)
+  {
+    far[x] = smaller((plane.slope * (plane.u + x) + plane.rest) * plane.scale, far[x]);
+  }
+}
+
+/// The slices between depths: a register of them, or one.
+template <class D>
+struct SlicesLeft
+{
+  D first, last;
+
+  inline SlicesLeft(D near, D far, int begin, int end)
+  {
+    constexpr double rounding = DepthLimits::Rounding;
+    // Also keeps infinities out of the arithmetic.
+    const D least = D{} + DepthLimits::Before, most = D{} + DepthLimits::Beyond;
+    const D low = smaller(larger(near, least), most), high = smaller(larger(far, least), most);
+    // Up and down: with the margins these are no integers. Depths are -1 at least.
+    const D margin = rounding * (1.0 + larger(low, -low));
+    const D lowest = nearestInteger(low - margin + 0.5);
+    const D highest = nearestInteger(high + rounding * (1.0 + larger(high, -high)) - 0.5);
+    const auto isThin = (lowest > highest) & (high - low > margin);
+    // Of two slices that are as near, the higher one.
+    const D middle = nearestInteger(0.5 * (low + high) + rounding);
+    this->first = larger(isThin ? middle : lowest, D{} + begin);
+    this->last = smaller(isThin ? middle : highest, D{} + (end - 1));
+  }
+};
+
+bool slicesBetween(const double* near, const double* far, int begin, int end, std::int16_t* first,
+  std::int16_t* last, std::ptrdiff_t n)
+{
+  std::ptrdiff_t x = 0;
+  bool lost = false;
+#if defined(__GNUC__)
+  constexpr std::ptrdiff_t w = width<double>;
+  typedef std::int32_t wide __attribute__((vector_size(4 * w)));
+  typedef std::int16_t narrow __attribute__((vector_size(2 * w)));
+  typedef std::int16_t loose __attribute__((vector_size(2 * w), aligned(2), may_alias));
+  const auto put = [](Pack<double> depths, std::int16_t* out)
+  {
+    *reinterpret_cast<loose*>(out) =
+      __builtin_convertvector(__builtin_convertvector(depths, wide), narrow);
+  };
+  Pack<Integer<double>> some{};
+  for (; x + w <= n; x += w)
+  {
+    const SlicesLeft<Pack<double>> left(load<double>(near + x), load<double>(far + x), begin, end);
+    put(left.first, first + x);
+    put(left.last, last + x);
+    some |= (left.first > begin) | (left.last < end - 1);
+  }
+  lost = anyOf(some);
+#endif
+  for (; x < n; ++x)
+  {
+    const SlicesLeft<double> left(near[x], far[x], begin, end);
+    first[x] = static_cast<std::int16_t>(left.first);
+    last[x] = static_cast<std::int16_t>(left.last);
+    lost = lost || left.first > begin || left.last < end - 1;
+  }
+  return lost;
+}
+}
+}
+
+#endif

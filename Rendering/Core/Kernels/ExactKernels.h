@@ -1,0 +1,534 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The loops of exact mode: maxima of cubics. For Kernels.cxx only, which says why all of this is in
+ * an anonymous namespace.
+ */
+#ifndef splattingExactKernels_h
+#define splattingExactKernels_h
+
+#include "Kernels/ResamplingKernels.h"
+
+#include <limits>
+
+namespace splatting
+{
+namespace
+{
+/// Correctly rounded, as IEEE 754 has it, whatever the instruction set.
+inline float squareRoot(float x)
+{
+  return __builtin_sqrtf(x);
+}
+inline double squareRoot(double x)
+{
+  return __builtin_sqrt(x);
+}
+#if defined(__AVX512F__)
+inline Pack<float> squareRoot(Pack<float> x)
+{
+  return _mm512_sqrt_ps(x);
+}
+inline Pack<double> squareRoot(Pack<double> x)
+{
+  return _mm512_sqrt_pd(x);
+}
+#elif defined(__AVX2__)
+inline Pack<float> squareRoot(Pack<float> x)
+{
+  return _mm256_sqrt_ps(x);
+}
+inline Pack<double> squareRoot(Pack<double> x)
+{
+  return _mm256_sqrt_pd(x);
+}
+#elif defined(__SSE2__)
+inline Pack<float> squareRoot(Pack<float> x)
+{
+  return _mm_sqrt_ps(x);
+}
+inline Pack<double> squareRoot(Pack<double> x)
+{
+  return _mm_sqrt_pd(x);
+}
+#elif defined(__GNUC__)
+template <class R>
+inline R squareRoot(R x)
+{
+  for (std::size_t n = 0; n < sizeof(R) / sizeof(x[0]); ++n)
+  {
+    x[n] = squareRoot(x[n]);
+  }
+  return x;
+}
+#endif
+
+/// The largest value of cubics between their ends where that is a local maximum, else `none`. No
+/// more than their largest coefficient, or rounding would tell which pixels looked.
+template <class A, class R>
+inline R peakOf(const R (&b)[4], R inner, R none)
+{
+  // The derivative, d0 (1 - t)^2 + 2 d1 t (1 - t) + d2 t^2, from positive to negative.
+  const R d0 = b[1] - b[0], d1 = b[2] - b[1], d2 = b[3] - b[2];
+  const R half = d1 - d0, square = (d2 - d1) - half;
+  const R discriminant = d1 * d1 - d0 * d2;
+  const R zero = d0 - d0;
+  const R root = squareRoot(discriminant > zero ? discriminant : zero);
+  // Of the two forms of the same root the one that does not cancel.
+  const R t = half >= zero ? (-half - root) / square : d0 / (root - half);
+  const R s = A(1) - t;
+  const R b01 = s * b[0] + t * b[1], b12 = s * b[1] + t * b[2], b23 = s * b[2] + t * b[3];
+  const R value = s * (s * b01 + t * b12) + t * (s * b12 + t * b23);
+  // What is no number compares with nothing.
+  return ((t > zero) & (t < A(1))) ? smaller(value, inner) : none;
+}
+
+/// A register of elements of type A, or one of them, of type R.
+template <class A, class R>
+struct Lanes
+{
+  using M = decltype(R{} > R{});
+  using I = Integer<A>;
+  static constexpr bool single = std::is_same_v<R, A>;
+
+  static R all(A value)
+  {
+    if constexpr (single)
+    {
+      return value;
+    }
+    else
+    {
+      return Pack<A>{} + value;
+    }
+  }
+  static R loadFrom(const A* p)
+  {
+    if constexpr (single)
+    {
+      return *p;
+    }
+    else
+    {
+      return load<A>(p);
+    }
+  }
+  static void storeTo(A* p, R value)
+  {
+    if constexpr (single)
+    {
+      *p = value;
+    }
+    else
+    {
+      store<A>(p, value);
+    }
+  }
+  static inline R largestOf(const R (&corners)[8])
+  {
+    return larger(larger(larger(corners[0], corners[1]), larger(corners[2], corners[3])),
+      larger(larger(corners[4], corners[5]), larger(corners[6], corners[7])));
+  }
+
+  /// Rounding can take sums beyond the largest corner. Where that is no more than the best so far a
+  /// pixel may have been left out, and must not change if it is not.
+  template <bool Special>
+  static inline R limitedTo(R raised, R most, R best)
+  {
+    return Special ? raised : larger(smaller(raised, most), best);
+  }
+
+  /// What pixels start from: those without a sample, if there are, from less than all.
+  template <bool Special>
+  static inline R opened(R before)
+  {
+    return Special ? (before == before ? before : all(-std::numeric_limits<A>::infinity()))
+                   : before;
+  }
+  /// Stores what has been raised, as far as bits say.
+  template <bool Special, class Row>
+  static inline void close(const Row& row, std::ptrdiff_t x, R before, R best)
+  {
+    if (row.bits)
+    {
+      if constexpr (single)
+      {
+        best = row.bits[x] & row.bit ? best : before;
+      }
+      else
+      {
+        const Pack<I> bits = loadBits<A>(row.bits + x);
+        best = (bits & static_cast<I>(row.bit)) != 0 ? best : before;
+      }
+    }
+    const R none = all(-std::numeric_limits<A>::infinity());
+    storeTo(row.image + x, Special ? (best > none ? best : before) : best);
+  }
+};
+
+/// The cubics of a parallel view.
+template <class A, class R, bool Special>
+struct CubicLoop : Lanes<A, R>
+{
+  using typename Lanes<A, R>::M;
+  using typename Lanes<A, R>::I;
+  using Lanes<A, R>::all;
+  using Lanes<A, R>::loadFrom;
+  const CubicRow<A>& row;
+
+  explicit CubicLoop(const CubicRow<A>& own) : row(own) {}
+
+  inline void loadCorners(const CubicPiece<A>& piece, std::ptrdiff_t x, R (&corners)[8]) const
+  {
+    const A* const rows[4] = { piece.low + x, piece.low + x + this->row.sourceStride,
+      piece.high + x, piece.high + x + this->row.sourceStride };
+#pragma GCC unroll 8
+    for (int n = 0; n < 8; ++n)
+    {
+      corners[n] = loadFrom(rows[n / 2] + n % 2);
+    }
+  }
+
+  static inline R combine(const A* weights, const R (&corners)[8])
+  {
+    R sum = all(A(0));
+    if constexpr (Special)
+    {
+      // What does not count may be no number.
+      for (int n = 0; n < 8; ++n)
+      {
+        sum = weights[n] != 0 ? sum + weights[n] * corners[n] : sum;
+      }
+    }
+    else
+    {
+      sum = weights[0] * corners[0];
+#pragma GCC unroll 8
+      for (int n = 1; n < 8; ++n)
+      {
+        sum = sum + weights[n] * corners[n];
+      }
+    }
+    return sum;
+  }
+
+  /// The field at the start of piece p, which is the end of the one before.
+  inline R startOf(int p, const R (&corners)[8], std::ptrdiff_t x) const
+  {
+    if (p == 0)
+    {
+      return combine(this->row.pieces[0].weights, corners);
+    }
+    const CubicPiece<A>& before = this->row.pieces[p - 1];
+    R others[8];
+    this->loadCorners(before, x, others);
+    return combine(before.weights + 24, others);
+  }
+
+  /// The pixels from x on that a piece counts for.
+  inline M counting(const CubicPiece<A>& piece, std::ptrdiff_t x) const
+  {
+    M lane;
+    if constexpr (std::is_same_v<R, A>)
+    {
+      const bool inField = x >= this->row.field.begin && x < this->row.field.end;
+      const Span& span = inField ? piece.inField : piece.inBoxes;
+      lane = x >= span.begin && x < span.end;
+      return lane;
+    }
+    else
+    {
+      for (std::ptrdiff_t n = 0; n < width<A>; ++n)
+      {
+        lane[n] = static_cast<I>(x + n);
+      }
+      const Span &field = this->row.field, &own = piece.inField, &boxes = piece.inBoxes;
+      const auto inSpan = [&lane](const Span& span)
+      { return (lane >= static_cast<I>(span.begin)) & (lane < static_cast<I>(span.end)); };
+      const M inField = inSpan(field);
+      return (inField & inSpan(own)) | (~inField & inSpan(boxes));
+    }
+  }
+
+  template <bool Masked>
+  inline void run(std::ptrdiff_t x) const
+  {
+    const R before = loadFrom(this->row.image + x);
+    R best = Lanes<A, R>::template opened<Special>(before);
+    R b[4], corners[8];
+    bool follows = false; // whether b[3] is where this piece starts
+    for (int p = 0; p < this->row.count; ++p)
+    {
+      const CubicPiece<A>& piece = this->row.pieces[p];
+      this->loadCorners(piece, x, corners);
+      const R most = Lanes<A, R>::largestOf(corners);
+      if (!Special && !anyOf(most > best))
+      {
+        follows = false;
+        continue;
+      }
+      b[0] = follows ? b[3] : this->startOf(p, corners, x);
+      b[3] = combine(piece.weights + 24, corners);
+      follows = true;
+      R raised = larger(b[3], larger(b[0], best));
+      if (piece.curved)
+      {
+        b[1] = combine(piece.weights + 8, corners);
+        b[2] = combine(piece.weights + 16, corners);
+        const R inner = larger(b[1], b[2]);
+        if (anyOf(inner > raised))
+        {
+          raised = larger(peakOf<A>(b, inner, raised), raised);
+        }
+      }
+      raised = Lanes<A, R>::template limitedTo<Special>(raised, most, best);
+      if constexpr (Masked)
+      {
+        raised = this->counting(piece, x) ? raised : best;
+      }
+      best = raised;
+    }
+    Lanes<A, R>::template close<Special>(this->row, x, before, best);
+  }
+};
+
+template <class A, bool Special>
+inline void raiseCubicRow(const CubicRow<A>& row)
+{
+  constexpr std::ptrdiff_t w = width<A>;
+  const CubicLoop<A, Pack<A>, Special> loop(row);
+  const std::ptrdiff_t begin = row.pixels.begin, end = row.pixels.end;
+  if (end - begin < w)
+  {
+    for (std::ptrdiff_t x = begin; x < end; ++x)
+    {
+      CubicLoop<A, A, Special>(row).template run<true>(x);
+    }
+    return;
+  }
+  // Pixels for which all pieces count.
+  std::ptrdiff_t first = begin > row.field.begin ? begin : row.field.begin;
+  std::ptrdiff_t last = end < row.field.end ? end : row.field.end;
+  for (int p = 0; p < row.count; ++p)
+  {
+    first = first > row.pieces[p].inField.begin ? first : row.pieces[p].inField.begin;
+    last = last < row.pieces[p].inField.end ? last : row.pieces[p].inField.end;
+  }
+  // A maximum may be taken twice, so the last register overlaps the one before.
+  for (std::ptrdiff_t x = begin; x < end; x += w)
+  {
+    const std::ptrdiff_t at = x + w <= end ? x : end - w;
+    at >= first&& at + w <= last ? loop.template run<false>(at) : loop.template run<true>(at);
+  }
+}
+
+/// One pixel's maximum is the same in a register and by itself.
+template <class A>
+void raiseCubics(const CubicRow<A>& row)
+{
+  row.special ? raiseCubicRow<A, true>(row) : raiseCubicRow<A, false>(row);
+}
+
+/// The cubics of a perspective view: each pixel has a place of its own in the cells, that of a row
+/// of cells goes for all.
+template <class A, class R, bool Special>
+struct FanCubicLoop : Lanes<A, R>
+{
+  using typename Lanes<A, R>::M;
+  using typename Lanes<A, R>::I;
+  using Lanes<A, R>::all;
+  using Lanes<A, R>::loadFrom;
+  static constexpr bool single = Lanes<A, R>::single;
+  const FanCubicRow<A>& row;
+
+  explicit FanCubicLoop(const FanCubicRow<A>& own) : row(own) {}
+
+  static inline R between(R a, R b, R share) { return a + share * (b - a); }
+  static inline R clampedShare(R x) { return smaller(larger(x, all(A(0))), all(A(1))); }
+
+  /// The pixels' cells, as the least of them and how far the others are from it.
+  struct Cells
+  {
+    std::int32_t least;
+    LaneOf<A> lanes[single ? 1 : width<A>];
+
+    explicit Cells(const std::int32_t* cells) : least(cells[0])
+    {
+      constexpr std::ptrdiff_t count = single ? 1 : width<A>;
+      // They ascend, but for the rounding of rays that meet in the eye.
+      for (std::ptrdiff_t n = 1; n < count; ++n)
+      {
+        this->least = smaller(cells[n], this->least);
+      }
+      for (std::ptrdiff_t n = 0; n < count; ++n)
+      {
+        this->lanes[n] = cells[n] - this->least;
+      }
+    }
+
+    inline R pick(const A* voxels) const
+    {
+      const A* const first = voxels + this->least;
+      if constexpr (single)
+      {
+        return *first;
+      }
+      else
+      {
+#if defined(__AVX2__)
+        if constexpr (Resampler<A>::picks)
+        {
+          return Resampler<A>::pick(first, loadRegister(this->lanes));
+        }
+#endif
+        R picked;
+        for (std::ptrdiff_t n = 0; n < width<A>; ++n)
+        {
+          picked[n] = first[this->lanes[n]];
+        }
+        return picked;
+      }
+    }
+  };
+
+  /// The largest of the cubics from one depth to another.
+  inline R largestFrom(const FanCubicPart<A>& part, const R (&corners)[8], R x, R slope, R from,
+    R to, R best, M counts) const
+  {
+    const R x0 = clampedShare(x + slope * from), x1 = clampedShare(x + slope * to);
+    const R y0 = clampedShare(part.y + this->row.slope * from),
+            y1 = clampedShare(part.y + this->row.slope * to);
+    const R z0 = clampedShare(part.z + from), z1 = clampedShare(part.z + to);
+    R near[4], far[4]; // along x, at either end
+#pragma GCC unroll 4
+    for (int n = 0; n < 4; ++n)
+    {
+      near[n] = between(corners[2 * n], corners[2 * n + 1], x0);
+      far[n] = between(corners[2 * n], corners[2 * n + 1], x1);
+    }
+    const R near0[2] = { between(near[0], near[1], y0), between(near[2], near[3], y0) };
+    const R near1[2] = { between(near[0], near[1], y1), between(near[2], near[3], y1) };
+    const R far0[2] = { between(far[0], far[1], y0), between(far[2], far[3], y0) };
+    const R far1[2] = { between(far[0], far[1], y1), between(far[2], far[3], y1) };
+    const A third = A(1) / A(3);
+    // The blossom: the coordinates of one end mixed with those of the other in all ways.
+    const R b[4] = { between(near0[0], near0[1], z0),
+      third *
+        (between(far0[0], far0[1], z0) + between(near1[0], near1[1], z0) +
+          between(near0[0], near0[1], z1)),
+      third *
+        (between(far1[0], far1[1], z0) + between(far0[0], far0[1], z1) +
+          between(near1[0], near1[1], z1)),
+      between(far1[0], far1[1], z1) };
+    const R ends = larger(b[3], larger(b[0], best));
+    R raised = ends;
+    const R inner = larger(b[1], b[2]);
+    if (anyOf(inner > raised))
+    {
+      raised = larger(peakOf<A>(b, inner, raised), raised);
+    }
+    raised =
+      Lanes<A, R>::template limitedTo<Special>(raised, Lanes<A, R>::largestOf(corners), best);
+    return counts ? raised : best;
+  }
+
+  inline void run(std::ptrdiff_t x) const
+  {
+    const FanCellArrays<A>& c = this->row.columns;
+    const R before = loadFrom(this->row.image + x);
+    R best = Lanes<A, R>::template opened<Special>(before);
+    // Rays beside the field see boxes.
+    const R near = larger(loadFrom(c.fieldNear + x), all(this->row.fieldNear));
+    const R far = smaller(loadFrom(c.fieldFar + x), all(this->row.fieldFar));
+    const M inField = far - near > this->row.shortest;
+    const R begin = inField ? larger(loadFrom(c.fieldBegin + x), all(this->row.fieldBegin))
+                            : larger(loadFrom(c.boxesBegin + x), all(this->row.boxesBegin));
+    const R end = inField ? smaller(loadFrom(c.fieldEnd + x), all(this->row.fieldEnd))
+                          : smaller(loadFrom(c.boxesEnd + x), all(this->row.boxesEnd));
+    const R at = loadFrom(c.at + x), slope = loadFrom(c.slope + x),
+            crossing = loadFrom(c.crossing + x);
+    const R zero = all(A(0)), one = all(A(1));
+    const Cells cells(c.cell + x);
+    // Rays that fall begin in the upper of their two cells.
+    const M falls = (slope < zero) & (crossing < one);
+    for (int p = 0; p < this->row.count; ++p)
+    {
+      const FanCubicPart<A>& part = this->row.parts[p];
+      const R from = larger(begin, all(part.from)), to = smaller(end, all(part.to));
+      const R change = larger(from, smaller(crossing, to));
+      const M first = from < change, second = change < to;
+      if (!anyOf(first | second))
+      {
+        continue;
+      }
+      R voxels[4][3];
+      R most = zero;
+      for (int n = 0; n < 4; ++n)
+      {
+        for (int t = 0; t < 3; ++t)
+        {
+          voxels[n][t] = cells.pick(part.rows[n] + t);
+          most = n + t == 0 ? voxels[0][0] : larger(voxels[n][t], most);
+        }
+      }
+      if (!Special && !anyOf(most > best))
+      {
+        continue;
+      }
+      const R atMost = larger(most, best);
+      R corners[8];
+      if (anyOf(first))
+      {
+        choose(voxels, falls, corners);
+        const R start = at - (falls ? one : zero);
+        best = this->largestFrom(part, corners, start, slope, from, change, best, first);
+      }
+      if (anyOf(second))
+      {
+        choose(voxels, slope > zero, corners);
+        const R start = at - (slope > zero ? one : zero);
+        best = this->largestFrom(part, corners, start, slope, change, to, best, second);
+      }
+      if constexpr (!Special)
+      {
+        best = smaller(best, atMost); // as in parallel views
+      }
+    }
+    Lanes<A, R>::template close<Special>(this->row, x, before, best);
+  }
+
+  /// The voxels of the upper or the lower cell.
+  static inline void choose(const R (&voxels)[4][3], const M& upper, R (&corners)[8])
+  {
+#pragma GCC unroll 4
+    for (int n = 0; n < 4; ++n)
+    {
+      corners[2 * n] = upper ? voxels[n][1] : voxels[n][0];
+      corners[2 * n + 1] = upper ? voxels[n][2] : voxels[n][1];
+    }
+  }
+};
+
+template <class A, bool Special>
+inline void raiseFanCubicRow(const FanCubicRow<A>& row)
+{
+  const std::ptrdiff_t begin = row.pixels.begin, end = row.pixels.end;
+  for (std::ptrdiff_t x = begin; end - begin >= width<A> && x < end; x += width<A>)
+  {
+    FanCubicLoop<A, Pack<A>, Special>(row).run(x + width<A> <= end ? x : end - width<A>);
+  }
+  for (std::ptrdiff_t x = begin; end - begin < width<A> && x < end; ++x)
+  {
+    FanCubicLoop<A, A, Special>(row).run(x);
+  }
+}
+
+template <class A>
+void raiseFanCubics(const FanCubicRow<A>& row)
+{
+  row.special ? raiseFanCubicRow<A, true>(row) : raiseFanCubicRow<A, false>(row);
+}
+}
+}
+
+#endif

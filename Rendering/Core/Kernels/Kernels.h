@@ -1,0 +1,513 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The innermost loops: one row segment in, one row segment out. Kernels.cxx is compiled once per
+ * instruction set and chosen from at run time. Each loop does the same IEEE operations in the same
+ * order whatever the vector width (no fused multiply-add, no reassociation), so every instruction
+ * set gives the same bits.
+ */
+#ifndef splattingKernels_h
+#define splattingKernels_h
+
+#include "Common/ScalarType.h"
+
+#include <type_traits>
+
+namespace splatting
+{
+/// Pixels along a tile of the image, the unit in which parts of slices are skipped, and its rows.
+constexpr int TileWidth = 8;
+constexpr int TileHeight = 4;
+
+enum class InstructionSet
+{
+  Baseline,
+  AVX2,
+  AVX512,
+  AVX512VBMI ///< and instructions that pick bytes
+};
+
+/// Most rows of voxels that a row of pixels meets at a time: three in each of sixteen slices.
+constexpr int MostRows = 48;
+
+/// Among winners, what is still to be found.
+constexpr std::int32_t UnknownWinner = -2;
+
+/// Half-open range of pixels.
+struct Span
+{
+  int begin = 0;
+  int end = 0;
+  bool empty() const { return this->end <= this->begin; }
+};
+
+/// Pixels at an end of a row, a register of them from `first` on, that see some of the rows of
+/// voxels: row r those in [begin[r], end[r]), relative to `first`. All rows are read there.
+struct Rim
+{
+  int first;
+  const int* begin;
+  const int* end;
+};
+
+/// What loops note of the samples that raise pixels: a number each, of equal samples the least.
+struct Noting
+{
+  std::int16_t* notes = nullptr; ///< the first pixel's, in rows as the image has them, or none
+  std::int16_t order = 0;        ///< of the samples that come first
+  bool nearestFirst = false;     ///< whether all that was noted before is less
+};
+
+/// Rows of pixels, and the rows of voxels that the first one meets, shifted so that pixel x meets
+/// rows[r][x].
+template <class T>
+struct Sweep
+{
+  T* image;
+  std::ptrdiff_t imageStride;
+  int height;
+  const T* rows[MostRows];
+  int count;
+  std::ptrdiff_t rowStride;
+  std::ptrdiff_t ahead; ///< to voxels that will be needed next, if memory does not foresee them
+  const Span* runs;     ///< the pixels that count
+  int runCount;
+  Span valid; ///< the pixels that all rows have voxels for
+  Rim rims[2];
+  int rimCount;
+  /// Where rays are cut, pixel x takes voxels of row r if bits[x] & bit[r]; else nullptr.
+  const unsigned char* bits;
+  std::ptrdiff_t bitsStride;
+  const unsigned char* bit;
+  /// Where each slice counts for one run of pixels in a row: pixel x takes voxels of row r if
+  /// sliceRuns[slice[r]] and sees[r] have it, in place of valid and rims; else nullptr.
+  const Span* sliceRuns;
+  std::ptrdiff_t sliceRunsStride;
+  std::ptrdiff_t wholeAhead; ///< to rows that are worth fetching as a whole, or 0
+  const unsigned char* slice;
+  const Span* sees;
+  Noting noting;
+  const std::int8_t* offsets; ///< from noting.order, ascending
+  bool winsOften;             ///< whether many registers of pixels are likely to be raised
+};
+
+/// What the rays of a perspective image do in one slice; see FanSteps and FanWindows for the
+/// arrays, which begin with the first column and the first row.
+template <class T>
+struct CrossedSlice
+{
+  const T* voxels; ///< the slice's first
+  const std::int32_t *firstRow, *lastRow;
+  const double *rowTime, *columnTime;
+  const std::int16_t *rowTick, *columnTick;
+  const std::int32_t *entryBase, *exitBase;
+  const void *entryLanes, *exitLanes;
+  unsigned char bit;  ///< see Crossing::bits
+  std::int16_t order; ///< see Crossing::noting
+};
+
+/// Rows of pixels of a perspective image and the voxels that their rays cross in one slice or two.
+template <class T>
+struct Crossing
+{
+  T* image; ///< the row's first pixel
+  std::ptrdiff_t imageStride;
+  int height;
+  CrossedSlice<T> slices[2];
+  int count; ///< of slices
+  std::ptrdiff_t rowStride;
+  std::ptrdiff_t ahead;       ///< to voxels that will be needed next
+  std::int32_t columns, rows; ///< of voxels
+  const T* none;              ///< a row of the least value
+  const Span* runs; ///< the pixels that count: multiples of 64 bytes, but for the row's end
+  int runCount;
+  /// Where rays are cut, pixel x takes voxels of a slice if bits[x] & its bit; else nullptr.
+  const unsigned char* bits;
+  std::ptrdiff_t bitsStride;
+  /// Voxel n of a ray's path has the note `order` of its slice plus n, or minus if reversed;
+  /// noting.order is that of the first slice, the nearer one.
+  Noting noting;
+  bool reversed;
+};
+
+/// A rectangle of footprint weights and the voxels that it meets first, which are of type A or, as
+/// the volume has them, of another one.
+template <class A, class S = A>
+struct SplatPart
+{
+  const S* source;  ///< the voxel under the first weight of the first pixel
+  const A* weights; ///< rows x columns of them
+  int rows;         ///< 1 to 5
+  int columns;
+};
+
+/// A rectangle of the image, and the parts of the footprint: one per slice that adds to it.
+template <class A, class S = A>
+struct Splat
+{
+  A* image;
+  std::ptrdiff_t imageStride;
+  std::ptrdiff_t width;
+  int height;
+  std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
+  SplatPart<A, S> parts[3];
+  int partCount;
+  /// Where rays are cut, pixel x changes if bits[x] & bit; else nullptr.
+  const unsigned char* bits;
+  std::ptrdiff_t bitsStride;
+  unsigned char bit;
+  /// Pixels of which all change in all rows, as far as that is known.
+  std::ptrdiff_t wholeBegin = 0, wholeEnd = 0;
+  Noting noting;
+  A base = 0;               ///< what is subtracted from the volume's own voxels
+  std::ptrdiff_t ahead = 0; ///< from these to voxels that will be needed next, or 0
+};
+
+/// Loops over voxels of type T.
+template <class T>
+struct VoxelLoops
+{
+  /// Elements of a register.
+  std::ptrdiff_t lanes;
+  /// Pixels of a perspective image that pick their voxels from as many.
+  int group;
+  /// image[x] = max(image[x], rows[0..count)[x]); NaN never wins.
+  void (*maximum)(T* image, const T* const* rows, int count, std::ptrdiff_t n);
+  /// out[x] = the largest of rows[0..count)[x], in whole registers: up to lanes - 1 elements beyond
+  /// n are read and written as well.
+  void (*largest)(const T* const* rows, int count, T* out, std::ptrdiff_t n);
+  /// `maximum` for all rows of pixels: for the runs, as far as they are valid and perhaps some
+  /// valid pixels beside them, and for the rims.
+  void (*sweep)(const Sweep<T>& sweep);
+  /// `maximum` of the voxels that rays cross, each pixel its own.
+  void (*cross)(const Crossing<T>& crossing);
+  /// out[x] = row[x] - base, which must be exact, for some rows of n elements. row[x + ahead] will
+  /// be needed next; unless ahead is 0.
+  void (*widen)(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
+    Accumulator<T> base, std::ptrdiff_t n, int rows, std::ptrdiff_t ahead);
+  /// WorksheetLoops::splat from the volume's own voxels; nullptr for types that take too long.
+  void (*splatVoxels)(const Splat<Accumulator<T>, T>& splat);
+  /// maxima[x] = max(maxima[x], rows[0..count)[x]) and low = min(low, all of them), NaN aside; sets
+  /// special if there are NaN or infinity.
+  void (*survey)(
+    const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low, bool& special);
+  /// out[x] = the largest of row[4 x], row[4 x + 1], row[4 x + 2] and row[4 x + 3].
+  void (*largestOfFour)(const T* row, T* out, std::ptrdiff_t n);
+};
+
+/// Loops over pixels of type P that compare tiles of the image with what is still to come.
+template <class P>
+struct TileLoops
+{
+  /// minima[t] = the least of the pixels [t * TileWidth, (t + 1) * TileWidth) of all rows.
+  void (*minima)(const P* image, std::ptrdiff_t stride, int rows, std::ptrdiff_t tiles, P* minima);
+  /// flags[t] = whether bounds[t] > minima[t].
+  void (*exceeds)(const P* bounds, const P* minima, unsigned char* flags, std::ptrdiff_t n);
+  /// farthest[t] = the largest note of the pixels of tile t that are minima[t]; -1 if these are no
+  /// more than the floor. Notes lie in rows as the pixels do.
+  void (*farthest)(const P* image, const std::int16_t* notes, std::ptrdiff_t stride, int rows,
+    std::ptrdiff_t tiles, const P* minima, P floor, std::int16_t* farthest);
+  /// flags[t] = whether bounds[t] > minima[t], or as large and order < farthest[t].
+  void (*exceedsOrTies)(const P* bounds, const P* minima, const std::int16_t* farthest,
+    std::int16_t order, unsigned char* flags, std::ptrdiff_t n);
+};
+
+/// Loops over the samples that a row of pixels has in one slice. A NaN sample is none, a NaN pixel
+/// has had none yet. Only pixels with mask[x] != 0 change; without a mask all do.
+template <class P>
+struct RayLoops
+{
+  /// image[x] = max(image[x], samples[x]).
+  void (*raise)(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n);
+  /// image[x] = min(image[x], samples[x]).
+  void (*lower)(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n);
+  /// The same as `raise` until ended[x]: from the threshold on, the first lower sample ends it.
+  void (*climb)(P* image, unsigned char* ended, P threshold, const P* samples,
+    const unsigned char* mask, std::ptrdiff_t n);
+  /// winners[x] = place for the first sample of a ray (winners[x] < 0 before) and where the image
+  /// is not what it was `before` the samples were taken.
+  void (*note)(std::int32_t* winners, std::int32_t place, const P* before, const P* image,
+    const P* samples, const unsigned char* mask, std::ptrdiff_t n);
+  /// `raise` where samples may come in any order of slices, and no NaN does: image[x] = samples[x]
+  /// and orders[x] = order where the sample is larger, or as large and order < orders[x]. Where
+  /// there are bits, if bits[x] & bit.
+  void (*raiseNoting)(P* image, std::int16_t* orders, std::int16_t order, const P* samples,
+    const unsigned char* bits, unsigned char bit, std::ptrdiff_t n);
+  /// winners[x] = orders[x], or `last` - orders[x] if reversed; -1 where orders[x] < 0, and
+  /// UnknownWinner where the image is no more than the floor, of which notes say nothing. Whether
+  /// there is one of these.
+  bool (*settle)(const P* image, const std::int16_t* orders, P floor, bool reversed,
+    std::int32_t last, std::int32_t* winners, std::ptrdiff_t n);
+};
+
+/// How depth shading dims the samples of slice k in a row of pixels whose rays have slices first[x]
+/// to last[x].
+template <class A>
+struct Shade
+{
+  A low, ambient, changeRate;
+  A none; ///< what stands where there is no sample; NaN does so always
+  std::int32_t k;
+  bool reversed; ///< whether the ray comes from the last slice
+  const std::int16_t* first;
+  const std::int16_t* last;
+};
+
+/// The least and greatest first and last slices that the rays of tiles are cut to.
+struct TileExtremes
+{
+  std::int16_t *leastFirst, *greatestFirst, *leastLast, *greatestLast; ///< arrays
+};
+
+/// Of depths along rays, in slices.
+struct DepthLimits
+{
+  static constexpr double Rounding = 1e-9; ///< that far outside is inside
+  /// Less than the first slice, and more than the last one.
+  static constexpr double Before = -1.0, Beyond = 32767.0;
+};
+
+/// A plane along a row of pixels: the ray of pixel x meets it at (slope (u + x) + rest) scale.
+struct PlaneRow
+{
+  double slope, rest, scale;
+  int u;
+};
+
+/// Loops over the depths that rays are cut at, and over the slices that are left.
+struct CutLoops
+{
+  /// near[x] = max(near[x], where the ray meets the plane).
+  void (*beginAtPlane)(const PlaneRow& plane, double* near, std::ptrdiff_t n);
+  /// far[x] = min(far[x], where the ray meets the plane).
+  void (*endAtPlane)(const PlaneRow& plane, double* far, std::ptrdiff_t n);
+  /// The first and last of slices [begin, end) that lie between the depths, as RayIntervals says;
+  /// first > last if none do. Whether there are rays that do not have all.
+  bool (*slicesBetween)(const double* near, const double* far, int begin, int end,
+    std::int16_t* first, std::int16_t* last, std::ptrdiff_t n);
+  /// Bit s of bits[x] = whether first[x] <= k + s <= last[x], for s from 0 to `count` - 1.
+  void (*sliceBits)(const std::int16_t* first, const std::int16_t* last, int k, int count,
+    unsigned char* bits, std::ptrdiff_t n);
+  /// The extremes of all tiles of some rows of n pixels.
+  void (*tileExtremes)(const std::int16_t* first, const std::int16_t* last, std::ptrdiff_t stride,
+    int rows, std::ptrdiff_t n, const TileExtremes& tiles);
+  /// How much of tiles counts in slices [begin, end): 0 none, 1 some, 2 all.
+  void (*tileShares)(
+    const TileExtremes& tiles, int begin, int end, unsigned char* shares, std::ptrdiff_t n);
+};
+
+/// Loops over the rays of perspective images.
+struct FanLoops
+{
+  /// Voxels in which rays enter and leave a slice, as in FanSteps::Slice: rays are at
+  /// at[x] + slope[x] from there and at at[x] + slope[x] to here.
+  void (*steps)(const double* at, const double* slope, double from, double to, std::int32_t size,
+    std::int32_t* first, std::int32_t* last, double* time, std::int16_t* tick, std::ptrdiff_t n);
+};
+
+/// Integers that pick elements of type A from a register.
+template <class A>
+using LaneOf = std::conditional_t<sizeof(A) == 4, std::int32_t, std::int64_t>;
+
+/// The weights of the pixels of a fan in a part of a slice; see FanFootprints.
+template <class A>
+struct FanWeights
+{
+  int shape;      ///< of the kernel, a Reconstruction
+  double support; ///< its half-width
+  const double *at, *slope;
+  double depth;     ///< of the part's middle, from the reference
+  double thickness; ///< of the part
+  double pitch;     ///< from ray to ray
+  std::int32_t low, high;
+  int taps;
+  std::int32_t* first; ///< voxels, clamped to [low, high]
+  A* weights;          ///< tap t of pixel x at weights[t * stride + x]
+  std::ptrdiff_t stride;
+};
+
+/// Some rows of voxels, and how each pixel of a row weighs them on its own.
+template <class A>
+struct Resampling
+{
+  const A* voxels; ///< voxel 0 of the first row, which need not exist
+  std::ptrdiff_t voxelStride;
+  A* out; ///< pixel 0 of the first row, likewise
+  std::ptrdiff_t outStride;
+  int rows;
+  const std::int32_t* base;
+  const void* lanes;
+  const A* weights;
+  std::ptrdiff_t stride;
+  int taps;
+};
+
+/// Most pieces of a ray's path in a slice: cut in its middle, and twice along i and j.
+constexpr int MostPieces = 6;
+
+/// A piece of the path of all rays in a slice, as in ExactPieces.h, for one row of pixels.
+template <class A>
+struct CubicPiece
+{
+  const A *low, *high;   ///< the first voxel of pixel 0's cell in its two slices
+  const A* weights;      ///< as in ExactPiece
+  bool curved;           ///< likewise
+  Span inField, inBoxes; ///< the pixels that it counts for
+};
+
+template <class A>
+struct CubicRow
+{
+  A* image;                    ///< pixel 0, which need not exist
+  Span pixels;                 ///< those that are raised
+  Span field;                  ///< those that see the field, others see boxes
+  std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
+  CubicPiece<A> pieces[MostPieces];
+  int count;
+  bool special;              ///< whether there are NaN or infinities
+  const unsigned char* bits; ///< pixel x changes if bits[x] & bit; or nullptr
+  unsigned char bit;
+};
+
+/// What FanCells knows of all columns (or rows) in a slice, depths relative to its middle.
+template <class A>
+struct FanCellArrays
+{
+  const std::int32_t* cell;       ///< the lower of the cells that the ray is in
+  const A *at, *slope;            ///< its place in that cell: at + slope z
+  const A* crossing;              ///< where it leaves one cell for the other; 2 if it does not
+  const A *fieldBegin, *fieldEnd; ///< where it is in the field
+  const A *boxesBegin, *boxesEnd; ///< and in voxels' boxes
+  const A *fieldNear, *fieldFar;  ///< as fieldBegin and fieldEnd, relative to slice 0
+};
+
+/// The depths in a slice in which rays stay in one row of cells and on one side of its middle.
+template <class A>
+struct FanCubicPart
+{
+  A from, to;
+  /// Column 0 of the cell's rows of voxels: two of the lower slice, then two of the upper one.
+  const A* rows[4];
+  A y, z; ///< places in the cell at depth 0
+};
+
+/// One row of pixels in one slice of a perspective image.
+template <class A>
+struct FanCubicRow
+{
+  A* image;    ///< pixel 0, which need not exist
+  Span pixels; ///< those that are raised
+  FanCellArrays<A> columns;
+  A slope; ///< of the row
+  FanCubicPart<A> parts[3];
+  int count;
+  A fieldBegin, fieldEnd, boxesBegin, boxesEnd; ///< of the row, as in FanCellArrays
+  A fieldNear, fieldFar;
+  A shortest;                ///< way through the field that counts as seeing it
+  bool special;              ///< whether there are NaN or infinities
+  const unsigned char* bits; ///< pixel x changes if bits[x] & bit; or nullptr
+  unsigned char bit;
+};
+
+/// Loops over worksheets and images of type A (float or double).
+template <class A>
+struct WorksheetLoops
+{
+  /// Pixels of a perspective image that pick their voxels from as many.
+  int group;
+  void (*fanWeights)(const FanWeights<A>& weights, std::ptrdiff_t n);
+  /// out[x] = the sum of taps times voxels, for all rows and x from begin to end, in whole
+  /// registers, as voxels and weights are read.
+  void (*resample)(const Resampling<A>& rows, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// out[x] = the sum of weights[r] rows[r][x].
+  void (*blend)(const A* const* rows, const A* weights, int count, A* out, std::ptrdiff_t n);
+  /// image[x] = max(image[x], the sum of weights[r] rows[r][x]); where there are bits, if
+  /// bits[x] & bit.
+  void (*raiseBlend)(A* image, const A* const* rows, const A* weights, int count,
+    const unsigned char* bits, unsigned char bit, const Noting& noting, std::ptrdiff_t n);
+  /// Every pixel of the rectangle: the maximum of it and the weighted sum of its voxels, which must
+  /// be finite.
+  void (*splat)(const Splat<A>& splat);
+  /// Pixels become the largest of themselves and the cubics that their rays meet. A cubic with a
+  /// NaN coefficient is left out but for its ends.
+  void (*raiseCubics)(const CubicRow<A>& row);
+  /// The same in perspective views, where each pixel has cubics of its own.
+  void (*raiseFanCubics)(const FanCubicRow<A>& row);
+  /// image[x] = max(image[x], average of rows[0..count)[x], NaN left out, weighted and divided by
+  /// the weights that remain). image[x] = NaN is "no sample yet". Rows may hold infinities.
+  void (*splatValid)(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
+  /// `raise` by low + (samples[x] - low) * (ambient + (1 - n / N) changeRate), the sample being the
+  /// n-th of N from 0 on.
+  void (*shade)(
+    A* image, const Shade<A>& shade, const A* samples, const unsigned char* mask, std::ptrdiff_t n);
+  /// Adds the samples in [low, high].
+  void (*add)(double* sums, std::int32_t* counts, A low, A high, const A* samples,
+    const unsigned char* mask, std::ptrdiff_t n);
+  /// image[x] = clamp(image[x] + base, low, high); NaN stays.
+  void (*finish)(A* image, A base, A low, A high, std::ptrdiff_t n);
+  /// What a worksheet can reach where it weighs its own voxels by 1 - `share` and its neighbours',
+  /// on one side or the other, by `share`, enlarged by `slack` times the magnitude:
+  /// own[t] = own[t] + share * max(0, max(before[t], after[t]) - own[t]) + slack * (...).
+  void (*bound)(
+    A* own, const A* before, const A* after, A share, A slack, A magnitude, std::ptrdiff_t n);
+  /// out[x] = image interpolated bilinearly at start + x step, which must lie between pixels that
+  /// exist.
+  void (*interpolate)(const A* image, std::ptrdiff_t stride, const double start[2],
+    const double step[2], A* out, std::ptrdiff_t n);
+  /// The same at (u, v) of start + x step = (u w, v w, w).
+  void (*interpolateProjective)(const A* image, std::ptrdiff_t stride, const double start[3],
+    const double step[3], A* out, std::ptrdiff_t n);
+  /// out[x] = colors[nearest entry to scale (values[x] - low)], clamped to [0, last].
+  void (*lookUp)(const A* values, A low, A scale, std::int32_t last, const std::uint32_t* colors,
+    std::uint32_t* out, std::ptrdiff_t n);
+};
+
+struct Kernels
+  : CutLoops
+  , FanLoops
+  , VoxelLoops<std::int8_t>
+  , VoxelLoops<std::uint8_t>
+  , VoxelLoops<std::int16_t>
+  , VoxelLoops<std::uint16_t>
+  , VoxelLoops<std::int32_t>
+  , VoxelLoops<std::uint32_t>
+  , VoxelLoops<std::int64_t>
+  , VoxelLoops<std::uint64_t>
+  , VoxelLoops<float>
+  , VoxelLoops<double>
+  , TileLoops<std::int8_t>
+  , TileLoops<std::uint8_t>
+  , TileLoops<std::int16_t>
+  , TileLoops<std::uint16_t>
+  , TileLoops<std::int32_t>
+  , TileLoops<std::uint32_t>
+  , TileLoops<std::int64_t>
+  , TileLoops<std::uint64_t>
+  , TileLoops<float>
+  , TileLoops<double>
+  , RayLoops<std::int8_t>
+  , RayLoops<std::uint8_t>
+  , RayLoops<std::int16_t>
+  , RayLoops<std::uint16_t>
+  , RayLoops<std::int32_t>
+  , RayLoops<std::uint32_t>
+  , RayLoops<std::int64_t>
+  , RayLoops<std::uint64_t>
+  , RayLoops<float>
+  , RayLoops<double>
+  , WorksheetLoops<float>
+  , WorksheetLoops<double>
+{
+};
+
+/// The best instruction set that processor and build have.
+InstructionSet bestInstructionSet();
+
+/// The loops for a set; a set that processor or build lack gives the best one below it.
+const Kernels& kernelsFor(InstructionSet set);
+
+/// "baseline", "AVX2" or "AVX-512".
+const char* nameOf(InstructionSet set);
+}
+
+#endif

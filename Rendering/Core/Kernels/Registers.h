@@ -1,0 +1,373 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * A register full of elements. For Kernels.cxx only, which is compiled for several instruction sets
+ * and says why all of this is in an anonymous namespace.
+ */
+#ifndef splattingRegisters_h
+#define splattingRegisters_h
+
+#include "Common/ScalarType.h"
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC's own intrinsics start from registers that they leave undefined on purpose.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#endif
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+/// For functions of loops in which a call costs more than compilers expect.
+#if defined(__GNUC__)
+#define SPLATTING_INLINE __attribute__((always_inline)) inline
+#else
+#define SPLATTING_INLINE inline
+#endif
+
+namespace splatting
+{
+namespace
+{
+/// Has memory fetch what will be needed soon; nothing need be there.
+inline void prefetch(const void* place)
+{
+#if defined(__GNUC__)
+  __builtin_prefetch(place);
+#else
+  (void)place;
+#endif
+}
+
+#if defined(__GNUC__)
+/// A register full of T. Vector extensions of GCC and Clang; elsewhere one element.
+template <class T>
+struct PackOf
+{
+  typedef T type __attribute__((vector_size(SPLATTING_VECTOR_BYTES)));
+  typedef T loose
+    __attribute__((vector_size(SPLATTING_VECTOR_BYTES), aligned(sizeof(T)), may_alias));
+};
+template <class T>
+using Pack = typename PackOf<T>::type;
+template <class T>
+inline Pack<T> load(const T* p)
+{
+  return *reinterpret_cast<const typename PackOf<T>::loose*>(p);
+}
+template <class T>
+inline void store(T* p, Pack<T> value)
+{
+  *reinterpret_cast<typename PackOf<T>::loose*>(p) = value;
+}
+#else
+template <class T>
+using Pack = T;
+template <class T>
+inline Pack<T> load(const T* p)
+{
+  return *p;
+}
+template <class T>
+inline void store(T* p, Pack<T> value)
+{
+  *p = value;
+}
+#endif
+
+template <class T>
+constexpr std::ptrdiff_t width = sizeof(Pack<T>) / sizeof(T);
+
+/// Integers as wide as elements of type T.
+template <int Size>
+struct IntegerOf;
+template <>
+struct IntegerOf<1>
+{
+  using type = std::int8_t;
+};
+template <>
+struct IntegerOf<2>
+{
+  using type = std::int16_t;
+};
+template <>
+struct IntegerOf<4>
+{
+  using type = std::int32_t;
+};
+template <>
+struct IntegerOf<8>
+{
+  using type = std::int64_t;
+};
+template <class T>
+using Integer = typename IntegerOf<sizeof(T)>::type;
+
+/// A byte for each element of a register of T, widened to its size.
+template <class T>
+inline Pack<Integer<T>> loadBits(const unsigned char* p)
+{
+#if defined(__GNUC__)
+  typedef unsigned char bytes __attribute__((vector_size(width<T>)));
+  typedef unsigned char loose __attribute__((vector_size(width<T>), aligned(1), may_alias));
+  const bytes packed = *reinterpret_cast<const loose*>(p);
+  return __builtin_convertvector(packed, Pack<Integer<T>>);
+#else
+  return static_cast<Integer<T>>(*p);
+#endif
+}
+
+/// Picks neighbouring elements of registers: by bits where instructions take these, elsewhere by
+/// comparing where elements are with where the neighbours begin and end.
+template <class T>
+class LanePicker
+{
+#if defined(__AVX512BW__)
+public:
+  /// Some neighbours.
+  using Run = std::uint64_t;
+
+  static inline Run everything()
+  {
+    return ~Run(0);
+  }
+  /// Elements [begin, end) as far as there are such.
+  static inline Run run(int begin, int end)
+  {
+    const int first = begin > 0 ? begin : 0;
+    const int last = end < static_cast<int>(width<T>) ? end : static_cast<int>(width<T>);
+    return last > first ? everything() >> (64 - (last - first)) << first : Run(0);
+  }
+  static inline Run common(Run a, Run b)
+  {
+    return a & b;
+  }
+  /// `value` in a run, elsewhere `other`.
+  inline Pack<T> pick(Run run, Pack<T> value, Pack<T> other) const
+  {
+    const __m512i yes = reinterpret_cast<__m512i>(value), no = reinterpret_cast<__m512i>(other);
+    __m512i result;
+    if constexpr (sizeof(T) == 1)
+    {
+      result = _mm512_mask_blend_epi8(static_cast<__mmask64>(run), no, yes);
+    }
+    else if constexpr (sizeof(T) == 2)
+    {
+      result = _mm512_mask_blend_epi16(static_cast<__mmask32>(run), no, yes);
+    }
+    else if constexpr (sizeof(T) == 4)
+    {
+      result = _mm512_mask_blend_epi32(static_cast<__mmask16>(run), no, yes);
+    }
+    else
+    {
+      result = _mm512_mask_blend_epi64(static_cast<__mmask8>(run), no, yes);
+    }
+    return reinterpret_cast<Pack<T>>(result);
+  }
+#else
+public:
+  struct Run
+  {
+    int begin, end;
+  };
+
+  LanePicker()
+  {
+    for (std::ptrdiff_t n = 0; n < width<T>; ++n)
+    {
+      reinterpret_cast<Unsigned*>(&this->Lanes)[n] = static_cast<Unsigned>(n);
+    }
+  }
+  static inline Run everything()
+  {
+    return { 0, static_cast<int>(width<T>) };
+  }
+  static inline Run run(int begin, int end)
+  {
+    return common({ begin, end }, everything());
+  }
+  static inline Run common(const Run& a, const Run& b)
+  {
+    return { a.begin > b.begin ? a.begin : b.begin, a.end < b.end ? a.end : b.end };
+  }
+  inline Pack<T> pick(const Run& run, Pack<T> value, Pack<T> other) const
+  {
+    const int count = run.end > run.begin ? run.end - run.begin : 0;
+    const Pack<Unsigned> beyond = this->Lanes - static_cast<Unsigned>(run.begin);
+    return beyond < static_cast<Unsigned>(count) ? value : other;
+  }
+
+private:
+  using Unsigned = std::make_unsigned_t<Integer<T>>;
+
+  Pack<Unsigned> Lanes;
+#endif
+};
+
+/// A register of elements, widened to the accumulator's type. Where that is float, compilers need
+/// to be told the instruction that widens small integers.
+template <class T>
+inline Pack<Accumulator<T>> loadWidened(const T* p)
+{
+  using A = Accumulator<T>;
+  if constexpr (std::is_same_v<T, A>)
+  {
+    return load(p);
+  }
+  else
+  {
+    A out[width<A>];
+    for (std::ptrdiff_t x = 0; x < width<A>; ++x)
+    {
+      out[x] = static_cast<A>(p[x]);
+    }
+    return load(out);
+  }
+}
+
+#if defined(__AVX512F__)
+inline __m512 toFloat(__m512i integers)
+{
+  return _mm512_cvtepi32_ps(integers);
+}
+inline Pack<float> loadWidened(const std::uint8_t* p)
+{
+  return toFloat(_mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int8_t* p)
+{
+  return toFloat(_mm512_cvtepi8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::uint16_t* p)
+{
+  return toFloat(_mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int16_t* p)
+{
+  return toFloat(_mm512_cvtepi16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))));
+}
+#elif defined(__AVX2__)
+inline __m256 toFloat(__m256i integers)
+{
+  return _mm256_cvtepi32_ps(integers);
+}
+inline Pack<float> loadWidened(const std::uint8_t* p)
+{
+  return toFloat(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int8_t* p)
+{
+  return toFloat(_mm256_cvtepi8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::uint16_t* p)
+{
+  return toFloat(_mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+inline Pack<float> loadWidened(const std::int16_t* p)
+{
+  return toFloat(_mm256_cvtepi16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))));
+}
+#endif
+
+/// Whether advanced() is an instruction.
+#if defined(__AVX512F__)
+constexpr bool AdvancesRegisters = true;
+#else
+constexpr bool AdvancesRegisters = false;
+#endif
+
+/// All elements of one register but the first, then the first of another.
+template <class P>
+inline P advanced(P front, P back)
+{
+#if defined(__AVX512F__)
+  if constexpr (std::is_same_v<P, Pack<float>>)
+  {
+    return reinterpret_cast<P>(
+      _mm512_alignr_epi32(reinterpret_cast<__m512i>(back), reinterpret_cast<__m512i>(front), 1));
+  }
+#endif
+  (void)back;
+  return front;
+}
+
+/// Whether any element of a comparison's result is true.
+template <class M>
+inline bool anyOf(const M& mask)
+{
+  if constexpr (std::is_arithmetic_v<M>)
+  {
+    return mask != 0;
+  }
+  else
+  {
+#if defined(__AVX512F__)
+    return _mm512_test_epi32_mask(
+             reinterpret_cast<const __m512i&>(mask), reinterpret_cast<const __m512i&>(mask)) != 0;
+#elif defined(__AVX2__)
+    return _mm256_movemask_epi8(reinterpret_cast<const __m256i&>(mask)) != 0;
+#elif defined(__SSE2__)
+    return _mm_movemask_epi8(reinterpret_cast<const __m128i&>(mask)) != 0;
+#else
+    bool any = false;
+    for (std::size_t n = 0; n < sizeof(M) / sizeof(mask[0]); ++n)
+    {
+      any = any || mask[n] != 0;
+    }
+    return any;
+#endif
+  }
+}
+
+/// The larger; the second if either is NaN.
+template <class P>
+inline P larger(P a, P b)
+{
+  return a > b ? a : b;
+}
+
+template <class P>
+inline P smaller(P a, P b)
+{
+  return a < b ? a : b;
+}
+
+/// Calls block.run<V>(x) for blocks of V registers that cover [0, n), the last one overlapping the
+/// one before (a maximum may be taken twice), and single(x) for each x if n is too short for one.
+template <class T, class Block, class Single>
+inline void blocks(std::ptrdiff_t n, Block&& block, Single&& single)
+{
+  constexpr std::ptrdiff_t w = width<T>;
+  std::ptrdiff_t x = 0;
+  for (; n - x >= 4 * w; x += 4 * w)
+  {
+    block.template run<4>(x);
+  }
+  if (n - x >= 2 * w)
+  {
+    block.template run<2>(x);
+    x += 2 * w;
+  }
+  if (n - x >= w)
+  {
+    block.template run<1>(x);
+    x += w;
+  }
+  if (x < n && n >= w)
+  {
+    block.template run<1>(n - w);
+    x = n;
+  }
+  for (; x < n; ++x)
+  {
+    single(x);
+  }
+}
+}
+}
+
+#endif

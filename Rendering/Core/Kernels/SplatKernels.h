@@ -1,0 +1,308 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Footprints over voxels: the worksheets of parallel views, a few rows of a slice at a time, in
+ * registers. For Kernels.cxx only, which says why all of this is in an anonymous namespace.
+ */
+#ifndef splattingSplatKernels_h
+#define splattingSplatKernels_h
+
+#include "Kernels/Kernels.h"
+#include "Kernels/NotingKernels.h"
+#include "Kernels/Registers.h"
+
+namespace splatting
+{
+namespace
+{
+/// Whether footprints weigh voxels of this type without a copy in the accumulator's.
+template <class T>
+constexpr bool weighsOwn = std::is_same_v<Accumulator<T>, float> && sizeof(T) <= 4;
+
+/// A register of voxels as worksheets weigh them.
+template <class A, class S>
+inline Pack<A> fetch(const Splat<A, S>& s, const S* voxels)
+{
+  if constexpr (std::is_same_v<A, S>)
+  {
+    (void)s;
+    return load<A>(voxels);
+  }
+  else
+  {
+    return loadWidened(voxels) - s.base;
+  }
+}
+
+/// V registers of voxels from `row` on, where those from the voxel before are at hand. Where voxels
+/// have to be converted, taking them from these is cheaper; the last one is fetched, so that
+/// nothing is read that is not needed.
+template <int V, class A, class S>
+inline void nextColumn(const Splat<A, S>& s, const S* row, Pack<A> (&voxels)[V])
+{
+  constexpr int advances = AdvancesRegisters && !std::is_same_v<A, S> ? V - 1 : 0;
+#pragma GCC unroll 4
+  for (int v = 0; v < V; ++v)
+  {
+    voxels[v] = v < advances ? advanced(voxels[v], voxels[v + 1 < V ? v + 1 : v])
+                             : fetch<A, S>(s, row + v * width<A>);
+  }
+}
+
+/// Adds one part of the footprint to the worksheets of Rows x V registers. Rows of pixels share
+/// rows of voxels, so each register of voxels is loaded once for all of them; a pixel's sum still
+/// runs through the weights row by row.
+template <int Rows, int V, int WeightRows, class A, class S>
+inline void addPart(
+  const Splat<A, S>& s, const SplatPart<A, S>& part, const S* source, Pack<A> (&sum)[Rows][V])
+{
+  const A* const weights = part.weights;
+  const int columns = part.columns;
+#pragma GCC unroll 8
+  for (int r = 0; r < Rows + WeightRows - 1; ++r)
+  {
+    const S* const row = source + r * s.sourceStride;
+    for (int v = 0; v < V && !std::is_same_v<A, S>; ++v)
+    {
+      prefetch(row + v * width<A> + s.ahead);
+    }
+    Pack<A> voxels[V];
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      voxels[v] = fetch<A, S>(s, row + v * width<A>);
+    }
+    for (int i = 0;;)
+    {
+#pragma GCC unroll 4
+      for (int o = 0; o < Rows; ++o)
+      {
+        if (r - o >= 0 && r - o < WeightRows)
+        {
+          const A weight = weights[(r - o) * columns + i];
+#pragma GCC unroll 4
+          for (int v = 0; v < V; ++v)
+          {
+            sum[o][v] += weight * voxels[v];
+          }
+        }
+      }
+      if (++i == columns)
+      {
+        break;
+      }
+      nextColumn<V, A, S>(s, row + i, voxels);
+    }
+  }
+}
+
+/// Raises Rows x V registers of pixels to their sums.
+template <class A, int Rows, int V, bool Cut, bool Notes, class S>
+inline void raiseTile(const Splat<A, S>& s, std::ptrdiff_t x, int y, Pack<A> (&sum)[Rows][V])
+{
+#pragma GCC unroll 4
+  for (int o = 0; o < Rows; ++o)
+  {
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      const std::ptrdiff_t at = (y + o) * s.imageStride + x + v * width<A>;
+      const Pack<A> before = load<A>(s.image + at);
+      Pack<Integer<A>> counts = ~Pack<Integer<A>>{};
+      if constexpr (Cut)
+      {
+        const Pack<Integer<A>> bits =
+          loadBits<A>(s.bits + (y + o) * s.bitsStride + x + v * width<A>);
+        counts = (bits & static_cast<Integer<A>>(s.bit)) != 0;
+        sum[o][v] = counts ? sum[o][v] : before;
+      }
+      if constexpr (Notes)
+      {
+        noteSums<A>(s.noting, at, sum[o][v], before, counts);
+      }
+      store<A>(s.image + at, larger(sum[o][v], before));
+    }
+  }
+}
+
+/// Rows x V registers of pixels, from (x, y) of the rectangle.
+template <class A, int Rows, int V, bool Cut, class S>
+inline void splatTile(const Splat<A, S>& s, std::ptrdiff_t x, int y)
+{
+  Pack<A> sum[Rows][V];
+#pragma GCC unroll 4
+  for (int o = 0; o < Rows; ++o)
+  {
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v)
+    {
+      sum[o][v] = Pack<A>{};
+    }
+  }
+  for (int p = 0; p < s.partCount; ++p)
+  {
+    const SplatPart<A, S>& part = s.parts[p];
+    const S* const source = part.source + y * s.sourceStride + x;
+    switch (part.rows)
+    {
+      case 1:
+        addPart<Rows, V, 1>(s, part, source, sum);
+        break;
+      case 2:
+        addPart<Rows, V, 2>(s, part, source, sum);
+        break;
+      case 3:
+        addPart<Rows, V, 3>(s, part, source, sum);
+        break;
+      case 4:
+        addPart<Rows, V, 4>(s, part, source, sum);
+        break;
+      default:
+        addPart<Rows, V, 5>(s, part, source, sum);
+        break;
+    }
+  }
+  s.noting.notes ? raiseTile<A, Rows, V, Cut, true>(s, x, y, sum)
+                 : raiseTile<A, Rows, V, Cut, false>(s, x, y, sum);
+}
+
+template <class A, bool Cut, class S>
+inline void splatPixel(const Splat<A, S>& s, std::ptrdiff_t x, int y)
+{
+  if (Cut && !(s.bits[y * s.bitsStride + x] & s.bit))
+  {
+    return;
+  }
+  A sum = 0;
+  for (int p = 0; p < s.partCount; ++p)
+  {
+    const SplatPart<A, S>& part = s.parts[p];
+    for (int j = 0; j < part.rows; ++j)
+    {
+      for (int i = 0; i < part.columns; ++i)
+      {
+        const A voxel = static_cast<A>(part.source[(y + j) * s.sourceStride + x + i]);
+        sum += part.weights[j * part.columns + i] * (std::is_same_v<A, S> ? voxel : voxel - s.base);
+      }
+    }
+  }
+  const std::ptrdiff_t at = y * s.imageStride + x;
+  A& pixel = s.image[at];
+  noteSum(s.noting, at, sum, pixel);
+  pixel = larger(sum, pixel);
+}
+
+template <class A, int Rows, bool Cut, class S>
+struct SplatBlock
+{
+  const Splat<A, S>& splat;
+  std::ptrdiff_t begin;
+  int y;
+  template <int V>
+  inline void run(std::ptrdiff_t x) const
+  {
+    // Rows x V sums must fit the registers, of which there are 32 with AVX-512 and 16 without.
+    if constexpr (V == 4 && Rows == 4 && SPLATTING_VECTOR_BYTES < 64)
+    {
+      this->run<2>(x);
+      this->run<2>(x + 2 * width<A>);
+    }
+    else
+    {
+      splatTile<A, Rows, V, Cut>(this->splat, this->begin + x, this->y);
+    }
+  }
+};
+
+/// Pixels `begin` to `end` of some rows.
+template <class A, int Rows, bool Cut, class S>
+inline void splatStrip(const Splat<A, S>& s, int y, std::ptrdiff_t begin, std::ptrdiff_t end)
+{
+  blocks<A>(end - begin, SplatBlock<A, Rows, Cut, S>{ s, begin, y },
+    [&](std::ptrdiff_t x)
+    {
+      for (int o = 0; o < Rows; ++o)
+      {
+        splatPixel<A, Cut>(s, begin + x, y + o);
+      }
+    });
+}
+
+template <class A, int Rows, class S>
+inline void splatRows(const Splat<A, S>& s, int y)
+{
+  if (!s.bits)
+  {
+    splatStrip<A, Rows, false>(s, y, 0, s.width);
+    return;
+  }
+  // Bits are asked beside the pixels of which all change, in whole registers if there are any.
+  constexpr std::ptrdiff_t w = width<A>;
+  const std::ptrdiff_t begin = (s.wholeBegin + w - 1) / w * w;
+  const std::ptrdiff_t last = s.width - w;
+  const std::ptrdiff_t end = s.wholeEnd < s.width && s.wholeEnd > last ? last : s.wholeEnd;
+  if (end - begin < 2 * w)
+  {
+    splatStrip<A, Rows, true>(s, y, 0, s.width);
+    return;
+  }
+  splatStrip<A, Rows, true>(s, y, 0, begin);
+  splatStrip<A, Rows, false>(s, y, begin, end);
+  splatStrip<A, Rows, true>(s, y, end, s.width);
+}
+
+template <class A, class S>
+void splat(const Splat<A, S>& s)
+{
+  int y = 0;
+  for (; y + 4 <= s.height; y += 4)
+  {
+    splatRows<A, 4>(s, y);
+  }
+  for (; y < s.height; ++y)
+  {
+    splatRows<A, 1>(s, y);
+  }
+}
+
+template <class A>
+void splatValid(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n)
+{
+  for (std::ptrdiff_t x = 0; x < n; ++x)
+  {
+    A sum = 0, weight = 0;
+    for (int t = 0; t < count; ++t)
+    {
+      const A value = rows[t][x];
+      if (value == value)
+      {
+        sum += weights[t] * value;
+        weight += weights[t];
+      }
+    }
+    // All weights add up to exactly 1, so that nothing changes where there is no NaN. The quotient
+    // is NaN if nothing is left, or if opposite infinities met.
+    const A average = sum / weight;
+    if (average > image[x] || (image[x] != image[x] && average == average))
+    {
+      image[x] = average;
+    }
+  }
+}
+
+template <class T>
+constexpr decltype(VoxelLoops<T>::splatVoxels) splatOwn()
+{
+  if constexpr (weighsOwn<T>)
+  {
+    return &splat<Accumulator<T>, T>;
+  }
+  else
+  {
+    return nullptr;
+  }
+}
+}
+}
+
+#endif

@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What all parts of one projection share.
+ */
+#ifndef splattingFrame_h
+#define splattingFrame_h
+
+#include "Geometry/FanSteps.h"
+#include "Kernels/Kernels.h"
+#include "Projection/ShearImage.h"
+#include "Volume/VolumeIndex.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace splatting
+{
+/// One slice as seen by all pixels.
+struct SliceGeometry
+{
+  RayPath path;             ///< of parallel views
+  int vBegin = 0, vEnd = 0; ///< image rows whose rays cross the slice
+  int innerBegin = 0,
+      innerEnd = 0; ///< those whose whole path lies in it: all but a few at either end
+  Span inner;       ///< pixels that the slice covers in these rows
+  std::vector<Span> lower, upper; ///< and in each row before and after
+
+  const Span& span(int v) const
+  {
+    return v < this->innerBegin ? this->lower[v - this->vBegin]
+      : v < this->innerEnd      ? this->inner
+                                : this->upper[v - this->innerEnd];
+  }
+};
+
+/// How the rays of a perspective image run through the volume.
+struct PerspectiveSteps
+{
+  FanSteps columns, rows;
+
+  /// The voxels of one pixel's ray in slice k; those outside the volume may be closer than they
+  /// are.
+  RayPath path(int u, int v, int k) const;
+};
+
+/// @param steps  of perspective images, else ignored
+std::vector<SliceGeometry>& findSlices(const ShearWarp& geometry,
+  std::vector<SliceGeometry>& slices, const PerspectiveSteps& steps = {});
+
+/// The slices that the rays of a row of pixels cross.
+class CrossedSlices
+{
+public:
+  /// The slices must outlive their use.
+  void reset(const std::vector<SliceGeometry>& slices, int width);
+  /// The first and the last one for each pixel; first > last where there are none.
+  void find(int v, std::int16_t* first, std::int16_t* last) const;
+
+private:
+  const std::vector<SliceGeometry>* Slices = nullptr;
+  std::vector<std::int16_t> First, Last; // for rows whose paths lie in all slices
+};
+
+class CutMap;
+class Watch;
+struct OutlineSpace;
+struct ProjectionSettings;
+struct WalkSpace;
+
+/// Sets size and spans of an image and, if samples are left out, its mask.
+void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
+  const CutMap& cuts, OutlineSpace& space, ShearImage& image);
+
+template <class T>
+constexpr T leastValue()
+{
+  using Limits = std::numeric_limits<T>;
+  return Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
+}
+template <class T>
+constexpr T greatestValue()
+{
+  using Limits = std::numeric_limits<T>;
+  return Limits::has_infinity ? Limits::infinity() : Limits::max();
+}
+
+/// Tiles that a walk met, and those that it splatted.
+struct TileCount
+{
+  std::int64_t met = 0;
+  std::int64_t splatted = 0;
+};
+
+/// One projection of a volume, whatever the type of its voxels.
+struct Frame
+{
+  VolumeIndex& index;
+  const ProjectionSettings& settings;
+  const ShearWarp& geometry;
+  const ShearWarp& whole; // of which `geometry` is a part, or the same
+  const Kernels& kernels;
+  VolumeIndex::Range range;
+  const std::vector<SliceGeometry>& sliceGeometry;
+  const PerspectiveSteps& steps;
+  const CutMap& cuts;
+  double floor; // as in ProjectionSettings
+  ShearImage& image;
+  WalkSpace& space;
+  Watch& watch;
+  /// How it is walked: all samples, ray by ray; or along chains; or with bricks; or densely.
+  bool byRays;
+  const LineIndex* lines;
+  const BrickMaxima* bricks;
+
+  Slices slices = {}; // those that are walked at present
+  /// If the image tells its winners: where each pixel's value comes from, see orderOfStep().
+  std::int16_t* orders = nullptr;
+  /// Whether slices are walked from the viewer on: of equal samples the first one met wins.
+  bool nearestFirst = false;
+  TileCount count = {};
+
+  template <class T>
+  const T* voxelRow(int j, int k) const
+  {
+    return static_cast<const T*>(this->slices.voxels) + j * this->slices.rowStride +
+      k * this->slices.sliceStride;
+  }
+
+  std::int16_t* ordersOfRow(int v) const
+  {
+    return this->orders + std::ptrdiff_t(v) * this->image.width;
+  }
+  /// Steps as in ShearImage::winners, counted from the viewer on; and back again.
+  int orderOfStep(int step) const
+  {
+    return this->geometry.reversed() ? StepsPerSlice * this->geometry.size().z - 1 - step : step;
+  }
+  /// The least that the steps of a layer have.
+  std::int16_t nearestOrder(int z) const
+  {
+    const int first = z * BrickDepth, end = std::min(first + BrickDepth, this->geometry.size().z);
+    const int step = this->geometry.reversed() ? StepsPerSlice * end - 1 : StepsPerSlice * first;
+    return static_cast<std::int16_t>(this->orderOfStep(step));
+  }
+  /// The n-th of some slices or layers, from the viewer on if winners are noted.
+  int nth(const Span& some, int n) const
+  {
+    return this->orders && this->geometry.reversed() ? some.end - 1 - n : some.begin + n;
+  }
+
+  /// The pixels of row v in [vBegin, vEnd) whose rays cross slice k.
+  const Span& pixels(int v, int k) const { return this->sliceGeometry[k].span(v); }
+};
+
+/// Slices of a volume whose steps Frame::orders can hold.
+constexpr int MostNoted = std::numeric_limits<std::int16_t>::max() / StepsPerSlice;
+
+/// Most layers that walks take together where they note winners.
+constexpr int LayersTogether = 4;
+
+/// How far beyond the volume worksheets may read: a footprint and the drift of a slice. Less than a
+/// tile.
+constexpr int Beside = 4;
+
+/// The voxels that the pixels of a layer read, relative to the pixel.
+struct Window
+{
+  int iMin = std::numeric_limits<int>::max(), iMax = std::numeric_limits<int>::lowest();
+  int jMin = std::numeric_limits<int>::max(), jMax = std::numeric_limits<int>::lowest();
+
+  void add(int di, int dj)
+  {
+    this->iMin = std::min(this->iMin, di);
+    this->iMax = std::max(this->iMax, di);
+    this->jMin = std::min(this->jMin, dj);
+    this->jMax = std::max(this->jMax, dj);
+  }
+};
+
+inline Span slicesOfLayer(int layer, const glm::ivec3& size)
+{
+  return { layer * BrickDepth, std::min((layer + 1) * BrickDepth, size.z) };
+}
+
+/// The slices that rows [v0, v1) meet: a range, because the stack only moves one way.
+inline Span slicesOf(const std::vector<SliceGeometry>& slices, int v0, int v1)
+{
+  const auto meets = [=](const SliceGeometry& s) { return s.vBegin < v1 && s.vEnd > v0; };
+  const auto first = std::find_if(slices.begin(), slices.end(), meets);
+  const auto last = std::find_if(slices.rbegin(), slices.rend(), meets).base();
+  return { static_cast<int>(first - slices.begin()),
+    static_cast<int>(std::max(first, last) - slices.begin()) };
+}
+
+inline Span common(const Span& a, const Span& b)
+{
+  return { std::max(a.begin, b.begin), std::min(a.end, b.end) };
+}
+
+/// The largest value of type T that is no more than x; the least one if there is none.
+template <class T>
+T roundedDown(double x)
+{
+  if (!(x > static_cast<double>(leastValue<T>())))
+  {
+    return leastValue<T>();
+  }
+  if (x >= static_cast<double>(greatestValue<T>()))
+  {
+    return greatestValue<T>();
+  }
+  if constexpr (std::numeric_limits<T>::is_integer)
+  {
+    return static_cast<T>(std::floor(x));
+  }
+  else
+  {
+    const T value = static_cast<T>(x);
+    return value > x ? std::nextafter(value, leastValue<T>()) : value;
+  }
+}
+
+/// What pixels of a preview start from: no voxel is less.
+template <class T>
+T previewFloor(const Frame& frame)
+{
+  // The range's double need not be a 64-bit integer's exact value.
+  constexpr bool exact = !std::numeric_limits<T>::is_integer || sizeof(T) < 8;
+  const T low = exact ? static_cast<T>(frame.range.low) : leastValue<T>();
+  return std::max(low, roundedDown<T>(frame.floor));
+}
+
+/// Sets rows to "no sample": pixels that no ray's sample will reach to the greatest value, so that
+/// a tile's least value is that of the others; these to the floor, above which samples count.
+template <class P>
+void openRows(ShearImage& image, P floor, int v0, int v1)
+{
+  const P empty = image.special ? std::numeric_limits<P>::quiet_NaN() : floor;
+  const P outside = image.special ? empty : greatestValue<P>();
+  for (int v = v0; v < v1; ++v)
+  {
+    P* const row = image.row<P>(v);
+    const Span& span = image.spans[v];
+    std::fill(row, row + image.width, outside);
+    if (image.mask.empty())
+    {
+      std::fill(row + span.begin, row + std::max(span.begin, span.end), empty);
+      continue;
+    }
+    const unsigned char* const mask = &image.mask[std::ptrdiff_t(v) * image.width];
+    const Span pixels = span; // not what a pixel might overwrite
+    for (int u = pixels.begin; u < pixels.end; ++u)
+    {
+      row[u] = mask[u] ? empty : outside;
+    }
+  }
+}
+
+/// Pixels that no ray meets were marked for the walk; they are "no sample" again.
+template <class P>
+void closeRows(ShearImage& image, int v0, int v1)
+{
+  const P empty = image.special ? std::numeric_limits<P>::quiet_NaN() : leastValue<P>();
+  for (int v = v0; v < v1; ++v)
+  {
+    P* const row = image.row<P>(v);
+    const Span& span = image.spans[v];
+    std::fill(row, row + std::min(span.begin, image.width), empty);
+    std::fill(row + std::max(span.begin, span.end), row + image.width, empty);
+  }
+}
+}
+
+#endif

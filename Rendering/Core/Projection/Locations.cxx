@@ -1,0 +1,449 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Projection/Locations.h"
+
+#include "Sampling/FieldOnRay.h"
+
+#include <vtkSMPTools.h>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <cmath>
+#include <memory>
+
+namespace splatting
+{
+namespace
+{
+/**
+ * Of the voxels of a slice that a footprint weighs, the one that adds most. A voxel can be met more
+ * than once, where footprints stick out of the volume or have parts.
+ */
+class LargestShare
+{
+public:
+  void add(const glm::ivec2& voxel, double weight, double value)
+  {
+    int n = 0;
+    while (n < this->Count && this->Items[n].voxel != voxel)
+    {
+      ++n;
+    }
+    if (n == this->Count && n < static_cast<int>(this->Items.size()))
+    {
+      this->Items[this->Count++] = { voxel, 0.0, value };
+    }
+    if (n < this->Count)
+    {
+      this->Items[n].weight += weight;
+    }
+  }
+
+  /// @param from  the value that adds nothing
+  glm::ivec2 voxel(double from) const
+  {
+    glm::ivec2 best(-1);
+    double most = -1.0, heaviest = -1.0;
+    for (int n = 0; n < this->Count; ++n)
+    {
+      const Item& item = this->Items[n];
+      const double share = item.weight * std::abs(item.value - from);
+      if (share > most || (share == most && item.weight > heaviest))
+      {
+        best = item.voxel;
+        most = share;
+        heaviest = item.weight;
+      }
+    }
+    return best;
+  }
+
+private:
+  struct Item
+  {
+    glm::ivec2 voxel{ -1 };
+    double weight, value;
+  };
+  std::array<Item, 128> Items;
+  int Count = 0;
+};
+
+/// Where the trilinear field along the ray of a shear pixel is largest (or least) in slice k; the
+/// nearest to the viewer of such places.
+template <class T>
+double extremumOf(
+  const PermutedVoxels<T>& voxels, const ShearWarp& geometry, int u, int v, int k, bool least)
+{
+  const FieldRay ray = rayOfPixel(geometry, u, v);
+  const glm::dvec2 depths = depthsInField(geometry, ray), faces = geometry.faces(k);
+  Extremum best{ static_cast<double>(k) };
+  FieldOnRay<T>(voxels, geometry, glm::ivec3(0))
+    .take(
+      ray, { std::max(depths.x, faces.x), std::min(depths.y, faces.y) }, least,
+      [](int) { return true; }, best);
+  return best.depth;
+}
+
+/// Finds the voxels of the winners of a shear image, or of one of its phases; (i, j, k) as its axes
+/// are permuted.
+template <class T>
+class VoxelFinder
+{
+public:
+  using A = Accumulator<T>;
+
+  VoxelFinder(const Located& located, const ShearWarp& geometry, GeneralTable& table)
+    : Source(located),
+      Geometry(geometry),
+      Voxels(located.volume, Geometry)
+  {
+    for (int k = 0; k < geometry.size().z && !geometry.isPerspective(); ++k)
+    {
+      this->Paths.push_back(geometry.rayPath(k));
+    }
+    const ProjectionSettings& settings = located.settings;
+    const bool standard = settings.quality == Quality::Standard;
+    const Kernel kernel = standard ? Kernel{ Reconstruction::Box } : settings.kernel;
+    if (standard || settings.quality == Quality::High)
+    {
+      this->Geometry.isPerspective()
+        ? this->Own.find(
+            this->Geometry, this->Geometry, kernel, kernelsFor(settings.instructionSet))
+        : findFootprints(this->Geometry, kernel, settings.footprintSampling, weightBits<T>, table,
+            this->Footprints);
+    }
+  }
+
+  glm::ivec3 find(int u, int v, int step) const
+  {
+    const int k = step / StepsPerSlice;
+    if (!this->Source.volume.voxels && this->Source.settings.quality != Quality::Preview)
+    {
+      return this->inMiddle(u, v, k);
+    }
+    switch (this->Source.settings.quality)
+    {
+      case Quality::Preview:
+        return this->onPath(u, v, k, step % StepsPerSlice);
+      case Quality::Exact:
+        return this->atExtremum(u, v, k);
+      default:
+        return { this->inFootprint(u, v, k), k };
+    }
+  }
+
+  glm::ivec3 inMiddle(int u, int v, int k) const
+  {
+    const glm::ivec2 voxel(glm::round(this->Geometry.onRay(u, v, k)));
+    return { glm::clamp(voxel, glm::ivec2(0), glm::ivec2(this->Geometry.size()) - 1), k };
+  }
+
+private:
+  static constexpr int MostReach = 3; ///< of a footprint, from its nearest voxel
+
+  glm::ivec3 onPath(int u, int v, int k, int t) const
+  {
+    if (this->Geometry.isPerspective())
+    {
+      const RayPath path = this->Geometry.voxelsOnRay(u, v, k);
+      return { path.di[t], path.dj[t], k };
+    }
+    const RayPath& path = this->Paths[k];
+    return { u + path.di[t], v + path.dj[t], k };
+  }
+
+  glm::ivec3 atExtremum(int u, int v, int k) const
+  {
+    const bool least = this->Source.settings.reduction == Reduction::Minimum;
+    const double z = extremumOf<T>(this->Voxels, this->Geometry, u, v, k, least);
+    const glm::dvec2 at = this->Geometry.onRay(u, v, z);
+    return glm::clamp(
+      glm::ivec3(glm::round(glm::dvec3(at, z))), glm::ivec3(0), this->Geometry.size() - 1);
+  }
+
+  glm::ivec2 inFootprint(int u, int v, int k) const
+  {
+    const glm::ivec3 last = this->Geometry.size() - 1;
+    const double from =
+      this->Source.settings.reduction == Reduction::Minimum ? this->Source.high : this->Source.low;
+    if (!this->Geometry.isPerspective())
+    {
+      const glm::ivec2 low = glm::ivec2(u, v) - this->Footprints[k].nearest - MostReach;
+      const glm::ivec2 high = low + 2 * MostReach;
+      if (low.x >= 0 && low.y >= 0 && high.x <= last.x && high.y <= last.y && k > 0 && k < last.z)
+      {
+        return this->inWholeFootprint(u, v, k, from);
+      }
+    }
+    // The outermost voxels are met again beyond the rim, those of the outermost slices as well.
+    LargestShare shares;
+    const auto add = [&](int i, int j, int slice, double weight)
+    {
+      const glm::ivec3 voxel = glm::clamp(glm::ivec3(i, j, slice), glm::ivec3(0), last);
+      const T value = this->Voxels.at(voxel.x, voxel.y, k);
+      if (voxel.z == k && weight > 0.0 && value == value)
+      {
+        shares.add(glm::ivec2(voxel), weight, static_cast<double>(value));
+      }
+    };
+    if (this->Geometry.isPerspective())
+    {
+      this->Own.forVoxels(
+        u, v, k, [&](int i, int j, int slice, double weight) { add(i, j, slice, weight); });
+    }
+    else
+    {
+      const SliceFootprint<A>& footprint = this->Footprints[k];
+      for (int t = 0; t < footprint.taps.size(); ++t)
+      {
+        const Tap& tap = footprint.taps[t];
+        add(u - footprint.nearest.x + tap.di, v - footprint.nearest.y + tap.dj, k + tap.slice,
+          footprint.weights[t]);
+      }
+    }
+    return shares.voxel(from);
+  }
+
+  /// Of a parallel view's footprint that does not stick out of the volume: each voxel is met once.
+  glm::ivec2 inWholeFootprint(int u, int v, int k, double from) const
+  {
+    const SliceFootprint<A>& footprint = this->Footprints[k];
+    const glm::ivec2 middle = glm::ivec2(u, v) - footprint.nearest;
+    const T* const voxels = this->Voxels.pointer(middle.x, middle.y, k);
+    glm::ivec2 best(-1);
+    double most = -1.0, heaviest = -1.0;
+    for (int t = 0; t < footprint.taps.size(); ++t)
+    {
+      const Tap& tap = footprint.taps[t];
+      if (tap.slice != 0)
+      {
+        continue;
+      }
+      const double value = static_cast<double>(voxels[this->Voxels.place(tap.di, tap.dj, 0)]);
+      const double weight = footprint.weights[t], share = weight * std::abs(value - from);
+      if (share > most || (share == most && weight > heaviest))
+      {
+        best = middle + glm::ivec2(tap.di, tap.dj);
+        most = share;
+        heaviest = weight;
+      }
+    }
+    return best;
+  }
+
+  const Located& Source;
+  const ShearWarp& Geometry;
+  PermutedVoxels<T> Voxels;
+  std::vector<RayPath> Paths; ///< of parallel views
+  std::vector<SliceFootprint<A>> Footprints;
+  PerspectiveFootprints<A> Own;
+};
+
+/// In the volume's own order.
+glm::ivec3 unpermuted(const ShearWarp& geometry, const glm::ivec3& voxel)
+{
+  glm::ivec3 result;
+  for (int a = 0; a < 3; ++a)
+  {
+    result[geometry.axes()[a]] = voxel[a];
+  }
+  return result;
+}
+}
+
+void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec3>& voxels)
+{
+  const ShearImage& projected = (*located.images)[image];
+  const ShearWarp& geometry = (*located.geometries)[image];
+  voxels.assign(projected.winners.size(), glm::ivec3(-1));
+  dispatch(located.volume.type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      const int phases = geometry.phases();
+      std::vector<ShearWarp> parts(std::size_t(phases) * phases);
+      std::vector<std::unique_ptr<VoxelFinder<T>>> finders;
+      GeneralTable table;
+      for (int p = 0; p < phases * phases; ++p)
+      {
+        if (phases > 1)
+        {
+          geometry.takePhase({ p % phases, p / phases }, parts[p]);
+        }
+        finders.push_back(
+          std::make_unique<VoxelFinder<T>>(located, phases > 1 ? parts[p] : geometry, table));
+      }
+      vtkSMPTools::For(0, projected.height, 8,
+        [&](vtkIdType first, vtkIdType last)
+        {
+          for (int v = static_cast<int>(first); v < last; ++v)
+          {
+            for (int u = 0; u < projected.width; ++u)
+            {
+              const std::size_t at = std::size_t(v) * projected.width + u;
+              if (projected.winners[at] >= 0)
+              {
+                const VoxelFinder<T>& finder = *finders[v % phases * phases + u % phases];
+                voxels[at] =
+                  unpermuted(geometry, finder.find(u / phases, v / phases, projected.winners[at]));
+              }
+            }
+          }
+        });
+    });
+}
+
+Locator::Locator(const Located& located) : Source(located) {}
+
+double Locator::depthOf(const ShearPixel& shown) const
+{
+  const ShearImage& image = (*this->Source.images)[shown.image];
+  const ShearWarp& geometry = (*this->Source.geometries)[shown.image];
+  const int k = image.winners[std::size_t(shown.v) * image.width + shown.u] / StepsPerSlice;
+  if (this->Source.settings.quality != Quality::Exact || !this->Source.volume.voxels)
+  {
+    return k;
+  }
+  double depth = k;
+  dispatch(this->Source.volume.type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      const PermutedVoxels<T> voxels(this->Source.volume, geometry);
+      depth = extremumOf<T>(voxels, geometry, shown.u, shown.v, k,
+        this->Source.settings.reduction == Reduction::Minimum);
+    });
+  return depth;
+}
+
+glm::dvec3 Locator::point(const glm::dvec2& pixel, const ShearPixel& shown) const
+{
+  const ShearWarp& geometry = (*this->Source.geometries)[shown.image];
+  double z = this->depthOf(shown);
+  if (geometry.isPerspective())
+  {
+    // In exact mode an extremum may lie at the eye itself, where all pixels are one.
+    constexpr double nearest = 1e-6;
+    z = geometry.reversed() ? std::min(z, geometry.eye().z - nearest)
+                            : std::max(z, geometry.eye().z + nearest);
+  }
+  // The ray is where two planes meet: those of the pixel's column and row. They alone make no use
+  // of clip depths, which would cost digits.
+  const std::array<int, 3>& axes = geometry.axes();
+  const glm::dvec2 clip = (2.0 * pixel + 1.0) / glm::dvec2(this->Source.view.viewport) - 1.0;
+  const glm::dmat4 rows = glm::transpose(this->Source.view.indexToClip);
+  const glm::dvec4 x = rows[0] - clip.x * rows[3], y = rows[1] - clip.y * rows[3];
+  const double p = -(x[axes[2]] * z + x.w), q = -(y[axes[2]] * z + y.w);
+  const double determinant = x[axes[0]] * y[axes[1]] - x[axes[1]] * y[axes[0]];
+  glm::dvec3 point;
+  point[axes[0]] = (p * y[axes[1]] - q * x[axes[1]]) / determinant;
+  point[axes[1]] = (q * x[axes[0]] - p * y[axes[0]]) / determinant;
+  point[axes[2]] = z;
+  return point;
+}
+
+bool Locator::find(const glm::ivec2& pixel, glm::dvec3& point) const
+{
+  ShearPixel shown;
+  findShearPixels(*this->Source.images, *this->Source.geometries, pixel, glm::ivec2(1), &shown);
+  if (shown.image < 0)
+  {
+    return false;
+  }
+  point = this->point(glm::dvec2(pixel), shown);
+  return true;
+}
+
+glm::dvec3 Locator::inWorld(const glm::dvec3& point) const
+{
+  return glm::dvec3(this->Source.indexToWorld * glm::dvec4(point, 1.0));
+}
+
+double Locator::depth(const glm::dvec3& world) const
+{
+  const glm::dvec3 way = world - this->Source.camera;
+  return isParallel(this->Source.view) ? glm::dot(way, this->Source.direction) : glm::length(way);
+}
+
+glm::dvec2 Locator::depthRange() const
+{
+  const bool parallel = isParallel(this->Source.view);
+  glm::dvec2 range(std::numeric_limits<double>::infinity(), 0.0);
+  for (int n = 0; n < 8; ++n)
+  {
+    const glm::dvec3 corner =
+      glm::dvec3(n & 1, n >> 1 & 1, n >> 2) * glm::dvec3(this->Source.view.dimensions - 1);
+    const double depth = this->depth(this->inWorld(corner));
+    range = { std::min(range.x, depth), std::max(range.y, depth) };
+  }
+  if (!parallel)
+  {
+    // The nearest point of a box need not be a corner.
+    const glm::dvec3 eye =
+      glm::dvec3(glm::inverse(this->Source.indexToWorld) * glm::dvec4(this->Source.camera, 1.0));
+    const glm::dvec3 nearest =
+      glm::clamp(eye, glm::dvec3(0.0), glm::dvec3(this->Source.view.dimensions - 1));
+    range.x = std::min(range.x, this->depth(this->inWorld(nearest)));
+  }
+  return range;
+}
+
+void Locator::fillRow(int y, const glm::ivec2& origin, int width, const ShearPixel* shown,
+  const std::vector<std::vector<glm::ivec3>>& voxels, const Arrays& arrays) const
+{
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  for (int x = 0; x < width; ++x)
+  {
+    const std::size_t at = std::size_t(y) * width + x;
+    const ShearPixel& from = shown[at];
+    const bool has = from.image >= 0;
+    glm::dvec3 point(none), world(none);
+    if (has)
+    {
+      point = this->point(glm::dvec2(origin.x + x, origin.y + y), from);
+      world = this->inWorld(point);
+    }
+    if (arrays.voxels)
+    {
+      const glm::ivec3 voxel = has
+        ? voxels[from.image]
+                [std::size_t(from.v) * (*this->Source.images)[from.image].width + from.u]
+        : glm::ivec3(-1);
+      std::copy(&voxel.x, &voxel.x + 3, arrays.voxels + 3 * at);
+    }
+    if (arrays.depths)
+    {
+      arrays.depths[at] = static_cast<float>(has ? this->depth(world) : none);
+    }
+    if (arrays.positions)
+    {
+      std::copy(&world.x, &world.x + 3, arrays.positions + 3 * at);
+    }
+    if (arrays.clipDepths)
+    {
+      const glm::dvec4 clip = this->Source.view.indexToClip * glm::dvec4(point, 1.0);
+      arrays.clipDepths[at] = static_cast<float>(has ? 0.5 * clip.z / clip.w + 0.5 : none);
+    }
+  }
+}
+
+void Locator::fill(const glm::ivec2& origin, const glm::ivec2& size, const Arrays& arrays) const
+{
+  std::vector<ShearPixel> shown(std::size_t(size.x) * size.y);
+  findShearPixels(*this->Source.images, *this->Source.geometries, origin, size, shown.data());
+  std::vector<std::vector<glm::ivec3>> voxels(this->Source.geometries->size());
+  for (std::size_t n = 0; arrays.voxels && n < voxels.size(); ++n)
+  {
+    findVoxels(this->Source, n, voxels[n]);
+  }
+  vtkSMPTools::For(0, size.y, 8,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType y = first; y < last; ++y)
+      {
+        this->fillRow(static_cast<int>(y), origin, size.x, shown.data(), voxels, arrays);
+      }
+    });
+}
+}

@@ -1,0 +1,303 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Projection/Project.h"
+
+#include "Projection/Piece.h"
+#include "Projection/WalkSpace.h"
+#include "Sampling/SliceSampler.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+namespace splatting
+{
+namespace
+{
+/// The chains that a projection needs.
+LineEncoding encodingFor(const ProjectionSettings& settings, const glm::ivec3& size)
+{
+  LineEncoding encoding;
+  encoding.tolerance = settings.lineTolerance;
+  if (settings.quality == Quality::Preview)
+  {
+    encoding.eliminate = settings.eliminateInvisible;
+    if (std::max({ size.x, size.y, size.z }) <= LineIndex::MostSorted)
+    {
+      encoding.order = settings.acceleration == Acceleration::SortedLines ? LineOrder::SortedLines
+        : settings.acceleration == Acceleration::SortedVolume             ? LineOrder::SortedVolume
+                                                                          : LineOrder::Lines;
+    }
+  }
+  return encoding;
+}
+
+/// A share of tiles above which skipping the others does not pay: the plain walk reads memory in
+/// order, which is worth more where little is computed, or where registers are wide and compute it
+/// fast.
+double worthwhileShare(const ProjectionSettings& settings, bool perspective)
+{
+  const VoxelLoops<float>& loops = kernelsFor(settings.instructionSet);
+  const bool computesFast = loops.lanes >= 16;
+  switch (settings.quality)
+  {
+    case Quality::Preview:
+      return 0.3;
+    case Quality::Standard:
+      return perspective ? 0.5 : computesFast ? 0.3 : 0.4;
+    default:
+      return computesFast ? 0.5 : 0.6;
+  }
+}
+
+/// The rule of Acceleration::Auto.
+Acceleration choose(
+  VolumeIndex& index, const ShearWarp& geometry, bool isCut, const ProjectionSettings& settings)
+{
+  const Experience& experience =
+    index.experience(geometry.principalAxis(), static_cast<int>(settings.quality), isCut);
+  const double worthwhile = worthwhileShare(settings, geometry.isPerspective());
+  double patience = experience.share > worthwhile ? 32.0 : 0.0; // frames
+  if (settings.quality == Quality::High || settings.quality == Quality::Exact)
+  {
+    // Views change little from frame to frame. Where bricks nearly pay, the next ones may, and
+    // trying costs little where much is computed. (Whole registers can make the share exceed 1.)
+    patience *= std::min((experience.share - worthwhile) / (1.0 - worthwhile), 1.0);
+  }
+  return experience.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
+}
+
+/// Whether each sample has to be looked at by itself.
+bool looksAtAll(
+  const ProjectionSettings& settings, const VolumeIndex::Range& range, const ShearWarp& geometry)
+{
+  return settings.reduction != Reduction::Maximum ||
+    (settings.keepWinners && (range.special || geometry.size().z > MostNoted));
+}
+
+/// What voxels are summed in.
+ScalarType accumulatorOf(ScalarType voxels)
+{
+  return dispatch(voxels,
+    [](auto* null) { return scalarTypeOf<Accumulator<std::remove_pointer_t<decltype(null)>>>(); });
+}
+
+/// Room for pixels: samples, or what worksheets are summed in.
+void openImage(const ProjectionSettings& settings, ScalarType voxels, ShearImage& image)
+{
+  const bool samples = settings.quality == Quality::Preview && !computesWith(settings.reduction);
+  const std::size_t pixels = std::size_t(image.width) * image.height;
+  image.type = samples ? voxels : accumulatorOf(voxels);
+  image.bytes.resize(pixels * sizeOf(image.type));
+  image.winners.resize(settings.keepWinners ? pixels : 0);
+}
+
+void learn(Experience& experience, Acceleration used, const TileCount& count)
+{
+  if (used == Acceleration::Bricks)
+  {
+    experience.share = count.met > 0 ? double(count.splatted) / double(count.met) : 0.0;
+    experience.framesSince = 0;
+  }
+  else
+  {
+    ++experience.framesSince;
+  }
+}
+}
+
+struct Projector::Scratch
+{
+  /// Made when they are first used.
+  std::array<std::array<std::unique_ptr<ProjectionMode>, 2>, 4> modes; // parallel, perspective
+  std::unique_ptr<ProjectionMode> chains;
+  WalkSpace walks;
+  std::vector<SliceGeometry> slices;
+  PerspectiveSteps steps;
+  CutMap cuts;
+  // Of pieces only:
+  ShearWarp part;
+  Cuts partCuts;
+  std::vector<SliceGeometry> wholeSlices;
+  PerspectiveSteps wholeSteps;
+  CutMap wholeCuts;
+};
+
+Projector::Projector() : Memory(new Scratch) {}
+
+Projector::~Projector() = default;
+
+ProjectionMode& Projector::mode(Quality quality, bool perspective)
+{
+  using Make = std::unique_ptr<ProjectionMode> (*)();
+  static constexpr Make make[4][2] = { { &makePreview, &makePerspectivePreview },
+    { &makeWorksheets, &makePerspectiveWorksheets },
+    { &makeWorksheets, &makePerspectiveWorksheets }, { &makeExact, &makePerspectiveExact } };
+  const int q = static_cast<int>(quality);
+  std::unique_ptr<ProjectionMode>& mode = this->Memory->modes[q][perspective];
+  if (!mode)
+  {
+    mode = make[q][perspective]();
+  }
+  return *mode;
+}
+
+void Projector::carry(const VoxelArray& other, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image)
+{
+  image.width = projected.width;
+  image.height = projected.height;
+  image.spans = projected.spans;
+  image.mask = projected.mask;
+  image.type = projected.type;
+  image.bytes.resize(projected.bytes.size());
+  image.special = other.type == ScalarType::Float32 || other.type == ScalarType::Float64;
+  this->mode(settings.quality, geometry.isPerspective())
+    .carry({ other, geometry, this->Memory->slices, projected, image });
+}
+
+/// What can be used at all of what was asked for.
+Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
+  const ProjectionSettings& settings, const ShearWarp& geometry, const Cuts& cuts,
+  const LineIndex*& lines)
+{
+  if (looksAtAll(settings, index.range(), geometry) || index.range().special)
+  {
+    return Acceleration::Dense;
+  }
+  if (wanted >= Acceleration::Lines && cuts.none() && !geometry.isPerspective() &&
+    !settings.keepWinners && settings.quality != Quality::Exact &&
+    &geometry != &this->Memory->part && !this->stopped())
+  {
+    lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),
+      [this](double share)
+      {
+        if (this->Progress)
+        {
+          this->Progress(share);
+        }
+        return this->Observer.ask();
+      });
+    return lines ? wanted : Acceleration::Dense;
+  }
+  return wanted != Acceleration::Dense && index.hasBricks() ? Acceleration::Bricks
+                                                            : Acceleration::Dense;
+}
+
+/// How the rays of a whole volume run, where a piece of it is projected.
+void Projector::findWhole(const ShearWarp& geometry, const ProjectionSettings& settings)
+{
+  Scratch& memory = *this->Memory;
+  if (geometry.isPerspective())
+  {
+    const Kernels& kernels = kernelsFor(settings.instructionSet);
+    memory.wholeSteps.columns.find(geometry, 0, kernels);
+    memory.wholeSteps.rows.find(geometry, 1, kernels);
+  }
+  findSlices(geometry, memory.wholeSlices, memory.wholeSteps);
+}
+
+void Projector::outline(const ShearWarp& geometry, const ProjectionSettings& settings,
+  const Cuts& cuts, ShearImage& image)
+{
+  Scratch& memory = *this->Memory;
+  this->findWhole(geometry, settings);
+  memory.wholeCuts.reset(cuts, geometry, { 0, geometry.size().z });
+  outlineImage(geometry, memory.wholeSlices, memory.wholeCuts, memory.walks.outline, image);
+}
+
+/// The geometry of a piece of a volume, and its cuts.
+const ShearWarp& Projector::findPart(
+  const ShearWarp& whole, const glm::ivec3& first, const glm::ivec3& dimensions, const Cuts& cuts)
+{
+  Scratch& memory = *this->Memory;
+  whole.findPart(first, dimensions, memory.part);
+  memory.partCuts.cropping = cuts.cropping;
+  memory.partCuts.intervals.setShifted(cuts.intervals, memory.part.first().z);
+  return memory.part;
+}
+
+/// Along each ray the slices that are samples of it, for shading by depth: those of the whole
+/// volume.
+void Projector::countSteps(const ShearWarp& whole, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const Cuts& cuts, int width, int height)
+{
+  Scratch& memory = *this->Memory;
+  const bool isPart = &whole != &geometry;
+  if (isPart)
+  {
+    this->findWhole(whole, settings);
+  }
+  memory.walks.outline.crossed.reset(isPart ? memory.wholeSlices : memory.slices, width);
+  memory.walks.rays.crossed.findCrossed(
+    memory.walks.outline.crossed, width, height, cuts.intervals);
+  if (isPart)
+  {
+    memory.walks.rays.crossed.setShifted(memory.walks.rays.crossed, geometry.first().z);
+  }
+}
+
+Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
+  const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image,
+  const glm::ivec3& firstVoxel)
+{
+  Scratch& memory = *this->Memory;
+  this->Observer.start();
+  const glm::ivec3& held = index.volume().dimensions;
+  const std::array<int, 3>& axes = whole.axes();
+  const bool isPart = glm::ivec3(held[axes[0]], held[axes[1]], held[axes[2]]) != whole.size();
+  const ShearWarp& geometry = isPart ? this->findPart(whole, firstVoxel, held, cuts) : whole;
+  const int slice = geometry.first().z;
+  memory.cuts.reset(isPart ? memory.partCuts : cuts, whole, { slice, slice + geometry.size().z });
+  if (geometry.isPerspective())
+  {
+    const Kernels& kernels = kernelsFor(settings.instructionSet);
+    memory.steps.columns.find(geometry, 0, kernels);
+    memory.steps.rows.find(geometry, 1, kernels);
+  }
+  findSlices(geometry, memory.slices, memory.steps);
+  if (isPart)
+  {
+    keepInterior(whole, geometry, settings.quality, memory.slices);
+  }
+  outlineImage(geometry, memory.slices, memory.cuts, memory.walks.outline, image);
+  if (settings.reduction == Reduction::DepthShaded)
+  {
+    this->countSteps(whole, geometry, settings, cuts, image.width, image.height);
+  }
+  const VolumeIndex::Range& range = index.range();
+  // The mean of no sample is none.
+  image.special = range.special || settings.reduction == Reduction::Mean;
+  const LineIndex* lines = nullptr;
+  const Acceleration used = this->possible(settings.acceleration == Acceleration::Auto
+      ? choose(index, geometry, !memory.cuts.none(), settings)
+      : settings.acceleration,
+    index, settings, geometry, cuts, lines);
+  openImage(settings, index.volume().type, image);
+  const bool byRays = looksAtAll(settings, range, geometry);
+  const bool skips = used == Acceleration::Bricks;
+  Frame frame{ index, settings, geometry, whole, kernelsFor(settings.instructionSet), range,
+    memory.slices, memory.steps, memory.cuts, settings.floor, image, memory.walks, this->Observer,
+    byRays, lines, skips ? &index.bricks(geometry.principalAxis()) : nullptr };
+  if (lines)
+  {
+    if (!memory.chains)
+    {
+      memory.chains = makeChains();
+    }
+    memory.chains->project(frame);
+    return used;
+  }
+  this->mode(settings.quality, geometry.isPerspective()).project(frame);
+  if (!byRays && !this->stopped())
+  {
+    learn(index.experience(
+            geometry.principalAxis(), static_cast<int>(settings.quality), !memory.cuts.none()),
+      used, frame.count);
+  }
+  return used;
+}
+}

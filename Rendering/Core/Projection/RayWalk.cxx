@@ -1,0 +1,343 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Projection/WalkSpace.h"
+#include "Sampling/SliceSampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+namespace splatting
+{
+namespace
+{
+/**
+ * MIP's relatives: projections that look at every sample of a ray, densely and, where that matters,
+ * in the order of the ray.
+ */
+template <class T, class P>
+class RayWalk
+{
+public:
+  using Layers = SliceSampler<T, P>;
+  using A = Accumulator<T>;
+
+  RayWalk(const Frame& frame, const Layers& layers)
+    : Shared(frame),
+      Stack(layers),
+      Settings(frame.settings),
+      State(frame.space.rays),
+      Base(layers.base())
+  {
+  }
+
+  void open(int v0, int v1) const
+  {
+    ShearImage& image = this->Shared.image;
+    const std::size_t begin = std::size_t(v0) * image.width, end = std::size_t(v1) * image.width;
+    if (this->Settings.keepWinners)
+    {
+      std::fill(image.winners.begin() + begin, image.winners.begin() + end, -1);
+    }
+    switch (this->Settings.reduction)
+    {
+      case Reduction::Mean:
+        std::fill(this->State.sums.begin() + begin, this->State.sums.begin() + end, 0.0);
+        std::fill(this->State.counts.begin() + begin, this->State.counts.begin() + end, 0);
+        break;
+      case Reduction::Minimum:
+        this->fill(v0, v1, greatestValue<P>());
+        break;
+      case Reduction::DepthShaded:
+        this->fill(v0, v1, leastValue<A>());
+        break;
+      case Reduction::Maximum:
+        this->fill(v0, v1, leastValue<P>());
+        break;
+      default:
+        std::fill(this->State.ended.begin() + begin, this->State.ended.begin() + end,
+          static_cast<unsigned char>(0));
+        this->fill(v0, v1, leastValue<P>());
+    }
+  }
+
+  /// Whether slices come from the last one on: only where their order along the ray matters. Sums
+  /// must not depend on the side that they are seen from.
+  bool isReversed() const
+  {
+    return (this->Settings.reduction == Reduction::Local || this->Settings.keepWinners) &&
+      this->Shared.geometry.reversed();
+  }
+
+  void walk(const Span& slices, int v0, int v1, RayScratch& scratch) const
+  {
+    const Span some = common(slices, slicesOf(this->Shared.sliceGeometry, v0, v1));
+    scratch.mask.resize(this->Shared.image.width);
+    scratch.widened.resize(this->Shared.image.width * sizeof(A));
+    this->Stack.forSamples(some, this->isReversed(), v0, v1, { 0, this->Shared.image.width },
+      scratch.patch,
+      [&](int step, int v, const Span& pixels, const P* samples, const unsigned char* present)
+      {
+        const bool isCut = !this->Shared.cuts.none();
+        const int k = step / StepsPerSlice;
+        if (!isCut || this->Shared.cuts.findMask(k, v, pixels, scratch.mask.data()))
+        {
+          if (isCut)
+          {
+            narrow(scratch.mask.data(), present, pixels);
+          }
+          const Row row{ step, v, pixels, isCut ? scratch.mask.data() : present };
+          this->Settings.keepWinners ? this->takeAndNote(row, samples, scratch)
+                                     : this->take(row, samples, scratch);
+        }
+      });
+  }
+
+  void close(int v0, int v1) const
+  {
+    if (this->Settings.reduction == Reduction::Mean)
+    {
+      this->divide(v0, v1);
+    }
+    else if (this->Settings.reduction == Reduction::DepthShaded)
+    {
+      this->addBase(v0, v1);
+    }
+    else
+    {
+      this->Stack.finish(v0, v1);
+    }
+  }
+
+private:
+  template <class Q>
+  void fill(int v0, int v1, Q none) const
+  {
+    ShearImage& image = this->Shared.image;
+    const Q empty = image.special ? std::numeric_limits<Q>::quiet_NaN() : none;
+    std::fill(image.row<Q>(v0), image.row<Q>(v1 - 1) + image.width, empty);
+  }
+
+  /// Samples of one step in one row.
+  struct Row
+  {
+    int step, v;
+    Span pixels;
+    const unsigned char* mask;
+
+    int k() const { return this->step / StepsPerSlice; }
+    std::ptrdiff_t size() const { return this->pixels.end - this->pixels.begin; }
+  };
+
+  /// Takes samples and remembers where they have won.
+  void takeAndNote(const Row& row, const P* samples, RayScratch& scratch) const
+  {
+    computesWith(this->Settings.reduction) ? this->noteBeside<A>(row, samples, scratch)
+                                           : this->noteBeside<P>(row, samples, scratch);
+  }
+  template <class Q>
+  void noteBeside(const Row& row, const P* samples, RayScratch& scratch) const
+  {
+    const RayLoops<Q>& loops = this->Shared.kernels;
+    ShearImage& image = this->Shared.image;
+    Q* const pixels = image.row<Q>(row.v) + row.pixels.begin;
+    scratch.before.resize(image.width * sizeof(Q));
+    Q* const before = reinterpret_cast<Q*>(scratch.before.data());
+    std::copy(pixels, pixels + row.size(), before);
+    this->take(row, samples, scratch);
+    const Q* compared = nullptr;
+    if constexpr (std::is_same_v<P, Q>)
+    {
+      compared = samples;
+    }
+    else
+    {
+      compared = this->widened(samples, row.size(), scratch);
+    }
+    loops.note(&image.winners[std::size_t(row.v) * image.width + row.pixels.begin], row.step,
+      before, pixels, compared, row.mask, row.size());
+  }
+
+  void take(const Row& row, const P* samples, RayScratch& scratch) const
+  {
+    const int v = row.v;
+    const Span& pixels = row.pixels;
+    const unsigned char* const mask = row.mask;
+    const RayLoops<P>& loops = this->Shared.kernels;
+    const WorksheetLoops<A>& computing = this->Shared.kernels;
+    ShearImage& image = this->Shared.image;
+    const std::ptrdiff_t n = pixels.end - pixels.begin;
+    const std::size_t at = std::size_t(v) * image.width + pixels.begin;
+    const ProjectionSettings& s = this->Settings;
+    switch (s.reduction)
+    {
+      case Reduction::Mean:
+        computing.add(&this->State.sums[at], &this->State.counts[at], this->lowest(s.meanLow),
+          this->highest(s.meanHigh), this->widened(samples, n, scratch), mask, n);
+        break;
+      case Reduction::DepthShaded:
+        computing.shade(image.row<A>(v) + pixels.begin, this->shadeOf(row.k(), v, pixels),
+          this->widened(samples, n, scratch), mask, n);
+        break;
+      case Reduction::Maximum:
+        loops.raise(image.row<P>(v) + pixels.begin, samples, mask, n);
+        break;
+      case Reduction::Minimum:
+        loops.lower(image.row<P>(v) + pixels.begin, samples, mask, n);
+        break;
+      default:
+        loops.climb(image.row<P>(v) + pixels.begin, &this->State.ended[at], this->threshold(),
+          samples, mask, n);
+    }
+  }
+
+  const A* widened(const P* samples, std::ptrdiff_t n, RayScratch& scratch) const
+  {
+    if constexpr (std::is_same_v<P, A>)
+    {
+      (void)n;
+      (void)scratch;
+      return samples;
+    }
+    else
+    {
+      A* const out = reinterpret_cast<A*>(scratch.widened.data());
+      const VoxelLoops<P>& loops = this->Shared.kernels;
+      loops.widen(samples, 0, out, 0, A(0), n, 1, 0);
+      return out;
+    }
+  }
+
+  /// The least value that is no less than a bound, for samples, which are without the base.
+  A lowest(double bound) const
+  {
+    const double wanted = bound - this->Base;
+    const A found = static_cast<A>(wanted);
+    return found < wanted ? std::nextafter(found, std::numeric_limits<A>::infinity()) : found;
+  }
+  /// The greatest that is no greater.
+  A highest(double bound) const
+  {
+    const double wanted = bound - this->Base;
+    const A found = static_cast<A>(wanted);
+    return found > wanted ? std::nextafter(found, -std::numeric_limits<A>::infinity()) : found;
+  }
+
+  P threshold() const
+  {
+    if constexpr (std::numeric_limits<P>::is_integer)
+    {
+      // The least integer that is no less.
+      const double least = std::ceil(this->Settings.threshold);
+      using Limits = std::numeric_limits<P>;
+      return least <= static_cast<double>(Limits::lowest()) ? Limits::lowest()
+        : least >= static_cast<double>(Limits::max())       ? Limits::max()
+                                                            : static_cast<P>(least);
+    }
+    else
+    {
+      return this->lowest(this->Settings.threshold);
+    }
+  }
+
+  Shade<A> shadeOf(int k, int v, const Span& pixels) const
+  {
+    const double low = this->Shared.range.low;
+    return { std::isfinite(low) ? static_cast<A>(low) - this->Base : A(0),
+      static_cast<A>(this->Settings.ambient), static_cast<A>(this->Settings.changeRate),
+      this->Shared.image.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>(), k,
+      this->Shared.geometry.reversed(), this->State.crossed.first(v) + pixels.begin,
+      this->State.crossed.last(v) + pixels.begin };
+  }
+
+  void divide(int v0, int v1) const
+  {
+    ShearImage& image = this->Shared.image;
+    const double base = this->Base;
+    for (int v = v0; v < v1; ++v)
+    {
+      const std::size_t at = std::size_t(v) * image.width;
+      A* const row = image.row<A>(v);
+      for (int u = 0; u < image.width; ++u)
+      {
+        const std::int32_t count = this->State.counts[at + u];
+        row[u] = count > 0 ? static_cast<A>(this->State.sums[at + u] / count + base)
+                           : std::numeric_limits<A>::quiet_NaN();
+      }
+    }
+  }
+
+  /// In exact mode cuts can leave a ray slices in which it passes beside the field: then there is
+  /// no sample, and the pixel shows the lowest voxel, as that of a global maximum does.
+  void addBase(int v0, int v1) const
+  {
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    ShearImage& image = this->Shared.image;
+    A* const begin = image.row<A>(v0);
+    const std::ptrdiff_t count = std::ptrdiff_t(v1 - v0) * image.width;
+    loops.finish(begin, this->Base, leastValue<A>(), greatestValue<A>(), count);
+    // Pixels of a piece wait for the others' samples.
+    if (&this->Shared.geometry == &this->Shared.whole && !image.special)
+    {
+      std::replace(begin, begin + count, leastValue<A>(), static_cast<A>(this->Shared.range.low));
+    }
+  }
+
+  const Frame& Shared;
+  const Layers& Stack;
+  const ProjectionSettings& Settings;
+  RayState& State;
+  A Base;
+};
+
+/// Room for what a reduction keeps of each pixel.
+void openState(const ShearImage& image, Reduction reduction, RayState& state)
+{
+  const std::size_t pixels = std::size_t(image.width) * image.height;
+  if (reduction == Reduction::Mean)
+  {
+    state.sums.resize(pixels);
+    state.counts.resize(pixels);
+  }
+  if (reduction == Reduction::Local)
+  {
+    state.ended.resize(pixels);
+  }
+}
+}
+
+template <class T, class P>
+void walkRays(Frame& frame, const SliceSampler<T, P>& sampler)
+{
+  const Reduction reduction = frame.settings.reduction;
+  openState(frame.image, reduction, frame.space.rays);
+  const RayWalk<T, P> walk(frame, sampler);
+  forSlices(frame, sampler.traits().beyond, walk.isReversed(),
+    [&](const Span& slices, bool isFirst, bool isLast)
+    {
+      forBands(frame.image.height, bandHeight(frame.image.height), frame.watch,
+        [&](int v0, int v1)
+        {
+          if (isFirst)
+          {
+            walk.open(v0, v1);
+          }
+          walk.walk(slices, v0, v1, frame.space.rayBands.Local());
+          if (isLast)
+          {
+            walk.close(v0, v1);
+            computesWith(reduction) ? closeRows<Accumulator<T>>(frame.image, v0, v1)
+                                    : closeRows<P>(frame.image, v0, v1);
+          }
+        });
+    });
+}
+
+#define VOXELS(T) template void walkRays(Frame&, const SliceSampler<T, T>&);
+#define WORKSHEETS(T) template void walkRays(Frame&, const SliceSampler<T, Accumulator<T>>&);
+SPLATTING_TYPES(VOXELS)
+SPLATTING_INTEGERS(WORKSHEETS) // others are of their voxels' type
+}

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The work space of walks, kept between frames.
+ */
+#ifndef splattingWalkSpace_h
+#define splattingWalkSpace_h
+
+#include "Clipping/Cuts.h"
+#include "Clipping/RayIntervals.h"
+#include "Projection/Frame.h"
+#include "Sampling/Patch.h"
+
+#include <vtkSMPThreadLocal.h>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace splatting
+{
+/// Work space of outlineImage().
+struct OutlineSpace
+{
+  struct Rows
+  {
+    std::vector<std::int16_t> first, last;
+    std::vector<unsigned char> slice;
+  };
+  CrossedSlices crossed;
+  vtkSMPThreadLocal<Rows> rows;
+};
+
+/// What a thread needs to walk a band.
+struct BandScratch
+{
+  Patch patch;
+  std::vector<unsigned char> voxelBounds, bounds, minima, flags;
+  std::vector<int> order;
+  std::vector<double> scores;
+  std::vector<Span> runs;
+  std::vector<RowRuns> rows;
+  BandCuts cuts;
+  SliceRuns sliceRuns;
+  std::vector<unsigned char> mask;
+  std::vector<unsigned char> brickRow;
+  std::vector<std::int16_t> farthest;
+  std::vector<Span> tileWindows;
+  TileCount count;
+};
+
+/// And to find winners.
+struct WinnerScratch
+{
+  std::vector<std::int16_t> first, last;
+  std::vector<unsigned char> mask;
+};
+
+/// And to walk rays.
+struct RayScratch
+{
+  Patch patch;
+  std::vector<unsigned char> mask, widened, before;
+};
+
+/// What is known of all pixels between slices of a walk by rays, besides the image.
+struct RayState
+{
+  std::vector<unsigned char> ended; ///< Reduction::Local: whether the maximum is found
+  std::vector<double> sums;         ///< Reduction::Mean
+  std::vector<std::int32_t> counts; ///< likewise
+  RayIntervals crossed;             ///< Reduction::DepthShaded: the slices that count
+};
+
+struct WalkSpace
+{
+  vtkSMPThreadLocal<BandScratch> bands;
+  vtkSMPThreadLocal<WinnerScratch> winners;
+  vtkSMPThreadLocal<RayScratch> rayBands;
+  RayState rays;
+  OutlineSpace outline;
+  std::vector<std::int16_t> orders;
+  std::vector<unsigned char> chunk;
+};
+
+/// Calls body(slices, isFirst, isLast) with Frame::slices set: for all slices, or, where these
+/// would need a copy that there is no memory for, for some at a time, from the last on if reversed.
+/// @param beyond  slices beside them that are read, too
+void forSlices(Frame& frame, int beyond, bool reversed,
+  const std::function<void(const Span& slices, bool isFirst, bool isLast)>& body);
+}
+
+#endif

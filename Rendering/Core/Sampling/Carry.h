@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What a volume has where the projection of another one found its winners. For dependent
+ * components: colours go with the opacity that won.
+ */
+#ifndef splattingCarry_h
+#define splattingCarry_h
+
+#include "Sampling/PerspectiveFootprints.h"
+#include "Sampling/SliceSampler.h"
+#include "Sampling/Worksheets.h"
+
+#include <vtkSMPTools.h>
+
+namespace splatting
+{
+/// Voxel (i, j, k) of a volume whose axes are permuted as in the shear image, wherever it is
+/// stored.
+template <class T>
+class PermutedVoxels
+{
+public:
+  PermutedVoxels(const VoxelArray& volume, const ShearWarp& geometry)
+    : Voxels(static_cast<const T*>(volume.voxels)),
+      Size(geometry.size())
+  {
+    const std::ptrdiff_t strides[3] = { 1, volume.dimensions.x,
+      std::ptrdiff_t(volume.dimensions.x) * volume.dimensions.y };
+    for (int a = 0; a < 3; ++a)
+    {
+      this->Strides[a] = strides[geometry.axes()[a]];
+    }
+  }
+  /// Beyond the volume its outermost voxels are repeated.
+  T at(int i, int j, int k) const
+  {
+    return this->Voxels[std::clamp(i, 0, this->Size.x - 1) * this->Strides[0] +
+      std::clamp(j, 0, this->Size.y - 1) * this->Strides[1] +
+      std::clamp(k, 0, this->Size.z - 1) * this->Strides[2]];
+  }
+
+  /// The same of voxels that exist.
+  std::ptrdiff_t place(int i, int j, int k) const
+  {
+    return i * this->Strides[0] + j * this->Strides[1] + k * this->Strides[2];
+  }
+  const T* pointer(int i, int j, int k) const { return this->Voxels + this->place(i, j, k); }
+
+private:
+  const T* Voxels;
+  glm::ivec3 Size;
+  std::array<std::ptrdiff_t, 3> Strides;
+};
+
+template <class T>
+T carriedVoxel(const PermutedVoxels<T>& voxels, const RayPath& path, int u, int v, int step)
+{
+  const int t = step % StepsPerSlice;
+  return voxels.at(u + path.di[t], v + path.dj[t], step / StepsPerSlice);
+}
+
+/// The same where each ray has a path of its own.
+template <class T>
+T carriedVoxel(const PermutedVoxels<T>& voxels, const ShearWarp& geometry, int u, int v, int step)
+{
+  const int t = step % StepsPerSlice, k = step / StepsPerSlice;
+  const RayPath path = geometry.voxelsOnRay(u, v, k);
+  return voxels.at(path.di[t], path.dj[t], k);
+}
+
+template <class T>
+Accumulator<T> carriedAverage(const PermutedVoxels<T>& voxels,
+  const PerspectiveFootprints<Accumulator<T>>& footprints, int u, int v, int k)
+{
+  double sum = 0.0, weight = 0.0;
+  footprints.forVoxels(u, v, k,
+    [&](int i, int j, int s, double w)
+    {
+      const T value = voxels.at(i, j, s);
+      if (value == value)
+      {
+        sum += w * static_cast<double>(value);
+        weight += w;
+      }
+    });
+  return static_cast<Accumulator<T>>(sum / weight);
+}
+
+/// NaN aside, as in worksheets; NaN if there is nothing else.
+template <class T>
+Accumulator<T> carriedAverage(const PermutedVoxels<T>& voxels,
+  const SliceFootprint<Accumulator<T>>& footprint, int u, int v, int k)
+{
+  double sum = 0.0, weight = 0.0;
+  int t = 0;
+  for (const Tap& tap : footprint.taps)
+  {
+    const T value =
+      voxels.at(u - footprint.nearest.x + tap.di, v - footprint.nearest.y + tap.dj, k + tap.slice);
+    const double w = footprint.weights[t++];
+    if (value == value)
+    {
+      sum += w * static_cast<double>(value);
+      weight += w;
+    }
+  }
+  return static_cast<Accumulator<T>>(sum / weight);
+}
+
+/// Fills an image with valueAt(voxels, u, v, step) of the other volume, where there is a winner.
+template <class T, class F>
+void carryValues(const Carrying& c, const F& valueAt)
+{
+  using A = Accumulator<T>;
+  const PermutedVoxels<T> voxels(c.other, c.geometry);
+  ShearImage& image = c.image;
+  const auto fill = [&](int v, auto* row)
+  {
+    using P = std::remove_pointer_t<decltype(row)>;
+    const std::int32_t* const winners = &c.projected.winners[std::size_t(v) * image.width];
+    for (int u = 0; u < image.width; ++u)
+    {
+      row[u] = winners[u] < 0 ? P(0) : static_cast<P>(valueAt(voxels, u, v, winners[u]));
+    }
+  };
+  vtkSMPTools::For(0, image.height, TileHeight,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (int v = static_cast<int>(begin); v < end; ++v)
+      {
+        image.type == scalarTypeOf<T>() ? fill(v, image.row<T>(v)) : fill(v, image.row<A>(v));
+      }
+    });
+}
+}
+
+#endif

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Sampling/ExactPieces.h"
+#include "Sampling/Worksheets.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+namespace splatting
+{
+namespace
+{
+template <class A>
+void findReach(const std::vector<ExactPath<A>>& paths, WorksheetReach<A>& reach)
+{
+  const int count = static_cast<int>(paths.size());
+  reach.slices.assign(count, {});
+  reach.layers.assign((count + BrickDepth - 1) / BrickDepth, {});
+  for (int k = 0; k < count; ++k)
+  {
+    for (const ExactPiece<A>& piece : paths[k])
+    {
+      for (int s : { k + piece.dk, k + piece.dk + 1 })
+      {
+        Window& window = reach.slices[std::clamp(s, 0, count - 1)];
+        window.add(piece.di, piece.dj);
+        window.add(piece.di + 1, piece.dj + 1);
+      }
+    }
+  }
+  reach.columns = reach.rows = 0;
+  for (int s = 0; s < count; ++s)
+  {
+    const Window& window = reach.slices[s];
+    typename WorksheetReach<A>::Layer& layer = reach.layers[s / BrickDepth];
+    layer.window.add(window.iMin, window.jMin);
+    layer.window.add(window.iMax, window.jMax);
+    layer.share = ExactShare<A>;
+    reach.columns = std::max(reach.columns, window.iMax - window.iMin);
+    reach.rows = std::max(reach.rows, window.jMax - window.jMin);
+  }
+}
+
+/**
+ * Exact mode: a slice's worksheet is the maximum of the trilinear field along each ray's path from
+ * half a slice before its middle to half a slice behind.
+ */
+template <class T>
+class ExactWorksheets : public WorksheetLayers<T>
+{
+public:
+  using typename WorksheetLayers<T>::A;
+  using typename WorksheetLayers<T>::Target;
+
+  /// @param field  of each row the pixels that see the field, see findFieldSpans()
+  ExactWorksheets(const Frame& frame, const std::vector<ExactPath<A>>& paths,
+    const std::vector<Span>& field, const WorksheetReach<A>& reach)
+    : WorksheetLayers<T>(frame, false, reach, 1),
+      Paths(paths),
+      Field(field)
+  {
+  }
+
+  Window window(int layer) const override { return this->Reach.layers[layer].window; }
+
+  /// As in ParallelWorksheets, of 8 products and sums and the weights' own rounding.
+  A slack() const override { return 24 * std::numeric_limits<A>::epsilon() / 2; }
+
+protected:
+  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
+  {
+    const Window& window = this->Reach.slices[s];
+    return { s, columns.begin + window.iMin, v0 + window.jMin,
+      columns.end - columns.begin + window.iMax - window.iMin,
+      v1 - v0 + window.jMax - window.jMin };
+  }
+
+  void splatRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  {
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    CubicRow<A> row;
+    row.pixels = span;
+    row.sourceStride = patch.rowLength;
+    row.special = this->Shared.range.special;
+    row.bit = target.bit;
+    for (int v = first; v < end; ++v)
+    {
+      row.image = target.at(0, v);
+      row.field = this->Field[v];
+      row.bits = target.bits.origin ? target.bits.at(0, v) : nullptr;
+      row.count = 0;
+      for (const ExactPiece<A>& piece : this->Paths[k])
+      {
+        row.pieces[row.count++] = this->inRow(piece, k, v, patch);
+      }
+      loops.raiseCubics(row);
+    }
+  }
+
+private:
+  CubicPiece<A> inRow(const ExactPiece<A>& piece, int k, int v, Patch& patch) const
+  {
+    const int last = this->Shared.geometry.size().z - 1;
+    const auto corner = [&](int slice)
+    { return patch.voxel<A>(piece.di, v + piece.dj, std::clamp(slice, 0, last)); };
+    const auto columns = [v](const std::array<Span, 2>& pixels)
+    { return v >= pixels[1].begin && v < pixels[1].end ? pixels[0] : Span{}; };
+    return { corner(k + piece.dk), corner(k + piece.dk + 1), piece.weights.data(), piece.curved,
+      columns(piece.inField), columns(piece.inBoxes) };
+  }
+
+  const std::vector<ExactPath<A>>& Paths;
+  const std::vector<Span>& Field;
+};
+
+class ExactMode : public ProjectionMode
+{
+public:
+  void project(Frame& frame) override
+  {
+    dispatch(frame.index.volume().type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        using A = Accumulator<T>;
+        auto& paths = std::get<std::vector<ExactPath<A>>>(this->Paths);
+        auto& reach = std::get<WorksheetReach<A>>(this->Reach);
+        findExactPaths(frame.whole, frame.geometry, paths);
+        findFieldSpans(frame.whole, this->Field);
+        findReach(paths, reach);
+        walk(frame, ExactWorksheets<T>(frame, paths, this->Field, reach));
+      });
+  }
+
+private:
+  std::tuple<std::vector<ExactPath<float>>, std::vector<ExactPath<double>>> Paths;
+  std::vector<Span> Field;
+  std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
+};
+}
+
+std::unique_ptr<ProjectionMode> makeExact()
+{
+  return std::make_unique<ExactMode>();
+}
+}

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Standard and high mode of parallel views: footprints over copies of voxels, or over the volume's
+ * own.
+ */
+#ifndef splattingParallelWorksheets_h
+#define splattingParallelWorksheets_h
+
+#include "Sampling/Worksheets.h"
+
+namespace splatting
+{
+/// In parallel views all pixels have the footprints of their slices.
+template <class T>
+class ParallelWorksheets : public WorksheetLayers<T>
+{
+public:
+  using typename WorksheetLayers<T>::A;
+  using typename WorksheetLayers<T>::Target;
+
+  ParallelWorksheets(const Frame& frame, const std::vector<SliceFootprint<A>>& footprints,
+    const WorksheetReach<A>& reach, int depth)
+    : WorksheetLayers<T>(frame, false, reach, depth),
+      Footprints(footprints)
+  {
+    this->Notes = true;
+  }
+
+  Window window(int layer) const override { return this->Reach.layers[layer].window; }
+
+  /// Rounding can take a worksheet beyond its largest voxel by slack() times the larger of that and
+  /// magnitude(): 75 products and sums, and a few operations for the bound itself. Sums of 8-bit
+  /// voxels are exact.
+  A slack() const override
+  {
+    return sizeof(T) == 1 ? A(0) : 90 * std::numeric_limits<A>::epsilon() / 2;
+  }
+
+protected:
+  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
+  {
+    const Window& window = this->Reach.slices[s];
+    const glm::ivec3& size = this->Shared.geometry.size();
+    const Span i = common(
+      { columns.begin + window.iMin, columns.end + window.iMax }, { -Beside, size.x + Beside });
+    const Span j = common({ v0 + window.jMin, v1 + window.jMax }, { -Beside, size.y + Beside });
+    return { s, i.begin, j.begin, std::max(i.end - i.begin, 0), std::max(j.end - j.begin, 0) };
+  }
+
+  void splatRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  {
+    if (this->Shared.range.special)
+    {
+      for (int v = first; v < end; ++v)
+      {
+        this->splatValidRow(k, v, span, target, patch);
+      }
+      return;
+    }
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    loops.splat(this->splatOf(k, first, end, span, target, patch));
+  }
+
+  Splat<A> splatOf(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const
+  {
+    const SliceFootprint<A>& footprint = this->Footprints[k];
+    Splat<A> splat = this->splatInto<A>(target, first, end, span);
+    splat.sourceStride = patch.rowLength;
+    splat.partCount = footprint.partCount;
+    for (int p = 0; p < splat.partCount; ++p)
+    {
+      const FootprintPart<A>& part = footprint.parts[p];
+      splat.parts[p] = { this->voxel(patch, k, part.slice, span.begin + part.di, first + part.dj),
+        part.weights.data(), part.rows, part.columns };
+    }
+    return splat;
+  }
+
+  /// All but the source.
+  template <class S>
+  Splat<A, S> splatInto(const Target& target, int first, int end, const Span& span) const
+  {
+    Splat<A, S> splat;
+    splat.image = target.at(span.begin, first);
+    splat.imageStride = target.stride;
+    splat.bits = target.bits.origin ? target.bits.at(span.begin, first) : nullptr;
+    splat.bitsStride = target.bits.stride;
+    splat.bit = target.bit;
+    const Span whole = common(target.whole, span);
+    splat.wholeBegin = whole.empty() ? 0 : whole.begin - span.begin;
+    splat.wholeEnd = whole.empty() ? 0 : whole.end - span.begin;
+    splat.noting = this->notingAt(target, span.begin, first);
+    splat.width = span.end - span.begin;
+    splat.height = end - first;
+    return splat;
+  }
+
+  bool splatOwn(int k, int step, int first, int end, const Span& span, const Target& target,
+    Patch& patch) const override
+  {
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    if (this->Depth > 0 || !loops.splatVoxels || this->Shared.range.special ||
+      this->Footprints[k].partCount != 1)
+    {
+      return false; // copies are used for several slices, or are not worse
+    }
+    // Pixels whose footprints lie in the volume.
+    const glm::ivec3& size = this->Shared.geometry.size();
+    const SliceFootprint<A>& footprint = this->Footprints[k];
+    const FootprintPart<A>& part = footprint.parts[0];
+    const int di = part.di - footprint.nearest.x, dj = part.dj - footprint.nearest.y;
+    const Span columns = common(span, { -di, size.x - di - part.columns + 1 });
+    const Span rows = common({ first, end }, { -dj, size.y - dj - part.rows + 1 });
+    const bool isAll = columns.begin == span.begin && columns.end == span.end;
+    if (rows.empty() || (columns.end - columns.begin < LeastOwn && !(isAll && !columns.empty())))
+    {
+      return false;
+    }
+    Splat<A, T> splat = this->template splatInto<T>(target, rows.begin, rows.end, columns);
+    splat.sourceStride = this->Shared.slices.rowStride;
+    splat.base = this->Base;
+    splat.ahead = k + step >= 0 && k + step < size.z ? step * this->Shared.slices.sliceStride : 0;
+    splat.partCount = 1;
+    splat.parts[0] = { this->Shared.template voxelRow<T>(rows.begin + dj, k) + columns.begin + di,
+      part.weights.data(), part.rows, part.columns };
+    loops.splatVoxels(splat);
+    this->splatRim(k, first, rows.begin, span, target, patch);
+    this->splatRim(k, rows.end, end, span, target, patch);
+    const int least = std::min(RimWidth, span.end - span.begin);
+    if (columns.begin > span.begin)
+    {
+      this->splatRim(k, rows.begin, rows.end,
+        { span.begin, std::max(columns.begin, span.begin + least) }, target, patch);
+    }
+    if (columns.end < span.end)
+    {
+      this->splatRim(k, rows.begin, rows.end, { std::min(columns.end, span.end - least), span.end },
+        target, patch);
+    }
+    return true;
+  }
+
+private:
+  /// Pixels that are worth a rim beside them, and those of a rim: a register of floats, at most.
+  static constexpr int LeastOwn = 64, RimWidth = 16;
+
+  /// By a copy of what footprints read beyond the volume, too.
+  void splatRim(
+    int k, int first, int end, const Span& columns, const Target& target, Patch& patch) const
+  {
+    if (first < end)
+    {
+      const Span rows = patch.rows, pixels = patch.pixels;
+      this->open(first, end, columns, patch);
+      this->load(k, 0, patch);
+      this->splatRows(k, first, end, columns, target, patch);
+      this->open(rows.begin, rows.end, pixels, patch);
+    }
+  }
+
+  void splatValidRow(int k, int v, const Span& span, const Target& target, Patch& patch) const
+  {
+    const SliceFootprint<A>& footprint = this->Footprints[k];
+    const A* rows[75];
+    const int count = footprint.taps.size();
+    for (int t = 0; t < count; ++t)
+    {
+      const Tap& tap = footprint.taps[t];
+      rows[t] = this->voxel(patch, k, tap.slice, span.begin + tap.di, v + tap.dj);
+    }
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    loops.splatValid(
+      target.at(span.begin, v), rows, footprint.weights.data(), count, span.end - span.begin);
+  }
+
+  /// The voxel of slice k + c that is nearest to pixel (u, v) of slice k, in the patch.
+  const A* voxel(Patch& patch, int k, int c, int u, int v) const
+  {
+    const glm::ivec2& nearest = this->Footprints[k].nearest;
+    return patch.voxel<A>(
+      u - nearest.x, v - nearest.y, std::clamp(k + c, 0, this->Shared.geometry.size().z - 1));
+  }
+
+protected:
+  const std::vector<SliceFootprint<A>>& Footprints;
+};
+}
+
+#endif

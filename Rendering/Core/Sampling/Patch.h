@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef splattingPatch_h
+#define splattingPatch_h
+
+#include "Volume/VolumeIndex.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace splatting
+{
+/// Voxels widened to the accumulator's type: a rectangle from each of the up to three slices that a
+/// worksheet reads. What footprints read beyond the volume repeats its outermost voxels.
+struct Patch
+{
+  /// Bytes behind the last voxel, so that loops can read whole registers.
+  static constexpr std::size_t Padding = 128;
+
+  struct Sheet
+  {
+    int slice = -1;
+    int i = 0, j = 0; // the first voxel
+    int columns = 0, rows = 0;
+  };
+  std::vector<unsigned char> bytes;
+  std::vector<std::uint16_t> runEnds;   ///< of walks along chains only
+  std::vector<unsigned char> worksheet; ///< of walks that look at each sample only
+  std::vector<unsigned char> counts;    ///< where rays are cut: whether a slice does, by pixel
+  std::vector<unsigned char> present;   ///< which of its pixels have one, in perspective previews
+  std::vector<Span> runs;               ///< of perspective previews: what a slice covers of others
+  Span rows, pixels;                    ///< of the image, that it has the voxels for
+  std::ptrdiff_t ahead = 0; ///< to voxels that will be needed after those that are loaded
+  std::ptrdiff_t rowLength = 0;
+  std::ptrdiff_t sheetLength = 0;
+  std::array<Sheet, 3> sheets;
+  std::vector<unsigned char> resampledBytes, blendedBytes;
+  std::ptrdiff_t resampledLength = 0;
+  int resampledRows = 0;
+
+  /// Forgets all sheets.
+  template <class A>
+  void resize(int columns, int rows)
+  {
+    this->rowLength = columns;
+    this->sheetLength = this->rowLength * rows;
+    const std::size_t size = this->sheets.size() * this->sheetLength * sizeof(A) + Padding;
+    if (this->bytes.size() < size)
+    {
+      this->bytes.resize(size);
+    }
+    this->sheets.fill(Sheet{});
+  }
+  /// Rows of pixels from weighed rows of voxels, in perspective: `rows` of `length` for each part.
+  template <class A>
+  void resizeResampled(int parts, int rows, int length)
+  {
+    this->resampledRows = rows;
+    this->resampledLength = length;
+    const std::size_t size = std::size_t(parts) * rows * length * sizeof(A);
+    if (this->resampledBytes.size() < size)
+    {
+      this->resampledBytes.resize(size);
+    }
+  }
+  template <class A>
+  A* resampled(int part, int row)
+  {
+    return reinterpret_cast<A*>(this->resampledBytes.data()) +
+      (std::ptrdiff_t(part) * this->resampledRows + row) * this->resampledLength;
+  }
+  /// Room for rows of voxels between slices.
+  template <class A>
+  A* blended(int rows, int columns)
+  {
+    const std::size_t size = std::size_t(rows) * columns * sizeof(A) + Padding;
+    if (this->blendedBytes.size() < size)
+    {
+      this->blendedBytes.resize(size);
+    }
+    return reinterpret_cast<A*>(this->blendedBytes.data());
+  }
+
+  Sheet& sheet(int slice) { return this->sheets[slice % this->sheets.size()]; }
+  template <class A>
+  A* voxel(int i, int j, int slice)
+  {
+    return reinterpret_cast<A*>(this->bytes.data()) + this->place(i, j, slice);
+  }
+
+  /// For each voxel the next column of its sheet with another value.
+  std::uint16_t* runEnd(int i, int j, int slice)
+  {
+    return this->runEnds.data() + this->place(i, j, slice);
+  }
+  void resizeRunEnds()
+  {
+    const std::size_t size = this->sheets.size() * this->sheetLength;
+    if (this->runEnds.size() < size)
+    {
+      this->runEnds.resize(size);
+    }
+  }
+
+private:
+  std::ptrdiff_t place(int i, int j, int slice)
+  {
+    const Sheet& sheet = this->sheet(slice);
+    return slice % this->sheets.size() * this->sheetLength + (j - sheet.j) * this->rowLength +
+      (i - sheet.i);
+  }
+};
+}
+
+#endif

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Sampling/ExactPieces.h"
+#include "Sampling/FanCells.h"
+#include "Sampling/Worksheets.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <tuple>
+#include <type_traits>
+
+namespace splatting
+{
+namespace
+{
+/// What the layers of an image read, as far as WorksheetLayers asks for it.
+template <class A>
+void findExactReach(const ShearWarp& geometry, WorksheetReach<A>& reach)
+{
+  reach.layers.assign((geometry.size().z + BrickDepth - 1) / BrickDepth, {});
+  for (typename WorksheetReach<A>::Layer& layer : reach.layers)
+  {
+    layer.share = ExactShare<A>;
+  }
+  // Pixels are narrower than voxels: as many voxels, and some for what rays move.
+  reach.columns = reach.rows = 16;
+}
+
+/**
+ * Exact mode in perspective views: as ExactWorksheets, but each pixel's ray runs through the cells
+ * in its own way.
+ */
+template <class T>
+class PerspectiveExact : public WorksheetLayers<T>
+{
+public:
+  using typename WorksheetLayers<T>::A;
+  using typename WorksheetLayers<T>::Target;
+
+  PerspectiveExact(const Frame& frame, const FanCells<A>& columns, const FanCells<A>& rows,
+    const WorksheetReach<A>& reach)
+    : WorksheetLayers<T>(frame, true, reach, 1),
+      Columns(columns),
+      Rows(rows),
+      Depths(frame.whole, 2)
+  {
+  }
+
+  Span columnsOf(int z, const Span& pixels) const override
+  {
+    return this->Columns.voxels(this->readers(slicesOfLayer(z, this->size())), pixels);
+  }
+  Span rowsOf(int z, const Span& pixels) const override
+  {
+    return this->Rows.voxels(this->readers(slicesOfLayer(z, this->size())), pixels);
+  }
+
+  /// As in ParallelWorksheets, of three interpolations one after the other, with up to five
+  /// roundings each, and the mean of three.
+  A slack() const override { return 60 * std::numeric_limits<A>::epsilon() / 2; }
+
+protected:
+  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
+  {
+    const Span readers = this->readers({ s, s + 1 });
+    const Span i = this->Columns.voxels(readers, columns);
+    const Span j = this->Rows.voxels(readers, { v0, v1 });
+    return { s, i.begin, j.begin, std::max(i.end - i.begin, 0), std::max(j.end - j.begin, 0) };
+  }
+
+  void splatRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  {
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    const FanCellArrays<A> rows = this->Rows.slice(k);
+    const int slice = k + this->Shared.geometry.first().z;
+    const glm::dvec2 faces = this->Shared.whole.faces(slice);
+    // Rays that touch the field have next to nothing of it.
+    constexpr A shortest = A(1e-3);
+    FanCubicRow<A> row;
+    row.pixels = span;
+    row.columns = this->Columns.slice(k);
+    row.special = this->Shared.range.special;
+    row.shortest = shortest;
+    row.bit = target.bit;
+    for (int v = first; v < end; ++v)
+    {
+      row.image = target.at(0, v);
+      row.bits = target.bits.origin ? target.bits.at(0, v) : nullptr;
+      row.slope = rows.slope[v];
+      row.fieldBegin = std::max(rows.fieldBegin[v], static_cast<A>(this->Depths.begin - slice));
+      row.fieldEnd = std::min(rows.fieldEnd[v], static_cast<A>(this->Depths.end - slice));
+      row.boxesBegin = rows.boxesBegin[v];
+      row.boxesEnd = rows.boxesEnd[v];
+      row.fieldNear = std::max(rows.fieldNear[v], this->nearest());
+      row.fieldFar = std::min(rows.fieldFar[v], this->farthest());
+      this->findParts(k, v, faces - double(slice), rows, patch, row);
+      loops.raiseFanCubics(row);
+    }
+  }
+
+private:
+  const glm::ivec3& size() const { return this->Shared.geometry.size(); }
+  /// The slices whose worksheets read some slices.
+  static Span readers(const Span& slices) { return { slices.begin - 1, slices.end + 1 }; }
+
+  /// The depths of the field before the eye.
+  A nearest() const
+  {
+    const Span& slices = this->Shared.whole.slices();
+    return static_cast<A>(std::max(this->Depths.begin, this->Shared.whole.faces(slices.begin).x));
+  }
+  A farthest() const
+  {
+    const Span& slices = this->Shared.whole.slices();
+    return static_cast<A>(std::min(this->Depths.end, this->Shared.whole.faces(slices.end - 1).y));
+  }
+
+  /// Cuts the path of a row's rays in the slice's middle and where they leave a row of cells.
+  void findParts(int k, int v, const glm::dvec2& faces, const FanCellArrays<A>& rows, Patch& patch,
+    FanCubicRow<A>& row) const
+  {
+    const A from = static_cast<A>(faces.x), to = static_cast<A>(faces.y);
+    const A crossing = rows.crossing[v];
+    const bool crosses = crossing < A(1);
+    A cuts[4] = { from, std::clamp(A(0), from, to), crosses ? std::clamp(crossing, from, to) : to,
+      to };
+    std::sort(cuts, cuts + 4);
+    const bool falls = rows.slope[v] < 0;
+    const int last = this->size().z - 1;
+    row.count = 0;
+    for (int n = 0; n < 3; ++n)
+    {
+      if (!(cuts[n] < cuts[n + 1]))
+      {
+        continue;
+      }
+      FanCubicPart<A>& part = row.parts[row.count++];
+      part.from = cuts[n];
+      part.to = cuts[n + 1];
+      const bool isBefore = crosses && part.to <= crossing;
+      const int upper = crosses && (isBefore ? falls : !falls);
+      const int j = rows.cell[v] + upper, low = part.to <= A(0) ? k - 1 : k;
+      part.y = rows.at[v] - static_cast<A>(upper);
+      part.z = static_cast<A>(k - low);
+      for (int r = 0; r < 4; ++r)
+      {
+        part.rows[r] = patch.template voxel<A>(0, j + r % 2, std::clamp(low + r / 2, 0, last));
+      }
+    }
+  }
+
+  const FanCells<A>& Columns;
+  const FanCells<A>& Rows;
+  FieldRange Depths;
+};
+
+class PerspectiveExactMode : public ProjectionMode
+{
+public:
+  void project(Frame& frame) override
+  {
+    dispatch(frame.index.volume().type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        using A = Accumulator<T>;
+        auto& cells = std::get<std::array<FanCells<A>, 2>>(this->Cells);
+        auto& reach = std::get<WorksheetReach<A>>(this->Reach);
+        cells[0].find(frame.whole, frame.geometry, 0);
+        cells[1].find(frame.whole, frame.geometry, 1);
+        findExactReach(frame.geometry, reach);
+        walk(frame, PerspectiveExact<T>(frame, cells[0], cells[1], reach));
+      });
+  }
+
+private:
+  std::tuple<std::array<FanCells<float>, 2>, std::array<FanCells<double>, 2>> Cells;
+  std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
+};
+}
+
+std::unique_ptr<ProjectionMode> makePerspectiveExact()
+{
+  return std::make_unique<PerspectiveExactMode>();
+}
+}

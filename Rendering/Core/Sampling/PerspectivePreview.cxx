@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Sampling/Carry.h"
+#include "Sampling/SliceSampler.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+namespace splatting
+{
+namespace
+{
+/**
+ * Preview mode in perspective views: the voxels that rays cross, each ray its own.
+ */
+template <class T>
+class PerspectivePreview : public SliceSampler<T, T>
+{
+  static constexpr int RunUnit = 64 / sizeof(T);
+  static_assert(RunUnit % TileWidth == 0);
+
+public:
+  using typename SliceSampler<T, T>::Samples;
+
+  /// @param windows  of the columns
+  /// @param none     work space
+  PerspectivePreview(
+    const Frame& frame, const FanWindows& windows, std::vector<unsigned char>& none)
+    : SliceSampler<T, T>({ true, 0, 32, RunUnit, false }),
+      Shared(frame),
+      Windows(windows)
+  {
+    // A row without voxels, and a register of them.
+    const std::size_t count = std::max<std::size_t>(frame.geometry.size().x, 64);
+    none.resize(count * sizeof(T));
+    this->None = reinterpret_cast<T*>(none.data());
+    std::fill_n(reinterpret_cast<T*>(none.data()), count, leastValue<T>());
+  }
+
+  Span columnsOf(int z, const Span& pixels) const override
+  {
+    return this->Shared.steps.columns.voxels(this->slices(z), pixels);
+  }
+  Span rowsOf(int z, const Span& pixels) const override
+  {
+    return this->Shared.steps.rows.voxels(this->slices(z), pixels);
+  }
+
+  void splat(int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits,
+    const SliceRuns*, Patch& patch) const override
+  {
+    const Span slices = this->slices(z);
+    const int count = slices.end - slices.begin;
+    if (this->Shared.range.special)
+    {
+      for (int n = 0; n < count; ++n)
+      {
+        this->splatSamples(slices.begin + n, v0, v1, bits, patch);
+      }
+      return;
+    }
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    for (int n = 0; n < count; n += 2)
+    {
+      // Two slices at a time, from the viewer on: image and notes are read and written once.
+      const int near = this->Shared.nth(slices, n);
+      const int far = n + 1 < count ? this->Shared.nth(slices, n + 1) : near;
+      const Span rows = this->findRuns(near, far, { v0, v1 }, runs, patch.runs);
+      if (!rows.empty() && !patch.runs.empty())
+      {
+        loops.cross(this->crossingOf(near, far, rows, bits, patch.runs));
+      }
+    }
+  }
+
+  void open(int, int, const Span&, Patch&) const override {}
+  void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const override
+  {
+    for (int r = 0; r < count; ++r)
+    {
+      if (!rows[r].runs.empty())
+      {
+        this->splat(z, rows[r].v0, rows[r].v1, rows[r].runs, rows[r].bits, nullptr, patch);
+      }
+    }
+  }
+
+  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all, const SliceRuns*,
+    Patch& patch) const override
+  {
+    for (int n = 0; n < layers.end - layers.begin; ++n)
+    {
+      this->splat(this->Shared.nth(layers, n), v0, v1, all, {}, nullptr, patch);
+    }
+  }
+
+  void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
+    Patch& patch, const Samples& f) const override
+  {
+    const Span some = common(slices, this->Shared.geometry.slices());
+    for (int n = 0; n < some.end - some.begin; ++n)
+    {
+      const int k = reversed ? some.end - 1 - n : some.begin + n;
+      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+      for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
+      {
+        const Span pixels = common(columns, slice.span(v));
+        for (int t = 0; t < StepsPerSlice && !pixels.empty(); ++t)
+        {
+          const int step = reversed ? StepsPerSlice - 1 - t : t;
+          if (this->findStep(k, v, step, pixels, patch))
+          {
+            f(StepsPerSlice * k + step, v, pixels,
+              reinterpret_cast<const T*>(patch.worksheet.data()), patch.present.data());
+          }
+        }
+      }
+    }
+  }
+
+  T floor() const override { return previewFloor<T>(this->Shared); }
+  void finish(int, int) const override {}
+
+private:
+  Span slices(int z) const
+  {
+    return common(slicesOfLayer(z, this->Shared.geometry.size()), this->Shared.geometry.slices());
+  }
+
+  /// The rows that two slices cover, and in these the pixels, in whole registers.
+  Span findRuns(int near, int far, const Span& rows, const std::vector<Span>& runs,
+    std::vector<Span>& covered) const
+  {
+    const SliceGeometry& a = this->Shared.sliceGeometry[near];
+    const SliceGeometry& b = this->Shared.sliceGeometry[far];
+    const Span both{ std::min(a.inner.begin, b.inner.begin), std::max(a.inner.end, b.inner.end) };
+    const Span registers{ both.begin / RunUnit * RunUnit,
+      std::min((both.end + RunUnit - 1) / RunUnit * RunUnit, this->Shared.image.width) };
+    covered.clear();
+    for (const Span& run : runs)
+    {
+      const Span some = common(run, registers);
+      if (!some.empty())
+      {
+        covered.push_back(some);
+      }
+    }
+    return common(rows, { std::min(a.vBegin, b.vBegin), std::max(a.vEnd, b.vEnd) });
+  }
+
+  CrossedSlice<T> sliceOf(int k, int v0) const
+  {
+    const PerspectiveSteps& steps = this->Shared.steps;
+    const FanSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
+    const FanWindows::Picks entry = this->Windows.entering(k), exit = this->Windows.leaving(k);
+    CrossedSlice<T> s;
+    s.voxels = this->Shared.template voxelRow<T>(0, k);
+    s.firstRow = rows.first + v0;
+    s.lastRow = rows.last + v0;
+    s.rowTime = rows.time + v0;
+    s.rowTick = rows.tick + v0;
+    s.columnTime = columns.time;
+    s.columnTick = columns.tick;
+    s.entryBase = entry.base;
+    s.entryLanes = entry.lanes;
+    s.exitBase = exit.base;
+    s.exitLanes = exit.lanes;
+    s.bit = static_cast<unsigned char>(1u << k % BrickDepth);
+    s.order = static_cast<std::int16_t>(this->Shared.orderOfStep(StepsPerSlice * k));
+    return s;
+  }
+
+  Crossing<T> crossingOf(
+    int near, int far, const Span& rows, const SliceBits& bits, const std::vector<Span>& runs) const
+  {
+    Crossing<T> c;
+    c.imageStride = this->Shared.image.width;
+    c.image = this->Shared.image.template row<T>(rows.begin);
+    c.height = rows.end - rows.begin;
+    c.count = near == far ? 1 : 2;
+    c.slices[0] = this->sliceOf(near, rows.begin);
+    c.slices[1] = this->sliceOf(far, rows.begin);
+    c.rowStride = this->Shared.slices.rowStride;
+    c.ahead = 2 * (far - near) * this->Shared.slices.sliceStride;
+    c.columns = this->Shared.geometry.size().x;
+    c.rows = this->Shared.geometry.size().y;
+    c.none = this->None;
+    c.runs = runs.data();
+    c.runCount = static_cast<int>(runs.size());
+    c.bits = bits.origin ? bits.at(0, rows.begin) : nullptr;
+    c.bitsStride = bits.stride;
+    c.noting.notes = this->Shared.orders ? this->Shared.ordersOfRow(rows.begin) : nullptr;
+    c.noting.order = c.slices[0].order;
+    c.noting.nearestFirst = this->Shared.nearestFirst;
+    c.reversed = this->Shared.geometry.reversed();
+    return c;
+  }
+
+  /// Voxels that compare with nothing.
+  void splatSamples(int k, int v0, int v1, const SliceBits& bits, Patch& patch) const
+  {
+    const RayLoops<T>& loops = this->Shared.kernels;
+    const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
+    this->forSamples({ k, k + 1 }, false, v0, v1, { 0, this->Shared.image.width }, patch,
+      [&](int, int v, const Span& pixels, const T* samples, const unsigned char*)
+      {
+        unsigned char* const present = patch.present.data();
+        for (int u = pixels.begin; bits.origin && u < pixels.end; ++u)
+        {
+          present[u - pixels.begin] &= (*bits.at(u, v) & bit) != 0;
+        }
+        loops.raise(this->Shared.image.template row<T>(v) + pixels.begin, samples, present,
+          pixels.end - pixels.begin);
+      });
+  }
+
+  /// One step of the rays of some pixels, into patch.worksheet and patch.present. Whether there is
+  /// any.
+  bool findStep(int k, int v, int step, const Span& pixels, Patch& patch) const
+  {
+    const glm::ivec3& size = this->Shared.geometry.size();
+    const FanSteps::Slice columns = this->Shared.steps.columns.slice(k);
+    const FanSteps::Slice rows = this->Shared.steps.rows.slice(k);
+    const int count = pixels.end - pixels.begin;
+    patch.worksheet.resize(std::size_t(this->Shared.image.width) * sizeof(T));
+    patch.present.resize(this->Shared.image.width);
+    T* const out = reinterpret_cast<T*>(patch.worksheet.data());
+    const int j0 = rows.first[v], j1 = rows.last[v];
+    const bool inside[2] = { j0 >= 0 && j0 < size.y, j1 >= 0 && j1 < size.y };
+    const T* const first = this->Shared.template voxelRow<T>(inside[0] ? j0 : 0, k);
+    const T* const last = this->Shared.template voxelRow<T>(inside[1] ? j1 : 0, k);
+    unsigned any = 0;
+    for (int x = 0; x < count; ++x)
+    {
+      const int u = pixels.begin + x;
+      const int i0 = columns.first[u], i1 = columns.last[u];
+      const bool moves = i0 != i1 || j0 != j1;
+      const double a = columns.time[u], b = rows.time[v];
+      const bool corner = i0 != i1 && j0 != j1 && a != b;
+      // The path is first, (corner), last.
+      const bool atCorner = corner && step == 1;
+      const bool takesLast = atCorner ? a < b : step > 0;    // of columns
+      const bool takesNext = atCorner ? !(a < b) : step > 0; // of rows
+      const bool exists = step == 0 || (moves && (step == 1 || corner));
+      const int i = takesLast ? i1 : i0;
+      const bool has = exists && inside[takesNext] && i >= 0 && i < size.x;
+      out[x] = has ? (takesNext ? last : first)[i] : T(0);
+      patch.present[x] = has;
+      any |= has;
+    }
+    return any != 0;
+  }
+
+  const Frame& Shared;
+  const FanWindows& Windows;
+  const T* None;
+};
+
+class PerspectivePreviewMode : public ProjectionMode
+{
+public:
+  void project(Frame& frame) override
+  {
+    dispatch(frame.index.volume().type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        const VoxelLoops<T>& loops = frame.kernels;
+        this->Windows.find(frame.steps.columns, loops.group, sizeof(T));
+        walk(frame, PerspectivePreview<T>(frame, this->Windows, this->None));
+      });
+  }
+
+  void carry(const Carrying& c) const override
+  {
+    dispatch(c.other.type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        carryValues<T>(c,
+          [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
+          { return carriedVoxel(voxels, c.geometry, u, v, step); });
+      });
+  }
+
+private:
+  FanWindows Windows;
+  std::vector<unsigned char> None;
+};
+}
+
+std::unique_ptr<ProjectionMode> makePerspectivePreview()
+{
+  return std::make_unique<PerspectivePreviewMode>();
+}
+}

@@ -1,0 +1,286 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Sampling/Carry.h"
+#include "Sampling/PerspectiveFootprints.h"
+#include "Sampling/Worksheets.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <tuple>
+#include <type_traits>
+
+namespace splatting
+{
+namespace
+{
+/// What the layers of an image read, as far as WorksheetLayers asks for it.
+template <class A>
+void findReach(
+  const ShearWarp& geometry, const PerspectiveFootprints<A>& footprints, WorksheetReach<A>& reach)
+{
+  const int count = geometry.size().z;
+  reach.layers.assign((count + BrickDepth - 1) / BrickDepth, {});
+  for (int k = geometry.slices().begin; k < geometry.slices().end; ++k)
+  {
+    A before = 0, behind = 0;
+    for (int q = 0; q < footprints.parts; ++q)
+    {
+      before += footprints.share(k, q)[0];
+      behind += footprints.share(k, q)[2];
+    }
+    A& share = reach.layers[k / BrickDepth].share;
+    share = std::max({ share, k % BrickDepth == 0 ? before : A(0),
+      k % BrickDepth == BrickDepth - 1 ? behind : A(0) });
+  }
+  // Pixels are narrower than voxels: as many voxels, some for the taps and for what rays move.
+  reach.columns = reach.rows = 16;
+}
+
+/**
+ * Standard and high mode in perspective views. The weights of a pixel are products, so a slice's
+ * worksheet is made in two steps: its rows of voxels are weighed into rows of pixels, which the
+ * image's rows then weigh.
+ */
+template <class T>
+class PerspectiveWorksheets : public WorksheetLayers<T>
+{
+public:
+  using A = Accumulator<T>;
+
+  /// @param depth  how many slices beyond its own a footprint reads
+  PerspectiveWorksheets(const Frame& frame, const PerspectiveFootprints<A>& footprints,
+    const WorksheetReach<A>& reach, int depth)
+    : WorksheetLayers<T>(frame, true, reach, depth),
+      Own(footprints)
+  {
+    // Rows of voxels that two pieces need are widened, blended and weighed twice.
+    this->PieceHeight = 32;
+    this->Notes = true;
+  }
+
+  Span columnsOf(int z, const Span& pixels) const override
+  {
+    return this->Own.columns.voxels(this->readers(this->slicesOf(z)), pixels);
+  }
+  Span rowsOf(int z, const Span& pixels) const override
+  {
+    return this->Own.rows.voxels(this->readers(this->slicesOf(z)), pixels);
+  }
+
+  /// As in ParallelWorksheets, of up to 3 + 5 + 15 products and sums and the weights' own rounding.
+  A slack() const override { return 60 * std::numeric_limits<A>::epsilon() / 2; }
+
+private:
+  using typename WorksheetLayers<T>::Target;
+
+  Span slicesOf(int z) const { return slicesOfLayer(z, this->Shared.geometry.size()); }
+  /// The slices whose worksheets read some slices.
+  Span readers(const Span& slices) const
+  {
+    return { slices.begin - this->Depth, slices.end + this->Depth };
+  }
+
+  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
+  {
+    const Span readers = this->readers({ s, s + 1 });
+    const Span i = this->Own.columns.voxels(readers, columns);
+    const Span j = this->Own.rows.voxels(readers, { v0, v1 });
+    return { s, i.begin, j.begin, std::max(i.end - i.begin, 0), std::max(j.end - j.begin, 0) };
+  }
+
+  void splatRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  {
+    if (this->Shared.range.special)
+    {
+      for (int v = first; v < end; ++v)
+      {
+        this->splatValidRow(k, v, span, target, patch);
+      }
+      return;
+    }
+    Span voxelRows[MostParts];
+    this->resampleRows(k, { first, end }, span, patch, voxelRows);
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    typename FanFootprints<A>::Part parts[MostParts];
+    A shares[MostParts];
+    const A* resampled[MostParts];
+    for (int q = 0; q < this->Own.parts; ++q)
+    {
+      parts[q] = this->Own.rows.part(k, q);
+      shares[q] = this->Depth > 0 ? A(1) : this->Own.share(k, q)[1];
+      resampled[q] = patch.template resampled<A>(q, 0) + (span.begin - alignedDown(span.begin));
+    }
+    for (int v = first; v < end; ++v)
+    {
+      const A* rows[MostParts * MostTaps];
+      A weights[MostParts * MostTaps];
+      int count = 0;
+      for (int q = 0; q < this->Own.parts; ++q)
+      {
+        const typename FanFootprints<A>::Part& part = parts[q];
+        const A* row = resampled[q] + (part.first[v] - voxelRows[q].begin) * patch.resampledLength;
+        const A* weight = part.weights + v;
+        for (int t = 0; t < part.taps; ++t, row += patch.resampledLength, weight += part.stride)
+        {
+          rows[count] = row;
+          weights[count++] = shares[q] * *weight;
+        }
+      }
+      loops.raiseBlend(target.at(span.begin, v), rows, weights, count,
+        target.bits.origin ? target.bits.at(span.begin, v) : nullptr, target.bit,
+        this->notingAt(target, span.begin, v), span.end - span.begin);
+    }
+  }
+
+  /// Registers of pixels begin at their multiples.
+  static constexpr int Unit = 16;
+  static int alignedDown(int u) { return u / Unit * Unit; }
+
+  /// Weighs the rows of voxels that some rows of pixels need into rows of pixels, for each part.
+  void resampleRows(int k, const Span& rows, const Span& span, Patch& patch, Span* voxelRows) const
+  {
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    const int begin = alignedDown(span.begin), length = alignedDown(span.end - begin + Unit - 1);
+    int most = 0;
+    for (int q = 0; q < this->Own.parts; ++q)
+    {
+      const auto part = this->Own.rows.part(k, q);
+      voxelRows[q] = { part.first[rows.begin], part.first[rows.end - 1] + part.taps };
+      most = std::max(most, voxelRows[q].end - voxelRows[q].begin);
+    }
+    patch.template resizeResampled<A>(this->Own.parts, most, length);
+    for (int q = 0; q < this->Own.parts; ++q)
+    {
+      const auto part = this->Own.columns.part(k, q);
+      Resampling<A> resampling;
+      resampling.base = part.base;
+      resampling.lanes = part.lanes;
+      resampling.weights = part.weights;
+      resampling.stride = part.stride;
+      resampling.taps = part.taps;
+      resampling.rows = voxelRows[q].end - voxelRows[q].begin;
+      resampling.out = patch.template resampled<A>(q, 0) - begin;
+      resampling.outStride = patch.resampledLength;
+      this->findVoxels(k, q, voxelRows[q], patch, resampling);
+      loops.resample(resampling, span.begin, span.end);
+    }
+  }
+
+  /// The voxels of some rows: of slice k, or, in part q, by share of the slices around it.
+  void findVoxels(int k, int q, const Span& rows, Patch& patch, Resampling<A>& resampling) const
+  {
+    if (this->Depth == 0)
+    {
+      resampling.voxels = patch.template voxel<A>(0, rows.begin, k); // for shares see splatRows()
+      resampling.voxelStride = patch.rowLength;
+      return;
+    }
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    const std::array<A, 3>& shares = this->Own.share(k, q);
+    const int last = this->Shared.geometry.size().z - 1;
+    // All sheets that are read together have these columns.
+    const Patch::Sheet& own = patch.sheet(k);
+    Span columns{ own.i, own.i + own.columns };
+    int slices[3];
+    A weights[3];
+    int count = 0;
+    for (int c = -1; c <= 1; ++c)
+    {
+      if (shares[c + 1] != 0)
+      {
+        slices[count] = std::clamp(k + c, 0, last);
+        const Patch::Sheet& sheet = patch.sheet(slices[count]);
+        columns = common(columns, { sheet.i, sheet.i + sheet.columns });
+        weights[count++] = shares[c + 1];
+      }
+    }
+    const int n = columns.end - columns.begin;
+    A* const out = patch.template blended<A>(rows.end - rows.begin, n);
+    for (int j = rows.begin; j < rows.end; ++j)
+    {
+      const A* sources[3];
+      for (int c = 0; c < count; ++c)
+      {
+        sources[c] = patch.template voxel<A>(columns.begin, j, slices[c]);
+      }
+      loops.blend(sources, weights, count, out + std::ptrdiff_t(j - rows.begin) * n, n);
+    }
+    resampling.voxels = out - columns.begin;
+    resampling.voxelStride = n;
+  }
+
+  void splatValidRow(int k, int v, const Span& span, const Target& target, Patch& patch) const
+  {
+    const int last = this->Shared.geometry.size().z - 1;
+    for (int u = span.begin; u < span.end; ++u)
+    {
+      A sum = 0, weight = 0;
+      this->Own.forVoxels(u, v, k,
+        [&](int i, int j, int s, A w)
+        {
+          const A value = *patch.template voxel<A>(i, j, std::clamp(s, 0, last));
+          if (value == value && w != 0)
+          {
+            sum += w * value;
+            weight += w;
+          }
+        });
+      const A average = sum / weight;
+      A& pixel = *target.at(u, v);
+      const bool counts = !target.bits.origin || *target.bits.at(u, v) & target.bit;
+      if (counts && (average > pixel || (pixel != pixel && average == average)))
+      {
+        pixel = average;
+      }
+    }
+  }
+
+  const PerspectiveFootprints<A>& Own;
+};
+
+class PerspectiveWorksheetsMode : public ProjectionMode
+{
+public:
+  void project(Frame& frame) override
+  {
+    dispatch(frame.index.volume().type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        using A = Accumulator<T>;
+        auto& own = std::get<PerspectiveFootprints<A>>(this->Footprints);
+        auto& reach = std::get<WorksheetReach<A>>(this->Reach);
+        own.find(frame.whole, frame.geometry, worksheetKernel(frame.settings), frame.kernels);
+        findReach(frame.geometry, own, reach);
+        walk(frame, PerspectiveWorksheets<T>(frame, own, reach, worksheetDepth(frame.settings)));
+      });
+  }
+
+  void carry(const Carrying& c) const override
+  {
+    dispatch(c.other.type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        const auto& own = std::get<PerspectiveFootprints<Accumulator<T>>>(this->Footprints);
+        carryValues<T>(c,
+          [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
+          { return carriedAverage<T>(voxels, own, u, v, step / StepsPerSlice); });
+      });
+  }
+
+private:
+  std::tuple<PerspectiveFootprints<float>, PerspectiveFootprints<double>> Footprints;
+  std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
+};
+}
+
+std::unique_ptr<ProjectionMode> makePerspectiveWorksheets()
+{
+  return std::make_unique<PerspectiveWorksheetsMode>();
+}
+}

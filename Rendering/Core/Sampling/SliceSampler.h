@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What a mode of projection is. Walks know the order in which slices are met and what can be left
+ * out; kernels know weights and pointers; a SliceSampler says how slices become samples of pixels.
+ *
+ * There are six samplers, for parallel and perspective views: preview, worksheets and exact, and
+ * one more for worksheets from chains. Each mode is a file of its own, for all types of voxels,
+ * which the others enter by ProjectionMode alone. Who adds a mode implements these two classes.
+ */
+#ifndef splattingSliceSampler_h
+#define splattingSliceSampler_h
+
+#include "Clipping/Cuts.h"
+#include "Projection/Frame.h"
+#include "Projection/Project.h"
+#include "Sampling/Patch.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+// For explicit instantiations: f of each type of voxels.
+#define SPLATTING_INTEGERS(f)                                                                      \
+  f(std::int8_t) f(std::uint8_t) f(std::int16_t) f(std::uint16_t) f(std::int32_t) f(std::uint32_t) \
+    f(std::int64_t) f(std::uint64_t)
+#define SPLATTING_TYPES(f) SPLATTING_INTEGERS(f) f(float) f(double)
+
+namespace splatting
+{
+/// How a sampler is best walked.
+struct SamplerTraits
+{
+  bool perspective;    ///< whether each tile reads a window of its own
+  int beyond;          ///< how many slices beyond its own a layer reads
+  int rowsTogether;    ///< rows that cut layers are walked for at a time
+  int runUnit;         ///< pixels whose multiples runs had best begin and end at
+  bool takesSliceRuns; ///< whether splat() and splatAll() take SliceRuns
+};
+
+/**
+ * How voxels of type T become samples of pixels of type P: the voxels themselves (P is T), or
+ * worksheets (P is Accumulator<T>), before finish(). Slices go in layers of BrickDepth.
+ */
+template <class T, class P>
+class SliceSampler
+{
+public:
+  explicit SliceSampler(const SamplerTraits& traits) : Traits(traits) {}
+  virtual ~SliceSampler() = default;
+  SliceSampler(const SliceSampler&) = delete;
+  void operator=(const SliceSampler&) = delete;
+
+  const SamplerTraits& traits() const { return this->Traits; }
+
+  /// How far it reads: the voxels that the pixels of a layer read, relative to the pixel.
+  virtual Window window(int) const { return {}; }
+  /// In perspective the voxels of a layer that some columns (or rows) of pixels read, from first to
+  /// last; they may lie outside the volume.
+  virtual Span columnsOf(int, const Span&) const { return {}; }
+  virtual Span rowsOf(int, const Span&) const { return {}; }
+
+  /// How it bounds, if a layer reads beyond its own slices: how much of a sample the voxels of a
+  /// layer's neighbours can weigh, and how far rounding can take samples beyond their largest
+  /// voxel: by slack() times the larger of that and magnitude().
+  virtual P share(int) const { return 0; }
+  virtual P slack() const { return 0; }
+  virtual P magnitude() const { return 0; }
+
+  /// What is subtracted from voxels.
+  virtual P base() const { return 0; }
+  /// What pixels start from: no sample ends below.
+  virtual P floor() const = 0;
+
+  /// Takes a layer's samples into the pixels of some rows and runs of columns, as far as the bits
+  /// or the slices' runs (if there are any) say.
+  virtual void splat(int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits,
+    const SliceRuns* cuts, Patch& patch) const = 0;
+
+  /// The same for some of the rows and columns that have been opened together: layer by layer, so
+  /// that voxels are widened once.
+  virtual void open(int v0, int v1, const Span& columns, Patch& patch) const = 0;
+  virtual void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const = 0;
+
+  /// The same for all pixels of some rows, which are one run, and all slices of some layers, in the
+  /// order that suits memory.
+  virtual void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
+    const SliceRuns* cuts, Patch& patch) const = 0;
+
+  /// Samples of one step of the rays in a row of pixels, steps as in ShearImage::winners; and which
+  /// of the pixels have that step, or nullptr if all do. A worksheet that is none is NaN.
+  using Samples = std::function<void(
+    int step, int v, const Span& pixels, const P* samples, const unsigned char* present)>;
+  /// Tells all samples of some slices and of pixels in some rows and columns, in the order of the
+  /// rays if they come from the first slice, or else reversed.
+  virtual void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
+    Patch& patch, const Samples& f) const = 0;
+
+  /// From samples to the image's scalars, for some rows, when all slices have been taken.
+  virtual void finish(int v0, int v1) const = 0;
+
+private:
+  SamplerTraits Traits;
+};
+
+/// Projects by a sampler, as the frame says: see BandWalk and RayWalk.
+template <class T, class P>
+void walkBands(Frame& frame, const SliceSampler<T, P>& sampler);
+template <class T, class P>
+void walkRays(Frame& frame, const SliceSampler<T, P>& sampler);
+template <class T, class P>
+void walk(Frame& frame, const SliceSampler<T, P>& sampler)
+{
+  frame.byRays ? walkRays(frame, sampler) : walkBands(frame, sampler);
+}
+
+/// Calls body(v0, v1) for bands of so many rows, in parallel, until the watch stops them.
+void forBands(int height, int rows, Watch& watch, const std::function<void(int v0, int v1)>& body);
+/// Rows of a band: many, for long streams through memory, but enough bands for all threads.
+int bandHeight(int rows);
+
+/// What another volume has where a projection found its winners.
+struct Carrying
+{
+  const VoxelArray& other;
+  const ShearWarp& geometry;
+  const std::vector<SliceGeometry>& slices;
+  const ShearImage& projected;
+  ShearImage& image;
+};
+
+/// A mode with the work space that it keeps between frames.
+class ProjectionMode
+{
+public:
+  virtual ~ProjectionMode() = default;
+  /// Walks a sampler for the type of the frame's voxels.
+  virtual void project(Frame& frame) = 0;
+  /// After project(). Only for modes whose samples are voxels or averages.
+  virtual void carry(const Carrying&) const {}
+};
+std::unique_ptr<ProjectionMode> makePreview();
+std::unique_ptr<ProjectionMode> makePerspectivePreview();
+std::unique_ptr<ProjectionMode> makeWorksheets();
+std::unique_ptr<ProjectionMode> makePerspectiveWorksheets();
+std::unique_ptr<ProjectionMode> makeExact();
+std::unique_ptr<ProjectionMode> makePerspectiveExact();
+std::unique_ptr<ProjectionMode> makeChains();
+}
+
+#endif

@@ -1,0 +1,540 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Sampling/Worksheets.h"
+
+#include <vtkSMPTools.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace splatting
+{
+namespace
+{
+/// The part of slice c; without columns if no tap lies there.
+template <class A>
+FootprintPart<A> partOf(const Taps& taps, int c)
+{
+  int first[2] = { 3, 3 }, last[2] = { -3, -3 };
+  for (const Tap& tap : taps)
+  {
+    if (tap.slice == c)
+    {
+      first[0] = std::min(first[0], tap.di);
+      last[0] = std::max(last[0], tap.di);
+      first[1] = std::min(first[1], tap.dj);
+      last[1] = std::max(last[1], tap.dj);
+    }
+  }
+  FootprintPart<A> part{ c, first[0], first[1], std::max(last[0] - first[0] + 1, 0),
+    std::max(last[1] - first[1] + 1, 0), {} };
+  for (const Tap& tap : taps)
+  {
+    if (tap.slice == c)
+    {
+      part.weights[(tap.dj - part.dj) * part.columns + tap.di - part.di] =
+        static_cast<A>(tap.weight);
+    }
+  }
+  return part;
+}
+
+template <class A>
+void setTaps(SliceFootprint<A>& footprint, const Taps& taps)
+{
+  footprint.taps = taps;
+  for (int t = 0; t < taps.size(); ++t)
+  {
+    footprint.weights[t] = static_cast<A>(taps[t].weight);
+  }
+  footprint.partCount = 0;
+  for (int c = -1; c <= 1; ++c)
+  {
+    const FootprintPart<A> part = partOf<A>(taps, c);
+    if (part.columns > 0)
+    {
+      footprint.parts[footprint.partCount++] = part;
+    }
+  }
+}
+
+/// Joins rows that are alike, so that they share rows of voxels: those of which all counts, and
+/// those with bits, which say what counts between the first run and the last. How many are left.
+int joined(std::vector<RowRuns>& rows, int count)
+{
+  int last = 0;
+  for (int r = 0; r < count; ++r)
+  {
+    RowRuns& own = rows[r];
+    if (own.bits.origin && !own.runs.empty())
+    {
+      own.runs.assign(1, { own.runs.front().begin, own.runs.back().end });
+    }
+    RowRuns& before = rows[last];
+    const bool isAlike =
+      r > 0 && !own.runs.empty() && !before.runs.empty() && !own.bits.origin == !before.bits.origin;
+    if (isAlike)
+    {
+      Span& run = before.runs.front();
+      run = { std::min(run.begin, own.runs.front().begin),
+        std::max(run.end, own.runs.front().end) };
+      before.v1 = own.v1;
+    }
+    else if (r > 0 && ++last < r)
+    {
+      std::swap(rows[last], own);
+    }
+  }
+  return last + 1;
+}
+
+bool same(const Span& a, const Span& b)
+{
+  return (a.begin == b.begin && a.end == b.end) || (a.empty() && b.empty());
+}
+}
+
+template <class A>
+void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int sampling, int weightBits,
+  GeneralTable& table, std::vector<SliceFootprint<A>>& footprints)
+{
+  const glm::dvec2 shear = geometry.shear();
+  if (sampling > 0)
+  {
+    table.set(kernel, shear, sampling, static_cast<int>(std::lround(1.0 / geometry.pixelSize())));
+  }
+  footprints.resize(geometry.size().z);
+  vtkSMPTools::For(0, geometry.size().z, 8,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType k = first; k < last; ++k)
+      {
+        auto& footprint = footprints[k];
+        const glm::dvec2 position = geometry.position(static_cast<double>(k));
+        footprint.nearest = { static_cast<int>(std::floor(position.x + 0.5)),
+          static_cast<int>(std::floor(position.y + 0.5)) };
+        const glm::dvec2 fraction = position - glm::dvec2(footprint.nearest);
+        const WeightTable weights = sampling > 0
+          ? table.weights(fraction)
+          : closedFormWeights(kernel, shear, fraction, geometry.pixelSize());
+        setTaps(footprint, quantisedTaps(weights, weightBits));
+      }
+    });
+}
+
+template <class A>
+void findReach(const std::vector<SliceGeometry>& slices,
+  const std::vector<SliceFootprint<A>>& footprints, WorksheetReach<A>& reach)
+{
+  const int count = static_cast<int>(slices.size());
+  reach.layers.assign((count + BrickDepth - 1) / BrickDepth, {});
+  reach.slices.assign(count, {});
+  for (int k = 0; k < count; ++k)
+  {
+    const RayPath& path = slices[k].path;
+    for (int t = 0; t < path.count; ++t)
+    {
+      reach.slices[k].add(path.di[t], path.dj[t]);
+    }
+    const SliceFootprint<A>& footprint = footprints[k];
+    A outside = 0; // the weight of other layers' voxels
+    for (int p = 0; p < footprint.partCount; ++p)
+    {
+      const FootprintPart<A>& part = footprint.parts[p];
+      const int s = std::clamp(k + part.slice, 0, count - 1);
+      const int di = part.di - footprint.nearest.x, dj = part.dj - footprint.nearest.y;
+      reach.slices[s].add(di, dj);
+      reach.slices[s].add(di + part.columns - 1, dj + part.rows - 1);
+      for (int w = 0; s / BrickDepth != k / BrickDepth && w < part.rows * part.columns; ++w)
+      {
+        outside += part.weights[w];
+      }
+    }
+    A& share = reach.layers[k / BrickDepth].share;
+    share = std::max(share, outside);
+  }
+  reach.columns = reach.rows = 0;
+  for (int s = 0; s < count; ++s)
+  {
+    const Window& window = reach.slices[s];
+    reach.layers[s / BrickDepth].window.add(window.iMin, window.jMin);
+    reach.layers[s / BrickDepth].window.add(window.iMax, window.jMax);
+    reach.columns = std::max(reach.columns, window.iMax - window.iMin);
+    reach.rows = std::max(reach.rows, window.jMax - window.jMin);
+  }
+}
+
+template void findFootprints(
+  const ShearWarp&, const Kernel&, int, int, GeneralTable&, std::vector<SliceFootprint<float>>&);
+template void findFootprints(
+  const ShearWarp&, const Kernel&, int, int, GeneralTable&, std::vector<SliceFootprint<double>>&);
+template void findReach(const std::vector<SliceGeometry>&,
+  const std::vector<SliceFootprint<float>>&, WorksheetReach<float>&);
+template void findReach(const std::vector<SliceGeometry>&,
+  const std::vector<SliceFootprint<double>>&, WorksheetReach<double>&);
+
+template <class T>
+template <class F>
+void WorksheetLayers<T>::forPieces(int v0, int v1, const Span& columns, F&& f) const
+{
+  for (int v = v0; v < v1; v += this->PieceHeight)
+  {
+    for (int u = columns.begin; u < columns.end; u += this->PieceWidth)
+    {
+      f(v, std::min(v + this->PieceHeight, v1),
+        Span{ u, std::min(u + this->PieceWidth, columns.end) });
+    }
+  }
+}
+
+template <class T>
+template <class F>
+void WorksheetLayers<T>::forRows(int k, int v0, int v1, const Span& columns, F&& f) const
+{
+  const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+  const int end = std::min(v1, slice.vEnd);
+  int first = std::max(v0, slice.vBegin);
+  while (first < end)
+  {
+    const Span span = common(columns, this->Shared.pixels(first, k));
+    int v = first + 1;
+    while (v < end && same(span, common(columns, this->Shared.pixels(v, k))))
+    {
+      ++v;
+    }
+    if (!span.empty())
+    {
+      f(first, v, span);
+    }
+    first = v;
+  }
+}
+
+template <class T>
+template <class Open, class F>
+void WorksheetLayers<T>::splatSlice(int k, int step, int v0, int v1, const Span& columns,
+  const Target& worksheet, Patch& patch, Open&& open, F&& f) const
+{
+  this->forRows(k, v0, v1, columns,
+    [&](int first, int end, const Span& span)
+    {
+      this->load(k, step, patch);
+      for (int v = first; v < end; ++v)
+      {
+        open(v, span);
+      }
+      this->splatRows(k, first, end, span, worksheet, patch);
+      for (int v = first; v < end; ++v)
+      {
+        f(v, span);
+      }
+    });
+}
+
+template <class T>
+void WorksheetLayers<T>::splat(int z, int v0, int v1, const std::vector<Span>& runs,
+  const SliceBits& bits, const SliceRuns* cuts, Patch& patch) const
+{
+  const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
+  for (std::size_t n = 0; n < runs.size(); ++n)
+  {
+    this->forPieces(v0, v1, runs[n],
+      [&](int first, int last, const Span& columns)
+      {
+        this->open(first, last, columns, patch);
+        this->splatPiece(slices, first, last, columns, { bits, cuts }, patch);
+      });
+  }
+}
+
+template <class T>
+void WorksheetLayers<T>::open(int v0, int v1, const Span& columns, Patch& patch) const
+{
+  patch.resize<A>(columns.end - columns.begin + this->Reach.columns, v1 - v0 + this->Reach.rows);
+  patch.rows = { v0, v1 };
+  patch.pixels = columns;
+}
+
+template <class T>
+void WorksheetLayers<T>::splatOpened(
+  int z, std::vector<RowRuns>& rows, int count, Patch& patch) const
+{
+  count = joined(rows, count);
+  const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
+  for (int n = 0; n < slices.end - slices.begin; ++n)
+  {
+    const int k = this->Shared.nth(slices, n);
+    for (int r = 0; r < count; ++r)
+    {
+      for (const Span& run : rows[r].runs)
+      {
+        this->splatPiece(
+          { k, k + 1 }, rows[r].v0, rows[r].v1, run, { rows[r].bits }, patch, this->step());
+      }
+    }
+  }
+}
+
+template <class T>
+void WorksheetLayers<T>::forSamples(const Span& slices, bool reversed, int v0, int v1,
+  const Span& columns, Patch& patch, const Samples& f) const
+{
+  this->forPieces(v0, v1, columns,
+    [&](int first, int last, const Span& piece)
+    {
+      this->open(first, last, piece, patch);
+      const Target worksheet = this->worksheetFor(first, last, piece, patch);
+      const A none =
+        this->Shared.range.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
+      for (int n = 0; n < slices.end - slices.begin; ++n)
+      {
+        const int k = reversed ? slices.end - 1 - n : slices.begin + n;
+        this->splatSlice(
+          k, reversed ? -1 : 1, first, last, piece, worksheet, patch,
+          [&](int v, const Span& pixels) { this->put(none, v, pixels, worksheet); },
+          [&](int v, const Span& pixels)
+          { f(StepsPerSlice * k, v, pixels, worksheet.at(pixels.begin, v), nullptr); });
+      }
+    });
+}
+
+template <class T>
+void WorksheetLayers<T>::splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
+  const SliceRuns* cuts, Patch& patch) const
+{
+  const Span slices{ layers.begin * BrickDepth,
+    std::min(layers.end * BrickDepth, this->Shared.geometry.size().z) };
+  this->forPieces(v0, v1, all.front(),
+    [&](int first, int last, const Span& columns)
+    {
+      this->open(first, last, columns, patch);
+      this->splatPiece(slices, first, last, columns, { {}, cuts }, patch);
+    });
+}
+
+template <class T>
+void WorksheetLayers<T>::finish(int v0, int v1) const
+{
+  const WorksheetLoops<A>& loops = this->Shared.kernels;
+  for (int v = v0; v < v1; ++v)
+  {
+    const Span& span = this->Shared.image.spans[v];
+    if (!span.empty())
+    {
+      loops.finish(this->Shared.image.template row<A>(v) + span.begin, this->Base,
+        static_cast<A>(this->Shared.range.low), static_cast<A>(this->Shared.range.high),
+        span.end - span.begin);
+    }
+  }
+}
+
+template <class T>
+auto WorksheetLayers<T>::worksheetFor(int v0, int v1, const Span& columns, Patch& patch) const
+  -> Target
+{
+  const std::ptrdiff_t stride = columns.end - columns.begin;
+  patch.worksheet.resize((v1 - v0) * stride * sizeof(A));
+  A* const first = reinterpret_cast<A*>(patch.worksheet.data());
+  Target worksheet;
+  worksheet.origin = first - v0 * stride - columns.begin;
+  worksheet.stride = stride;
+  return worksheet;
+}
+
+template <class T>
+bool WorksheetLayers<T>::cut(
+  const SampleCuts& cuts, int k, int v0, int v1, Span& pixels, Target& target, Patch& patch) const
+{
+  target.bits = cuts.bits;
+  target.bit = static_cast<unsigned char>(1u << k % BrickDepth);
+  if (!cuts.runs)
+  {
+    return true;
+  }
+  const SliceRuns::Hull hull = cuts.runs->hull({ k, k + 1 }, v0, v1);
+  const Span all = common(pixels, hull.all);
+  if (all.begin == pixels.begin && all.end == pixels.end)
+  {
+    return true;
+  }
+  const Span any = common(pixels, hull.any);
+  if (any.empty())
+  {
+    return false;
+  }
+  // Loops take whole registers.
+  pixels = common(pixels, { any.begin / RunUnit * RunUnit, any.end + RunUnit - 1 });
+  target.whole = all;
+  target.bits = this->bitsOf(*cuts.runs, k, v0, v1, pixels, patch);
+  target.bit = 1;
+  return true;
+}
+
+template <class T>
+SliceBits WorksheetLayers<T>::bitsOf(
+  const SliceRuns& runs, int k, int v0, int v1, const Span& pixels, Patch& patch) const
+{
+  const std::ptrdiff_t stride = pixels.end - pixels.begin;
+  patch.counts.resize(std::max<std::size_t>(patch.counts.size(), stride * (v1 - v0)));
+  unsigned char* row = patch.counts.data();
+  for (int v = v0; v < v1; ++v, row += stride)
+  {
+    const Span run = common(pixels, runs.at(k, v));
+    std::fill_n(row, stride, static_cast<unsigned char>(0));
+    if (!run.empty())
+    {
+      std::fill_n(
+        row + (run.begin - pixels.begin), run.end - run.begin, static_cast<unsigned char>(1));
+    }
+  }
+  return { patch.counts.data() - v0 * stride - pixels.begin, stride };
+}
+
+template <class T>
+void WorksheetLayers<T>::splatPiece(const Span& slices, int v0, int v1, const Span& columns,
+  const SampleCuts& cuts, Patch& patch, int after) const
+{
+  if (this->Shared.orders && !this->Notes)
+  {
+    this->notePiece(slices, v0, v1, columns, cuts, patch);
+    return;
+  }
+  const int count = slices.end - slices.begin, step = this->step();
+  for (int n = 0; n < count; ++n)
+  {
+    const int k = this->Shared.nth(slices, n);
+    this->forRows(k, v0, v1, columns,
+      [&](int first, int end, const Span& span)
+      {
+        Target target = this->image();
+        Span pixels = span;
+        if (!this->cut(cuts, k, first, end, pixels, target, patch))
+        {
+          return;
+        }
+        target.order = this->orderOfSlice(k);
+        const int next = n + 1 < count ? step : after;
+        if (!this->splatOwn(k, next, first, end, pixels, target, patch))
+        {
+          this->load(k, next, patch);
+          this->splatRows(k, first, end, pixels, target, patch);
+        }
+      });
+  }
+}
+
+template <class T>
+void WorksheetLayers<T>::notePiece(const Span& slices, int v0, int v1, const Span& columns,
+  const SampleCuts& cuts, Patch& patch) const
+{
+  const RayLoops<A>& loops = this->Shared.kernels;
+  const Target worksheet = this->worksheetFor(v0, v1, columns, patch);
+  for (int n = 0; n < slices.end - slices.begin; ++n)
+  {
+    const int k = this->Shared.nth(slices, n);
+    const std::int16_t order = this->orderOfSlice(k);
+    this->splatSlice(
+      k, this->step(), v0, v1, columns, worksheet, patch,
+      [&](int v, const Span& pixels) { this->putBelowImage(v, pixels, worksheet); },
+      [&](int v, Span pixels)
+      {
+        Target image = this->image();
+        if (this->cut(cuts, k, v, v + 1, pixels, image, patch))
+        {
+          loops.raiseNoting(image.at(pixels.begin, v),
+            image.orders + v * image.stride + pixels.begin, order, worksheet.at(pixels.begin, v),
+            image.bits.origin ? image.bits.at(pixels.begin, v) : nullptr, image.bit,
+            pixels.end - pixels.begin);
+        }
+      });
+  }
+}
+
+template <class T>
+void WorksheetLayers<T>::put(A value, int v, const Span& pixels, const Target& worksheet) const
+{
+  std::fill(worksheet.at(pixels.begin, v), worksheet.at(pixels.end, v), value);
+}
+
+template <class T>
+void WorksheetLayers<T>::putBelowImage(int v, const Span& pixels, const Target& worksheet) const
+{
+  const A* const image = this->Shared.image.template row<A>(v) + pixels.begin;
+  A* const out = worksheet.at(pixels.begin, v);
+  const std::ptrdiff_t count = pixels.end - pixels.begin;
+  for (std::ptrdiff_t x = 0; x < count; ++x)
+  {
+    out[x] = image[x] - std::abs(image[x]) * (4 * std::numeric_limits<A>::epsilon()) -
+      std::numeric_limits<A>::min();
+  }
+}
+
+template <class T>
+void WorksheetLayers<T>::load(int k, int step, Patch& patch) const
+{
+  const int last = this->Shared.geometry.size().z - 1;
+  for (int s = std::max(k - this->Depth, 0); s <= std::min(k + this->Depth, last); ++s)
+  {
+    if (patch.sheet(s).slice != s)
+    {
+      const bool exists = s + step >= 0 && s + step <= last;
+      patch.ahead = exists ? step * this->Shared.slices.sliceStride : 0;
+      patch.sheet(s) = this->sheetOf(s, patch.rows.begin, patch.rows.end, patch.pixels);
+      this->loadSheet(patch.sheet(s), patch);
+    }
+  }
+}
+
+template <class T>
+void WorksheetLayers<T>::loadSheet(const Patch::Sheet& sheet, Patch& patch) const
+{
+  // Rows inside the volume go together, those beyond repeat the outermost.
+  const int height = this->Shared.geometry.size().y;
+  const int end = sheet.j + sheet.rows;
+  const int low = std::clamp(0, sheet.j, end), high = std::clamp(height, low, end);
+  for (int j = sheet.j; j < low; ++j)
+  {
+    this->loadRows(sheet, j, 0, 1, patch);
+  }
+  if (low < high)
+  {
+    this->loadRows(sheet, low, low, high - low, patch);
+  }
+  for (int j = high; j < end; ++j)
+  {
+    this->loadRows(sheet, j, height - 1, 1, patch);
+  }
+}
+
+template <class T>
+void WorksheetLayers<T>::loadRows(
+  const Patch::Sheet& sheet, int to, int from, int rows, Patch& patch) const
+{
+  const int width = this->Shared.geometry.size().x;
+  const VoxelLoops<T>& loops = this->Shared.kernels;
+  const int begin = std::clamp(-sheet.i, 0, sheet.columns);
+  const int end = std::clamp(width - sheet.i, begin, sheet.columns);
+  const T* voxels = this->Shared.template voxelRow<T>(from, sheet.slice);
+  A* out = patch.voxel<A>(sheet.i, to, sheet.slice);
+  if (begin < end)
+  {
+    loops.widen(voxels + sheet.i + begin, this->Shared.slices.rowStride, out + begin,
+      patch.rowLength, this->Base, end - begin, rows, patch.ahead);
+  }
+  for (int r = 0; r < rows && (begin > 0 || end < sheet.columns); ++r)
+  {
+    std::fill(out, out + begin, static_cast<A>(voxels[0]) - this->Base);
+    std::fill(out + end, out + sheet.columns, static_cast<A>(voxels[width - 1]) - this->Base);
+    voxels += this->Shared.slices.rowStride;
+    out += patch.rowLength;
+  }
+}
+
+#define WORKSHEETS(T) template class WorksheetLayers<T>;
+SPLATTING_TYPES(WORKSHEETS)
+}

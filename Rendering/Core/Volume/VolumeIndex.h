@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What is known of a volume beyond its voxels: made on first need, kept until the data change.
+ */
+#ifndef splattingVolumeIndex_h
+#define splattingVolumeIndex_h
+
+#include "Chains/LineIndex.h"
+#include "Common/ScalarType.h"
+
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace splatting
+{
+/**
+ * The voxels as somebody else holds them, first axis fastest, without gaps.
+ */
+struct VoxelArray
+{
+  const void* voxels = nullptr;
+  ScalarType type = ScalarType::UInt8;
+  glm::ivec3 dimensions{ 0 };
+};
+
+/**
+ * Slices along one axis: voxel (i, j, k) at voxels[i + j * rowStride + k * sliceStride].
+ */
+struct Slices
+{
+  const void* voxels = nullptr;
+  std::ptrdiff_t rowStride = 0;
+  std::ptrdiff_t sliceStride = 0;
+};
+
+/// Voxels of a brick along i, j and k.
+constexpr int BrickWidth = 8;
+constexpr int BrickHeight = 4;
+constexpr int BrickDepth = 4;
+
+/**
+ * The largest voxel (NaN aside) of each brick, with bricks laid along one principal axis.
+ */
+struct BrickMaxima
+{
+  /// Bytes that may be read before the first and behind the last brick, so that loops need not stop
+  /// at the ends of rows.
+  static constexpr std::size_t Padding = 128;
+
+  glm::ivec3 count{ 0 }; ///< bricks along i, j and k
+  std::unique_ptr<unsigned char[]> bytes;
+  std::size_t size = 0; ///< of all of it
+
+  /// Room for so many bricks, which are left unset: the pages come when the threads set them.
+  template <class T>
+  void open(const glm::ivec3& bricks)
+  {
+    this->count = bricks;
+    this->size = std::size_t(bricks.x) * bricks.y * bricks.z * sizeof(T) + 2 * Padding;
+    this->bytes.reset(new unsigned char[this->size]);
+    std::fill_n(this->bytes.get(), Padding, static_cast<unsigned char>(0));
+    std::fill_n(this->bytes.get() + this->size - Padding, Padding, static_cast<unsigned char>(0));
+  }
+
+  template <class T>
+  const T* row(int j, int k) const
+  {
+    return reinterpret_cast<const T*>(this->bytes.get() + Padding) +
+      (std::ptrdiff_t(k) * this->count.y + j) * this->count.x;
+  }
+};
+
+/// Which accelerations have been worth their while, for Acceleration::Auto.
+struct Experience
+{
+  double share = 0.0;  ///< of the tiles that bricks did not leave out, the last time
+  int framesSince = 0; ///< frames without bricks since then
+};
+
+class VolumeIndex
+{
+public:
+  /// Forgets all that was known and looks at other (or changed) voxels.
+  void reset(const VoxelArray& volume);
+
+  const VoxelArray& volume() const { return this->Volume; }
+
+  /// Bytes that may be held besides the volume. What would exceed them is not made; a
+  /// change gives up all that is there. Returns whether it is one.
+  bool setBudget(std::size_t bytes);
+  /// Whether something was not made for want of memory.
+  bool exceedsBudget() const { return this->Exceeded; }
+
+  /// Whether slices() can be called for an axis: the volume holds them as they are, or the budget
+  /// has room for a copy.
+  bool hasSlices(int principalAxis);
+  /**
+   * The volume seen along an axis, rows without gaps, (i, j) as in ShearWarp::axes(). Along the
+   * first axis voxels of a row would lie a whole row of memory apart; there it is a copy with axes
+   * (1, 2, 0), made on first use (one pass, reads and writes each byte once).
+   */
+  Slices slices(int principalAxis);
+  /**
+   * The same for slices [begin, end) along the first axis only, copied into `buffer`.
+   */
+  Slices someSlices(int begin, int end, std::vector<unsigned char>& buffer) const;
+
+  struct Range
+  {
+    double low = 0.0, high = 0.0; ///< of all voxels but NaN; low > high if there are none
+    bool special = false;         ///< whether there are NaN or infinities
+  };
+  /// Made on first use: one pass over the voxels, which makes the bricks as well.
+  const Range& range();
+  /// If the voxels are a piece of a volume: the range of that, which range() is from now on. It
+  /// holds the voxels' own.
+  void setRangeOfWhole(const Range& range);
+
+  /// Whether there are bricks: the budget has room for them, and there are neither NaN nor
+  /// infinities.
+  bool hasBricks();
+  /// The bricks along an axis; 3/128 of the volume for all axes together.
+  const BrickMaxima& bricks(int principalAxis);
+
+  /**
+   * The chains along an axis, or nullptr if the budget has no room for them or if `progress` gave
+   * them up. Made on first use and again when the encoding changes; those of rows with all voxels
+   * are kept beside others. Not for volumes with NaN or infinities.
+   */
+  const LineIndex* lines(
+    int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress = {});
+
+  /// A cut volume is another one: much of it may be hidden or left out.
+  Experience& experience(int principalAxis, int quality, bool isCut)
+  {
+    return this->Experiences[isCut][principalAxis][quality];
+  }
+
+  /// Bytes held besides the volume.
+  std::size_t memorySize() const;
+  /// Seconds that making them took.
+  double time() const { return this->Seconds; }
+
+private:
+  template <class T>
+  void survey();
+  std::size_t volumeSize() const;
+  std::size_t brickSize() const;
+
+  VoxelArray Volume;
+  std::size_t Budget = std::numeric_limits<std::size_t>::max();
+  std::unique_ptr<unsigned char[]> Copy;
+  std::size_t CopySize = 0;
+  Range ValueRange;
+  std::array<BrickMaxima, 3> Bricks;
+  std::array<std::array<LineIndex, 2>, 3> Lines;
+  std::array<std::array<std::optional<LineEncoding>, 2>, 3> TooLarge; // encodings that had no room
+  bool Surveyed = false;
+  bool BricksMade = false;
+  bool Exceeded = false;
+  double Seconds = 0.0;
+  // Of the whole and of the cut volume, axes and qualities.
+  std::array<std::array<std::array<Experience, 4>, 3>, 2> Experiences;
+};
+}
+
+#endif

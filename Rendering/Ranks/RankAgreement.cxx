@@ -1,0 +1,510 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Ranks/RankAgreement.h"
+
+#include "ComponentProjector.h"
+#include "ScalarSource.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkCamera.h"
+#include "vtkCommunicator.h"
+#include "vtkDataSet.h"
+#include "vtkImageData.h"
+#include "vtkMapper.h" // for VTK_GET_ARRAY_BY_ID
+#include "vtkMatrix3x3.h"
+#include "vtkMatrix4x4.h"
+#include "vtkMultiProcessController.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
+#include "vtkPolyData.h"
+#include "vtkRenderer.h"
+#include "vtkScalarsToColors.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+static_assert(std::is_trivially_copyable<RankReport>::value, "reports are sent as bytes");
+
+namespace
+{
+/// VTK's name for the numbers that images are reduced as.
+int vtkTypeOf(splatting::ScalarType type)
+{
+  static const int types[] = { VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_UNSIGNED_SHORT,
+    VTK_INT, VTK_UNSIGNED_INT, VTK_LONG_LONG, VTK_UNSIGNED_LONG_LONG, VTK_FLOAT, VTK_DOUBLE };
+  return types[static_cast<int>(type)];
+}
+
+/// FNV-1a of numbers.
+class Number
+{
+public:
+  template <class T>
+  void add(const T* values, int count)
+  {
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(values);
+    for (std::size_t n = 0; n < count * sizeof(T); ++n)
+    {
+      this->Value = (this->Value ^ bytes[n]) * 1099511628211u;
+    }
+  }
+  template <class T>
+  void add(const T& value)
+  {
+    static_assert(std::is_arithmetic<T>::value, "pointers and padding differ from rank to rank");
+    this->add(&value, 1);
+  }
+  std::uint64_t get() const { return this->Value; }
+
+private:
+  std::uint64_t Value = 14695981039346656037u;
+};
+
+void addScalars(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+{
+  number.add(mapper->GetScalarMode());
+  number.add(mapper->GetArrayAccessMode());
+  if (mapper->GetArrayAccessMode() == VTK_GET_ARRAY_BY_ID)
+  {
+    number.add(mapper->GetArrayId());
+  }
+  else if (const char* const name = mapper->GetArrayName())
+  {
+    number.add(name, static_cast<int>(std::strlen(name)));
+  }
+  number.add(mapper->GetVectorMode());
+  number.add(mapper->GetVectorComponent());
+}
+
+void addDepthCoding(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+{
+  number.add(mapper->GetDepthCoding());
+  number.add(mapper->GetDepthCodingRange(), 2);
+  if (vtkScalarsToColors* const colors = mapper->GetDepthCodingColors())
+  {
+    constexpr int samples = 64; // all colours of a table would take too long
+    const double* const range = colors->GetRange();
+    number.add(range, 2);
+    for (int n = 0; n <= samples; ++n)
+    {
+      number.add(colors->MapValue(range[0] + (range[1] - range[0]) * n / samples), 4);
+    }
+  }
+}
+
+/// All but DisplayOnRootOnly, which each rank may do as it likes, and IndexMemoryBudget, which
+/// changes no picture.
+void addSettings(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+{
+  number.add(mapper->GetBlendMode());
+  number.add(mapper->GetMaximumType());
+  number.add(mapper->GetQualityMode());
+  number.add(mapper->GetKernel());
+  number.add(mapper->GetKernelRadius());
+  number.add(mapper->GetFootprintSampling());
+  number.add(mapper->GetDepthShadingAmbient());
+  number.add(mapper->GetDepthShadingChangeRate());
+  number.add(mapper->GetFinalColorWindow());
+  number.add(mapper->GetFinalColorLevel());
+  number.add(mapper->GetCullBelowWindow());
+  number.add(mapper->GetAutoAdjustSampleDistances());
+  number.add(mapper->GetShearImageSampling());
+  number.add(mapper->GetLocalMaximumThreshold());
+  number.add(mapper->GetAverageIPScalarRange(), 2);
+  number.add(mapper->GetAcceleration());
+  number.add(mapper->GetLineTolerance());
+  number.add(mapper->GetEliminateInvisible());
+  number.add(mapper->GetIntermixIntersectingGeometry());
+  number.add(mapper->GetRecordLocations());
+  number.add(mapper->GetWriteDepth());
+  number.add(mapper->GetWriteDepthOpacity());
+}
+
+void addCuts(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+{
+  number.add(mapper->GetCropping());
+  number.add(mapper->GetCroppingRegionFlags());
+  number.add(mapper->GetCroppingRegionPlanes(), 6);
+  number.add(mapper->GetSlab());
+  number.add(mapper->GetSlabThickness());
+  number.add(mapper->GetSlabCenter(), 3);
+  vtkPlaneCollection* const planes = mapper->GetClippingPlanes();
+  for (int n = 0; planes && n < planes->GetNumberOfItems(); ++n)
+  {
+    number.add(planes->GetItem(n)->GetNormal(), 3);
+    number.add(planes->GetItem(n)->GetOrigin(), 3);
+  }
+  if (vtkPolyData* const surface = mapper->GetBoundingSurface())
+  {
+    number.add(surface->GetNumberOfPoints());
+    number.add(surface->GetBounds(), 6);
+  }
+}
+
+bool sameGrid(const RankReport& a, const RankReport& b)
+{
+  return std::equal(a.origin, a.origin + 3, b.origin) &&
+    std::equal(a.spacing, a.spacing + 3, b.spacing) &&
+    std::equal(a.direction, a.direction + 9, b.direction);
+}
+
+bool sameScalars(const RankReport& a, const RankReport& b)
+{
+  return a.cells == b.cells && a.type == b.type && a.components == b.components;
+}
+
+/// The first problem of a rank, told with its number.
+std::string problemOf(const std::vector<RankReport>& reports)
+{
+  for (std::size_t rank = 0; rank < reports.size(); ++rank)
+  {
+    if (reports[rank].problem[0])
+    {
+      return "Rank " + std::to_string(rank) + ": " + reports[rank].problem;
+    }
+  }
+  return {};
+}
+
+/// The first rank that holds something.
+const RankReport* firstPiece(const std::vector<RankReport>& reports)
+{
+  const auto first = std::find_if(
+    reports.begin(), reports.end(), [](const RankReport& report) { return !report.isEmpty(); });
+  return first == reports.end() ? nullptr : &*first;
+}
+}
+
+//------------------------------------------------------------------------------
+bool RankReport::isEmpty() const
+{
+  return this->extent[0] > this->extent[1] || this->extent[2] > this->extent[3] ||
+    this->extent[4] > this->extent[5];
+}
+
+//------------------------------------------------------------------------------
+void RankReport::setProblem(const std::string& sentence)
+{
+  std::strncpy(this->problem, sentence.c_str(), sizeof this->problem - 1);
+}
+
+//------------------------------------------------------------------------------
+void RankReport::setGrid(vtkImageData* image)
+{
+  std::copy(image->GetExtent(), image->GetExtent() + 6, this->extent);
+  std::copy(image->GetOrigin(), image->GetOrigin() + 3, this->origin);
+  std::copy(image->GetSpacing(), image->GetSpacing() + 3, this->spacing);
+  const double* const direction9 = image->GetDirectionMatrix()->GetData();
+  std::copy(direction9, direction9 + 9, this->direction);
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* pieceOf(vtkSplattingMIPVolumeMapper* mapper)
+{
+  auto* const image = vtkImageData::SafeDownCast(mapper->GetDataSetInput());
+  return image && image->GetNumberOfPoints() > 0 ? image : nullptr;
+}
+
+//------------------------------------------------------------------------------
+RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& problem)
+{
+  RankReport report;
+  report.setProblem(problem);
+  // EXACT gives way to HIGH, which reaches farther, where it takes too long or there are no maxima.
+  const int mode = std::min<int>(mapper->GetQualityMode(), vtkSplattingMIPVolumeMapper::HIGH);
+  report.layers = splatting::reachOf(static_cast<splatting::Quality>(mode)).layers();
+  if (vtkImageData* const image = pieceOf(mapper))
+  {
+    report.setGrid(image);
+  }
+  else if (mapper->GetDataSetInput() && mapper->GetDataSetInput()->GetNumberOfPoints() > 0)
+  {
+    report.setProblem("Several ranks project pieces of a vtkImageData only: resample the input.");
+  }
+  const int blend = mapper->GetBlendMode();
+  if (blend != vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND &&
+    blend != vtkVolumeMapper::MINIMUM_INTENSITY_BLEND)
+  {
+    report.setProblem(
+      "Several ranks project maxima and minima only, because sums and what is blended "
+      "depend on the order of pieces: choose another blend mode.");
+  }
+  else if (blend == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND &&
+    mapper->GetMaximumType() == vtkSplattingMIPVolumeMapper::LOCAL)
+  {
+    report.setProblem(
+      "Several ranks do not project local maxima, which depend on the order of pieces "
+      "along a ray: choose the global or the depth-shaded maximum.");
+  }
+  return report;
+}
+
+//------------------------------------------------------------------------------
+std::uint64_t viewNumber(
+  vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume)
+{
+  Number number;
+  int size[2], origin[2];
+  renderer->GetTiledSizeAndOrigin(&size[0], &size[1], &origin[0], &origin[1]);
+  number.add(size, 2);
+  vtkCamera* const camera = renderer->GetActiveCamera();
+  number.add(
+    camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0)->GetData(),
+    16);
+  number.add(camera->GetViewTransformMatrix()->GetData(), 16);
+  number.add(volume->GetMatrix()->GetData(), 16);
+  number.add(volume->GetProperty()->GetIndependentComponents());
+  addSettings(mapper, number);
+  addScalars(mapper, number);
+  addDepthCoding(mapper, number);
+  addCuts(mapper, number);
+  return number.get();
+}
+
+//------------------------------------------------------------------------------
+bool RankAgreement::Use(vtkMultiProcessController* controller)
+{
+  vtkMultiProcessController* const several =
+    controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr;
+  if (several != this->Controller)
+  {
+    this->Controller = several;
+    this->Image = nullptr;
+  }
+  return this->AreMany();
+}
+
+//------------------------------------------------------------------------------
+bool RankAgreement::IsRoot() const
+{
+  return !this->AreMany() || this->Controller->GetLocalProcessId() == 0;
+}
+
+//------------------------------------------------------------------------------
+std::vector<RankReport> RankAgreement::Gather(const RankReport& own) const
+{
+  std::vector<RankReport> reports(this->Controller->GetNumberOfProcesses());
+  this->Controller->AllGather(reinterpret_cast<const unsigned char*>(&own),
+    reinterpret_cast<unsigned char*>(reports.data()), sizeof own);
+  return reports;
+}
+
+//------------------------------------------------------------------------------
+// All reports are of one grid.
+void RankAgreement::SetWhole(const std::vector<RankReport>& reports)
+{
+  this->All = *firstPiece(reports);
+  for (const RankReport& report : reports)
+  {
+    for (int a = 0; a < 3 && !report.isEmpty(); ++a)
+    {
+      this->All.extent[2 * a] = std::min(this->All.extent[2 * a], report.extent[2 * a]);
+      this->All.extent[2 * a + 1] = std::max(this->All.extent[2 * a + 1], report.extent[2 * a + 1]);
+    }
+    for (int c = 0; c < this->All.components && !report.isEmpty(); ++c)
+    {
+      auto& range = this->All.ranges[c];
+      range.low = std::min(range.low, report.ranges[c].low);
+      range.high = std::max(range.high, report.ranges[c].high);
+      range.special = std::max(range.special, report.ranges[c].special);
+    }
+  }
+  if (!this->Image)
+  {
+    this->Image = vtkSmartPointer<vtkImageData>::New();
+  }
+  this->Image->SetExtent(this->All.extent);
+  this->Image->SetOrigin(this->All.origin);
+  this->Image->SetSpacing(this->All.spacing);
+  this->Image->SetDirectionMatrix(this->All.direction);
+}
+
+//------------------------------------------------------------------------------
+// In voxels of the whole.
+splatting::Box RankAgreement::BoxOf(const RankReport& report) const
+{
+  splatting::Box box;
+  for (int a = 0; a < 3; ++a)
+  {
+    box.begin[a] = report.extent[2 * a] - this->All.extent[2 * a];
+    const int points = report.extent[2 * a + 1] - report.extent[2 * a] + 1;
+    box.end[a] = box.begin[a] + (report.cells ? std::max(points - 1, 1) : points);
+  }
+  return box;
+}
+
+//------------------------------------------------------------------------------
+bool RankAgreement::IsCovered(const std::vector<RankReport>& reports) const
+{
+  std::vector<splatting::Box> interiors;
+  for (const RankReport& report : reports)
+  {
+    if (!report.isEmpty())
+    {
+      interiors.push_back(splatting::interiorOf(
+        this->BoxOf(report), this->Place.grid.dimensions, glm::ivec3(report.layers)));
+    }
+  }
+  return splatting::cover(interiors, this->Place.grid.dimensions);
+}
+
+//------------------------------------------------------------------------------
+std::string RankAgreement::AgreeOnGrid(const RankReport& own)
+{
+  const std::vector<RankReport> reports = this->Gather(own);
+  const RankReport* const first = firstPiece(reports);
+  const auto isOther = [&](const RankReport& r) { return !r.isEmpty() && !sameGrid(r, *first); };
+  std::string problem = problemOf(reports);
+  if (problem.empty() && !first)
+  {
+    problem = "No rank has any voxels: give at least one of them an image.";
+  }
+  if (problem.empty() && std::any_of(reports.begin(), reports.end(), isOther))
+  {
+    problem =
+      "The ranks' pieces are not of one image: give them the same origin, spacing and direction "
+      "matrix, and extents of one grid.";
+  }
+  if (problem.empty())
+  {
+    this->SetWhole(reports);
+  }
+  return problem;
+}
+
+//------------------------------------------------------------------------------
+std::string RankAgreement::Agree(const RankReport& own)
+{
+  const std::vector<RankReport> reports = this->Gather(own);
+  std::string problem = problemOf(reports);
+  const RankReport* const first = firstPiece(reports);
+  const auto none = [&](auto&& isOther)
+  { return std::none_of(reports.begin(), reports.end(), isOther); };
+  if (problem.empty() && !first)
+  {
+    problem = "No rank has any voxels: give at least one of them an image.";
+  }
+  if (problem.empty() && !none([&](const RankReport& r) { return r.view != first->view; }))
+  {
+    problem =
+      "The ranks see the volume in different ways: give their cameras, windows and mappers the "
+      "same settings.";
+  }
+  if (problem.empty() &&
+    !none([&](const RankReport& r) { return !r.isEmpty() && !sameGrid(r, *first); }))
+  {
+    problem =
+      "The ranks' pieces are not of one image: give them the same origin, spacing and direction "
+      "matrix, and extents of one grid.";
+  }
+  if (problem.empty() &&
+    !none([&](const RankReport& r) { return !r.isEmpty() && !sameScalars(r, *first); }))
+  {
+    problem =
+      "The ranks' scalars differ in type, number of components, or in being of cells or points "
+      "(pieces with hidden voxels are float): give all pieces the same.";
+  }
+  if (!problem.empty())
+  {
+    return problem;
+  }
+  this->SetWhole(reports);
+  problem = describeGrid(this->Image, first->cells != 0, this->Place);
+  if (problem.empty() && !this->IsCovered(reports))
+  {
+    problem = "The ranks' pieces do not cover the image: each needs " + std::to_string(own.layers) +
+      " layers of its neighbours' voxels in this quality mode. Ask the pipeline for as many ghost "
+      "layers.";
+  }
+  if (!own.isEmpty())
+  {
+    this->FirstVoxel = this->BoxOf(own).begin;
+  }
+  return problem;
+}
+
+//------------------------------------------------------------------------------
+bool RankAgreement::Any(bool here) const
+{
+  return this->Least(here ? 0 : 1) == 0;
+}
+
+//------------------------------------------------------------------------------
+int RankAgreement::Least(int here) const
+{
+  int least = here;
+  this->Controller->AllReduce(&here, &least, 1, vtkCommunicator::MIN_OP);
+  return least;
+}
+
+//------------------------------------------------------------------------------
+void RankAgreement::Reduce(splatting::ShearImage& image, const splatting::ShearWarp& geometry,
+  splatting::Reduction reduction)
+{
+  const splatting::ScalarType type = image.type, keys = splatting::encode(image, reduction);
+  this->Received.resize(image.bytes.size());
+  this->Controller->GetCommunicator()->AllReduceVoidArray(image.bytes.data(), this->Received.data(),
+    vtkIdType(image.width) * image.height, vtkTypeOf(keys),
+    reduction == splatting::Reduction::Minimum ? vtkCommunicator::MIN_OP : vtkCommunicator::MAX_OP);
+  image.bytes.swap(this->Received); // which is now what this rank had
+  if (!image.winners.empty())
+  {
+    this->ReduceWinners(image, geometry);
+  }
+  splatting::decode(image, type, reduction);
+}
+
+//------------------------------------------------------------------------------
+// Steps are counted from the first slice of this rank's piece, and shall be from that of the whole.
+void RankAgreement::ReduceWinners(
+  splatting::ShearImage& image, const splatting::ShearWarp& geometry)
+{
+  constexpr std::int32_t behind = std::numeric_limits<std::int32_t>::max();
+  const std::int32_t none = geometry.reversed() ? -1 : behind;
+  const std::int32_t first = splatting::StepsPerSlice * this->FirstVoxel[geometry.principalAxis()];
+  const std::size_t size = splatting::sizeOf(image.type);
+  for (std::size_t pixel = 0; pixel < image.winners.size(); ++pixel)
+  {
+    std::int32_t& step = image.winners[pixel];
+    const bool wins = step >= 0 &&
+      std::memcmp(&image.bytes[pixel * size], &this->Received[pixel * size], size) == 0;
+    step = wins ? step + first : none;
+  }
+  this->ReceivedSteps.resize(image.winners.size());
+  this->Controller->AllReduce(image.winners.data(), this->ReceivedSteps.data(),
+    static_cast<vtkIdType>(image.winners.size()),
+    geometry.reversed() ? vtkCommunicator::MAX_OP : vtkCommunicator::MIN_OP);
+  image.winners.swap(this->ReceivedSteps);
+  std::replace(image.winners.begin(), image.winners.end(), behind, std::int32_t(-1));
+}
+
+//------------------------------------------------------------------------------
+splatting::VolumeIndex::Range RankAgreement::RangeOfWhole(std::size_t component) const
+{
+  const auto& range = this->All.ranges[component];
+  return { range.low, range.high, range.special != 0.0 };
+}
+
+//------------------------------------------------------------------------------
+void describeScalars(ComponentProjector& components, const ScalarSource& source, RankReport& report)
+{
+  report.cells = source.Grid().cells;
+  report.vtkType = source.GetVtkType();
+  report.type = static_cast<std::int32_t>(components.VolumeType());
+  report.components = static_cast<std::int32_t>(components.NumberOfComponents());
+  for (std::size_t c = 0; c < components.NumberOfComponents(); ++c)
+  {
+    const splatting::VolumeIndex::Range& range = components.RangeOfPiece(c);
+    report.ranges[c] = { range.low, range.high, range.special ? 1.0 : 0.0 };
+  }
+  if (components.AreDependent())
+  {
+    report.setProblem(
+      "Several ranks do not project dependent components, which go with the place of "
+      "the maximum: set IndependentComponents of the vtkVolumeProperty.");
+  }
+}

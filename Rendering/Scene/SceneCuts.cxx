@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Scene/SceneCuts.h"
+
+#include "vtkRenderer.h"
+#include "vtkVolume.h"
+
+#include <algorithm>
+
+//------------------------------------------------------------------------------
+void SceneCuts::Find(const splatting::View& view, const std::vector<splatting::ShearWarp>& images,
+  vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
+{
+  splatting::placePicture(images, view.viewport, this->Place);
+  this->Seen = renderer->GetSelector() ? this->RememberScene(view, renderer, volume, intermixes)
+                                       : this->LookAtScene(renderer, volume, intermixes, readDepth);
+  if (this->Seen)
+  {
+    this->Seen->indexToClip = view.indexToClip;
+    this->Seen->depth.place(view);
+  }
+  this->Present.resize(images.size());
+  for (std::size_t n = 0; n < images.size(); ++n)
+  {
+    this->Present[n].cropping = view.cropping;
+    this->Present[n].intervals.find(
+      images[n], view.halfSpaces, this->Bounds.Get(), this->Seen ? &this->Seen->depth : nullptr);
+  }
+}
+
+//------------------------------------------------------------------------------
+void SceneCuts::Hide(splatting::Picture& picture) const
+{
+  if (this->Seen)
+  {
+    this->Seen->depth.hide(picture);
+  }
+}
+
+//------------------------------------------------------------------------------
+// Selection is by what is seen: its passes draw other depths than frames. What no frame has shown,
+// as after the camera has moved, is not known.
+SceneCuts::Scene* SceneCuts::RememberScene(const splatting::View& view, const vtkRenderer* renderer,
+  const vtkVolume* volume, bool intermixes)
+{
+  const auto scene = std::find_if(this->Scenes.begin(), this->Scenes.end(),
+    [&](const Scene& s)
+    {
+      return s.renderer == renderer && s.volume == volume && s.indexToClip == view.indexToClip &&
+        s.depth.isOf(this->Place.origin, this->Place.size);
+    });
+  return intermixes && scene != this->Scenes.end() ? &*scene : nullptr;
+}
+
+//------------------------------------------------------------------------------
+// What has been rendered where the volume will be seen, if there is anything.
+SceneCuts::Scene* SceneCuts::LookAtScene(
+  vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
+{
+  Scene& scene = this->SceneOf(renderer, volume);
+  scene.depth.clear();
+  const glm::ivec2& size = this->Place.size;
+  // Renderers that keep the depths of a lower layer have something to intermix with, too. Render
+  // passes do not count what they render.
+  const bool hasDepths = renderer->GetNumberOfPropsRendered() > 0 ||
+    renderer->GetPreserveDepthBuffer() || renderer->GetPass();
+  if (!intermixes || !hasDepths || size.x < 1 || size.y < 1)
+  {
+    return nullptr;
+  }
+  float* const depths = scene.depth.allocate(this->Place.origin, size);
+  const float* const end = depths + std::size_t(size.x) * size.y;
+  if (!readDepth(&this->Place.origin.x, &size.x, depths) ||
+    std::all_of<const float*>(depths, end, [](float depth) { return depth >= 1.0f; }))
+  {
+    scene.depth.clear();
+    return nullptr;
+  }
+  return &scene;
+}
+
+//------------------------------------------------------------------------------
+// A renderer's and volume's own, in the place of one that has not been rendered for long.
+SceneCuts::Scene& SceneCuts::SceneOf(const vtkRenderer* renderer, const vtkVolume* volume)
+{
+  ++this->Frame;
+  this->Scenes.erase(std::remove_if(this->Scenes.begin(), this->Scenes.end(),
+                       [&](const Scene& s) { return s.lastFrame + FramesKept < this->Frame; }),
+    this->Scenes.end());
+  auto scene = std::find_if(this->Scenes.begin(), this->Scenes.end(),
+    [&](const Scene& s) { return s.renderer == renderer && s.volume == volume; });
+  if (scene == this->Scenes.end())
+  {
+    scene = this->Scenes.insert(scene, Scene{ renderer, volume });
+  }
+  scene->lastFrame = this->Frame;
+  return *scene;
+}

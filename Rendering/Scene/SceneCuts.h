@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef SceneCuts_h
+#define SceneCuts_h
+
+#include "BoundingSurface.h"
+#include "Clipping/Cuts.h"
+#include "Clipping/SceneDepth.h"
+
+#include "vtkType.h"
+
+#include <glm/mat4x4.hpp>
+
+#include <functional>
+#include <vector>
+
+class vtkRenderer;
+class vtkVolume;
+
+/**
+ * What clipping, cropping, a bounding surface and other things in the scene leave of a volume, and
+ * whether that has changed since the last projection.
+ */
+class SceneCuts
+{
+public:
+  BoundingSurface& Surface() { return this->Bounds; }
+
+  /// Reads the depths of a rectangle of the viewport; false if there are none.
+  using DepthReader = std::function<bool(const int origin[2], const int size[2], float* depths)>;
+
+  /**
+   * @param intermixes  whether geometry in the scene hides the volume and ends rays in it
+   */
+  void Find(const splatting::View& view, const std::vector<splatting::ShearWarp>& images,
+    vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
+
+  /// What Find() has found, for each image.
+  const std::vector<splatting::Cuts>& Get() const { return this->Present; }
+
+  /// Whether that is what it was when it was last kept.
+  bool AreKept() const { return this->Present == this->Kept; }
+  /// The present cuts are those of a projection. They are no longer to be had.
+  void Keep() { std::swap(this->Present, this->Kept); }
+  /// Those that were kept.
+  const std::vector<splatting::Cuts>& OfProjection() const { return this->Kept; }
+
+  /// Clears the pixels of a picture that other things hide.
+  void Hide(splatting::Picture& picture) const;
+
+private:
+  /// What a renderer's last frame had rendered before a volume was.
+  struct Scene
+  {
+    const vtkRenderer* renderer; // only compared, so that they may be gone
+    const vtkVolume* volume;
+    vtkTypeInt64 lastFrame = 0;
+    glm::dmat4 indexToClip{ 0.0 };
+    splatting::SceneDepth depth{};
+  };
+  /// A scene that others were rendered so often after is given up.
+  static constexpr vtkTypeInt64 FramesKept = 64;
+
+  Scene* RememberScene(const splatting::View& view, const vtkRenderer* renderer,
+    const vtkVolume* volume, bool intermixes);
+  Scene* LookAtScene(
+    vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
+  Scene& SceneOf(const vtkRenderer* renderer, const vtkVolume* volume);
+
+  ::BoundingSurface Bounds;
+  std::vector<splatting::Cuts> Present, Kept;
+  std::vector<Scene> Scenes;
+  Scene* Seen = nullptr; // in the present frame, if there is anything
+  vtkTypeInt64 Frame = 0;
+  splatting::Picture Place; // where the volume will be seen
+};
+
+#endif

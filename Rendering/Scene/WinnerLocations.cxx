@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Scene/WinnerLocations.h"
+
+#include "ComponentProjector.h"
+#include "LocationArrays.h"
+#include "Scene/SceneCuts.h"
+#include "Scene/ViewOfVolume.h"
+
+#include "vtkCamera.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkMath.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkRenderer.h"
+#include "vtkScalarsToColors.h"
+
+#include <algorithm>
+#include <cmath>
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkImageData> makeLocationImage(
+  const splatting::Locator* locator, const int extent[6])
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(extent[0], extent[1], extent[2], extent[3], 0, 0);
+  const splatting::Locator::Arrays arrays = addLocationArrays(image);
+  if (locator)
+  {
+    const int* const size = image->GetDimensions();
+    locator->fill({ 0, 0 }, { size[0], size[1] }, arrays);
+  }
+  return image;
+}
+
+//------------------------------------------------------------------------------
+std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors)
+{
+  constexpr int count = 256;
+  std::vector<glm::dvec3> table(count);
+  for (int n = 0; n < count; ++n)
+  {
+    const double share = n / (count - 1.0);
+    if (colors)
+    {
+      const double* const range = colors->GetRange();
+      colors->GetColor(range[0] + share * (range[1] - range[0]), &table[n].x);
+    }
+    else
+    {
+      constexpr double blue = 2.0 / 3.0;
+      const double hsv[3] = { share * blue, 1.0, 1.0 };
+      vtkMath::HSVToRGB(hsv, &table[n].x);
+    }
+  }
+  return table;
+}
+
+//------------------------------------------------------------------------------
+void WinnerLocations::Forget()
+{
+  this->Known = false;
+  this->Output = nullptr;
+}
+
+//------------------------------------------------------------------------------
+void WinnerLocations::Remember(
+  const splatting::View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer)
+{
+  this->Output = nullptr;
+  this->Known = true;
+  this->Frame.view = view;
+  this->Frame.indexToWorld = indexToWorld(grid, volume);
+  vtkCamera* const camera = renderer->GetActiveCamera();
+  camera->GetPosition(&this->Frame.camera.x);
+  camera->GetDirectionOfProjection(&this->Frame.direction.x);
+  int width, height;
+  renderer->GetTiledSizeAndOrigin(&width, &height, &this->Left, &this->Bottom);
+}
+
+//------------------------------------------------------------------------------
+bool WinnerLocations::HasWinners() const
+{
+  return this->Known && !this->Images.empty() && this->Projector.HasWinners();
+}
+
+//------------------------------------------------------------------------------
+splatting::Locator WinnerLocations::Locate() const
+{
+  splatting::Located located = this->Frame;
+  located.geometries = &this->Images;
+  this->Projector.Describe(located);
+  return splatting::Locator(located);
+}
+
+//------------------------------------------------------------------------------
+bool WinnerLocations::Pick(int x, int y, double position[3])
+{
+  const glm::ivec2 pixel(x - this->Left, y - this->Bottom);
+  const glm::ivec2& viewport = this->Frame.view.viewport;
+  if (!this->HasWinners() || pixel.x < 0 || pixel.y < 0 || pixel.x >= viewport.x ||
+    pixel.y >= viewport.y)
+  {
+    return false;
+  }
+  splatting::Picture place;
+  place.origin = pixel;
+  place.size = glm::ivec2(1);
+  place.pixels = { 1u };
+  this->Cuts.Hide(place);
+  const splatting::Locator locator = this->Locate();
+  glm::dvec3 point;
+  if (!place.pixels.front() || !locator.find(pixel, point))
+  {
+    return false;
+  }
+  point = locator.inWorld(point);
+  std::copy(&point.x, &point.x + 3, position);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* WinnerLocations::Image()
+{
+  if (!this->Known || this->Output)
+  {
+    return this->Output;
+  }
+  const glm::ivec2& viewport = this->Frame.view.viewport;
+  const int extent[6] = { this->Left, this->Left + viewport.x - 1, this->Bottom,
+    this->Bottom + viewport.y - 1, 0, 0 };
+  if (!this->HasWinners())
+  {
+    this->Output = makeLocationImage(nullptr, extent);
+    return this->Output;
+  }
+  const splatting::Locator locator = this->Locate();
+  this->Output = makeLocationImage(&locator, extent);
+  // What other things hide is not seen.
+  splatting::Picture seen;
+  seen.size = viewport;
+  seen.pixels.assign(std::size_t(viewport.x) * viewport.y, 1u);
+  this->Cuts.Hide(seen);
+  for (vtkIdType n = 0; n < this->Output->GetNumberOfPoints(); ++n)
+  {
+    for (int a = 0; a < 3 && !seen.pixels[n]; ++a)
+    {
+      vtkDataArray* const array = this->Output->GetPointData()->GetArray(a);
+      for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+      {
+        array->SetComponent(n, c, a == 0 ? -1.0 : std::nan(""));
+      }
+    }
+  }
+  return this->Output;
+}
+
+//------------------------------------------------------------------------------
+void WinnerLocations::ColorByDepth(
+  splatting::Picture& picture, vtkScalarsToColors* colors, const double range[2])
+{
+  if (!this->HasWinners())
+  {
+    return;
+  }
+  const std::vector<glm::dvec3> table = depthColors(colors);
+  const splatting::Locator locator = this->Locate();
+  const glm::dvec2 depths =
+    range[0] < range[1] ? glm::dvec2(range[0], range[1]) : locator.depthRange();
+  this->Depths.resize(picture.pixels.size());
+  splatting::Locator::Arrays arrays;
+  arrays.depths = this->Depths.data();
+  locator.fill(picture.origin, picture.size, arrays);
+  const double last = static_cast<double>(table.size()) - 1.0;
+  const double scale = depths.y > depths.x ? last / (depths.y - depths.x) : 0.0;
+  for (std::size_t n = 0; n < picture.pixels.size(); ++n)
+  {
+    auto* const rgba = reinterpret_cast<unsigned char*>(&picture.pixels[n]);
+    const double place = (this->Depths[n] - depths.x) * scale;
+    if (!(place == place))
+    {
+      continue;
+    }
+    const glm::dvec3& color = table[std::lround(std::clamp(place, 0.0, last))];
+    const double value = std::max({ rgba[0], rgba[1], rgba[2] });
+    for (int c = 0; c < 3; ++c)
+    {
+      rgba[c] = static_cast<unsigned char>(std::lround(value * std::clamp(color[c], 0.0, 1.0)));
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+const std::vector<float>& WinnerLocations::ClipDepths(
+  const splatting::Picture& picture, double opacity)
+{
+  constexpr float none = 2.0f;
+  this->Depths.assign(picture.pixels.size(), none);
+  if (!this->HasWinners())
+  {
+    return this->Depths;
+  }
+  splatting::Locator::Arrays arrays;
+  arrays.clipDepths = this->Depths.data();
+  this->Locate().fill(picture.origin, picture.size, arrays);
+  for (std::size_t n = 0; n < picture.pixels.size(); ++n)
+  {
+    const auto* const rgba = reinterpret_cast<const unsigned char*>(&picture.pixels[n]);
+    const bool isSeen = rgba[3] > 0 && rgba[3] >= 255.0 * opacity;
+    this->Depths[n] = isSeen && this->Depths[n] == this->Depths[n] ? this->Depths[n] : none;
+  }
+  return this->Depths;
+}

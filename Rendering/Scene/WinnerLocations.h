@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Where the samples lie that a volume's last picture shows, in VTK's terms.
+ */
+#ifndef WinnerLocations_h
+#define WinnerLocations_h
+
+#include "Projection/Locations.h"
+
+#include "vtkSmartPointer.h"
+
+#include <cstdint>
+#include <vector>
+
+class ComponentProjector;
+class SceneCuts;
+class vtkImageData;
+class vtkRenderer;
+class vtkScalarsToColors;
+class vtkVolume;
+struct VolumeGrid;
+
+/**
+ * Arrays "Voxel" (three ints, -1 for none), "Depth" (float, NaN for none) and "Position" (three
+ * doubles, NaN for none) for the pixels of an image with this extent, which shows a viewport whose
+ * lower left pixel is the extent's. Free of OpenGL.
+ *
+ * @param locator  nullptr: there are no samples
+ */
+vtkSmartPointer<vtkImageData> makeLocationImage(
+  const splatting::Locator* locator, const int extent[6]);
+
+/**
+ * 256 colours, from the nearest to the farthest depth: those of a look-up table or transfer
+ * function over its range, or, without one, the hues from red over green to blue.
+ */
+std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors);
+
+/**
+ * The locations of one frame. Looks at projector and cuts as that frame has left them.
+ */
+class WinnerLocations
+{
+public:
+  WinnerLocations(const ComponentProjector& projector, const SceneCuts& cuts,
+    const std::vector<splatting::ShearWarp>& images)
+    : Projector(projector),
+      Cuts(cuts),
+      Images(images)
+  {
+  }
+
+  /// Nothing has been rendered.
+  void Forget();
+  /// How a frame has seen the volume.
+  void Remember(
+    const splatting::View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer);
+
+  /// Of a pixel of the window. False if the picture has no sample there.
+  bool Pick(int x, int y, double position[3]);
+  /// See makeLocationImage(), its extent in pixels of the window; nullptr before the first frame.
+  vtkImageData* Image();
+
+  /// Gives each pixel of a picture its depth's colour, as bright as the picture is.
+  void ColorByDepth(splatting::Picture& picture, vtkScalarsToColors* colors, const double range[2]);
+  /// From 0 to 1, of the pixels of a picture that are no less opaque than this; else 2.
+  const std::vector<float>& ClipDepths(const splatting::Picture& picture, double opacity);
+
+private:
+  bool HasWinners() const;
+  splatting::Locator Locate() const;
+
+  const ComponentProjector& Projector;
+  const SceneCuts& Cuts;
+  const std::vector<splatting::ShearWarp>& Images;
+  splatting::Located Frame; // but for what the projector knows
+  int Left = 0, Bottom = 0;
+  bool Known = false;
+  std::vector<float> Depths;
+  vtkSmartPointer<vtkImageData> Output;
+};
+
+#endif
