@@ -57,96 +57,31 @@ inline void narrow(unsigned char* mask, const unsigned char* present, const Span
   }
 }
 
-/// For each pixel of some rows, which of a few slices count: bit s of a byte is the s-th slice.
-struct SliceBits
+/// How much of a tile's samples counts.
+enum TileShare : unsigned char
 {
-  const unsigned char* origin = nullptr; ///< of pixel (0, 0), which need not exist
-  std::ptrdiff_t stride = 0;
-
-  const unsigned char* at(int u, int v) const { return this->origin + v * this->stride + u; }
-};
-
-/// For each row of a band and each slice the run of pixels for which the slice counts, where that
-/// is one run, as with planes and boxes. A thread's work space.
-class SliceRuns
-{
-  static constexpr int Far = 1 << 29;
-  static constexpr Span Nothing{ Far, -Far };
-
-public:
-  /// False if a slice counts for two runs of a row.
-  /// @param spans  the pixels of each row of the image that matter
-  bool find(const CutMap& map, const Span& slices, int v0, int v1, const std::vector<Span>& spans);
-
-  /// Those that reach the ends of what matters go on beyond, empty ones begin behind the others and
-  /// end before them.
-  const Span& at(int k, int v) const
-  {
-    return this->Runs[std::ptrdiff_t(v - this->V0) * this->stride() + k - this->Slices.begin];
-  }
-  /// From one row to the next.
-  std::ptrdiff_t stride() const { return this->Slices.end - this->Slices.begin; }
-
-  /// The pixels of some rows for which any of some slices counts, and those for which all do in all
-  /// rows.
-  struct Hull
-  {
-    Span any = Nothing, all{ -Far, Far };
-  };
-  Hull hull(const Span& slices, int v0, int v1) const;
-
-private:
-  bool cutByIntervals(const RayIntervals& intervals, int v, const Span& pixels, Span* runs) const;
-  bool crop(const CutMap& map, int v, Span* runs) const;
-
-  int V0 = 0;
-  Span Slices;
-  std::vector<Span> Runs;
-};
-
-/// Some rows of pixels, the runs of pixels in them, and, if not all samples count, their bits and
-/// the longest run of pixels of which all do.
-struct RowRuns
-{
-  int v0 = 0, v1 = 0;
-  std::vector<Span> runs;
-  SliceBits bits;
-  Span whole;
+  NoSamples,
+  SomeSamples,
+  AllSamples
 };
 
 /// The cuts of a band of rows, tile by tile, in groups of TileHeight rows. A thread's work space.
-class BandCuts
+class TileShares
 {
 public:
   void reset(const CutMap& map, const CutLoops& loops, int v0, int v1, int width);
-
-  /**
-   * Finds the bits of a group's rows for the slices of a layer. Tiles without a flag, and those of
-   * which nothing counts, which lose theirs, get no bits. If everything counts there are none.
-   */
-  SliceBits findBits(const Span& slices, int group, unsigned char* flags);
-  /// The longest run of pixels of tiles of which everything counts, where bits were found last.
-  Span wholeRun() const;
+  /// For each tile of a group a TileShare of its samples in some slices.
+  const unsigned char* find(const Span& slices, int group);
 
 private:
-  /// How much of a tile's samples counts.
-  enum Share : unsigned char
-  {
-    None,
-    Some,
-    All
-  };
   TileExtremes extremesOf(int group);
-  void findShares(const Span& slices, int group);
-  void cropShares(const Span& slices, int v0, int v1);
-  void findSome(const Span& slices, int v, const Span& pixels, unsigned char* bits) const;
+  void crop(const Span& slices, int v0, int v1);
 
   const CutMap* Map = nullptr;
   const CutLoops* Loops = nullptr;
   int V0 = 0, V1 = 0, Width = 0, Tiles = 0;
-  std::ptrdiff_t Stride = 0;
   std::vector<std::int16_t> Extremes; // four arrays of them for each group
-  std::vector<unsigned char> Shares, Any, Bits;
+  std::vector<unsigned char> Shares, Any;
 };
 }
 

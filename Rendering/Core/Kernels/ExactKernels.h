@@ -145,22 +145,10 @@ struct Lanes
     return Special ? (before == before ? before : all(-std::numeric_limits<A>::infinity()))
                    : before;
   }
-  /// Stores what has been raised, as far as bits say.
+  /// Stores what has been raised.
   template <bool Special, class Row>
   static inline void close(const Row& row, std::ptrdiff_t x, R before, R best)
   {
-    if (row.bits)
-    {
-      if constexpr (single)
-      {
-        best = row.bits[x] & row.bit ? best : before;
-      }
-      else
-      {
-        const Pack<I> bits = loadBits<A>(row.bits + x);
-        best = (bits & static_cast<I>(row.bit)) != 0 ? best : before;
-      }
-    }
     const R none = all(-std::numeric_limits<A>::infinity());
     storeTo(row.image + x, Special ? (best > none ? best : before) : best);
   }

@@ -7,13 +7,20 @@
 #ifndef splattingFanKernels_h
 #define splattingFanKernels_h
 
-#include "Kernels/NotingKernels.h"
+#include "Kernels/Kernels.h"
 #include "Kernels/PickKernels.h"
+
+#include <limits>
 
 namespace splatting
 {
 namespace
 {
+/// No element is less.
+template <class T>
+constexpr T Least = std::numeric_limits<T>::has_infinity ? -std::numeric_limits<T>::infinity()
+                                                         : std::numeric_limits<T>::lowest();
+
 /// Of numbers that fit.
 inline double roundedDown(double x)
 {
@@ -107,22 +114,6 @@ inline void raisePixel(T& pixel, const T (&voxels)[3], int count)
   }
 }
 
-/// The same where winners are noted.
-template <class T>
-inline void raisePixelNoting(
-  T& pixel, std::int16_t& note, const T (&voxels)[3], int count, std::int16_t order, int sign)
-{
-  for (int n = 0; n < count; ++n)
-  {
-    const std::int16_t own = static_cast<std::int16_t>(order + sign * n);
-    if (voxels[n] > pixel || (voxels[n] == pixel && own < note))
-    {
-      pixel = voxels[n];
-      note = own;
-    }
-  }
-}
-
 /// Some pixels of a row, one by one.
 template <class T>
 inline void crossRow(const Crossing<T>& c, int s, const Span& run, int v)
@@ -133,19 +124,11 @@ inline void crossRow(const Crossing<T>& c, int s, const Span& run, int v)
   { return own >= 0 && own < c.rows ? slice.voxels + own * c.rowStride : c.none; };
   const CrossedPixel<T> own{ slice, { row(j[0]), row(j[1]) }, j[0] != j[1], slice.rowTime[v] };
   T* const image = c.image + v * c.imageStride;
-  std::int16_t* const notes = c.noting.notes ? c.noting.notes + v * c.imageStride : nullptr;
-  const unsigned char* const bits = c.bits ? c.bits + v * c.bitsStride : nullptr;
-
   for (std::ptrdiff_t x = run.begin; x < run.end; ++x)
   {
-    if (bits && !(bits[x] & slice.bit))
-    {
-      continue;
-    }
     T voxels[3];
     const int count = own.path(x, voxels);
-    notes ? raisePixelNoting(image[x], notes[x], voxels, count, slice.order, c.reversed ? -1 : 1)
-          : raisePixel(image[x], voxels, count);
+    raisePixel(image[x], voxels, count);
   }
 }
 
@@ -177,21 +160,6 @@ public:
     {
       row.j = -2; // none yet
     }
-  }
-
-  /// Where rays change columns: 1, or else 0.
-  const Integer<T>* moves()
-  {
-    if (!this->KnowsMoves)
-    {
-      const std::int16_t* const ticks = this->Slice.columnTick + this->Begin;
-      for (std::ptrdiff_t x = 0; x < this->Count * width<T>; ++x)
-      {
-        this->Moves[x] = static_cast<Integer<T>>(ticks[x] >= 0);
-      }
-      this->KnowsMoves = true;
-    }
-    return this->Moves;
   }
 
   const Row* row(std::int32_t j)
@@ -233,17 +201,6 @@ private:
   std::ptrdiff_t Begin;
   int Count;
   Row Rows[3]; // two neighbours, and one without voxels
-  alignas(64) Integer<T> Moves[Width];
-  bool KnowsMoves = false;
-};
-
-/// Where rays enter a slice, where they are between changing columns and rows, and where they
-/// leave.
-template <class T>
-struct CrossedPath
-{
-  Pack<T> entry, corner, exit;
-  TickOrder order;
 };
 
 /// A slice as a row of pixels sees it. Copies, because for compilers pixels that are bytes might be
@@ -254,52 +211,29 @@ struct CrossedRow
   const typename PickedRows<T>::Row *first, *last; ///< where rays enter and leave
   const double* columnTime;
   const std::int16_t* columnTick;
-  const Integer<T>* moves; ///< only where winners are noted
   double rowTime;
-  std::int16_t rowTick, order;
-  Integer<T> bit;
+  std::int16_t rowTick;
 
-  /// The path of a register of pixels, and its largest voxels.
-  SPLATTING_INLINE Pack<T> find(std::ptrdiff_t at, CrossedPath<T>& path) const
+  /// The largest voxels on the paths of a register of pixels.
+  SPLATTING_INLINE Pack<T> largestAt(std::ptrdiff_t at) const
   {
-    path.entry = load<T>(this->first->entry + at);
-    path.exit = load<T>(this->last->exit + at);
-    const Pack<T> best = larger(path.entry, path.exit);
+    const Pack<T> entry = load<T>(this->first->entry + at);
+    const Pack<T> best = larger(entry, load<T>(this->last->exit + at));
     if (this->first == this->last)
     {
       return best;
     }
-    path.order = orderOf<width<T>>(this->columnTick + at, this->rowTick);
-    if (path.order.ties)
+    // Where rays change both columns and rows there is a voxel between.
+    TickOrder order = orderOf<width<T>>(this->columnTick + at, this->rowTick);
+    if (order.ties)
     {
       // Which face comes first takes more digits.
-      path.order = orderOf<width<T>>(this->columnTime + at, this->rowTime);
+      order = orderOf<width<T>>(this->columnTime + at, this->rowTime);
     }
     const Register rowFirst = (Register)load<T>(this->last->entry + at);
     const Register columnFirst = (Register)load<T>(this->first->exit + at);
-    const Register other = chosen<sizeof(T)>(path.order.after, (Register)path.entry, rowFirst);
-    path.corner = (Pack<T>)chosen<sizeof(T)>(path.order.before, other, columnFirst);
-    return larger(path.corner, best);
-  }
-
-  /// Which voxel of the path the best one is, of equal ones the nearest.
-  SPLATTING_INLINE Pack<Integer<T>> step(
-    std::ptrdiff_t at, const CrossedPath<T>& path, Pack<T> best, bool reversed) const
-  {
-    const Pack<Integer<T>> start{};
-    const Pack<T> nearest = reversed ? path.exit : path.entry;
-    Pack<Integer<T>> end = load<Integer<T>>(this->moves + at), beyond = reversed ? start : end;
-    if (this->first != this->last)
-    {
-      // There is a corner where both change, but not at once.
-      const Pack<Integer<T>> one = start + Integer<T>(1);
-      const auto differ = path.order.before | path.order.after;
-      const Register met = chosen<sizeof(T)>(differ, (Register)nearest, (Register)path.corner);
-      const Pack<T> corner = end != 0 ? (Pack<T>)met : nearest;
-      end = (Pack<Integer<T>>)chosen<sizeof(T)>(differ, (Register)one, (Register)(end + one));
-      beyond = corner == best ? one : reversed ? start : end;
-    }
-    return nearest == best ? (reversed ? end : start) : beyond;
+    const Register other = chosen<sizeof(T)>(order.after, (Register)entry, rowFirst);
+    return larger((Pack<T>)chosen<sizeof(T)>(order.before, other, columnFirst), best);
   }
 };
 
@@ -319,18 +253,18 @@ public:
   /// @param count  of registers
   void raise(int v, int count)
   {
-    if (this->C.noting.notes)
+    const bool two = this->C.count > 1;
+    const CrossedRow<T> near = this->rowOf(0, v), far = two ? this->rowOf(1, v) : near;
+    T* const image = this->C.image + v * this->C.imageStride + this->Begin;
+    for (int n = 0; n < count; ++n)
     {
-      this->C.bits ? this->raise<true, true>(v, count) : this->raise<false, true>(v, count);
-    }
-    else
-    {
-      this->C.bits ? this->raise<true, false>(v, count) : this->raise<false, false>(v, count);
+      const std::ptrdiff_t at = n * width<T>;
+      const Pack<T> best = larger(near.largestAt(at), load<T>(image + at));
+      store<T>(image + at, two ? larger(far.largestAt(at), best) : best);
     }
   }
 
 private:
-  template <bool Notes>
   CrossedRow<T> rowOf(int s, int v)
   {
     const CrossedSlice<T>& slice = this->C.slices[s];
@@ -338,77 +272,7 @@ private:
     const std::int32_t j0 = slice.firstRow[v], j1 = slice.lastRow[v];
     const auto* const first = picked.row(j0);
     return { first, j1 == j0 ? first : picked.row(j1), slice.columnTime + this->Begin,
-      slice.columnTick + this->Begin, Notes ? picked.moves() : nullptr, slice.rowTime[v],
-      slice.rowTick[v], slice.order, static_cast<Integer<T>>(slice.bit) };
-  }
-
-  /// Some pixels' rays in one slice or two.
-  struct Paths
-  {
-    CrossedRow<T> near, far;
-    bool two, reversed;
-    CrossedPath<T> nearPath, farPath;
-    Pack<T> nearBest, best; ///< of the nearer slice, and of both
-  };
-
-  /// @param before  the least that counts
-  template <bool Cut>
-  static SPLATTING_INLINE Pack<T> bestOf(const CrossedRow<T>& row, std::ptrdiff_t at,
-    const unsigned char* bits, Pack<T> before, CrossedPath<T>& path)
-  {
-    const Pack<T> best = larger(row.find(at, path), before);
-    if constexpr (Cut)
-    {
-      return (loadBits<T>(bits + at) & row.bit) != 0 ? best : before;
-    }
-    return best;
-  }
-
-  static SPLATTING_INLINE void note(
-    const Noting& noting, T* image, std::int16_t* notes, std::ptrdiff_t at, const Paths& p)
-  {
-    Pack<Integer<T>> steps = p.near.step(at, p.nearPath, p.best, p.reversed);
-    if (p.two)
-    {
-      const int beyond = p.far.order - p.near.order;
-      const Integer<T> slice = static_cast<Integer<T>>(p.reversed ? -beyond : beyond);
-      const Pack<Integer<T>> farSteps = p.far.step(at, p.farPath, p.best, p.reversed) + slice;
-      steps = p.nearBest == p.best ? steps : farSteps;
-    }
-    raiseRegister<T>(
-      noting, image + at, notes + at, p.best, p.reversed ? Pack<Integer<T>>{} - steps : steps);
-  }
-
-  template <bool Cut, bool Notes>
-  void raise(int v, int count)
-  {
-    const Crossing<T>& c = this->C;
-    Paths p;
-    p.two = c.count > 1;
-    p.reversed = c.reversed;
-    p.near = this->template rowOf<Notes>(0, v);
-    p.far = p.two ? this->template rowOf<Notes>(1, v) : p.near;
-    T* const image = c.image + v * c.imageStride + this->Begin;
-    std::int16_t* const notes = Notes ? c.noting.notes + v * c.imageStride + this->Begin : nullptr;
-    const unsigned char* const bits = Cut ? c.bits + v * c.bitsStride + this->Begin : nullptr;
-    const Noting noting = c.noting;
-    for (int n = 0; n < count; ++n)
-    {
-      const std::ptrdiff_t at = n * width<T>;
-      const Pack<T> before = Notes ? Pack<T>{} + Least<T> : load<T>(image + at);
-      p.nearBest = bestOf<Cut>(p.near, at, bits, before, p.nearPath);
-      p.best =
-        p.two ? larger(bestOf<Cut>(p.far, at, bits, before, p.farPath), p.nearBest) : p.nearBest;
-      if constexpr (!Notes)
-      {
-        store<T>(image + at, p.best);
-      }
-      else
-      {
-        // Noting costs less than a guess whether any pixel wins.
-        note(noting, image, notes, at, p);
-      }
-    }
+      slice.columnTick + this->Begin, slice.rowTime[v], slice.rowTick[v] };
   }
 
   const Crossing<T>& C;

@@ -170,57 +170,6 @@ void exceeds(const P* bounds, const P* minima, unsigned char* __restrict flags, 
   }
 }
 
-template <class P>
-void farthest(const P* image, const std::int16_t* notes, std::ptrdiff_t stride, int rows,
-  std::ptrdiff_t tiles, const P* __restrict minima, P floor, std::int16_t* __restrict farthest)
-{
-  constexpr std::ptrdiff_t chunk = 64; // tiles
-  for (std::ptrdiff_t first = 0; first < tiles; first += chunk)
-  {
-    const std::ptrdiff_t count = first + chunk < tiles ? chunk : tiles - first;
-    P least[chunk * TileWidth];
-    std::int16_t columns[chunk * TileWidth];
-    for (std::ptrdiff_t t = 0; t < count; ++t)
-    {
-      for (std::ptrdiff_t x = 0; x < TileWidth; ++x)
-      {
-        least[t * TileWidth + x] = minima[first + t];
-      }
-    }
-    for (std::ptrdiff_t x = 0; x < count * TileWidth; ++x)
-    {
-      columns[x] = -1;
-    }
-    for (int r = 0; r < rows; ++r)
-    {
-      const P* const row = image + r * stride + first * TileWidth;
-      const std::int16_t* const own = notes + r * stride + first * TileWidth;
-      for (std::ptrdiff_t x = 0; x < count * TileWidth; ++x)
-      {
-        const std::int16_t note = row[x] == least[x] ? own[x] : std::int16_t(-1);
-        columns[x] = larger(note, columns[x]);
-      }
-    }
-    for (std::ptrdiff_t t = 0; t < count; ++t)
-    {
-      const std::int16_t* const c = columns + t * TileWidth;
-      const std::int16_t note = larger(larger(larger(c[0], c[1]), larger(c[2], c[3])),
-        larger(larger(c[4], c[5]), larger(c[6], c[7])));
-      farthest[first + t] = minima[first + t] > floor ? note : std::int16_t(-1);
-    }
-  }
-}
-
-template <class P>
-void exceedsOrTies(const P* bounds, const P* minima, const std::int16_t* farthest,
-  std::int16_t order, unsigned char* __restrict flags, std::ptrdiff_t n)
-{
-  for (std::ptrdiff_t t = 0; t < n; ++t)
-  {
-    flags[t] = (bounds[t] > minima[t]) | ((bounds[t] == minima[t]) & (order < farthest[t]));
-  }
-}
-
 template <class A>
 void finish(A* image, A base, A low, A high, std::ptrdiff_t n)
 {
@@ -352,14 +301,13 @@ void lookUp(const A* __restrict values, A low, A scale, std::int32_t last,
 
 template <class T>
 constexpr VoxelLoops<T> voxelLoops{ width<T>, Picker<T>::group, &maximum<T>, &largest<T>, &sweep<T>,
-  &cross<T>, &widen<T>, splatOwn<T>(), &survey<T>, &largestOfFour<T> };
+  &exceed<T>, &cross<T>, &widen<T>, splatOwn<T>(), &survey<T>, &largestOfFour<T> };
 template <class P>
-constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P>, &farthest<P>, &exceedsOrTies<P> };
+constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P> };
 template <class P>
 constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::climb)>(&climb<P>),
-  static_cast<decltype(RayLoops<P>::note)>(&note<P>),
-  static_cast<decltype(RayLoops<P>::raiseNoting)>(&raiseNoting<P>), &settle<P> };
+  static_cast<decltype(RayLoops<P>::note)>(&note<P>) };
 template <class A>
 constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>, &resample<A>,
   &blend<A>, &raiseBlend<A>, &splat<A, A>, &raiseCubics<A>, &raiseFanCubics<A>, &splatValid<A>,
@@ -369,8 +317,8 @@ constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>,
 }
 
 extern const Kernels SPLATTING_KERNELS;
-const Kernels SPLATTING_KERNELS = { { &beginAtPlane, &endAtPlane, &slicesBetween, &sliceBits,
-                                      &tileExtremes, &tileShares },
+const Kernels SPLATTING_KERNELS = { { &beginAtPlane, &endAtPlane, &slicesBetween, &tileExtremes,
+                                      &tileShares },
   { &steps }, voxelLoops<std::int8_t>, voxelLoops<std::uint8_t>, voxelLoops<std::int16_t>,
   voxelLoops<std::uint16_t>, voxelLoops<std::int32_t>, voxelLoops<std::uint32_t>,
   voxelLoops<std::int64_t>, voxelLoops<std::uint64_t>, voxelLoops<float>, voxelLoops<double>,

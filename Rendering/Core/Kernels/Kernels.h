@@ -27,11 +27,8 @@ enum class InstructionSet
   AVX512VBMI ///< and instructions that pick bytes
 };
 
-/// Most rows of voxels that a row of pixels meets at a time: three in each of sixteen slices.
-constexpr int MostRows = 48;
-
-/// Among winners, what is still to be found.
-constexpr std::int32_t UnknownWinner = -2;
+/// Most rows of voxels that a row of pixels meets at a time: three in each of four slices.
+constexpr int MostRows = 12;
 
 /// Half-open range of pixels.
 struct Span
@@ -48,14 +45,6 @@ struct Rim
   int first;
   const int* begin;
   const int* end;
-};
-
-/// What loops note of the samples that raise pixels: a number each, of equal samples the least.
-struct Noting
-{
-  std::int16_t* notes = nullptr; ///< the first pixel's, in rows as the image has them, or none
-  std::int16_t order = 0;        ///< of the samples that come first
-  bool nearestFirst = false;     ///< whether all that was noted before is less
 };
 
 /// Rows of pixels, and the rows of voxels that the first one meets, shifted so that pixel x meets
@@ -75,20 +64,6 @@ struct Sweep
   Span valid; ///< the pixels that all rows have voxels for
   Rim rims[2];
   int rimCount;
-  /// Where rays are cut, pixel x takes voxels of row r if bits[x] & bit[r]; else nullptr.
-  const unsigned char* bits;
-  std::ptrdiff_t bitsStride;
-  const unsigned char* bit;
-  /// Where each slice counts for one run of pixels in a row: pixel x takes voxels of row r if
-  /// sliceRuns[slice[r]] and sees[r] have it, in place of valid and rims; else nullptr.
-  const Span* sliceRuns;
-  std::ptrdiff_t sliceRunsStride;
-  std::ptrdiff_t wholeAhead; ///< to rows that are worth fetching as a whole, or 0
-  const unsigned char* slice;
-  const Span* sees;
-  Noting noting;
-  const std::int8_t* offsets; ///< from noting.order, ascending
-  bool winsOften;             ///< whether many registers of pixels are likely to be raised
 };
 
 /// What the rays of a perspective image do in one slice; see FanSteps and FanWindows for the
@@ -102,8 +77,6 @@ struct CrossedSlice
   const std::int16_t *rowTick, *columnTick;
   const std::int32_t *entryBase, *exitBase;
   const void *entryLanes, *exitLanes;
-  unsigned char bit;  ///< see Crossing::bits
-  std::int16_t order; ///< see Crossing::noting
 };
 
 /// Rows of pixels of a perspective image and the voxels that their rays cross in one slice or two.
@@ -121,13 +94,6 @@ struct Crossing
   const T* none;              ///< a row of the least value
   const Span* runs; ///< the pixels that count: multiples of 64 bytes, but for the row's end
   int runCount;
-  /// Where rays are cut, pixel x takes voxels of a slice if bits[x] & its bit; else nullptr.
-  const unsigned char* bits;
-  std::ptrdiff_t bitsStride;
-  /// Voxel n of a ray's path has the note `order` of its slice plus n, or minus if reversed;
-  /// noting.order is that of the first slice, the nearer one.
-  Noting noting;
-  bool reversed;
 };
 
 /// A rectangle of footprint weights and the voxels that it meets first, which are of type A or, as
@@ -152,15 +118,14 @@ struct Splat
   std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
   SplatPart<A, S> parts[3];
   int partCount;
-  /// Where rays are cut, pixel x changes if bits[x] & bit; else nullptr.
-  const unsigned char* bits;
-  std::ptrdiff_t bitsStride;
-  unsigned char bit;
-  /// Pixels of which all change in all rows, as far as that is known.
-  std::ptrdiff_t wholeBegin = 0, wholeEnd = 0;
-  Noting noting;
   A base = 0;               ///< what is subtracted from the volume's own voxels
   std::ptrdiff_t ahead = 0; ///< from these to voxels that will be needed next, or 0
+};
+
+/// A pixel of a row whose limit a row of samples exceeds.
+struct Exceeding
+{
+  std::int32_t x, row;
 };
 
 /// Loops over voxels of type T.
@@ -179,6 +144,11 @@ struct VoxelLoops
   /// `maximum` for all rows of pixels: for the runs, as far as they are valid and perhaps some
   /// valid pixels beside them, and for the rims.
   void (*sweep)(const Sweep<T>& sweep);
+  /// For each pixel x of n the first of rows[0..count) that is above limits[x], if there is one:
+  /// written to `found`, which has room for n, and limits[x] becomes the greatest value. Returns
+  /// how many there are. limits[x] is not NaN.
+  std::ptrdiff_t (*exceed)(
+    const T* const* rows, int count, T* limits, Exceeding* found, std::ptrdiff_t n);
   /// `maximum` of the voxels that rays cross, each pixel its own.
   void (*cross)(const Crossing<T>& crossing);
   /// out[x] = row[x] - base, which must be exact, for some rows of n elements. row[x + ahead] will
@@ -203,13 +173,6 @@ struct TileLoops
   void (*minima)(const P* image, std::ptrdiff_t stride, int rows, std::ptrdiff_t tiles, P* minima);
   /// flags[t] = whether bounds[t] > minima[t].
   void (*exceeds)(const P* bounds, const P* minima, unsigned char* flags, std::ptrdiff_t n);
-  /// farthest[t] = the largest note of the pixels of tile t that are minima[t]; -1 if these are no
-  /// more than the floor. Notes lie in rows as the pixels do.
-  void (*farthest)(const P* image, const std::int16_t* notes, std::ptrdiff_t stride, int rows,
-    std::ptrdiff_t tiles, const P* minima, P floor, std::int16_t* farthest);
-  /// flags[t] = whether bounds[t] > minima[t], or as large and order < farthest[t].
-  void (*exceedsOrTies)(const P* bounds, const P* minima, const std::int16_t* farthest,
-    std::int16_t order, unsigned char* flags, std::ptrdiff_t n);
 };
 
 /// Loops over the samples that a row of pixels has in one slice. A NaN sample is none, a NaN pixel
@@ -228,16 +191,6 @@ struct RayLoops
   /// is not what it was `before` the samples were taken.
   void (*note)(std::int32_t* winners, std::int32_t place, const P* before, const P* image,
     const P* samples, const unsigned char* mask, std::ptrdiff_t n);
-  /// `raise` where samples may come in any order of slices, and no NaN does: image[x] = samples[x]
-  /// and orders[x] = order where the sample is larger, or as large and order < orders[x]. Where
-  /// there are bits, if bits[x] & bit.
-  void (*raiseNoting)(P* image, std::int16_t* orders, std::int16_t order, const P* samples,
-    const unsigned char* bits, unsigned char bit, std::ptrdiff_t n);
-  /// winners[x] = orders[x], or `last` - orders[x] if reversed; -1 where orders[x] < 0, and
-  /// UnknownWinner where the image is no more than the floor, of which notes say nothing. Whether
-  /// there is one of these.
-  bool (*settle)(const P* image, const std::int16_t* orders, P floor, bool reversed,
-    std::int32_t last, std::int32_t* winners, std::ptrdiff_t n);
 };
 
 /// How depth shading dims the samples of slice k in a row of pixels whose rays have slices first[x]
@@ -285,9 +238,6 @@ struct CutLoops
   /// first > last if none do. Whether there are rays that do not have all.
   bool (*slicesBetween)(const double* near, const double* far, int begin, int end,
     std::int16_t* first, std::int16_t* last, std::ptrdiff_t n);
-  /// Bit s of bits[x] = whether first[x] <= k + s <= last[x], for s from 0 to `count` - 1.
-  void (*sliceBits)(const std::int16_t* first, const std::int16_t* last, int k, int count,
-    unsigned char* bits, std::ptrdiff_t n);
   /// The extremes of all tiles of some rows of n pixels.
   void (*tileExtremes)(const std::int16_t* first, const std::int16_t* last, std::ptrdiff_t stride,
     int rows, std::ptrdiff_t n, const TileExtremes& tiles);
@@ -364,9 +314,7 @@ struct CubicRow
   std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
   CubicPiece<A> pieces[MostPieces];
   int count;
-  bool special;              ///< whether there are NaN or infinities
-  const unsigned char* bits; ///< pixel x changes if bits[x] & bit; or nullptr
-  unsigned char bit;
+  bool special; ///< whether there are NaN or infinities
 };
 
 /// What FanCells knows of all columns (or rows) in a slice, depths relative to its middle.
@@ -403,10 +351,8 @@ struct FanCubicRow
   int count;
   A fieldBegin, fieldEnd, boxesBegin, boxesEnd; ///< of the row, as in FanCellArrays
   A fieldNear, fieldFar;
-  A shortest;                ///< way through the field that counts as seeing it
-  bool special;              ///< whether there are NaN or infinities
-  const unsigned char* bits; ///< pixel x changes if bits[x] & bit; or nullptr
-  unsigned char bit;
+  A shortest;   ///< way through the field that counts as seeing it
+  bool special; ///< whether there are NaN or infinities
 };
 
 /// Loops over worksheets and images of type A (float or double).
@@ -421,10 +367,8 @@ struct WorksheetLoops
   void (*resample)(const Resampling<A>& rows, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// out[x] = the sum of weights[r] rows[r][x].
   void (*blend)(const A* const* rows, const A* weights, int count, A* out, std::ptrdiff_t n);
-  /// image[x] = max(image[x], the sum of weights[r] rows[r][x]); where there are bits, if
-  /// bits[x] & bit.
-  void (*raiseBlend)(A* image, const A* const* rows, const A* weights, int count,
-    const unsigned char* bits, unsigned char bit, const Noting& noting, std::ptrdiff_t n);
+  /// image[x] = max(image[x], the sum of weights[r] rows[r][x]).
+  void (*raiseBlend)(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
   /// Every pixel of the rectangle: the maximum of it and the weighted sum of its voxels, which must
   /// be finite.
   void (*splat)(const Splat<A>& splat);

@@ -15,19 +15,6 @@ namespace splatting
 {
 namespace
 {
-void sliceBits(const std::int16_t* __restrict first, const std::int16_t* __restrict last, int k,
-  int count, unsigned char* __restrict bits, std::ptrdiff_t n)
-{
-  for (std::ptrdiff_t x = 0; x < n; ++x)
-  {
-    // Slices from `low` on and up to `high`, relative to k.
-    const int low = first[x] - k, high = last[x] - k;
-    const unsigned from = 0xffu << (low < 0 ? 0 : low > 8 ? 8 : low);
-    const unsigned to = 0xffu >> (high < 0 ? 8 : high > 7 ? 0 : 7 - high);
-    bits[x] = static_cast<unsigned char>(from & to & ((1u << count) - 1u));
-  }
-}
-
 void tileExtremes(const std::int16_t* first, const std::int16_t* last, std::ptrdiff_t stride,
   int rows, std::ptrdiff_t n, const TileExtremes& out)
 {
@@ -163,59 +150,6 @@ void note(std::int32_t* winners, std::int32_t place, const P* before, const P* i
 {
   mask ? note<true>(winners, place, before, image, samples, mask, n)
        : note<false>(winners, place, before, image, samples, mask, n);
-}
-
-template <bool Masked, class P>
-inline void raiseNoting(P* __restrict image, std::int16_t* __restrict orders, std::int16_t order,
-  const P* __restrict samples, const unsigned char* __restrict bits, unsigned char bit,
-  std::ptrdiff_t n)
-{
-  for (std::ptrdiff_t x = 0; x < n; ++x)
-  {
-    const bool counts = !Masked || (bits[x] & bit) != 0;
-    const bool wins =
-      counts & ((samples[x] > image[x]) | ((samples[x] == image[x]) & (order < orders[x])));
-    image[x] = wins ? samples[x] : image[x];
-    orders[x] = wins ? order : orders[x];
-  }
-}
-
-template <class P>
-void raiseNoting(P* image, std::int16_t* orders, std::int16_t order, const P* samples,
-  const unsigned char* bits, unsigned char bit, std::ptrdiff_t n)
-{
-  // Where most samples are less, there is little to do.
-  constexpr std::ptrdiff_t chunk = 64;
-  for (std::ptrdiff_t x = 0; x < n; x += chunk)
-  {
-    const std::ptrdiff_t count = n - x < chunk ? n - x : chunk;
-    Integer<P> any = 0; // as wide as samples, for compilers
-    for (std::ptrdiff_t y = x; y < x + count; ++y)
-    {
-      any |= static_cast<Integer<P>>(samples[y] >= image[y]);
-    }
-    if (any != 0)
-    {
-      bits ? raiseNoting<true>(image + x, orders + x, order, samples + x, bits + x, bit, count)
-           : raiseNoting<false>(image + x, orders + x, order, samples + x, bits, bit, count);
-    }
-  }
-}
-
-template <class P>
-bool settle(const P* __restrict image, const std::int16_t* __restrict orders, P floor,
-  bool reversed, std::int32_t last, std::int32_t* __restrict winners, std::ptrdiff_t n)
-{
-  const std::int32_t first = reversed ? last : 0, sign = reversed ? -1 : 1;
-  std::int32_t missing = 0;
-  for (std::ptrdiff_t x = 0; x < n; ++x)
-  {
-    const std::int32_t order = orders[x];
-    const std::int32_t known = image[x] > floor ? first + sign * order : UnknownWinner;
-    winners[x] = order < 0 ? -1 : known;
-    missing |= static_cast<std::int32_t>(winners[x] == UnknownWinner);
-  }
-  return missing != 0;
 }
 
 template <bool Masked, class A>

@@ -8,7 +8,6 @@
 #define splattingResamplingKernels_h
 
 #include "Kernels/FanKernels.h"
-#include "Kernels/NotingKernels.h"
 
 namespace splatting
 {
@@ -352,16 +351,13 @@ void blend(const A* const* rows, const A* weights, int count, A* out, std::ptrdi
   }
 }
 
-template <class A, bool Cut>
+template <class A>
 struct RaiseBlock
 {
   A* image;
   const A* const* rows;
   const A* weights;
   int count;
-  const unsigned char* bits;
-  unsigned char bit;
-  const Noting& noting;
 
   inline void single(std::ptrdiff_t x) const
   {
@@ -370,11 +366,7 @@ struct RaiseBlock
     {
       sum += this->weights[r] * this->rows[r][x];
     }
-    if (!Cut || this->bits[x] & this->bit)
-    {
-      noteSum(this->noting, x, sum, this->image[x]);
-      this->image[x] = larger(sum, this->image[x]);
-    }
+    this->image[x] = larger(sum, this->image[x]);
   }
   template <int V>
   inline void run(std::ptrdiff_t x) const
@@ -398,32 +390,17 @@ struct RaiseBlock
 #pragma GCC unroll 4
     for (int v = 0; v < V; ++v)
     {
-      const std::ptrdiff_t at = x + v * width<A>;
-      const Pack<A> before = load<A>(this->image + at);
-      Pack<Integer<A>> counts = ~Pack<Integer<A>>{};
-      if constexpr (Cut)
-      {
-        const Pack<Integer<A>> own = loadBits<A>(this->bits + at);
-        counts = (own & static_cast<Integer<A>>(this->bit)) != 0;
-        sum[v] = counts ? sum[v] : before;
-      }
-      if (this->noting.notes)
-      {
-        noteSums<A>(this->noting, at, sum[v], before, counts);
-      }
-      store<A>(this->image + at, larger(sum[v], before));
+      A* const at = this->image + x + v * width<A>;
+      store<A>(at, larger(sum[v], load<A>(at)));
     }
   }
 };
 
 template <class A>
-void raiseBlend(A* image, const A* const* rows, const A* weights, int count,
-  const unsigned char* bits, unsigned char bit, const Noting& noting, std::ptrdiff_t n)
+void raiseBlend(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n)
 {
-  const auto raise = [n](const auto& block)
-  { blocks<A>(n, block, [&](std::ptrdiff_t x) { block.single(x); }); };
-  bits ? raise(RaiseBlock<A, true>{ image, rows, weights, count, bits, bit, noting })
-       : raise(RaiseBlock<A, false>{ image, rows, weights, count, bits, bit, noting });
+  const RaiseBlock<A> block{ image, rows, weights, count };
+  blocks<A>(n, block, [&](std::ptrdiff_t x) { block.single(x); });
 }
 }
 }

@@ -8,7 +8,6 @@
 #define splattingSplatKernels_h
 
 #include "Kernels/Kernels.h"
-#include "Kernels/NotingKernels.h"
 #include "Kernels/Registers.h"
 
 namespace splatting
@@ -97,8 +96,8 @@ inline void addPart(
 }
 
 /// Raises Rows x V registers of pixels to their sums.
-template <class A, int Rows, int V, bool Cut, bool Notes, class S>
-inline void raiseTile(const Splat<A, S>& s, std::ptrdiff_t x, int y, Pack<A> (&sum)[Rows][V])
+template <class A, int Rows, int V, class S>
+inline void raiseTile(const Splat<A, S>& s, std::ptrdiff_t x, int y, const Pack<A> (&sum)[Rows][V])
 {
 #pragma GCC unroll 4
   for (int o = 0; o < Rows; ++o)
@@ -106,27 +105,14 @@ inline void raiseTile(const Splat<A, S>& s, std::ptrdiff_t x, int y, Pack<A> (&s
 #pragma GCC unroll 4
     for (int v = 0; v < V; ++v)
     {
-      const std::ptrdiff_t at = (y + o) * s.imageStride + x + v * width<A>;
-      const Pack<A> before = load<A>(s.image + at);
-      Pack<Integer<A>> counts = ~Pack<Integer<A>>{};
-      if constexpr (Cut)
-      {
-        const Pack<Integer<A>> bits =
-          loadBits<A>(s.bits + (y + o) * s.bitsStride + x + v * width<A>);
-        counts = (bits & static_cast<Integer<A>>(s.bit)) != 0;
-        sum[o][v] = counts ? sum[o][v] : before;
-      }
-      if constexpr (Notes)
-      {
-        noteSums<A>(s.noting, at, sum[o][v], before, counts);
-      }
-      store<A>(s.image + at, larger(sum[o][v], before));
+      A* const at = s.image + (y + o) * s.imageStride + x + v * width<A>;
+      store<A>(at, larger(sum[o][v], load<A>(at)));
     }
   }
 }
 
 /// Rows x V registers of pixels, from (x, y) of the rectangle.
-template <class A, int Rows, int V, bool Cut, class S>
+template <class A, int Rows, int V, class S>
 inline void splatTile(const Splat<A, S>& s, std::ptrdiff_t x, int y)
 {
   Pack<A> sum[Rows][V];
@@ -162,17 +148,12 @@ inline void splatTile(const Splat<A, S>& s, std::ptrdiff_t x, int y)
         break;
     }
   }
-  s.noting.notes ? raiseTile<A, Rows, V, Cut, true>(s, x, y, sum)
-                 : raiseTile<A, Rows, V, Cut, false>(s, x, y, sum);
+  raiseTile<A, Rows, V>(s, x, y, sum);
 }
 
-template <class A, bool Cut, class S>
+template <class A, class S>
 inline void splatPixel(const Splat<A, S>& s, std::ptrdiff_t x, int y)
 {
-  if (Cut && !(s.bits[y * s.bitsStride + x] & s.bit))
-  {
-    return;
-  }
   A sum = 0;
   for (int p = 0; p < s.partCount; ++p)
   {
@@ -186,17 +167,14 @@ inline void splatPixel(const Splat<A, S>& s, std::ptrdiff_t x, int y)
       }
     }
   }
-  const std::ptrdiff_t at = y * s.imageStride + x;
-  A& pixel = s.image[at];
-  noteSum(s.noting, at, sum, pixel);
+  A& pixel = s.image[y * s.imageStride + x];
   pixel = larger(sum, pixel);
 }
 
-template <class A, int Rows, bool Cut, class S>
+template <class A, int Rows, class S>
 struct SplatBlock
 {
   const Splat<A, S>& splat;
-  std::ptrdiff_t begin;
   int y;
   template <int V>
   inline void run(std::ptrdiff_t x) const
@@ -209,46 +187,22 @@ struct SplatBlock
     }
     else
     {
-      splatTile<A, Rows, V, Cut>(this->splat, this->begin + x, this->y);
+      splatTile<A, Rows, V>(this->splat, x, this->y);
     }
   }
 };
 
-/// Pixels `begin` to `end` of some rows.
-template <class A, int Rows, bool Cut, class S>
-inline void splatStrip(const Splat<A, S>& s, int y, std::ptrdiff_t begin, std::ptrdiff_t end)
+template <class A, int Rows, class S>
+inline void splatRows(const Splat<A, S>& s, int y)
 {
-  blocks<A>(end - begin, SplatBlock<A, Rows, Cut, S>{ s, begin, y },
+  blocks<A>(s.width, SplatBlock<A, Rows, S>{ s, y },
     [&](std::ptrdiff_t x)
     {
       for (int o = 0; o < Rows; ++o)
       {
-        splatPixel<A, Cut>(s, begin + x, y + o);
+        splatPixel(s, x, y + o);
       }
     });
-}
-
-template <class A, int Rows, class S>
-inline void splatRows(const Splat<A, S>& s, int y)
-{
-  if (!s.bits)
-  {
-    splatStrip<A, Rows, false>(s, y, 0, s.width);
-    return;
-  }
-  // Bits are asked beside the pixels of which all change, in whole registers if there are any.
-  constexpr std::ptrdiff_t w = width<A>;
-  const std::ptrdiff_t begin = (s.wholeBegin + w - 1) / w * w;
-  const std::ptrdiff_t last = s.width - w;
-  const std::ptrdiff_t end = s.wholeEnd < s.width && s.wholeEnd > last ? last : s.wholeEnd;
-  if (end - begin < 2 * w)
-  {
-    splatStrip<A, Rows, true>(s, y, 0, s.width);
-    return;
-  }
-  splatStrip<A, Rows, true>(s, y, 0, begin);
-  splatStrip<A, Rows, false>(s, y, begin, end);
-  splatStrip<A, Rows, true>(s, y, end, s.width);
 }
 
 template <class A, class S>

@@ -88,6 +88,22 @@ constexpr T greatestValue()
   return Limits::has_infinity ? Limits::infinity() : Limits::max();
 }
 
+/// The first voxel on a ray's path in a slice, from the viewer on, for which isWanted(di, dj): its
+/// number, or -1 if there is none.
+template <class F>
+int firstOnPath(const RayPath& path, bool reversed, F&& isWanted)
+{
+  for (int n = 0; n < path.count; ++n)
+  {
+    const int t = reversed ? path.count - 1 - n : n;
+    if (isWanted(path.di[t], path.dj[t]))
+    {
+      return t;
+    }
+  }
+  return -1;
+}
+
 /// Tiles that a walk met, and those that it splatted.
 struct TileCount
 {
@@ -117,10 +133,6 @@ struct Frame
   const BrickMaxima* bricks;
 
   Slices slices = {}; // those that are walked at present
-  /// If the image tells its winners: where each pixel's value comes from, see orderOfStep().
-  std::int16_t* orders = nullptr;
-  /// Whether slices are walked from the viewer on: of equal samples the first one met wins.
-  bool nearestFirst = false;
   TileCount count = {};
 
   template <class T>
@@ -130,37 +142,9 @@ struct Frame
       k * this->slices.sliceStride;
   }
 
-  std::int16_t* ordersOfRow(int v) const
-  {
-    return this->orders + std::ptrdiff_t(v) * this->image.width;
-  }
-  /// Steps as in ShearImage::winners, counted from the viewer on; and back again.
-  int orderOfStep(int step) const
-  {
-    return this->geometry.reversed() ? StepsPerSlice * this->geometry.size().z - 1 - step : step;
-  }
-  /// The least that the steps of a layer have.
-  std::int16_t nearestOrder(int z) const
-  {
-    const int first = z * BrickDepth, end = std::min(first + BrickDepth, this->geometry.size().z);
-    const int step = this->geometry.reversed() ? StepsPerSlice * end - 1 : StepsPerSlice * first;
-    return static_cast<std::int16_t>(this->orderOfStep(step));
-  }
-  /// The n-th of some slices or layers, from the viewer on if winners are noted.
-  int nth(const Span& some, int n) const
-  {
-    return this->orders && this->geometry.reversed() ? some.end - 1 - n : some.begin + n;
-  }
-
   /// The pixels of row v in [vBegin, vEnd) whose rays cross slice k.
   const Span& pixels(int v, int k) const { return this->sliceGeometry[k].span(v); }
 };
-
-/// Slices of a volume whose steps Frame::orders can hold.
-constexpr int MostNoted = std::numeric_limits<std::int16_t>::max() / StepsPerSlice;
-
-/// Most layers that walks take together where they note winners.
-constexpr int LayersTogether = 4;
 
 /// How far beyond the volume worksheets may read: a footprint and the drift of a slice. Less than a
 /// tile.

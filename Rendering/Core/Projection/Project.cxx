@@ -71,11 +71,9 @@ Acceleration choose(
 }
 
 /// Whether each sample has to be looked at by itself.
-bool looksAtAll(
-  const ProjectionSettings& settings, const VolumeIndex::Range& range, const ShearWarp& geometry)
+bool looksAtAll(const ProjectionSettings& settings, const VolumeIndex::Range& range)
 {
-  return settings.reduction != Reduction::Maximum ||
-    (settings.keepWinners && (range.special || geometry.size().z > MostNoted));
+  return settings.reduction != Reduction::Maximum || (settings.keepWinners && range.special);
 }
 
 /// What voxels are summed in.
@@ -164,7 +162,7 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   const ProjectionSettings& settings, const ShearWarp& geometry, const Cuts& cuts,
   const LineIndex*& lines)
 {
-  if (looksAtAll(settings, index.range(), geometry) || index.range().special)
+  if (looksAtAll(settings, index.range()) || index.range().special)
   {
     return Acceleration::Dense;
   }
@@ -277,7 +275,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
       : settings.acceleration,
     index, settings, geometry, cuts, lines);
   openImage(settings, index.volume().type, image);
-  const bool byRays = looksAtAll(settings, range, geometry);
+  const bool byRays = looksAtAll(settings, range);
   const bool skips = used == Acceleration::Bricks;
   Frame frame{ index, settings, geometry, whole, kernelsFor(settings.instructionSet), range,
     memory.slices, memory.steps, memory.cuts, settings.floor, image, memory.walks, this->Observer,

@@ -315,7 +315,7 @@ void walkRays(Frame& frame, const SliceSampler<T, P>& sampler)
   const Reduction reduction = frame.settings.reduction;
   openState(frame.image, reduction, frame.space.rays);
   const RayWalk<T, P> walk(frame, sampler);
-  forSlices(frame, sampler.traits().beyond, walk.isReversed(),
+  forSlices(frame, sampler.traits().beyond, walk.isReversed(), {},
     [&](const Span& slices, bool isFirst, bool isLast)
     {
       forBands(frame.image.height, bandHeight(frame.image.height), frame.watch,

@@ -9,6 +9,7 @@
 #include "Clipping/Cuts.h"
 #include "Clipping/RayIntervals.h"
 #include "Projection/Frame.h"
+#include "Projection/TileRuns.h"
 #include "Sampling/Patch.h"
 
 #include <vtkSMPThreadLocal.h>
@@ -39,21 +40,13 @@ struct BandScratch
   std::vector<int> order;
   std::vector<double> scores;
   std::vector<Span> runs;
-  std::vector<RowRuns> rows;
-  BandCuts cuts;
-  SliceRuns sliceRuns;
+  TileShares shares;
+  TileBlock block;
   std::vector<unsigned char> mask;
+  std::vector<unsigned char> row; ///< of limits
   std::vector<unsigned char> brickRow;
-  std::vector<std::int16_t> farthest;
   std::vector<Span> tileWindows;
   TileCount count;
-};
-
-/// And to find winners.
-struct WinnerScratch
-{
-  std::vector<std::int16_t> first, last;
-  std::vector<unsigned char> mask;
 };
 
 /// And to walk rays.
@@ -75,18 +68,23 @@ struct RayState
 struct WalkSpace
 {
   vtkSMPThreadLocal<BandScratch> bands;
-  vtkSMPThreadLocal<WinnerScratch> winners;
   vtkSMPThreadLocal<RayScratch> rayBands;
   RayState rays;
   OutlineSpace outline;
-  std::vector<std::int16_t> orders;
+  std::vector<unsigned char> limits; ///< of all pixels, for WinnerWalk
   std::vector<unsigned char> chunk;
+};
+
+/// A part of a projection's progress, from one share to another.
+struct Progress
+{
+  double from = 0.0, to = 1.0;
 };
 
 /// Calls body(slices, isFirst, isLast) with Frame::slices set: for all slices, or, where these
 /// would need a copy that there is no memory for, for some at a time, from the last on if reversed.
 /// @param beyond  slices beside them that are read, too
-void forSlices(Frame& frame, int beyond, bool reversed,
+void forSlices(Frame& frame, int beyond, bool reversed, const Progress& progress,
   const std::function<void(const Span& slices, bool isFirst, bool isLast)>& body);
 }
 

@@ -39,10 +39,12 @@ void forBands(int height, int rows, Watch& watch, const std::function<void(int v
   watch.ask();
 }
 
-void forSlices(Frame& frame, int beyond, bool reversed,
+void forSlices(Frame& frame, int beyond, bool reversed, const Progress& progress,
   const std::function<void(const Span& slices, bool isFirst, bool isLast)>& body)
 {
   const int axis = frame.geometry.principalAxis(), depth = frame.geometry.size().z;
+  const double share = progress.to - progress.from;
+  frame.watch.setPart(progress.from, progress.to);
   if (frame.lines) // chains hold the voxels
   {
     body(Span{ 0, depth }, true, true);
@@ -59,7 +61,8 @@ void forSlices(Frame& frame, int beyond, bool reversed,
   {
     const int first = (reversed ? chunks - 1 - c : c) * ChunkDepth;
     const Span slices{ first, std::min(first + ChunkDepth, depth) };
-    frame.watch.setPart(double(c) / chunks, double(c + 1) / chunks);
+    frame.watch.setPart(
+      progress.from + share * c / chunks, progress.from + share * (c + 1) / chunks);
     frame.slices = frame.index.someSlices(
       std::max(slices.begin - beyond, 0), std::min(slices.end + beyond, depth), frame.space.chunk);
     body(slices, c == 0, c == chunks - 1);

@@ -88,12 +88,10 @@ protected:
     row.pixels = span;
     row.sourceStride = patch.rowLength;
     row.special = this->Shared.range.special;
-    row.bit = target.bit;
     for (int v = first; v < end; ++v)
     {
       row.image = target.at(0, v);
       row.field = this->Field[v];
-      row.bits = target.bits.origin ? target.bits.at(0, v) : nullptr;
       row.count = 0;
       for (const ExactPiece<A>& piece : this->Paths[k])
       {

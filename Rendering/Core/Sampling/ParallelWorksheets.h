@@ -24,7 +24,6 @@ public:
     : WorksheetLayers<T>(frame, false, reach, depth),
       Footprints(footprints)
   {
-    this->Notes = true;
   }
 
   Window window(int layer) const override { return this->Reach.layers[layer].window; }
@@ -86,13 +85,6 @@ protected:
     Splat<A, S> splat;
     splat.image = target.at(span.begin, first);
     splat.imageStride = target.stride;
-    splat.bits = target.bits.origin ? target.bits.at(span.begin, first) : nullptr;
-    splat.bitsStride = target.bits.stride;
-    splat.bit = target.bit;
-    const Span whole = common(target.whole, span);
-    splat.wholeBegin = whole.empty() ? 0 : whole.begin - span.begin;
-    splat.wholeEnd = whole.empty() ? 0 : whole.end - span.begin;
-    splat.noting = this->notingAt(target, span.begin, first);
     splat.width = span.end - span.begin;
     splat.height = end - first;
     return splat;

@@ -85,11 +85,9 @@ protected:
     row.columns = this->Columns.slice(k);
     row.special = this->Shared.range.special;
     row.shortest = shortest;
-    row.bit = target.bit;
     for (int v = first; v < end; ++v)
     {
       row.image = target.at(0, v);
-      row.bits = target.bits.origin ? target.bits.at(0, v) : nullptr;
       row.slope = rows.slope[v];
       row.fieldBegin = std::max(rows.fieldBegin[v], static_cast<A>(this->Depths.begin - slice));
       row.fieldEnd = std::min(rows.fieldEnd[v], static_cast<A>(this->Depths.end - slice));

@@ -25,12 +25,13 @@ class PerspectivePreview : public SliceSampler<T, T>
 
 public:
   using typename SliceSampler<T, T>::Samples;
+  using typename SliceSampler<T, T>::Worksheets;
 
   /// @param windows  of the columns
   /// @param none     work space
   PerspectivePreview(
     const Frame& frame, const FanWindows& windows, std::vector<unsigned char>& none)
-    : SliceSampler<T, T>({ true, 0, 32, RunUnit, false }),
+    : SliceSampler<T, T>({ true, 0, RunUnit }),
       Shared(frame),
       Windows(windows)
   {
@@ -50,52 +51,80 @@ public:
     return this->Shared.steps.rows.voxels(this->slices(z), pixels);
   }
 
-  void splat(int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits,
-    const SliceRuns*, Patch& patch) const override
+  void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const override
   {
     const Span slices = this->slices(z);
-    const int count = slices.end - slices.begin;
     if (this->Shared.range.special)
     {
-      for (int n = 0; n < count; ++n)
-      {
-        this->splatSamples(slices.begin + n, v0, v1, bits, patch);
-      }
+      this->splatSamples(slices, v0, v1, patch);
       return;
     }
     const VoxelLoops<T>& loops = this->Shared.kernels;
-    for (int n = 0; n < count; n += 2)
+    for (int k = slices.begin; k < slices.end; k += 2)
     {
-      // Two slices at a time, from the viewer on: image and notes are read and written once.
-      const int near = this->Shared.nth(slices, n);
-      const int far = n + 1 < count ? this->Shared.nth(slices, n + 1) : near;
-      const Span rows = this->findRuns(near, far, { v0, v1 }, runs, patch.runs);
+      // Two slices at a time: the image is read and written once.
+      const int next = std::min(k + 1, slices.end - 1);
+      const Span rows = this->findRuns(k, next, { v0, v1 }, runs, patch.runs);
       if (!rows.empty() && !patch.runs.empty())
       {
-        loops.cross(this->crossingOf(near, far, rows, bits, patch.runs));
+        loops.cross(this->crossingOf(k, next, rows, patch.runs));
       }
     }
   }
 
-  void open(int, int, const Span&, Patch&) const override {}
-  void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const override
+  void splatAll(
+    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const override
   {
-    for (int r = 0; r < count; ++r)
+    for (int z = layers.begin; z < layers.end; ++z)
     {
-      if (!rows[r].runs.empty())
+      this->splat(z, v0, v1, all, patch);
+    }
+  }
+
+  void forWorksheets(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
+    const PixelRows<T>&, Patch& patch, const Worksheets& f) const override
+  {
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    const Span some = common(slices, this->Shared.geometry.slices());
+    const std::ptrdiff_t width = this->Shared.image.width;
+    // Registers may reach into rows beyond.
+    patch.worksheet.resize(width * (v1 - v0 + RunUnit) * sizeof(T));
+    T* const worksheet = reinterpret_cast<T*>(patch.worksheet.data());
+    const std::vector<Span> run{ unitsOf(columns) };
+    for (int n = 0; n < some.end - some.begin; ++n)
+    {
+      const int k = reversed ? some.end - 1 - n : some.begin + n;
+      const Span rows = this->findRuns(k, k, { v0, v1 }, run, patch.runs);
+      if (rows.empty() || patch.runs.empty())
       {
-        this->splat(z, rows[r].v0, rows[r].v1, rows[r].runs, rows[r].bits, nullptr, patch);
+        continue;
+      }
+      for (int v = rows.begin; v < rows.end; ++v)
+      {
+        T* const row = worksheet + (v - rows.begin) * width;
+        std::fill(row + patch.runs[0].begin, row + patch.runs[0].end, leastValue<T>());
+      }
+      Crossing<T> crossing = this->crossingOf(k, k, rows, patch.runs);
+      crossing.image = worksheet;
+      loops.cross(crossing);
+      for (int v = rows.begin; v < rows.end; ++v)
+      {
+        const Span pixels = common(columns, this->Shared.pixels(v, k));
+        if (!pixels.empty())
+        {
+          f(k, v, pixels, worksheet + (v - rows.begin) * width + pixels.begin);
+        }
       }
     }
   }
 
-  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all, const SliceRuns*,
-    Patch& patch) const override
+  int firstSample(int u, int v, int k, T limit) const override
   {
-    for (int n = 0; n < layers.end - layers.begin; ++n)
-    {
-      this->splat(this->Shared.nth(layers, n), v0, v1, all, {}, nullptr, patch);
-    }
+    return this->firstVoxel(u, v, k, [=](T voxel) { return voxel > limit; });
+  }
+  int firstSample(int u, int v, int k) const override
+  {
+    return this->firstVoxel(u, v, k, [](T) { return true; });
   }
 
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
@@ -131,15 +160,33 @@ private:
     return common(slicesOfLayer(z, this->Shared.geometry.size()), this->Shared.geometry.slices());
   }
 
+  template <class Wanted>
+  int firstVoxel(int u, int v, int k, Wanted&& isWanted) const
+  {
+    const glm::ivec3& size = this->Shared.geometry.size();
+    return firstOnPath(this->Shared.steps.path(u, v, k), this->Shared.geometry.reversed(),
+      [&](int i, int j)
+      {
+        return i >= 0 && i < size.x && j >= 0 && j < size.y &&
+          isWanted(this->Shared.template voxelRow<T>(j, k)[i]);
+      });
+  }
+
+  /// Whole registers around pixels, as far as the image has them.
+  Span unitsOf(const Span& pixels) const
+  {
+    return { pixels.begin / RunUnit * RunUnit,
+      std::min((pixels.end + RunUnit - 1) / RunUnit * RunUnit, this->Shared.image.width) };
+  }
+
   /// The rows that two slices cover, and in these the pixels, in whole registers.
   Span findRuns(int near, int far, const Span& rows, const std::vector<Span>& runs,
     std::vector<Span>& covered) const
   {
     const SliceGeometry& a = this->Shared.sliceGeometry[near];
     const SliceGeometry& b = this->Shared.sliceGeometry[far];
-    const Span both{ std::min(a.inner.begin, b.inner.begin), std::max(a.inner.end, b.inner.end) };
-    const Span registers{ both.begin / RunUnit * RunUnit,
-      std::min((both.end + RunUnit - 1) / RunUnit * RunUnit, this->Shared.image.width) };
+    const Span registers =
+      this->unitsOf({ std::min(a.inner.begin, b.inner.begin), std::max(a.inner.end, b.inner.end) });
     covered.clear();
     for (const Span& run : runs)
     {
@@ -169,50 +216,36 @@ private:
     s.entryLanes = entry.lanes;
     s.exitBase = exit.base;
     s.exitLanes = exit.lanes;
-    s.bit = static_cast<unsigned char>(1u << k % BrickDepth);
-    s.order = static_cast<std::int16_t>(this->Shared.orderOfStep(StepsPerSlice * k));
     return s;
   }
 
-  Crossing<T> crossingOf(
-    int near, int far, const Span& rows, const SliceBits& bits, const std::vector<Span>& runs) const
+  /// Of a slice and the one after it, or the same.
+  Crossing<T> crossingOf(int k, int next, const Span& rows, const std::vector<Span>& runs) const
   {
     Crossing<T> c;
     c.imageStride = this->Shared.image.width;
     c.image = this->Shared.image.template row<T>(rows.begin);
     c.height = rows.end - rows.begin;
-    c.count = near == far ? 1 : 2;
-    c.slices[0] = this->sliceOf(near, rows.begin);
-    c.slices[1] = this->sliceOf(far, rows.begin);
+    c.count = next - k + 1;
+    c.slices[0] = this->sliceOf(k, rows.begin);
+    c.slices[1] = this->sliceOf(next, rows.begin);
     c.rowStride = this->Shared.slices.rowStride;
-    c.ahead = 2 * (far - near) * this->Shared.slices.sliceStride;
+    c.ahead = 2 * (next - k) * this->Shared.slices.sliceStride;
     c.columns = this->Shared.geometry.size().x;
     c.rows = this->Shared.geometry.size().y;
     c.none = this->None;
     c.runs = runs.data();
     c.runCount = static_cast<int>(runs.size());
-    c.bits = bits.origin ? bits.at(0, rows.begin) : nullptr;
-    c.bitsStride = bits.stride;
-    c.noting.notes = this->Shared.orders ? this->Shared.ordersOfRow(rows.begin) : nullptr;
-    c.noting.order = c.slices[0].order;
-    c.noting.nearestFirst = this->Shared.nearestFirst;
-    c.reversed = this->Shared.geometry.reversed();
     return c;
   }
 
   /// Voxels that compare with nothing.
-  void splatSamples(int k, int v0, int v1, const SliceBits& bits, Patch& patch) const
+  void splatSamples(const Span& slices, int v0, int v1, Patch& patch) const
   {
     const RayLoops<T>& loops = this->Shared.kernels;
-    const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
-    this->forSamples({ k, k + 1 }, false, v0, v1, { 0, this->Shared.image.width }, patch,
-      [&](int, int v, const Span& pixels, const T* samples, const unsigned char*)
+    this->forSamples(slices, false, v0, v1, { 0, this->Shared.image.width }, patch,
+      [&](int, int v, const Span& pixels, const T* samples, const unsigned char* present)
       {
-        unsigned char* const present = patch.present.data();
-        for (int u = pixels.begin; bits.origin && u < pixels.end; ++u)
-        {
-          present[u - pixels.begin] &= (*bits.at(u, v) & bit) != 0;
-        }
         loops.raise(this->Shared.image.template row<T>(v) + pixels.begin, samples, present,
           pixels.end - pixels.begin);
       });

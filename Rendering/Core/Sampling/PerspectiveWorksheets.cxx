@@ -58,7 +58,6 @@ public:
   {
     // Rows of voxels that two pieces need are widened, blended and weighed twice.
     this->PieceHeight = 32;
-    this->Notes = true;
   }
 
   Span columnsOf(int z, const Span& pixels) const override
@@ -130,9 +129,7 @@ private:
           weights[count++] = shares[q] * *weight;
         }
       }
-      loops.raiseBlend(target.at(span.begin, v), rows, weights, count,
-        target.bits.origin ? target.bits.at(span.begin, v) : nullptr, target.bit,
-        this->notingAt(target, span.begin, v), span.end - span.begin);
+      loops.raiseBlend(target.at(span.begin, v), rows, weights, count, span.end - span.begin);
     }
   }
 
@@ -231,8 +228,7 @@ private:
         });
       const A average = sum / weight;
       A& pixel = *target.at(u, v);
-      const bool counts = !target.bits.origin || *target.bits.at(u, v) & target.bit;
-      if (counts && (average > pixel || (pixel != pixel && average == average)))
+      if (average > pixel || (pixel != pixel && average == average))
       {
         pixel = average;
       }

@@ -16,7 +16,7 @@ namespace splatting
 {
 namespace
 {
-/// The paths of all slices of a layer; from the viewer on if winners are noted.
+/// The paths of all slices of a layer.
 struct PreviewLayer
 {
   struct Tap
@@ -36,19 +36,8 @@ struct PreviewLayer
   Span valid; ///< the pixels that see voxels along all paths
   Ends left, right;
   bool rimsFit = false; ///< whether a register holds a rim
-  /// What Sweep says of each tap's row, ready to be handed over.
-  std::array<unsigned char, MostRows> bit, slice;
-  std::array<Span, MostRows> sees;
-  std::array<std::int8_t, MostRows> offsets;
 };
-static_assert(MostRows == LayersTogether * StepsPerSlice * BrickDepth);
-
-/// All layers of a volume; for walks that note winners also groups of layers, where these can be
-/// swept: what it costs to note is paid once for all of them.
-struct PreviewStorage
-{
-  std::vector<PreviewLayer> layers, groups;
-};
+static_assert(MostRows == StepsPerSlice * BrickDepth);
 
 /**
  * Preview mode: the voxels that rays cross, in layers of BrickDepth slices. The rows of a layer's
@@ -60,88 +49,98 @@ class PreviewLayers : public SliceSampler<T, T>
 {
 public:
   using typename SliceSampler<T, T>::Samples;
+  using typename SliceSampler<T, T>::Worksheets;
+  using typename SliceSampler<T, T>::Found;
 
   /// `storage` outlives this, and is kept for the next frame.
-  PreviewLayers(const Frame& frame, PreviewStorage& storage)
-    : SliceSampler<T, T>({ false, 0, 32, TileWidth, true }),
+  PreviewLayers(const Frame& frame, std::vector<PreviewLayer>& storage)
+    : SliceSampler<T, T>({ false, 0, TileWidth }),
       Shared(frame),
-      Layers(storage.layers),
-      Groups(storage.groups)
+      Layers(storage)
   {
-    this->find(BrickDepth, storage.layers);
-    storage.groups.clear();
-    if (frame.image.keepsWinners())
-    {
-      this->find(this->layersTogether() * BrickDepth, storage.groups);
-    }
-    const auto fits = [](const Layer& group) { return group.rimsFit; };
-    if (!std::all_of(storage.groups.begin(), storage.groups.end(), fits))
-    {
-      storage.groups.clear();
-    }
+    this->findLayers(storage);
   }
 
   Window window(int layer) const override { return this->Layers[layer].window; }
 
-  void splat(int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits,
-    const SliceRuns* cuts, Patch& patch) const override
+  void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch&) const override
   {
-    this->splatLayer(this->Layers[z], v0, v1, runs, {}, { bits, cuts }, {}, patch);
+    const Layer& layer = this->Layers[z];
+    if (this->Shared.cuts.none())
+    {
+      this->splatLayer(layer, v0, v1, runs, {});
+      return;
+    }
+    for (const Span& run : runs)
+    {
+      this->splatExactly(layer, v0, v1, run);
+    }
   }
 
-  void open(int, int, const Span&, Patch&) const override {}
-  void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const override
+  void forWorksheets(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
+    const PixelRows<T>&, Patch& patch, const Worksheets& f) const override
   {
-    for (int r = 0, end = 0; r < count; r = end)
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    patch.worksheet.resize(this->Shared.image.width * sizeof(T));
+    T* const worksheet = reinterpret_cast<T*>(patch.worksheet.data());
+    this->forRows(slices, reversed, v0, v1, columns,
+      [&](int k, int v, const Span& span)
+      {
+        std::fill(worksheet + span.begin, worksheet + span.end, leastValue<T>());
+        this->forVoxels(k, v, span, false,
+          [&](int, const Span& pixels, const T* voxels)
+          { loops.maximum(worksheet + pixels.begin, &voxels, 1, pixels.end - pixels.begin); });
+        f(k, v, span, worksheet + span.begin);
+      });
+  }
+
+  int firstSample(int u, int v, int k, T limit) const override
+  {
+    return this->firstVoxel(u, v, k, [=](T voxel) { return voxel > limit; });
+  }
+  int firstSample(int u, int v, int k) const override
+  {
+    return this->firstVoxel(u, v, k, [](T) { return true; });
+  }
+
+  bool forExceeding(int z, int v0, int v1, const std::vector<Span>& runs, T* limits, Patch& patch,
+    const Found& f) const override
+  {
+    const Layer& layer = this->Layers[z];
+    const Span plain = this->plainRows(layer, v0, v1);
+    for (int v = v0; v < v1; ++v)
     {
-      // Rows go together for long streams through memory: those without cuts, and those with bits,
-      // which say what counts between the first run and the last.
-      RowRuns& first = rows[r];
-      for (end = r + 1; end < count && goTogether(first, rows[end]); ++end)
+      T* const row = limits + std::ptrdiff_t(v) * this->Shared.image.width;
+      for (const Span& run : runs)
       {
-        if (first.bits.origin)
-        {
-          first.runs.front().begin =
-            std::min(first.runs.front().begin, rows[end].runs.front().begin);
-          first.runs.back().end = std::max(first.runs.back().end, rows[end].runs.back().end);
-          first.whole = common(first.whole, rows[end].whole);
-        }
+        const bool isPlain = v >= plain.begin && v < plain.end;
+        const Span inner = isPlain ? common(run, layer.valid) : Span{ run.begin, run.begin };
+        const Span whole = inner.empty() ? Span{ run.begin, run.begin } : inner;
+        this->findInSlices(layer, v, { run.begin, whole.begin }, row, patch, f);
+        this->findInLayer(layer, v, whole, row, patch, f);
+        this->findInSlices(layer, v, { whole.end, run.end }, row, patch, f);
       }
-      if (first.runs.empty())
-      {
-        continue;
-      }
-      if (first.bits.origin)
-      {
-        first.runs.assign(1, { first.runs.front().begin, first.runs.back().end });
-      }
-      this->splatLayer(this->Layers[z], first.v0, rows[end - 1].v1, first.runs, {},
-        { first.bits, nullptr }, first.whole, patch);
     }
+    return true;
   }
 
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns, Patch&,
     const Samples& f) const override
   {
-    for (int n = 0; n < slices.end - slices.begin; ++n)
-    {
-      const int k = reversed ? slices.end - 1 - n : slices.begin + n;
-      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
-      for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
+    this->forRows(slices, reversed, v0, v1, columns,
+      [&](int k, int v, const Span& span)
       {
-        this->forVoxels(k, v, common(columns, this->Shared.pixels(v, k)), reversed,
+        this->forVoxels(k, v, span, reversed,
           [&](int t, const Span& pixels, const T* voxels)
           { f(StepsPerSlice * k + t, v, pixels, voxels, nullptr); });
-      }
-    }
+      });
   }
 
   /// In the order of memory: slice after slice, or, where rows of all slices lie side by side, a
   /// few rows through all of them.
-  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
-    const SliceRuns* cuts, Patch& patch) const override
+  void splatAll(
+    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch&) const override
   {
-    const RowCuts by{ {}, cuts };
     const Slices& slices = this->Shared.slices;
     const bool slicesFirst = slices.rowStride <= slices.sliceStride;
     const int height = slicesFirst ? v1 - v0 : 2 * BrickHeight;
@@ -151,19 +150,13 @@ public:
       // Long rows that lie side by side in a page of memory are read one after the other.
       const bool longRows = slices.sliceStride * std::ptrdiff_t(sizeof(T)) >= 1024;
       reading.sideBySide = longRows ? 1 : BrickDepth;
-      reading.ahead = reading.sideBySide * this->step();
+      reading.ahead = reading.sideBySide;
     }
-    const bool grouped = !this->Groups.empty();
-    const int together = this->layersTogether();
-    const Span some =
-      grouped ? Span{ layers.begin / together, (layers.end + together - 1) / together } : layers;
     for (int v = v0; v < v1; v += height)
     {
-      for (int n = 0; n < some.end - some.begin; ++n)
+      for (int z = layers.begin; z < layers.end; ++z)
       {
-        const int z = this->Shared.nth(some, n), end = std::min(v + height, v1);
-        grouped ? this->splatGroup(z, v, end, all, by, patch)
-                : this->splatLayer(this->Layers[z], v, end, all, reading, by, {}, patch);
+        this->splatLayer(this->Layers[z], v, std::min(v + height, v1), all, reading);
       }
     }
   }
@@ -174,13 +167,6 @@ public:
 
 private:
   using Layer = PreviewLayer;
-
-  /// Which slices count for the pixels of some rows, by bits or by runs: all of them without.
-  struct RowCuts
-  {
-    SliceBits bits;
-    const SliceRuns* runs = nullptr;
-  };
 
   /// In which order the rows of slices are read.
   struct Reading
@@ -194,55 +180,101 @@ private:
     const Span* first;
     int count;
   };
-  static Runs all(const std::vector<Span>& runs)
-  {
-    return { runs.data(), static_cast<int>(runs.size()) };
-  }
-
-  /// Whether so many pixels, all of whose samples count, are worth a sweep without bits.
-  static bool isLong(const Span& whole) { return whole.end - whole.begin >= 64; }
-
-  /// Whether rows are alike, and a long whole run remains one.
-  static bool goTogether(const RowRuns& a, const RowRuns& b)
-  {
-    const bool isOne = isLong(common(a.whole, b.whole));
-    return !a.bits.origin == !b.bits.origin && a.runs.empty() == b.runs.empty() &&
-      isLong(a.whole) == isOne && isLong(b.whole) == isOne;
-  }
 
   ShearImage& image() const { return this->Shared.image; }
 
-  /// From one slice to the next.
-  int step() const { return this->Shared.nth({ 0, 2 }, 1) - this->Shared.nth({ 0, 2 }, 0); }
-
-  /// @param whole  pixels of a single run for which all bits are set
-  void splatLayer(const Layer& layer, int v0, int v1, const std::vector<Span>& runs,
-    const Reading& reading, const RowCuts& cuts, const Span& whole, Patch& patch) const
+  template <class Wanted>
+  int firstVoxel(int u, int v, int k, Wanted&& isWanted) const
   {
-    const Span plain = this->plainRows(layer, v0, v1);
-    this->splatSlices(layer.slices, v0, plain.begin, runs, cuts, patch);
-    if (!plain.empty())
-    {
-      const Span inner = common(whole, layer.valid); // rims have pixels beside it
-      isLong(inner) ? this->sweepAround(layer, plain, runs.front(), reading, cuts, inner)
-                    : this->sweep(layer, plain, all(runs), everything(), reading, cuts);
-    }
-    this->splatSlices(layer.slices, plain.end, v1, runs, cuts, patch);
+    const glm::ivec3& size = this->Shared.geometry.size();
+    return firstOnPath(this->Shared.sliceGeometry[k].path, this->Shared.geometry.reversed(),
+      [&](int di, int dj)
+      {
+        const int i = u + di, j = v + dj;
+        return i >= 0 && i < size.x && j >= 0 && j < size.y &&
+          isWanted(this->Shared.template voxelRow<T>(j, k)[i]);
+      });
   }
 
-  /// A run by parts: pixels in the middle of which all samples count, and, by bits, the others.
-  void sweepAround(const Layer& layer, const Span& rows, const Span& run, const Reading& reading,
-    const RowCuts& cuts, const Span& whole) const
+  /// forExceeding() for pixels that see voxels along all paths of a layer.
+  void findInLayer(
+    const Layer& layer, int v, const Span& pixels, T* limits, Patch& patch, const Found& f) const
   {
-    this->sweep(layer, rows, { &whole, 1 }, whole, reading, {});
-    const Span sides[2] = { { run.begin, whole.begin }, { whole.end, run.end } };
-    for (const Span& side : sides)
+    const bool reversed = this->Shared.geometry.reversed();
+    const auto tapAt = [&](int r) -> const Layer::Tap&
+    { return layer.taps[reversed ? layer.tapCount - 1 - r : r]; };
+    const T* rows[MostRows];
+    for (int r = 0; r < layer.tapCount; ++r)
     {
-      if (!side.empty())
-      {
-        this->sweep(layer, rows, { &side, 1 }, everything(), reading, cuts);
-      }
+      const Layer::Tap& tap = tapAt(r);
+      rows[r] = this->Shared.template voxelRow<T>(v + tap.dj, tap.k) + tap.di + pixels.begin;
     }
+    this->findInRows(rows, layer.tapCount, pixels, limits, patch,
+      [&](int u, int r) { f(u, v, StepsPerSlice * tapAt(r).k + tapAt(r).t); });
+  }
+
+  /// The same for any pixels.
+  void findInSlices(
+    const Layer& layer, int v, const Span& pixels, T* limits, Patch& patch, const Found& f) const
+  {
+    const bool reversed = this->Shared.geometry.reversed();
+    this->forRows(layer.slices, reversed, v, v + 1, pixels,
+      [&](int k, int, const Span& span)
+      {
+        this->forVoxels(k, v, span, reversed,
+          [&](int t, const Span& some, const T* voxels)
+          {
+            this->findInRows(
+              &voxels, 1, some, limits, patch, [&](int u, int) { f(u, v, StepsPerSlice * k + t); });
+          });
+      });
+  }
+
+  template <class F>
+  void findInRows(
+    const T* const* rows, int count, const Span& pixels, T* limits, Patch& patch, F&& f) const
+  {
+    if (pixels.empty())
+    {
+      return;
+    }
+    patch.found.resize(this->Shared.image.width);
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    const std::ptrdiff_t found = loops.exceed(
+      rows, count, limits + pixels.begin, patch.found.data(), pixels.end - pixels.begin);
+    for (std::ptrdiff_t n = 0; n < found; ++n)
+    {
+      f(pixels.begin + patch.found[n].x, patch.found[n].row);
+    }
+  }
+
+  void splatLayer(
+    const Layer& layer, int v0, int v1, const std::vector<Span>& runs, const Reading& reading) const
+  {
+    const Span plain = this->plainRows(layer, v0, v1);
+    this->splatSlices(layer.slices, v0, plain.begin, runs.data(), runs.size());
+    if (!plain.empty())
+    {
+      this->sweep(
+        layer, plain, { runs.data(), static_cast<int>(runs.size()) }, everything(), reading);
+    }
+    this->splatSlices(layer.slices, plain.end, v1, runs.data(), runs.size());
+  }
+
+  /// Pixels of a run, and none beside it.
+  void splatExactly(const Layer& layer, int v0, int v1, const Span& run) const
+  {
+    const Span plain = this->plainRows(layer, v0, v1), inner = common(run, layer.valid);
+    if (plain.empty() || inner.empty())
+    {
+      this->splatSlices(layer.slices, v0, v1, &run, 1);
+      return;
+    }
+    this->splatSlices(layer.slices, v0, plain.begin, &run, 1);
+    this->sweep(layer, plain, { &inner, 1 }, inner, {});
+    const Span sides[2] = { { run.begin, inner.begin }, { inner.end, run.end } };
+    this->splatSlices(layer.slices, plain.begin, plain.end, sides, 2);
+    this->splatSlices(layer.slices, plain.end, v1, &run, 1);
   }
 
   /// The rows of pixels, of some, whose voxels all exist in a layer, and beside which there are
@@ -255,63 +287,22 @@ private:
     return { first, std::clamp(last, first, v1) };
   }
 
-  void splatGroup(
-    int z, int v0, int v1, const std::vector<Span>& runs, const RowCuts& cuts, Patch& patch) const
+  void findLayers(std::vector<Layer>& layers) const
   {
-    const Layer& group = this->Groups[z];
-    const Span plain = this->plainRows(group, v0, v1);
-    const auto splatEach = [&](int begin, int end)
-    {
-      const int together = this->layersTogether();
-      const Span own{ together * z,
-        std::min(together * (z + 1), static_cast<int>(this->Layers.size())) };
-      for (int n = 0; n < own.end - own.begin && begin < end; ++n)
-      {
-        const Layer& layer = this->Layers[this->Shared.nth(own, n)];
-        this->splatLayer(layer, begin, end, runs, {}, cuts, {}, patch);
-      }
-    };
-    splatEach(v0, plain.begin);
-    if (!plain.empty())
-    {
-      this->sweep(
-        group, plain, all(runs), everything(), { this->layersTogether() * BrickDepth }, cuts);
-    }
-    splatEach(plain.end, v1);
-  }
-
-  /// Large slices are read from memory, which does not like too many rows side by side.
-  int layersTogether() const { return this->isSmall() ? LayersTogether : 2; }
-
-  /// Whether caches rather than memory set the pace. Then asking whether any pixel wins costs more
-  /// than noting it, as answers are hard to foretell.
-  bool isSmall() const
-  {
-    constexpr std::size_t slice = 128 * 1024;
-    const glm::ivec3& size = this->Shared.geometry.size();
-    return sizeof(T) * size.x * size.y <= slice;
-  }
-
-  /// Layers of so many slices.
-  void find(int depth, std::vector<Layer>& layers) const
-  {
-    const glm::ivec3& size = this->Shared.geometry.size();
-    layers.resize((size.z + depth - 1) / depth);
+    const int depth = this->Shared.geometry.size().z;
+    layers.resize((depth + BrickDepth - 1) / BrickDepth);
     for (Layer& layer : layers)
     {
       layer.tapCount = 0;
       layer.window = {};
     }
-    const bool fromLast = this->Shared.image.keepsWinners() && this->Shared.geometry.reversed();
-    for (int n = 0; n < size.z; ++n)
+    for (int k = 0; k < depth; ++k)
     {
-      const int k = fromLast ? size.z - 1 - n : n;
-      Layer& layer = layers[k / depth];
-      layer.slices = { k / depth * depth, std::min((k / depth + 1) * depth, size.z) };
+      Layer& layer = layers[k / BrickDepth];
+      layer.slices = slicesOfLayer(k / BrickDepth, this->Shared.geometry.size());
       const RayPath& path = this->Shared.sliceGeometry[k].path;
-      for (int m = 0; m < path.count; ++m)
+      for (int t = 0; t < path.count; ++t)
       {
-        const int t = fromLast ? path.count - 1 - m : m;
         layer.taps[layer.tapCount++] = { k, t, path.di[t], path.dj[t] };
         layer.window.add(path.di[t], path.dj[t]);
       }
@@ -319,27 +310,7 @@ private:
     for (Layer& layer : layers)
     {
       this->findRims(layer);
-      this->findRows(layer);
     }
-  }
-
-  void findRows(Layer& layer) const
-  {
-    const int order = layer.tapCount > 0 ? this->orderOf(layer) : 0;
-    for (int t = 0; t < layer.tapCount; ++t)
-    {
-      const Layer::Tap& tap = layer.taps[t];
-      layer.bit[t] = static_cast<unsigned char>(1u << tap.k % BrickDepth);
-      layer.slice[t] = static_cast<unsigned char>(tap.k - layer.slices.begin);
-      layer.sees[t] = { -tap.di, this->Shared.geometry.size().x - tap.di };
-      layer.offsets[t] =
-        static_cast<std::int8_t>(this->Shared.orderOfStep(StepsPerSlice * tap.k + tap.t) - order);
-    }
-  }
-
-  std::int16_t orderOf(const Layer& layer) const
-  {
-    return this->Shared.nearestOrder(layer.taps[0].k / BrickDepth);
   }
 
   void findRims(Layer& layer) const
@@ -375,51 +346,32 @@ private:
   /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns. Besides the
   /// runs other pixels within the `limits` may be swept.
   void sweep(const Layer& layer, const Span& rows, const Runs& runs, const Span& limits,
-    const Reading& reading, const RowCuts& cuts) const
+    const Reading& reading) const
   {
     for (int first = 0, end = 0; first < layer.tapCount; first = end)
     {
-      while (end < layer.tapCount &&
-        std::abs(layer.taps[end].k - layer.taps[first].k) < reading.sideBySide)
+      while (end < layer.tapCount && layer.taps[end].k - layer.taps[first].k < reading.sideBySide)
       {
         ++end;
       }
-      this->sweepTaps(layer, first, end, rows, runs, limits, reading.ahead, cuts);
+      this->sweepTaps(layer, first, end, rows, runs, limits, reading.ahead);
     }
   }
 
   void sweepTaps(const Layer& layer, int firstTap, int endTap, const Span& rows, const Runs& runs,
-    const Span& limits, int slicesAhead, const RowCuts& cuts) const
+    const Span& limits, int slicesAhead) const
   {
     const int v0 = rows.begin;
     Sweep<T> sweep;
-    sweep.bits = cuts.bits.origin ? cuts.bits.at(0, v0) : nullptr;
-    sweep.bitsStride = cuts.bits.stride;
-    sweep.sliceRuns = cuts.runs ? &cuts.runs->at(layer.slices.begin, v0) : nullptr;
-    sweep.sliceRunsStride = cuts.runs ? cuts.runs->stride() : 0;
     sweep.imageStride = this->Shared.image.width;
     sweep.image = this->image().template row<T>(v0);
-    sweep.noting.notes = this->Shared.orders ? this->Shared.ordersOfRow(v0) : nullptr;
-    sweep.noting.order = this->orderOf(layer);
-    sweep.noting.nearestFirst = this->Shared.nearestFirst;
     sweep.height = rows.end - v0;
     sweep.count = endTap - firstTap;
-    sweep.bit = layer.bit.data() + firstTap;
-    sweep.slice = layer.slice.data() + firstTap;
-    sweep.sees = layer.sees.data() + firstTap;
-    sweep.offsets = layer.offsets.data() + firstTap;
     const Slices& slices = this->Shared.slices;
     sweep.rowStride = slices.rowStride;
-    // Runs that end anywhere are not foreseen. What lies in caches may be fetched in vain.
-    const bool isWhole = runs.first->end - runs.first->begin == this->Shared.image.width;
-    const bool fetchesWhole = cuts.runs && this->isSmall() && isWhole;
-    const bool jumps = cuts.runs || slices.rowStride > slices.sliceStride;
-    sweep.ahead = fetchesWhole ? 0
-      : slicesAhead != 0       ? this->distance(layer.taps[firstTap], slicesAhead)
-      : jumps                  ? slices.rowStride
-                               : 0;
-    sweep.wholeAhead = fetchesWhole ? 2 * slices.rowStride : 0;
-    sweep.winsOften = this->isSmall() || !this->Shared.nearestFirst;
+    sweep.ahead = slicesAhead != 0            ? this->distance(layer.taps[firstTap], slicesAhead)
+      : slices.rowStride > slices.sliceStride ? slices.rowStride
+                                              : 0;
     for (int t = firstTap; t < endTap; ++t)
     {
       const Layer::Tap& tap = layer.taps[t];
@@ -428,11 +380,13 @@ private:
     sweep.runs = runs.first;
     sweep.runCount = runs.count;
     // Pixels that see voxels along all paths, which all do that see any if paths shift alike.
+    const Layer::Tap& one = layer.taps[firstTap];
     const bool shiftAlike = std::all_of(layer.taps.begin() + firstTap, layer.taps.begin() + endTap,
-      [&](const Layer::Tap& tap) { return tap.di == layer.taps[firstTap].di; });
-    sweep.valid = common(limits, shiftAlike ? layer.sees[firstTap] : layer.valid);
+      [&](const Layer::Tap& tap) { return tap.di == one.di; });
+    const Span sees{ -one.di, this->Shared.geometry.size().x - one.di };
+    sweep.valid = common(limits, shiftAlike ? sees : layer.valid);
     sweep.rimCount = 0;
-    if (!shiftAlike && !cuts.runs)
+    if (!shiftAlike)
     {
       if (runs.first->begin < layer.valid.begin)
       {
@@ -462,68 +416,46 @@ private:
   }
 
   /// Any rows, slice by slice.
-  void splatSlices(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
-    const RowCuts& cuts, Patch& patch) const
+  void splatSlices(const Span& slices, int v0, int v1, const Span* runs, std::size_t count) const
   {
-    for (int k = slices.begin; k < slices.end && v0 < v1; ++k)
+    for (std::size_t n = 0; n < count; ++n)
     {
-      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
-      for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
-      {
-        for (const Span& run : runs)
-        {
-          const Span pixels = common(run, this->Shared.pixels(v, k));
-          const Span span = cuts.runs ? common(pixels, cuts.runs->at(k, v)) : pixels;
-          this->Shared.orders ? this->noteSlice(k, v, span, cuts)
-                              : this->splatSlice(k, v, span, cuts, patch);
-        }
-      }
+      this->forRows(slices, false, v0, v1, runs[n],
+        [&](int k, int v, const Span& span) { this->splatRow(k, v, span); });
     }
   }
 
-  void splatSlice(int k, int v, const Span& span, const RowCuts& cuts, Patch& patch) const
+  void splatRow(int k, int v, const Span& span) const
   {
-    const unsigned char* mask = nullptr;
-    if (cuts.bits.origin && !span.empty())
-    {
-      patch.worksheet.resize(this->image().width);
-      const unsigned char bit = static_cast<unsigned char>(1u << k % BrickDepth);
-      std::transform(cuts.bits.at(span.begin, v), cuts.bits.at(span.end, v),
-        patch.worksheet.data() + span.begin,
-        [bit](unsigned char b) { return static_cast<unsigned char>(b & bit); });
-      mask = patch.worksheet.data();
-    }
+    const VoxelLoops<T>& loops = this->Shared.kernels;
+    const RayLoops<T>& any = this->Shared.kernels;
     T* const row = this->image().template row<T>(v);
     this->forVoxels(k, v, span, false,
       [&](int, const Span& pixels, const T* voxels)
       {
-        T* const image = row + pixels.begin;
         const std::ptrdiff_t n = pixels.end - pixels.begin;
-        if (mask || this->Shared.range.special)
-        {
-          const RayLoops<T>& loops = this->Shared.kernels;
-          loops.raise(image, voxels, mask ? mask + pixels.begin : nullptr, n);
-        }
-        else
-        {
-          const VoxelLoops<T>& loops = this->Shared.kernels;
-          loops.maximum(image, &voxels, 1, n);
-        }
+        this->Shared.range.special ? any.raise(row + pixels.begin, voxels, nullptr, n)
+                                   : loops.maximum(row + pixels.begin, &voxels, 1, n);
       });
   }
 
-  void noteSlice(int k, int v, const Span& span, const RowCuts& cuts) const
+  /// Calls f(k, v, span) for the rows and columns of pixels whose rays cross some slices.
+  template <class F>
+  void forRows(const Span& slices, bool reversed, int v0, int v1, const Span& columns, F&& f) const
   {
-    const RayLoops<T>& loops = this->Shared.kernels;
-    this->forVoxels(k, v, span, false,
-      [&](int t, const Span& pixels, const T* voxels)
+    for (int n = 0; n < slices.end - slices.begin && v0 < v1; ++n)
+    {
+      const int k = reversed ? slices.end - 1 - n : slices.begin + n;
+      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+      for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
       {
-        const int order = this->Shared.orderOfStep(StepsPerSlice * k + t);
-        loops.raiseNoting(this->image().template row<T>(v) + pixels.begin,
-          this->Shared.ordersOfRow(v) + pixels.begin, static_cast<std::int16_t>(order), voxels,
-          cuts.bits.origin ? cuts.bits.at(pixels.begin, v) : nullptr,
-          static_cast<unsigned char>(1u << k % BrickDepth), pixels.end - pixels.begin);
-      });
+        const Span span = common(columns, slice.span(v));
+        if (!span.empty())
+        {
+          f(k, v, span);
+        }
+      }
+    }
   }
 
   /// Calls f(t, pixels, voxels) for each step of the rays' path in slice k.
@@ -546,7 +478,6 @@ private:
 
   const Frame& Shared;
   const std::vector<Layer>& Layers;
-  const std::vector<Layer>& Groups; ///< none if they are not to be used
 };
 
 class PreviewMode : public ProjectionMode
@@ -575,7 +506,7 @@ public:
   }
 
 private:
-  PreviewStorage Layers;
+  std::vector<PreviewLayer> Layers;
 };
 }
 

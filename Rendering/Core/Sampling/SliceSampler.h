@@ -32,11 +32,19 @@ namespace splatting
 /// How a sampler is best walked.
 struct SamplerTraits
 {
-  bool perspective;    ///< whether each tile reads a window of its own
-  int beyond;          ///< how many slices beyond its own a layer reads
-  int rowsTogether;    ///< rows that cut layers are walked for at a time
-  int runUnit;         ///< pixels whose multiples runs had best begin and end at
-  bool takesSliceRuns; ///< whether splat() and splatAll() take SliceRuns
+  bool perspective; ///< whether each tile reads a window of its own
+  int beyond;       ///< how many slices beyond its own a layer reads
+  int runUnit;      ///< pixels whose multiples runs had best begin and end at
+};
+
+/// Rows of pixels that lie somewhere.
+template <class P>
+struct PixelRows
+{
+  const P* origin; ///< of pixel (0, 0), which need not exist
+  std::ptrdiff_t stride;
+
+  const P* at(int u, int v) const { return this->origin + v * this->stride + u; }
 };
 
 /**
@@ -73,20 +81,37 @@ public:
   /// What pixels start from: no sample ends below.
   virtual P floor() const = 0;
 
-  /// Takes a layer's samples into the pixels of some rows and runs of columns, as far as the bits
-  /// or the slices' runs (if there are any) say.
-  virtual void splat(int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits,
-    const SliceRuns* cuts, Patch& patch) const = 0;
-
-  /// The same for some of the rows and columns that have been opened together: layer by layer, so
-  /// that voxels are widened once.
-  virtual void open(int v0, int v1, const Span& columns, Patch& patch) const = 0;
-  virtual void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const = 0;
+  /// Takes a layer's samples into the pixels of some rows and runs of columns. Where nothing cuts
+  /// rays it may take them into pixels beside the runs as well.
+  virtual void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const = 0;
 
   /// The same for all pixels of some rows, which are one run, and all slices of some layers, in the
   /// order that suits memory.
-  virtual void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
-    const SliceRuns* cuts, Patch& patch) const = 0;
+  virtual void splatAll(
+    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const = 0;
+
+  /// The worksheet of slice k in a row of pixels: the largest of the samples that each has there.
+  using Worksheets = std::function<void(int k, int v, const Span& pixels, const P* values)>;
+  /// Tells the worksheets of some slices, from the first or from the last one on, for some rows and
+  /// columns of pixels. Values that are no more than the pixel's limit may be told as anything that
+  /// is not. Not for voxels that are NaN or infinite.
+  virtual void forWorksheets(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
+    const PixelRows<P>& limits, Patch& patch, const Worksheets& f) const = 0;
+
+  /// The first sample of a pixel in slice k, from the viewer on, that is above a limit: its number
+  /// among the slice's, or -1 if there is none. Asked where the worksheet is above it.
+  virtual int firstSample(int, int, int, P) const { return 0; }
+  /// The same where any sample will do; only for slices that the pixel's ray crosses.
+  virtual int firstSample(int, int, int) const { return 0; }
+
+  /// Calls f(u, v, step) for the pixels that have samples above their limits in layer z, with the
+  /// first of them from the viewer on, and sets these limits to the greatest value. False if this
+  /// is no faster than by worksheets.
+  using Found = std::function<void(int u, int v, int step)>;
+  virtual bool forExceeding(int, int, int, const std::vector<Span>&, P*, Patch&, const Found&) const
+  {
+    return false;
+  }
 
   /// Samples of one step of the rays in a row of pixels, steps as in ShearImage::winners; and which
   /// of the pixels have that step, or nullptr if all do. A worksheet that is none is NaN.
@@ -107,6 +132,9 @@ private:
 /// Projects by a sampler, as the frame says: see BandWalk and RayWalk.
 template <class T, class P>
 void walkBands(Frame& frame, const SliceSampler<T, P>& sampler);
+/// After walkBands(), before SliceSampler::finish(): see WinnerWalk.
+template <class T, class P>
+void findWinners(Frame& frame, const SliceSampler<T, P>& sampler);
 template <class T, class P>
 void walkRays(Frame& frame, const SliceSampler<T, P>& sampler);
 template <class T, class P>

@@ -63,36 +63,6 @@ void setTaps(SliceFootprint<A>& footprint, const Taps& taps)
   }
 }
 
-/// Joins rows that are alike, so that they share rows of voxels: those of which all counts, and
-/// those with bits, which say what counts between the first run and the last. How many are left.
-int joined(std::vector<RowRuns>& rows, int count)
-{
-  int last = 0;
-  for (int r = 0; r < count; ++r)
-  {
-    RowRuns& own = rows[r];
-    if (own.bits.origin && !own.runs.empty())
-    {
-      own.runs.assign(1, { own.runs.front().begin, own.runs.back().end });
-    }
-    RowRuns& before = rows[last];
-    const bool isAlike =
-      r > 0 && !own.runs.empty() && !before.runs.empty() && !own.bits.origin == !before.bits.origin;
-    if (isAlike)
-    {
-      Span& run = before.runs.front();
-      run = { std::min(run.begin, own.runs.front().begin),
-        std::max(run.end, own.runs.front().end) };
-      before.v1 = own.v1;
-    }
-    else if (r > 0 && ++last < r)
-    {
-      std::swap(rows[last], own);
-    }
-  }
-  return last + 1;
-}
-
 bool same(const Span& a, const Span& b)
 {
   return (a.begin == b.begin && a.end == b.end) || (a.empty() && b.empty());
@@ -216,38 +186,17 @@ void WorksheetLayers<T>::forRows(int k, int v0, int v1, const Span& columns, F&&
 }
 
 template <class T>
-template <class Open, class F>
-void WorksheetLayers<T>::splatSlice(int k, int step, int v0, int v1, const Span& columns,
-  const Target& worksheet, Patch& patch, Open&& open, F&& f) const
-{
-  this->forRows(k, v0, v1, columns,
-    [&](int first, int end, const Span& span)
-    {
-      this->load(k, step, patch);
-      for (int v = first; v < end; ++v)
-      {
-        open(v, span);
-      }
-      this->splatRows(k, first, end, span, worksheet, patch);
-      for (int v = first; v < end; ++v)
-      {
-        f(v, span);
-      }
-    });
-}
-
-template <class T>
-void WorksheetLayers<T>::splat(int z, int v0, int v1, const std::vector<Span>& runs,
-  const SliceBits& bits, const SliceRuns* cuts, Patch& patch) const
+void WorksheetLayers<T>::splat(
+  int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
 {
   const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
-  for (std::size_t n = 0; n < runs.size(); ++n)
+  for (const Span& run : runs)
   {
-    this->forPieces(v0, v1, runs[n],
+    this->forPieces(v0, v1, run,
       [&](int first, int last, const Span& columns)
       {
         this->open(first, last, columns, patch);
-        this->splatPiece(slices, first, last, columns, { bits, cuts }, patch);
+        this->splatPiece(slices, first, last, columns, patch);
       });
   }
 }
@@ -261,51 +210,60 @@ void WorksheetLayers<T>::open(int v0, int v1, const Span& columns, Patch& patch)
 }
 
 template <class T>
-void WorksheetLayers<T>::splatOpened(
-  int z, std::vector<RowRuns>& rows, int count, Patch& patch) const
-{
-  count = joined(rows, count);
-  const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
-  for (int n = 0; n < slices.end - slices.begin; ++n)
-  {
-    const int k = this->Shared.nth(slices, n);
-    for (int r = 0; r < count; ++r)
-    {
-      for (const Span& run : rows[r].runs)
-      {
-        this->splatPiece(
-          { k, k + 1 }, rows[r].v0, rows[r].v1, run, { rows[r].bits }, patch, this->step());
-      }
-    }
-  }
-}
-
-template <class T>
-void WorksheetLayers<T>::forSamples(const Span& slices, bool reversed, int v0, int v1,
-  const Span& columns, Patch& patch, const Samples& f) const
+template <class Open, class F>
+void WorksheetLayers<T>::forRaised(const Span& slices, bool reversed, int v0, int v1,
+  const Span& columns, Patch& patch, Open&& open, F&& f) const
 {
   this->forPieces(v0, v1, columns,
     [&](int first, int last, const Span& piece)
     {
       this->open(first, last, piece, patch);
       const Target worksheet = this->worksheetFor(first, last, piece, patch);
-      const A none =
-        this->Shared.range.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
       for (int n = 0; n < slices.end - slices.begin; ++n)
       {
         const int k = reversed ? slices.end - 1 - n : slices.begin + n;
-        this->splatSlice(
-          k, reversed ? -1 : 1, first, last, piece, worksheet, patch,
-          [&](int v, const Span& pixels) { this->put(none, v, pixels, worksheet); },
-          [&](int v, const Span& pixels)
-          { f(StepsPerSlice * k, v, pixels, worksheet.at(pixels.begin, v), nullptr); });
+        this->forRows(k, first, last, piece,
+          [&](int begin, int end, const Span& span)
+          {
+            for (int v = begin; v < end; ++v)
+            {
+              open(v, span, worksheet.at(span.begin, v));
+            }
+            this->splatOne(k, reversed ? -1 : 1, begin, end, span, worksheet, patch);
+            for (int v = begin; v < end; ++v)
+            {
+              f(k, v, span, worksheet.at(span.begin, v));
+            }
+          });
       }
     });
 }
 
 template <class T>
-void WorksheetLayers<T>::splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
-  const SliceRuns* cuts, Patch& patch) const
+void WorksheetLayers<T>::forSamples(const Span& slices, bool reversed, int v0, int v1,
+  const Span& columns, Patch& patch, const Samples& f) const
+{
+  const A none = this->Shared.range.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
+  this->forRaised(
+    slices, reversed, v0, v1, columns, patch,
+    [=](int, const Span& pixels, A* out) { std::fill_n(out, pixels.end - pixels.begin, none); },
+    [&](int k, int v, const Span& pixels, const A* values)
+    { f(StepsPerSlice * k, v, pixels, values, nullptr); });
+}
+
+template <class T>
+void WorksheetLayers<T>::forWorksheets(const Span& slices, bool reversed, int v0, int v1,
+  const Span& columns, const PixelRows<A>& limits, Patch& patch, const Worksheets& f) const
+{
+  // No more is found out about what is no larger.
+  const auto putLimits = [&](int v, const Span& pixels, A* out)
+  { std::copy_n(limits.at(pixels.begin, v), pixels.end - pixels.begin, out); };
+  this->forRaised(slices, reversed, v0, v1, columns, patch, putLimits, f);
+}
+
+template <class T>
+void WorksheetLayers<T>::splatAll(
+  const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const
 {
   const Span slices{ layers.begin * BrickDepth,
     std::min(layers.end * BrickDepth, this->Shared.geometry.size().z) };
@@ -313,7 +271,7 @@ void WorksheetLayers<T>::splatAll(const Span& layers, int v0, int v1, const std:
     [&](int first, int last, const Span& columns)
     {
       this->open(first, last, columns, patch);
-      this->splatPiece(slices, first, last, columns, { {}, cuts }, patch);
+      this->splatPiece(slices, first, last, columns, patch);
     });
 }
 
@@ -347,130 +305,27 @@ auto WorksheetLayers<T>::worksheetFor(int v0, int v1, const Span& columns, Patch
 }
 
 template <class T>
-bool WorksheetLayers<T>::cut(
-  const SampleCuts& cuts, int k, int v0, int v1, Span& pixels, Target& target, Patch& patch) const
+void WorksheetLayers<T>::splatOne(
+  int k, int step, int first, int end, const Span& span, const Target& target, Patch& patch) const
 {
-  target.bits = cuts.bits;
-  target.bit = static_cast<unsigned char>(1u << k % BrickDepth);
-  if (!cuts.runs)
+  if (!this->splatOwn(k, step, first, end, span, target, patch))
   {
-    return true;
+    this->load(k, step, patch);
+    this->splatRows(k, first, end, span, target, patch);
   }
-  const SliceRuns::Hull hull = cuts.runs->hull({ k, k + 1 }, v0, v1);
-  const Span all = common(pixels, hull.all);
-  if (all.begin == pixels.begin && all.end == pixels.end)
-  {
-    return true;
-  }
-  const Span any = common(pixels, hull.any);
-  if (any.empty())
-  {
-    return false;
-  }
-  // Loops take whole registers.
-  pixels = common(pixels, { any.begin / RunUnit * RunUnit, any.end + RunUnit - 1 });
-  target.whole = all;
-  target.bits = this->bitsOf(*cuts.runs, k, v0, v1, pixels, patch);
-  target.bit = 1;
-  return true;
 }
 
 template <class T>
-SliceBits WorksheetLayers<T>::bitsOf(
-  const SliceRuns& runs, int k, int v0, int v1, const Span& pixels, Patch& patch) const
+void WorksheetLayers<T>::splatPiece(
+  const Span& slices, int v0, int v1, const Span& columns, Patch& patch) const
 {
-  const std::ptrdiff_t stride = pixels.end - pixels.begin;
-  patch.counts.resize(std::max<std::size_t>(patch.counts.size(), stride * (v1 - v0)));
-  unsigned char* row = patch.counts.data();
-  for (int v = v0; v < v1; ++v, row += stride)
+  const Target image = this->image();
+  for (int k = slices.begin; k < slices.end; ++k)
   {
-    const Span run = common(pixels, runs.at(k, v));
-    std::fill_n(row, stride, static_cast<unsigned char>(0));
-    if (!run.empty())
-    {
-      std::fill_n(
-        row + (run.begin - pixels.begin), run.end - run.begin, static_cast<unsigned char>(1));
-    }
-  }
-  return { patch.counts.data() - v0 * stride - pixels.begin, stride };
-}
-
-template <class T>
-void WorksheetLayers<T>::splatPiece(const Span& slices, int v0, int v1, const Span& columns,
-  const SampleCuts& cuts, Patch& patch, int after) const
-{
-  if (this->Shared.orders && !this->Notes)
-  {
-    this->notePiece(slices, v0, v1, columns, cuts, patch);
-    return;
-  }
-  const int count = slices.end - slices.begin, step = this->step();
-  for (int n = 0; n < count; ++n)
-  {
-    const int k = this->Shared.nth(slices, n);
+    const int step = k + 1 < slices.end ? 1 : 0;
     this->forRows(k, v0, v1, columns,
       [&](int first, int end, const Span& span)
-      {
-        Target target = this->image();
-        Span pixels = span;
-        if (!this->cut(cuts, k, first, end, pixels, target, patch))
-        {
-          return;
-        }
-        target.order = this->orderOfSlice(k);
-        const int next = n + 1 < count ? step : after;
-        if (!this->splatOwn(k, next, first, end, pixels, target, patch))
-        {
-          this->load(k, next, patch);
-          this->splatRows(k, first, end, pixels, target, patch);
-        }
-      });
-  }
-}
-
-template <class T>
-void WorksheetLayers<T>::notePiece(const Span& slices, int v0, int v1, const Span& columns,
-  const SampleCuts& cuts, Patch& patch) const
-{
-  const RayLoops<A>& loops = this->Shared.kernels;
-  const Target worksheet = this->worksheetFor(v0, v1, columns, patch);
-  for (int n = 0; n < slices.end - slices.begin; ++n)
-  {
-    const int k = this->Shared.nth(slices, n);
-    const std::int16_t order = this->orderOfSlice(k);
-    this->splatSlice(
-      k, this->step(), v0, v1, columns, worksheet, patch,
-      [&](int v, const Span& pixels) { this->putBelowImage(v, pixels, worksheet); },
-      [&](int v, Span pixels)
-      {
-        Target image = this->image();
-        if (this->cut(cuts, k, v, v + 1, pixels, image, patch))
-        {
-          loops.raiseNoting(image.at(pixels.begin, v),
-            image.orders + v * image.stride + pixels.begin, order, worksheet.at(pixels.begin, v),
-            image.bits.origin ? image.bits.at(pixels.begin, v) : nullptr, image.bit,
-            pixels.end - pixels.begin);
-        }
-      });
-  }
-}
-
-template <class T>
-void WorksheetLayers<T>::put(A value, int v, const Span& pixels, const Target& worksheet) const
-{
-  std::fill(worksheet.at(pixels.begin, v), worksheet.at(pixels.end, v), value);
-}
-
-template <class T>
-void WorksheetLayers<T>::putBelowImage(int v, const Span& pixels, const Target& worksheet) const
-{
-  const A* const image = this->Shared.image.template row<A>(v) + pixels.begin;
-  A* const out = worksheet.at(pixels.begin, v);
-  const std::ptrdiff_t count = pixels.end - pixels.begin;
-  for (std::ptrdiff_t x = 0; x < count; ++x)
-  {
-    out[x] = image[x] - std::abs(image[x]) * (4 * std::numeric_limits<A>::epsilon()) -
-      std::numeric_limits<A>::min();
+      { this->splatOne(k, step, first, end, span, image, patch); });
   }
 }
 

@@ -86,10 +86,11 @@ class WorksheetLayers : public SliceSampler<T, Accumulator<T>>
 public:
   using A = Accumulator<T>;
   using typename SliceSampler<T, A>::Samples;
+  using typename SliceSampler<T, A>::Worksheets;
 
   /// @param depth  how many slices beyond its own a footprint reads
   WorksheetLayers(const Frame& frame, bool perspective, const WorksheetReach<A>& reach, int depth)
-    : SliceSampler<T, A>({ perspective, 1, RowsTogether, RunUnit, true }),
+    : SliceSampler<T, A>({ perspective, 1, RunUnit }),
       Shared(frame),
       Reach(reach),
       Depth(depth),
@@ -108,15 +109,14 @@ public:
     return std::abs(static_cast<A>(this->Shared.range.low) - this->Base);
   }
 
-  void splat(int z, int v0, int v1, const std::vector<Span>& runs, const SliceBits& bits,
-    const SliceRuns* cuts, Patch& patch) const override;
-  void open(int v0, int v1, const Span& columns, Patch& patch) const override;
-  void splatOpened(int z, std::vector<RowRuns>& rows, int count, Patch& patch) const override;
+  void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const override;
+  /// Piece by piece, so that voxels are widened once.
+  void splatAll(
+    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const override;
+  void forWorksheets(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
+    const PixelRows<A>& limits, Patch& patch, const Worksheets& f) const override;
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
     Patch& patch, const Samples& f) const override;
-  /// Piece by piece, so that voxels are widened once.
-  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
-    const SliceRuns* cuts, Patch& patch) const override;
 
   A floor() const override
   {
@@ -134,14 +134,11 @@ protected:
   {
     A* origin; ///< of pixel (0, 0), which need not exist
     std::ptrdiff_t stride;
-    SliceBits bits = {}; ///< which pixels change, by one of them; if there are any
-    unsigned char bit = 0;
-    Span whole = {};                ///< pixels that all change, as far as that is known
-    std::int16_t* orders = nullptr; ///< of pixel (0, 0), if splatRows() notes winners
-    std::int16_t order = 0;
-
     A* at(int u, int v) const { return this->origin + v * this->stride + u; }
   };
+
+  /// Room for the voxels of some rows and columns of pixels.
+  void open(int v0, int v1, const Span& columns, Patch& patch) const;
 
   /// Widens the voxels that worksheet k reads, as far as the patch does not have them.
   /// @param step  to the worksheet that comes next, 0 if none does
@@ -151,16 +148,6 @@ protected:
   virtual Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const = 0;
 
   virtual void loadSheet(const Patch::Sheet& sheet, Patch& patch) const;
-
-  /// What splatRows() notes of pixel (u, v) and those after it.
-  Noting notingAt(const Target& target, int u, int v) const
-  {
-    Noting noting;
-    noting.notes = target.orders ? target.orders + v * target.stride + u : nullptr;
-    noting.order = target.order;
-    noting.nearestFirst = this->Shared.nearestFirst;
-    return noting;
-  }
 
   /// Does the same as load() and splatRows() from the volume's own voxels, as far as these are all
   /// that counts. False if that does not pay.
@@ -174,8 +161,6 @@ protected:
     int k, int first, int end, const Span& span, const Target& target, Patch& patch) const = 0;
 
 private:
-  /// Rows that cut layers are walked for at a time: those of a piece.
-  static constexpr int RowsTogether = 16;
   /// The widest registers hold two tiles, and take no longer for both than for one.
   static constexpr int RunUnit = 2 * TileWidth;
 
@@ -190,7 +175,6 @@ private:
     Target image;
     image.origin = this->Shared.image.template row<A>(0);
     image.stride = this->Shared.image.width;
-    image.orders = this->Shared.orders;
     return image;
   }
 
@@ -201,44 +185,16 @@ private:
   template <class F>
   void forPieces(int v0, int v1, const Span& columns, F&& f) const;
 
-  /// What says which samples count, where rays are cut: either, or nothing.
-  struct SampleCuts
-  {
-    SliceBits bits;
-    const SliceRuns* runs = nullptr;
-  };
-
-  /// Sets which of some pixels slice k changes, and leaves out of these what it does not. False if
-  /// it changes none.
-  bool cut(const SampleCuts& cuts, int k, int v0, int v1, Span& pixels, Target& target,
+  /// Raises pixels of some rows to the worksheet of slice k.
+  /// @param step  to the worksheet that comes next, 0 if none does
+  void splatOne(int k, int step, int first, int end, const Span& span, const Target& target,
     Patch& patch) const;
-  SliceBits bitsOf(
-    const SliceRuns& runs, int k, int v0, int v1, const Span& pixels, Patch& patch) const;
+  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, Patch& patch) const;
 
-  /// @param after  the step to the slice that comes after these, if it is known
-  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const SampleCuts& cuts,
-    Patch& patch, int after = 0) const;
-  /// The same by way of worksheets of their own, for splatRows() that do not note winners.
-  void notePiece(const Span& slices, int v0, int v1, const Span& columns, const SampleCuts& cuts,
-    Patch& patch) const;
-
-  /// From one slice to the next.
-  int step() const { return this->Shared.nth({ 0, 2 }, 1) - this->Shared.nth({ 0, 2 }, 0); }
-
-  std::int16_t orderOfSlice(int k) const
-  {
-    return static_cast<std::int16_t>(this->Shared.orderOfStep(StepsPerSlice * k));
-  }
-
-  void put(A value, int v, const Span& pixels, const Target& worksheet) const;
-  /// Values a little below those of the image, so that what is as large as the image shows, and no
-  /// more is found out about what is smaller.
-  void putBelowImage(int v, const Span& pixels, const Target& worksheet) const;
-
-  /// The worksheet of slice k alone (a step from the next one), in which pixels are as open(v,
-  /// pixels) has set them or larger, then f(v, pixels) for its rows.
+  /// Calls f(k, v, pixels, values) for the worksheets of some slices, of whose rows open(v, pixels)
+  /// sets what they start from.
   template <class Open, class F>
-  void splatSlice(int k, int step, int v0, int v1, const Span& columns, const Target& worksheet,
+  void forRaised(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
     Patch& patch, Open&& open, F&& f) const;
 
   /// Calls f(first, end, span) for rows that slice k covers in the same columns: nearly always all
@@ -253,8 +209,7 @@ protected:
   const Frame& Shared;
   const WorksheetReach<A>& Reach;
   int Depth;
-  bool Notes = false;                                ///< whether splatRows() notes winners
-  int PieceWidth = 1024, PieceHeight = RowsTogether; ///< pixels; for the second-level cache
+  int PieceWidth = 1024, PieceHeight = 16; ///< pixels; for the second-level cache
   A Base;
 };
 }
