@@ -3,9 +3,9 @@
 #ifndef MIPScene_h
 #define MIPScene_h
 
-#include "Geometry/View.h"
 #include "Look.h"
 #include "ProjectionSettings.h"
+#include "View.h"
 #include "VolumeReader.h"
 
 #include "vtkFixedPointVolumeRayCastMapper.h"

@@ -3,9 +3,9 @@
 #ifndef Options_h
 #define Options_h
 
-#include "Geometry/View.h"
 #include "Look.h"
 #include "ProjectionSettings.h"
+#include "View.h"
 #include "VolumeReader.h"
 
 #include <CLI/CLI.hpp>

@@ -3,9 +3,9 @@
 #ifndef Projector_h
 #define Projector_h
 
-#include "Geometry/View.h"
 #include "Look.h"
 #include "ProjectionSettings.h"
+#include "View.h"
 #include "VolumeReader.h"
 
 #include "vtkNew.h"
