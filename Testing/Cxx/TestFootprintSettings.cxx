@@ -100,6 +100,40 @@ void testAllWeights(Checks& check)
   }
 }
 
+/// A table that is set to something else is that table, whatever of it changes.
+void testSettingAgain(Checks& check)
+{
+  const Kernel kernels[] = { { Reconstruction::Hat }, { Reconstruction::CosineBell, 1.0 },
+    { Reconstruction::CosineBell, 1.3 } };
+  GeneralTable table;
+  int kernel = 0, sampling = 2, perVoxel = 1;
+  glm::dvec2 shear(0.25, 0.5);
+  reference::Random random(7);
+  for (int n = 0; n < 200; ++n)
+  {
+    switch (random.uniform(0, 3))
+    {
+      case 0:
+        kernel = random.uniform(0, 2);
+        break;
+      case 1:
+        sampling = 1 << random.uniform(0, 2);
+        break;
+      case 2:
+        perVoxel = 1 << random.uniform(0, 2);
+        break;
+      default:
+        shear[random.uniform(0, 1)] = random.uniform(-1.0, 1.0);
+    }
+    table.set(kernels[kernel], shear, sampling, perVoxel);
+    const glm::dvec2 fraction(0.125, -0.3);
+    check(table.weights(fraction) ==
+        tableOf(kernels[kernel], shear, sampling, perVoxel).weights(fraction),
+      "kernel ", kernel, ", ", sampling, " sub-pixels, ", perVoxel,
+      " pixels per voxel: a table that was another has other weights");
+  }
+}
+
 const std::array<int, 3> size{ 50, 9, 8 };
 
 /// One value everywhere is seen everywhere, and chains have the bits of the dense walk.
@@ -177,6 +211,7 @@ int TestFootprintSettings(int, char*[])
 {
   Checks check;
   testAllWeights(check);
+  testSettingAgain(check);
   testPictures<std::uint8_t>(check);
   testPictures<std::int16_t>(check);
   testPictures<float>(check);

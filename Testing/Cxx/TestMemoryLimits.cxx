@@ -101,6 +101,7 @@ void testMapper(stage::Checks& check, stage::Stage& stage, const stage::Vector& 
     const bool fitted = errors.texts.empty();
     check(fitted ? pixels == expected : isBlack(pixels), name + "all or nothing is drawn.");
     check(fitted || isOneSentence(errors.texts), name + "one sentence.");
+    check(fitted || mapper->GetIndexMemorySize() == 0, name + "nothing is held.");
     check(!fitted || more > 48, name + "two copies do not fit.");
     check(stage.pixels() == expected, name + "the next frame draws.");
     const MemoryLimit limit(std::size_t(16) << 20);

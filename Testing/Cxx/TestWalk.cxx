@@ -327,9 +327,11 @@ private:
     this->Walk.setAll(fresh, this->Scene);
     const Frame expected = frameOf(this->Scene, fresh);
     const bool wasRendered = !renders.texts.empty(); // not culled, nor refused by VTK
-    check(frame.pixels == expected.pixels, name + " the picture differs");
-    check(frame.depths == expected.depths, name + " the depth buffer differs");
     vtkSplattingMIPVolumeMapper *const a = this->Live.splatting, *const b = fresh.splatting;
+    // What is ray cast is not always the same, even if a walk is repeated.
+    const bool isRayCast = a->GetLastRenderUsedRayCasting() && b->GetLastRenderUsedRayCasting();
+    check(isRayCast || frame.pixels == expected.pixels, name + " the picture differs");
+    check(frame.depths == expected.depths, name + " the depth buffer differs");
     check(
       !wasRendered || !a->GetRecordLocations() || sameImages(a->GetLocations(), b->GetLocations()),
       name + " locations differ");
@@ -342,7 +344,7 @@ private:
         name + " the shear differs");
     }
     this->In->renderer->RemoveVolume(fresh.volume);
-    this->Count.rayCast += a->GetLastRenderUsedRayCasting();
+    this->Count.rayCast += isRayCast;
     this->Count.add(expected.isPlain(), !said.errors.texts.empty(), this->Scene.isTransparent());
   }
 
