@@ -25,7 +25,7 @@
 #include <unistd.h>
 #endif
 
-#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__linux__) && !defined(SPLATTINGMIP_SANITIZED)
 namespace
 {
 /// As long as this lives, the program can have no more than so many bytes besides what it has.
