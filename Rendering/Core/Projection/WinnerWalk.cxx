@@ -104,6 +104,13 @@ public:
     this->findFirst(slices, v0, v1, scratch);
   }
 
+  /// Rays that only rounding lets meet the volume may have no sample.
+  void close(int v0, int v1) const
+  {
+    const auto rows = this->Shared.image.winners.begin();
+    std::replace(rows + this->place(0, v0), rows + this->place(0, v1), AtFloor, std::int32_t(-1));
+  }
+
 private:
   /// No sample is above.
   static constexpr P Nothing = std::numeric_limits<P>::max();
@@ -284,6 +291,7 @@ void findWinners(Frame& frame, const SliceSampler<T, P>& sampler)
           walk.walk(slices, v0, v1, frame.space.bands.Local());
           if (isLast)
           {
+            walk.close(v0, v1);
             sampler.finish(v0, v1);
             closeRows<P>(frame.image, v0, v1);
           }
