@@ -98,7 +98,9 @@ part_sanitizers() {
 
 part_threads() {
   build_sanitized threads thread vtkRenderingSplattingMIPCoreCxxTests vtkImagingSplattingMIPCxxTests
-  local -x TSAN_OPTIONS=halt_on_error=1 SPLATTINGMIP_TEST_SCENES=5
+  local -x TSAN_OPTIONS="halt_on_error=1 allocator_may_return_null=1"
+  TSAN_OPTIONS+=" suppressions=$testing_dir/thread-sanitizer.txt"
+  local -x SPLATTINGMIP_TEST_SCENES=5
   local -x VTK_SMP_BACKEND_IN_USE=STDThread VTK_SMP_MAX_THREADS=4
   run_tests threads -L core
   run_tests threads -R ImagingSplattingMIPCxx
