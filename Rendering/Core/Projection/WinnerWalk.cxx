@@ -74,8 +74,9 @@ public:
   {
     const BandTiles band{ v0, v1, this->Shared.image.width };
     const Span layers = layersOf(this->Shared, slices, v0, v1);
-    scratch.block.reset(
-      band.tiles(), this->Stack.traits().runUnit / TileWidth, this->Shared.image.width);
+    // Long runs: to begin one costs more than to look at some tiles in vain.
+    const int unit = std::max(this->Stack.traits().runUnit, LeastRun);
+    scratch.block.reset(band.tiles(), unit / TileWidth, this->Shared.image.width);
     scratch.row.resize(band.width * sizeof(P));
     scratch.mask.resize(band.width);
     if (!this->Shared.cuts.none())
@@ -114,6 +115,8 @@ public:
 private:
   /// No sample is above.
   static constexpr P Nothing = std::numeric_limits<P>::max();
+  /// Pixels; a multiple of all run units, or the other way round.
+  static constexpr int LeastRun = 64;
   /// Among winners, that the first sample is still to be found.
   static constexpr std::int32_t AtFloor = -2;
 
