@@ -432,9 +432,9 @@ public:
    * paper's general table, digitised at N x N sub-pixels per pixel [CS98, section 3], whose weights
    * tend to the closed form as N grows. Perspective views always have the closed form. A view makes
    * its table once, for all slices and phases of a finer shear image. That takes time and memory in
-   * proportion to (N ShearImageSampling)^2: at most two seconds of one core and 60 MB, for N = 64, a
-   * sampling of 4 and the widest bell; 10 ms for N = 16 and a sampling of 1. A projection then takes
-   * at most 1 ms of one core for each slice and phase more.
+   * proportion to (N ShearImageSampling)^2: at most two seconds of one core and 60 MB, for N = 64,
+   * a sampling of 4 and the widest bell; 10 ms for N = 16 and a sampling of 1. A projection then
+   * takes at most 1 ms of one core for each slice and phase more.
    */
   vtkSetClampMacro(FootprintSampling, int, 0, 64);
   vtkGetMacro(FootprintSampling, int);

@@ -28,17 +28,13 @@ struct BandTiles
   int groups() const { return (this->v1 - this->v0 + TileHeight - 1) / TileHeight; }
   int count() const { return this->tiles() * this->groups(); }
   int firstRow(int group) const { return this->v0 + group * TileHeight; }
-  int endRow(int group) const
-  {
-    return std::min(this->firstRow(group) + TileHeight, this->v1);
-  }
+  int endRow(int group) const { return std::min(this->firstRow(group) + TileHeight, this->v1); }
 
   /// The least of the pixels of each tile of a group; `rows` is the group's first.
   template <class P>
   void findMinima(const TileLoops<P>& loops, const P* rows, int group, P* out) const
   {
-    const int whole = this->width / TileWidth,
-              height = this->endRow(group) - this->firstRow(group);
+    const int whole = this->width / TileWidth, height = this->endRow(group) - this->firstRow(group);
     loops.minima(rows, this->width, height, whole, out);
     if (whole == this->tiles())
     {
