@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace splatting
+{
 //------------------------------------------------------------------------------
 bool Complaints::Update(vtkRenderer* renderer, vtkVolume* volume, const std::string& problem)
 {
@@ -22,4 +24,5 @@ bool Complaints::Update(vtkRenderer* renderer, vtkVolume* volume, const std::str
   }
   this->All.push_back({ renderer, volume, problem });
   return !isKnown;
+}
 }

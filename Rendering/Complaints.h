@@ -11,6 +11,8 @@
 class vtkRenderer;
 class vtkVolume;
 
+namespace splatting
+{
 /**
  * Why the last frames of views are missing, so that each reason is told once: not in every frame,
  * nor in every view that has the same.
@@ -30,5 +32,6 @@ private:
   };
   std::vector<Complaint> All;
 };
+}
 
 #endif

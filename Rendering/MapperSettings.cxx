@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace splatting
+{
 namespace
 {
 using Mapper = vtkSplattingMIPVolumeMapper;
@@ -102,4 +104,5 @@ splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* ma
 int samplingOf(vtkSplattingMIPVolumeMapper* mapper, splatting::Quality quality)
 {
   return samplingOfChoice(choiceOf(mapper), quality);
+}
 }

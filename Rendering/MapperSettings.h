@@ -8,6 +8,8 @@
 class vtkSplattingMIPVolumeMapper;
 class vtkVolumeProperty;
 
+namespace splatting
+{
 /**
  * A sentence that says which setting of the mapper has no meaning and what to do, or nullptr. What
  * has no effect may be anything.
@@ -24,5 +26,6 @@ splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* ma
  * The sampling of shear images in a quality, as ShearWarp::factorise() takes it.
  */
 int samplingOf(vtkSplattingMIPVolumeMapper* mapper, splatting::Quality quality);
+}
 
 #endif

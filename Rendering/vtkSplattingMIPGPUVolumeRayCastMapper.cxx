@@ -22,6 +22,8 @@
 
 #include <algorithm>
 
+using namespace splatting;
+
 vtkStandardNewMacro(vtkSplattingMIPGPUVolumeRayCastMapper);
 
 namespace
@@ -123,7 +125,7 @@ int vtkSplattingMIPGPUVolumeRayCastMapper::GetGlobalQualityMode()
 vtkSplattingMIPGPUVolumeRayCastMapper::vtkSplattingMIPGPUVolumeRayCastMapper()
   : LastRenderUsedSplatting(false),
     LoggedReason(""),
-    StandIn(new VolumeStandIn)
+    StandIn(new splatting::VolumeStandIn)
 {
   this->SplattingMapper->SetQualityMode(globalQualityMode);
   using Self = vtkSplattingMIPGPUVolumeRayCastMapper;

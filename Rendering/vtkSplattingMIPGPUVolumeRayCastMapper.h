@@ -63,7 +63,10 @@
 
 #include <memory> // for the stand-in
 
+namespace splatting
+{
 class VolumeStandIn;
+}
 class vtkOpenGLSplattingMIPVolumeMapper;
 class vtkSplattingMIPVolumeMapper;
 
@@ -136,7 +139,7 @@ private:
 
   vtkNew<vtkOpenGLSplattingMIPVolumeMapper> SplattingMapper;
   const char* LoggedReason; // what the log says last; "" before
-  std::unique_ptr<VolumeStandIn> StandIn;
+  std::unique_ptr<splatting::VolumeStandIn> StandIn;
 };
 
 #endif

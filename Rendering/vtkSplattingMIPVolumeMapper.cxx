@@ -38,6 +38,8 @@
 #include <set>
 #include <string>
 
+using namespace splatting;
+
 vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
 vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
 vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, Controller, vtkMultiProcessController);

@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <array>
 
+namespace splatting
+{
 namespace
 {
 using Size = std::array<vtkIdType, 3>;
@@ -184,4 +186,5 @@ std::vector<unsigned char> findBlanked(vtkDataSet* data, bool cells, vtkImageDat
   const bool isAny =
     std::any_of(hidden.begin(), hidden.end(), [](unsigned char flag) { return flag != 0; });
   return isAny ? hidden : std::vector<unsigned char>{};
+}
 }

@@ -12,6 +12,8 @@
 class vtkDataSet;
 class vtkImageData;
 
+namespace splatting
+{
 /**
  * What is wrong with the ghost arrays of a data set, whose voxels are cells or points, or with the
  * mask (may be nullptr); empty if nothing is.
@@ -26,5 +28,6 @@ std::string problemOfBlanking(vtkDataSet* data, bool cells, vtkImageData* mask);
  * too. Duplicates are not hidden.
  */
 std::vector<unsigned char> findBlanked(vtkDataSet* data, bool cells, vtkImageData* mask);
+}
 
 #endif

@@ -20,6 +20,8 @@
 #include <cmath>
 #include <utility>
 
+namespace splatting
+{
 namespace
 {
 const char* const NoPolygons =
@@ -167,4 +169,5 @@ const char* BoundingSurface::MakeSurface()
   }
   this->Surface.reset(std::move(places), this->Triangles);
   return nullptr;
+}
 }

@@ -11,6 +11,8 @@
 
 class vtkPolyData;
 
+namespace splatting
+{
 /**
  * A vtkPolyData that a volume is shown in, as triangles of the volume's index space. They are made
  * anew only when the data or the matrix changes.
@@ -40,5 +42,6 @@ private:
   std::vector<glm::ivec3> Triangles;
   splatting::ClosedSurface Surface;
 };
+}
 
 #endif

@@ -20,6 +20,8 @@
 #include <functional>
 #include <type_traits>
 
+namespace splatting
+{
 //------------------------------------------------------------------------------
 std::size_t mainImage(const std::vector<splatting::ShearWarp>& images)
 {
@@ -598,4 +600,5 @@ void ComponentProjector::CopyImage(
     }
   }
   output->GetPointData()->AddArray(ghosts);
+}
 }

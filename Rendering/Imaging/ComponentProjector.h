@@ -14,13 +14,16 @@
 #include <optional>
 #include <vector>
 
+class vtkImageData;
+class vtkVolumeProperty;
+
+namespace splatting
+{
 class PieceExchange;
 class ScalarSource;
-class vtkImageData;
 
 /// The largest of a view's images, of which there is at least one.
 std::size_t mainImage(const std::vector<splatting::ShearWarp>& images);
-class vtkVolumeProperty;
 
 /**
  * From the volumes of a data set's components to one picture.
@@ -188,5 +191,6 @@ private:
   splatting::Picture Layer;         // of one component
   std::vector<unsigned char> Plane; // likewise, scalars
 };
+}
 
 #endif

@@ -11,6 +11,8 @@
 
 #include <limits>
 
+namespace splatting
+{
 namespace
 {
 template <class Array, class T>
@@ -36,4 +38,5 @@ splatting::Locator::Arrays addLocationArrays(vtkImageData* image)
   arrays.positions =
     addArray<vtkDoubleArray>(image, "Position", 3, std::numeric_limits<double>::quiet_NaN());
   return arrays;
+}
 }

@@ -9,6 +9,8 @@
 
 #include <cstddef>
 
+namespace splatting
+{
 /**
  * What the projector of a piece of a volume needs of those that have the other pieces.
  */
@@ -28,5 +30,6 @@ public:
   virtual void Reduce(splatting::ShearImage& image, const splatting::ShearWarp& geometry,
     splatting::Reduction reduction) = 0;
 };
+}
 
 #endif

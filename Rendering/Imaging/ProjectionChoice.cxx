@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace splatting
+{
 namespace
 {
 using Names = vtkSplattingMIPProjection;
@@ -133,4 +135,5 @@ int samplingOfChoice(const ProjectionChoice& choice, splatting::Quality quality)
     return quality == splatting::Quality::Exact ? splatting::ShearWarp::Automatic : 1;
   }
   return choice.shearImageSampling == 3 ? 2 : choice.shearImageSampling;
+}
 }

@@ -5,6 +5,8 @@
 
 #include "Projection/Project.h"
 
+namespace splatting
+{
 /**
  * How a volume is projected, as the properties of vtkSplattingMIPProjection and
  * vtkSplattingMIPVolumeMapper say it: names, meaning and enumerators are theirs.
@@ -48,5 +50,6 @@ splatting::ProjectionSettings settingsOfChoice(const ProjectionChoice& choice, i
  * The sampling of shear images in a quality, as ShearWarp::factorise() takes it.
  */
 int samplingOfChoice(const ProjectionChoice& choice, splatting::Quality quality);
+}
 
 #endif

@@ -20,6 +20,8 @@
 #include <type_traits>
 #include <utility>
 
+namespace splatting
+{
 namespace
 {
 template <class T>
@@ -550,4 +552,5 @@ std::size_t ScalarSource::MemorySize() const
       array ? static_cast<std::size_t>(array->GetNumberOfValues()) * array->GetDataTypeSize() : 0;
   }
   return size;
+}
 }

@@ -18,6 +18,8 @@ class vtkDataArray;
 class vtkDataSet;
 class vtkImageData;
 
+namespace splatting
+{
 /**
  * Which numbers of a data set are projected, as the properties of mapper and volume say it.
  */
@@ -156,5 +158,6 @@ private:
  * The core's name for a VTK type; Float32 for types that are no numbers.
  */
 splatting::ScalarType scalarTypeOfVtk(int vtkType);
+}
 
 #endif

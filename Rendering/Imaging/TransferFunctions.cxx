@@ -15,6 +15,8 @@
 #include <limits>
 #include <vector>
 
+namespace splatting
+{
 namespace
 {
 std::uint32_t premultiplied(
@@ -165,4 +167,5 @@ splatting::ColorTable tabulatePrimary(int primary, const FinalColor& finalColor)
     std::memcpy(&color, rgba, sizeof(color));
   }
   return table;
+}
 }

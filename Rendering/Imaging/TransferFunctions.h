@@ -7,6 +7,8 @@
 
 class vtkVolumeProperty;
 
+namespace splatting
+{
 /**
  * Window and level of the picture: a colour c from 0 to 1, before it is multiplied by its opacity,
  * becomes (c - level) / window + 1/2. The opacity stays. Premultiplied colours are cut off at 0 and
@@ -52,5 +54,6 @@ splatting::ColorTable tabulateOpaque(
   vtkVolumeProperty* property, const ScalarRange& range, const FinalColor& finalColor);
 splatting::ColorTable tabulateOpacity(vtkVolumeProperty* property, const ScalarRange& range);
 splatting::ColorTable tabulatePrimary(int primary, const FinalColor& finalColor);
+}
 
 #endif

@@ -15,6 +15,8 @@
 #include <cmath>
 #include <numeric>
 
+namespace splatting
+{
 namespace
 {
 bool isFinite(const glm::dvec3& v)
@@ -205,4 +207,5 @@ void TurnOfViews::SetCamera(int view, vtkCamera* camera) const
   const glm::dvec3 newUp = turned(up, axis, radians);
   camera->SetPosition(eye.x, eye.y, eye.z);
   camera->SetViewUp(newUp.x, newUp.y, newUp.z);
+}
 }

@@ -13,6 +13,8 @@
 
 class vtkCamera;
 
+namespace splatting
+{
 /**
  * As the properties of vtkSplattingMIPProjection; where there is a camera, direction, up, focal
  * point and diagonal mean nothing.
@@ -63,5 +65,6 @@ private:
   vtkNew<vtkCamera> First;
   double Aspect = 1.0;
 };
+}
 
 #endif

@@ -12,6 +12,8 @@
 #include <limits>
 #include <vector>
 
+namespace splatting
+{
 namespace
 {
 constexpr int MostVoxels = 16384; // along an axis, as the mapper accepts
@@ -229,4 +231,5 @@ std::string describeGrid(vtkDataSet* data, bool cells, GridOfDataSet& result)
   }
   describeAxes(axes, result);
   return {};
+}
 }

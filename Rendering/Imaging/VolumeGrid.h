@@ -15,6 +15,8 @@
 
 class vtkDataSet;
 
+namespace splatting
+{
 /**
  * A uniform grid of voxels.
  */
@@ -62,5 +64,6 @@ struct GridOfDataSet
  * and takes cells for points.)
  */
 std::string describeGrid(vtkDataSet* data, bool cells, GridOfDataSet& result);
+}
 
 #endif

@@ -15,6 +15,8 @@
 #include <cmath>
 #include <utility>
 
+namespace splatting
+{
 namespace
 {
 glm::dvec4 row(const glm::dmat4& m, int r)
@@ -161,4 +163,5 @@ void addSlab(
   const double half = 0.5 * std::max(thickness, 1e-3 * projection.slice);
   addHalfSpace(view, glm::dvec4(projection.normal, half - place) * indexToWorld);
   addHalfSpace(view, glm::dvec4(-projection.normal, half + place) * indexToWorld);
+}
 }

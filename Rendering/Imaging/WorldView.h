@@ -12,6 +12,8 @@
 class vtkMatrix4x4;
 class vtkPlaneCollection;
 
+namespace splatting
+{
 glm::dmat4 toGlm(const vtkMatrix4x4* matrix);
 
 /**
@@ -43,5 +45,6 @@ splatting::Cropping croppingOf(const VolumeGrid& grid, const double planes[6], i
  */
 void addSlab(
   splatting::View& view, const glm::dmat4& indexToWorld, const double centre[3], double thickness);
+}
 
 #endif

@@ -32,6 +32,8 @@
 #include <utility>
 #include <vector>
 
+using namespace splatting;
+
 vtkStandardNewMacro(vtkSplattingMIPProjection);
 vtkCxxSetObjectMacro(vtkSplattingMIPProjection, Camera, vtkCamera);
 

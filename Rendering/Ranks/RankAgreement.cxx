@@ -27,6 +27,8 @@
 #include <limits>
 #include <type_traits>
 
+namespace splatting
+{
 static_assert(std::is_trivially_copyable<RankReport>::value, "reports are sent as bytes");
 
 namespace
@@ -507,4 +509,5 @@ void describeScalars(ComponentProjector& components, const ScalarSource& source,
       "Several ranks do not project dependent components, which go with the place of "
       "the maximum: set IndependentComponents of the vtkVolumeProperty.");
   }
+}
 }

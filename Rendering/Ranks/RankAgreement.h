@@ -13,13 +13,16 @@
 #include <string>
 #include <vector>
 
-class ComponentProjector;
-class ScalarSource;
 class vtkImageData;
 class vtkMultiProcessController;
 class vtkRenderer;
 class vtkSplattingMIPVolumeMapper;
 class vtkVolume;
+
+namespace splatting
+{
+class ComponentProjector;
+class ScalarSource;
 
 /// What one rank says of its piece, as plain bytes, and what all of them make of it.
 struct RankReport
@@ -123,5 +126,6 @@ std::uint64_t viewNumber(
 
 /// The vtkImageData that a mapper projects a piece of; nullptr if it has none, or no points.
 vtkImageData* pieceOf(vtkSplattingMIPVolumeMapper* mapper);
+}
 
 #endif

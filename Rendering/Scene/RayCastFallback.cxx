@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace splatting
+{
 namespace
 {
 float smallestStep(vtkImageData* image)
@@ -167,4 +169,5 @@ void RayCastFallback::UpdateSettings(vtkSplattingMIPVolumeMapper* settings, vtkI
   }
   this->Mapper->SetCroppingRegionPlanes(planes);
   this->Mapper->SetIntermixIntersectingGeometry(settings->GetIntermixIntersectingGeometry());
+}
 }

@@ -19,6 +19,8 @@ class vtkSplattingMIPVolumeMapper;
 class vtkVolume;
 class vtkWindow;
 
+namespace splatting
+{
 /**
  * Renders what vtkSplattingMIPVolumeMapper does not splat, with the same settings: by
  * vtkFixedPointVolumeRayCastMapper, on a stand-in for the volume that it renders rightly, or, if it
@@ -65,5 +67,6 @@ private:
   vtkImageData* ImageSource = nullptr;
   vtkMTimeType ImageTime = 0;
 };
+}
 
 #endif

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace splatting
+{
 //------------------------------------------------------------------------------
 void SceneCuts::Find(const splatting::View& view, const std::vector<splatting::ShearWarp>& images,
   vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
@@ -95,4 +97,5 @@ SceneCuts::Scene& SceneCuts::SceneOf(const vtkRenderer* renderer, const vtkVolum
   }
   scene->lastFrame = this->Frame;
   return *scene;
+}
 }

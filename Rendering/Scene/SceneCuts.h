@@ -17,6 +17,8 @@
 class vtkRenderer;
 class vtkVolume;
 
+namespace splatting
+{
 /**
  * What clipping, cropping, a bounding surface and other things in the scene leave of a volume, and
  * whether that has changed since the last projection.
@@ -67,12 +69,13 @@ private:
     vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
   Scene& SceneOf(const vtkRenderer* renderer, const vtkVolume* volume);
 
-  ::BoundingSurface Bounds;
+  BoundingSurface Bounds;
   std::vector<splatting::Cuts> Present, Kept;
   std::vector<Scene> Scenes;
   Scene* Seen = nullptr; // in the present frame, if there is anything
   vtkTypeInt64 Frame = 0;
   splatting::Picture Place; // where the volume will be seen
 };
+}
 
 #endif

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <cstring>
 
+namespace splatting
+{
 namespace
 {
 /// An identifier has 24 bits in this pass; 0 is none.
@@ -59,4 +61,5 @@ void drawIdentifiers(vtkHardwareSelector* selector, splatting::Picture& picture)
   {
     pixel = isTransparent(pixel) ? 0u : identifier;
   }
+}
 }

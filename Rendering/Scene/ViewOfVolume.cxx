@@ -12,6 +12,8 @@
 
 #include <glm/matrix.hpp>
 
+namespace splatting
+{
 //------------------------------------------------------------------------------
 glm::dmat4 indexToWorld(const VolumeGrid& grid, vtkVolume* volume)
 {
@@ -60,4 +62,5 @@ void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
   const double centre[3], double thickness)
 {
   addSlab(view, indexToWorld(grid, volume), centre, thickness);
+}
 }

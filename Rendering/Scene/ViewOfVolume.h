@@ -13,6 +13,8 @@ class vtkRenderer;
 class vtkVolume;
 class vtkVolumeMapper;
 
+namespace splatting
+{
 /**
  * Whether spacing, direction and prop matrix flatten the volume, or have no meaning (NaN).
  */
@@ -40,5 +42,6 @@ glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume);
  */
 void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
   const double centre[3], double thickness);
+}
 
 #endif

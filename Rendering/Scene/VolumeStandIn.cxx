@@ -13,6 +13,8 @@
 
 #include <algorithm>
 
+namespace splatting
+{
 namespace
 {
 /// Both kinds of functions share the meaning of nodes, midpoints and sharpness.
@@ -87,4 +89,5 @@ vtkVolume* VolumeStandIn::Volume(vtkVolume* volume, vtkRenderer* renderer)
   this->Prop->SetShaderProperty(volume->GetShaderProperty());
   this->Prop->SetAllocatedRenderTime(volume->GetAllocatedRenderTime(), renderer);
   return this->Prop;
+}
 }

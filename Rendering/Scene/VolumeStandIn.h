@@ -11,6 +11,8 @@ class vtkRenderer;
 class vtkVolume;
 class vtkVolumeProperty;
 
+namespace splatting
+{
 /**
  * What VTK's ray casters are given in place of a volume, because vtkGPUVolumeRayCastMapper knows no
  * gray functions: it puts an RGB function into the property that it is given, which no longer is
@@ -37,5 +39,6 @@ private:
   vtkVolumeProperty* Source = nullptr;
   vtkMTimeType SourceTime = 0;
 };
+}
 
 #endif

@@ -19,6 +19,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace splatting
+{
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> makeLocationImage(
   const splatting::Locator* locator, const int extent[6])
@@ -211,4 +213,5 @@ const std::vector<float>& WinnerLocations::ClipDepths(
     this->Depths[n] = isSeen && this->Depths[n] == this->Depths[n] ? this->Depths[n] : none;
   }
   return this->Depths;
+}
 }

@@ -13,12 +13,15 @@
 #include <cstdint>
 #include <vector>
 
-class ComponentProjector;
-class SceneCuts;
 class vtkImageData;
 class vtkRenderer;
 class vtkScalarsToColors;
 class vtkVolume;
+
+namespace splatting
+{
+class ComponentProjector;
+class SceneCuts;
 struct VolumeGrid;
 
 /**
@@ -80,5 +83,6 @@ private:
   std::vector<float> Depths;
   vtkSmartPointer<vtkImageData> Output;
 };
+}
 
 #endif
