@@ -7,6 +7,7 @@
 #include "Display/FieldRim.h"
 #include "Display/Warp.h"
 #include "ExactTesting.h"
+#include "FieldWithNaN.h"
 
 #include <glm/matrix.hpp>
 
@@ -133,15 +134,16 @@ Counts countsIn(const Scene<T>& scene, const reference::FieldRay& ray, int k, do
   }
   if (scene.cropping.cuts())
   {
+    // Middle regions are wider than a way, see anyCropping(): one of three points is in each.
     bool any = false, all = true;
-    for (int n = 0; n < 4; ++n)
+    for (int n = 0; n < 9; ++n)
     {
       int bit = 0;
       const int strides[3] = { 1, 3, 9 };
       for (int a = 0; a < 3; ++a)
       {
-        const double error = a == ray.axes[0] ? (n & 1 ? way : -way)
-          : a == ray.axes[1]                  ? (n & 2 ? way : -way)
+        const double error = a == ray.axes[0] ? (n % 3 - 1) * way
+          : a == ray.axes[1]                  ? (n / 3 - 1) * way
                                               : 0.0;
         const glm::dvec2& planes = scene.cropping.planes[a];
         const double at = point[a] + error;
@@ -156,90 +158,108 @@ Counts countsIn(const Scene<T>& scene, const reference::FieldRay& ray, int k, do
   return counts;
 }
 
+/// The depths at which a ray is in the field if ray and eye are displaced by a way across the
+/// principal axis, to see more of it or, below 0, less.
+template <class T>
+std::array<double, 2> seenDepths(const Scene<T>& scene, const ScreenRay& screen, double more)
+{
+  const reference::FieldRay& ray = screen.line;
+  const glm::ivec3 size = toGlm(scene.volume.size);
+  // Slices whose middle is behind the eye are not seen.
+  double near = -0.5, far = size[ray.axes[2]] - 0.5;
+  (screen.reversed ? far : near) = screen.reversed
+    ? std::min({ far, screen.eye + more, std::ceil(screen.eye + more) - 0.5 })
+    : std::max({ near, screen.eye - more, std::floor(screen.eye - more) + 0.5 });
+  for (int a = 0; a < 3; ++a)
+  {
+    const int n = size[ray.axes[a]];
+    const bool isThick = scene.view.showsBoxes || n == 1;
+    const double side = (isThick ? 0.5 : 0.0) + (a < 2 ? more : 0.0);
+    const double begin = -side, end = n - 1 + side;
+    if (a == 2)
+    {
+      near = std::max(near, begin);
+      far = std::min(far, end);
+    }
+    else if (ray.slope[a] == 0.0)
+    {
+      far = ray.at[a] >= begin && ray.at[a] <= end ? far : near - 1.0;
+    }
+    else
+    {
+      const double p = ray.start + (begin - ray.at[a]) / ray.slope[a];
+      const double q = ray.start + (end - ray.at[a]) / ray.slope[a];
+      near = std::max(near, std::min(p, q));
+      far = std::min(far, std::max(p, q));
+    }
+  }
+  return { near, far };
+}
+
+/// How far rays, and what cuts them, may be displaced across the principal axis, in voxels.
+struct Ways
+{
+  double ray, cut;
+};
+
 /// Between what the extremum must lie if rays, and where the field ends, are displaced by no more
-/// than some voxels across the principal axis.
+/// than that.
 struct Limits
 {
   double low = -Infinite, high = -Infinite;
 };
 
-template <class T>
-Limits limitsOf(const Scene<T>& scene, const reference::Volume<double>& field,
-  const glm::dvec3& steps, const ScreenRay& screen, double way, double cutWay)
+/// Calls take(grown, from, to) for what may count in each slice (grown), and for what surely does.
+template <class T, class Take>
+void forSeenSlices(const Scene<T>& scene, const ScreenRay& screen, const Ways& ways, Take&& take)
 {
-  const reference::FieldRay& ray = screen.line;
-  const glm::ivec3 size = toGlm(scene.volume.size);
-  Limits limits;
+  const int slices = scene.volume.size[screen.line.axes[2]];
   for (const bool grown : { false, true })
   {
-    const double more = grown ? way : -way;
-    // Slices whose middle is behind the eye are not seen.
-    const int last = size[ray.axes[2]] - 1;
-    double near = -0.5, far = last + 0.5;
-    (screen.reversed ? far : near) = screen.reversed
-      ? std::min({ far, screen.eye + more, std::ceil(screen.eye + more) - 0.5 })
-      : std::max({ near, screen.eye - more, std::floor(screen.eye - more) + 0.5 });
-    for (int a = 0; a < 3; ++a)
+    const auto seen = seenDepths(scene, screen, grown ? ways.ray : -ways.ray);
+    for (int k = 0; k < slices; ++k)
     {
-      const int n = size[ray.axes[a]];
-      const bool isThick = scene.view.showsBoxes || n == 1;
-      const double side = (isThick ? 0.5 : 0.0) + (a < 2 ? more : 0.0);
-      const double begin = -side, end = n - 1 + side;
-      if (a == 2)
+      const double from = std::max(seen[0], k - 0.5), to = std::min(seen[1], k + 0.5);
+      if (from < to && countsIn(scene, screen.line, k, ways.cut) >= (grown ? Some : All))
       {
-        near = std::max(near, begin);
-        far = std::min(far, end);
-      }
-      else if (ray.slope[a] == 0.0)
-      {
-        far = ray.at[a] >= begin && ray.at[a] <= end ? far : near - 1.0;
-      }
-      else
-      {
-        const double p = ray.start + (begin - ray.at[a]) / ray.slope[a];
-        const double q = ray.start + (end - ray.at[a]) / ray.slope[a];
-        near = std::max(near, std::min(p, q));
-        far = std::min(far, std::max(p, q));
+        take(grown, from, to);
       }
     }
-    double& limit = grown ? limits.high : limits.low;
-    for (int k = 0; k <= last && near < far; ++k)
-    {
-      const double from = std::max(near, k - 0.5), to = std::min(far, k + 0.5);
-      if (from < to && countsIn(scene, ray, k, cutWay) >= (grown ? Some : All))
-      {
-        limit = std::max(limit, reference::fieldMaximum(field, ray, from, to));
-      }
-    }
-    const double change = way * (steps[ray.axes[0]] + steps[ray.axes[1]]);
-    limit += grown ? change : -change;
   }
-  return limits;
 }
 
-/// The most that neighbours along each axis differ by.
-glm::dvec3 stepsOf(const reference::Volume<double>& volume)
+template <class T>
+Limits limitsOf(const Scene<T>& scene, const reference::Volume<double>& field,
+  const glm::dvec3& steps, const ScreenRay& screen, const Ways& ways)
 {
-  glm::dvec3 steps(0.0);
-  std::array<int, 3> p;
-  for (p[2] = 0; p[2] < volume.size[2]; ++p[2])
-  {
-    for (p[1] = 0; p[1] < volume.size[1]; ++p[1])
+  const reference::FieldRay& ray = screen.line;
+  Limits limits;
+  forSeenSlices(scene, screen, ways,
+    [&](bool grown, double from, double to)
     {
-      for (p[0] = 0; p[0] < volume.size[0]; ++p[0])
-      {
-        for (int a = 0; a < 3; ++a)
-        {
-          std::array<int, 3> next = p;
-          if (++next[a] < volume.size[a])
-          {
-            steps[a] = std::max(steps[a], std::abs(volume.at(next) - volume.at(p)));
-          }
-        }
-      }
-    }
-  }
-  return steps;
+      double& limit = grown ? limits.high : limits.low;
+      limit = std::max(limit, reference::fieldMaximum(field, ray, from, to));
+    });
+  const double change = ways.ray * (steps[ray.axes[0]] + steps[ray.axes[1]]);
+  return { limits.low - change, limits.high + change };
+}
+
+/// The same of a field of which cells with NaN are left out.
+template <class T>
+Limits limitsWithNaN(const Scene<T>& scene, const reference::Volume<double>& field,
+  const glm::dvec3& steps, const ScreenRay& screen, const Ways& ways)
+{
+  Limits limits;
+  forSeenSlices(scene, screen, ways,
+    [&](bool grown, double from, double to)
+    {
+      double& limit = grown ? limits.high : limits.low;
+      limit = std::max(limit,
+        grown ? mostNearby(field, screen.line, from, to, ways.ray)
+              : leastNearby(field, screen.line, from, to, ways.ray));
+    });
+  const double change = changeNearby(steps, screen.line, ways.ray);
+  return { limits.low - change, limits.high + change };
 }
 
 /// How much of the ray of a point between pixels is in the field.
@@ -315,15 +335,16 @@ Place placeOf(const std::vector<splatting::ShearWarp>& images, const ScreenRay& 
     if (u >= 0 && v >= 0 && u < geometry->rayCount().x && v < geometry->rayCount().y)
     {
       const auto depths = depthsOf(*geometry, rayOf(*geometry, u, v));
+      // Rays that touch the field, as all that run along a face with the eye in it, may or may not
+      // see it.
+      if (std::abs(depths[1] - depths[0]) < 3e-3)
+      {
+        return Unclear;
+      }
       length = std::max(depths[1] - depths[0], 0.0);
     }
     shortest = std::min(shortest, length);
     longest = std::max(longest, length);
-  }
-  // Rays that touch the field may or may not see it.
-  if (shortest > 0.0 && shortest < 3e-3)
-  {
-    return Unclear;
   }
   const double share = shortest / longest, own = lengthAt(*geometry, p);
   if (shortest > 0.0 && (share > 0.501 || own > 3.001 || !reachesOut(*geometry, p, 2.01)))
@@ -341,13 +362,15 @@ struct Worst
   long atRim = 0, within = 0;
 };
 
-/// Compares pixels of a picture.
+/// Compares pixels of a picture; of fields with NaN those at the rim.
 template <class T>
 void comparePixels(Checks& check, const Scene<T>& scene, reference::Random& random, Worst& worst)
 {
   const auto field = reference::toDouble(scene.volume);
-  const double low = *std::min_element(field.voxels.begin(), field.voxels.end());
-  const double high = *std::max_element(field.voxels.begin(), field.voxels.end());
+  const glm::dvec2 range = rangeOfNumbers(field);
+  const double low = range[0], high = range[1];
+  const bool hasNaN = std::any_of(
+    field.voxels.begin(), field.voxels.end(), [](double voxel) { return std::isnan(voxel); });
   const glm::dvec3 steps = stepsOf(field);
   const auto pixels = pictureOf(scene, random);
   const bool perspective = !splatting::isParallel(scene.view);
@@ -364,7 +387,8 @@ void comparePixels(Checks& check, const Scene<T>& scene, reference::Random& rand
       const ScreenRay ray = screenRay(scene.view, x, y);
       const Place place = shown == shown ? placeOf(scene.images, ray, x, y) : Unclear;
       // Brute force takes its time: some of them.
-      if (place == Unclear || random.uniform(0, place == AtRim ? 3 : 31))
+      if (place == Unclear || (hasNaN && place == Inside) ||
+        random.uniform(0, place == AtRim ? 3 : 31))
       {
         continue;
       }
@@ -375,8 +399,9 @@ void comparePixels(Checks& check, const Scene<T>& scene, reference::Random& rand
       }
       const double way = place == AtRim ? exactly : pitch;
       // The intervals are those of a ray beside the pixel's.
-      const double cutWay = scene.halfSpaces.empty() ? way : pitch;
-      const Limits limits = limitsOf(scene, field, steps, ray, way, cutWay);
+      const Ways ways{ way, scene.halfSpaces.empty() ? way : pitch };
+      const Limits limits = hasNaN ? limitsWithNaN(scene, field, steps, ray, ways)
+                                   : limitsOf(scene, field, steps, ray, ways);
       if (limits.low == -Infinite)
       {
         continue; // what is shown where a ray may have no sample is the warp's affair
@@ -406,49 +431,77 @@ splatting::Cropping anyCropping(const std::array<int, 3>& size, reference::Rando
   return cropping;
 }
 
+/// A view and cuts of a volume of noise.
 template <class T>
-void testType(Checks& check, Sightings& seen)
+Scene<T> anyScene(const std::array<int, 3>& size, bool perspective, reference::Random& random)
 {
-  Worst worst;
+  Scene<T> scene;
+  scene.volume = wholeRangeNoise<T>(size, random);
+  scene.view = perspective ? randomPerspective(size, random) : randomView(size, random);
+  scene.view.showsBoxes = random.uniform(0, 2) == 0;
+  if (random.uniform(0, 3) == 0)
+  {
+    scene.cropping = anyCropping(size, random);
+  }
+  if (random.uniform(0, 3) == 0)
+  {
+    const glm::dvec3 normal = anyVector(random, -1.0, 1.0);
+    const glm::dvec3 point = anyVector(random, 0.0, 1.0) * glm::dvec3(toGlm(size) - 1);
+    scene.halfSpaces.push_back({ normal, -glm::dot(normal, point) });
+  }
+  splatting::ShearWarp::factorise(scene.view, scene.images, anySampling(random));
+  return scene;
+}
+
+/// The scene with some voxels hidden, which makes them NaN, in the type of averages.
+template <class T>
+Scene<splatting::Accumulator<T>> withHidden(const Scene<T>& from, reference::Random& random)
+{
+  return { coretesting::withHidden(from.volume, random), from.view, from.images, from.halfSpaces,
+    from.cropping };
+}
+
+template <class T>
+void testType(Checks& check, Sightings& seen, Sightings& seenWithNaN)
+{
+  Worst worst, worstWithNaN;
   reference::forScenes(seriesOf<T>("noise"), 40,
     [&](int n, reference::Random& random)
     {
-      Scene<T> scene;
       const auto size = randomSize(random, 12);
-      scene.volume = wholeRangeNoise<T>(size, random);
-      scene.view = n % 2 ? randomPerspective(size, random) : randomView(size, random);
-      scene.view.showsBoxes = random.uniform(0, 2) == 0;
-      if (random.uniform(0, 3) == 0)
-      {
-        scene.cropping = anyCropping(size, random);
-      }
-      if (random.uniform(0, 3) == 0)
-      {
-        const glm::dvec3 normal = anyVector(random, -1.0, 1.0);
-        const glm::dvec3 point = anyVector(random, 0.0, 1.0) * glm::dvec3(toGlm(size) - 1);
-        scene.halfSpaces.push_back({ normal, -glm::dot(normal, point) });
-      }
-      splatting::ShearWarp::factorise(scene.view, scene.images, anySampling(random));
       const long before = worst.atRim;
-      comparePixels(check, scene, random, worst);
+      comparePixels(check, anyScene<T>(size, n % 2 == 1, random), random, worst);
       seen.add(worst.atRim > before);
+    });
+  reference::forScenes(seriesOf<T>("hidden voxels"), 40,
+    [&](int n, reference::Random& random)
+    {
+      const auto size = randomSize(random, 12);
+      const auto scene = withHidden(anyScene<T>(size, n % 2 == 1, random), random);
+      const long before = worstWithNaN.atRim;
+      comparePixels(check, scene, random, worstWithNaN);
+      seenWithNaN.add(worstWithNaN.atRim > before);
     });
   std::cout << "type " << int(splatting::scalarTypeOf<T>()) << ": " << worst.atRim
             << " pixels at the rim, " << worst.rim << " beyond; " << worst.within
-            << " pixels inside, " << worst.inside << " beyond" << std::endl;
+            << " pixels inside, " << worst.inside << " beyond; with hidden voxels "
+            << worstWithNaN.atRim << " pixels at the rim, " << worstWithNaN.rim << " beyond"
+            << std::endl;
 }
 }
 
 int TestFieldRim(int, char*[])
 {
   Checks check;
-  Sightings seen;
+  Sightings seen, seenWithNaN;
   forEachType(
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
-      testType<T>(check, seen);
+      testType<T>(check, seen, seenWithNaN);
     });
   check(seen.areEnough(0.4), "a rim is compared in only ", seen);
+  check(seenWithNaN.areEnough(0.3), "a rim beside hidden voxels is compared in only ", seenWithNaN);
+  std::cout << seenWithNaN << " with hidden voxels" << std::endl;
   return check.result();
 }

@@ -270,6 +270,15 @@ struct CubicLoop : Lanes<A, R>
         }
       }
       raised = Lanes<A, R>::template limitedTo<Special>(raised, most, best);
+      if constexpr (Special)
+      {
+        // Cells with NaN are left out, faces that they share with others, too.
+        raised = ((b[0] == b[0]) & (b[3] == b[3])) ? raised : best;
+        if (piece.curved)
+        {
+          raised = ((b[1] == b[1]) & (b[2] == b[2])) ? raised : best;
+        }
+      }
       if constexpr (Masked)
       {
         raised = this->counting(piece, x) ? raised : best;

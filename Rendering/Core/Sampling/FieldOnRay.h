@@ -265,6 +265,11 @@ private:
     for (int n = 0; n < 4; ++n)
     {
       f[n] = valueAt<Special>(n == 3 ? to : from + (to - from) * (n / 3.0), corners);
+      // Cells with NaN are left out, faces that they share with others, too.
+      if (Special && f[n] != f[n])
+      {
+        return;
+      }
     }
     // c0 + c1 t + c2 t^2 + c3 t^3 for t from 0 to 1.
     const double c1 = -5.5 * f[0] + 9.0 * f[1] - 4.5 * f[2] + f[3];
