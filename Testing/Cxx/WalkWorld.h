@@ -26,6 +26,7 @@
 #include "vtkVolumeProperty.h"
 
 #include <array>
+#include <cmath>
 #include <string>
 
 namespace walktesting
@@ -200,8 +201,11 @@ private:
   {
     const stage::Vector direction = anyDirection(random);
     const auto place = this->anyPlace(random);
-    const double distance =
-      this->diagonal() * (once(6, random) ? random.uniform(0.0, 0.3) : random.uniform(0.8, 3.0));
+    const bool isFar = once(8, random);
+    const double distance = this->diagonal() *
+      (isFar                ? std::pow(10.0, random.uniform(5.0, 11.0))
+          : once(6, random) ? random.uniform(0.0, 0.3)
+                            : random.uniform(0.8, 3.0));
     const double norm = vtkMath::Norm(direction.data());
     double middle[3];
     this->input.data->GetCenter(middle);
@@ -217,7 +221,11 @@ private:
     this->camera->SetPosition(position.data());
     const auto up = anyPoint(random, 0.1, 1.0);
     this->camera->SetViewUp(up.data());
-    this->camera->SetViewAngle(once(4, random) ? random.uniform(2.0, 120.0) : 30.0);
+    const double share = random.uniform(0.5, 2.0); // of the window that the volume fills, from afar
+    this->camera->SetViewAngle(isFar
+        ? vtkMath::DegreesFromRadians(this->diagonal() / share / distance)
+        : once(4, random) ? random.uniform(2.0, 120.0)
+                          : 30.0);
     this->camera->SetParallelScale(this->diagonal() * random.uniform(0.2, 0.7));
     this->camera->SetWindowCenter(0.0, 0.0);
     this->setRange(random);
