@@ -72,6 +72,11 @@ void chooseRange(vtkPiecewiseFunction* opacity, ColorFunction* colors, double& l
 void sample(vtkColorTransferFunction* colors, double low, double high, std::vector<float>& rgb)
 {
   colors->GetTable(low, high, static_cast<int>(rgb.size() / 3), rgb.data());
+  // VTK makes the last entry black where it lies on the function's only node.
+  double last[3];
+  colors->GetColor(high, last);
+  std::transform(
+    last, last + 3, rgb.end() - 3, [](double value) { return static_cast<float>(value); });
 }
 
 void sample(vtkPiecewiseFunction* grays, double low, double high, std::vector<float>& rgb)
