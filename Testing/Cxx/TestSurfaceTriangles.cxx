@@ -8,6 +8,7 @@
 #include "ProjectionTesting.h"
 
 #include "vtkCellArray.h"
+#include "vtkCubeSource.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSphereSource.h"
@@ -101,6 +102,10 @@ void testScene(Checks& check, reference::Random& random)
   ball->GetPolys()->ReplaceCellAtId(0, 3, std::vector<vtkIdType>{ 0, 0, 0 }.data());
   ball->Modified();
   check(!surface.Update(ball, glm::dmat4(1.0)) && surface.IsOpen(), "a hole is not noticed");
+  vtkNew<vtkCubeSource> cube; // whose sides share no points
+  cube->Update();
+  check(!surface.Update(cube->GetOutput(), glm::dmat4(1.0)) && !surface.IsOpen(),
+    "points in the same place are not one");
   const vtkIdType line[] = { 0, 1, 1 };
   vtkNew<vtkCellArray> lines;
   lines->InsertNextCell(3, line);

@@ -157,6 +157,14 @@ void testGrid(Checks& check, reference::Random& random)
   points[bad]->InsertNextValue(0.0);
   check(describeGrid(grid, cells, result).find("XYZ"[bad]) != std::string::npos,
     "more coordinates than points are accepted");
+  const vtkIdType last = points[bad]->GetNumberOfTuples() - 1; // the one that is too much
+  if (last > 1)
+  {
+    points[bad]->SetNumberOfTuples(last);
+    points[bad]->SetValue(last - 1, points[bad]->GetValue(last - 2));
+    check(describeGrid(grid, cells, result).find("XYZ"[bad]) != std::string::npos,
+      "coordinates that stand still are accepted");
+  }
 }
 }
 

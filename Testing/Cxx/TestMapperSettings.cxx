@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The mapper's properties as the projection takes them: what matters is passed on, and what has no
+// meaning is refused.
+#include "CoreTesting.h"
+#include "MapperSettings.h"
+
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkNew.h"
+#include "vtkPlane.h"
+#include "vtkVolumeProperty.h"
+
+#include <cmath>
+#include <string>
+
+using coretesting::Checks;
+using namespace splatting;
+
+int TestMapperSettings(int, char*[])
+{
+  Checks check;
+  vtkNew<vtkSplattingMIPVolumeMapper> mapper;
+  vtkNew<vtkVolumeProperty> property;
+  using Mapper = vtkSplattingMIPVolumeMapper;
+  mapper->SetBlendModeToMaximumIntensity();
+  const auto refuses = [&](const std::string& word)
+  {
+    const char* const fault = faultOfSettings(mapper, property);
+    return fault && std::string(fault).find(word) != std::string::npos;
+  };
+  check(!faultOfSettings(mapper, property), "defaults are refused");
+  mapper->SlabOn();
+  mapper->SetSlabThickness(0.0);
+  check(refuses("SlabThickness"), "a slab without thickness is taken");
+  mapper->SlabOff();
+  vtkNew<vtkPlane> plane;
+  mapper->AddClippingPlane(plane);
+  check(!faultOfSettings(mapper, property), "a plane is refused");
+  plane->SetOrigin(0.0, NAN, 0.0);
+  check(refuses("plane"), "a plane without place is taken");
+  mapper->RemoveAllClippingPlanes();
+  mapper->SetBlendMode(vtkVolumeMapper::SLICE_BLEND);
+  check(refuses("SetSliceFunction"), "no slice is taken");
+  property->SetSliceFunction(plane);
+  check(!faultOfSettings(mapper, property), "a slice is refused");
+  mapper->SetBlendModeToMaximumIntensity();
+  const auto changes = [&](int mode, auto change)
+  {
+    const auto before = projectionSettings(mapper, mode);
+    change();
+    return !(projectionSettings(mapper, mode) == before);
+  };
+  check(changes(Mapper::HIGH, [&] { mapper->SetKernelToCosineBell(); }), "the kernel");
+  check(changes(Mapper::HIGH, [&] { mapper->SetKernelRadius(0.7); }), "the kernel's radius");
+  check(!changes(Mapper::PREVIEW, [&] { mapper->SetKernelRadius(0.8); }), "an idle radius");
+  check(changes(Mapper::PREVIEW, [&] { mapper->SetAccelerationToLines(); }), "the acceleration");
+  check(changes(Mapper::PREVIEW, [&] { mapper->SetLineTolerance(3.0); }), "the tolerance");
+  // Each of these needs to know where samples lie.
+  check(changes(Mapper::HIGH, [&] { mapper->RecordLocationsOn(); }), "locations");
+  check(!changes(Mapper::HIGH, [&] { mapper->DepthCodingOn(); }), "locations twice");
+  mapper->RecordLocationsOff();
+  check(changes(Mapper::HIGH, [&] { mapper->DepthCodingOff(); }), "the depth's colours");
+  check(changes(Mapper::HIGH, [&] { mapper->WriteDepthOn(); }), "the depth buffer");
+  check(changes(Mapper::HIGH, [&] { mapper->SetMaximumTypeToDepthShaded(); }), "shading");
+  check(changes(Mapper::HIGH, [&] { mapper->SetDepthShadingAmbient(0.9); }), "the ambient");
+  check(changes(Mapper::HIGH, [&] { mapper->SetDepthShadingChangeRate(0.1); }), "the rate");
+  check(changes(Mapper::HIGH, [&] { mapper->SetMaximumTypeToLocal(); }), "local maxima");
+  check(changes(Mapper::HIGH, [&] { mapper->SetLocalMaximumThreshold(7.0); }), "the threshold");
+  check(changes(Mapper::HIGH, [&] { mapper->SetBlendModeToAverageIntensity(); }), "averages");
+  check(changes(Mapper::HIGH, [&] { mapper->SetAverageIPScalarRange(2.0, 5.0); }), "the range");
+  check(changes(Mapper::HIGH, [&] { mapper->SetFootprintSampling(9); }), "the footprint");
+  check(samplingOf(mapper, splatting::Quality::High) == 1, "the shear image's sampling");
+  mapper->SetShearImageSampling(4);
+  check(samplingOf(mapper, splatting::Quality::High) == 4, "a finer sampling");
+  return check.result();
+}
