@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Exact mode shows the maximum of the trilinear field along each ray, as brute force finds it.
+#include "Display/Warp.h"
 #include "ExactTesting.h"
 #include "FieldWithNaN.h"
 
@@ -106,6 +107,52 @@ splatting::View anyDomain(splatting::View view, reference::Random& random)
   return view;
 }
 
+/// Depth-shaded maxima in the picture: no pixel shows what none of its samples can be, whatever the
+/// factors, at the field's rim and beside cuts and hidden voxels, too. Pixels without a sample show
+/// the lowest voxel.
+template <class T>
+void testShaded(Checks& check, const reference::Volume<T>& volume, const splatting::View& view,
+  reference::Random& random)
+{
+  using A = splatting::Accumulator<T>;
+  splatting::ProjectionSettings settings = exactSettings();
+  settings.reduction = splatting::Reduction::DepthShaded;
+  settings.ambient = random.uniform(-2.0, 1.0);
+  settings.changeRate = random.uniform(-2.0, 2.0);
+  const auto field = reference::toDouble(volume);
+  const glm::dvec2 range = rangeOfNumbers(field);
+  const double width = range[1] - range[0];
+  const double factors[2] = { settings.ambient, settings.ambient + settings.changeRate };
+  const double low = range[0] + width * std::min({ 0.0, factors[0], factors[1] });
+  const double high = range[0] + width * std::max({ 0.0, factors[0], factors[1] });
+  // Of the sample, and 20 roundings of what it is multiplied by and added to.
+  const double bound = 4.0 * perspectiveExactBound<T>(range[0], range[1]) +
+    100.0 * std::numeric_limits<A>::epsilon() * std::max(std::abs(range[0]), std::abs(range[1]));
+  std::vector<glm::dvec4> halfSpaces;
+  if (random.uniform(0, 1))
+  {
+    const glm::dvec3 normal = anyVector(random, -1.0, 1.0);
+    const glm::dvec3 point = anyVector(random, 0.0, 1.0) * glm::dvec3(toGlm(volume.size) - 1);
+    halfSpaces.push_back({ normal, -glm::dot(normal, point) });
+  }
+  std::vector<splatting::ShearWarp> geometries;
+  splatting::ShearWarp::factorise(view, geometries, anySampling(random));
+  std::vector<splatting::ShearImage> images;
+  for (const splatting::ShearWarp& geometry : geometries)
+  {
+    images.push_back(project(volume, geometry, settings, halfSpaces));
+  }
+  constexpr A none = std::numeric_limits<A>::quiet_NaN();
+  std::vector<A> pixels(std::size_t(view.viewport.x) * view.viewport.y, none);
+  splatting::Warper().warpScalars(
+    images, geometries, view.viewport, settings.instructionSet, none, pixels.data());
+  for (const A pixel : pixels)
+  {
+    check(pixel != pixel || (pixel >= low - bound && pixel <= high + bound), "shaded by ",
+      factors[0], " to ", factors[1], " a pixel is ", pixel, ", not from ", low, " to ", high);
+  }
+}
+
 /// Of all types, so that enough pixels are compared whatever the share of scenes.
 struct Seen
 {
@@ -158,6 +205,15 @@ void testType(Checks& check, Seen& seen)
           check, volume, geometry, project(volume, geometry, exactSettings()), withNaN);
       }
       seen.withNaN.add(withNaN.compared > before);
+    });
+  reference::forScenes(seriesOf<T>("shaded"), 40,
+    [&](int n, reference::Random& random)
+    {
+      const auto volume = wholeRangeNoise<T>(randomSize(random, 7), random);
+      const splatting::View view = anyDomain(
+        n % 2 ? randomPerspective(volume.size, random) : anyView(volume.size, random), random);
+      n % 4 < 2 ? testShaded(check, volume, view, random)
+                : testShaded(check, withHidden(volume, random), view, random);
     });
   std::cout << "type " << int(splatting::scalarTypeOf<T>()) << ": largest error " << worst.error
             << " of the bound, " << worst.compared << " pixels; in perspective "
