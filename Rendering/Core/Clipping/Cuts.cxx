@@ -55,23 +55,25 @@ bool CutMap::findMask(int k, int v, const Span& pixels, unsigned char* mask) con
   return any != 0 && shown != 0;
 }
 
-void TileShares::reset(const CutMap& map, const CutLoops& loops, int v0, int v1, int width)
+void TileShares::reset(
+  const CutMap& map, const CutLoops& loops, int v0, int v1, int width, int height)
 {
   this->Map = &map;
   this->Loops = &loops;
   this->V0 = v0;
   this->V1 = v1;
   this->Width = width;
+  this->Height = height;
   this->Tiles = (width + TileWidth - 1) / TileWidth;
   this->Shares.resize(this->Tiles);
   this->Any.resize(this->Tiles);
   const RayIntervals& intervals = map.source().intervals;
-  const int groups = (v1 - v0 + TileHeight - 1) / TileHeight;
+  const int groups = (v1 - v0 + height - 1) / height;
   this->Extremes.resize(intervals.empty() ? 0 : std::size_t(groups) * 4 * this->Tiles);
   for (int g = 0; g < groups && !intervals.empty(); ++g)
   {
-    const int v = v0 + g * TileHeight;
-    loops.tileExtremes(intervals.first(v), intervals.last(v), width, std::min(TileHeight, v1 - v),
+    const int v = v0 + g * height;
+    loops.tileExtremes(intervals.first(v), intervals.last(v), width, std::min(height, v1 - v),
       width, this->extremesOf(g));
   }
 }
@@ -95,8 +97,8 @@ const unsigned char* TileShares::find(const Span& slices, int group)
   }
   if (this->Map->crops())
   {
-    const int v0 = this->V0 + group * TileHeight;
-    this->crop(slices, v0, std::min(v0 + TileHeight, this->V1));
+    const int v0 = this->V0 + group * this->Height;
+    this->crop(slices, v0, std::min(v0 + this->Height, this->V1));
   }
   return this->Shares.data();
 }

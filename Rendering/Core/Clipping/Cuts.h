@@ -65,11 +65,11 @@ enum TileShare : unsigned char
   AllSamples
 };
 
-/// The cuts of a band of rows, tile by tile, in groups of TileHeight rows. A thread's work space.
+/// The cuts of a band of rows, tile by tile, in groups of some rows. A thread's work space.
 class TileShares
 {
 public:
-  void reset(const CutMap& map, const CutLoops& loops, int v0, int v1, int width);
+  void reset(const CutMap& map, const CutLoops& loops, int v0, int v1, int width, int height);
   /// For each tile of a group a TileShare of its samples in some slices.
   const unsigned char* find(const Span& slices, int group);
 
@@ -79,7 +79,7 @@ private:
 
   const CutMap* Map = nullptr;
   const CutLoops* Loops = nullptr;
-  int V0 = 0, V1 = 0, Width = 0, Tiles = 0;
+  int V0 = 0, V1 = 0, Width = 0, Height = 0, Tiles = 0;
   std::vector<std::int16_t> Extremes; // four arrays of them for each group
   std::vector<unsigned char> Shares, Any;
 };

@@ -122,12 +122,6 @@ struct Splat
   std::ptrdiff_t ahead = 0; ///< from these to voxels that will be needed next, or 0
 };
 
-/// A pixel of a row whose limit a row of samples exceeds.
-struct Exceeding
-{
-  std::int32_t x, row;
-};
-
 /// Loops over voxels of type T.
 template <class T>
 struct VoxelLoops
@@ -144,11 +138,6 @@ struct VoxelLoops
   /// `maximum` for all rows of pixels: for the runs, as far as they are valid and perhaps some
   /// valid pixels beside them, and for the rims.
   void (*sweep)(const Sweep<T>& sweep);
-  /// For each pixel x of n the first of rows[0..count) that is above limits[x], if there is one:
-  /// written to `found`, which has room for n, and limits[x] becomes the greatest value. Returns
-  /// how many there are. limits[x] is not NaN.
-  std::ptrdiff_t (*exceed)(
-    const T* const* rows, int count, T* limits, Exceeding* found, std::ptrdiff_t n);
   /// `maximum` of the voxels that rays cross, each pixel its own.
   void (*cross)(const Crossing<T>& crossing);
   /// out[x] = row[x] - base, which must be exact, for some rows of n elements. row[x + ahead] will
@@ -173,6 +162,10 @@ struct TileLoops
   void (*minima)(const P* image, std::ptrdiff_t stride, int rows, std::ptrdiff_t tiles, P* minima);
   /// flags[t] = whether bounds[t] > minima[t].
   void (*exceeds)(const P* bounds, const P* minima, unsigned char* flags, std::ptrdiff_t n);
+  /// Writes the pixels x with samples[x] > limits[x] to `found`, which has room for n, and returns
+  /// how many they are.
+  std::ptrdiff_t (*exceed)(
+    const P* samples, const P* limits, std::int32_t* found, std::ptrdiff_t n);
 };
 
 /// Loops over the samples that a row of pixels has in one slice. A NaN sample is none, a NaN pixel

@@ -134,51 +134,6 @@ void largest(const T* const* rows, int count, T* out, std::ptrdiff_t n)
   }
 }
 
-/// The elements of a row of samples that are above their limits, which are found.
-template <class T>
-inline void takeExceeding(const T* row, std::int32_t r, T* limits, std::ptrdiff_t begin,
-  std::ptrdiff_t end, Exceeding*& found)
-{
-  for (std::ptrdiff_t x = begin; x < end; ++x)
-  {
-    if (row[x] > limits[x])
-    {
-      limits[x] = std::numeric_limits<T>::max();
-      *found++ = { static_cast<std::int32_t>(x), r };
-    }
-  }
-}
-
-template <class T>
-std::ptrdiff_t exceed(
-  const T* const* rows, int count, T* limits, Exceeding* found, std::ptrdiff_t n)
-{
-  Exceeding* end = found;
-  constexpr std::ptrdiff_t w = width<T>;
-  std::ptrdiff_t x = 0;
-  for (; x + w <= n; x += w)
-  {
-    const Pack<T> limit = load<T>(limits + x);
-    Pack<T> largest = load<T>(rows[0] + x);
-    for (int r = 1; r < count; ++r)
-    {
-      largest = larger(load<T>(rows[r] + x), largest);
-    }
-    for (int r = 0; r < count && anyOf(largest > limit); ++r)
-    {
-      if (anyOf(load<T>(rows[r] + x) > load<T>(limits + x)))
-      {
-        takeExceeding(rows[r], r, limits, x, x + w, end);
-      }
-    }
-  }
-  for (int r = 0; r < count; ++r)
-  {
-    takeExceeding(rows[r], r, limits, x, n, end);
-  }
-  return end - found;
-}
-
 /// Which pixels of a rim see which rows.
 template <class T>
 struct RimMasks

@@ -42,9 +42,9 @@ public:
   {
     if (!frame.cuts.none())
     {
-      scratch.shares.reset(frame.cuts, frame.kernels, v0, v1, frame.image.width);
+      scratch.shares.reset(frame.cuts, frame.kernels, v0, v1, frame.image.width,
+        frame.bricks ? TileHeight : DenseHeight);
       scratch.mask.resize(frame.image.width);
-      scratch.block.reset(this->Tiles, sampler.traits().runUnit / TileWidth, frame.image.width);
     }
   }
 
@@ -137,79 +137,112 @@ private:
     loops.exceeds(bounds, this->minimaOf(group), flags.data(), this->Tiles);
     if (!this->Shared.cuts.none())
     {
-      this->Scratch.count.splatted += this->sort(z, group, 0);
-      this->splatBlock(z, group, group + 1);
+      this->splatCounting(z, group, this->Band);
       return;
     }
     this->Scratch.count.splatted += findTileRuns(flags.data(), this->Tiles,
       this->Stack.traits().runUnit, this->Shared.image.width, this->Scratch.runs);
     if (!this->Scratch.runs.empty())
     {
-      this->Stack.splat(z, this->Band.firstRow(group), this->Band.endRow(group), this->Scratch.runs,
-        this->Scratch.patch);
+      this->Stack.splat(this->slicesIn(z), this->Band.firstRow(group), this->Band.endRow(group),
+        this->Scratch.runs, pixelsOf<P>(this->Shared.image), this->Scratch.patch);
     }
   }
 
   /// All layers, where rays are cut.
   void walkCut()
   {
-    openFlags(this->Tiles, this->Scratch.flags);
-    std::fill_n(this->Scratch.flags.data(), this->Tiles, static_cast<unsigned char>(1));
-    for (int first = 0; first < this->Band.groups(); first += TileBlock::MostGroups)
+    BandTiles band = this->Band;
+    band.height = DenseHeight;
+    for (int g = 0; g < band.groups(); ++g)
     {
-      const int end = std::min(first + TileBlock::MostGroups, this->Band.groups());
       for (int z = this->Range.begin; z < this->Range.end; ++z)
       {
-        for (int g = first; g < end; ++g)
-        {
-          this->sort(z, g, g - first);
-        }
-        this->splatBlock(z, first, end);
+        this->Scratch.flags.assign(this->Tiles, 1);
+        this->splatCounting(z, g, band);
       }
     }
   }
 
-  /// Sorts the tiles of a group that have flags, and returns how many count.
-  int sort(int z, int group, int number)
+  /// The tiles of a group that have flags, as far as their samples count.
+  void splatCounting(int z, int group, const BandTiles& band)
   {
-    const unsigned char* const flags = this->Scratch.flags.data();
-    const unsigned char* const shares = std::memchr(flags, 1, this->Tiles)
-      ? this->Scratch.shares.find(this->slicesIn(z), group)
-      : nullptr;
-    return this->Scratch.block.sort(number, flags, shares);
+    unsigned char* const kinds = this->Scratch.flags.data();
+    if (!std::memchr(kinds, 1, this->Tiles))
+    {
+      return;
+    }
+    const unsigned char* const shares = this->Scratch.shares.find(this->slicesIn(z), group);
+    std::transform(kinds, kinds + this->Tiles, shares, kinds,
+      [](unsigned char flag, unsigned char share)
+      { return static_cast<unsigned char>(flag * share); });
+    this->Scratch.count.splatted += this->Tiles - std::count(kinds, kinds + this->Tiles, NoSamples);
+    const Span rows{ band.firstRow(group), band.endRow(group) };
+    forRunsOf(AllSamples, kinds, this->Tiles, band.width,
+      [&](const Span& run) { this->splatWholly(z, rows, run); });
+    forRunsOf(SomeSamples, kinds, this->Tiles, band.width,
+      [&](const Span& run) { this->splatPartly(z, rows, run); });
   }
 
-  /// Splats the tiles of some groups, which have been sorted.
-  void splatBlock(int z, int first, int end)
+  /// Pixels for which all samples of a layer count, and none beside them.
+  void splatWholly(int z, const Span& rows, const Span& run)
   {
-    TileBlock& block = this->Scratch.block;
-    block.forWhole(end - first,
-      [&](int a, int b, const std::vector<Span>& runs)
-      {
-        this->Stack.splat(z, this->Band.firstRow(first + a), this->Band.endRow(first + b - 1), runs,
-          this->Scratch.patch);
-      });
-    for (int g = first; g < end; ++g)
+    const PixelRows<P> image = pixelsOf<P>(this->Shared.image);
+    const PixelRows<P> copies = this->splatApart(this->slicesIn(z), rows, run, 1);
+    for (int v = rows.begin; v < rows.end; ++v)
     {
-      block.forPartly(g - first, [&](const Span& run) { this->splatPartly(z, g, run); });
+      std::copy(copies.at(run.begin, v), copies.at(run.end, v), image.at(run.begin, v));
     }
   }
 
-  /// Pixels for which some of a layer's samples count.
-  void splatPartly(int z, int group, const Span& columns)
+  /// Pixels for which some count.
+  void splatPartly(int z, const Span& rows, const Span& run)
   {
-    const RayLoops<P>& loops = this->Shared.kernels;
-    ShearImage& image = this->Shared.image;
-    this->Stack.forWorksheets(this->slicesIn(z), false, this->Band.firstRow(group),
-      this->Band.endRow(group), columns, { image.row<P>(0), image.width }, this->Scratch.patch,
-      [&](int k, int v, const Span& pixels, const P* values)
+    const int width = run.end - run.begin;
+    const auto maskOf = [&](int k, int v)
+    {
+      const int n = (k % BrickDepth) * (rows.end - rows.begin) + v - rows.begin;
+      return this->Scratch.mask.data() + std::ptrdiff_t(n) * width;
+    };
+    this->Scratch.mask.resize(std::size_t(BrickDepth) * (rows.end - rows.begin) * width);
+    Span slices{ 0, 0 }; // that count for any of them
+    for (int k = this->slicesIn(z).begin; k < this->slicesIn(z).end; ++k)
+    {
+      bool any = false;
+      for (int v = rows.begin; v < rows.end; ++v)
       {
-        unsigned char* const mask = this->Scratch.mask.data();
-        if (this->Shared.cuts.findMask(k, v, pixels, mask))
-        {
-          loops.raise(image.row<P>(v) + pixels.begin, values, mask, pixels.end - pixels.begin);
-        }
-      });
+        any |= this->Shared.cuts.findMask(k, v, run, maskOf(k, v));
+      }
+      slices = !any ? slices : Span{ slices.empty() ? k : slices.begin, k + 1 };
+    }
+    if (slices.empty())
+    {
+      return;
+    }
+    const RayLoops<P>& loops = this->Shared.kernels;
+    const PixelRows<P> image = pixelsOf<P>(this->Shared.image);
+    const PixelRows<P> copies = this->splatApart(slices, rows, run, slices.end - slices.begin);
+    for (int k = slices.begin; k < slices.end; ++k)
+    {
+      for (int v = rows.begin; v < rows.end; ++v)
+      {
+        loops.raise(image.at(run.begin, v), copies.slice(k - slices.begin).at(run.begin, v),
+          maskOf(k, v), width);
+      }
+    }
+  }
+
+  /// Takes some slices into as many copies of pixels, or all into one.
+  PixelRows<P> splatApart(const Span& slices, const Span& rows, const Span& run, int copies)
+  {
+    const int unit = this->Stack.traits().runUnit;
+    this->Scratch.runs.assign(1,
+      { run.begin / unit * unit,
+        std::min((run.end + unit - 1) / unit * unit, this->Shared.image.width) });
+    const PixelRows<P> apart = this->Scratch.copies.copy(
+      pixelsOf<P>(this->Shared.image), rows.begin, rows.end, this->Scratch.runs, copies);
+    this->Stack.splat(slices, rows.begin, rows.end, this->Scratch.runs, apart, this->Scratch.patch);
+    return apart;
   }
 
   /// The same sample by sample, for voxels that compare with nothing.

@@ -19,16 +19,17 @@ namespace splatting
 {
 static_assert(TileWidth == BrickWidth && TileHeight == BrickHeight);
 
-/// A band of rows in tiles of TileWidth x TileHeight pixels: groups of rows of tiles.
+/// A band of rows in tiles of TileWidth pixels and some rows: groups of rows of tiles.
 struct BandTiles
 {
   int v0, v1, width;
+  int height = TileHeight;
 
   int tiles() const { return (this->width + TileWidth - 1) / TileWidth; }
-  int groups() const { return (this->v1 - this->v0 + TileHeight - 1) / TileHeight; }
+  int groups() const { return (this->v1 - this->v0 + this->height - 1) / this->height; }
   int count() const { return this->tiles() * this->groups(); }
-  int firstRow(int group) const { return this->v0 + group * TileHeight; }
-  int endRow(int group) const { return std::min(this->firstRow(group) + TileHeight, this->v1); }
+  int firstRow(int group) const { return this->v0 + group * this->height; }
+  int endRow(int group) const { return std::min(this->firstRow(group) + this->height, this->v1); }
 
   /// The least of the pixels of each tile of a group; `rows` is the group's first.
   template <class P>
@@ -50,6 +51,9 @@ struct BandTiles
     }
   }
 };
+
+/// Rows of tiles where none is left out: many, because rows of pixels share what they read.
+constexpr int DenseHeight = 4 * TileHeight;
 
 /// The layers of slices that a band of rows meets.
 inline Span layersOf(const Frame& frame, const Span& some, int v0, int v1)

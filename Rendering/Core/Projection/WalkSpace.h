@@ -10,10 +10,11 @@
 #include "Clipping/RayIntervals.h"
 #include "Projection/Frame.h"
 #include "Projection/TileRuns.h"
-#include "Sampling/Patch.h"
+#include "Sampling/SliceSampler.h"
 
 #include <vtkSMPThreadLocal.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -32,6 +33,20 @@ struct OutlineSpace
   vtkSMPThreadLocal<Rows> rows;
 };
 
+/// Copies of pixels, which samples are taken into apart from the image.
+class PixelCopies
+{
+public:
+  /// Copies runs of some rows.
+  /// @param slices  how many copies are made, one for each slice
+  template <class P>
+  PixelRows<P> copy(
+    const PixelRows<P>& from, int v0, int v1, const std::vector<Span>& runs, int slices);
+
+private:
+  std::vector<unsigned char> Bytes;
+};
+
 /// What a thread needs to walk a band.
 struct BandScratch
 {
@@ -41,9 +56,9 @@ struct BandScratch
   std::vector<double> scores;
   std::vector<Span> runs;
   TileShares shares;
-  TileBlock block;
+  PixelCopies copies;
   std::vector<unsigned char> mask;
-  std::vector<unsigned char> row; ///< of limits
+  std::vector<std::int32_t> found;
   std::vector<unsigned char> brickRow;
   std::vector<Span> tileWindows;
   TileCount count;
@@ -86,6 +101,27 @@ struct Progress
 /// @param beyond  slices beside them that are read, too
 void forSlices(Frame& frame, int beyond, bool reversed, const Progress& progress,
   const std::function<void(const Span& slices, bool isFirst, bool isLast)>& body);
+
+template <class P>
+PixelRows<P> PixelCopies::copy(
+  const PixelRows<P>& from, int v0, int v1, const std::vector<Span>& runs, int slices)
+{
+  const std::ptrdiff_t all = (v1 - v0) * from.stride;
+  this->Bytes.resize(std::max(this->Bytes.size(), slices * all * sizeof(P)));
+  P* const first = reinterpret_cast<P*>(this->Bytes.data());
+  const PixelRows<P> copies{ first - v0 * from.stride, from.stride, slices > 1 ? all : 0 };
+  for (int n = 0; n < slices; ++n)
+  {
+    for (int v = v0; v < v1; ++v)
+    {
+      for (const Span& run : runs)
+      {
+        std::copy(from.at(run.begin, v), from.at(run.end, v), copies.slice(n).at(run.begin, v));
+      }
+    }
+  }
+  return copies;
+}
 }
 
 #endif

@@ -27,274 +27,302 @@ P justBelow(P value)
 }
 
 /**
- * Which sample each pixel of a projection shows: of equal ones the nearest to the viewer. Where a
+ * Which sample each pixel of a band of rows shows: of equal ones the nearest to the viewer. Where a
  * pixel is the floor, which no sample is below, that is the first sample of its ray.
  *
- * Nothing is noted while an image is made. Slices are looked at once more, from the viewer on, for
- * the first sample that is as large as its pixel: above a limit just below it. With bricks only
- * tiles are looked at whose bound in a layer is above the least limit of their pixels. What has
- * been found gets a limit that nothing is above.
+ * Nothing is noted while an image is made. Slices are splatted once more, from the viewer on, into
+ * copies of limits just below the pixels: what a slice lifts above its limit has its winner there,
+ * and gets a limit that nothing is above. With bricks only tiles are looked at whose bound in a
+ * layer is above the least limit of their pixels.
  */
 template <class T, class P>
 class WinnerWalk
 {
 public:
-  WinnerWalk(Frame& frame, const SliceSampler<T, P>& sampler) : Shared(frame), Stack(sampler)
+  WinnerWalk(
+    const Frame& frame, const SliceSampler<T, P>& sampler, BandScratch& scratch, int v0, int v1)
+    : Shared(frame),
+      Stack(sampler),
+      Scratch(scratch),
+      Limits{ reinterpret_cast<P*>(frame.space.limits.data()), frame.image.width },
+      Band{ v0, v1, frame.image.width, frame.bricks ? TileHeight : DenseHeight },
+      Tiles(this->Band.tiles()),
+      Reversed(frame.geometry.reversed())
   {
-    std::vector<unsigned char>& limits = frame.space.limits;
-    limits.resize(frame.image.winners.size() * sizeof(P));
-    this->Limits = reinterpret_cast<P*>(limits.data());
-    if (frame.settings.acceleration != Acceleration::Dense && frame.index.hasBricks())
-    {
-      this->Bricks = &frame.index.bricks(frame.geometry.principalAxis());
-    }
   }
 
-  bool reversed() const { return this->Shared.geometry.reversed(); }
-
-  /// No pixel of some rows has a winner yet, and those without samples never will.
-  void open(int v0, int v1) const
+  /// No pixel has a winner yet, and those without samples never will.
+  void open()
   {
-    ShearImage& image = this->Shared.image;
+    const ShearImage& image = this->Shared.image;
     const P floor = this->Stack.floor();
-    for (int v = v0; v < v1; ++v)
+    for (int v = this->Band.v0; v < this->Band.v1; ++v)
     {
       const P* const row = image.row<P>(v);
       for (int u = 0; u < image.width; ++u)
       {
-        const std::size_t at = this->place(u, v);
         const bool covers = image.covers(u, v), isFloor = covers && !(row[u] > floor);
-        image.winners[at] = isFloor ? AtFloor : -1;
-        this->Limits[at] = covers && !isFloor ? justBelow(row[u]) : Nothing;
+        *this->winner(u, v) = isFloor ? AtFloor : -1;
+        *this->Limits.at(u, v) = covers && !isFloor ? justBelow(row[u]) : Nothing;
       }
     }
   }
 
-  void walk(const Span& slices, int v0, int v1, BandScratch& scratch) const
+  void walk(const Span& slices)
   {
-    const BandTiles band{ v0, v1, this->Shared.image.width };
-    const Span layers = layersOf(this->Shared, slices, v0, v1);
-    // Long runs: to begin one costs more than to look at some tiles in vain.
-    const int unit = std::max(this->Stack.traits().runUnit, LeastRun);
-    scratch.block.reset(band.tiles(), unit / TileWidth, this->Shared.image.width);
-    scratch.row.resize(band.width * sizeof(P));
-    scratch.mask.resize(band.width);
+    const Span layers = layersOf(this->Shared, slices, this->Band.v0, this->Band.v1);
+    TileBounds<T, P> bounds(this->Shared, this->Stack, this->Band, layers, this->Scratch);
+    if (this->Shared.bricks)
+    {
+      bounds.find(*this->Shared.bricks);
+    }
     if (!this->Shared.cuts.none())
     {
-      scratch.shares.reset(this->Shared.cuts, this->Shared.kernels, v0, v1, band.width);
+      this->Scratch.shares.reset(this->Shared.cuts, this->Shared.kernels, this->Band.v0,
+        this->Band.v1, this->Band.width, this->Band.height);
     }
-    TileBounds<T, P> bounds(this->Shared, this->Stack, band, layers, scratch);
-    if (this->Bricks)
+    this->Scratch.minima.resize(this->Band.count() * sizeof(P));
+    this->Scratch.found.resize(this->Band.width);
+    openFlags(this->Tiles, this->Scratch.flags);
+    for (int g = 0; g < this->Band.groups(); ++g)
     {
-      bounds.find(*this->Bricks);
-    }
-    scratch.minima.resize(band.count() * sizeof(P));
-    for (int g = 0; g < band.groups(); ++g)
-    {
-      this->findMinima(band, g, scratch);
+      this->findMinima(g);
     }
     for (int n = 0; n < layers.end - layers.begin; ++n)
     {
-      const int z = this->reversed() ? layers.end - 1 - n : layers.begin + n;
-      for (int g = 0; g < band.groups(); g += TileBlock::MostGroups)
+      const int z = this->Reversed ? layers.end - 1 - n : layers.begin + n;
+      for (int g = 0; g < this->Band.groups(); ++g)
       {
-        this->walkBlock(z, band, g, std::min(g + TileBlock::MostGroups, band.groups()),
-          this->Bricks ? &bounds : nullptr, scratch);
+        this->walkGroup(z, g, this->Shared.bricks ? bounds.bounds(z, g) : nullptr);
       }
     }
-    this->findFirst(slices, v0, v1, scratch);
+    for (int v = this->Band.v0; v < this->Band.v1; ++v)
+    {
+      this->findFirst(slices, v);
+    }
   }
 
   /// Rays that only rounding lets meet the volume may have no sample.
-  void close(int v0, int v1) const
+  void close()
   {
-    const auto rows = this->Shared.image.winners.begin();
-    std::replace(rows + this->place(0, v0), rows + this->place(0, v1), AtFloor, std::int32_t(-1));
+    std::replace(
+      this->winner(0, this->Band.v0), this->winner(0, this->Band.v1), AtFloor, std::int32_t(-1));
   }
 
 private:
   /// No sample is above.
   static constexpr P Nothing = std::numeric_limits<P>::max();
-  /// Pixels; a multiple of all run units, or the other way round.
-  static constexpr int LeastRun = 64;
   /// Among winners, that the first sample is still to be found.
   static constexpr std::int32_t AtFloor = -2;
 
-  std::size_t place(int u, int v) const { return std::size_t(v) * this->Shared.image.width + u; }
-  void win(int u, int v, int step) const { this->Shared.image.winners[this->place(u, v)] = step; }
-
-  static P* minimaOf(const BandTiles& band, int group, BandScratch& scratch)
+  std::int32_t* winner(int u, int v) const
   {
-    return reinterpret_cast<P*>(scratch.minima.data()) + group * band.tiles();
+    return this->Shared.image.winners.data() + std::ptrdiff_t(v) * this->Band.width + u;
   }
-  void findMinima(const BandTiles& band, int group, BandScratch& scratch) const
+  Span slicesIn(int z) const { return slicesOfLayer(z, this->Shared.geometry.size()); }
+  P* minimaOf(int group)
   {
-    band.template findMinima<P>(this->Shared.kernels,
-      this->Limits + this->place(0, band.firstRow(group)), group, minimaOf(band, group, scratch));
+    return reinterpret_cast<P*>(this->Scratch.minima.data()) + std::ptrdiff_t(group) * this->Tiles;
+  }
+  void findMinima(int group)
+  {
+    this->Band.template findMinima<P>(this->Shared.kernels,
+      this->Limits.at(0, this->Band.firstRow(group)), group, this->minimaOf(group));
   }
 
-  /// The tiles of some groups of rows whose pixels a layer may have samples for.
-  void walkBlock(int z, const BandTiles& band, int first, int end, TileBounds<T, P>* bounds,
-    BandScratch& scratch) const
+  /// The tiles of a group whose pixels a layer may have samples for.
+  void walkGroup(int z, int group, const P* bounds)
   {
     const TileLoops<P>& loops = this->Shared.kernels;
-    const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
-    int count = 0;
-    for (int g = first; g < end; ++g)
+    std::vector<unsigned char>& flags = this->Scratch.flags;
+    const P* const minima = this->minimaOf(group);
+    if (bounds)
     {
-      const P* const minima = minimaOf(band, g, scratch);
-      openFlags(band.tiles(), scratch.flags);
-      if (bounds)
-      {
-        loops.exceeds(bounds->bounds(z, g), minima, scratch.flags.data(), band.tiles());
-      }
-      else
-      {
-        std::transform(minima, minima + band.tiles(), scratch.flags.data(),
-          [](P least) { return static_cast<unsigned char>(least < Nothing); });
-      }
-      count += scratch.block.sort(g - first, scratch.flags.data(),
-        this->Shared.cuts.none() ? nullptr : scratch.shares.find(slices, g));
+      loops.exceeds(bounds, minima, flags.data(), this->Tiles);
     }
-    if (count == 0)
+    else
     {
-      return;
+      std::transform(minima, minima + this->Tiles, flags.data(),
+        [](P least) { return static_cast<unsigned char>(least < Nothing); });
     }
-    scratch.block.forWhole(end - first,
-      [&](int a, int b, const std::vector<Span>& runs)
-      { this->findIn(z, band.firstRow(first + a), band.endRow(first + b - 1), runs, scratch); });
-    for (int g = first; g < end; ++g)
+    const bool isCut = !this->Shared.cuts.none() && this->leaveOutCut(z, group);
+    findTileRuns(flags.data(), this->Tiles, this->Stack.traits().runUnit, this->Band.width,
+      this->Scratch.runs);
+    const Span rows{ this->Band.firstRow(group), this->Band.endRow(group) };
+    if (!this->Scratch.runs.empty() && this->findIn(this->slicesIn(z), rows, isCut))
     {
-      scratch.block.forPartly(g - first,
-        [&](const Span& run)
-        { this->findCounting(slices, band.firstRow(g), band.endRow(g), run, scratch); });
-      this->findMinima(band, g, scratch);
+      this->findMinima(group);
     }
   }
 
-  /// Pixels all of whose samples count.
-  void findIn(int z, int v0, int v1, const std::vector<Span>& runs, BandScratch& scratch) const
+  /// Takes the flags from tiles no samples of which count. Whether others have such samples.
+  bool leaveOutCut(int z, int group)
   {
-    if (this->Stack.forExceeding(z, v0, v1, runs, this->Limits, scratch.patch,
-          [this](int u, int v, int step) { this->win(u, v, step); }))
+    const unsigned char* const shares = this->Scratch.shares.find(this->slicesIn(z), group);
+    bool isCut = false;
+    for (int t = 0; t < this->Tiles; ++t)
     {
-      return;
+      unsigned char& flag = this->Scratch.flags[t];
+      flag = static_cast<unsigned char>(flag & (shares[t] != NoSamples));
+      isCut = isCut || (flag && shares[t] == SomeSamples);
     }
-    for (const Span& run : runs)
-    {
-      this->Stack.forWorksheets(slicesOfLayer(z, this->Shared.geometry.size()), this->reversed(),
-        v0, v1, run, this->limits(), scratch.patch,
-        [&](int k, int v, const Span& pixels, const P* values) {
-          this->take(k, v, pixels, values, this->Limits + this->place(pixels.begin, v), scratch);
-        });
-    }
+    return isCut;
   }
 
-  /// The same where some samples count.
-  void findCounting(
-    const Span& slices, int v0, int v1, const Span& columns, BandScratch& scratch) const
+  /// The winners among some slices, for the runs. Whether there are any.
+  bool findIn(const Span& slices, const Span& rows, bool isCut)
   {
-    P* const limits = reinterpret_cast<P*>(scratch.row.data());
-    this->Stack.forWorksheets(slices, this->reversed(), v0, v1, columns, this->limits(),
-      scratch.patch,
-      [&](int k, int v, const Span& pixels, const P* values)
+    // Voxels are told apart afterwards.
+    const int count = slices.end - slices.begin;
+    const int apart = this->Stack.traits().beyond > 0 || isCut ? count : 1;
+    const PixelRows<P> copies =
+      this->Scratch.copies.copy(this->Limits, rows.begin, rows.end, this->Scratch.runs, apart);
+    this->Stack.splat(
+      slices, rows.begin, rows.end, this->Scratch.runs, copies, this->Scratch.patch);
+    bool any = false;
+    for (int n = 0; n < apart; ++n)
+    {
+      const int k = this->Reversed ? apart - 1 - n : n;
+      const Span some = apart > 1 ? Span{ slices.begin + k, slices.begin + k + 1 } : slices;
+      for (int v = rows.begin; v < rows.end; ++v)
       {
-        const unsigned char* const mask = scratch.mask.data();
-        if (this->Shared.cuts.findMask(k, v, pixels, scratch.mask.data()))
+        for (const Span& run : this->Scratch.runs)
         {
-          const P* const own = this->Limits + this->place(pixels.begin, v);
-          std::transform(own, own + (pixels.end - pixels.begin), mask, limits,
-            [](P limit, unsigned char counts) { return counts ? limit : Nothing; });
-          this->take(k, v, pixels, values, limits, scratch);
+          any |= this->findInRow(some, v, run, copies.slice(k).at(run.begin, v), isCut);
         }
-      });
+      }
+    }
+    return any;
   }
 
-  PixelRows<P> limits() const { return { this->Limits, this->Shared.image.width }; }
-
-  /// The worksheet of slice k for some pixels.
-  void take(
-    int k, int v, const Span& pixels, const P* values, P* limits, BandScratch& scratch) const
+  /// The pixels of a row that some slices have lifted.
+  bool findInRow(const Span& slices, int v, const Span& run, const P* lifted, bool isCut)
   {
-    const VoxelLoops<P>& loops = this->Shared.kernels;
-    std::vector<Exceeding>& found = scratch.patch.found;
-    found.resize(this->Shared.image.width);
-    const std::ptrdiff_t count =
-      loops.exceed(&values, 1, limits, found.data(), pixels.end - pixels.begin);
+    const TileLoops<P>& loops = this->Shared.kernels;
+    const std::ptrdiff_t count = loops.exceed(
+      lifted, this->Limits.at(run.begin, v), this->Scratch.found.data(), run.end - run.begin);
+    bool any = false;
     for (std::ptrdiff_t n = 0; n < count; ++n)
     {
-      const int u = pixels.begin + found[n].x;
-      const P limit = justBelow(this->Shared.image.template row<P>(v)[u]);
-      this->win(u, v, StepsPerSlice * k + this->Stack.firstSample(u, v, k, limit));
-      this->Limits[this->place(u, v)] = Nothing;
+      const int u = run.begin + this->Scratch.found[n];
+      P& limit = *this->Limits.at(u, v);
+      if (!isCut || this->counts(u, v, slices.begin))
+      {
+        *this->winner(u, v) = this->stepAbove(u, v, slices, limit);
+        limit = Nothing;
+        any = true;
+      }
     }
+    return any;
   }
 
-  /// The first samples of rays whose pixels are the floor.
-  void findFirst(const Span& slices, int v0, int v1, BandScratch& scratch) const
+  /// The first step of a ray in some slices whose sample is above a limit.
+  int stepAbove(int u, int v, const Span& slices, P limit) const
   {
-    for (int v = v0; v < v1; ++v)
+    for (int n = 0; n < slices.end - slices.begin; ++n)
     {
-      std::int32_t* const row = &this->Shared.image.winners[this->place(0, v)];
-      std::ptrdiff_t left = std::count(row, row + this->Shared.image.width, AtFloor);
-      for (int n = 0; n < slices.end - slices.begin && left > 0; ++n)
+      const int k = this->Reversed ? slices.end - 1 - n : slices.begin + n;
+      const int sample = this->crosses(u, v, k) ? this->Stack.firstSample(u, v, k, limit) : -1;
+      if (sample >= 0)
       {
-        const int k = this->reversed() ? slices.end - 1 - n : slices.begin + n;
-        const SliceGeometry& slice = this->Shared.sliceGeometry[k];
-        if (v >= slice.vBegin && v < slice.vEnd)
+        return StepsPerSlice * k + sample;
+      }
+    }
+    return -1;
+  }
+
+  /// Those of a row whose rays cross slice k.
+  Span pixels(int v, int k) const
+  {
+    const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+    return v >= slice.vBegin && v < slice.vEnd ? slice.span(v) : Span{};
+  }
+  bool crosses(int u, int v, int k) const
+  {
+    const Span pixels = this->pixels(v, k);
+    return u >= pixels.begin && u < pixels.end;
+  }
+  bool counts(int u, int v, int k) const
+  {
+    unsigned char mask;
+    return this->Shared.cuts.findMask(k, v, { u, u + 1 }, &mask) && mask;
+  }
+
+  /// The first samples of a row's rays whose pixels are the floor: nearly always where they enter
+  /// the volume.
+  void findFirst(const Span& slices, int v)
+  {
+    Span before;
+    for (int n = 0; n < slices.end - slices.begin; ++n)
+    {
+      const int k = this->Reversed ? slices.end - 1 - n : slices.begin + n;
+      const Span pixels = this->pixels(v, k);
+      const Span lower{ pixels.begin,
+        before.empty() ? pixels.end : std::min(pixels.end, before.begin) };
+      const Span upper{ before.empty() ? pixels.end : std::max(pixels.begin, before.end),
+        pixels.end };
+      for (const Span& entering : { lower, upper })
+      {
+        for (int u = entering.begin; u < entering.end; ++u)
         {
-          left -= this->findFirstIn(k, v, slice.span(v), row, scratch);
+          std::int32_t& winner = *this->winner(u, v);
+          winner = winner == AtFloor ? this->firstStep(u, v, k, slices) : winner;
         }
       }
+      before = pixels;
     }
   }
 
-  /// Those that lie in slice k, and how many they are.
-  int findFirstIn(int k, int v, const Span& pixels, std::int32_t* row, BandScratch& scratch) const
+  /// The first step of a ray that enters the volume in slice k.
+  int firstStep(int u, int v, int k, const Span& slices) const
   {
-    const bool isCut = !this->Shared.cuts.none();
-    if (isCut && !this->Shared.cuts.findMask(k, v, pixels, scratch.mask.data()))
+    const RayIntervals& intervals = this->Shared.cuts.source().intervals;
+    if (!intervals.empty())
     {
-      return 0;
+      k = this->Reversed ? std::min<int>(k, intervals.last(v)[u])
+                         : std::max<int>(k, intervals.first(v)[u]);
     }
-    int count = 0;
-    for (int u = pixels.begin; u < pixels.end; ++u)
+    for (; k >= slices.begin && k < slices.end; k += this->Reversed ? -1 : 1)
     {
-      if (row[u] == AtFloor && (!isCut || scratch.mask[u - pixels.begin]))
+      const int sample =
+        this->crosses(u, v, k) && this->counts(u, v, k) ? this->Stack.firstSample(u, v, k) : -1;
+      if (sample >= 0)
       {
-        const int sample = this->Stack.firstSample(u, v, k);
-        row[u] = sample < 0 ? AtFloor : StepsPerSlice * k + sample;
-        count += sample >= 0;
+        return StepsPerSlice * k + sample;
       }
     }
-    return count;
+    return AtFloor;
   }
 
-  Frame& Shared;
+  const Frame& Shared;
   const SliceSampler<T, P>& Stack;
-  P* Limits; // of all pixels
-  const BrickMaxima* Bricks = nullptr;
+  BandScratch& Scratch;
+  const PixelRows<P> Limits; // of all pixels
+  const BandTiles Band;
+  const int Tiles;
+  const bool Reversed;
 };
 }
 
 template <class T, class P>
 void findWinners(Frame& frame, const SliceSampler<T, P>& sampler)
 {
-  const WinnerWalk<T, P> walk(frame, sampler);
-  forSlices(frame, sampler.traits().beyond, walk.reversed(), { 0.5, 1.0 },
+  frame.space.limits.resize(frame.image.winners.size() * sizeof(P));
+  forSlices(frame, sampler.traits().beyond, frame.geometry.reversed(), { 0.5, 1.0 },
     [&](const Span& slices, bool isFirst, bool isLast)
     {
       forBands(frame.image.height, bandHeight(frame.image.height), frame.watch,
         [&](int v0, int v1)
         {
+          WinnerWalk<T, P> band(frame, sampler, frame.space.bands.Local(), v0, v1);
           if (isFirst)
           {
-            walk.open(v0, v1);
+            band.open();
           }
-          walk.walk(slices, v0, v1, frame.space.bands.Local());
+          band.walk(slices);
           if (isLast)
           {
-            walk.close(v0, v1);
+            band.close();
             sampler.finish(v0, v1);
             closeRows<P>(frame.image, v0, v1);
           }

@@ -28,7 +28,6 @@ struct Patch
   std::vector<unsigned char> bytes;
   std::vector<std::uint16_t> runEnds;   ///< of walks along chains only
   std::vector<unsigned char> worksheet; ///< of walks that look at each sample only
-  std::vector<Exceeding> found;         ///< of pixels that winners are looked for
   std::vector<unsigned char> present;   ///< which of its pixels have one, in perspective previews
   std::vector<Span> runs;               ///< of perspective previews: what a slice covers of others
   Span rows, pixels;                    ///< of the image, that it has the voxels for

@@ -25,7 +25,6 @@ class PerspectivePreview : public SliceSampler<T, T>
 
 public:
   using typename SliceSampler<T, T>::Samples;
-  using typename SliceSampler<T, T>::Worksheets;
 
   /// @param windows  of the columns
   /// @param none     work space
@@ -51,23 +50,25 @@ public:
     return this->Shared.steps.rows.voxels(this->slices(z), pixels);
   }
 
-  void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const override
+  void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
+    const PixelRows<T>& pixels, Patch& patch) const override
   {
-    const Span slices = this->slices(z);
+    const Span some = common(slices, this->Shared.geometry.slices());
     if (this->Shared.range.special)
     {
-      this->splatSamples(slices, v0, v1, patch);
+      this->splatSamples(some, v0, v1, patch);
       return;
     }
     const VoxelLoops<T>& loops = this->Shared.kernels;
-    for (int k = slices.begin; k < slices.end; k += 2)
+    // Two slices at a time: the image is read and written once.
+    const int step = pixels.sliceStride != 0 ? 1 : 2;
+    for (int k = some.begin; k < some.end; k += step)
     {
-      // Two slices at a time: the image is read and written once.
-      const int next = std::min(k + 1, slices.end - 1);
-      const Span rows = this->findRuns(k, next, { v0, v1 }, runs, patch.runs);
+      const int last = std::min(k + step, some.end) - 1;
+      const Span rows = this->findRuns(k, last, { v0, v1 }, runs, patch.runs);
       if (!rows.empty() && !patch.runs.empty())
       {
-        loops.cross(this->crossingOf(k, next, rows, patch.runs));
+        loops.cross(this->crossingOf(k, last, rows, patch.runs, pixels.slice(k - slices.begin)));
       }
     }
   }
@@ -77,44 +78,8 @@ public:
   {
     for (int z = layers.begin; z < layers.end; ++z)
     {
-      this->splat(z, v0, v1, all, patch);
-    }
-  }
-
-  void forWorksheets(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
-    const PixelRows<T>&, Patch& patch, const Worksheets& f) const override
-  {
-    const VoxelLoops<T>& loops = this->Shared.kernels;
-    const Span some = common(slices, this->Shared.geometry.slices());
-    const std::ptrdiff_t width = this->Shared.image.width;
-    // Registers may reach into rows beyond.
-    patch.worksheet.resize(width * (v1 - v0 + RunUnit) * sizeof(T));
-    T* const worksheet = reinterpret_cast<T*>(patch.worksheet.data());
-    const std::vector<Span> run{ unitsOf(columns) };
-    for (int n = 0; n < some.end - some.begin; ++n)
-    {
-      const int k = reversed ? some.end - 1 - n : some.begin + n;
-      const Span rows = this->findRuns(k, k, { v0, v1 }, run, patch.runs);
-      if (rows.empty() || patch.runs.empty())
-      {
-        continue;
-      }
-      for (int v = rows.begin; v < rows.end; ++v)
-      {
-        T* const row = worksheet + (v - rows.begin) * width;
-        std::fill(row + patch.runs[0].begin, row + patch.runs[0].end, leastValue<T>());
-      }
-      Crossing<T> crossing = this->crossingOf(k, k, rows, patch.runs);
-      crossing.image = worksheet;
-      loops.cross(crossing);
-      for (int v = rows.begin; v < rows.end; ++v)
-      {
-        const Span pixels = common(columns, this->Shared.pixels(v, k));
-        if (!pixels.empty())
-        {
-          f(k, v, pixels, worksheet + (v - rows.begin) * width + pixels.begin);
-        }
-      }
+      this->splat(slicesOfLayer(z, this->Shared.geometry.size()), v0, v1, all,
+        pixelsOf<T>(this->Shared.image), patch);
     }
   }
 
@@ -220,11 +185,12 @@ private:
   }
 
   /// Of a slice and the one after it, or the same.
-  Crossing<T> crossingOf(int k, int next, const Span& rows, const std::vector<Span>& runs) const
+  Crossing<T> crossingOf(int k, int next, const Span& rows, const std::vector<Span>& runs,
+    const PixelRows<T>& pixels) const
   {
     Crossing<T> c;
-    c.imageStride = this->Shared.image.width;
-    c.image = this->Shared.image.template row<T>(rows.begin);
+    c.imageStride = pixels.stride;
+    c.image = pixels.at(0, rows.begin);
     c.height = rows.end - rows.begin;
     c.count = next - k + 1;
     c.slices[0] = this->sliceOf(k, rows.begin);

@@ -49,8 +49,6 @@ class PreviewLayers : public SliceSampler<T, T>
 {
 public:
   using typename SliceSampler<T, T>::Samples;
-  using typename SliceSampler<T, T>::Worksheets;
-  using typename SliceSampler<T, T>::Found;
 
   /// `storage` outlives this, and is kept for the next frame.
   PreviewLayers(const Frame& frame, std::vector<PreviewLayer>& storage)
@@ -63,35 +61,14 @@ public:
 
   Window window(int layer) const override { return this->Layers[layer].window; }
 
-  void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch&) const override
+  void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
+    const PixelRows<T>& pixels, Patch&) const override
   {
-    const Layer& layer = this->Layers[z];
-    if (this->Shared.cuts.none())
+    const int step = pixels.sliceStride != 0 ? 1 : slices.end - slices.begin;
+    for (int k = slices.begin; k < slices.end; k += step)
     {
-      this->splatLayer(layer, v0, v1, runs, {});
-      return;
+      this->splatSome({ k, k + step }, v0, v1, runs, pixels.slice(k - slices.begin), {});
     }
-    for (const Span& run : runs)
-    {
-      this->splatExactly(layer, v0, v1, run);
-    }
-  }
-
-  void forWorksheets(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
-    const PixelRows<T>&, Patch& patch, const Worksheets& f) const override
-  {
-    const VoxelLoops<T>& loops = this->Shared.kernels;
-    patch.worksheet.resize(this->Shared.image.width * sizeof(T));
-    T* const worksheet = reinterpret_cast<T*>(patch.worksheet.data());
-    this->forRows(slices, reversed, v0, v1, columns,
-      [&](int k, int v, const Span& span)
-      {
-        std::fill(worksheet + span.begin, worksheet + span.end, leastValue<T>());
-        this->forVoxels(k, v, span, false,
-          [&](int, const Span& pixels, const T* voxels)
-          { loops.maximum(worksheet + pixels.begin, &voxels, 1, pixels.end - pixels.begin); });
-        f(k, v, span, worksheet + span.begin);
-      });
   }
 
   int firstSample(int u, int v, int k, T limit) const override
@@ -101,27 +78,6 @@ public:
   int firstSample(int u, int v, int k) const override
   {
     return this->firstVoxel(u, v, k, [](T) { return true; });
-  }
-
-  bool forExceeding(int z, int v0, int v1, const std::vector<Span>& runs, T* limits, Patch& patch,
-    const Found& f) const override
-  {
-    const Layer& layer = this->Layers[z];
-    const Span plain = this->plainRows(layer, v0, v1);
-    for (int v = v0; v < v1; ++v)
-    {
-      T* const row = limits + std::ptrdiff_t(v) * this->Shared.image.width;
-      for (const Span& run : runs)
-      {
-        const bool isPlain = v >= plain.begin && v < plain.end;
-        const Span inner = isPlain ? common(run, layer.valid) : Span{ run.begin, run.begin };
-        const Span whole = inner.empty() ? Span{ run.begin, run.begin } : inner;
-        this->findInSlices(layer, v, { run.begin, whole.begin }, row, patch, f);
-        this->findInLayer(layer, v, whole, row, patch, f);
-        this->findInSlices(layer, v, { whole.end, run.end }, row, patch, f);
-      }
-    }
-    return true;
   }
 
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns, Patch&,
@@ -141,6 +97,7 @@ public:
   void splatAll(
     const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch&) const override
   {
+    const PixelRows<T> image = pixelsOf<T>(this->Shared.image);
     const Slices& slices = this->Shared.slices;
     const bool slicesFirst = slices.rowStride <= slices.sliceStride;
     const int height = slicesFirst ? v1 - v0 : 2 * BrickHeight;
@@ -156,7 +113,7 @@ public:
     {
       for (int z = layers.begin; z < layers.end; ++z)
       {
-        this->splatLayer(this->Layers[z], v, std::min(v + height, v1), all, reading);
+        this->splatSome(this->Layers[z].slices, v, std::min(v + height, v1), all, image, reading);
       }
     }
   }
@@ -175,14 +132,6 @@ private:
     int ahead = 0;               ///< to those that come next, if that is known
   };
 
-  struct Runs
-  {
-    const Span* first;
-    int count;
-  };
-
-  ShearImage& image() const { return this->Shared.image; }
-
   template <class Wanted>
   int firstVoxel(int u, int v, int k, Wanted&& isWanted) const
   {
@@ -196,85 +145,18 @@ private:
       });
   }
 
-  /// forExceeding() for pixels that see voxels along all paths of a layer.
-  void findInLayer(
-    const Layer& layer, int v, const Span& pixels, T* limits, Patch& patch, const Found& f) const
+  /// Slices of one layer.
+  void splatSome(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
+    const PixelRows<T>& pixels, const Reading& reading) const
   {
-    const bool reversed = this->Shared.geometry.reversed();
-    const auto tapAt = [&](int r) -> const Layer::Tap&
-    { return layer.taps[reversed ? layer.tapCount - 1 - r : r]; };
-    const T* rows[MostRows];
-    for (int r = 0; r < layer.tapCount; ++r)
-    {
-      const Layer::Tap& tap = tapAt(r);
-      rows[r] = this->Shared.template voxelRow<T>(v + tap.dj, tap.k) + tap.di + pixels.begin;
-    }
-    this->findInRows(rows, layer.tapCount, pixels, limits, patch,
-      [&](int u, int r) { f(u, v, StepsPerSlice * tapAt(r).k + tapAt(r).t); });
-  }
-
-  /// The same for any pixels.
-  void findInSlices(
-    const Layer& layer, int v, const Span& pixels, T* limits, Patch& patch, const Found& f) const
-  {
-    const bool reversed = this->Shared.geometry.reversed();
-    this->forRows(layer.slices, reversed, v, v + 1, pixels,
-      [&](int k, int, const Span& span)
-      {
-        this->forVoxels(k, v, span, reversed,
-          [&](int t, const Span& some, const T* voxels)
-          {
-            this->findInRows(
-              &voxels, 1, some, limits, patch, [&](int u, int) { f(u, v, StepsPerSlice * k + t); });
-          });
-      });
-  }
-
-  template <class F>
-  void findInRows(
-    const T* const* rows, int count, const Span& pixels, T* limits, Patch& patch, F&& f) const
-  {
-    if (pixels.empty())
-    {
-      return;
-    }
-    patch.found.resize(this->Shared.image.width);
-    const VoxelLoops<T>& loops = this->Shared.kernels;
-    const std::ptrdiff_t found = loops.exceed(
-      rows, count, limits + pixels.begin, patch.found.data(), pixels.end - pixels.begin);
-    for (std::ptrdiff_t n = 0; n < found; ++n)
-    {
-      f(pixels.begin + patch.found[n].x, patch.found[n].row);
-    }
-  }
-
-  void splatLayer(
-    const Layer& layer, int v0, int v1, const std::vector<Span>& runs, const Reading& reading) const
-  {
+    const Layer& layer = this->Layers[slices.begin / BrickDepth];
     const Span plain = this->plainRows(layer, v0, v1);
-    this->splatSlices(layer.slices, v0, plain.begin, runs.data(), runs.size());
+    this->splatSlices(slices, v0, plain.begin, runs, pixels);
     if (!plain.empty())
     {
-      this->sweep(
-        layer, plain, { runs.data(), static_cast<int>(runs.size()) }, everything(), reading);
+      this->sweep(layer, slices, plain, runs, pixels, reading);
     }
-    this->splatSlices(layer.slices, plain.end, v1, runs.data(), runs.size());
-  }
-
-  /// Pixels of a run, and none beside it.
-  void splatExactly(const Layer& layer, int v0, int v1, const Span& run) const
-  {
-    const Span plain = this->plainRows(layer, v0, v1), inner = common(run, layer.valid);
-    if (plain.empty() || inner.empty())
-    {
-      this->splatSlices(layer.slices, v0, v1, &run, 1);
-      return;
-    }
-    this->splatSlices(layer.slices, v0, plain.begin, &run, 1);
-    this->sweep(layer, plain, { &inner, 1 }, inner, {});
-    const Span sides[2] = { { run.begin, inner.begin }, { inner.end, run.end } };
-    this->splatSlices(layer.slices, plain.begin, plain.end, sides, 2);
-    this->splatSlices(layer.slices, plain.end, v1, &run, 1);
+    this->splatSlices(slices, plain.end, v1, runs, pixels);
   }
 
   /// The rows of pixels, of some, whose voxels all exist in a layer, and beside which there are
@@ -338,33 +220,35 @@ private:
     }
   }
 
-  static constexpr Span everything()
+  /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns.
+  void sweep(const Layer& layer, const Span& slices, const Span& rows,
+    const std::vector<Span>& runs, const PixelRows<T>& pixels, const Reading& reading) const
   {
-    return { std::numeric_limits<int>::min(), std::numeric_limits<int>::max() };
-  }
-
-  /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns. Besides the
-  /// runs other pixels within the `limits` may be swept.
-  void sweep(const Layer& layer, const Span& rows, const Runs& runs, const Span& limits,
-    const Reading& reading) const
-  {
-    for (int first = 0, end = 0; first < layer.tapCount; first = end)
+    int first = 0;
+    while (first < layer.tapCount && layer.taps[first].k < slices.begin)
     {
-      while (end < layer.tapCount && layer.taps[end].k - layer.taps[first].k < reading.sideBySide)
+      ++first;
+    }
+    while (first < layer.tapCount && layer.taps[first].k < slices.end)
+    {
+      const int last = std::min(layer.taps[first].k + reading.sideBySide, slices.end);
+      int end = first;
+      while (end < layer.tapCount && layer.taps[end].k < last)
       {
         ++end;
       }
-      this->sweepTaps(layer, first, end, rows, runs, limits, reading.ahead);
+      this->sweepTaps(layer, first, end, rows, runs, pixels, reading.ahead);
+      first = end;
     }
   }
 
-  void sweepTaps(const Layer& layer, int firstTap, int endTap, const Span& rows, const Runs& runs,
-    const Span& limits, int slicesAhead) const
+  void sweepTaps(const Layer& layer, int firstTap, int endTap, const Span& rows,
+    const std::vector<Span>& runs, const PixelRows<T>& pixels, int slicesAhead) const
   {
     const int v0 = rows.begin;
     Sweep<T> sweep;
-    sweep.imageStride = this->Shared.image.width;
-    sweep.image = this->image().template row<T>(v0);
+    sweep.imageStride = pixels.stride;
+    sweep.image = pixels.at(0, v0);
     sweep.height = rows.end - v0;
     sweep.count = endTap - firstTap;
     const Slices& slices = this->Shared.slices;
@@ -377,22 +261,22 @@ private:
       const Layer::Tap& tap = layer.taps[t];
       sweep.rows[t - firstTap] = this->Shared.template voxelRow<T>(v0 + tap.dj, tap.k) + tap.di;
     }
-    sweep.runs = runs.first;
-    sweep.runCount = runs.count;
+    sweep.runs = runs.data();
+    sweep.runCount = static_cast<int>(runs.size());
     // Pixels that see voxels along all paths, which all do that see any if paths shift alike.
     const Layer::Tap& one = layer.taps[firstTap];
     const bool shiftAlike = std::all_of(layer.taps.begin() + firstTap, layer.taps.begin() + endTap,
       [&](const Layer::Tap& tap) { return tap.di == one.di; });
     const Span sees{ -one.di, this->Shared.geometry.size().x - one.di };
-    sweep.valid = common(limits, shiftAlike ? sees : layer.valid);
+    sweep.valid = shiftAlike ? sees : layer.valid;
     sweep.rimCount = 0;
     if (!shiftAlike)
     {
-      if (runs.first->begin < layer.valid.begin)
+      if (runs.front().begin < layer.valid.begin)
       {
         sweep.rims[sweep.rimCount++] = rimOf(layer.left, firstTap);
       }
-      if (runs.first[runs.count - 1].end > layer.valid.end)
+      if (runs.back().end > layer.valid.end)
       {
         sweep.rims[sweep.rimCount++] = rimOf(layer.right, firstTap);
       }
@@ -416,20 +300,20 @@ private:
   }
 
   /// Any rows, slice by slice.
-  void splatSlices(const Span& slices, int v0, int v1, const Span* runs, std::size_t count) const
+  void splatSlices(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
+    const PixelRows<T>& pixels) const
   {
-    for (std::size_t n = 0; n < count; ++n)
+    for (const Span& run : runs)
     {
-      this->forRows(slices, false, v0, v1, runs[n],
-        [&](int k, int v, const Span& span) { this->splatRow(k, v, span); });
+      this->forRows(slices, false, v0, v1, run,
+        [&](int k, int v, const Span& span) { this->splatRow(k, v, span, pixels.at(0, v)); });
     }
   }
 
-  void splatRow(int k, int v, const Span& span) const
+  void splatRow(int k, int v, const Span& span, T* row) const
   {
     const VoxelLoops<T>& loops = this->Shared.kernels;
     const RayLoops<T>& any = this->Shared.kernels;
-    T* const row = this->image().template row<T>(v);
     this->forVoxels(k, v, span, false,
       [&](int, const Span& pixels, const T* voxels)
       {

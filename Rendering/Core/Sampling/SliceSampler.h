@@ -37,15 +37,27 @@ struct SamplerTraits
   int runUnit;      ///< pixels whose multiples runs had best begin and end at
 };
 
-/// Rows of pixels that lie somewhere.
+/// Rows of pixels that samples are taken into: the image's, or copies of them.
 template <class P>
 struct PixelRows
 {
-  const P* origin; ///< of pixel (0, 0), which need not exist
+  P* origin; ///< pixel (0, 0), which need not exist
   std::ptrdiff_t stride;
+  /// To the rows of the next slice, if slices are to be taken apart.
+  std::ptrdiff_t sliceStride = 0;
 
-  const P* at(int u, int v) const { return this->origin + v * this->stride + u; }
+  P* at(int u, int v) const { return this->origin + v * this->stride + u; }
+  /// The rows of the n-th slice.
+  PixelRows slice(int n) const
+  {
+    return { this->origin + n * this->sliceStride, this->stride, this->sliceStride };
+  }
 };
+template <class P>
+PixelRows<P> pixelsOf(ShearImage& image)
+{
+  return { image.row<P>(0), image.width };
+}
 
 /**
  * How voxels of type T become samples of pixels of type P: the voxels themselves (P is T), or
@@ -81,37 +93,22 @@ public:
   /// What pixels start from: no sample ends below.
   virtual P floor() const = 0;
 
-  /// Takes a layer's samples into the pixels of some rows and runs of columns. Where nothing cuts
-  /// rays it may take them into pixels beside the runs as well.
-  virtual void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const = 0;
+  /// Takes the samples of some slices of a layer into pixels of some rows and runs of columns, and
+  /// perhaps into pixels of these rows beside the runs. Not NaN or infinite ones into slices apart.
+  virtual void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
+    const PixelRows<P>& pixels, Patch& patch) const = 0;
 
-  /// The same for all pixels of some rows, which are one run, and all slices of some layers, in the
-  /// order that suits memory.
+  /// The same for all pixels of some of the image's rows, which are one run, and all slices of some
+  /// layers, in the order that suits memory.
   virtual void splatAll(
     const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const = 0;
 
-  /// The worksheet of slice k in a row of pixels: the largest of the samples that each has there.
-  using Worksheets = std::function<void(int k, int v, const Span& pixels, const P* values)>;
-  /// Tells the worksheets of some slices, from the first or from the last one on, for some rows and
-  /// columns of pixels. Values that are no more than the pixel's limit may be told as anything that
-  /// is not. Not for voxels that are NaN or infinite.
-  virtual void forWorksheets(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
-    const PixelRows<P>& limits, Patch& patch, const Worksheets& f) const = 0;
-
   /// The first sample of a pixel in slice k, from the viewer on, that is above a limit: its number
-  /// among the slice's, or -1 if there is none. Asked where the worksheet is above it.
+  /// among the slice's, or -1 if there is none. Where each slice is one sample, it is asked only
+  /// where that is above.
   virtual int firstSample(int, int, int, P) const { return 0; }
   /// The same where any sample will do; only for slices that the pixel's ray crosses.
   virtual int firstSample(int, int, int) const { return 0; }
-
-  /// Calls f(u, v, step) for the pixels that have samples above their limits in layer z, with the
-  /// first of them from the viewer on, and sets these limits to the greatest value. False if this
-  /// is no faster than by worksheets.
-  using Found = std::function<void(int u, int v, int step)>;
-  virtual bool forExceeding(int, int, int, const std::vector<Span>&, P*, Patch&, const Found&) const
-  {
-    return false;
-  }
 
   /// Samples of one step of the rays in a row of pixels, steps as in ShearImage::winners; and which
   /// of the pixels have that step, or nullptr if all do. A worksheet that is none is NaN.

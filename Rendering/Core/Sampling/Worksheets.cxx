@@ -186,19 +186,25 @@ void WorksheetLayers<T>::forRows(int k, int v0, int v1, const Span& columns, F&&
 }
 
 template <class T>
-void WorksheetLayers<T>::splat(
-  int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const
+void WorksheetLayers<T>::splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
+  const Target& pixels, Patch& patch) const
 {
-  const Span slices = slicesOfLayer(z, this->Shared.geometry.size());
   for (const Span& run : runs)
   {
-    this->forPieces(v0, v1, run,
-      [&](int first, int last, const Span& columns)
-      {
-        this->open(first, last, columns, patch);
-        this->splatPiece(slices, first, last, columns, patch);
-      });
+    this->splatPieces(slices, v0, v1, run, pixels, patch);
   }
+}
+
+template <class T>
+void WorksheetLayers<T>::splatPieces(
+  const Span& slices, int v0, int v1, const Span& run, const Target& target, Patch& patch) const
+{
+  this->forPieces(v0, v1, run,
+    [&](int first, int last, const Span& columns)
+    {
+      this->open(first, last, columns, patch);
+      this->splatPiece(slices, first, last, columns, target, patch);
+    });
 }
 
 template <class T>
@@ -210,10 +216,10 @@ void WorksheetLayers<T>::open(int v0, int v1, const Span& columns, Patch& patch)
 }
 
 template <class T>
-template <class Open, class F>
-void WorksheetLayers<T>::forRaised(const Span& slices, bool reversed, int v0, int v1,
-  const Span& columns, Patch& patch, Open&& open, F&& f) const
+void WorksheetLayers<T>::forSamples(const Span& slices, bool reversed, int v0, int v1,
+  const Span& columns, Patch& patch, const Samples& f) const
 {
+  const A none = this->Shared.range.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
   this->forPieces(v0, v1, columns,
     [&](int first, int last, const Span& piece)
     {
@@ -227,38 +233,16 @@ void WorksheetLayers<T>::forRaised(const Span& slices, bool reversed, int v0, in
           {
             for (int v = begin; v < end; ++v)
             {
-              open(v, span, worksheet.at(span.begin, v));
+              std::fill_n(worksheet.at(span.begin, v), span.end - span.begin, none);
             }
             this->splatOne(k, reversed ? -1 : 1, begin, end, span, worksheet, patch);
             for (int v = begin; v < end; ++v)
             {
-              f(k, v, span, worksheet.at(span.begin, v));
+              f(StepsPerSlice * k, v, span, worksheet.at(span.begin, v), nullptr);
             }
           });
       }
     });
-}
-
-template <class T>
-void WorksheetLayers<T>::forSamples(const Span& slices, bool reversed, int v0, int v1,
-  const Span& columns, Patch& patch, const Samples& f) const
-{
-  const A none = this->Shared.range.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
-  this->forRaised(
-    slices, reversed, v0, v1, columns, patch,
-    [=](int, const Span& pixels, A* out) { std::fill_n(out, pixels.end - pixels.begin, none); },
-    [&](int k, int v, const Span& pixels, const A* values)
-    { f(StepsPerSlice * k, v, pixels, values, nullptr); });
-}
-
-template <class T>
-void WorksheetLayers<T>::forWorksheets(const Span& slices, bool reversed, int v0, int v1,
-  const Span& columns, const PixelRows<A>& limits, Patch& patch, const Worksheets& f) const
-{
-  // No more is found out about what is no larger.
-  const auto putLimits = [&](int v, const Span& pixels, A* out)
-  { std::copy_n(limits.at(pixels.begin, v), pixels.end - pixels.begin, out); };
-  this->forRaised(slices, reversed, v0, v1, columns, patch, putLimits, f);
 }
 
 template <class T>
@@ -267,12 +251,7 @@ void WorksheetLayers<T>::splatAll(
 {
   const Span slices{ layers.begin * BrickDepth,
     std::min(layers.end * BrickDepth, this->Shared.geometry.size().z) };
-  this->forPieces(v0, v1, all.front(),
-    [&](int first, int last, const Span& columns)
-    {
-      this->open(first, last, columns, patch);
-      this->splatPiece(slices, first, last, columns, patch);
-    });
+  this->splatPieces(slices, v0, v1, all.front(), pixelsOf<A>(this->Shared.image), patch);
 }
 
 template <class T>
@@ -298,10 +277,7 @@ auto WorksheetLayers<T>::worksheetFor(int v0, int v1, const Span& columns, Patch
   const std::ptrdiff_t stride = columns.end - columns.begin;
   patch.worksheet.resize((v1 - v0) * stride * sizeof(A));
   A* const first = reinterpret_cast<A*>(patch.worksheet.data());
-  Target worksheet;
-  worksheet.origin = first - v0 * stride - columns.begin;
-  worksheet.stride = stride;
-  return worksheet;
+  return { first - v0 * stride - columns.begin, stride };
 }
 
 template <class T>
@@ -317,15 +293,14 @@ void WorksheetLayers<T>::splatOne(
 
 template <class T>
 void WorksheetLayers<T>::splatPiece(
-  const Span& slices, int v0, int v1, const Span& columns, Patch& patch) const
+  const Span& slices, int v0, int v1, const Span& columns, const Target& target, Patch& patch) const
 {
-  const Target image = this->image();
   for (int k = slices.begin; k < slices.end; ++k)
   {
     const int step = k + 1 < slices.end ? 1 : 0;
     this->forRows(k, v0, v1, columns,
       [&](int first, int end, const Span& span)
-      { this->splatOne(k, step, first, end, span, image, patch); });
+      { this->splatOne(k, step, first, end, span, target.slice(k - slices.begin), patch); });
   }
 }
 

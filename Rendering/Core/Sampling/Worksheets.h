@@ -86,7 +86,7 @@ class WorksheetLayers : public SliceSampler<T, Accumulator<T>>
 public:
   using A = Accumulator<T>;
   using typename SliceSampler<T, A>::Samples;
-  using typename SliceSampler<T, A>::Worksheets;
+  using Target = PixelRows<A>; ///< where worksheets go
 
   /// @param depth  how many slices beyond its own a footprint reads
   WorksheetLayers(const Frame& frame, bool perspective, const WorksheetReach<A>& reach, int depth)
@@ -109,12 +109,11 @@ public:
     return std::abs(static_cast<A>(this->Shared.range.low) - this->Base);
   }
 
-  void splat(int z, int v0, int v1, const std::vector<Span>& runs, Patch& patch) const override;
+  void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
+    const Target& pixels, Patch& patch) const override;
   /// Piece by piece, so that voxels are widened once.
   void splatAll(
     const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const override;
-  void forWorksheets(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
-    const PixelRows<A>& limits, Patch& patch, const Worksheets& f) const override;
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
     Patch& patch, const Samples& f) const override;
 
@@ -129,14 +128,6 @@ public:
   void finish(int v0, int v1) const override;
 
 protected:
-  /// Where worksheets go.
-  struct Target
-  {
-    A* origin; ///< of pixel (0, 0), which need not exist
-    std::ptrdiff_t stride;
-    A* at(int u, int v) const { return this->origin + v * this->stride + u; }
-  };
-
   /// Room for the voxels of some rows and columns of pixels.
   void open(int v0, int v1, const Span& columns, Patch& patch) const;
 
@@ -170,14 +161,6 @@ private:
     return std::numeric_limits<T>::is_integer && sizeof(T) < 8 ? static_cast<A>(range.low) : A(0);
   }
 
-  Target image() const
-  {
-    Target image;
-    image.origin = this->Shared.image.template row<A>(0);
-    image.stride = this->Shared.image.width;
-    return image;
-  }
-
   /// Room for one worksheet.
   Target worksheetFor(int v0, int v1, const Span& columns, Patch& patch) const;
 
@@ -189,13 +172,10 @@ private:
   /// @param step  to the worksheet that comes next, 0 if none does
   void splatOne(int k, int step, int first, int end, const Span& span, const Target& target,
     Patch& patch) const;
-  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, Patch& patch) const;
-
-  /// Calls f(k, v, pixels, values) for the worksheets of some slices, of whose rows open(v, pixels)
-  /// sets what they start from.
-  template <class Open, class F>
-  void forRaised(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
-    Patch& patch, Open&& open, F&& f) const;
+  void splatPieces(
+    const Span& slices, int v0, int v1, const Span& run, const Target& target, Patch& patch) const;
+  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const Target& target,
+    Patch& patch) const;
 
   /// Calls f(first, end, span) for rows that slice k covers in the same columns: nearly always all
   /// of them at once.
