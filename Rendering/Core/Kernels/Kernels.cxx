@@ -177,12 +177,10 @@ std::ptrdiff_t exceed(const P* samples, const P* limits, std::int32_t* found, st
   constexpr std::ptrdiff_t w = width<P>;
   constexpr std::ptrdiff_t word = w * sizeof(P) < 8 ? w : 8 / sizeof(P); // elements
   std::int32_t* end = found;
-  const auto take = [&](std::ptrdiff_t x)
+  const auto take = [&](std::ptrdiff_t x) // without a branch, which could not be foreseen
   {
-    if (samples[x] > limits[x])
-    {
-      *end++ = static_cast<std::int32_t>(x);
-    }
+    *end = static_cast<std::int32_t>(x);
+    end += samples[x] > limits[x];
   };
   std::ptrdiff_t x = 0;
   for (; x + w <= n; x += w)

@@ -188,7 +188,8 @@ private:
   void splatWholly(int z, const Span& rows, const Span& run)
   {
     const PixelRows<P> image = pixelsOf<P>(this->Shared.image);
-    const PixelRows<P> copies = this->splatApart(this->slicesIn(z), rows, run, 1);
+    const PixelRows<P> copies =
+      this->splatApart(this->slicesIn(z), rows, this->inRegisters(run), 1);
     for (int v = rows.begin; v < rows.end; ++v)
     {
       std::copy(copies.at(run.begin, v), copies.at(run.end, v), image.at(run.begin, v));
@@ -198,22 +199,46 @@ private:
   /// Pixels for which some count.
   void splatPartly(int z, const Span& rows, const Span& run)
   {
+    // Only worksheets of neighbouring slices share what they read.
+    const Span slices = this->slicesIn(z);
+    const int step = this->Stack.traits().beyond > 0 ? slices.end - slices.begin : 1;
+    for (int k = slices.begin; k < slices.end; k += step)
+    {
+      this->splatMasked({ k, k + step }, rows, this->inRegisters(run));
+    }
+  }
+
+  /// Those of a run and beside it, so that loops have whole registers.
+  Span inRegisters(const Span& run) const
+  {
+    constexpr int pixels = 64 / sizeof(P);
+    const int width = this->Shared.image.width, unit = this->Stack.traits().runUnit;
+    const int begin = run.begin / unit * unit, step = std::max(unit, pixels);
+    return { begin, std::min(begin + (run.end - begin + step - 1) / step * step, width) };
+  }
+
+  /// The same of some slices, as far as their rows have pixels that count.
+  void splatMasked(const Span& some, const Span& all, const Span& run)
+  {
     const int width = run.end - run.begin;
-    const auto maskOf = [&](int k, int v)
+    const auto place = [&](int k, int v)
+    { return std::size_t(k - some.begin) * (all.end - all.begin) + v - all.begin; };
+    this->Scratch.mask.resize(place(some.end, all.begin) * width);
+    this->Scratch.counting.resize(place(some.end, all.begin));
+    Span slices{ some.end, some.begin }, rows{ all.end, all.begin };
+    for (int k = some.begin; k < some.end; ++k)
     {
-      const int n = (k % BrickDepth) * (rows.end - rows.begin) + v - rows.begin;
-      return this->Scratch.mask.data() + std::ptrdiff_t(n) * width;
-    };
-    this->Scratch.mask.resize(std::size_t(BrickDepth) * (rows.end - rows.begin) * width);
-    Span slices{ 0, 0 }; // that count for any of them
-    for (int k = this->slicesIn(z).begin; k < this->slicesIn(z).end; ++k)
-    {
-      bool any = false;
-      for (int v = rows.begin; v < rows.end; ++v)
+      for (int v = all.begin; v < all.end; ++v)
       {
-        any |= this->Shared.cuts.findMask(k, v, run, maskOf(k, v));
+        const bool any =
+          this->Shared.cuts.findMask(k, v, run, &this->Scratch.mask[place(k, v) * width]);
+        this->Scratch.counting[place(k, v)] = any;
+        if (any)
+        {
+          slices = { std::min(slices.begin, k), k + 1 };
+          rows = { std::min(rows.begin, v), std::max(rows.end, v + 1) };
+        }
       }
-      slices = !any ? slices : Span{ slices.empty() ? k : slices.begin, k + 1 };
     }
     if (slices.empty())
     {
@@ -226,8 +251,11 @@ private:
     {
       for (int v = rows.begin; v < rows.end; ++v)
       {
-        loops.raise(image.at(run.begin, v), copies.slice(k - slices.begin).at(run.begin, v),
-          maskOf(k, v), width);
+        if (this->Scratch.counting[place(k, v)])
+        {
+          loops.raise(image.at(run.begin, v), copies.slice(k - slices.begin).at(run.begin, v),
+            &this->Scratch.mask[place(k, v) * width], width);
+        }
       }
     }
   }
@@ -235,10 +263,7 @@ private:
   /// Takes some slices into as many copies of pixels, or all into one.
   PixelRows<P> splatApart(const Span& slices, const Span& rows, const Span& run, int copies)
   {
-    const int unit = this->Stack.traits().runUnit;
-    this->Scratch.runs.assign(1,
-      { run.begin / unit * unit,
-        std::min((run.end + unit - 1) / unit * unit, this->Shared.image.width) });
+    this->Scratch.runs.assign(1, run);
     const PixelRows<P> apart = this->Scratch.copies.copy(
       pixelsOf<P>(this->Shared.image), rows.begin, rows.end, this->Scratch.runs, copies);
     this->Stack.splat(slices, rows.begin, rows.end, this->Scratch.runs, apart, this->Scratch.patch);

@@ -57,7 +57,7 @@ struct BandScratch
   std::vector<Span> runs;
   TileShares shares;
   PixelCopies copies;
-  std::vector<unsigned char> mask;
+  std::vector<unsigned char> mask, counting;
   std::vector<std::int32_t> found;
   std::vector<unsigned char> brickRow;
   std::vector<Span> tileWindows;

@@ -208,27 +208,12 @@ private:
       P& limit = *this->Limits.at(u, v);
       if (!isCut || this->counts(u, v, slices.begin))
       {
-        *this->winner(u, v) = this->stepAbove(u, v, slices, limit);
+        *this->winner(u, v) = this->Stack.firstAbove(u, v, slices, limit);
         limit = Nothing;
         any = true;
       }
     }
     return any;
-  }
-
-  /// The first step of a ray in some slices whose sample is above a limit.
-  int stepAbove(int u, int v, const Span& slices, P limit) const
-  {
-    for (int n = 0; n < slices.end - slices.begin; ++n)
-    {
-      const int k = this->Reversed ? slices.end - 1 - n : slices.begin + n;
-      const int sample = this->crosses(u, v, k) ? this->Stack.firstSample(u, v, k, limit) : -1;
-      if (sample >= 0)
-      {
-        return StepsPerSlice * k + sample;
-      }
-    }
-    return -1;
   }
 
   /// Those of a row whose rays cross slice k.

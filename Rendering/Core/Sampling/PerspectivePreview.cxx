@@ -83,9 +83,23 @@ public:
     }
   }
 
-  int firstSample(int u, int v, int k, T limit) const override
+  int firstAbove(int u, int v, const Span& slices, T limit) const override
   {
-    return this->firstVoxel(u, v, k, [=](T voxel) { return voxel > limit; });
+    const Span some = common(slices, this->Shared.geometry.slices());
+    for (int n = 0; n < some.end - some.begin; ++n)
+    {
+      const int k = this->Shared.geometry.reversed() ? some.end - 1 - n : some.begin + n;
+      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+      const Span pixels = v >= slice.vBegin && v < slice.vEnd ? slice.span(v) : Span{};
+      const int step = u >= pixels.begin && u < pixels.end
+        ? this->firstVoxel(u, v, k, [=](T voxel) { return voxel > limit; })
+        : -1;
+      if (step >= 0)
+      {
+        return StepsPerSlice * k + step;
+      }
+    }
+    return -1;
   }
   int firstSample(int u, int v, int k) const override
   {

@@ -71,13 +71,30 @@ public:
     }
   }
 
-  int firstSample(int u, int v, int k, T limit) const override
+  int firstAbove(int u, int v, const Span& slices, T limit) const override
   {
-    return this->firstVoxel(u, v, k, [=](T voxel) { return voxel > limit; });
+    const Layer& layer = this->Layers[slices.begin / BrickDepth];
+    const glm::ivec3& size = this->Shared.geometry.size();
+    for (int n = 0; n < layer.tapCount; ++n)
+    {
+      const bool reversed = this->Shared.geometry.reversed();
+      const Layer::Tap& tap = layer.taps[reversed ? layer.tapCount - 1 - n : n];
+      const int i = u + tap.di, j = v + tap.dj;
+      if (tap.k >= slices.begin && tap.k < slices.end && i >= 0 && i < size.x && j >= 0 &&
+        j<size.y&& this->Shared.template voxelRow<T>(j, tap.k)[i]> limit)
+      {
+        return StepsPerSlice * tap.k + tap.t;
+      }
+    }
+    return -1;
   }
+
   int firstSample(int u, int v, int k) const override
   {
-    return this->firstVoxel(u, v, k, [](T) { return true; });
+    const glm::ivec3& size = this->Shared.geometry.size();
+    return firstOnPath(this->Shared.sliceGeometry[k].path, this->Shared.geometry.reversed(),
+      [&](int di, int dj)
+      { return u + di >= 0 && u + di < size.x && v + dj >= 0 && v + dj < size.y; });
   }
 
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns, Patch&,
@@ -131,19 +148,6 @@ private:
     int sideBySide = BrickDepth; ///< slices at a time
     int ahead = 0;               ///< to those that come next, if that is known
   };
-
-  template <class Wanted>
-  int firstVoxel(int u, int v, int k, Wanted&& isWanted) const
-  {
-    const glm::ivec3& size = this->Shared.geometry.size();
-    return firstOnPath(this->Shared.sliceGeometry[k].path, this->Shared.geometry.reversed(),
-      [&](int di, int dj)
-      {
-        const int i = u + di, j = v + dj;
-        return i >= 0 && i < size.x && j >= 0 && j < size.y &&
-          isWanted(this->Shared.template voxelRow<T>(j, k)[i]);
-      });
-  }
 
   /// Slices of one layer.
   void splatSome(const Span& slices, int v0, int v1, const std::vector<Span>& runs,

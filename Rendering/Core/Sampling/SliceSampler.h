@@ -103,11 +103,14 @@ public:
   virtual void splatAll(
     const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const = 0;
 
-  /// The first sample of a pixel in slice k, from the viewer on, that is above a limit: its number
-  /// among the slice's, or -1 if there is none. Where each slice is one sample, it is asked only
-  /// where that is above.
-  virtual int firstSample(int, int, int, P) const { return 0; }
-  /// The same where any sample will do; only for slices that the pixel's ray crosses.
+  /// The first step of a pixel's ray in some slices of a layer, from the viewer on, whose sample is
+  /// above a limit, as one is. Where samples reach beyond their slices it is asked for one slice.
+  virtual int firstAbove(int, int, const Span& slices, P) const
+  {
+    return StepsPerSlice * slices.begin;
+  }
+  /// The number of the first sample in slice k, which the pixel's ray crosses, among the slice's;
+  /// -1 if there is none.
   virtual int firstSample(int, int, int) const { return 0; }
 
   /// Samples of one step of the rays in a row of pixels, steps as in ShearImage::winners; and which
