@@ -3,8 +3,12 @@
 //
 // Where the rays of perspective views begin and end, in all images of a view, against their
 // definition in index space: from afar, from nearby and from inside the volume and what cuts it.
+// And previews of what a plane leaves, against a search of all voxels that rays cross.
 #include "CutScenes.h"
 
+#include "Reductions.h"
+
+#include <cstdint>
 #include <iostream>
 
 using namespace cutscenes;
@@ -187,6 +191,50 @@ void testNothingCut(Checks& check)
     });
 }
 
+/// Previews show the largest of the voxels whose slices count.
+void testPictures(Checks& check)
+{
+  coretesting::Sightings cut;
+  reference::forScenes("pictures", 80,
+    [&](int n, Random& random)
+    {
+      const auto volume = reference::uniformNoise<std::uint8_t>(
+        coretesting::randomSize(random, 30), random.bits(), 0, 255);
+      const View view = coretesting::randomPerspective(volume.size, random);
+      const glm::dvec4 plane =
+        halfSpaceThrough(randomPoint(random, view.dimensions), randomVector(random));
+      reference::RayCuts cuts;
+      cuts.halfSpaces.push_back({ plane.x, plane.y, plane.z, plane.w });
+      splatting::ProjectionSettings settings;
+      settings.quality = splatting::Quality::Preview;
+      settings.acceleration =
+        n % 2 ? splatting::Acceleration::Bricks : splatting::Acceleration::Dense;
+      std::vector<ShearWarp> images;
+      ShearWarp::factorise(view, images);
+      for (const ShearWarp& geometry : images)
+      {
+        const auto image = coretesting::project(volume, geometry, settings, { plane });
+        const reference::PerspectiveRays rays = coretesting::referenceRays(geometry);
+        const reference::RayCutter cutter(rays, cuts);
+        const auto samples = reference::voxelSamples(volume, rays);
+        cut.add(!image.mask.empty());
+        for (int v = 0; v < geometry.rayCount().y; ++v)
+        {
+          for (int u = 0; u < geometry.rayCount().x; ++u)
+          {
+            const auto& ray = samples[std::size_t(v) * rays.width() + u];
+            const auto expected =
+              reference::largest(reference::cutRay(ray, cutter, u, v, geometry.reversed())).front();
+            check(!expected.hit ||
+                (image.covers(u, v) && image.row<std::uint8_t>(v)[u] == expected.value),
+              "Pixel ", u, ", ", v, " shows another voxel than the largest that counts.");
+          }
+        }
+      }
+    });
+  check(cut.areEnough(0.3), "Planes cut.");
+}
+
 /// Octahedra around the eye, or beside it, whose corners are where the lines along the axes meet
 /// them.
 void testEyeAndCorners(Checks& check)
@@ -279,5 +327,6 @@ int TestPerspectiveCuts(int, char*[])
   testNothingCut(check);
   testEyeAndCorners(check);
   testReuse(check);
+  testPictures(check);
   return check.result();
 }
