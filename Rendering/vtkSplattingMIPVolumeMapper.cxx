@@ -34,6 +34,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <set>
 #include <string>
@@ -690,12 +691,33 @@ vtkImageData* vtkSplattingMIPVolumeMapper::GetLocations()
 //------------------------------------------------------------------------------
 bool vtkSplattingMIPVolumeMapper::PickWorldPosition(int x, int y, double position[3])
 {
-  if (!this->RecordLocations)
+  WinnerLocations::Sample sample;
+  if (!this->Internal->Locations.Pick(x, y, sample))
   {
-    vtkErrorMacro(<< "Nothing can be picked: call RecordLocationsOn() before the render.");
     return false;
   }
-  return this->Internal->Locations.Pick(x, y, position);
+  std::copy(&sample.position.x, &sample.position.x + 3, position);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPVolumeMapper::PickVoxel(int x, int y, int ijk[3])
+{
+  WinnerLocations::Sample sample;
+  if (!this->Internal->Locations.Pick(x, y, sample))
+  {
+    return false;
+  }
+  std::copy(&sample.voxel.x, &sample.voxel.x + 3, ijk);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+double vtkSplattingMIPVolumeMapper::PickValue(int x, int y)
+{
+  WinnerLocations::Sample sample;
+  return this->Internal->Locations.Pick(x, y, sample) ? sample.value
+                                                      : std::numeric_limits<double>::quiet_NaN();
 }
 
 //------------------------------------------------------------------------------

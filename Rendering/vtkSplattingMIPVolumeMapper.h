@@ -549,10 +549,10 @@ public:
 
   ///@{
   /**
-   * Find out where the samples lie that the picture shows, for GetLocations() and
-   * PickWorldPosition(). Default off; DepthCoding and WriteDepth need it and do it by themselves.
-   * Projections take two to three times as long, previews five to eight times, and 4 bytes for each
-   * pixel of the shear image, and as many again as the pixel has.
+   * Find out where the samples lie that the picture shows, for GetLocations(). Default off;
+   * DepthCoding and WriteDepth need it and do it by themselves. Projections take two to three times
+   * as long, previews five to eight times, and 4 bytes for each pixel of the shear image, and as
+   * many again as the pixel has.
    *
    * The sample of a ray is the one that its value comes from; of equal ones the nearest to the
    * viewer, whatever the acceleration and the number of threads. In mode PREVIEW it is a voxel, in
@@ -585,13 +585,29 @@ public:
    */
   vtkImageData* GetLocations();
 
+  ///@{
   /**
-   * The point of the world that a pixel of the window shows, as "Position" of GetLocations(), but
-   * for one pixel and at once. False, and position stays as it is, where the last render of this
-   * mapper has no sample. Whether the sample is opaque does not matter. Display coordinates, as
-   * vtkRenderWindowInteractor::GetEventPosition() gives them. Needs RecordLocations.
+   * What a pixel of the window shows: the sample of the shear pixel nearest to it, as
+   * RecordLocations finds it, which need not be on: one ray is looked along, in about a
+   * millisecond. (x, y) are display coordinates, as vtkRenderWindowInteractor::GetEventPosition()
+   * gives them.
+   *
+   * - PickWorldPosition(): the point of the world to measure from. It lies on the pixel's ray,
+   * where this crosses the middle of the slice that the sample is of (in EXACT, at the depth of the
+   *   field's extremum): "Position" of GetLocations().
+   * - PickVoxel(): i, j and k, relative to the image's first voxel, of the voxel that the sample
+   *   comes from: "Voxel" of GetLocations().
+   * - PickValue(): the sample's value, in units of the scalars: in PREVIEW the voxel's, in the
+   * other modes an average or, in EXACT, the extremum. Pictures interpolate between samples.
+   *
+   * False (PickValue: NaN), and the output stays as it is, where the last render of this mapper has
+   * no sample, for averages, and, without RecordLocations, where several ranks render. Whether the
+   * sample is opaque does not matter. The input must not have changed since the render.
    */
   bool PickWorldPosition(int x, int y, double position[3]);
+  bool PickVoxel(int x, int y, int ijk[3]);
+  double PickValue(int x, int y);
+  ///@}
 
   ///@{
   /**

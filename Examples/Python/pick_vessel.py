@@ -35,7 +35,6 @@ low, high = image.GetScalarRange()
 
 mapper = vtkSplattingMIPVolumeMapper()
 mapper.SetInputConnection(reader.GetOutputPort())
-mapper.RecordLocationsOn()  # so that pixels know where their values come from
 
 gray = vtkColorTransferFunction()
 gray.AddRGBPoint(low, 0.0, 0.0, 0.0)

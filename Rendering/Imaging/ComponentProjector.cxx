@@ -436,6 +436,49 @@ void ComponentProjector::Describe(splatting::Located& located) const
 }
 
 //------------------------------------------------------------------------------
+bool ComponentProjector::CanProjectPixels() const
+{
+  return this->Projected && !this->Ranks &&
+    this->LocatedChannel().Settings.reduction != splatting::Reduction::Mean;
+}
+
+//------------------------------------------------------------------------------
+const ComponentProjector::Pixel& ComponentProjector::ProjectPixel(
+  const splatting::ShearPixel& pixel, const std::vector<splatting::ShearWarp>& geometries,
+  const std::vector<splatting::Cuts>& cuts)
+{
+  Channel& channel = this->Dependent ? this->Channels.back() : this->Channels.front();
+  const splatting::ShearWarp& whole = geometries[pixel.image];
+  const splatting::Cuts& wholeCuts = cuts[pixel.image];
+  const glm::ivec2 place(pixel.u, pixel.v);
+  const int phases = whole.phases();
+  if (phases > 1)
+  {
+    whole.takePhase(place % phases, this->PhaseGeometry);
+  }
+  splatting::ShearWarp& geometry = this->OnePixel.Geometries.front();
+  (phases > 1 ? this->PhaseGeometry : whole).takePixel(place / phases, geometry);
+  this->OnePixel.Cuts.cropping = wholeCuts.cropping;
+  this->OnePixel.Cuts.intervals.clear();
+  if (!wholeCuts.intervals.empty())
+  {
+    this->OnePixel.Cuts.intervals.takePixel(wholeCuts.intervals, place, geometry.width());
+  }
+  splatting::ProjectionSettings settings = channel.Settings;
+  settings.keepWinners = true;
+  settings.floor = splatting::ProjectionSettings().floor;
+  settings.acceleration = splatting::Acceleration::Dense;
+  // What frames have learnt is for frames.
+  splatting::Experience& experience = channel.Index.experience(
+    geometry.principalAxis(), static_cast<int>(settings.quality), !this->OnePixel.Cuts.none());
+  const splatting::Experience kept = experience;
+  this->PixelProjector.project(
+    channel.Index, geometry, settings, this->OnePixel.Cuts, this->OnePixel.Images.front());
+  experience = kept;
+  return this->OnePixel;
+}
+
+//------------------------------------------------------------------------------
 // From the images of pieces to those of the whole.
 void ComponentProjector::Exchange(const std::vector<splatting::ShearWarp>& geometries,
   const splatting::ProjectionSettings& settings, const std::vector<splatting::Cuts>& cuts)

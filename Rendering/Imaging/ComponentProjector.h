@@ -117,6 +117,18 @@ public:
   /// Sets what is located: images, volume and its range, settings. There must be winners.
   void Describe(splatting::Located& located) const;
 
+  /// Projects one pixel of the images once more, with its winner: the image of that pixel alone.
+  /// Not of pieces, nor of means.
+  struct Pixel
+  {
+    std::vector<splatting::ShearWarp> Geometries = std::vector<splatting::ShearWarp>(1);
+    std::vector<splatting::ShearImage> Images = std::vector<splatting::ShearImage>(1);
+    splatting::Cuts Cuts;
+  };
+  bool CanProjectPixels() const;
+  const Pixel& ProjectPixel(const splatting::ShearPixel& pixel,
+    const std::vector<splatting::ShearWarp>& geometries, const std::vector<splatting::Cuts>& cuts);
+
   /// Of the last projection.
   const splatting::ProjectionSettings& Settings() const { return this->Channels.front().Settings; }
   splatting::Acceleration Used() const { return this->Channels.front().Used; }
@@ -186,7 +198,8 @@ private:
 
   splatting::ShearWarp PhaseGeometry;
   splatting::Cuts PhaseCuts;
-  splatting::Projector Projector;
+  splatting::Projector Projector, PixelProjector;
+  Pixel OnePixel;
   splatting::Warper Warper;
   splatting::Picture Layer;         // of one component
   std::vector<unsigned char> Plane; // likewise, scalars

@@ -18,6 +18,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <type_traits>
+
+namespace
+{
+double valueOf(const splatting::ShearImage& image, int u, int v)
+{
+  return splatting::dispatch(image.type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      return static_cast<double>(image.row<T>(v)[u]);
+    });
+}
+}
 
 namespace splatting
 {
@@ -97,11 +112,11 @@ splatting::Locator WinnerLocations::Locate() const
 }
 
 //------------------------------------------------------------------------------
-bool WinnerLocations::Pick(int x, int y, double position[3])
+bool WinnerLocations::Pick(int x, int y, Sample& sample)
 {
   const glm::ivec2 pixel(x - this->Left, y - this->Bottom);
   const glm::ivec2& viewport = this->Frame.view.viewport;
-  if (!this->HasWinners() || pixel.x < 0 || pixel.y < 0 || pixel.x >= viewport.x ||
+  if (!this->Known || this->Images.empty() || pixel.x < 0 || pixel.y < 0 || pixel.x >= viewport.x ||
     pixel.y >= viewport.y)
   {
     return false;
@@ -111,14 +126,62 @@ bool WinnerLocations::Pick(int x, int y, double position[3])
   place.size = glm::ivec2(1);
   place.pixels = { 1u };
   this->Cuts.Hide(place);
-  const splatting::Locator locator = this->Locate();
-  glm::dvec3 point;
-  if (!place.pixels.front() || !locator.find(pixel, point))
+  return place.pixels.front() && this->PickRay(pixel, sample);
+}
+
+//------------------------------------------------------------------------------
+// Only at the image's rim rounding can let rays meet the volume that have no sample.
+bool WinnerLocations::HasSample(
+  const splatting::ShearImage& image, const splatting::ShearPixel& pixel)
+{
+  const int u = pixel.u, v = pixel.v;
+  const bool isInside = image.meetsVolume(u - 1, v - 1) && image.meetsVolume(u + 1, v - 1) &&
+    image.meetsVolume(u - 1, v + 1) && image.meetsVolume(u + 1, v + 1);
+  const double value = valueOf(image, u, v);
+  return image.covers(u, v) && value == value &&
+    (isInside ||
+      this->Projector.ProjectPixel(pixel, this->Images, this->Cuts.OfProjection())
+          .Images.front()
+          .winners[0] >= 0);
+}
+
+//------------------------------------------------------------------------------
+// Of a pixel of the viewport.
+bool WinnerLocations::PickRay(const glm::ivec2& pixel, Sample& sample)
+{
+  const bool hasWinners = this->Projector.HasWinners();
+  if (!hasWinners && !this->Projector.CanProjectPixels())
   {
     return false;
   }
-  point = locator.inWorld(point);
-  std::copy(&point.x, &point.x + 3, position);
+  splatting::Located located = this->Frame;
+  located.geometries = &this->Images;
+  this->Projector.Describe(located);
+  const auto hasSample = [&](const splatting::ShearPixel& shear)
+  { return this->HasSample((*located.images)[shear.image], shear); };
+  splatting::ShearPixel shown;
+  splatting::findShearPixels(*located.images, this->Images, pixel, glm::ivec2(1), &shown,
+    hasWinners ? std::function<bool(const splatting::ShearPixel&)>() : hasSample);
+  if (shown.image < 0)
+  {
+    return false;
+  }
+  if (!hasWinners)
+  {
+    const ComponentProjector::Pixel& alone =
+      this->Projector.ProjectPixel(shown, this->Images, this->Cuts.OfProjection());
+    if (alone.Images.front().winners[0] < 0)
+    {
+      return false;
+    }
+    located.images = &alone.Images;
+    located.geometries = &alone.Geometries;
+    shown = { 0, 0, 0 };
+  }
+  const splatting::Locator locator(located);
+  sample.position = locator.inWorld(locator.point(glm::dvec2(pixel), shown));
+  sample.voxel = splatting::findVoxel(located, shown);
+  sample.value = valueOf((*located.images)[shown.image], shown.u, shown.v);
   return true;
 }
 

@@ -46,7 +46,7 @@ std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors);
 class WinnerLocations
 {
 public:
-  WinnerLocations(const ComponentProjector& projector, const SceneCuts& cuts,
+  WinnerLocations(ComponentProjector& projector, const SceneCuts& cuts,
     const std::vector<splatting::ShearWarp>& images)
     : Projector(projector),
       Cuts(cuts),
@@ -60,8 +60,15 @@ public:
   void Remember(
     const splatting::View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer);
 
-  /// Of a pixel of the window. False if the picture has no sample there.
-  bool Pick(int x, int y, double position[3]);
+  /// What a pixel of the window shows: point of the world, voxel and value. False if the picture
+  /// has no sample there. Without winners, looks along rays.
+  struct Sample
+  {
+    glm::dvec3 position;
+    glm::ivec3 voxel;
+    double value;
+  };
+  bool Pick(int x, int y, Sample& sample);
   /// See makeLocationImage(), its extent in pixels of the window; nullptr before the first frame.
   vtkImageData* Image();
 
@@ -73,8 +80,10 @@ public:
 private:
   bool HasWinners() const;
   splatting::Locator Locate() const;
+  bool HasSample(const splatting::ShearImage& image, const splatting::ShearPixel& pixel);
+  bool PickRay(const glm::ivec2& pixel, Sample& sample);
 
-  const ComponentProjector& Projector;
+  ComponentProjector& Projector;
   const SceneCuts& Cuts;
   const std::vector<splatting::ShearWarp>& Images;
   splatting::Located Frame; // but for what the projector knows

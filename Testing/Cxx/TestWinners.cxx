@@ -601,8 +601,11 @@ void testPoints(Checks& check, bool perspective)
           const std::size_t at = std::size_t(y) * viewport.x + x;
           const glm::dvec3 point(positions[3 * at], positions[3 * at + 1], positions[3 * at + 2]);
           const glm::ivec3 voxel(voxels[3 * at], voxels[3 * at + 1], voxels[3 * at + 2]);
-          glm::dvec3 picked;
-          const bool has = locator.find({ x, y }, picked);
+          glm::dvec3 picked(0.0);
+          splatting::ShearPixel nearest;
+          splatting::findShearPixels(images, scene.images, { x, y }, glm::ivec2(1), &nearest);
+          const bool has = nearest.image >= 0;
+          picked = has ? locator.point(glm::dvec2(x, y), nearest) : picked;
           check(has == (voxel.x >= 0) && has == (point.x == point.x), "arrays differ");
           if (!has)
           {

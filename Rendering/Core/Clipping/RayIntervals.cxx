@@ -286,6 +286,15 @@ void RayIntervals::takePhase(const RayIntervals& whole, int phases, const glm::i
     });
 }
 
+void RayIntervals::takePixel(const RayIntervals& whole, const glm::ivec2& pixel, int width)
+{
+  this->Width = width;
+  this->First.assign(width, 1);
+  this->Last.assign(width, 0);
+  this->First.front() = whole.first(pixel.y)[pixel.x];
+  this->Last.front() = whole.last(pixel.y)[pixel.x];
+}
+
 void RayIntervals::findCrossed(
   const CrossedSlices& crossed, int width, int height, const RayIntervals& within)
 {

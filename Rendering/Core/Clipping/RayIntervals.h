@@ -52,6 +52,9 @@ public:
   /// Those of the pixels of one phase, of others' that are not empty: see ShearWarp::takePhase().
   void takePhase(const RayIntervals& whole, int phases, const glm::ivec2& phase);
 
+  /// That of one pixel, in a row of which the others have no slices: see ShearWarp::takePixel().
+  void takePixel(const RayIntervals& whole, const glm::ivec2& pixel, int width);
+
   /// The same intervals with slices counted from another one.
   void setShifted(const RayIntervals& other, int firstSlice);
 

@@ -239,7 +239,8 @@ void warpRow(const std::vector<WarpSource<A, Sink>>& sources, const glm::dvec3& 
 }
 
 /// Of the shear pixels that a point's value is interpolated between, the nearest.
-ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& homogeneous)
+ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& homogeneous,
+  const std::function<bool(const ShearPixel&)>& hasSample)
 {
   const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
   ShearPixel nearest;
@@ -247,7 +248,9 @@ ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& h
   forNeighbours(image, p,
     [&](int u, int v, double w)
     {
-      if (image.winners[std::size_t(v) * image.width + u] < 0)
+      const bool has = hasSample ? hasSample({ number, u, v })
+                                 : image.winners[std::size_t(v) * image.width + u] >= 0;
+      if (!has)
       {
         lost += w;
       }
@@ -442,7 +445,7 @@ void Warper::warpScalars(const std::vector<ShearImage>& images,
 
 void findShearPixels(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, const glm::ivec2& origin, const glm::ivec2& size,
-  ShearPixel* out)
+  ShearPixel* out, const std::function<bool(const ShearPixel&)>& hasSample)
 {
   std::vector<Outline> shown;
   for (const ShearWarp& geometry : geometries)
@@ -466,8 +469,8 @@ void findShearPixels(const std::vector<ShearImage>& images,
             const glm::dmat3& m = geometries[n].screenToShear();
             for (int x = std::max(span.begin, origin.x); x < span.end; ++x)
             {
-              row[x - origin.x] =
-                nearestPixel(images[n], static_cast<int>(n), m * glm::dvec3(x, start.y, 1.0));
+              row[x - origin.x] = nearestPixel(
+                images[n], static_cast<int>(n), m * glm::dvec3(x, start.y, 1.0), hasSample);
             }
           },
           [&](const Span& span)

@@ -12,6 +12,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <functional>
 #include <vector>
 
 namespace splatting
@@ -57,11 +58,12 @@ struct ShearPixel
  * For each pixel of a rectangle of the viewport, row by row from the bottom, the shear pixel whose
  * location stands for it: the nearest of those that Warper interpolates its value between; none
  * where the picture has no sample.
- * @param images  with winners; as in Warper::warp()
+ * @param images     as in Warper::warp()
+ * @param hasSample  whether a shear pixel has one; without it, whether it has a winner
  */
 void findShearPixels(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, const glm::ivec2& origin, const glm::ivec2& size,
-  ShearPixel* out);
+  ShearPixel* out, const std::function<bool(const ShearPixel&)>& hasSample = {});
 
 /**
  * Adds a picture of the same size and place, byte by byte, no further than 255.

@@ -381,11 +381,13 @@ void ShearWarp::setFan(int a, Fan& fan) const
   constexpr double outside = 1e6;
   fan.at.assign(this->ImageSize[a], this->Size[a] + outside);
   fan.slope.assign(this->ImageSize[a], 0.0);
+  fan.steepest = 0.0;
   for (int n = 0; n < this->RayCount[a]; ++n)
   {
     const double step = static_cast<double>(this->First[a] + n);
     fan.slope[n] = sign * quantised(2.0 * step / static_cast<double>(this->Steps) - 1.0, SlopeBits);
     fan.at[n] = quantised(start + step * this->Pitch, PositionBits);
+    fan.steepest = std::max(fan.steepest, std::abs(fan.slope[n]));
   }
 }
 
@@ -453,6 +455,27 @@ void ShearWarp::takePhase(const glm::ivec2& phase, ShearWarp& part) const
   part.ShearToScreen = this->ShearToScreen * scaled(count);
   part.ShearToScreen[2] += this->ShearToScreen * first;
   part.ScreenToShear = glm::inverse(part.ShearToScreen);
+}
+
+void ShearWarp::takePixel(const glm::ivec2& pixel, ShearWarp& part) const
+{
+  part = *this;
+  part.RayCount = glm::ivec2(1);
+  part.ImageSize = { this->Perspective ? RowUnit : 1, 1 };
+  if (!this->Perspective)
+  {
+    part.Margin -= pixel;
+    part.setParallelFans();
+    return;
+  }
+  for (int a = 0; a < 2; ++a)
+  {
+    Fan& fan = a == 0 ? part.Columns : part.Rows;
+    const double steepest = fan.steepest;
+    part.First[a] += pixel[a];
+    part.setFan(a, fan);
+    fan.steepest = steepest;
+  }
 }
 
 /// How many pixels of the screen one of the image covers.

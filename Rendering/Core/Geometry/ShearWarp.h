@@ -46,6 +46,7 @@ struct Fan
   {
     return this->at == other.at && this->slope == other.slope;
   }
+  double steepest = 0.0; ///< in perspective, the largest slope of the whole image, either way
 };
 
 /**
@@ -150,6 +151,9 @@ public:
    * The geometry of the pixels (phases() u + phase.x, phases() v + phase.y): a voxel apart.
    */
   void takePhase(const glm::ivec2& phase, ShearWarp& part) const;
+  /// The geometry of one pixel of an image without phases, as pixel (0, 0); in perspective images
+  /// with columns beside it as there are beside other images.
+  void takePixel(const glm::ivec2& pixel, ShearWarp& part) const;
   /// Index coordinates where the ray of pixel (u, v) is at depth z.
   glm::dvec2 onRay(int u, int v, double z) const
   {

@@ -17,22 +17,17 @@ void findParallelSlice(const ShearWarp& geometry, int k, SliceGeometry& slice)
   const auto end = slice.path.dj.begin() + slice.path.count;
   const int low = *std::min_element(slice.path.dj.begin(), end);
   const int high = *std::max_element(slice.path.dj.begin(), end);
-  slice.vBegin = -high;
-  slice.vEnd = geometry.size().y - low;
-  slice.innerBegin = -low;
-  slice.innerEnd = std::max(geometry.size().y - high, slice.innerBegin);
-  slice.inner = geometry.coverage(slice.path, slice.innerBegin);
+  // Of one pixel's image the volume sticks out.
+  const int rows = geometry.size().y, width = geometry.width(), height = geometry.height();
+  slice.vBegin = std::clamp(-high, 0, height);
+  slice.vEnd = std::clamp(rows - low, slice.vBegin, height);
+  slice.innerBegin = std::clamp(-low, slice.vBegin, slice.vEnd);
+  slice.innerEnd = std::clamp(rows - high, slice.innerBegin, slice.vEnd);
+  const auto pixels = [&](int v) { return common(geometry.coverage(slice.path, v), { 0, width }); };
+  slice.inner = pixels(-low);
   // In parallel views no more than a row at either end.
-  slice.lower.resize(slice.innerBegin - slice.vBegin);
-  slice.upper.resize(std::max(slice.vEnd - slice.innerEnd, 0));
-  for (Span& span : slice.lower)
-  {
-    span = geometry.coverage(slice.path, slice.vBegin);
-  }
-  for (Span& span : slice.upper)
-  {
-    span = geometry.coverage(slice.path, slice.vEnd - 1);
-  }
+  slice.lower.assign(slice.innerBegin - slice.vBegin, pixels(-high));
+  slice.upper.assign(slice.vEnd - slice.innerEnd, pixels(rows - low - 1));
 }
 
 /// The pixels of a row whose rays only enter the slice, or only leave it, in a row of voxels.
@@ -102,6 +97,11 @@ void extend(Span& all, const Span& span)
 /// and the last decide, because the slices' spans move one way.
 void findSpans(const std::vector<SliceGeometry>& slices, std::vector<Span>& spans)
 {
+  // A single row need not hold the rays that the first and the last slice meet.
+  for (std::size_t k = 0; k < slices.size() && spans.size() == 1; ++k)
+  {
+    extend(spans[0], slices[k].vBegin <= 0 && slices[k].vEnd > 0 ? slices[k].span(0) : Span{});
+  }
   const auto extendRows = [&](int begin, int end, const Span& span)
   {
     for (int v = begin; v < end; ++v)

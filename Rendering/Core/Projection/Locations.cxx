@@ -252,6 +252,28 @@ glm::ivec3 unpermuted(const ShearWarp& geometry, const glm::ivec3& voxel)
 }
 }
 
+glm::ivec3 findVoxel(const Located& located, const ShearPixel& pixel)
+{
+  const ShearImage& projected = (*located.images)[pixel.image];
+  const ShearWarp& geometry = (*located.geometries)[pixel.image];
+  const int step = projected.winners[std::size_t(pixel.v) * projected.width + pixel.u];
+  const glm::ivec2 place(pixel.u, pixel.v);
+  const int phases = geometry.phases();
+  ShearWarp phase, alone;
+  if (phases > 1)
+  {
+    geometry.takePhase(place % phases, phase);
+  }
+  (phases > 1 ? phase : geometry).takePixel(place / phases, alone);
+  return dispatch(located.volume.type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      GeneralTable table;
+      return unpermuted(alone, VoxelFinder<T>(located, alone, table).find(0, 0, step));
+    });
+}
+
 void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec3>& voxels)
 {
   const ShearImage& projected = (*located.images)[image];
@@ -341,18 +363,6 @@ glm::dvec3 Locator::point(const glm::dvec2& pixel, const ShearPixel& shown) cons
   point[axes[1]] = (q * x[axes[0]] - p * y[axes[0]]) / determinant;
   point[axes[2]] = z;
   return point;
-}
-
-bool Locator::find(const glm::ivec2& pixel, glm::dvec3& point) const
-{
-  ShearPixel shown;
-  findShearPixels(*this->Source.images, *this->Source.geometries, pixel, glm::ivec2(1), &shown);
-  if (shown.image < 0)
-  {
-    return false;
-  }
-  point = this->point(glm::dvec2(pixel), shown);
-  return true;
 }
 
 glm::dvec3 Locator::inWorld(const glm::dvec3& point) const

@@ -50,9 +50,6 @@ public:
   /// The point of index space that a viewport pixel (centre at integers) shows by way of its shear
   /// pixel, which must not be none.
   glm::dvec3 point(const glm::dvec2& pixel, const ShearPixel& shown) const;
-  /// The same of one pixel; false if it shows no sample.
-  bool find(const glm::ivec2& pixel, glm::dvec3& point) const;
-
   glm::dvec3 inWorld(const glm::dvec3& point) const;
   /// Of a point of the world.
   double depth(const glm::dvec3& world) const;
@@ -76,6 +73,9 @@ private:
 
   Located Source;
 };
+
+/// The voxel of a shear pixel with a winner.
+glm::ivec3 findVoxel(const Located& located, const ShearPixel& pixel);
 
 /// The voxel of each pixel of a shear image with winners, -1 for none.
 void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec3>& voxels);

@@ -15,16 +15,6 @@ namespace
 /// is lost then moves weights by less than the general tables of [CS98] with 16 x 16 sub-pixels do.
 constexpr double MostProduct = 0.25;
 
-double steepest(const Fan& fan)
-{
-  double slope = 0.0;
-  for (double s : fan.slope)
-  {
-    slope = std::max(slope, std::abs(s));
-  }
-  return slope;
-}
-
 /// The integral of h from -infinity to t.
 double integral(const Kernel& kernel, double t)
 {
@@ -59,7 +49,7 @@ glm::dvec2 depthsOf(const ShearWarp& geometry, int k, int q, int parts)
 
 int partsOf(const ShearWarp& geometry, const Kernel& kernel)
 {
-  const double product = steepest(geometry.columns()) * steepest(geometry.rows());
+  const double product = geometry.columns().steepest * geometry.rows().steepest;
   const int least = kernel.shape == Reconstruction::Box ? 1 : 2;
   return std::clamp(
     static_cast<int>(std::ceil(std::sqrt(product / MostProduct))), least, MostParts);
@@ -76,7 +66,7 @@ void FanFootprints<A>::find(const ShearWarp& whole, const ShearWarp& geometry, i
   this->Size = geometry.size()[a];
   this->Parts = parts;
   this->Group = loops.group;
-  this->Steepest = steepest(a == 0 ? whole.columns() : whole.rows());
+  this->Steepest = (a == 0 ? whole.columns() : whole.rows()).steepest;
   const std::size_t all = std::size_t(this->Slices.end - this->Slices.begin) * parts;
   this->Taps.resize(all);
   this->First.resize(all * this->Padded);

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Picks look along one ray: they are the same whether locations were recorded or not, and what the
+// arrays of all locations say.
+#include "Stage.h"
+#include "Volume.h"
+
+#include "vtkCamera.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPlane.h"
+#include "vtkPointData.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace
+{
+constexpr int Width = 70;
+constexpr int Height = 60;
+
+struct Pick
+{
+  bool has = false;
+  std::array<double, 3> position{ 1.0, 2.0, 3.0 };
+  std::array<int, 3> voxel{ -1, -1, -1 };
+  double value = 0.0;
+
+  bool operator==(const Pick& other) const
+  {
+    return this->has == other.has && this->position == other.position &&
+      this->voxel == other.voxel && std::memcmp(&this->value, &other.value, sizeof(double)) == 0;
+  }
+};
+
+std::string toText(const Pick& pick)
+{
+  std::ostringstream text;
+  text << (pick.has ? "voxel " : "no voxel ") << pick.voxel[0] << " " << pick.voxel[1] << " "
+       << pick.voxel[2] << " at " << pick.position[0] << " " << pick.position[1] << " "
+       << pick.position[2] << ", " << pick.value;
+  return text.str();
+}
+
+/// Empty if the three answers do not say alike whether there is a sample.
+std::vector<Pick> pickAll(vtkSplattingMIPVolumeMapper* mapper)
+{
+  std::vector<Pick> picks;
+  for (int y = 1; y < Height; y += 5)
+  {
+    for (int x = 0; x < Width; x += 3)
+    {
+      Pick pick;
+      pick.has = mapper->PickWorldPosition(x, y, pick.position.data());
+      pick.value = mapper->PickValue(x, y);
+      if (mapper->PickVoxel(x, y, pick.voxel.data()) != pick.has ||
+        (pick.value == pick.value) != pick.has)
+      {
+        return {};
+      }
+      picks.push_back(pick);
+    }
+  }
+  return picks;
+}
+
+/// All that locations depend on.
+void chooseAtRandom(
+  vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, int n, reference::Random& random)
+{
+  mapper->SetQualityMode(n % 4);
+  mapper->SetKernel(random.uniform(0, 1));
+  mapper->SetShearImageSampling(random.uniform(0, 2));
+  mapper->SetBlendMode(random.uniform(0, 2) ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
+                                            : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
+  mapper->SetMaximumType(random.uniform(0, 2));
+  mapper->SetLocalMaximumThreshold(100.0);
+  mapper->SetSlab(random.uniform(0, 2) == 0);
+  mapper->SetSlabCenter(image->GetCenter());
+  mapper->SetSlabThickness(20.0);
+  mapper->SetCropping(random.uniform(0, 2) == 0);
+  mapper->SetCroppingRegionFlags(VTK_CROP_INVERTED_CROSS);
+  const double* const b = image->GetBounds();
+  mapper->SetCroppingRegionPlanes(0.7 * b[0] + 0.3 * b[1], 0.2 * b[0] + 0.8 * b[1],
+    0.6 * b[2] + 0.4 * b[3], 0.3 * b[2] + 0.7 * b[3], 0.6 * b[4] + 0.4 * b[5],
+    0.3 * b[4] + 0.7 * b[5]);
+  mapper->RemoveAllClippingPlanes();
+  if (random.uniform(0, 1))
+  {
+    vtkNew<vtkPlane> plane;
+    plane->SetOrigin(image->GetCenter());
+    plane->SetNormal(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 1.0);
+    mapper->AddClippingPlane(plane);
+  }
+}
+
+/// Whether picks are what arrays say, and in PREVIEW values those of voxels.
+bool areRecorded(
+  vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, const std::vector<Pick>& picks)
+{
+  vtkImageData* const locations = mapper->GetLocations();
+  vtkDataArray* const voxels = locations->GetPointData()->GetArray("Voxel");
+  vtkDataArray* const positions = locations->GetPointData()->GetArray("Position");
+  const bool isShaded = mapper->GetBlendMode() == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND &&
+    mapper->GetMaximumType() == vtkSplattingMIPVolumeMapper::DEPTH_SHADED;
+  bool same = true;
+  std::size_t n = 0;
+  for (int y = 1; y < Height; y += 5)
+  {
+    for (int x = 0; x < Width; x += 3)
+    {
+      const Pick& pick = picks[n++];
+      const vtkIdType at = vtkIdType(y) * Width + x;
+      same = same && pick.has == (voxels->GetComponent(at, 0) >= 0.0);
+      for (int c = 0; pick.has && c < 3; ++c)
+      {
+        same = same && pick.voxel[c] == voxels->GetComponent(at, c) &&
+          pick.position[c] == positions->GetComponent(at, c);
+      }
+      if (pick.has && mapper->GetQualityMode() == 0 && !isShaded)
+      {
+        const int* const first = image->GetExtent();
+        same = same &&
+          pick.value ==
+            image->GetScalarComponentAsDouble(
+              pick.voxel[0] + first[0], pick.voxel[1] + first[2], pick.voxel[2] + first[4], 0);
+      }
+    }
+  }
+  return same;
+}
+}
+
+//------------------------------------------------------------------------------
+int TestPicks(int, char*[])
+{
+  stage::Checks check;
+  int found = 0;
+  reference::forScenes("picks", 48,
+    [&](int n, reference::Random& random)
+    {
+      // Few values: ties are common.
+      const auto image = stage::toImageData(
+        reference::uniformNoise<std::uint8_t>({ 30, 26, 34 }, random.bits(), 0, 60));
+      stage::placeAtRandom(image, random);
+      const auto mapper = stage::splatting(image);
+      stage::Stage stage(Width, Height);
+      stage.show(mapper);
+      stage.viewAngle = random.uniform(0, 1) ? 40.0 : 0.0;
+      chooseAtRandom(mapper, image, n, random);
+      stage.look(
+        { random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0) },
+        { 0.1, 1.0, 0.2 }, random.uniform(0.6, 1.2));
+      stage.window->Render();
+      const vtkIdType projections = mapper->GetNumberOfProjections();
+      const std::vector<Pick> alone = pickAll(mapper);
+      check(mapper->GetNumberOfProjections() == projections, "Picks project no frame.");
+      mapper->RecordLocationsOn();
+      stage.window->Render();
+      const std::vector<Pick> recorded = pickAll(mapper);
+      const std::string scene =
+        " of scene " + std::to_string(n) + ", mode " + std::to_string(mapper->GetQualityMode());
+      const auto differ =
+        std::mismatch(alone.begin(), alone.end(), recorded.begin(), recorded.end());
+      check(!alone.empty() && alone == recorded,
+        "Picks" + scene + " are the same with recorded locations and without: " +
+          toText(differ.first == alone.end() ? Pick() : *differ.first) + ", " +
+          toText(differ.second == recorded.end() ? Pick() : *differ.second));
+      check(areRecorded(mapper, image, recorded), "Picks" + scene + " are what arrays say.");
+      for (const Pick& pick : alone)
+      {
+        found += pick.has;
+      }
+    });
+  check(found > 100, "Samples are picked.");
+  return check.exitCode();
+}
