@@ -551,7 +551,7 @@ public:
   /**
    * Find out where the samples lie that the picture shows, for GetLocations(). Default off;
    * DepthCoding and WriteDepth need it and do it by themselves. Projections take two to three times
-   * as long, previews five to eight times, and 4 bytes for each pixel of the shear image, and as
+   * as long, previews four to six times, and 4 bytes for each pixel of the shear image, and as
    * many again as the pixel has.
    *
    * The sample of a ray is the one that its value comes from; of equal ones the nearest to the
