@@ -8,7 +8,8 @@
 # Debian make one in /var/cache/splattingmip (or in SPLATTINGMIP_ROOTS) and need root.
 #
 #   more              what the quick tests leave out: builds of others that take in the module, VTK's
-#                     own tests, short runs of the benchmark and of the paper's experiments
+#                     own tests, short runs of the benchmark and of the paper's experiments, the
+#                     viewer in a browser
 #   scenes            four times as many random scenes as the quick tests
 #   seeds             random tests with ten new numbers, which it prints
 #   walk              10,000 random walks of mapper and filter, with ten new numbers
@@ -44,6 +45,10 @@ run_tests() {
 }
 
 part_more() {
+  if ! command -v chromium >/dev/null; then
+    apt-get update -qq
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium >/dev/null
+  fi
   bash "$testing_dir/Package/VTKsOwn/fetch-on-debian.sh" "$build_dir/vtk-tests"
   build tests -DSPLATTINGMIP_BUILD_BENCHMARK=ON "-DSPLATTINGMIP_VTK_TESTS=$build_dir/vtk-tests"
   run_tests tests -L deep

@@ -1,0 +1,221 @@
+# SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The server of Examples/Python/web_viewer.py, without a browser."""
+import http.client
+import pathlib
+import socket
+import sys
+import tempfile
+import time
+import types
+import unittest
+import urllib.parse
+
+import numpy
+
+import WebViewerTesting as testing
+from WebViewerTesting import View
+
+sys.path.insert(0, str(testing.EXAMPLES))
+import volume_files  # noqa: E402
+import web_viewer  # noqa: E402
+
+
+class TestWebViewer(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.context = testing.running_viewer()
+        cls.viewer = cls.context.__enter__()
+        cls.info = cls.viewer.get_json("volume")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.context.__exit__(None, None, None)
+
+    def make_view(self, size=(120, 90)):
+        return View(self.info, size)
+
+    def check_picture(self, view):
+        """PNG loses nothing: half a step of gray is what rounding may change."""
+        status, kind, body = self.viewer.get("picture", **view.fields())
+        self.assertEqual((status, kind), (200, "image/png"), body)
+        expected = view.picture()
+        self.assertGreater(expected.std(), 10.0)
+        self.assertLessEqual(abs(testing.decode(body) - expected).max(), 0.501)
+
+    def test_pictures_of_all_modes_are_the_filters(self):
+        for mode in ("preview", "standard", "high", "exact"):
+            view = self.make_view()
+            view.mode = mode
+            view.turn((1, 2, 0), 33)
+            with self.subTest(mode):
+                self.check_picture(view)
+
+    def test_all_that_a_picture_depends_on(self):
+        view = self.make_view((64, 100))
+        view.window, view.level = 500.0, 900.0
+        self.check_picture(view)
+        view.slab = (10.0, -7.0)
+        self.check_picture(view)
+        view.focal_point = view.focal_point + (4.0, 0.0, -9.0)
+        view.extent /= 2.0
+        self.check_picture(view)
+
+    def test_jpeg_is_the_picture_roughly(self):
+        view = self.make_view()
+        status, kind, body = self.viewer.get("picture", **view.fields("jpeg"))
+        self.assertEqual((status, kind), (200, "image/jpeg"))
+        found, expected = testing.decode(body), view.picture()
+        self.assertLess(abs(found - expected).mean(), 1.0)
+        self.assertGreater(abs(found[::-1] - expected).mean(), 5.0)
+
+    def test_windows_without_end(self):
+        for window, level, gray in ((1e-30, 0.0, 255), (1e-30, 5000.0, 0), (1e300, 1e300, 0), (1e-30, -1e300, 255)):
+            view = self.make_view((60, 60))
+            view.window, view.level = window, level
+            found = testing.decode(self.viewer.get("picture", **view.fields())[2])
+            self.assertEqual(found[30, 30], gray)
+
+    def test_where_nothing_is_seen_is_black(self):
+        view = self.make_view()
+        view.level = -5000.0  # so that 0 would be white
+        gray = testing.decode(self.viewer.get("picture", **view.fields())[2])
+        self.assertEqual(gray[0, 0], 0)
+        self.assertEqual(gray[45, 60], 255)
+
+    def test_pick_tells_place_and_value(self):
+        place = numpy.array(testing.ORIGIN) + numpy.array(testing.BRIGHT) * testing.SPACING
+        for axis, degrees in (((0, 1, 0), 0), ((2, 1, 0), 50), ((1, -3, 1), 160)):
+            view = self.make_view((400, 300))
+            view.turn(axis, degrees)
+            x, y = view.pixel_of(place)
+            found = self.viewer.get_json("pick", **view.fields(), pixel=f"{round(x)},{round(y)}")
+            # The ray passes up to half a pixel's diagonal beside the voxel.
+            away = view.spacing() * 0.71
+            self.assertLessEqual(abs(numpy.array(found["position"]) - place).max(), 2.0 * away)
+            self.assertEqual(found["voxel"], list(testing.BRIGHT))
+            step = away * sum(1.0 / s for s in testing.SPACING)
+            self.assertGreater(found["value"], testing.BRIGHT_VALUE * (1.0 - step))
+            self.assertLessEqual(found["value"], testing.BRIGHT_VALUE)
+            self.assertEqual(self.viewer.get_json("pick", **view.fields(), pixel="0,0"), {})
+            # The same as the picture at the pixel, in a window in which nothing is black or white.
+            view.window, view.level = 8000.0, 2000.0
+            gray = view.picture()[round(y), round(x)]
+            self.assertAlmostEqual((found["value"] - 2000.0) / 8000.0 * 255.0 + 127.5, gray, places=3)
+
+    def test_the_page_loads_nothing_from_elsewhere(self):
+        status, kind, body = self.viewer.get("")
+        self.assertEqual((status, kind), (200, "text/html; charset=utf-8"))
+        self.assertNotIn(b"://", body)
+
+    def test_bad_requests_get_a_sentence(self):
+        good = self.make_view().fields()
+        bad = {"direction": ["", "1,2", "0,0,nan", "0,0.5,0", "0,0,1"], "up": ["0,1,0", "x,y,z"],
+               "focalPoint": ["inf,0,0", "1e300,0,0"], "size": ["0,5", "5000,5", "1.5,2", "5"],
+               "spacing": ["0", "-1", "nan"], "window": ["0", "nan", "1e999"], "level": ["nan", "a"],
+               "thickness": ["-1", "nan"], "offset": ["nan", "1,2"], "mode": ["", "best"], "kind": ["gif"]}
+        for name, texts in bad.items():
+            for text in texts:
+                with self.subTest(name, text=text):
+                    status, kind, body = self.viewer.get("picture", **{**good, name: text})
+                    self.assertEqual((status, kind), (400, "text/plain"))
+                    self.assertRegex(body.decode(), r"^\w+( and \w+)? must .*\n$")
+            without = {key: value for key, value in good.items() if key != name}
+            self.assertEqual(self.viewer.get("picture", **without)[0], 400)
+        for pixel in ("", "1", "-1,0", "nan,1"):
+            self.assertEqual(self.viewer.get("pick", **good, pixel=pixel)[0], 400)
+        self.assertEqual(self.viewer.get("pick", **good)[0], 400)
+        self.assertEqual(self.viewer.get("../../etc/passwd")[0], 404)
+        self.check_picture(self.make_view())
+
+    def test_bytes_that_are_no_request_do_not_end_it(self):
+        for data in (b"\0\1\2\3\r\n\r\n", b"GET\r\n\r\n", b"GET /" + b"x" * 70000, b"POST / HTTP/1.1\r\n\r\n", b""):
+            with socket.create_connection(("127.0.0.1", self.viewer.port), 10) as connection:
+                connection.sendall(data)
+        self.check_picture(self.make_view())
+
+    def test_without_the_token_nothing_is_told(self):
+        token = self.viewer.address.split("/")[3]
+        self.assertGreaterEqual(len(token), 20)
+        with testing.running_viewer() as other:
+            self.assertNotIn(token, other.address)
+        query = "picture?" + "&".join(f"{k}={v}" for k, v in self.make_view().fields().items())
+        for path in ("/", "/volume", "/" + query, "/wrong/volume", f"/{token[:-1]}/volume", f"/{token}x/volume", f"/{token}", f"/{token}?volume",
+                     "//volume", f"/x/{token}/volume", "/%C3%A9/volume", "http://elsewhere/volume"):
+            connection = http.client.HTTPConnection("127.0.0.1", self.viewer.port, timeout=10)
+            connection.putrequest("GET", path)
+            connection.endheaders()
+            answer = connection.getresponse()
+            self.assertEqual(answer.status, 403, path)
+            self.assertNotIn(b"phantom", answer.read())
+            connection.close()
+
+    def test_a_picture_that_nobody_wants_is_given_up(self):
+        with tempfile.TemporaryDirectory() as folder:
+            volume = volume_files.read_volume(testing.write_nrrd(pathlib.Path(folder) / "phantom.nrrd"))
+        viewer = web_viewer.Viewer(volume, "phantom")
+        view = self.make_view()
+        query = "&".join(f"{key}={value}" for key, value in view.fields().items())
+        for _ in range(2):
+            with self.assertRaises(web_viewer.Abandoned):
+                viewer.picture(web_viewer.parse_view(query), lambda: False)
+        kind, body = viewer.picture(web_viewer.parse_view(query), lambda: True)
+        self.assertEqual(kind, "image/png")
+        self.assertLessEqual(abs(testing.decode(body) - view.picture()).max(), 0.501)
+
+    def test_a_browser_that_hangs_up_is_noticed(self):
+        ours, theirs = socket.socketpair()
+        with ours, theirs:
+            handler = types.SimpleNamespace(connection=ours)
+            self.assertTrue(web_viewer.Handler.is_connected(handler))
+            theirs.sendall(b"GET")  # the next request is on its way
+            self.assertTrue(web_viewer.Handler.is_connected(handler))
+            self.assertEqual(ours.recv(3), b"GET")
+            theirs.close()
+            self.assertFalse(web_viewer.Handler.is_connected(handler))
+
+    def test_who_hangs_up_does_no_harm(self):
+        view = self.make_view((2000, 2000))
+        query = "&".join(f"{key}={value}" for key, value in view.fields().items())
+        request = f"GET {urllib.parse.urlsplit(self.viewer.address).path}picture?{query} HTTP/1.1\r\n\r\n"
+        for seconds in (0.0, 0.05, 0.2):
+            with socket.create_connection(("127.0.0.1", self.viewer.port), 10) as connection:
+                connection.sendall(request.encode())
+                time.sleep(seconds)
+        self.check_picture(self.make_view())
+
+    @unittest.skipUnless(pathlib.Path("/proc/self/maps").exists(), "no /proc here")
+    def test_it_never_loads_opengl(self):
+        self.check_picture(self.make_view())
+        maps = pathlib.Path(f"/proc/{self.viewer.process.pid}/maps").read_text()
+        self.assertIn("ImagingSplattingMIP", maps)
+        self.assertNotRegex(maps, "libGL|libEGL|libOSMesa|RenderingOpenGL|libX11")
+
+    @unittest.skipUnless(pathlib.Path("/proc/net/tcp").exists(), "no /proc here")
+    def test_it_listens_on_the_loopback_address_only(self):
+        def listeners(port):
+            found = []
+            for line in pathlib.Path("/proc/net/tcp").read_text().splitlines()[1:]:
+                place, state = line.split()[1], line.split()[3]
+                if state == "0A" and int(place.split(":")[1], 16) == port:
+                    found.append(place.split(":")[0])
+            return found
+        self.assertEqual(listeners(self.viewer.port), ["0100007F"])
+        self.assertIn("Only this machine can connect", self.viewer.words)
+        with testing.running_viewer("--host", "0.0.0.0") as other:
+            self.assertEqual(listeners(other.port), ["00000000"])
+            self.assertIn("nothing on the way is encrypted", other.words)
+            self.assertNotIn("0.0.0.0", other.address)
+        status, words = testing.run_to_end("--help")
+        self.assertEqual(status, 0)
+        self.assertIn("nothing on the way is encrypted", " ".join(words.split()))
+
+    def test_where_it_cannot_listen_it_says_so(self):
+        for host, port in (("127.0.0.1", self.viewer.port), ("127.0.0.1", 70000), ("192.0.2.1", 0)):
+            status, words = testing.run_to_end("--host", host, "--port", port)
+            self.assertEqual((status, words.count("\n")), (1, 1), words)
+            self.assertIn(f"cannot listen on {host}, port {port}: ", words)
+
+
+if __name__ == "__main__":
+    unittest.main()
