@@ -69,6 +69,11 @@ class TestWebViewer(unittest.TestCase):
         self.assertLess(abs(found - expected).mean(), 1.0)
         self.assertGreater(abs(found[::-1] - expected).mean(), 5.0)
 
+    def test_without_a_file_it_shows_the_aorta(self):
+        with testing.running_viewer("--port", "0") as other:
+            info = other.get_json("volume")
+        self.assertEqual((info["name"], info["size"]), ("aorta-stent.vti", [128, 128, 256]))
+
     def test_windows_without_end(self):
         for window, level, gray in ((1e-30, 0.0, 255), (1e-30, 5000.0, 0), (1e300, 1e300, 0), (1e-30, -1e300, 255)):
             view = self.make_view((60, 60))

@@ -84,6 +84,7 @@ class TestWebViewerInBrowser(unittest.TestCase):
         self.assertEqual(found.shape, expected.shape)
         self.assertGreater(expected.std(), 10.0)
         self.assertLessEqual(abs(found - expected).max(), 0.51)
+        self.assertEqual(self.text("mode"), self.view.mode)
 
     def check_other(self, before):
         """What was done is to be seen: else a test could pass that does nothing."""
@@ -304,6 +305,19 @@ class TestWebViewerInBrowser(unittest.TestCase):
         seen = testing.decode(self.page.screenshot())[30:-30, 30:self.view.size[0] - 30]
         expected = self.view.picture()[30:-30, 30:-30]
         self.assertLessEqual(abs(seen[:, :, :3] - expected[:, :, None]).max(), 1.51)
+
+    def test_a_file_that_does_not_say_how_the_patient_lies_gets_no_letters(self):
+        with testing.running_viewer(testing.EXAMPLES.parent / "Data" / "aorta-stent.vti") as other:
+            self.page.open(other.address, 700, 400)
+            self.page.wait_for(STILL)
+            self.assertEqual([self.text(side) for side in ("up", "down", "right", "left")], [""] * 4)
+            self.click_button("+z")
+            self.page.wait_for(STILL)
+            self.page.evaluate("canvas.focus()")
+            self.page.press("Enter")
+            self.page.wait_for("document.getElementById('told').textContent.includes(' at ')")
+            self.assertRegex(self.text("told"), r"^\S+ at x \S+, y \S+, z \S+, voxel \d+ \d+ \d+$")
+            self.assertGreater(self.shown().std(), 10.0)
 
     def test_nothing_comes_from_elsewhere(self):
         self.page.drag((150, 200), [(190, 220)])

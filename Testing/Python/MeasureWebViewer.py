@@ -1,0 +1,78 @@
+# SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""How many pictures per second Chromium shows while the volume of a file is turned in web_viewer.py.
+
+    taskset -c 0,1 python3 MeasureWebViewer.py FILE [--mode preview] [--seconds 10]
+
+Viewer, browser and this script share the processors. Pictures have 512 x 512 pixels. Ends with 77
+where there is no Chromium.
+"""
+import argparse
+import math
+import pathlib
+import sys
+import time
+
+import Chromium
+import WebViewerTesting as testing
+
+SIDE = 512
+RECORDER = """
+  window.times = [];
+  const draw = CanvasRenderingContext2D.prototype.drawImage;
+  CanvasRenderingContext2D.prototype.drawImage = function (...what) {
+    draw.apply(this, what);
+    times.push(performance.now());
+  };
+  performance.setResourceTimingBufferSize(100000);
+"""
+REQUESTS = """performance.getEntriesByType("resource").filter(entry => entry.name.includes("/picture?")).map(
+  entry => [entry.responseStart - entry.requestStart, entry.responseEnd - entry.responseStart])"""
+
+
+def median(numbers):
+    return sorted(numbers)[len(numbers) // 2]
+
+
+def measure(page, seconds):
+    """Times of pictures shown, and of requests what the server took and the transfer."""
+    page.mouse("mousePressed", SIDE / 2, SIDE / 2, button="left", buttons=1, clickCount=1)
+    page.evaluate("void (times.splice(0), performance.clearResourceTimings())")
+    start = time.monotonic()
+    moves = 0
+    while time.monotonic() < start + seconds:  # 60 places a second
+        moves += 1
+        x, y = 0.4 * math.sin(0.03 * moves), 0.2 * math.sin(0.05 * moves)
+        page.mouse("mouseMoved", SIDE * (0.5 + x), SIDE * (0.5 + y), button="left", buttons=1)
+        time.sleep(max(0.0, start + moves / 60.0 - time.monotonic()))
+    found = page.evaluate("times"), page.evaluate(REQUESTS)
+    page.mouse("mouseReleased", SIDE / 2, SIDE / 2, button="left", clickCount=1)
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("file")
+    parser.add_argument("--mode", default="preview")
+    parser.add_argument("--seconds", type=float, default=10.0)
+    arguments = parser.parse_args()
+    if not Chromium.find_chromium():
+        print("skipped: no Chromium")
+        sys.exit(77)
+    with testing.running_viewer(arguments.file) as viewer, Chromium.chromium_page() as page:
+        page.send("Page.addScriptToEvaluateOnNewDocument", source=RECORDER)
+        page.open(viewer.address, 2 * SIDE, SIDE)
+        page.set_size(3 * SIDE - page.evaluate("canvas.clientWidth"), SIDE)
+        page.evaluate(f"element('moving').value = '{arguments.mode}'")
+        page.wait_for(f"shown === version && !isMoving && canvas.width === {SIDE} && canvas.height === {SIDE}")
+        times, requests = measure(page, arguments.seconds)
+        has_opengl = "libGL" in pathlib.Path(f"/proc/{viewer.process.pid}/maps").read_text()
+    gaps = [later - time for time, later in zip(times, times[1:])]
+    print(f"{arguments.mode}: {1000.0 * len(gaps) / sum(gaps):.1f} pictures per second; of one (median) the server takes "
+          f"{median([server for server, _ in requests]):.1f} ms, the transfer "
+          f"{median([transfer for _, transfer in requests]):.1f} ms, all {median(gaps):.1f} ms; "
+          f"the viewer has {'' if has_opengl else 'not '}loaded libGL")
+
+
+if __name__ == "__main__":
+    main()
