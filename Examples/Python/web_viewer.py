@@ -287,8 +287,10 @@ def main():
     except (OSError, OverflowError) as error:
         sys.exit(f"web_viewer.py: cannot listen on {arguments.host}, port {arguments.port}: {error}")
     host, port = server.server_address[:2]
+    print("Window {window:g}, level {level:g}:".format(**viewer.description), "the file's own." if volume.window else
+          "from the median of the values to the one that one voxel in 2000 exceeds.")
     if volume.note:
-        print(volume.note)
+        print(f"Note: {volume.note}.")
     if host in ("127.0.0.1", "::1"):
         print("Only this machine can connect, and who knows the address below.")
     else:

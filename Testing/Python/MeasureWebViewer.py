@@ -61,15 +61,18 @@ def main():
         sys.exit(77)
     with testing.running_viewer(arguments.file) as viewer, Chromium.chromium_page() as page:
         page.send("Page.addScriptToEvaluateOnNewDocument", source=RECORDER)
-        page.open(viewer.address, 2 * SIDE, SIDE)
-        page.set_size(3 * SIDE - page.evaluate("canvas.clientWidth"), SIDE)
+        width = 2 * SIDE
+        page.open(viewer.address, width, SIDE)
+        while page.evaluate("canvas.clientWidth") != SIDE:
+            width += SIDE - page.evaluate("canvas.clientWidth")
+            page.set_size(width, SIDE)
         page.evaluate(f"element('moving').value = '{arguments.mode}'")
         page.wait_for(f"shown === version && !isMoving && canvas.width === {SIDE} && canvas.height === {SIDE}")
         times, requests = measure(page, arguments.seconds)
         has_opengl = "libGL" in pathlib.Path(f"/proc/{viewer.process.pid}/maps").read_text()
     gaps = [later - time for time, later in zip(times, times[1:])]
-    print(f"{arguments.mode}: {1000.0 * len(gaps) / sum(gaps):.1f} pictures per second; of one (median) the server takes "
-          f"{median([server for server, _ in requests]):.1f} ms, the transfer "
+    print(f"{arguments.mode}: {1000.0 * len(gaps) / sum(gaps):.1f} pictures per second; of one (median) "
+          f"the server takes {median([server for server, _ in requests]):.1f} ms, the transfer "
           f"{median([transfer for _, transfer in requests]):.1f} ms, all {median(gaps):.1f} ms; "
           f"the viewer has {'' if has_opengl else 'not '}loaded libGL")
 

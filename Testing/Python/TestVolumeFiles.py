@@ -142,7 +142,8 @@ class TestVolumeFiles(unittest.TestCase):
     def test_nrrd_of_other_spaces(self):
         for space, turn in (("right-anterior-superior", RAS), ("RAS", RAS),
                             ("left-anterior-superior", numpy.diag([1.0, -1.0, 1.0]))):
-            data = nrrd(space=space, space_directions=vectors(turn @ AXES), space_origin="(%g,%g,%g)" % tuple(turn @ ORIGIN))
+            origin = "(%g,%g,%g)" % tuple(turn @ ORIGIN)
+            data = nrrd(space=space, space_directions=vectors(turn @ AXES), space_origin=origin)
             volume = self.read("a.nrrd", data)
             self.check(volume)
             self.assertTrue(volume.is_oriented)
@@ -227,7 +228,8 @@ class TestVolumeFiles(unittest.TestCase):
 
     def test_damaged_nifti_headers(self):
         """Of which some would end the program."""
-        for place, number in ((40, 0), (40, 9), (40, -1), (42, 0), (44, -6), (46, 32767), (70, 999), (72, 0), (72, -16)):
+        for place, number in ((40, 0), (40, 9), (40, -1), (42, 0), (44, -6), (46, 32767), (70, 999), (72, 0),
+                              (72, -16)):
             data = bytearray(nifti())
             struct.pack_into("<h", data, place, number)
             with self.subTest(place=place, number=number):

@@ -73,6 +73,7 @@ class TestWebViewer(unittest.TestCase):
         with testing.running_viewer("--port", "0") as other:
             info = other.get_json("volume")
         self.assertEqual((info["name"], info["size"]), ("aorta-stent.vti", [128, 128, 256]))
+        self.assertIn(f"Window {info['window']:g}, level {info['level']:g}: from the median", other.words)
 
     def test_windows_without_end(self):
         for window, level, gray in ((1e-30, 0.0, 255), (1e-30, 5000.0, 0), (1e300, 1e300, 0), (1e-30, -1e300, 255)):
@@ -144,8 +145,8 @@ class TestWebViewer(unittest.TestCase):
         self.assertGreaterEqual(len(token), 20)
         with testing.running_viewer() as other:
             self.assertNotIn(token, other.address)
-        query = "picture?" + "&".join(f"{k}={v}" for k, v in self.make_view().fields().items())
-        for path in ("/", "/volume", "/" + query, "/wrong/volume", f"/{token[:-1]}/volume", f"/{token}x/volume", f"/{token}", f"/{token}?volume",
+        for path in ("/", "/volume", "/picture?" + self.make_view().query(), "/wrong/volume",
+                     f"/{token[:-1]}/volume", f"/{token}x/volume", f"/{token}", f"/{token}?volume",
                      "//volume", f"/x/{token}/volume", "/%C3%A9/volume", "http://elsewhere/volume"):
             connection = http.client.HTTPConnection("127.0.0.1", self.viewer.port, timeout=10)
             connection.putrequest("GET", path)
@@ -160,11 +161,10 @@ class TestWebViewer(unittest.TestCase):
             volume = volume_files.read_volume(testing.write_nrrd(pathlib.Path(folder) / "phantom.nrrd"))
         viewer = web_viewer.Viewer(volume, "phantom")
         view = self.make_view()
-        query = "&".join(f"{key}={value}" for key, value in view.fields().items())
         for _ in range(2):
             with self.assertRaises(web_viewer.Abandoned):
-                viewer.picture(web_viewer.parse_view(query), lambda: False)
-        kind, body = viewer.picture(web_viewer.parse_view(query), lambda: True)
+                viewer.picture(web_viewer.parse_view(view.query()), lambda: False)
+        kind, body = viewer.picture(web_viewer.parse_view(view.query()), lambda: True)
         self.assertEqual(kind, "image/png")
         self.assertLessEqual(abs(testing.decode(body) - view.picture()).max(), 0.501)
 
@@ -180,9 +180,9 @@ class TestWebViewer(unittest.TestCase):
             self.assertFalse(web_viewer.Handler.is_connected(handler))
 
     def test_who_hangs_up_does_no_harm(self):
-        view = self.make_view((2000, 2000))
-        query = "&".join(f"{key}={value}" for key, value in view.fields().items())
-        request = f"GET {urllib.parse.urlsplit(self.viewer.address).path}picture?{query} HTTP/1.1\r\n\r\n"
+        path = urllib.parse.urlsplit(self.viewer.address).path
+        query = self.make_view((2000, 2000)).query()
+        request = f"GET {path}picture?{query} HTTP/1.1\r\n\r\n"
         for seconds in (0.0, 0.05, 0.2):
             with socket.create_connection(("127.0.0.1", self.viewer.port), 10) as connection:
                 connection.sendall(request.encode())

@@ -135,6 +135,10 @@ class View:
                 "level": text(self.level), "thickness": text(self.slab[0]), "offset": text(self.slab[1]),
                 "mode": self.mode, "kind": kind}
 
+    def query(self):
+        """The fields as the end of an address."""
+        return urllib.parse.urlencode(self.fields(), safe=",")
+
     def pixel_of(self, point):
         """Column and row of a point of the world, from the picture's upper left, in pixels."""
         right = numpy.cross(self.direction, self.up)
