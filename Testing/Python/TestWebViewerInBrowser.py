@@ -25,8 +25,18 @@ GRAY = """(() => {
   }
   return [canvas.width, canvas.height, btoa(gray)];
 })()"""
-# Keeps each picture of the type JPEG that the page shows.
+# Keeps each picture of the type JPEG that the page shows, and counts requests that it gives up.
 RECORDER = """
+  window.givenUp = 0;
+  const pageFetch = window.fetch;
+  window.fetch = async (...what) => {
+    try {
+      return await pageFetch(...what);
+    } catch (error) {
+      window.givenUp += error.name === "AbortError" ? 1 : 0;
+      throw error;
+    }
+  };
   window.moved = [];
   const decode = window.createImageBitmap;
   window.createImageBitmap = async blob => {
@@ -143,6 +153,16 @@ class TestWebViewerInBrowser(unittest.TestCase):
             self.assertLess(min(differences), 1.5)
         self.assertEqual(places, sorted(places))
         self.assertGreater(len(set(places)), 1)
+
+    def test_a_drag_gives_up_the_still_picture_that_is_on_its_way(self):
+        self.page.set_size(690, 400, 7.0)  # so that it takes a while
+        self.page.wait_for(f"canvas.width > 5 * {self.view.size[0]} && {STILL}")
+        self.page.evaluate("void (givenUp = 0)")
+        self.page.drag((150, 200), [(190, 200)])
+        self.page.wait_for("!isMoving && request !== null")
+        self.page.drag((150, 200), [(190, 200)])
+        self.page.wait_for("givenUp > 0")
+        self.page.wait_for(STILL)
 
     def test_modes_can_be_chosen(self):
         for name, mode in (("moving", "standard"), ("still", "high")):
