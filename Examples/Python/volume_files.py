@@ -242,7 +242,8 @@ def read_volume(path):
             raise VolumeError("there is no such file; check the spelling and the current folder.")
         if not reader or path.is_dir():
             raise VolumeError(
-                f"this kind of volume cannot be read; convert it to one of {', '.join(READERS)}.")
+                "this kind of volume cannot be read; convert it to one of "
+                f"{', '.join(READERS)} (DICOM with dcm2niix).")
         return reader(path)
     except OSError as error:
         if error.errno:

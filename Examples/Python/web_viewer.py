@@ -156,7 +156,8 @@ def parse_view(query):
         except (KeyError, ValueError):
             found = []
         if len(found) != count or not all(least <= number <= most for number in found):
-            raise ValueError(f"{name} must be {count} numbers from {least:g} to {most:g}")
+            plural = "s" if count > 1 else ""
+            raise ValueError(f"{name} must be {count} number{plural} from {least:g} to {most:g}")
         return found
 
     def choice(name, names):

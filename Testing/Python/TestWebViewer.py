@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The server of Examples/Python/web_viewer.py, without a browser."""
+import concurrent.futures
 import http.client
 import pathlib
 import socket
@@ -60,6 +61,22 @@ class TestWebViewer(unittest.TestCase):
         view.focal_point = view.focal_point + (4.0, 0.0, -9.0)
         view.extent /= 2.0
         self.check_picture(view)
+
+    def test_several_who_look_at_once(self):
+        """Each gets the picture that was asked for."""
+        views = []
+        for n in range(24):
+            view = self.make_view((40 + n, 60))
+            view.turn((1, 2, 3), 15 * n)
+            view.mode = ("preview", "exact")[n % 2]
+            view.slab = (20.0 * (n % 3), 0.0)
+            views.append(view)
+        with concurrent.futures.ThreadPoolExecutor(8) as pool:
+            answers = list(pool.map(lambda view: self.viewer.get("picture", **view.fields())[2], views))
+        for view, body in zip(views, answers):
+            found, expected = testing.decode(body), view.picture()
+            self.assertEqual(found.shape, expected.shape)
+            self.assertLessEqual(abs(found - expected).max(), 0.501)
 
     def test_jpeg_is_the_picture_roughly(self):
         view = self.make_view()
