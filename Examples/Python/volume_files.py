@@ -79,7 +79,7 @@ def read_header(path):
     fields = {}
     with open(path, "rb") as file:
         for line in iter(lambda: file.readline(65536).decode("latin-1"), ""):
-            key, separator, value = line.partition("=" if path.suffix == ".mha" else ":")
+            key, separator, value = line.partition("=" if path.suffix.lower() == ".mha" else ":")
             key = key.strip().lower()
             if separator:
                 fields[key] = value.strip()
@@ -143,7 +143,7 @@ def read_nrrd(path):
     else:
         note = "the file does not say how large voxels are: cubes of 1 are shown"
     origin = signs * numbers(fields.get("space origin", "0 0 0"), 3)
-    is_in_mm = space in SPACES and fields.get("space units", '"mm"').split()[0] == '"mm"'
+    is_in_mm = space in SPACES and fields.get("space units", '"mm"').startswith('"mm"')
     image = make_image(decode(data, fields, shape), axes, origin)
     return Volume(image, space in SPACES, is_in_mm, None, note)
 
@@ -211,17 +211,19 @@ def read_nifti(path):
     image = run_reader(reader, path)
     values = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(image.GetDimensions()[::-1])
     slope, intercept = reader.GetRescaleSlope(), reader.GetRescaleIntercept()
-    if slope not in (0.0, 1.0) or (slope and intercept):  # codes become values
+    is_scaled = slope != 0.0 and math.isfinite(slope) and math.isfinite(intercept)
+    if is_scaled and (slope, intercept) != (1.0, 0.0):  # codes become values
         wide = numpy.float32 if values.dtype.itemsize <= 2 else numpy.float64
         values = values.astype(wide) * wide(slope) + wide(intercept)
     matrix = reader.GetSFormMatrix() or reader.GetQFormMatrix()
     header = reader.GetNIFTIHeader()
     unit = {1: 1000.0, 3: 0.001}.get(header.GetXYZTUnits() & 7, 1.0)  # m and um
-    axes, origin = numpy.diag(image.GetSpacing()) * unit, numpy.zeros(3)
+    spacing = numpy.abs(image.GetSpacing())
+    axes, origin = numpy.diag(spacing) * unit, numpy.zeros(3)
     if matrix:
         to_lps = numpy.array([[-1], [-1], [1]]) * unit
         columns = numpy.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(3)])
-        axes, origin = to_lps * columns[:, :3] * image.GetSpacing(), (to_lps * columns[:, 3:]).ravel()
+        axes, origin = to_lps * columns[:, :3] * spacing, (to_lps * columns[:, 3:]).ravel()
     low, high = header.GetCalMin(), header.GetCalMax()
     volumes = reader.GetTimeDimension()
     notes = [] if matrix else ["the file does not say how the patient lies; left and right may be exchanged"]
@@ -244,7 +246,10 @@ def read_volume(path):
             raise VolumeError(
                 "this kind of volume cannot be read; convert it to one of "
                 f"{', '.join(READERS)} (DICOM with dcm2niix).")
-        return reader(path)
+        volume = reader(path)
+        if not numpy.isfinite(volume.image.GetOrigin() + volume.image.GetSpacing()).all():
+            raise DAMAGED
+        return volume
     except OSError as error:
         if error.errno:
             raise VolumeError(f"{path}: {error.strerror}; check its permissions.") from None

@@ -135,6 +135,9 @@ class TestVolumeFiles(unittest.TestCase):
             self.check(volume)
             self.assertTrue(volume.is_oriented and volume.is_in_mm)
         self.check(self.read("a.nrrd", nrrd(dtype=">i2")))
+        self.check(self.read("A.NRRD", nrrd()))
+        for unit, is_in_mm in (('"mm" "mm" "mm"', True), ('"um" "um" "um"', False), ("", False)):
+            self.assertEqual(self.read("a.nrrd", nrrd(space_units=unit)).is_in_mm, is_in_mm)
         for names, dtype in (("float", "<f4"), ("double", ">f8"), ("uchar", "<u1"), ("unsigned int", "<i4")):
             self.check(self.read("a.nrrd", nrrd(names, dtype)), make_values(dtype[1:]).astype("u4")
                        if "int" in names else make_values(dtype[1:]))
@@ -165,6 +168,7 @@ class TestVolumeFiles(unittest.TestCase):
         self.check(volume, axes=numpy.eye(3))
         self.assertFalse(volume.is_oriented or volume.is_in_mm)
         self.check(self.read("a.mha", meta("MET_FLOAT", "<f4")), make_values("f4"))
+        self.check(self.read("A.MHA", meta()))
 
     def test_nifti(self):
         for name, pack in (("a.nii", bytes), ("a.nii.gz", gzip.compress)):
@@ -189,6 +193,8 @@ class TestVolumeFiles(unittest.TestCase):
         self.assertEqual(volume.window, (-5.0, 40.0))
         self.assertEqual(volume_files.choose_window(volume), (-5.0, 40.0))
         self.check(self.read("a.nii", nifti(slope=1.0, intercept=3.0)), make_values() + 3.0)
+        self.check(self.read("a.nii", nifti(slope=numpy.nan)))
+        self.check(self.read("a.nii", nifti(slope=1.0, intercept=numpy.inf)))
 
     def test_vti(self):
         volume = self.read("a.vti", vti())
@@ -214,6 +220,7 @@ class TestVolumeFiles(unittest.TestCase):
         self.refused("a.nrrd", nrrd(sizes="7 6 -5"))
         self.refused("a.nrrd", nrrd(space_origin="(1,2)"))
         self.refused("a.nrrd", nrrd(space_directions=vectors(AXES * numpy.nan)))
+        self.refused("a.nrrd", nrrd(space_origin="(1,nan,3)"))
         self.refused("a.nrrd", nrrd(space_directions=vectors(AXES * (1, 0, 1))))
         self.refused("a.nrrd", nrrd(space_directions="(1,0,0) (1,1,0) (0,0,1)"), "right angles")
         self.refused("a.nrrd", nrrd("block"), "'block' cannot be read")
