@@ -5,9 +5,14 @@
 #include "WorldView.h"
 
 #include "vtkCamera.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vector_relational.hpp>
 
@@ -160,9 +165,54 @@ void TurnOfViews::ScaleCamera()
 }
 
 //------------------------------------------------------------------------------
-double TurnOfViews::AngleStep() const
+double TurnOfViews::Angle(int view) const
 {
-  return this->Settings.views > 1 ? this->Settings.angle / this->Settings.views : 1.0;
+  return view * this->Settings.angle / this->Settings.views;
+}
+
+//------------------------------------------------------------------------------
+// By the matrices of the view, because they know of shifts and of what a user adds to a camera.
+void TurnOfViews::Place(vtkImageData* picture) const
+{
+  const TurnSettings& s = this->Settings;
+  const glm::dmat4 toClip = this->WorldToClip(0), toWorld = glm::inverse(toClip);
+  const bool inSlab = s.slab && this->First->GetParallelProjection();
+  const glm::dvec4 depth =
+    toClip * glm::dvec4(inSlab ? s.slabCenter : vector(this->First->GetFocalPoint()), 1.0);
+  const auto find = [&](const glm::dvec2& pixel)
+  {
+    const glm::dvec2 place = 2.0 * (pixel + 0.5) / glm::dvec2(s.size) - 1.0;
+    const glm::dvec4 point = toWorld * glm::dvec4(place * depth.w, depth.z, depth.w);
+    return glm::dvec3(point) / point.w;
+  };
+  const glm::dvec3 first = find(glm::dvec2(0.0));
+  glm::dvec3 axes[3], spacing(0.0, 0.0, s.slab ? s.slabThickness : 1.0);
+  for (int a = 0; a < 2; ++a)
+  {
+    // Over the whole picture, so that rounding does not count.
+    glm::dvec2 end(0.0);
+    end[a] = s.size[a];
+    const glm::dvec3 side = find(end) - first;
+    const double step = glm::length(side) / s.size[a];
+    spacing[a] = std::abs(step - s.spacing[a]) < 1e-9 * step ? s.spacing[a] : step;
+    axes[a] = glm::normalize(side);
+  }
+  axes[2] = glm::normalize(glm::cross(axes[0], axes[1]));
+  vtkNew<vtkMatrix3x3> direction;
+  for (int n = 0; n < 9; ++n)
+  {
+    direction->SetElement(n / 3, n % 3, axes[n % 3][n / 3]);
+  }
+  picture->SetSpacing(&spacing.x);
+  picture->SetOrigin(&first.x);
+  picture->SetDirectionMatrix(direction);
+  vtkNew<vtkDoubleArray> angles;
+  angles->SetName("ViewAngle");
+  for (int n = 0; n < s.views; ++n)
+  {
+    angles->InsertNextValue(this->Angle(n));
+  }
+  picture->GetFieldData()->AddArray(angles);
 }
 
 //------------------------------------------------------------------------------
@@ -202,7 +252,7 @@ void TurnOfViews::SetCamera(int view, vtkCamera* camera) const
   const glm::dvec3 up = vector(camera->GetViewUp()), focus = vector(camera->GetFocalPoint());
   const glm::dvec3 axis =
     glm::normalize(glm::length(this->Settings.axis) > 0.0 ? this->Settings.axis : up);
-  const double radians = glm::radians(view * this->Settings.angle / this->Settings.views);
+  const double radians = glm::radians(this->Angle(view));
   const glm::dvec3 eye = focus + turned(vector(camera->GetPosition()) - focus, axis, radians);
   const glm::dvec3 newUp = turned(up, axis, radians);
   camera->SetPosition(eye.x, eye.y, eye.z);

@@ -12,6 +12,7 @@
 #include <vector>
 
 class vtkCamera;
+class vtkImageData;
 
 namespace splatting
 {
@@ -29,6 +30,9 @@ struct TurnSettings
   int views = 1;
   glm::dvec3 axis{ 0.0 }; ///< 0: up
   double angle = 360.0;
+  bool slab = false;
+  glm::dvec3 slabCenter{ 0.0 };
+  double slabThickness = 1.0;
 };
 
 /**
@@ -45,10 +49,11 @@ public:
   const char* Set(const TurnSettings& settings);
 
   const glm::ivec2& Size() const { return this->Settings.size; }
-  const glm::dvec2& Spacing() const { return this->Settings.spacing; }
   int Views() const { return this->Settings.views; }
-  /// Degrees from view to view, 1 for a single one.
-  double AngleStep() const;
+
+  /// Gives an image the spacing, origin and directions of the first view in the world and the
+  /// angles of all, as vtkSplattingMIPProjection says of its output.
+  void Place(vtkImageData* picture) const;
 
   /// In which order views are to be projected: opposite ones, which share rays, one after the
   /// other, and the last one last.
@@ -60,6 +65,7 @@ public:
 private:
   void PlaceCamera();
   void ScaleCamera();
+  double Angle(int view) const;
 
   TurnSettings Settings;
   vtkNew<vtkCamera> First;

@@ -45,6 +45,8 @@ public:
   ScalarChoice ScalarsOf(vtkSplattingMIPProjection* self, vtkDataArray* array, int association,
     vtkImageData* input) const;
   TurnSettings TurnOf(vtkSplattingMIPProjection* self, vtkImageData* input) const;
+  void TellPlace(
+    vtkSplattingMIPProjection* self, vtkInformation* input, vtkInformation* output) const;
   std::string Problem(
     vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input);
   bool GoOn(vtkSplattingMIPProjection* self, double done);
@@ -187,6 +189,9 @@ TurnSettings vtkSplattingMIPProjection::Internals::TurnOf(
   turn.views = self->NumberOfViews;
   turn.axis = { self->RotationAxis[0], self->RotationAxis[1], self->RotationAxis[2] };
   turn.angle = self->TotalAngle;
+  turn.slab = self->Slab;
+  turn.slabCenter = { self->SlabCenter[0], self->SlabCenter[1], self->SlabCenter[2] };
+  turn.slabThickness = self->SlabThickness;
   const double* const bounds = input->GetBounds();
   const glm::dvec3 low(bounds[0], bounds[2], bounds[4]), high(bounds[1], bounds[3], bounds[5]);
   turn.focalPoint = self->CenterOnVolume
@@ -286,10 +291,8 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
   const int type = ScalarSource::AverageVtkType(scalars->GetDataType());
   const int components = this->Source.Components();
   const glm::ivec2& size = this->Turn.Size();
-  const glm::dvec2& spacing = this->Turn.Spacing();
   output->SetExtent(0, size.x - 1, 0, size.y - 1, 0, this->Turn.Views() - 1);
-  output->SetSpacing(spacing.x, spacing.y, this->Turn.AngleStep());
-  output->SetOrigin(-0.5 * (size.x - 1) * spacing.x, -0.5 * (size.y - 1) * spacing.y, 0.0);
+  this->Turn.Place(output);
   // VTK would say it in several sentences, or throw. Compilers may leave out a new-expression whose
   // memory nobody uses, but not a call.
   constexpr std::size_t located = 3 * sizeof(int) + sizeof(float) + 3 * sizeof(double);
@@ -400,6 +403,24 @@ void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, i
 }
 
 //------------------------------------------------------------------------------
+// Where the output will lie, for filters and writers that ask before they have it.
+void vtkSplattingMIPProjection::Internals::TellPlace(
+  vtkSplattingMIPProjection* self, vtkInformation* input, vtkInformation* output) const
+{
+  vtkNew<vtkImageData> volume, picture;
+  volume->CopyInformationFromPipeline(input);
+  int whole[6] = { 0, -1, 0, -1, 0, -1 };
+  input->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+  volume->SetExtent(whole);
+  TurnOfViews turn;
+  if (!turn.Set(this->TurnOf(self, volume)))
+  {
+    turn.Place(picture);
+    picture->CopyInformationToPipeline(output);
+  }
+}
+
+//------------------------------------------------------------------------------
 int vtkSplattingMIPProjection::RequestInformation(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
@@ -407,7 +428,7 @@ int vtkSplattingMIPProjection::RequestInformation(
   const int whole[6] = { 0, std::clamp(this->OutputSize[0], 1, TurnOfViews::MostPixels) - 1, 0,
     std::clamp(this->OutputSize[1], 1, TurnOfViews::MostPixels) - 1, 0, this->NumberOfViews - 1 };
   info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole, 6);
-  // Spacing and origin need the volume: the output has them.
+  this->Internal->TellPlace(this, input[0]->GetInformationObject(0), info);
   vtkInformation* const array = this->GetInputArrayFieldInformation(0, input);
   int type = VTK_FLOAT, components = 1;
   if (array && array->Has(vtkDataObject::FIELD_ARRAY_TYPE()))

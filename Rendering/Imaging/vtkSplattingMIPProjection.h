@@ -18,10 +18,17 @@
  * view, with as many components as are projected, each projected for itself. Scalars are float, for
  * 32- and 64-bit integers and double double: pictures are interpolated between the pixels of shear
  * images, so that even a preview's pixels lie between voxels. Pixels that no sample is seen at have
- * BackgroundValue. x goes right and y up in the picture, in world units from the focal point;
- * perspective views are as large as they are at the focal point. The third coordinate is the angle
- * of the view in degrees: spacing TotalAngle / NumberOfViews, 1 for a single view. Rows are the
- * picture's from the bottom to the top.
+ * BackgroundValue. Rows are the picture's from the bottom to the top.
+ *
+ * The output lies where its picture lies in the world: origin, spacing and direction matrix are
+ * those of the plane through the focal point across the view, in which perspective views, too, have
+ * their scale; of a parallel view with a Slab, of the plane in the slab's middle. x goes right, y
+ * up and z to the viewer; a slice is as thick as the Slab, else 1. So a slab can be laid over the
+ * volume, measured in and written. VTK's XML keeps all of it. vtkNIFTIImageWriter wants it as a
+ * form: the direction matrix D, and in the last column origin - D * origin; x and y negated where
+ * the world is DICOM's. VTK 9.1's vtkMetaImageWriter and image filters drop directions. Of a turn
+ * the first view lies right; the array "ViewAngle" of the field data has the degrees by which each
+ * slice's view is turned.
  *
  * Rays are parallel, or those of a perspective Camera. They end with the volume: a camera's
  * clipping range means nothing here. Slab and Cropping leave out parts of the volume.
