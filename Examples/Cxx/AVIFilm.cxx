@@ -227,9 +227,10 @@ private:
 };
 }
 
-void WriteAVI(vtkImageData* slices, const Palette& palette, int rate, const std::string& path)
+void WriteAVI(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+  const std::string& path)
 {
-  AVIFile file(path, slices->GetDimensions(), palette, rate);
+  AVIFile file(path, slices->GetDimensions(), palette, settings.Rate);
   const int count = slices->GetDimensions()[2];
   ProgressLine line("writing");
   for (int n = 0; n < count; ++n)

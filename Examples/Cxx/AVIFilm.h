@@ -9,6 +9,7 @@
  * WriteSeries for .avi, by libavformat and libavcodec: Motion JPEG of the best quality, which
  * players have known for the longest. Throws std::runtime_error with one sentence.
  */
-void WriteAVI(vtkImageData* slices, const Palette& palette, int rate, const std::string& path);
+void WriteAVI(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+  const std::string& path);
 
 #endif

@@ -38,9 +38,9 @@ int FindScalarType(const std::vector<DICOMFrame>& frames, const std::vector<std:
 }
 
 /**
- * The first component of a frame of a file's image as a slice of a volume.
+ * A component, from 0 on, of a frame of a file's image as a slice of a volume.
  */
-void CopySlice(vtkImageData* from, int frame, vtkImageData* to, int slice)
+void CopySlice(vtkImageData* from, int frame, int component, vtkImageData* to, int slice)
 {
   const int* const size = to->GetDimensions();
   const vtkIdType count = vtkIdType(size[0]) * size[1];
@@ -53,7 +53,7 @@ void CopySlice(vtkImageData* from, int frame, vtkImageData* to, int slice)
   }
   for (vtkIdType i = 0; i < count; ++i)
   {
-    target->SetComponent(slice * count + i, 0, source->GetComponent(frame * count + i, 0));
+    target->SetComponent(slice * count + i, 0, source->GetComponent(frame * count + i, component));
   }
 }
 
@@ -61,7 +61,7 @@ void CopySlice(vtkImageData* from, int frame, vtkImageData* to, int slice)
  * The frames in their order, each file read once.
  */
 vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
-  const std::vector<std::size_t>& order, const QuietReading& quiet)
+  const std::vector<std::size_t>& order, int component, const QuietReading& quiet)
 {
   const SlicePlane& plane = frames[order[0]].Plane;
   const double voxels = double(plane.Size[0]) * plane.Size[1] * order.size();
@@ -83,7 +83,7 @@ vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
     vtkImageData* const found = ReadPixels(*file, quiet);
     for (const std::size_t slice : slices)
     {
-      CopySlice(found, frames[order[slice]].Number, image, static_cast<int>(slice));
+      CopySlice(found, frames[order[slice]].Number, component, image, static_cast<int>(slice));
     }
     file->Reader->GetOutput()->ReleaseData();
     done += slices.size();
@@ -158,19 +158,21 @@ Volume ReadDICOM(const std::string& path, const ReadSettings& settings, const Qu
   }
   const auto order = ChooseTime(frames, FindPlaces(planes), settings.Frame, volume.Notes);
   const SliceGrid grid = MakeGrid(planes, order);
-  volume.Image = ReadFrames(frames, order, quiet);
+  const int components = files.front()->Components;
+  CheckComponent(path, settings.Component, components);
+  volume.Image = ReadFrames(frames, order, std::max(settings.Component, 1) - 1, quiet);
   if (!grid.Note.empty())
   {
     volume.Image = Blend(volume.Image, order, grid.Slices);
     volume.Notes.push_back(grid.Note);
     volume.Caution = "slices interpolated";
   }
-  if (files.front()->Components > 1)
+  if (components > 1)
   {
-    volume.Notes.push_back(
-      "the first of " + std::to_string(files.front()->Components) + " components");
+    volume.Notes.push_back(DescribeComponent(settings.Component, components));
   }
   FindWindow(frames, order, volume.Window, volume.Level);
   PlaceVolume(volume, planes[order[0]], grid, files.front()->Thickness);
+  volume.Study = files.front()->Reader->GetMetaData();
   return volume;
 }

@@ -79,6 +79,7 @@ void Interact(const Volume& volume, const LookSettings& look, const Options& opt
 {
   MIPScene scene(volume, options.Projection, look, options.View, false);
   scene.UseSplatting(options.Modes.front());
+  scene.GetSplatting()->SetDepthCoding(options.DepthCoding);
   vtkNew<LabelUpdate> label;
   label->Scene = &scene;
   scene.GetWindow()->AddObserver(vtkCommand::EndEvent, label);

@@ -3,6 +3,7 @@
 #include "Options.h"
 
 #include "PictureSeries.h"
+#include "Reading.h"
 #include "ValueFile.h"
 
 #include "vtkSplattingMIPProjection.h"
@@ -63,6 +64,15 @@ std::string CheckSize(const std::string& text)
     : "not a size such as 400x600, each between 16 and 8192";
 }
 
+std::string CheckLabel(const std::string& text)
+{
+  int label = 0;
+  char rest = 0;
+  return std::sscanf(text.c_str(), "%9d%c", &label, &rest) == 1 && label != 0
+    ? ""
+    : "not a whole number other than 0";
+}
+
 /**
  * A check for finite numbers in a range; CLI11's own lets NaN pass.
  */
@@ -88,8 +98,8 @@ public:
   Group(CLI::App& app, std::string name) : App(app), Name(std::move(name)) {}
 
   template <class Value>
-  CLI::Option* Add(
-    const char* name, Value& value, const char* type, const CLI::Validator& check, const char* text)
+  CLI::Option* Add(const char* name, Value& value, const char* type, const CLI::Validator& check,
+    const std::string& text)
   {
     return this->App.add_option(name, value, text)
       ->check(check)
@@ -117,10 +127,10 @@ void DeclareVolumeOptions(CLI::App& app, Options& options)
 {
   app
     .add_option("file", options.Input,
-      "A .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .hdr, .img or .tif file, or a DICOM "
-      "file, a DICOMDIR "
-      "or "
-      "a folder with DICOM files; without it, a built-in CT of a stented aorta")
+      "A " + JoinWords(GetVolumeEndings()) +
+        " file, or a DICOM file, a DICOMDIR or a folder with DICOM files; without it, a built-in "
+        "CT "
+        "of a stented aorta")
     ->type_name("FILE");
   Group group(app, "Which volume");
   group.Add("--series", options.Read.Series, "NUMBER", Between(1, 99999),
@@ -128,6 +138,8 @@ void DeclareVolumeOptions(CLI::App& app, Options& options)
     "file");
   group.Add("--frame", options.Read.Frame, "NUMBER", Between(1, 99999),
     "Of several volumes at the same place, such as times or echoes; default: the first");
+  group.Add("--component", options.Read.Component, "NUMBER", Between(1, 99999),
+    "Of several values in each voxel, such as red, green and blue; default: the first");
 }
 
 void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
@@ -157,6 +169,12 @@ void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
       "on, as in 0,200,0,200,50,150")
     ->expected(6)
     ->delimiter(',');
+  group.Add("--mask", options.Mask.Path, "FILE", CLI::Validator(),
+    "Only voxels that are not 0 in this file, which must have the volume's voxels");
+  group
+    .Add("--label", options.Mask.Label, "NUMBER", CLI::Validator(CheckLabel, ""),
+      "Of the mask only the voxels with this number")
+    ->needs("--mask");
 }
 
 void DeclareLookOptions(CLI::App& app, Options& options)
@@ -168,6 +186,9 @@ void DeclareLookOptions(CLI::App& app, Options& options)
   group.Add("--level", options.Look.Level, "VALUE", Between(-1e30, 1e30),
     "Value in the middle of that range");
   group.AddChoice("--colormap", options.Look.Colormap, "COLORMAP", GetColormapNames(), "Colours");
+  group.AddFlag("--depth-coding", options.DepthCoding,
+    "Hues tell how far away what is seen lies, from red over green to blue; the picture says how "
+    "far red and blue are");
 }
 
 void DeclareViewOptions(CLI::App& app, Options& options, Words& words)
@@ -203,14 +224,14 @@ void DeclareOutputOptions(CLI::App& app, Options& options, Words& words)
   Group group(app, "What comes out");
   group
     .Add("--output,--out", words.Output, "FILE", CLI::Validator(),
-      "The picture to write, .png, or its values in the file's unit, .nii, .nii.gz or .mha; with "
-      "--rotate .gif, .avi or .ogv (films), or .png (numbered "
-      "pictures)")
+      "The picture to write, .png, or its values in the file's unit, " +
+        JoinWords(GetValueEndings()) + "; with --rotate a film or numbered pictures, " +
+        JoinWords(GetSeriesEndings()) + " (DICOM, a multi-frame secondary capture)")
     ->capture_default_str();
   group.Add("--rotate", options.Rotate, "VIEWS", Between(2, 3600),
     "Once round the patient in so many views, 2 to 3600, from --azimuth on, in one mode (high "
     "unless --mode names one)");
-  group.Add("--rate", options.Rate, "VIEWS", Between(1, 50), "Views per second of a GIF or film")
+  group.Add("--rate", options.Rate, "VIEWS", Between(1, 50), "Views per second of a film")
     ->capture_default_str();
   group.AddFlag("--no-marks", options.NoMarks,
     "Leave out the letters for the patient's sides and the scale bar, which are there where the "
@@ -227,9 +248,10 @@ void CheckOutputName(const Options& options)
 {
   const bool isPNG = std::filesystem::path(options.Output).extension() == ".png";
   const bool isStill = isPNG || (IsValueFile(options.Output) && !options.Compare);
-  const std::string fault = options.Rotate > 0 ? CheckSeriesName(options.Output)
-    : isStill                                  ? ""
-              : "not a name that ends in .png, or for values in .nii, .nii.gz or .mha";
+  const std::string fault = options.Rotate > 0
+    ? CheckSeriesName(options.Output, options.DepthCoding)
+    : isStill ? ""
+              : "not a name that ends in .png, or for values in " + JoinWords(GetValueEndings());
   if (!fault.empty())
   {
     throw CLI::ValidationError("--output", fault);
@@ -275,20 +297,37 @@ void CheckCombinations(const Options& options)
 {
   const ProjectionSettings& settings = options.Projection;
   const bool isMaximum = settings.BlendMode == vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
+  if (options.Input.empty() &&
+    (options.Read.Series > 0 || options.Read.Frame > 0 || options.Read.Component > 0))
+  {
+    throw CLI::ValidationError("--series, --frame, --component", "they are of a file: name one");
+  }
   if (options.Interactive + options.Compare + (options.Rotate > 0) > 1)
   {
     throw CLI::ValidationError("--rotate, --compare, --interactive", "choose one of them");
   }
   if (options.Compare &&
-    (!isMaximum || settings.DepthShading || settings.Slab > 0.0 || settings.Cropping))
+    (!isMaximum || settings.DepthShading || settings.Slab > 0.0 || settings.Cropping ||
+      options.DepthCoding || !options.Mask.Path.empty()))
   {
     throw CLI::ValidationError("--compare",
-      "it times maxima of the whole volume: leave --blend, --depth-shading, --slab "
-      "and --crop out");
+      "it times maxima of the whole volume: leave --blend, --depth-shading, --depth-coding, "
+      "--slab, "
+      "--crop and --mask out");
   }
   if (settings.DepthShading && !isMaximum)
   {
     throw CLI::ValidationError("--depth-shading", "it is for maxima: leave --blend out");
+  }
+  if (options.DepthCoding &&
+    settings.BlendMode == vtkSplattingMIPProjection::AVERAGE_INTENSITY_BLEND)
+  {
+    throw CLI::ValidationError("--depth-coding", "means lie at no depth: leave --blend mean out");
+  }
+  if (options.DepthCoding && (options.Look.Colormap != "gray" || IsValueFile(options.Output)))
+  {
+    throw CLI::ValidationError(
+      "--depth-coding", "it chooses the colours of a picture: leave --colormap out, write .png");
   }
   if (settings.SlabOffset != 0.0 && (options.Interactive || options.Rotate > 0))
   {

@@ -4,6 +4,7 @@
 #define Options_h
 
 #include "Look.h"
+#include "Mask.h"
 #include "ProjectionSettings.h"
 #include "View.h"
 #include "VolumeReader.h"
@@ -25,10 +26,12 @@ struct Options
 {
   std::string Input;             // empty: the built-in volume
   ReadSettings Read;             // what of it
+  MaskSettings Mask;             // which of its voxels
   std::vector<int> Modes;        // one, but for stills side by side
   ProjectionSettings Projection; //
   ViewSettings View;             //
   LookSettings Look;             // of which the user has given
+  bool DepthCoding = false;      // in place of a colormap
   bool HasWindow = false;        // this
   bool HasLevel = false;         // and this
   std::string Output;            // an absolute path

@@ -23,6 +23,7 @@ namespace
 void DrawText(vtkImageData* slices, int slice, const std::string& text, double x, double y)
 {
   const int* const size = slices->GetDimensions();
+  const int components = slices->GetNumberOfScalarComponents();
   vtkNew<vtkTextProperty> style;
   style->SetFontSize(std::max(8, size[1] / 32));
   vtkNew<vtkImageData> letters;
@@ -44,7 +45,10 @@ void DrawText(vtkImageData* slices, int slice, const std::string& text, double x
         letters->GetScalarPointer(extent[0] + column, extent[2] + row, 0));
       auto* const pixel =
         static_cast<unsigned char*>(slices->GetScalarPointer(left + column, bottom + row, slice));
-      *pixel = static_cast<unsigned char>(ink[3] + (255 - ink[3]) * *pixel / 255);
+      for (int n = 0; n < components; ++n)
+      {
+        pixel[n] = static_cast<unsigned char>(ink[3] + (255 - ink[3]) * pixel[n] / 255);
+      }
     }
   }
 }
@@ -123,7 +127,8 @@ void DrawScaleBar(vtkImageData* slices, double millimetersPerPixel)
     {
       auto* const end =
         static_cast<unsigned char*>(slices->GetScalarPointer(size[0] - margin, row, slice));
-      std::fill(end - pixels, end, static_cast<unsigned char>(255));
+      const int bytes = pixels * slices->GetNumberOfScalarComponents();
+      std::fill(end - bytes, end, static_cast<unsigned char>(255));
     }
     DrawText(slices, slice, text, 1.0, 3.0 * (margin + thickness) / size[1]);
   }

@@ -9,8 +9,8 @@
 #include <string>
 
 /**
- * Writes a text into the top left corner of each slice of bytes, with the brightest, without
- * OpenGL.
+ * Writes a text into the top left corner of each slice of bytes or colours, with the brightest,
+ * without OpenGL.
  */
 void DrawLabel(vtkImageData* slices, const std::string& text);
 

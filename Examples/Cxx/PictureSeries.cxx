@@ -3,6 +3,7 @@
 #include "PictureSeries.h"
 
 #include "ProgressLine.h"
+#include "Reading.h"
 
 #include "vtkNew.h"
 #include "vtkPNGWriter.h"
@@ -10,6 +11,9 @@
 #include "vtkUnsignedCharArray.h"
 #ifdef SPLATMIP_HAS_AVI
 #include "AVIFilm.h"
+#endif
+#ifdef SPLATMIP_HAS_DICOM
+#include "DICOMFilm.h"
 #endif
 #ifdef SPLATMIP_HAS_THEORA
 #include "vtkOggTheoraWriter.h"
@@ -22,6 +26,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
 
 namespace
@@ -36,7 +41,8 @@ std::string NumberName(const std::string& path, int n)
     .string();
 }
 
-void WritePNGs(vtkImageData* slices, const Palette& palette, const std::string& path)
+void WritePNGs(
+  vtkImageData* slices, const Palette& palette, const FilmSettings&, const std::string& path)
 {
   const int count = slices->GetDimensions()[2];
   ProgressLine line("writing");
@@ -48,7 +54,8 @@ void WritePNGs(vtkImageData* slices, const Palette& palette, const std::string& 
 }
 
 #ifdef SPLATMIP_HAS_THEORA
-void WriteTheora(vtkImageData* slices, const Palette& palette, int rate, const std::string& path)
+void WriteTheora(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+  const std::string& path)
 {
   if (!std::ofstream(path, std::ios::binary))
   {
@@ -56,7 +63,7 @@ void WriteTheora(vtkImageData* slices, const Palette& palette, int rate, const s
   }
   vtkNew<vtkOggTheoraWriter> writer;
   writer->SetFileName(path.c_str());
-  writer->SetRate(rate);
+  writer->SetRate(settings.Rate);
   writer->SetQuality(2);
   writer->SubsamplingOff();
   const int count = slices->GetDimensions()[2];
@@ -157,7 +164,8 @@ private:
   int Size[2];
 };
 
-void WriteGIF(vtkImageData* slices, const Palette& palette, int rate, const std::string& path)
+void WriteGIF(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+  const std::string& path)
 {
   GIFFile file(path, slices->GetDimensions(), palette);
   const int count = slices->GetDimensions()[2];
@@ -166,15 +174,45 @@ void WriteGIF(vtkImageData* slices, const Palette& palette, int rate, const std:
   {
     line.Show(double(n) / count);
     file.Add(static_cast<unsigned char*>(slices->GetScalarPointer(0, 0, n)),
-      std::max(2, (100 + rate / 2) / rate)); // browsers take less for more
+      std::max(2, (100 + settings.Rate / 2) / settings.Rate)); // browsers take less for more
   }
   file.Close();
 }
 #endif
 
-std::string EndingOf(const std::string& path)
+#ifndef SPLATMIP_HAS_GIF
+constexpr auto WriteGIF = nullptr;
+#endif
+#ifndef SPLATMIP_HAS_AVI
+constexpr auto WriteAVI = nullptr;
+#endif
+#ifndef SPLATMIP_HAS_THEORA
+constexpr auto WriteTheora = nullptr;
+#endif
+#ifndef SPLATMIP_HAS_DICOM
+constexpr auto WriteDICOM = nullptr;
+#endif
+
+struct SeriesFormat
 {
-  return std::filesystem::path(path).extension().string();
+  const char* Ending;
+  void (*Write)(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+    const std::string& path); // nullptr if there is no
+  const char* Library;
+  bool TakesColors;
+};
+
+constexpr SeriesFormat Formats[] = { { ".png", WritePNGs, "", true },
+  { ".gif", WriteGIF, "giflib", false }, { ".avi", WriteAVI, "libavformat and libavcodec", false },
+  { ".ogv", WriteTheora, "Ogg Theora in its VTK", true },
+  { ".dcm", WriteDICOM, "vtk-dicom", true } };
+
+const SeriesFormat* FindFormat(const std::string& path)
+{
+  const std::string ending = std::filesystem::path(path).extension().string();
+  const auto* const found = std::find_if(std::begin(Formats), std::end(Formats),
+    [&](const SeriesFormat& format) { return ending == format.Ending; });
+  return found == std::end(Formats) ? nullptr : found;
 }
 }
 
@@ -207,6 +245,11 @@ vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette
   picture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
   const auto* const from = static_cast<unsigned char*>(slices->GetScalarPointer(0, 0, n));
   auto* const to = static_cast<unsigned char*>(picture->GetScalarPointer());
+  if (slices->GetNumberOfScalarComponents() == 3)
+  {
+    std::copy_n(from, 3 * picture->GetNumberOfPoints(), to);
+    return picture;
+  }
   for (vtkIdType p = 0; p < picture->GetNumberOfPoints(); ++p)
   {
     std::copy_n(palette[from[p]].data(), 3, to + 3 * p);
@@ -230,61 +273,35 @@ void WritePNG(vtkImageData* image, const std::string& path)
   }
 }
 
-std::string CheckSeriesName(const std::string& path)
+std::vector<std::string> GetSeriesEndings()
 {
-  const std::string ending = EndingOf(path);
-  if (ending == ".png")
+  std::vector<std::string> endings;
+  for (const SeriesFormat& format : Formats)
   {
-    return "";
+    endings.emplace_back(format.Ending);
   }
-  if (ending == ".gif")
-  {
-#ifdef SPLATMIP_HAS_GIF
-    return "";
-#else
-    return "this build has no giflib to write .gif with: take .png";
-#endif
-  }
-  if (ending == ".avi")
-  {
-#ifdef SPLATMIP_HAS_AVI
-    return "";
-#else
-    return "this build has no libavformat and libavcodec to write .avi with: take .png";
-#endif
-  }
-  if (ending == ".ogv")
-  {
-#ifdef SPLATMIP_HAS_THEORA
-    return "";
-#else
-    return "this VTK has no Ogg Theora to write .ogv with: take .png";
-#endif
-  }
-  return "a turn is written as .gif, .avi or .ogv (films), or .png (numbered pictures)";
+  return endings;
 }
 
-void WriteSeries(
-  vtkImageData* slices, const Palette& palette, [[maybe_unused]] int rate, const std::string& path)
+std::string CheckSeriesName(const std::string& path, bool isColored)
 {
-  const std::string ending = EndingOf(path);
-#ifdef SPLATMIP_HAS_GIF
-  if (ending == ".gif")
+  const SeriesFormat* const format = FindFormat(path);
+  if (!format)
   {
-    return WriteGIF(slices, palette, rate, path);
+    return "a turn is written as " + JoinWords(GetSeriesEndings());
   }
-#endif
-#ifdef SPLATMIP_HAS_AVI
-  if (ending == ".avi")
+  if (!format->Write)
   {
-    return WriteAVI(slices, palette, rate, path);
+    return std::string("this build has no ") + format->Library + " to write " + format->Ending +
+      " with: take .png";
   }
-#endif
-#ifdef SPLATMIP_HAS_THEORA
-  if (ending == ".ogv")
-  {
-    return WriteTheora(slices, palette, rate, path);
-  }
-#endif
-  WritePNGs(slices, palette, path);
+  return isColored && !format->TakesColors
+    ? std::string(format->Ending) + " does not hold the colours of depths: take .png"
+    : "";
+}
+
+void WriteSeries(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+  const std::string& path)
+{
+  FindFormat(path)->Write(slices, palette, settings, path);
 }

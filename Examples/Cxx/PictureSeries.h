@@ -10,6 +10,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 /// What every writer throws whose file cannot be made or filled.
 std::runtime_error CannotWrite(const std::string& path);
@@ -21,7 +22,7 @@ std::runtime_error CannotWrite(const std::string& path);
 void CheckWritable(const std::string& path, bool isNumbered);
 
 /**
- * One of the slices in the palette's colours.
+ * One of the slices in the palette's colours, if it has none of its own.
  */
 vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette, int n);
 
@@ -32,16 +33,32 @@ vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette
 void WritePNG(vtkImageData* image, const std::string& path);
 
 /**
- * What is wrong with the name of a series, or nothing: by its ending it is a GIF or a film, AVI or
- * Ogg Theora, if this build has their libraries, or PNG pictures, of which each gets its number
- * before the ending.
+ * What a film says besides its pictures.
  */
-std::string CheckSeriesName(const std::string& path);
+struct FilmSettings
+{
+  int Rate = 12;                // per second
+  bool IsInMillimeters = false; // the slices' spacing
+  vtkObject* Study = nullptr;   // as of Volume
+};
 
 /**
- * Writes the slices of an image of bytes, which are places in the palette, bottom row first, to be
- * shown at a rate per second. Throws std::runtime_error with one sentence.
+ * How the names of series end, whether this build can write them or not.
  */
-void WriteSeries(vtkImageData* slices, const Palette& palette, int rate, const std::string& path);
+std::vector<std::string> GetSeriesEndings();
+
+/**
+ * What is wrong with the name of a series, or nothing: by its ending it is a GIF, a film (AVI or
+ * Ogg Theora) or DICOM, if this build has their libraries, or PNG pictures, of which each gets its
+ * number before the ending. Not all take slices that have colours of their own.
+ */
+std::string CheckSeriesName(const std::string& path, bool isColored);
+
+/**
+ * Writes the slices of an image, bottom row first: bytes, which are places in the palette, or
+ * colours. Throws std::runtime_error with one sentence.
+ */
+void WriteSeries(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+  const std::string& path);
 
 #endif

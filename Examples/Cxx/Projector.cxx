@@ -123,7 +123,7 @@ vtkSmartPointer<vtkImageData> Projector::Project(const std::string& what)
   if (isEmpty && (this->Projection->GetSlab() || this->Projection->GetCropping()))
   {
     throw std::runtime_error(
-      "nothing of the volume is in the picture; see --crop and --slab-offset.");
+      "nothing of the volume is in the picture; see --crop, --slab-offset and --mask.");
   }
   return bytes;
 }

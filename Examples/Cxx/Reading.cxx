@@ -13,6 +13,7 @@
 
 #include <vtksys/SystemInformation.hxx>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <stdexcept>
@@ -67,6 +68,33 @@ void CheckFrame(const std::string& path, int number, int count)
       "there is no volume " + std::to_string(number) + " here, only " + std::to_string(count) +
         "; give another --frame.");
   }
+}
+
+void CheckComponent(const std::string& path, int number, int count)
+{
+  if (number > count)
+  {
+    Refuse(path,
+      "there is no component " + std::to_string(number) + " here, only " + std::to_string(count) +
+        "; give another --component.");
+  }
+}
+
+std::string DescribeComponent(int number, int count)
+{
+  return "component " + std::to_string(std::max(number, 1)) + " of " + std::to_string(count) +
+    " (--component chooses)";
+}
+
+std::string JoinWords(const std::vector<std::string>& words)
+{
+  std::string text;
+  for (std::size_t n = 0; n < words.size(); ++n)
+  {
+    text += n == 0 ? "" : n + 1 < words.size() ? ", " : " or ";
+    text += words[n];
+  }
+  return text;
 }
 
 void CheckMemory(double voxels, const std::string& path)

@@ -12,6 +12,7 @@
 #include "vtkSmartPointer.h"
 
 #include <string>
+#include <vector>
 
 /**
  * Throws a sentence about a file.
@@ -25,9 +26,21 @@
 void CheckMemory(double voxels, const std::string& path);
 
 /**
- * Refuse a number (from 1 on, or 0 for any) of a volume that a file does not have.
+ * Refuse a number (from 1 on, or 0 for any) of a volume, or of a component, that a file does not
+ * have.
  */
 void CheckFrame(const std::string& path, int number, int count);
+void CheckComponent(const std::string& path, int number, int count);
+
+/**
+ * What is said of one component (from 1 on, or 0 for the first) of several.
+ */
+std::string DescribeComponent(int number, int count);
+
+/**
+ * As in ".a, .b or .c".
+ */
+std::string JoinWords(const std::vector<std::string>& words);
 
 template <class Reader>
 bool HasFailed(Reader* reader, const QuietReading& quiet)

@@ -6,6 +6,7 @@
 """
 import gzip
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -16,6 +17,8 @@ import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
 PROGRAM = ""
+RUNS = {}       # what has been written, and by which arguments
+LOOKS = set()   # of which something was looked at: see look_at()
 SIZE = (10, 12, 14)
 
 
@@ -96,9 +99,29 @@ encoding: {encoding}
     return write_file(path, header.encode() + b"\n" + data)
 
 
+def remember_run(folder, arguments):
+    """Which file this run writes."""
+    words = [*arguments, "splatmip.png"]
+    names = [words[n + 1] for n, word in enumerate(words) if word in ("--output", "--out")]
+    output = os.path.abspath(os.path.join(folder, (names or words[-1:])[0]))
+    RUNS[output] = arguments
+
+
+def look_at(path):
+    """Returns the path, and notes what has led to the file: options (with their words), endings."""
+    arguments = RUNS.get(os.path.abspath(re.sub(r"-\d{5}(?=\.png$)", "", path)), ())
+    LOOKS.update("output " + match for match in re.findall(r"\.[a-z]+(?:\.gz)?$", path))
+    for n, word in enumerate(arguments):
+        if word.startswith("--"):
+            LOOKS.update((word, f"{word} {(*arguments, '')[n + 1]}"))
+        elif n == 0:
+            LOOKS.update("input " + match for match in re.findall(r"\.[a-z]+(?:\.gz)?$", word.lower()))
+    return path
+
+
 def read_picture(reader, path):
     """Rows from the top, of pixels of three colours."""
-    reader.SetFileName(path)
+    reader.SetFileName(look_at(path))
     reader.Update()
     width, height, _ = reader.GetOutput().GetDimensions()
     pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
@@ -107,6 +130,7 @@ def read_picture(reader, path):
 
 def read_values(path):
     """Rows from the bottom, and the matrix from columns and rows to the patient (LPS)."""
+    look_at(path)
     place = numpy.eye(4)
     if path.endswith(".mha"):
         with open(path, "rb") as file:
@@ -139,6 +163,7 @@ class SplatmipTest(unittest.TestCase):
         return os.path.join(self.scratch.name, name)
 
     def run_program(self, *arguments, has_display=False):
+        remember_run(self.scratch.name, arguments)
         environment = {k: v for k, v in os.environ.items() if has_display or k != "DISPLAY"}
         return subprocess.run([PROGRAM, *arguments], cwd=self.scratch.name, capture_output=True,
                               text=True, errors="replace", timeout=300, check=False,
@@ -182,6 +207,14 @@ class SplatmipTest(unittest.TestCase):
 
 
 def main():
+    """With --looks FILE what was looked at is noted, for TestSplatmipComplete.py."""
     global PROGRAM
     PROGRAM = os.path.abspath(sys.argv.pop(1))
-    unittest.main()
+    notes = None
+    if sys.argv[1:2] == ["--looks"]:
+        notes = sys.argv[2]
+        del sys.argv[1:3]
+    program = unittest.main(exit=False)
+    if notes:
+        write_file(notes, "\n".join(sorted(LOOKS)).encode())
+    sys.exit(not program.result.wasSuccessful())

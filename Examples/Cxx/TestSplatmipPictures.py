@@ -18,6 +18,14 @@ COLORMAPS = {
     "bone": [(0, 0, 0, 0), (0.375, 0.33, 0.33, 0.45), (0.75, 0.66, 0.78, 0.78), (1, 1, 1, 1)]}
 
 
+def find_depths(colors):
+    """The share of the way from red, 0, over green to blue, 1; one of the three is 0."""
+    red, green, blue = colors.T
+    largest = colors.max(axis=1)
+    return numpy.where(blue == 0, numpy.where(red >= green, green / largest, 2 - red / largest),
+                       numpy.where(green >= blue, 2 + blue / largest, 4 - green / largest)) / 4
+
+
 class TestPictures(splatmip.SplatmipTest):
     def show(self, *arguments, **options):
         """The block from the front, without the label, and the text."""
@@ -227,6 +235,41 @@ class TestOptions(splatmip.SplatmipTest):
         self.assertGreater(front, 20)
         self.assertGreater(back, front + 10)
         self.assert_refused("--depth-shading", "--blend", "min", word="for maxima", code=2)
+
+    def test_depth_coding(self):
+        """The hue says how far the block is behind the middle, the brightness what it was."""
+        def find(*arguments):
+            colors = self.show("--depth-coding", "--mode", "exact", *arguments)[60:]
+            grays = self.show("--mode", "exact", *arguments)[60:, :, 0]
+            self.assertLessEqual(abs(colors.max(axis=2) - grays).max(), 1)
+            # From red over green to blue there is none of the third colour.
+            self.assertEqual(colors.min(axis=2).max(), 0)
+            rows, columns = numpy.nonzero(grays > 200)
+            self.assertGreater(len(rows), 5)
+            return find_depths(colors[rows, columns])
+        for azimuth, places in ((0, (4, 6)), (180, (-6, -4)), (90, (-9, -7))):
+            depths = find("--azimuth", azimuth)
+            low, high = ((place + 20) / 40 for place in places)  # the volume is 40 deep
+            self.assertGreater(depths.min(), low - 0.03)
+            self.assertLess(depths.max(), high + 0.03)
+        depths = find("--slab", 4, "--slab-offset", -5)
+        self.assertGreater(depths.min(), 0.2)
+        self.assertLess(depths.max(), 0.8)
+        depths = find("--perspective", 60)
+        self.assertGreater(depths.min(), 24 / 40 - 0.03)
+        self.assertLess(depths.max(), 26 / 40 + 0.03)
+        for words in (("--blend", "mean"), ("--colormap", "hot"), ("--output", "v.nii"),
+                      ("--rotate", "4", "--output", "a.gif"), ("--compare",)):
+            self.assert_refused("--depth-coding", *words, code=2)
+
+    def test_depth_legend(self):
+        """The text in the picture says how far red and blue are, where the file knows."""
+        told, silent = (self.draw(path, "--depth-coding", "--mode", "exact", "--no-marks",
+                                  "--output", "a.png")[0]
+                        for path in (splatmip.write_nrrd(self.path("a.nrrd")), self.file))
+        for picture in (told, silent):
+            self.assertGreater((picture[20:60, :150] == 255).all(axis=2).sum(), 100)
+        self.assertFalse((told[:60, :300] == silent[:60, :300]).all())
 
     def test_looks_of_blends(self):
         """Where nothing is said, of minima and means something is seen, too."""

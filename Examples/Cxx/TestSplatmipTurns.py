@@ -3,11 +3,15 @@
 """Turns: films and numbered pictures."""
 import itertools
 import os
+import shutil
 import struct
+import subprocess
 
 import numpy
 import vtk
 
+import DICOMFiles as dicom
+import FilmFiles as films
 import SplatmipTesting as splatmip
 
 
@@ -70,7 +74,7 @@ class TestTurns(splatmip.SplatmipTest):
 
     def read(self, name):
         reader = vtk.vtkPNGReader()
-        reader.SetFileName(self.path(name))
+        reader.SetFileName(splatmip.look_at(self.path(name)))
         reader.Update()
         return splatmip.get_bytes(reader.GetOutput())
 
@@ -91,9 +95,15 @@ class TestTurns(splatmip.SplatmipTest):
         # The first view is what the mapper shows; the turn is as large as fits from all sides.
         self.assertGreater(max(pictures[0]), 250)
 
+    def read_turn(self, views, *options):
+        """The same turn as numbered pictures."""
+        self.turn("--rotate", str(views), "--out", "same.png", *options)
+        return [splatmip.read_picture(vtk.vtkPNGReader(), self.path(f"same-{n:05}.png"))
+                for n in range(views)]
+
     def test_gif(self):
-        text = self.turn("--rotate", "4", "--size", "50x40", "--rate", "10", "--out", "turn.gif",
-                         "--mode", "preview", "--colormap", "hot")
+        options = ("--size", "50x40", "--mode", "preview", "--colormap", "hot")
+        text = self.turn("--rotate", "4", "--rate", "10", "--out", "turn.gif", *options)
         self.assertIn("per second", text)
         with open(self.path("turn.gif"), "rb") as file:
             data = file.read()
@@ -101,17 +111,98 @@ class TestTurns(splatmip.SplatmipTest):
         self.assertTrue(data.endswith(b";"))
         self.assertIn(b"NETSCAPE2.0", data)
         self.assertEqual(data.count(bytes([0x21, 0xF9, 4, 4, 10, 0])), 4)
+        expected = self.read_turn(4, *options)
+        found = films.read_gif(splatmip.look_at(self.path("turn.gif")))
+        self.assertEqual(len(found), 4)
+        for one, other in zip(found, expected):
+            self.assertTrue((one == other).all())
 
     def test_film(self):
-        self.turn("--rotate", "4", "--size", "64x48", "--output", "turn.ogv", "--mode", "preview")
-        with open(self.path("turn.ogv"), "rb") as file:
+        """Each picture of the film is nearer to its view than to the others, or mirrored ones."""
+        for colors in (("--colormap", "hot"), ("--depth-coding",)):
+            options = ("--size", "61x47", "--mode", "standard", *colors)
+            self.turn("--rotate", "5", "--output", "turn.ogv", *options)
+            with open(self.path("turn.ogv"), "rb") as file:
+                data = file.read()
+            self.assertTrue(data.startswith(b"OggS"))
+            self.assertIn(b"theora", data[:200])
+            found = films.read_theora(splatmip.look_at(self.path("turn.ogv")), (61, 47))
+            if found is None:
+                self.skipTest("no libtheoradec")
+            expected = self.read_turn(5, *options)
+            self.assertEqual(len(found), 5)
+            for n, picture in enumerate(found):
+                own = abs(picture - expected[n]).mean()
+                others = [abs(picture - other).mean() for m, other in enumerate(expected) if m != n]
+                mirrored = abs(picture - expected[n][::-1]).mean()
+                self.assertLess(2 * own, min(*others, mirrored))
+
+    def read_dicom(self, name, frames, size):
+        """The frames behind the header of an uncompressed file; dciodvfy finds no error."""
+        with open(splatmip.look_at(self.path(name)), "rb") as file:
             data = file.read()
-        self.assertTrue(data.startswith(b"OggS"))
-        self.assertIn(b"theora", data[:200])
+        self.assertEqual(data[128:132], b"DICM")
+        tool = shutil.which("dciodvfy")
+        if tool:
+            result = subprocess.run([tool, self.path(name)], capture_output=True, text=True,
+                                    check=False)
+            self.assertNotIn("Error", result.stderr + result.stdout)
+            self.assertRegex(result.stderr + result.stdout, "Multiframe(GrayscaleByte|TrueColor)SC")
+        length = len(data) - data.rindex(struct.pack("<HH2sxx", 0x7FE0, 0x0010, b"OB")) - 12
+        samples = length // (frames * size[0] * size[1])
+        self.assertEqual(length, samples * frames * size[0] * size[1])
+        pixels = numpy.frombuffer(data[-length:], numpy.uint8)
+        shape = (frames, size[1], size[0], samples)
+        return numpy.broadcast_to(pixels.reshape(shape), (*shape[:3], 3)), samples, data
+
+    def find_text(self, data, tag, vr):
+        """The text of an element that occurs once."""
+        place = data.index(struct.pack("<HH", *tag) + vr)
+        length, = struct.unpack_from("<H", data, place + 6)
+        return data[place + 8:place + 8 + length].decode().rstrip(" \0")
+
+    def test_dicom(self):
+        """Gray bytes where the colours are gray, else true colours; a missing dciodvfy is told."""
+        for colors, samples in (((), 1), (("--colormap", "inverted"), 1), (("--colormap", "hot"), 3),
+                                (("--depth-coding",), 3)):
+            options = ("--size", "61x47", "--mode", "standard", *colors)
+            result = self.run_program("--rotate", "5", "--rate", "10", "--output", "turn.dcm", *options)
+            if "no vtk-dicom" in result.stderr:
+                self.skipTest("no vtk-dicom")
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            # A column more makes the number of bytes even.
+            found, found_samples, data = self.read_dicom("turn.dcm", 5, (62, 47))
+            self.assertEqual(found_samples, samples)
+            self.assertTrue((found[:, :, :61] == self.read_turn(5, *options)).all())
+            self.assertEqual(self.find_text(data, (0x0018, 0x1065), b"DS"), "0\\100\\100\\100\\100")
+            self.assertNotIn(struct.pack("<HH", 0x0028, 0x0030) + b"DS", data)  # mm are unknown
+        if not shutil.which("dciodvfy"):
+            self.skipTest("no dciodvfy: whether the files are valid is not known")
+
+    def test_dicom_study(self):
+        """What comes from a study stays in it, as a series of its own."""
+        slices = dicom.make_slices()
+        folder = dicom.write_series(self.path("series"), slices)
+        result = self.run_program(folder, "--rotate", "4", "--view", "anterior", "--size", "61x47",
+                                  "--out", "turn.dcm")
+        if "no vtk-dicom" in result.stderr:
+            self.skipTest("no vtk-dicom")
+        self.assertEqual((result.returncode, result.stderr), (0, ""), result.stdout)
+        _, _, data = self.read_dicom("turn.dcm", 4, (61, 47))
+        for tag, vr, name in (((0x0010, 0x0010), b"PN", "PatientName"),
+                              ((0x0010, 0x0020), b"LO", "PatientID"),
+                              ((0x0020, 0x000D), b"UI", "StudyInstanceUID"),
+                              ((0x0008, 0x0020), b"DA", "StudyDate")):
+            self.assertEqual(self.find_text(data, tag, vr), slices[0][name])
+        series = self.find_text(data, (0x0020, 0x000E), b"UI")
+        self.assertNotEqual(series, slices[0]["SeriesInstanceUID"])
+        size = [float(n) for n in self.find_text(data, (0x0028, 0x0030), b"DS").split("\\")]
+        self.assertEqual(size[0], size[1])
+        self.assertAlmostEqual(size[0], 1.1 * 26 / 47, 6)  # the volume's height fits
 
     def read_avi(self, name, size, rate, views):
         """The pictures as JPEG, after a look at what players go by."""
-        with open(self.path(name), "rb") as file:
+        with open(splatmip.look_at(self.path(name)), "rb") as file:
             data = file.read()
         self.assertEqual(data[:12], struct.pack("<4sI4s", b"RIFF", len(data) - 8, b"AVI "))
         chunks = list(read_chunks(data))
@@ -137,7 +228,8 @@ class TestTurns(splatmip.SplatmipTest):
         for n, frame in enumerate(self.read_avi("turn.avi", size, 10, views)):
             steps = numpy.frombuffer(frame, numpy.uint8, 64, frame.index(b"\xFF\xDB") + 5)
             self.assertLessEqual(max(steps), 83 // 8)  # libavcodec's finest
-            found = splatmip.read_picture(vtk.vtkJPEGReader(), splatmip.write_file(self.path("frame.jpg"), frame))
+            found = splatmip.read_picture(
+                vtk.vtkJPEGReader(), splatmip.write_file(self.path("frame.jpg"), frame))
             expected = splatmip.read_picture(vtk.vtkPNGReader(), self.path(f"turn-{n:05}.png"))
             errors = numpy.sqrt(numpy.mean((found - halve_chroma(expected)) ** 2, axis=(0, 1)))
             bound = bound_jpeg_errors(steps, size, colormap != "gray")
@@ -153,7 +245,8 @@ class TestTurns(splatmip.SplatmipTest):
         self.assert_refused("--rotate", "4", "--interactive", word="choose one", code=2)
         self.assert_refused("--out", "turn.gif", word=".png", code=2)
         os.symlink("/dev/full", self.path("full.avi"))
-        for name in ("no/turn.gif", "no/turn.ogv", "no/turn.avi", "full.avi"):
+        os.symlink("/dev/full", self.path("full.dcm"))
+        for name in ("no/turn.gif", "no/turn.ogv", "no/turn.avi", "no/turn.dcm", "full.avi", "full.dcm"):
             result = self.run_program("--rotate", "2", "--size", "16x16", "--out", name)
             self.assertEqual(result.returncode, 1)
             self.assertRegex(result.stderr, rf"^splatmip: .*{name}: .* folder .*\.\n$")

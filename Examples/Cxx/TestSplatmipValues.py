@@ -6,6 +6,7 @@ import struct
 
 import numpy
 import vtk
+from vtk.util.numpy_support import vtk_to_numpy
 
 import SplatmipTesting as splatmip
 
@@ -183,6 +184,7 @@ encoding: raw
 
 """
         splatmip.write_file(self.path("a.nrrd"), header.encode() + values.tobytes())
+        self.middle = numpy.array(origin) + numpy.array([6, 7, 9.5]) @ axes
         return numpy.array(origin) + numpy.array([5, 4, 8]) @ axes
 
     def check(self, name, *arguments):
@@ -213,6 +215,55 @@ encoding: raw
             self.check(name, "--azimuth", "70", "--elevation", "-25", "--roll", "40")
         self.assertAlmostEqual(
             numpy.linalg.norm(self.check("v.nii", "--slab", "90")[:3, 2]), 90, 4)
+
+    def test_slab(self):
+        """The picture of a slab lies in the slab's middle, as thick as it; bits are kept."""
+        self.write_volume((12, -34, 56))
+        for offset in (0, 4, -3):
+            options = ("--view", "left", "--mode", "exact", "--slab", "5", "--slab-offset",
+                       str(offset), "--size", "64x64")
+            planes = []
+            for name in ("v.mha", "v.nii"):
+                result = self.run_program(self.path("a.nrrd"), "--output", name, *options)
+                self.assertEqual((result.returncode, result.stderr), (0, ""))
+                values, matrix = splatmip.read_values(self.path(name))
+                planes.append((values, matrix))
+                self.assertAlmostEqual(numpy.linalg.norm(matrix[:3, 2]), 5, 5)
+                middle = (matrix @ [31.5, 31.5, 0, 1])[:3]
+                self.assertLess(abs(middle - self.middle - [offset, 0, 0]).max(), 1e-4)
+            self.assertTrue(numpy.array_equal(planes[0][0], planes[1][0], equal_nan=True))
+            # NIfTI keeps numbers in single precision.
+            self.assertLess(abs(planes[0][1] - planes[1][1]).max(), 100 * 2 ** -23)
+
+    def test_tiff(self):
+        """The values and the size of pixels; that the place is lost is told."""
+        self.write_volume((12, -34, 56))
+        options = ("--view", "left", "--mode", "exact", "--size", "50x64")
+        self.run_program(self.path("a.nrrd"), "--output", "v.mha", *options)
+        expected, matrix = splatmip.read_values(self.path("v.mha"))
+        for name in ("v.tif", "v.tiff"):
+            result = self.run_program(self.path("a.nrrd"), "--output", name, *options)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertIn("TIFF holds the size of a pixel, but not where", result.stdout)
+            reader = vtk.vtkTIFFReader()
+            reader.SetFileName(splatmip.look_at(self.path(name)))
+            reader.Update()
+            image = reader.GetOutput()
+            self.assertEqual(image.GetScalarTypeAsString(), "float")
+            # The first row of the file is the top one, which VTK's reader leaves first.
+            values = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(64, 50)[::-1]
+            self.assertTrue(numpy.array_equal(values, expected, equal_nan=True))
+            with open(self.path(name), "rb") as file:
+                data = file.read()
+            tags = {}
+            start = struct.unpack_from("<I", data, 4)[0]
+            for n in range(struct.unpack_from("<H", data, start)[0]):
+                tag, _, _, value = struct.unpack_from("<HHII", data, start + 2 + 12 * n)
+                tags[tag] = value
+            above, below = struct.unpack_from("<II", data, tags[282])  # pixels per cm
+            self.assertEqual(tags[296] & 0xFFFF, 3)
+            length = numpy.linalg.norm(matrix[:3, 0])
+            self.assertLess(abs(above / below * length / 10 - 1), 1e-5)
 
     def test_origins(self):
         """Of each format: the picture goes through the middle of the volume."""

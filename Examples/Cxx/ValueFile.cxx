@@ -3,16 +3,20 @@
 #include "ValueFile.h"
 
 #include "PictureSeries.h"
+#include "QuietReading.h"
 
-#include "vtkCamera.h"
 #include "vtkImageCast.h"
-#include "vtkMath.h"
+#include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNIFTIImageWriter.h"
 #include "vtkNew.h"
-#include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkTIFFWriter.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <fstream>
+#include <iterator>
 
 namespace
 {
@@ -22,64 +26,69 @@ bool EndsWith(const std::string& text, const std::string& end)
 }
 
 /**
- * The picture's axes, right, up and to the viewer, and its first pixel, in the patient (LPS).
+ * NIfTI counts from left to right and back to front. VTK's writer adds the image's origin as it
+ * lies along the image's axes.
  */
-vtkSmartPointer<vtkMatrix4x4> FindPlane(
-  vtkSplattingMIPProjection* projection, const std::array<double, 3>& origin)
+vtkSmartPointer<vtkMatrix4x4> MakeForm(vtkImageData* values)
 {
-  vtkNew<vtkCamera> camera;
-  projection->GetViewCamera(0, camera);
-  camera->OrthogonalizeViewUp();
-  double away[3], axes[3][3], center[3];
-  camera->GetDirectionOfProjection(away);
-  camera->GetViewUp(axes[1]);
-  camera->GetFocalPoint(center);
-  vtkMath::Cross(away, axes[1], axes[0]);
-  const double* const first = projection->GetOutput()->GetOrigin();
-  auto plane = vtkSmartPointer<vtkMatrix4x4>::New();
+  auto form = vtkSmartPointer<vtkMatrix4x4>::New();
   for (int row = 0; row < 3; ++row)
   {
-    axes[2][row] = -away[row];
+    const double sign = row < 2 ? -1.0 : 1.0;
+    double offset = values->GetOrigin()[row];
     for (int column = 0; column < 3; ++column)
     {
-      plane->SetElement(row, column, axes[column][row]);
+      const double element = values->GetDirectionMatrix()->GetElement(row, column);
+      form->SetElement(row, column, sign * element);
+      offset -= element * values->GetOrigin()[column];
     }
-    plane->SetElement(
-      row, 3, origin[row] + center[row] + first[0] * axes[0][row] + first[1] * axes[1][row]);
+    form->SetElement(row, 3, sign * offset);
   }
-  return plane;
+  return form;
 }
 
-void WriteNIFTI(vtkImageData* values, vtkMatrix4x4* plane, const std::string& path)
+/**
+ * By one of VTK's writers, whose reports are not for the user.
+ */
+void WriteWith(vtkImageWriter* writer, vtkImageData* values, const std::string& path)
 {
-  vtkNew<vtkMatrix4x4> form; // which counts from left to right and back to front
-  form->DeepCopy(plane);
-  for (int column = 0; column < 4; ++column)
-  {
-    form->SetElement(0, column, -plane->GetElement(0, column));
-    form->SetElement(1, column, -plane->GetElement(1, column));
-  }
-  vtkNew<vtkNIFTIImageWriter> writer;
+  const QuietReading quiet;
   writer->SetInputData(values);
   writer->SetFileName(path.c_str());
-  writer->SetQFormMatrix(form);
-  writer->SetSFormMatrix(form);
   writer->Write();
-  if (writer->GetErrorCode())
+  if (writer->GetErrorCode() || quiet.HasErrors())
   {
     throw CannotWrite(path);
   }
 }
 
+void WriteNIFTI(vtkImageData* values, const std::string& path)
+{
+  const auto form = MakeForm(values);
+  vtkNew<vtkNIFTIImageWriter> writer;
+  writer->SetQFormMatrix(form);
+  writer->SetSFormMatrix(form);
+  WriteWith(writer, values, path);
+}
+
+void WriteTIFF(vtkImageData* values, const std::string& path)
+{
+  vtkNew<vtkTIFFWriter> writer;
+  writer->SetCompressionToNoCompression();
+  WriteWith(writer, values, path);
+  std::printf("TIFF holds the size of a pixel, but not where the picture lies: .nii and .mha do\n");
+}
+
 /**
  * By hand, because VTK's writer leaves directions out.
  */
-void WriteMeta(vtkImageData* values, vtkMatrix4x4* plane, const std::string& path)
+void WriteMeta(vtkImageData* values, const std::string& path)
 {
   const int* const size = values->GetDimensions();
   const double* const spacing = values->GetSpacing();
+  const double* const origin = values->GetOrigin();
   std::ofstream file(path, std::ios::binary);
-  file.precision(12);
+  file.precision(17);
   file << "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = ";
 #ifdef VTK_WORDS_BIGENDIAN
   file << "True";
@@ -89,11 +98,11 @@ void WriteMeta(vtkImageData* values, vtkMatrix4x4* plane, const std::string& pat
   file << "\nTransformMatrix =";
   for (int i = 0; i < 9; ++i)
   {
-    file << ' ' << plane->GetElement(i % 3, i / 3);
+    file << ' ' << values->GetDirectionMatrix()->GetElement(i % 3, i / 3);
   }
-  file << "\nOffset = " << plane->GetElement(0, 3) << ' ' << plane->GetElement(1, 3) << ' '
-       << plane->GetElement(2, 3) << "\nElementSpacing = " << spacing[0] << ' ' << spacing[1] << ' '
-       << spacing[2] << "\nDimSize = " << size[0] << ' ' << size[1]
+  file << "\nOffset = " << origin[0] << ' ' << origin[1] << ' ' << origin[2]
+       << "\nElementSpacing = " << spacing[0] << ' ' << spacing[1] << ' ' << spacing[2]
+       << "\nDimSize = " << size[0] << ' ' << size[1]
        << " 1\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n";
   file.write(static_cast<const char*>(values->GetScalarPointer()),
     static_cast<std::streamsize>(values->GetNumberOfPoints() * sizeof(float)));
@@ -103,25 +112,49 @@ void WriteMeta(vtkImageData* values, vtkMatrix4x4* plane, const std::string& pat
     throw CannotWrite(path);
   }
 }
+
+struct ValueFormat
+{
+  const char* Ending;
+  void (*Write)(vtkImageData* values, const std::string& path);
+};
+
+constexpr ValueFormat Formats[] = { { ".nii", WriteNIFTI }, { ".nii.gz", WriteNIFTI },
+  { ".mha", WriteMeta }, { ".tif", WriteTIFF }, { ".tiff", WriteTIFF } };
+
+const ValueFormat* FindFormat(const std::string& path)
+{
+  const auto* const found = std::find_if(std::begin(Formats), std::end(Formats),
+    [&](const ValueFormat& format) { return EndsWith(path, format.Ending); });
+  return found == std::end(Formats) ? nullptr : found;
+}
+}
+
+std::vector<std::string> GetValueEndings()
+{
+  std::vector<std::string> endings;
+  for (const ValueFormat& format : Formats)
+  {
+    endings.emplace_back(format.Ending);
+  }
+  return endings;
 }
 
 bool IsValueFile(const std::string& path)
 {
-  return EndsWith(path, ".nii") || EndsWith(path, ".nii.gz") || EndsWith(path, ".mha");
+  return FindFormat(path) != nullptr;
 }
 
-void WriteValues(vtkSplattingMIPProjection* projection, const std::array<double, 3>& origin,
-  const std::string& path)
+void WriteValues(
+  vtkImageData* picture, const std::array<double, 3>& origin, const std::string& path)
 {
   vtkNew<vtkImageCast> cast;
-  cast->SetInputData(projection->GetOutput());
+  cast->SetInputData(picture);
   cast->SetOutputScalarTypeToFloat();
   cast->Update();
   vtkImageData* const values = cast->GetOutput();
-  const double* const spacing = values->GetSpacing();
-  values->SetSpacing(
-    spacing[0], spacing[1], projection->GetSlab() ? projection->GetSlabThickness() : 1.0);
-  values->SetOrigin(0.0, 0.0, 0.0);
-  const auto plane = FindPlane(projection, origin);
-  EndsWith(path, ".mha") ? WriteMeta(values, plane, path) : WriteNIFTI(values, plane, path);
+  const double* const first = picture->GetOrigin();
+  values->SetOrigin(first[0] + origin[0], first[1] + origin[1], first[2] + origin[2]);
+  values->SetDirectionMatrix(picture->GetDirectionMatrix()); // which filters do not pass on
+  FindFormat(path)->Write(values, path);
 }

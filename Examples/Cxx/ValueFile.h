@@ -3,22 +3,27 @@
 #ifndef ValueFile_h
 #define ValueFile_h
 
-#include "vtkSplattingMIPProjection.h"
+#include "vtkImageData.h"
 
 #include <array>
 #include <string>
+#include <vector>
 
 /**
- * Whether a name is that of a file of values: .nii, .nii.gz or .mha.
+ * How the names of files of values end.
+ */
+std::vector<std::string> GetValueEndings();
+
+/**
+ * Whether a name ends so.
  */
 bool IsValueFile(const std::string& path);
 
 /**
- * Writes the values of a projection's one view where it lies in the patient: the plane through the
- * middle of the volume, whose first voxel has the given origin (LPS). Pixels in which nothing is
- * seen are NaN. Throws std::runtime_error with one sentence.
+ * Writes the values of a picture by vtkSplattingMIPProjection where it lies in the patient, if the
+ * picture's place is relative to the given one (LPS). Throws std::runtime_error with one sentence.
  */
-void WriteValues(vtkSplattingMIPProjection* projection, const std::array<double, 3>& origin,
-  const std::string& path);
+void WriteValues(
+  vtkImageData* picture, const std::array<double, 3>& origin, const std::string& path);
 
 #endif

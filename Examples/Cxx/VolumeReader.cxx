@@ -224,10 +224,10 @@ void FinishGeometry(Volume& volume)
 }
 
 /**
- * See that the image has point scalars of one component; choose the first array and its first
- * component where there is a choice.
+ * See that the image has point scalars of one component; choose the first array where there is a
+ * choice.
  */
-void FinishScalars(Volume& volume, const std::string& path)
+void FinishScalars(Volume& volume, const std::string& path, int component)
 {
   vtkPointData* points = volume.Image->GetPointData();
   vtkDataArray* scalars = points->GetScalars() ? points->GetScalars() : points->GetArray(0);
@@ -238,14 +238,15 @@ void FinishScalars(Volume& volume, const std::string& path)
   }
   points->SetScalars(scalars);
   const int components = scalars->GetNumberOfComponents();
+  CheckComponent(path, component, components);
   if (components > 1)
   {
-    vtkNew<vtkImageExtractComponents> first;
-    first->SetInputData(volume.Image);
-    first->SetComponents(0);
-    first->Update();
-    volume.Image = first->GetOutput();
-    volume.Notes.push_back("the first of " + std::to_string(components) + " components");
+    vtkNew<vtkImageExtractComponents> one;
+    one->SetInputData(volume.Image);
+    one->SetComponents(std::max(component, 1) - 1);
+    one->Update();
+    volume.Image = one->GetOutput();
+    volume.Notes.push_back(DescribeComponent(component, components));
   }
 }
 
@@ -264,29 +265,30 @@ Volume ReadDICOM(const std::string& path, const ReadSettings&, const QuietReadin
 
 using ReadFunction = Volume (*)(const std::string&, const ReadSettings&, const QuietReading&);
 
+struct VolumeFormat
+{
+  const char* Ending;
+  ReadFunction Read;
+};
+
+constexpr VolumeFormat Formats[] = { { ".vti", ReadXML }, { ".vtk", ReadLegacy },
+  { ".mha", ReadMeta }, { ".mhd", ReadMeta }, { ".nrrd", ReadNRRD }, { ".nhdr", ReadNRRD },
+  { ".nii", ReadNIFTI }, { ".nii.gz", ReadNIFTI }, { ".hdr", ReadNIFTI }, { ".img", ReadNIFTI },
+  { ".hdr.gz", ReadNIFTI }, { ".img.gz", ReadNIFTI }, { ".tif", ReadTIFF }, { ".tiff", ReadTIFF } };
+
 /**
  * By the end of the name; nullptr if it is none of those.
  */
 ReadFunction ChooseReader(const std::string& path)
 {
-  static const struct
-  {
-    const char* Suffix;
-    ReadFunction Read;
-  } formats[] = { { ".vti", ReadXML }, { ".vtk", ReadLegacy }, { ".mha", ReadMeta },
-    { ".mhd", ReadMeta }, { ".nrrd", ReadNRRD }, { ".nhdr", ReadNRRD }, { ".nii", ReadNIFTI },
-    { ".nii.gz", ReadNIFTI }, { ".hdr", ReadNIFTI }, { ".img", ReadNIFTI },
-    { ".hdr.gz", ReadNIFTI }, { ".img.gz", ReadNIFTI }, { ".tif", ReadTIFF },
-    { ".tiff", ReadTIFF } };
-
   std::string lower = path;
   std::transform(lower.begin(), lower.end(), lower.begin(),
     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const auto& format : formats)
+  for (const VolumeFormat& format : Formats)
   {
-    const std::string suffix = format.Suffix;
-    if (lower.size() > suffix.size() &&
-      lower.compare(lower.size() - suffix.size(), suffix.size(), suffix) == 0)
+    const std::string ending = format.Ending;
+    if (lower.size() > ending.size() &&
+      lower.compare(lower.size() - ending.size(), ending.size(), ending) == 0)
     {
       return format.Read;
     }
@@ -298,22 +300,21 @@ Volume ReadAny(const std::string& path, const ReadSettings& settings, const Quie
 {
   std::error_code error;
   const ReadFunction read = ChooseReader(path);
-  if (std::filesystem::is_directory(path, error) || (!read && IsDICOMFile(path)))
-  {
-    return ReadDICOM(path, settings, quiet);
-  }
-  if (!read)
+  const bool isDICOM = std::filesystem::is_directory(path, error) || (!read && IsDICOMFile(path));
+  if (!isDICOM && !read)
   {
     Refuse(path,
-      "unknown kind of file; give a .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .hdr, "
-      ".img or .tif file, "
-      "or a DICOM file, a DICOMDIR or a folder with DICOM files.");
+      "unknown kind of file; give a " + JoinWords(GetVolumeEndings()) +
+        " file, or a DICOM file, a DICOMDIR or a folder with DICOM files.");
   }
-  if (settings.Series > 0)
+  if (!isDICOM && settings.Series > 0)
   {
     Refuse(path, "this is not DICOM and has no series; leave --series out.");
   }
-  return read(path, settings, quiet);
+  Volume volume = isDICOM ? ReadDICOM(path, settings, quiet) : read(path, settings, quiet);
+  FinishGeometry(volume);
+  FinishScalars(volume, path, isDICOM ? 0 : settings.Component);
+  return volume;
 }
 
 /**
@@ -341,6 +342,16 @@ void CheckFile(const std::string& path)
 }
 }
 
+std::vector<std::string> GetVolumeEndings()
+{
+  std::vector<std::string> endings;
+  for (const VolumeFormat& format : Formats)
+  {
+    endings.emplace_back(format.Ending);
+  }
+  return endings;
+}
+
 Volume ReadVolume(const std::string& path, const ReadSettings& settings)
 {
   CheckFile(path);
@@ -348,8 +359,6 @@ Volume ReadVolume(const std::string& path, const ReadSettings& settings)
   {
     QuietReading quiet;
     Volume volume = ReadAny(path, settings, quiet);
-    FinishGeometry(volume);
-    FinishScalars(volume, path);
     volume.Name = std::filesystem::path(path).filename().string();
     return volume;
   }
@@ -374,7 +383,7 @@ Volume ReadBuiltInVolume()
   Volume volume;
   volume.Image = RunReader(reader, name, quiet);
   FinishGeometry(volume);
-  FinishScalars(volume, name);
+  FinishScalars(volume, name, 0);
   volume.Name = "aorta-stent (built in)";
   return volume;
 }

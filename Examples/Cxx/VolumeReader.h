@@ -18,6 +18,7 @@ struct ReadSettings
 {
   int Series = 0;
   int Frame = 0;
+  int Component = 0;
 };
 
 /**
@@ -63,13 +64,23 @@ struct Volume
    */
   double Window = 0.0;
   double Level = 0.0;
+
+  /**
+   * Of DICOM, the vtkDICOMMetaData of one of the files, for what is derived from them.
+   */
+  vtkSmartPointer<vtkObject> Study;
 };
 
 /**
- * Read a .vti, .vtk, .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .hdr, .img, .tif or .tiff file or,
- * where this build has vtk-dicom, a series of a folder, of a DICOMDIR, or that of a DICOM file: the
- * largest, unless the settings name one. Throws std::runtime_error with one sentence that says what
- * is wrong and what to do; nothing else is printed.
+ * How the names of files end that can be read, less those of DICOM.
+ */
+std::vector<std::string> GetVolumeEndings();
+
+/**
+ * Read a file with one of those endings or, where this build has vtk-dicom, a series of a folder,
+ * of a DICOMDIR, or that of a DICOM file: the largest, unless the settings name one. Throws
+ * std::runtime_error with one sentence that says what is wrong and what to do; nothing else is
+ * printed.
  */
 Volume ReadVolume(const std::string& path, const ReadSettings& settings);
 

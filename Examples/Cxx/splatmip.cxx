@@ -6,8 +6,10 @@
 // from vtkSplattingMIPProjection, which needs no display; windows show what
 // vtkSplattingMIPVolumeMapper draws.
 #include "Comparison.h"
+#include "DepthCoding.h"
 #include "Interaction.h"
 #include "MIPScene.h"
+#include "Mask.h"
 #include "Options.h"
 #include "Picture.h"
 #include "PictureSeries.h"
@@ -57,18 +59,33 @@ void PrintVolume(const Volume& volume, const LookSettings& look)
 }
 
 /**
- * What the picture of a file that knows can say.
+ * Views with what is written into them.
  */
-void DrawMarks(vtkImageData* slices, Projector& projector, const Volume& volume)
+vtkSmartPointer<vtkImageData> DrawViews(
+  Projector& projector, const Volume& volume, const Options& options, std::string label)
 {
-  if (volume.IsOriented)
+  vtkSplattingMIPProjection* const projection = projector.GetProjection();
+  projection->SetRecordLocations(options.DepthCoding);
+  auto views = projector.Project(label.empty() ? "projecting" : "projecting, " + label);
+  const auto add = [&label](const std::string& line)
+  { label += label.empty() || line.empty() ? line : "\n" + line; };
+  add(volume.Caution);
+  if (options.DepthCoding)
   {
-    DrawSides(slices, projector.GetProjection());
+    const DepthRange range = FindDepthRange(projection);
+    views = ColorByDepth(views, projection, range);
+    add(DescribeHues(range, volume.IsInMillimeters));
   }
-  if (volume.IsInMillimeters)
+  DrawLabel(views, label);
+  if (volume.IsOriented && !options.NoMarks)
   {
-    DrawScaleBar(slices, projector.GetProjection()->GetOutputSpacing()[0]);
+    DrawSides(views, projection);
   }
+  if (volume.IsInMillimeters && !options.NoMarks)
+  {
+    DrawScaleBar(views, projection->GetOutputSpacing()[0]);
+  }
+  return views;
 }
 
 /**
@@ -87,24 +104,17 @@ void WriteStill(const Volume& volume, const LookSettings& look, const Options& o
   {
     projector.GetProjection()->SetQualityMode(options.Modes.front());
     projector.Project("projecting");
-    WriteValues(projector.GetProjection(), volume.Origin, options.Output);
+    WriteValues(projector.GetProjection()->GetOutput(), volume.Origin, options.Output);
     std::printf("\nvalues: %s\n", options.Output.c_str());
     return;
   }
   vtkNew<vtkImageAppend> row;
   for (const int mode : options.Modes)
   {
-    std::string label = ModeNames[mode];
-    label += comparison ? "  " + FormatTime(comparison->AddMode(mode)) : "";
+    const std::string time = comparison ? "  " + FormatTime(comparison->AddMode(mode)) : "";
     projector.GetProjection()->SetQualityMode(mode);
-    label += volume.Caution.empty() ? "" : "\n" + volume.Caution;
-    const auto bytes = projector.Project("projecting, " + ModeNames[mode]);
-    DrawLabel(bytes, label);
-    if (!options.NoMarks)
-    {
-      DrawMarks(bytes, projector, volume);
-    }
-    row->AddInputData(Paint(bytes, palette, 0));
+    const auto views = DrawViews(projector, volume, options, ModeNames[mode] + time);
+    row->AddInputData(Paint(views, palette, 0));
   }
   row->Update();
   WritePNG(row->GetOutput(), options.Output);
@@ -115,17 +125,13 @@ void WriteTurn(const Volume& volume, const LookSettings& look, const Options& op
 {
   Projector projector(volume, options.Projection, look, options.View, options.Rotate);
   projector.GetProjection()->SetQualityMode(options.Modes.front());
-  const auto views = projector.Project("projecting");
+  const auto views = DrawViews(projector, volume, options, "");
   std::printf("\n%d views of %d x %d in %.2f s, %.0f per second; %d threads, %s\n", options.Rotate,
     options.View.Size[0], options.View.Size[1], projector.GetSeconds(),
     options.Rotate / projector.GetSeconds(), vtkSMPTools::GetEstimatedNumberOfThreads(),
     projector.GetProjection()->GetInstructionSet());
-  DrawLabel(views, volume.Caution);
-  if (!options.NoMarks)
-  {
-    DrawMarks(views, projector, volume);
-  }
-  WriteSeries(views, MakePalette(look), options.Rate, options.Output);
+  const FilmSettings film = { options.Rate, volume.IsInMillimeters, volume.Study };
+  WriteSeries(views, MakePalette(look), film, options.Output);
   std::printf("\nturn: %s\n", options.Output.c_str());
 }
 
@@ -148,8 +154,12 @@ void CheckBeforehand(const Options& options)
 void Run(const Options& options)
 {
   CheckBeforehand(options);
-  const Volume volume =
+  Volume volume =
     options.Input.empty() ? ReadBuiltInVolume() : ReadVolume(options.Input, options.Read);
+  if (!options.Mask.Path.empty())
+  {
+    ApplyMask(options.Mask, volume);
+  }
   const LookSettings look = CompleteLook(options, volume);
   PrintVolume(volume, look);
   if (options.Interactive)
