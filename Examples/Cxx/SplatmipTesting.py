@@ -107,15 +107,21 @@ def remember_run(folder, arguments):
     RUNS[output] = arguments
 
 
+def find_kind(path):
+    """How the name ends, or what of DICOM it is."""
+    match = re.search(r"\.[a-z]+(?:\.gz)?$", path.lower())
+    return ("folder" if os.path.isdir(path) else match.group() if match else
+            os.path.basename(path))
+
+
 def look_at(path):
-    """Returns the path, and notes what has led to the file: options (with their words), endings."""
-    arguments = RUNS.get(os.path.abspath(re.sub(r"-\d{5}(?=\.png$)", "", path)), ())
-    LOOKS.update("output " + match for match in re.findall(r"\.[a-z]+(?:\.gz)?$", path))
-    for n, word in enumerate(arguments):
-        if word.startswith("--"):
-            LOOKS.update((word, f"{word} {(*arguments, '')[n + 1]}"))
-        elif n == 0:
-            LOOKS.update("input " + match for match in re.findall(r"\.[a-z]+(?:\.gz)?$", word.lower()))
+    """Returns the path, and notes what has led to the file: options (with their words), kinds."""
+    arguments = RUNS.get(os.path.abspath(re.sub(r"-\d{5}(?=\.png$)", "", path)))
+    if arguments is not None:
+        LOOKS.add("output " + find_kind(path))
+        LOOKS.update(word for word in arguments if word.startswith("--"))
+        LOOKS.update(f"{word} {(*arguments, '')[n + 1]}" for n, word in enumerate(arguments))
+        LOOKS.update("input " + find_kind(word) for word in arguments[:1] if word[0] != "-")
     return path
 
 

@@ -353,6 +353,7 @@ class TestChoice(DICOMTest):
     def test_dicomdir(self):
         tool = shutil.which("gdcmgendir")
         if not tool:
+            splatmip.LOOKS.add("input DICOMDIR")  # TestSplatmipComplete.py need not say it again
             self.skipTest("no gdcmgendir")
         flat = self.path("flat")
         os.makedirs(flat)
@@ -363,6 +364,46 @@ class TestChoice(DICOMTest):
         subprocess.run([tool, "-i", flat, "-o", os.path.join(flat, "DICOMDIR")], check=True,
                        capture_output=True)
         self.assert_chosen(os.path.join(flat, "DICOMDIR"), "14 files, shown here")
+
+
+class TestPixels(DICOMTest):
+    """Other pixels in files of the same geometry."""
+
+    def test_compressed(self):
+        """What GDCM compresses without loss gives the same picture."""
+        tool = shutil.which("gdcmconv")
+        if not tool:
+            self.skipTest("no gdcmconv")
+        self.write()
+        names = sorted(os.listdir(self.folder))
+        for option, syntax in (("--rle", b"1.2.840.10008.1.2.5\0"),
+                               ("--jpeg", b"1.2.840.10008.1.2.4.70"),
+                               ("--jpegls", b"1.2.840.10008.1.2.4.80"),
+                               ("--j2k", b"1.2.840.10008.1.2.4.90")):
+            folder = self.path(option)
+            os.makedirs(folder)
+            for name in names:
+                subprocess.run([tool, option, os.path.join(self.folder, name),
+                                os.path.join(folder, name)], check=True, capture_output=True)
+            with open(os.path.join(folder, names[0]), "rb") as file:
+                self.assertIn(syntax, file.read(1000))
+            self.assert_right(folder)
+
+    def test_components(self):
+        """Of colours one is shown: the wedge is in the second, of which the others are half."""
+        wedge = (make_wedge() // 4).astype(numpy.uint8)
+        for k, fields in enumerate(self.slices):
+            pixels = numpy.stack((wedge[k] // 2, wedge[k], wedge[k] // 2), axis=-1)
+            fields.update(SamplesPerPixel=3, PhotometricInterpretation="RGB", BitsAllocated=8,
+                          BitsStored=8, HighBit=7, PixelRepresentation=0,
+                          PixelData=pixels.tobytes())
+        self.write()
+        expected = self.show_expected(wedge.astype(numpy.int16), window=210)
+        for words, factor in (((), 0.5), (("--component", "2"), 1.0), (("--component", "3"), 0.5)):
+            pixels, text = self.show(self.folder, *words, window=factor * 210)
+            self.assertLessEqual(abs(pixels - expected).max(), 3)  # of halves that are rounded
+            self.assertRegex(text, r"component \d of 3 \(--component")
+        self.assert_refused(self.folder, "--component", "4", word="no component 4 here, only 3")
 
 
 class TestDamage(DICOMTest):

@@ -51,6 +51,8 @@ class TestPictures(splatmip.SplatmipTest):
             self.assertEqual(third.max(), 255)
             self.assertEqual(third[:20, :100].max(), 255)  # the label
             self.assertEqual(third[-12:].max(), 0)
+        modes, _ = self.draw("--mode", "all", "--output", "a.png")
+        self.assertTrue((modes == pixels).all())
 
     def test_options(self):
         pixels, text = self.draw(
@@ -76,8 +78,9 @@ class TestPictures(splatmip.SplatmipTest):
         def show(*arguments):
             pixels, _ = self.show("--mode", "high", *arguments)
             return pixels
-        trilinear, narrow = show(), show("--kernel", "cosine-bell", "--kernel-radius", "0.6")
+        trilinear, narrow = show("--kernel", "trilinear"), show("--kernel", "cosine-bell", "--kernel-radius", "0.6")
         wide = show("--kernel", "cosine-bell", "--kernel-radius", "1.5")
+        self.assertTrue((trilinear == show()).all())
         self.assertFalse((trilinear == narrow).all())
         self.assertGreater((wide > 0).sum(), (narrow > 0).sum())
 

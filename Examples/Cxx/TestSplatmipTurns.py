@@ -3,6 +3,8 @@
 """Turns: films and numbered pictures."""
 import itertools
 import os
+import pty
+import re
 import shutil
 import struct
 import subprocess
@@ -62,6 +64,45 @@ def bound_jpeg_errors(steps, size, has_colors):
     chroma = has_colors * (transformed + 2.0)
     shares = numpy.array([1.402, (0.299 * 1.402 + 0.114 * 1.772) / 0.587, 1.772])
     return transformed + 1.5 + chroma * shares
+
+
+class TestProgress(splatmip.SplatmipTest):
+    def watch(self, *arguments, until):
+        """What the program says to a terminal, up to where a pattern is found, or all of it."""
+        terminal, other = pty.openpty()
+        self.addCleanup(os.close, terminal)
+        with subprocess.Popen([splatmip.PROGRAM, *arguments], cwd=self.scratch.name, stderr=other,
+                              stdout=subprocess.DEVNULL) as program:
+            os.close(other)
+            text = b""
+            try:
+                while not re.search(until, text):
+                    text += os.read(terminal, 1000)
+            except OSError:  # the program has ended
+                pass
+            program.kill()
+        return text
+
+    def test_long(self):
+        """What takes longer than a second tells how much is done, in one line."""
+        text = self.watch("--rotate", "3600", "--size", "400x600", "--mode", "high", "--out",
+                          "turn.gif", until=rb"%.+%.+%")
+        self.assertRegex(text, rb"^(\rprojecting +\d+ %){3}")
+        parts = [int(n) for n in re.findall(rb"(\d+) %", text)]
+        self.assertEqual(parts, sorted(set(parts)))
+
+    def test_short(self):
+        """What is done at once says nothing."""
+        self.assertEqual(
+            self.watch("--rotate", "2", "--size", "16x16", "--mode", "preview", "--out", "turn.gif",
+                       until=rb"never"), b"")
+        self.assertIn("turn.gif", os.listdir(self.scratch.name))
+
+    def test_no_terminal(self):
+        """A log has no progress lines, however long it takes."""
+        result = self.run_program("--rotate", "800", "--size", "200x300", "--mode", "high", "--out",
+                                  "turn.gif")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
 
 
 class TestTurns(splatmip.SplatmipTest):

@@ -1,7 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Values in the unit of the file, its window, and files with several volumes."""
+import gzip
 import os
+import shutil
 import struct
 
 import numpy
@@ -99,6 +101,11 @@ class TestNIfTI(splatmip.SplatmipTest):
         for ending in ("hdr", "img"):
             splatmip.write_nifti(self.path("a.hdr"))
             self.draw_block(self.path("a." + ending))
+        for ending in ("hdr", "img"):
+            with open(self.path("a." + ending), "rb") as file:
+                splatmip.write_file(self.path(f"b.{ending}.gz"), gzip.compress(file.read()))
+        self.draw_block(self.path("b.hdr.gz"))
+        self.draw_block(self.path("b.img.gz"))
         os.truncate(self.path("a.img"), 1000)
         self.assert_refused(self.path("a.hdr"))
         os.remove(self.path("a.img"))
@@ -135,6 +142,9 @@ class TestOthers(splatmip.SplatmipTest):
             self.assertLess(abs(height / width - (4 / 3 if view == "anterior" else 1)), 0.15)
             self.assertGreater(block[:, 1].min(), 140, view)
             self.assertGreater(block[:, 0].min(), 100, view)
+        same, _ = self.draw(shutil.copy(path, self.path("a.tiff")), "--mode", "preview", "--size",
+                            "280x280", "--view", "left", "--output", "b.png")
+        self.assertTrue((same == pixels).all())
         with open(path, "rb") as file:
             data = file.read()
         self.assert_refused(splatmip.write_file(path, data[:len(data) // 2]))
