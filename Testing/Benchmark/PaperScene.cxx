@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
 
 namespace
 {
@@ -85,6 +86,12 @@ std::string DescribeSize(vtkImageData* image)
 
 void AddAorta(std::vector<PaperDataSet>& sets, int voxels)
 {
+  if (!std::filesystem::is_regular_file(SPLATTINGMIP_AORTA))
+  {
+    throw std::runtime_error("The report needs " SPLATTINGMIP_AORTA
+                             ", which is not there: run it where the sources are that it was built "
+                             "from, or build it again.");
+  }
   vtkNew<vtkXMLImageDataReader> reader;
   reader->SetFileName(SPLATTINGMIP_AORTA);
   reader->Update();
