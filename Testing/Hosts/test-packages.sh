@@ -174,7 +174,7 @@ check "packages are made" make_packages
 version=$(sed -n 's/^  VERSION //p' "$here/../../CMakeLists.txt")
 library=libvtksplattingmip${version%.*}
 packages=("$library" libvtksplattingmip-dev python3-vtksplattingmip splatmip)
-autoload=/usr/lib/x86_64-linux-gnu/splattingmip/autoload
+autoload=/usr/lib/x86_64-linux-gnu/splattingmip-${version%.*}/autoload
 check "they belong together" belong_together
 check "lintian finds no error" in_root "$build" \
   bash -c 'lintian --allow-root --fail-on error /splattingmip/packages/*.deb'
