@@ -255,9 +255,8 @@ class TestOptions(splatmip.SplatmipTest):
             low, high = ((place + 20) / 40 for place in places)  # the volume is 40 deep
             self.assertGreater(depths.min(), low - 0.03)
             self.assertLess(depths.max(), high + 0.03)
-        depths = find("--slab", 4, "--slab-offset", -5)
-        self.assertGreater(depths.min(), 0.2)
-        self.assertLess(depths.max(), 0.8)
+        depths = find("--slab", 4, "--slab-offset", -6)  # from 4 to 8 mm
+        self.assertLess(depths.max(), 0.53)
         depths = find("--perspective", 60)
         self.assertGreater(depths.min(), 24 / 40 - 0.03)
         self.assertLess(depths.max(), 26 / 40 + 0.03)
