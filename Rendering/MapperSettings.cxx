@@ -31,6 +31,7 @@ static_assert(same(Mapper::MAXIMUM_INTENSITY_BLEND, Filter::MAXIMUM_INTENSITY_BL
     same(Mapper::PREVIEW, Filter::PREVIEW) && same(Mapper::STANDARD, Filter::STANDARD) &&
     same(Mapper::HIGH, Filter::HIGH) && same(Mapper::EXACT, Filter::EXACT) &&
     same(Mapper::AUTOMATIC_SAMPLING, Filter::AUTOMATIC_SAMPLING) &&
+    same(Mapper::SAMPLING_OF_MODE, Filter::SAMPLING_OF_MODE) &&
     same(Mapper::COSINE_BELL, Filter::COSINE_BELL) && same(Mapper::LINES, Filter::LINES) &&
     same(Mapper::SORTED_VOLUME, Filter::SORTED_VOLUME) &&
     same(Mapper::MAGNITUDE, Filter::MAGNITUDE) && same(Mapper::COMPONENT, Filter::COMPONENT),
@@ -95,14 +96,9 @@ const char* faultOfSettings(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProper
 }
 
 //------------------------------------------------------------------------------
-splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* mapper, int mode)
+splatting::ProjectionSettings projectionSettings(
+  vtkSplattingMIPVolumeMapper* mapper, int mode, const splatting::View& view)
 {
-  return settingsOfChoice(choiceOf(mapper), mode);
-}
-
-//------------------------------------------------------------------------------
-int samplingOf(vtkSplattingMIPVolumeMapper* mapper, splatting::Quality quality)
-{
-  return samplingOfChoice(choiceOf(mapper), quality);
+  return settingsOfChoice(choiceOf(mapper), mode, view);
 }
 }

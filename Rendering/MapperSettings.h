@@ -17,15 +17,11 @@ namespace splatting
 const char* faultOfSettings(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* property);
 
 /**
- * What the mapper's properties mean to a projection in a quality mode. What has no effect is as by
- * default, so that its changes project nothing.
+ * What the mapper's properties mean to a projection of a view in a quality mode. What has no effect
+ * is as by default, so that its changes project nothing.
  */
-splatting::ProjectionSettings projectionSettings(vtkSplattingMIPVolumeMapper* mapper, int mode);
-
-/**
- * The sampling of shear images in a quality, as ShearWarp::factorise() takes it.
- */
-int samplingOf(vtkSplattingMIPVolumeMapper* mapper, splatting::Quality quality);
+splatting::ProjectionSettings projectionSettings(
+  vtkSplattingMIPVolumeMapper* mapper, int mode, const splatting::View& view);
 }
 
 #endif

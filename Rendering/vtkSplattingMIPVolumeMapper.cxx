@@ -105,7 +105,7 @@ public:
   bool HasImage() const { return this->Components.IsProjected() && !this->Images.empty(); }
   double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
   bool Factorise(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
-    const splatting::View& view, splatting::Quality quality);
+    const splatting::View& view, const splatting::ProjectionSettings& settings);
   bool Project(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
     const splatting::View& view, int mode);
 
@@ -124,7 +124,7 @@ public:
   splatting::Picture Picture;
 
   vtkIdType Projections = 0;
-  int QualityModeUsed = HIGH; // in the last projection that was not aborted
+  int QualityModeUsed = EXACT; // in the last projection that was not aborted
   double ProjectionTime = 0.0;
   double CutTime = 0.0; // of it, to find what cuts the present images
   splatting::RenderTimes Times;
@@ -142,7 +142,7 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     MaskInput(nullptr),
     Controller(nullptr),
     DisplayOnRootOnly(false),
-    QualityMode(HIGH),
+    QualityMode(EXACT),
     Kernel(TRILINEAR),
     KernelRadius(1.0),
     MaximumType(GLOBAL),
@@ -155,7 +155,7 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
     BoundingSurface(nullptr),
     IntermixIntersectingGeometry(1),
     FootprintSampling(0),
-    ShearImageSampling(AUTOMATIC_SAMPLING),
+    ShearImageSampling(SAMPLING_OF_MODE),
     Acceleration(AUTO),
     LineTolerance(0.0),
     EliminateInvisible(false),
@@ -323,10 +323,11 @@ bool vtkSplattingMIPVolumeMapper::Internals::AreAsBefore(bool ordered) const
 //------------------------------------------------------------------------------
 // The images of a view and what cuts them; false if it has no meaning.
 bool vtkSplattingMIPVolumeMapper::Internals::Factorise(vtkSplattingMIPVolumeMapper* self,
-  vtkRenderer* ren, vtkVolume* vol, const splatting::View& view, splatting::Quality quality)
+  vtkRenderer* ren, vtkVolume* vol, const splatting::View& view,
+  const splatting::ProjectionSettings& settings)
 {
   const double start = vtkTimerLog::GetUniversalTime();
-  if (!splatting::ShearWarp::factorise(view, this->Images, samplingOf(self, quality)))
+  if (!splatting::ShearWarp::factorise(view, this->Images, settings.sampling, settings.meets))
   {
     return false;
   }
@@ -343,11 +344,10 @@ bool vtkSplattingMIPVolumeMapper::Internals::Factorise(vtkSplattingMIPVolumeMapp
 bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper* self,
   vtkRenderer* ren, vtkVolume* vol, const splatting::View& view, int mode)
 {
-  const int usable =
-    std::clamp(static_cast<int>(this->Components.Settings().quality), mode, self->QualityMode);
-  const splatting::ProjectionSettings best = projectionSettings(self, usable);
+  const int usable = std::clamp(this->QualityModeUsed, mode, self->QualityMode);
+  const splatting::ProjectionSettings best = projectionSettings(self, usable, view);
   std::swap(this->Images, this->ImagesBefore);
-  if (!this->Factorise(self, ren, vol, view, best.quality))
+  if (!this->Factorise(self, ren, vol, view, best))
   {
     return false;
   }
@@ -360,10 +360,10 @@ bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper
   {
     return true;
   }
-  const splatting::ProjectionSettings wanted = projectionSettings(self, mode);
-  if (samplingOf(self, wanted.quality) != samplingOf(self, best.quality))
+  const splatting::ProjectionSettings wanted = projectionSettings(self, mode, view);
+  if (wanted.sampling != best.sampling || wanted.meets != best.meets)
   {
-    this->Factorise(self, ren, vol, view, wanted.quality);
+    this->Factorise(self, ren, vol, view, wanted);
   }
   const double start = vtkTimerLog::GetUniversalTime();
   this->ShearImageOutput = nullptr;
@@ -521,7 +521,8 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   in.Components.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget));
   in.Components.SetRanks(in.Ranks.AreMany() ? &in.Ranks : nullptr);
   in.IndexTimeBefore = in.Source.Version() == version ? in.IndexTime() : 0.0;
-  in.Components.UpdateColors(vol->GetProperty(), finalColor, projectionSettings(this, PREVIEW));
+  in.Components.UpdateColors(
+    vol->GetProperty(), finalColor, projectionSettings(this, PREVIEW, view));
   in.Components.SetCullBelowWindow(this->CullBelowWindow);
   // Selection is by what is seen.
   int mode = !this->AutoAdjustSampleDistances ? this->QualityMode
@@ -887,13 +888,16 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << "\n";
   os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";
   os << indent << "ShearImageSampling: ";
-  if (this->ShearImageSampling == AUTOMATIC_SAMPLING)
+  switch (this->ShearImageSampling)
   {
-    os << "automatic\n";
-  }
-  else
-  {
-    os << this->ShearImageSampling << "\n";
+    case SAMPLING_OF_MODE:
+      os << "of the mode\n";
+      break;
+    case AUTOMATIC_SAMPLING:
+      os << "automatic\n";
+      break;
+    default:
+      os << this->ShearImageSampling << "\n";
   }
   os << indent << "Acceleration: " << this->GetAccelerationAsString() << "\n";
   os << indent << "AccelerationUsed: " << nameOf(this->GetAccelerationUsed()) << "\n";

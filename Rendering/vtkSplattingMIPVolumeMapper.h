@@ -163,6 +163,7 @@ public:
     EXACT = 3
   };
 
+  static constexpr int SAMPLING_OF_MODE = -1;
   static constexpr int AUTOMATIC_SAMPLING = 0;
 
   enum Kernels
@@ -227,7 +228,7 @@ public:
 
   ///@{
   /**
-   * What a slice contributes to a pixel of the shear image [CS98, section 2 and 3]. Default HIGH.
+   * What a slice contributes to a pixel of the shear image [CS98, section 2 and 3]. Default EXACT.
    *
    * PREVIEW: the largest of the voxels that the pixel's ray crosses in the slice (up to three), so
    * that the shear image equals an exact voxel traversal bit for bit. Fastest.
@@ -239,8 +240,15 @@ public:
    * found analytically, cell by cell [Sakas et al. 1995]: no sample distance can miss it, and
    * nothing is averaged. The interpolated volume ends at the centres of the outermost voxels (at
    * the ends of their boxes for cell data); a cell with a NaN voxel is left out. For maxima of all
-   * MaximumTypes; minima, averages and dependent components are those of HIGH. Costs about twice
-   * HIGH in parallel views.
+   * MaximumTypes; minima, averages and dependent components are those of HIGH. A shear image costs
+   * about twice HIGH's in parallel views, and by default EXACT makes sixteen of them, see
+   * ShearImageSampling. Where all of the volume is seen in pixels that are wider than voxels, it
+   * takes of each slice the voxel that a ray passes nearest to: the field is nowhere larger than at
+   * voxels, so that no maximum is lost, and that is the fastest of all.
+   *
+   * In an overview, where pixels are wider than voxels in some direction, a pixel shows the largest
+   * value over its area (of minima the least, of averages the average), in all modes. Else it shows
+   * the value at its centre.
    *
    * In perspective a pixel's area is as wide as rays are apart: nearly a voxel where the volume is
    * farthest from the eye, and less in nearer slices.
@@ -445,10 +453,12 @@ public:
    * How many pixels the shear image has along the side of a voxel (in perspective, where the volume
    * is farthest from the eye): 1, 2 or 4; 3 is taken as 2. What STANDARD and HIGH average over
    * shrinks with the pixels. The time of a projection grows with their number. AUTOMATIC_SAMPLING
-   * (0, the default): 1 as in [CS98]; in EXACT as fine as the screen, the largest of the three with
-   * which a pixel of the shear image is at least as large as one of the screen.
+   * (0): the least of the three with which a pixel of the shear image is no wider than one of the
+   * screen, or 4. SAMPLING_OF_MODE (-1, the default): in EXACT 4, and 1 where all pixels are wider
+   * than voxels; in the other modes 1, as in [CS98]. These place what is small up to half a voxel
+   * off where it is magnified; with AUTOMATIC_SAMPLING they do not.
    */
-  vtkSetClampMacro(ShearImageSampling, int, AUTOMATIC_SAMPLING, 4);
+  vtkSetClampMacro(ShearImageSampling, int, SAMPLING_OF_MODE, 4);
   vtkGetMacro(ShearImageSampling, int);
   ///@}
 

@@ -548,14 +548,43 @@ void ComponentProjector::FindRim(const std::vector<splatting::ShearWarp>& geomet
 }
 
 //------------------------------------------------------------------------------
+// Where areas are shown, what is carried is that of the sample that wins in the area.
+void ComponentProjector::FindShown(
+  const std::vector<splatting::ShearWarp>& geometries, const splatting::View& view)
+{
+  const Channel& last = this->Channels.back();
+  this->Shown.clear();
+  if (geometries.empty() || !geometries.front().isOverview() || !this->Carries(last.Settings))
+  {
+    return;
+  }
+  splatting::Picture place;
+  splatting::placePicture(geometries, view.viewport, place);
+  this->Shown.resize(std::size_t(place.size.x) * place.size.y);
+  splatting::findShearPixels(
+    last.Images, geometries, last.Settings.reduction, place.origin, place.size, this->Shown.data());
+}
+
+//------------------------------------------------------------------------------
 void ComponentProjector::Warp(const std::vector<splatting::ShearWarp>& geometries,
   const splatting::View& view, splatting::Picture& picture)
 {
+  this->FindShown(geometries, view);
   for (Channel& channel : this->Channels)
   {
     const bool first = &channel == &this->Channels.front();
-    this->Warper.warp(channel.Images, geometries, channel.Colors, view.viewport,
-      channel.Settings.instructionSet, first ? picture : this->Layer, channel.Rim);
+    splatting::Picture& layer = first ? picture : this->Layer;
+    if (this->Shown.empty())
+    {
+      this->Warper.warp(channel.Images, geometries, channel.Settings.reduction, channel.Colors,
+        view.viewport, channel.Settings.instructionSet, layer, channel.Rim);
+    }
+    else
+    {
+      splatting::placePicture(geometries, view.viewport, layer);
+      this->Warper.warpPixels(
+        channel.Images, this->Shown, channel.Colors, channel.Settings.instructionSet, layer);
+    }
     if (first)
     {
       continue;
@@ -581,7 +610,7 @@ void ComponentProjector::WarpScalars(const std::vector<splatting::ShearWarp>& ge
   {
     using A = std::remove_pointer_t<decltype(values)>;
     std::fill_n(values, pixels, static_cast<A>(background));
-    this->Warper.warpScalars(channel.Images, geometries, view.viewport,
+    this->Warper.warpScalars(channel.Images, geometries, channel.Settings.reduction, view.viewport,
       channel.Settings.instructionSet, background, values, channel.Rim);
   };
   const auto interleave = [&](auto* to)

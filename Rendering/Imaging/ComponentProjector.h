@@ -155,6 +155,7 @@ private:
     double FloorOfWindow() const;
   };
 
+  void FindShown(const std::vector<splatting::ShearWarp>& geometries, const splatting::View& view);
   splatting::ProjectionSettings SettingsOf(
     const Channel& channel, splatting::ProjectionSettings settings) const;
   bool Carries(const splatting::ProjectionSettings& settings) const;
@@ -201,7 +202,8 @@ private:
   splatting::Projector Projector, PixelProjector;
   Pixel OnePixel;
   splatting::Warper Warper;
-  splatting::Picture Layer;         // of one component
+  splatting::Picture Layer; // of one component
+  std::vector<splatting::ShearPixel> Shown;
   std::vector<unsigned char> Plane; // likewise, scalars
 };
 }

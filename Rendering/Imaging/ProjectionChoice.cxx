@@ -34,6 +34,21 @@ splatting::Reduction reductionOf(const ProjectionChoice& choice)
       return splatting::Reduction::Maximum;
   }
 }
+
+int samplingOf(const ProjectionChoice& choice, int mode)
+{
+  switch (choice.shearImageSampling)
+  {
+    case Names::SAMPLING_OF_MODE:
+      return mode == Names::EXACT ? splatting::ShearWarp::MostSampling : 1;
+    case Names::AUTOMATIC_SAMPLING:
+      return splatting::ShearWarp::Automatic;
+    case 3:
+      return 2;
+    default:
+      return choice.shearImageSampling;
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -80,7 +95,8 @@ const char* faultOfChoice(const ProjectionChoice& choice)
 }
 
 //------------------------------------------------------------------------------
-splatting::ProjectionSettings settingsOfChoice(const ProjectionChoice& choice, int mode)
+splatting::ProjectionSettings settingsOfChoice(
+  const ProjectionChoice& choice, int mode, const splatting::View& view)
 {
   splatting::ProjectionSettings settings;
   settings.reduction = reductionOf(choice);
@@ -91,6 +107,16 @@ splatting::ProjectionSettings settingsOfChoice(const ProjectionChoice& choice, i
     mode = Names::HIGH;
   }
   settings.quality = static_cast<splatting::Quality>(mode);
+  settings.sampling = samplingOf(choice, mode);
+  if (mode == Names::EXACT && splatting::isCoarse(view))
+  {
+    // Between voxels the field is no larger than at one of them. Where pixels are wider than voxels
+    // these are all that can be told apart.
+    settings.quality = splatting::Quality::Preview;
+    settings.meets = splatting::Meets::Nearest;
+    settings.sampling =
+      choice.shearImageSampling == Names::SAMPLING_OF_MODE ? 1 : settings.sampling;
+  }
   switch (settings.reduction)
   {
     case splatting::Reduction::DepthShaded:
@@ -106,7 +132,11 @@ splatting::ProjectionSettings settingsOfChoice(const ProjectionChoice& choice, i
       break;
     case splatting::Reduction::Maximum:
       settings.acceleration = static_cast<splatting::Acceleration>(choice.acceleration);
-      if (choice.acceleration >= Names::LINES)
+      if (mode == Names::EXACT)
+      {
+        settings.acceleration = std::min(settings.acceleration, splatting::Acceleration::Bricks);
+      }
+      else if (choice.acceleration >= Names::LINES)
       {
         settings.lineTolerance = choice.lineTolerance;
         settings.eliminateInvisible = choice.eliminateInvisible && mode == Names::PREVIEW;
@@ -125,15 +155,5 @@ splatting::ProjectionSettings settingsOfChoice(const ProjectionChoice& choice, i
     settings.footprintSampling = choice.footprintSampling;
   }
   return settings;
-}
-
-//------------------------------------------------------------------------------
-int samplingOfChoice(const ProjectionChoice& choice, splatting::Quality quality)
-{
-  if (choice.shearImageSampling == Names::AUTOMATIC_SAMPLING)
-  {
-    return quality == splatting::Quality::Exact ? splatting::ShearWarp::Automatic : 1;
-  }
-  return choice.shearImageSampling == 3 ? 2 : choice.shearImageSampling;
 }
 }

@@ -22,7 +22,7 @@ struct ProjectionChoice
   int kernel = 0;
   double kernelRadius = 1.0;
   int footprintSampling = 0;
-  int shearImageSampling = 0;
+  int shearImageSampling = -1;
   int acceleration = 0;
   double lineTolerance = 0.0;
   bool eliminateInvisible = false;
@@ -41,15 +41,11 @@ struct ProjectionChoice
 const char* faultOfChoice(const ProjectionChoice& choice);
 
 /**
- * What the choice means to a projection in a quality mode. What has no effect is as by default, so
- * that its changes project nothing.
+ * What the choice means to a projection of a view in a quality mode. What has no effect is as by
+ * default, so that its changes project nothing.
  */
-splatting::ProjectionSettings settingsOfChoice(const ProjectionChoice& choice, int mode);
-
-/**
- * The sampling of shear images in a quality, as ShearWarp::factorise() takes it.
- */
-int samplingOfChoice(const ProjectionChoice& choice, splatting::Quality quality);
+splatting::ProjectionSettings settingsOfChoice(
+  const ProjectionChoice& choice, int mode, const splatting::View& view);
 }
 
 #endif

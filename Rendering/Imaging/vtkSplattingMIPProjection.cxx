@@ -83,11 +83,11 @@ vtkSplattingMIPProjection::vtkSplattingMIPProjection()
     BackgroundValue(0.0),
     BlendMode(MAXIMUM_INTENSITY_BLEND),
     AverageIPScalarRange{ VTK_FLOAT_MIN, VTK_FLOAT_MAX },
-    QualityMode(HIGH),
+    QualityMode(EXACT),
     Kernel(TRILINEAR),
     KernelRadius(1.0),
     FootprintSampling(0),
-    ShearImageSampling(AUTOMATIC_SAMPLING),
+    ShearImageSampling(SAMPLING_OF_MODE),
     MaximumType(GLOBAL),
     DepthShadingAmbient(0.3),
     DepthShadingChangeRate(0.7),
@@ -262,7 +262,8 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(
     this->Cuts[n].cropping = view.cropping;
     this->Cuts[n].intervals.find(this->Images[n], view.halfSpaces);
   }
-  const splatting::ProjectionSettings settings = settingsOfChoice(this->Choice, self->QualityMode);
+  const splatting::ProjectionSettings settings =
+    settingsOfChoice(this->Choice, self->QualityMode, view);
   // Of equal samples the nearest wins.
   const bool ordered = splatting::isOrdered(settings.reduction) || settings.keepWinners;
   const bool sameRays = std::equal(this->Images.begin(), this->Images.end(),
@@ -333,8 +334,6 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
   vtkSplattingMIPProjection* self, vtkImageData* output)
 {
   const glm::dmat4& toWorld = this->Source.Grid().indexToPhysical;
-  const int sampling =
-    samplingOfChoice(this->Choice, settingsOfChoice(this->Choice, self->QualityMode).quality);
   this->ViewsDone = 0;
   this->Told = 0.0;
   for (const int n : this->Turn.Order())
@@ -356,7 +355,9 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
         croppingOf(this->Source.Grid(), this->Choice.croppingPlanes, self->CroppingRegionFlags);
     }
     std::swap(this->Images, this->ImagesBefore);
-    if (!splatting::ShearWarp::factorise(view, this->Images, sampling))
+    const splatting::ProjectionSettings settings =
+      settingsOfChoice(this->Choice, self->QualityMode, view);
+    if (!splatting::ShearWarp::factorise(view, this->Images, settings.sampling, settings.meets))
     {
       return TurnOfViews::Degenerate;
     }

@@ -94,6 +94,7 @@ public:
     EXACT = 3
   };
 
+  static constexpr int SAMPLING_OF_MODE = -1;
   static constexpr int AUTOMATIC_SAMPLING = 0;
 
   enum Kernels
@@ -233,11 +234,12 @@ public:
 
   ///@{
   /**
-   * What a slice contributes to a pixel. Default HIGH. PREVIEW, STANDARD, HIGH: see
+   * What a slice contributes to a pixel. Default EXACT. PREVIEW, STANDARD, HIGH: see
    * vtkSplattingMIPVolumeMapper::SetQualityMode. EXACT: the largest value that the trilinearly
-   * interpolated volume takes along each ray of the shear image, which is as fine as the output,
-   * between the centres of the outermost voxels (the ends of their boxes for cells); for maxima of
-   * all MaximumTypes, minima and averages are those of HIGH.
+   * interpolated volume takes along each ray of the shear image, between the centres of the outermost
+   * voxels (the ends of their boxes for cells); for maxima of all MaximumTypes, minima and averages
+   * are those of HIGH. Pixels that are wider than voxels show the largest value over their area (of
+   * minima the least, of averages the average), in EXACT that of voxels.
    */
   vtkSetClampMacro(QualityMode, int, PREVIEW, EXACT);
   vtkGetMacro(QualityMode, int);
@@ -252,7 +254,8 @@ public:
    * As of the mapper: the reconstruction kernel of mode HIGH, default TRILINEAR; the radius of the
    * cosine bell in voxels, default 1, clamped to [0.5, 1.5]; how footprints are sampled, default 0
    * (closed form), clamped to [0, 64]; how many pixels the shear image has along the side of a
-   * voxel, default AUTOMATIC_SAMPLING (as fine as the output in EXACT, else 1), or 1, 2 or 4.
+   * voxel: 1, 2, 4, AUTOMATIC_SAMPLING (as fine as the output) or SAMPLING_OF_MODE (the default: 4
+   * in EXACT, else 1).
    */
   vtkSetClampMacro(Kernel, int, TRILINEAR, COSINE_BELL);
   vtkGetMacro(Kernel, int);
@@ -262,7 +265,7 @@ public:
   vtkGetMacro(KernelRadius, double);
   vtkSetClampMacro(FootprintSampling, int, 0, 64);
   vtkGetMacro(FootprintSampling, int);
-  vtkSetClampMacro(ShearImageSampling, int, AUTOMATIC_SAMPLING, 4);
+  vtkSetClampMacro(ShearImageSampling, int, SAMPLING_OF_MODE, 4);
   vtkGetMacro(ShearImageSampling, int);
   ///@}
 

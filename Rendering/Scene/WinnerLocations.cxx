@@ -160,7 +160,8 @@ bool WinnerLocations::PickRay(const glm::ivec2& pixel, Sample& sample)
   const auto hasSample = [&](const splatting::ShearPixel& shear)
   { return this->HasSample((*located.images)[shear.image], shear); };
   splatting::ShearPixel shown;
-  splatting::findShearPixels(*located.images, this->Images, pixel, glm::ivec2(1), &shown,
+  splatting::findShearPixels(*located.images, this->Images, located.settings.reduction, pixel,
+    glm::ivec2(1), &shown,
     hasWinners ? std::function<bool(const splatting::ShearPixel&)>() : hasSample);
   if (shown.image < 0)
   {

@@ -118,8 +118,8 @@ void ProjectiveRenderer::Render(const splatting::View& view)
   {
     image.spans.push_back({ range[0], range[1] });
   }
-  this->Warper.warp(this->Images, { geometry }, this->Greys, view.viewport,
-    splatting::bestInstructionSet(), this->Frame);
+  this->Warper.warp(this->Images, { geometry }, splatting::Reduction::Maximum, this->Greys,
+    view.viewport, splatting::bestInstructionSet(), this->Frame);
 }
 
 //------------------------------------------------------------------------------
@@ -129,8 +129,8 @@ void ReferenceRenderer::Render(const splatting::View& view)
   const std::vector<splatting::ShearImage> images{ MakeShearImage(
     this->Project(this->Volume, ToReference(geometry))) };
   splatting::Warper warper;
-  warper.warp(
-    images, { geometry }, this->Greys, view.viewport, splatting::bestInstructionSet(), this->Frame);
+  warper.warp(images, { geometry }, splatting::Reduction::Maximum, this->Greys, view.viewport,
+    splatting::bestInstructionSet(), this->Frame);
 }
 
 //------------------------------------------------------------------------------

@@ -103,7 +103,7 @@ std::uint64_t checksumOf(const reference::Volume<T>& volume, const splatting::Vi
   }
   splatting::Picture picture;
   splatting::Warper().warp(
-    images, geometries, table, view.viewport, settings.instructionSet, picture);
+    images, geometries, settings.reduction, table, view.viewport, settings.instructionSet, picture);
   sum.add(picture);
   return sum.hash();
 }

@@ -8,6 +8,7 @@
 #include "Display/Warp.h"
 #include "ExactTesting.h"
 #include "FieldWithNaN.h"
+#include "WideViews.h"
 
 #include <glm/matrix.hpp>
 
@@ -62,8 +63,8 @@ std::vector<splatting::Accumulator<T>> pictureOf(const Scene<T>& scene, referenc
   {
     rim.find(images, scene.images, { index.volume(), glm::ivec3(0), &cuts }, viewport);
   }
-  splatting::Warper().warpScalars(
-    images, scene.images, viewport, settings.instructionSet, none, pixels.data(), rim);
+  splatting::Warper().warpScalars(images, scene.images, settings.reduction, viewport,
+    settings.instructionSet, none, pixels.data(), rim);
   return pixels;
 }
 
@@ -437,7 +438,7 @@ Scene<T> anyScene(const std::array<int, 3>& size, bool perspective, reference::R
 {
   Scene<T> scene;
   scene.volume = wholeRangeNoise<T>(size, random);
-  scene.view = perspective ? randomPerspective(size, random) : randomView(size, random);
+  scene.view = magnified(perspective ? randomPerspective(size, random) : randomView(size, random));
   scene.view.showsBoxes = random.uniform(0, 2) == 0;
   if (random.uniform(0, 3) == 0)
   {

@@ -435,7 +435,11 @@ glm::dvec3 lookAtRandom(Filter* filter, vtkImageData* image, reference::Random& 
     filter->SetViewUp(up.x, up.y, up.z);
     const int size[2] = { random.uniform(1, 28), random.uniform(1, 28) };
     filter->SetOutputSize(size[0], size[1]);
-    const double spacing[2] = { random.uniform(0.3, 1.2), random.uniform(0.3, 1.2) };
+    // Pixels no wider than voxels, which show points; see TestPixelAreas for others.
+    const double* const voxel = image->GetSpacing();
+    const double least = std::min({ voxel[0], voxel[1], voxel[2] });
+    const double spacing[2] = { least * random.uniform(0.2, 1.0),
+      least * random.uniform(0.2, 1.0) };
     filter->SetOutputSpacing(spacing[0], spacing[1]);
   } while (
     !findView(raysOf(filter, image, {}), view) || glm::length(glm::cross(direction, up)) < 0.1);

@@ -156,7 +156,23 @@ void lookAtRandom(stage::Stage& stage, reference::Random& random)
 {
   const stage::Vector direction = randomDirection(random);
   const stage::Vector up = randomDirection(random);
-  stage.look(direction, up, random.uniform(0.75, 0.95));
+  // No pixel is wider than a voxel: pixels show points, not areas.
+  vtkImageData* const image =
+    vtkImageData::SafeDownCast(stage.volume->GetMapper()->GetDataSetInput());
+  const double* const spacing = image->GetSpacing();
+  const double* const bounds = stage.volume->GetBounds();
+  const double diagonal =
+    std::hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]);
+  double prop[3][3], u[3][3], stretches[3], v[3][3];
+  for (int n = 0; n < 9; ++n)
+  {
+    prop[n / 3][n % 3] = stage.volume->GetMatrix()->GetElement(n / 3, n % 3);
+  }
+  vtkMath::SingularValueDecomposition3x3(prop, u, stretches, v);
+  const double shrinks =
+    std::min({ std::abs(stretches[0]), std::abs(stretches[1]), std::abs(stretches[2]) });
+  const double most = Height * shrinks * *std::min_element(spacing, spacing + 3) / diagonal;
+  stage.look(direction, up, std::min(random.uniform(0.75, 0.95), most));
   // Off the middle, by other than whole pixels.
   const double x = random.uniform(-0.06, 0.06);
   const double y = random.uniform(-0.06, 0.06);

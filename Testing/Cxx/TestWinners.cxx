@@ -8,6 +8,7 @@
 #include "CoreTesting.h"
 #include "FieldMaximum.h"
 #include "Projection/Locations.h"
+#include "WideViews.h"
 #include "Winners.h"
 
 #include <vtkSMPTools.h>
@@ -41,7 +42,7 @@ Scene anyScene(
   Scene scene;
   while (scene.images.empty())
   {
-    scene.view = perspective ? randomPerspective(size, random) : anyView(size, random);
+    scene.view = magnified(perspective ? randomPerspective(size, random) : anyView(size, random));
     splatting::ShearWarp::factorise(scene.view, scene.images, anySampling(random));
   }
   if (mayBeCut && random.uniform(0, 2) == 0)
@@ -603,7 +604,8 @@ void testPoints(Checks& check, bool perspective)
           const glm::ivec3 voxel(voxels[3 * at], voxels[3 * at + 1], voxels[3 * at + 2]);
           glm::dvec3 picked(0.0);
           splatting::ShearPixel nearest;
-          splatting::findShearPixels(images, scene.images, { x, y }, glm::ivec2(1), &nearest);
+          splatting::findShearPixels(
+            images, scene.images, settings.reduction, { x, y }, glm::ivec2(1), &nearest);
           const bool has = nearest.image >= 0;
           picked = has ? locator.point(glm::dvec2(x, y), nearest) : picked;
           check(has == (voxel.x >= 0) && has == (point.x == point.x), "arrays differ");

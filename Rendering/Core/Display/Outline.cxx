@@ -69,6 +69,14 @@ void Outline::add(const Cuboid& box, double inset)
   }
 }
 
+void Outline::growOnScreen(double pixels)
+{
+  for (glm::dvec3& line : this->Lines)
+  {
+    line.z += pixels * (std::abs(line.x) + std::abs(line.y));
+  }
+}
+
 Span Outline::cut(Span row, const glm::dvec3& start) const
 {
   for (const glm::dvec3& line : this->Lines)
@@ -115,12 +123,15 @@ bool Outline::faces(const Cuboid& box, int axis, bool high) const
   return high ? direction[axis] < 0.0 : direction[axis] > 0.0;
 }
 
-Outline shownBy(const ShearWarp& geometry)
+namespace
+{
+/// What an image shows of the volume, and so many of its pixels beyond.
+Outline shownWith(const ShearWarp& geometry, double beyond)
 {
   // Rims that fall on pixel centres must not flicker with rounding errors.
   constexpr double rounding = 1e-8;
   Outline shown(geometry);
-  shown.add(shownBox(geometry), -rounding);
+  shown.add(shownBox(geometry), -beyond - rounding);
   if (geometry.isPerspective())
   {
     // Where slopes are at most 1. Both images have what lies between two.
@@ -134,6 +145,20 @@ Outline shownBy(const ShearWarp& geometry)
     shown.add({ 0.0, -1.0, high.y }, -overlap);
   }
   return shown;
+}
+}
+
+Outline shownBy(const ShearWarp& geometry)
+{
+  return shownWith(geometry, 0.0);
+}
+
+Outline metByAreas(const ShearWarp& geometry)
+{
+  // No voxel is farther from the pixel whose ray passes nearest to it.
+  Outline met = shownWith(geometry, 0.5);
+  met.growOnScreen(0.5);
+  return met;
 }
 
 Outline withinSamples(const ShearWarp& geometry)

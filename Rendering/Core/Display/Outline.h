@@ -40,6 +40,9 @@ public:
   /// Keeps what the image shows of a box.
   void add(const Cuboid& box, double inset);
 
+  /// Moves all lines outwards by so many pixels of the screen along both x and y.
+  void growOnScreen(double pixels);
+
   /// The x in `row` for which the point (x, 0, 0) from `start` is inside.
   Span cut(Span row, const glm::dvec3& start) const;
 
@@ -55,6 +58,10 @@ private:
 
 /// The pixels of the screen that an image shows something in.
 Outline shownBy(const ShearWarp& geometry);
+
+/// The pixels of the screen whose areas meet something that an image shows: all in which a voxel
+/// can be seen, and some beside them.
+Outline metByAreas(const ShearWarp& geometry);
 
 /// The pixels of the screen whose four neighbours in the image are samples, if it has no holes.
 Outline withinSamples(const ShearWarp& geometry);

@@ -3,6 +3,7 @@
 #include "Display/Warp.h"
 
 #include "Display/Outline.h"
+#include "Display/PixelArea.h"
 
 #include <vtkSMPTools.h>
 
@@ -121,11 +122,10 @@ void forNeighbours(const ShearImage& image, const glm::dvec2& p, F&& f)
   }
 }
 
-/// Where a neighbour may be missing, NaN or infinite: interpolates between those that count.
-/// @param own  what the pixel shows instead, if it is a number
+/// Where a neighbour may be missing, NaN or infinite: interpolates between those that count; NaN
+/// where there is no sample.
 template <class A, class Sink>
-typename Sink::Pixel warpPoint(
-  const WarpSource<A, Sink>& source, const glm::dvec3& homogeneous, A own)
+A valueAt(const WarpSource<A, Sink>& source, const glm::dvec3& homogeneous)
 {
   const ShearImage& image = source.image;
   const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
@@ -152,13 +152,32 @@ typename Sink::Pixel warpPoint(
   // volume's rim it ends with the silhouette.
   if (weight <= 0.0 || lost > 0.5)
   {
-    return source.sink.empty;
+    return std::numeric_limits<A>::quiet_NaN();
   }
   const double average = sum / weight;
-  const A value = own == own ? own : std::isfinite(average) ? static_cast<A>(average) : nearest;
-  typename Sink::Pixel pixel;
-  source.sink.put(&value, &pixel, 1);
-  return pixel;
+  return std::isfinite(average) ? static_cast<A>(average) : nearest;
+}
+
+/// What becomes of values, NaN being none.
+template <class A, class Sink>
+void putValues(const Sink& sink, const A* values, typename Sink::Pixel* out, int n)
+{
+  for (int begin = 0, end = 0; begin < n; begin = end)
+  {
+    const bool isEmpty = values[begin] != values[begin];
+    while (end < n && (values[end] != values[end]) == isEmpty)
+    {
+      ++end;
+    }
+    if (isEmpty)
+    {
+      std::fill(out + begin, out + end, sink.empty);
+    }
+    else
+    {
+      sink.put(values + begin, out + begin, end - begin);
+    }
+  }
 }
 
 /// The pixels of row y, `start` being the first, that one image shows.
@@ -172,8 +191,9 @@ void warpSpan(const WarpSource<A, Sink>& source, const glm::dvec3& start, int y,
   {
     for (int x = begin; x < end; ++x)
     {
+      const A at = valueAt(source, first + double(x) * step);
       const A own = source.rim.template value<A>(source.number, x, y);
-      out[x] = warpPoint(source, first + double(x) * step, own);
+      putValues(source.sink, own == own && at == at ? &own : &at, out + x, 1);
     }
   };
   const Span plain = source.hasHoles()
@@ -238,6 +258,89 @@ void warpRow(const std::vector<WarpSource<A, Sink>>& sources, const glm::dvec3& 
     [&](const Span& row) { std::fill(out + row.begin, out + row.end, empty); });
 }
 
+/// The images of a view whose pixels show areas.
+template <class A, class Sink>
+struct AreaSources
+{
+  const std::vector<WarpSource<A, Sink>>& images;
+  std::vector<Outline> met; ///< by areas
+  Reduction reduction;
+
+  AreaSources(const std::vector<WarpSource<A, Sink>>& sources, Reduction r)
+    : images(sources),
+      reduction(r)
+  {
+    for (const WarpSource<A, Sink>& source : sources)
+    {
+      this->met.push_back(metByAreas(source.geometry));
+    }
+  }
+};
+
+/// The extrema of the areas of a row's pixels [x, x + n), of all images that they meet.
+template <class A, class Sink>
+void findAreaValues(
+  const AreaSources<A, Sink>& sources, const glm::dvec3& start, int x, int n, A* values)
+{
+  const bool least = sources.reduction == Reduction::Minimum;
+  std::fill_n(values, n, std::numeric_limits<A>::quiet_NaN());
+  for (std::size_t number = 0; number < sources.images.size(); ++number)
+  {
+    const WarpSource<A, Sink>& source = sources.images[number];
+    const PixelAreas<A> areas(source.image, source.pixels);
+    const Span met = sources.met[number].cut({ x, x + n }, start);
+    const Span shown = source.shown.cut({ x, x + n }, start);
+    for (int p = met.begin; p < met.end; ++p)
+    {
+      AreaValue<A> best{ values[p - x] };
+      best.take(areas.extremum(areaOf(source.geometry, start.x + p, start.y), least), least);
+      if (!best.found() && p >= shown.begin && p < shown.end)
+      {
+        best.value = valueAt(
+          source, source.geometry.screenToShear() * (start + glm::dvec3(double(p), 0.0, 0.0)));
+      }
+      values[p - x] = best.value;
+    }
+  }
+}
+
+/// The same of averages.
+template <class A, class Sink>
+void findAreaAverages(
+  const AreaSources<A, Sink>& sources, const glm::dvec3& start, int x, int n, A* values)
+{
+  for (int p = x; p < x + n; ++p)
+  {
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t number = 0; number < sources.images.size(); ++number)
+    {
+      const WarpSource<A, Sink>& source = sources.images[number];
+      if (!sources.met[number].cut({ p, p + 1 }, start).empty())
+      {
+        PixelAreas<A>(source.image, source.pixels)
+          .addAverage(source.geometry, start.x + p, start.y, sum, count);
+      }
+    }
+    values[p - x] = count > 0 ? static_cast<A>(sum / count) : std::numeric_limits<A>::quiet_NaN();
+  }
+}
+
+template <class A, class Sink>
+void warpAreaRow(const AreaSources<A, Sink>& sources, const glm::dvec3& start, int width,
+  typename Sink::Pixel* out)
+{
+  constexpr int chunk = 256;
+  A values[chunk];
+  for (int x = 0; x < width; x += chunk)
+  {
+    const int n = std::min(chunk, width - x);
+    sources.reduction == Reduction::Mean ? findAreaAverages(sources, start, x, n, values)
+                                         : findAreaValues(sources, start, x, n, values);
+    putValues(sources.images.front().sink, values, out + x, n);
+  }
+}
+
 /// Of the shear pixels that a point's value is interpolated between, the nearest.
 ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& homogeneous,
   const std::function<bool(const ShearPixel&)>& hasSample)
@@ -266,16 +369,20 @@ ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& h
 /// The pixels of a part of a viewport, of which `pixels` is the first and the next row lies a
 /// stride further.
 template <class A, class Sink>
-void warpRows(const std::vector<WarpSource<A, Sink>>& sources, const Picture& place,
-  typename Sink::Pixel* pixels, std::ptrdiff_t stride)
+void warpRows(const std::vector<WarpSource<A, Sink>>& sources, Reduction reduction,
+  const Picture& place, typename Sink::Pixel* pixels, std::ptrdiff_t stride)
 {
+  const bool showsAreas = sources.front().geometry.isOverview();
+  const AreaSources<A, Sink> areas(sources, reduction);
   vtkSMPTools::For(0, place.size.y, 16,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType y = first; y < last; ++y)
       {
         const glm::dvec3 start(place.origin.x, place.origin.y + static_cast<double>(y), 1.0);
-        warpRow(sources, start, static_cast<int>(y), place.size.x, pixels + y * stride);
+        typename Sink::Pixel* const out = pixels + y * stride;
+        showsAreas ? warpAreaRow(areas, start, place.size.x, out)
+                   : warpRow(sources, start, static_cast<int>(y), place.size.x, out);
       }
     });
 }
@@ -289,7 +396,7 @@ struct Rectangle
 /// Has all pixels that an image shows something in, and perhaps some beside them.
 Rectangle boundsOf(const ShearWarp& geometry, const glm::dvec2& viewport)
 {
-  if (!geometry.isPerspective())
+  if (!geometry.isPerspective() && !geometry.isOverview())
   {
     // What the image shows is symmetric about the middle of the volume.
     const Cuboid box = shownBox(geometry);
@@ -304,8 +411,9 @@ Rectangle boundsOf(const ShearWarp& geometry, const glm::dvec2& viewport)
   }
   const glm::dvec2 last = viewport - 1.0;
   Rectangle bounds{ viewport, glm::dvec2(-2.0) };
-  for (const glm::dvec3& corner : shownBy(geometry).cut(
-         { { 0.0, 0.0, 1.0 }, { last.x, 0.0, 1.0 }, { last, 1.0 }, { 0.0, last.y, 1.0 } }))
+  const Outline shown = geometry.isOverview() ? metByAreas(geometry) : shownBy(geometry);
+  for (const glm::dvec3& corner :
+    shown.cut({ { 0.0, 0.0, 1.0 }, { last.x, 0.0, 1.0 }, { last, 1.0 }, { 0.0, last.y, 1.0 } }))
   {
     bounds.low = glm::min(bounds.low, glm::dvec2(corner));
     bounds.high = glm::max(bounds.high, glm::dvec2(corner));
@@ -382,8 +490,9 @@ const Accumulator<T>* widenedPixels(
 /// Warps images of voxels of type T, which are widened in `widened`.
 template <class T, class Sink>
 void warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
-  const Kernels& kernels, const Sink& sink, std::vector<std::vector<unsigned char>>& widened,
-  const Picture& place, typename Sink::Pixel* pixels, std::ptrdiff_t stride, const FieldRim& rim)
+  Reduction reduction, const Kernels& kernels, const Sink& sink,
+  std::vector<std::vector<unsigned char>>& widened, const Picture& place,
+  typename Sink::Pixel* pixels, std::ptrdiff_t stride, const FieldRim& rim)
 {
   using A = Accumulator<T>;
   std::vector<WarpSource<A, Sink>> sources;
@@ -392,13 +501,13 @@ void warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWa
     const A* const own = widenedPixels<T>(images[n], kernels, widened[n]);
     sources.emplace_back(sink, images[n], own, geometries[n], rim, n);
   }
-  warpRows(sources, place, pixels, stride);
+  warpRows(sources, reduction, place, pixels, stride);
 }
 }
 
 void Warper::warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
-  const ColorTable& table, const glm::ivec2& viewport, InstructionSet instructionSet,
-  Picture& picture, const FieldRim& rim)
+  Reduction reduction, const ColorTable& table, const glm::ivec2& viewport,
+  InstructionSet instructionSet, Picture& picture, const FieldRim& rim)
 {
   placePicture(geometries, viewport, picture);
   picture.pixels.resize(std::size_t(picture.size.x) * picture.size.y);
@@ -413,13 +522,42 @@ void Warper::warp(const std::vector<ShearImage>& images, const std::vector<Shear
     {
       using T = std::remove_pointer_t<decltype(null)>;
       const ColorSink<Accumulator<T>> sink(kernels, table);
-      warpImages<T>(images, geometries, kernels, sink, this->Widened, picture,
+      warpImages<T>(images, geometries, reduction, kernels, sink, this->Widened, picture,
         picture.pixels.data(), picture.size.x, rim);
     });
 }
 
+void Warper::warpPixels(const std::vector<ShearImage>& images, const std::vector<ShearPixel>& shown,
+  const ColorTable& table, InstructionSet instructionSet, Picture& picture)
+{
+  picture.pixels.resize(shown.size());
+  if (shown.empty())
+  {
+    return;
+  }
+  dispatch(images.front().type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      using A = Accumulator<T>;
+      const ColorSink<A> sink(kernelsFor(instructionSet), table);
+      vtkSMPTools::For(0, static_cast<vtkIdType>(shown.size()), 1 << 12,
+        [&](vtkIdType first, vtkIdType last)
+        {
+          for (vtkIdType n = first; n < last; ++n)
+          {
+            const ShearPixel& from = shown[n];
+            const A value = from.image < 0
+              ? std::numeric_limits<A>::quiet_NaN()
+              : static_cast<A>(images[from.image].row<T>(from.v)[from.u]);
+            putValues(sink, &value, &picture.pixels[n], 1);
+          }
+        });
+    });
+}
+
 void Warper::warpScalars(const std::vector<ShearImage>& images,
-  const std::vector<ShearWarp>& geometries, const glm::ivec2& viewport,
+  const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& viewport,
   InstructionSet instructionSet, double background, void* scalars, const FieldRim& rim)
 {
   Picture place;
@@ -439,13 +577,69 @@ void Warper::warpScalars(const std::vector<ShearImage>& images,
       A* const first =
         static_cast<A*>(scalars) + std::ptrdiff_t(place.origin.y) * viewport.x + place.origin.x;
       warpImages<T>(
-        images, geometries, kernels, sink, this->Widened, place, first, viewport.x, rim);
+        images, geometries, reduction, kernels, sink, this->Widened, place, first, viewport.x, rim);
     });
 }
 
+namespace
+{
+/// Where pixels show areas.
+template <class T>
+ShearPixel shownOfArea(const std::vector<ShearImage>& images,
+  const std::vector<ShearWarp>& geometries, const std::vector<Outline>& met, bool least,
+  const glm::dvec3& pixel)
+{
+  AreaValue<Accumulator<T>> best;
+  ShearPixel shown;
+  for (std::size_t n = 0; n < geometries.size(); ++n)
+  {
+    if (met[n].cut({ 0, 1 }, pixel).empty())
+    {
+      continue;
+    }
+    const AreaValue<Accumulator<T>> before = best;
+    best.take(PixelAreas<T>(images[n], images[n].row<T>(0))
+                .extremum(areaOf(geometries[n], pixel.x, pixel.y), least),
+      least);
+    if (best.found() && !(best.value == before.value))
+    {
+      shown = { static_cast<int>(n), best.u, best.v };
+    }
+  }
+  return shown;
+}
+
+/// Of those that have one.
+void findAreaPixels(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+  bool least, const glm::ivec2& origin, const glm::ivec2& size, ShearPixel* out)
+{
+  std::vector<Outline> met;
+  for (const ShearWarp& geometry : geometries)
+  {
+    met.push_back(metByAreas(geometry));
+  }
+  dispatch(images.front().type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      vtkSMPTools::For(0, size.y, 16,
+        [&](vtkIdType first, vtkIdType last)
+        {
+          for (vtkIdType n = first * size.x; n < last * size.x; ++n)
+          {
+            const glm::dvec3 pixel(origin.x + static_cast<double>(n % size.x),
+              origin.y + static_cast<double>(n / size.x), 1.0);
+            const ShearPixel found = shownOfArea<T>(images, geometries, met, least, pixel);
+            out[n] = found.image < 0 ? out[n] : found;
+          }
+        });
+    });
+}
+}
+
 void findShearPixels(const std::vector<ShearImage>& images,
-  const std::vector<ShearWarp>& geometries, const glm::ivec2& origin, const glm::ivec2& size,
-  ShearPixel* out, const std::function<bool(const ShearPixel&)>& hasSample)
+  const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& origin,
+  const glm::ivec2& size, ShearPixel* out, const std::function<bool(const ShearPixel&)>& hasSample)
 {
   std::vector<Outline> shown;
   for (const ShearWarp& geometry : geometries)
@@ -482,5 +676,9 @@ void findShearPixels(const std::vector<ShearImage>& images,
           });
       }
     });
+  if (!geometries.empty() && geometries.front().isOverview())
+  {
+    findAreaPixels(images, geometries, reduction == Reduction::Minimum, origin, size, out);
+  }
 }
 }

@@ -56,14 +56,15 @@ struct ShearPixel
 
 /**
  * For each pixel of a rectangle of the viewport, row by row from the bottom, the shear pixel whose
- * location stands for it: the nearest of those that Warper interpolates its value between; none
- * where the picture has no sample.
+ * location stands for it: the nearest of those that Warper interpolates its value between, where
+ * areas are shown the one that the area's value comes from; none where the picture has no sample.
  * @param images     as in Warper::warp()
  * @param hasSample  whether a shear pixel has one; without it, whether it has a winner
  */
 void findShearPixels(const std::vector<ShearImage>& images,
-  const std::vector<ShearWarp>& geometries, const glm::ivec2& origin, const glm::ivec2& size,
-  ShearPixel* out, const std::function<bool(const ShearPixel&)>& hasSample = {});
+  const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& origin,
+  const glm::ivec2& size, ShearPixel* out,
+  const std::function<bool(const ShearPixel&)>& hasSample = {});
 
 /**
  * Adds a picture of the same size and place, byte by byte, no further than 255.
@@ -88,13 +89,20 @@ public:
    * centres are seen (half a voxel further out along axes with one voxel, and along all if the
    * geometry shows boxes); around an eye inside that box it does not end. Pixels beyond and pixels
    * without a sample are transparent.
+   *
+   * Where the geometries show areas, pixels have the extremum or the average of their areas, see
+   * PixelArea.h, and the picture ends where areas no longer meet the volume.
    * @param images      all of one type; those behind the last geometry are left alone
    * @param geometries  as ShearWarp::factorise() gives them
    * @param rim         values of pixels that are not interpolated, found for this view
    */
   void warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
-    const ColorTable& table, const glm::ivec2& viewport, InstructionSet instructionSet,
-    Picture& picture, const FieldRim& rim = {});
+    Reduction reduction, const ColorTable& table, const glm::ivec2& viewport,
+    InstructionSet instructionSet, Picture& picture, const FieldRim& rim = {});
+
+  /// The same of given shear pixels, one for each pixel of the picture.
+  void warpPixels(const std::vector<ShearImage>& images, const std::vector<ShearPixel>& shown,
+    const ColorTable& table, InstructionSet instructionSet, Picture& picture);
 
   /**
    * The same as scalars, to a whole viewport's, row after row from the bottom. Pixels that would be
@@ -102,8 +110,8 @@ public:
    * @param scalars  of type averageType() of the images' type
    */
   void warpScalars(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
-    const glm::ivec2& viewport, InstructionSet instructionSet, double background, void* scalars,
-    const FieldRim& rim = {});
+    Reduction reduction, const glm::ivec2& viewport, InstructionSet instructionSet,
+    double background, void* scalars, const FieldRim& rim = {});
 
 private:
   /// Preview images in the accumulator's type.

@@ -48,7 +48,7 @@ void FanSteps::find(const ShearWarp& geometry, int a, const FanLoops& loops)
       for (vtkIdType n = begin; n < end; ++n)
       {
         const glm::dvec2 faces =
-          geometry.faces(this->Slices.begin + static_cast<int>(n)) - geometry.reference();
+          geometry.passage(this->Slices.begin + static_cast<int>(n)) - geometry.reference();
         const std::size_t at = n * this->Padded;
         std::int32_t* const first = &this->First[at];
         std::int32_t* const last = &this->Last[at];

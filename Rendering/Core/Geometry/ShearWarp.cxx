@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace splatting
 {
@@ -30,12 +31,13 @@ constexpr int RowUnit = 64;
 
 constexpr int SlopeBits = 24, PositionBits = 20, EyeBits = 10;
 
-/// The largest power of two by which a pixel can be divided whose area is given in pixels of the
-/// screen.
-int finestSampling(double area)
+/// The least power of two by which a pixel must be divided that is so wide in pixels of the screen,
+/// so that its parts are no wider than those.
+int neededSampling(double width)
 {
+  constexpr double rounding = 1.0 + 1e-6;
   int sampling = 1;
-  while (sampling < ShearWarp::MostSampling && area >= 4.0 * sampling * sampling)
+  while (sampling < ShearWarp::MostSampling && width > rounding * sampling)
   {
     sampling *= 2;
   }
@@ -125,7 +127,60 @@ std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm:
   return result;
 }
 
-ShearWarp::ShearWarp(const View& view, int sampling)
+namespace
+{
+/// The larger singular value of a map to a plane, from the sum of the squares of its elements and
+/// how it changes areas: how much it stretches the direction that it stretches most.
+double largerStretch(double squares, double area)
+{
+  return std::sqrt(
+    0.5 * (squares + std::sqrt(std::max(squares * squares - 4.0 * area * area, 0.0))));
+}
+}
+
+glm::dvec2 voxelsPerPixel(const View& view)
+{
+  const glm::dmat4& m = view.indexToClip;
+  glm::dvec2 least(std::numeric_limits<double>::infinity());
+  for (int n = 0; n < 8; ++n)
+  {
+    const glm::dvec4 corner(
+      glm::dvec3(n & 1, n >> 1 & 1, n >> 2) * glm::dvec3(view.dimensions - 1), 1.0);
+    const glm::dvec4 clip = m * corner;
+    if (!(clip.w > 0.0))
+    {
+      return glm::dvec2(0.0);
+    }
+    // How the pixel's coordinates change from voxel to voxel there.
+    const glm::dvec3 w(row(m, 3));
+    const glm::dvec3 x =
+      0.5 * view.viewport.x / clip.w * (glm::dvec3(row(m, 0)) - clip.x / clip.w * w);
+    const glm::dvec3 y =
+      0.5 * view.viewport.y / clip.w * (glm::dvec3(row(m, 1)) - clip.y / clip.w * w);
+    const double area = glm::length(glm::cross(x, y));
+    const double most = largerStretch(glm::dot(x, x) + glm::dot(y, y), area);
+    least = glm::min(least, glm::dvec2(1.0 / most, most / area));
+  }
+  return least;
+}
+
+namespace
+{
+/// Pixels that are as wide as voxels are not wider by rounding.
+constexpr double Wide = 1.0 + 1e-6;
+}
+
+bool isOverview(const View& view)
+{
+  return voxelsPerPixel(view).y > Wide;
+}
+
+bool isCoarse(const View& view)
+{
+  return voxelsPerPixel(view).x > Wide;
+}
+
+ShearWarp::ShearWarp(const View& view, int sampling, Meets meets)
 {
   const glm::dmat4& m = view.indexToClip;
   const glm::dvec3 centre = 0.5 * glm::dvec3(view.dimensions - 1);
@@ -145,31 +200,37 @@ ShearWarp::ShearWarp(const View& view, int sampling)
   }
   this->Size = view.dimensions;
   this->ShowsBoxes = view.showsBoxes;
+  this->Overview = splatting::isOverview(view);
+  this->MeetsNearest = meets == Meets::Nearest;
   this->chooseAxes(direction);
   // Clip space is deeper away from the viewer; along the ray, with the principal axis growing:
   const double deeper = glm::dot(glm::dvec3(row(m, 2)) / w, direction);
   this->Reversed = deeper * direction[this->Axes[2]] < 0.0;
   this->computeWarp(rowX, rowY);
-  this->refine(sampling == Automatic ? finestSampling(this->screenArea({})) : sampling);
+  this->refine(sampling == Automatic ? neededSampling(this->screenWidth({})) : sampling);
   this->setParallelFans();
   this->Valid = true;
 }
 
-bool ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images, int sampling)
+bool ShearWarp::factorise(
+  const View& view, std::vector<ShearWarp>& images, int sampling, Meets meets)
 {
   if (isParallel(view))
   {
     images.resize(1);
-    images.front() = ShearWarp(view, sampling);
+    images.front() = ShearWarp(view, sampling, meets);
     images.resize(images.front().valid() ? 1 : 0);
     return !images.empty();
   }
   std::size_t count = 0;
   Rays rays;
   const bool valid = findRays(view, rays);
+  const bool overview = valid && splatting::isOverview(view);
   for (int direction = 0; valid && direction < 6; ++direction)
   {
     images.resize(std::max(images.size(), count + 1));
+    images[count].Overview = overview;
+    images[count].MeetsNearest = meets == Meets::Nearest;
     count += images[count].lookAlong(direction / 2, direction % 2 == 1, view, rays, sampling);
   }
   images.resize(count);
@@ -287,7 +348,7 @@ bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays&
   if (sampling == Automatic)
   {
     const glm::dvec2 middle = 0.5 * glm::dvec2(this->RayCount - 1);
-    this->placeRays(view, directions, farthest, finestSampling(this->screenArea(middle)));
+    this->placeRays(view, directions, farthest, neededSampling(this->screenWidth(middle)));
   }
   this->setFan(0, this->Columns);
   this->setFan(1, this->Rows);
@@ -478,23 +539,52 @@ void ShearWarp::takePixel(const glm::ivec2& pixel, ShearWarp& part) const
   }
 }
 
-/// How many pixels of the screen one of the image covers.
-double ShearWarp::screenArea(const glm::dvec2& pixel) const
+/// How many pixels of the screen lie along one of the image, in the direction that has most.
+double ShearWarp::screenWidth(const glm::dvec2& pixel) const
 {
-  const double w = (this->ShearToScreen * glm::dvec3(pixel, 1.0)).z;
-  return std::abs(glm::determinant(this->ShearToScreen) / (w * w * w));
+  const glm::dvec3 at = this->ShearToScreen * glm::dvec3(pixel, 1.0);
+  const glm::dvec2 shown = glm::dvec2(at) / at.z;
+  glm::dmat2 change;
+  for (int a = 0; a < 2; ++a)
+  {
+    const glm::dvec3& column = this->ShearToScreen[a];
+    change[a] = (glm::dvec2(column) - shown * column.z) / at.z;
+  }
+  return largerStretch(
+    glm::dot(change[0], change[0]) + glm::dot(change[1], change[1]), glm::determinant(change));
+}
+
+/// The voxels that a ray meets between two points.
+RayPath ShearWarp::pathOf(
+  const glm::dvec2& enter, const glm::dvec2& leave, const glm::dvec2& slope) const
+{
+  if (!this->MeetsNearest)
+  {
+    return path(enter, leave, glm::abs(slope));
+  }
+  const auto nearest = [&](int a)
+  {
+    return static_cast<int>(
+      slope[a] < 0.0 ? std::ceil(enter[a] - 0.5) : std::floor(enter[a] + 0.5));
+  };
+  RayPath found;
+  found.count = 1;
+  found.di[0] = nearest(0);
+  found.dj[0] = nearest(1);
+  return found;
 }
 
 RayPath ShearWarp::rayPath(int k) const
 {
-  return path(-this->position(k - 0.5), -this->position(k + 0.5), glm::abs(this->Shear));
+  const glm::dvec2 way = this->MeetsNearest ? glm::dvec2(k) : glm::dvec2(k - 0.5, k + 0.5);
+  return this->pathOf(-this->position(way.x), -this->position(way.y), -this->Shear);
 }
 
 RayPath ShearWarp::voxelsOnRay(int u, int v, int k) const
 {
   const glm::dvec2 slope(this->Columns.slope[u], this->Rows.slope[v]);
-  const glm::dvec2 depths = this->faces(k);
-  return path(this->onRay(u, v, depths.x), this->onRay(u, v, depths.y), glm::abs(slope));
+  const glm::dvec2 depths = this->passage(k);
+  return this->pathOf(this->onRay(u, v, depths.x), this->onRay(u, v, depths.y), slope);
 }
 
 Span ShearWarp::coverage(const RayPath& path, int v) const
@@ -525,9 +615,9 @@ glm::dvec4 ShearWarp::inPixels(const glm::dvec4& halfSpace) const
 bool ShearWarp::sameShear(const ShearWarp& other) const
 {
   // Fans hold the shears.
-  return this->Valid == other.Valid && this->Axes == other.Axes && this->Size == other.Size &&
-    this->PixelSize == other.PixelSize && this->Reference == other.Reference &&
-    this->DepthRange == other.DepthRange && this->Columns == other.Columns &&
-    this->Rows == other.Rows;
+  return this->Valid == other.Valid && this->MeetsNearest == other.MeetsNearest &&
+    this->Axes == other.Axes && this->Size == other.Size && this->PixelSize == other.PixelSize &&
+    this->Reference == other.Reference && this->DepthRange == other.DepthRange &&
+    this->Columns == other.Columns && this->Rows == other.Rows;
 }
 }

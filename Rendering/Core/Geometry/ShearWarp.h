@@ -50,6 +50,26 @@ struct Fan
 };
 
 /**
+ * How many voxels a pixel of the viewport spans, across its ray, in the direction in which it spans
+ * fewest and in that in which it spans most: the least of the volume's corners, 0 if one of them is
+ * not before the eye.
+ */
+glm::dvec2 voxelsPerPixel(const View& view);
+
+/// Whether all of a volume is seen in pixels wider than voxels in some direction, ...
+bool isOverview(const View& view);
+/// ... or in all directions.
+bool isCoarse(const View& view);
+
+/// The voxels of a slice that a ray meets: all that it crosses, or the one that it passes nearest
+/// to in the middle of the slice.
+enum class Meets
+{
+  All,
+  Nearest
+};
+
+/**
  * A convex cone, given by its edges, or polygon, by its corners (x, y, 1), where
  * dot(side, edge) >= 0.
  */
@@ -87,8 +107,8 @@ public:
    */
   ShearWarp() = default;
 
-  /// As fine as the screen: pixels are no smaller than the screen's, on average over the image (in
-  /// perspective views in its middle), and no smaller than a voxel by more than MostSampling.
+  /// As fine as the screen: pixels are no larger than the screen's in any direction (in perspective
+  /// views in the image's middle), but no smaller than a voxel by more than MostSampling.
   static constexpr int Automatic = 0;
   static constexpr int MostSampling = 4;
 
@@ -97,7 +117,7 @@ public:
    * point.
    * @param sampling  pixels along the side of a voxel: 1, 2, 4 or Automatic
    */
-  explicit ShearWarp(const View& view, int sampling = 1);
+  explicit ShearWarp(const View& view, int sampling = 1, Meets meets = Meets::All);
 
   /**
    * Factorises any view: one image for a parallel view, up to six for a perspective one, those that
@@ -105,7 +125,8 @@ public:
    * @param sampling  as above; in perspective views where the volume is farthest from the eye
    * @return  false if the view flattens the volume to a line or a point; there are no images then
    */
-  static bool factorise(const View& view, std::vector<ShearWarp>& images, int sampling = 1);
+  static bool factorise(
+    const View& view, std::vector<ShearWarp>& images, int sampling = 1, Meets meets = Meets::All);
 
   /**
    * Sets `part` to the geometry of a box of this volume's voxels as a volume by itself: voxels,
@@ -127,6 +148,9 @@ public:
   const glm::ivec3& first() const { return this->FirstVoxel; }
   /// See View.
   bool showsBoxes() const { return this->ShowsBoxes; }
+  /// Whether the view is an overview, where what the screen's pixels show is sought in all of their
+  /// areas.
+  bool isOverview() const { return this->Overview; }
   int width() const { return this->ImageSize.x; }
   int height() const { return this->ImageSize.y; }
 
@@ -167,6 +191,8 @@ public:
   {
     return glm::clamp(glm::dvec2(k - 0.5, k + 0.5), this->DepthRange.x, this->DepthRange.y);
   }
+  /// Where on their way through slice k rays meet voxels: between its faces, or in its middle.
+  glm::dvec2 passage(int k) const { return this->MeetsNearest ? glm::dvec2(k) : this->faces(k); }
   /// The slices whose middle lies before the eye; in parallel views all.
   const Span& slices() const { return this->SlicesSeen; }
   /// Of perspective views, (i, j, k).
@@ -192,15 +218,16 @@ public:
   glm::dvec3 pixelOf(const glm::dvec3& point) const;
 
   /**
-   * What the rays of a parallel view cross in slice k. Voxels are boxes; one counts when the ray
+   * What the rays of a parallel view meet in slice k. Voxels are boxes; one counts when the ray
    * crosses it over a positive length, so a ray that leaves a voxel through an edge or a corner
    * does not touch the voxels beside it. Rays never run within a face: without shear they pass
-   * voxel centres.
+   * voxel centres. If rays meet the nearest voxel only, each voxel is met by one ray; a ray that
+   * passes between two meets the one that it runs to.
    */
   RayPath rayPath(int k) const;
 
   /**
-   * The voxels that one ray crosses in slice k, by ascending depth, in any view: di and dj are
+   * The voxels that one ray meets in slice k, by ascending depth, in any view: di and dj are
    * indices.
    */
   RayPath voxelsOnRay(int u, int v, int k) const;
@@ -237,7 +264,8 @@ private:
   void computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY);
   void refine(int sampling);
   void setParallelFans();
-  double screenArea(const glm::dvec2& pixel) const;
+  double screenWidth(const glm::dvec2& pixel) const;
+  RayPath pathOf(const glm::dvec2& enter, const glm::dvec2& leave, const glm::dvec2& slope) const;
 
   /// The rays of a perspective view: through the eye, of viewport pixel (x, y) along
   /// directions (x, y, 1), in index space.
@@ -255,6 +283,8 @@ private:
 
   bool Valid = false;
   bool ShowsBoxes = false;
+  bool Overview = false;
+  bool MeetsNearest = false;
   bool Reversed = false;
   std::array<int, 3> Axes{ 0, 1, 2 };
   glm::ivec3 Size{ 0 };

@@ -50,7 +50,7 @@ inline void steps(const double* __restrict at, const double* __restrict slope, d
     // it has but one.
     const double enters = roundedDown(entry + 0.5);
     const double before = -roundedDown(0.5 - exit);
-    const double leaves = own == 0.0 ? enters : before;
+    const double leaves = before > enters ? before : enters;
     const double speed = own == 0.0 ? 1.0 : turn * own;
     const double way = (enters + 0.5 - entry) / speed;
     const double passes = leaves > enters ? way : 0.0;

@@ -350,6 +350,16 @@ glm::dvec3 Locator::point(const glm::dvec2& pixel, const ShearPixel& shown) cons
     z = geometry.reversed() ? std::min(z, geometry.eye().z - nearest)
                             : std::max(z, geometry.eye().z + nearest);
   }
+  if (geometry.isOverview())
+  {
+    const glm::dvec2 at = geometry.onRay(shown.u, shown.v, z);
+    glm::dvec3 point;
+    for (int a = 0; a < 3; ++a)
+    {
+      point[geometry.axes()[a]] = a < 2 ? at[a] : z;
+    }
+    return point;
+  }
   // The ray is where two planes meet: those of the pixel's column and row. They alone make no use
   // of clip depths, which would cost digits.
   const std::array<int, 3>& axes = geometry.axes();
@@ -441,7 +451,8 @@ void Locator::fillRow(int y, const glm::ivec2& origin, int width, const ShearPix
 void Locator::fill(const glm::ivec2& origin, const glm::ivec2& size, const Arrays& arrays) const
 {
   std::vector<ShearPixel> shown(std::size_t(size.x) * size.y);
-  findShearPixels(*this->Source.images, *this->Source.geometries, origin, size, shown.data());
+  findShearPixels(*this->Source.images, *this->Source.geometries, this->Source.settings.reduction,
+    origin, size, shown.data());
   std::vector<std::vector<glm::ivec3>> voxels(this->Source.geometries->size());
   for (std::size_t n = 0; arrays.voxels && n < voxels.size(); ++n)
   {

@@ -4,12 +4,13 @@
  * Where the samples lie that a projection shows: from winners to voxels, depths and points.
  *
  * A sample is the slice (in preview the voxel) that a pixel's value comes from. Its point is where
- * the ray of the screen pixel crosses the middle of that slice; in exact mode the depth is that of
- * the field's extremum in the slice, on the ray of the nearest shear pixel. Its voxel is, in
- * preview, the one that wins; in standard and high the one of the slice that adds most to the
- * average: the largest weight times its distance from the volume's lowest value (of minima, from
- * the highest); in exact mode the nearest to the extremum. Without voxels, in all but preview, it
- * is the one that the ray passes in the middle of the slice, which takes the place of the extremum.
+ * the ray of the screen pixel (where pixels show areas, of the shear pixel) crosses the middle of
+ * that slice; in exact mode the depth is that of the field's extremum in the slice, on the ray of
+ * the nearest shear pixel. Its voxel is, in preview, the one that wins; in standard and high the
+ * one of the slice that adds most to the average: the largest weight times its distance from the
+ * volume's lowest value (of minima, from the highest); in exact mode the nearest to the extremum.
+ * Without voxels, in all but preview, it is the one that the ray passes in the middle of the slice,
+ * which takes the place of the extremum.
  */
 #ifndef splattingLocations_h
 #define splattingLocations_h

@@ -93,6 +93,10 @@ struct ProjectionSettings
   /// Whether the image tells its winners: of equal samples the nearest to the viewer. Means have
   /// none: not for Reduction::Mean. Lines and its sorted kin are Bricks then.
   bool keepWinners = false;
+  /// How shear images are sampled and which voxels their rays meet, as ShearWarp::factorise() takes
+  /// it. Not compared: images are.
+  int sampling = 1;
+  Meets meets = Meets::All;
   /// Values at or below need not be told apart: the image is the larger of this (in preview rounded
   /// down to the scalar type) and what it would be otherwise.
   double floor = -std::numeric_limits<double>::infinity();

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Views whose pixels show points, and overviews, whose pixels show areas.
+ */
+#ifndef WideViews_h
+#define WideViews_h
+
+#include "Geometry/ShearWarp.h"
+
+namespace coretesting
+{
+/// The same view with so many pixels that it is no overview.
+inline splatting::View magnified(splatting::View view)
+{
+  while (splatting::isOverview(view))
+  {
+    view.viewport *= 2;
+  }
+  return view;
+}
+
+/// The same view with so few pixels that it is an overview, if that is possible.
+inline splatting::View reduced(splatting::View view)
+{
+  while (!splatting::isOverview(view) && view.viewport.x > 1 && view.viewport.y > 1)
+  {
+    view.viewport = (view.viewport + 1) / 2;
+  }
+  return view;
+}
+}
+
+#endif

@@ -1,0 +1,150 @@
+# SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""
+Pictures at all magnifications, by brute force: exact pictures are the field's maxima, overviews
+show every voxel, and automatic sampling places previews.
+"""
+import sys
+import unittest
+from pathlib import Path
+
+import numpy
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "Benchmark"))
+import zoom  # noqa: E402
+from vtk.util.numpy_support import vtk_to_numpy  # noqa: E402
+from vtksplattingmip import vtkSplattingMIPProjection as Filter  # noqa: E402
+
+SAMPLING_OF_MODE, AUTOMATIC_SAMPLING = -1, 0  # constants that are not wrapped
+DATA = Path(__file__).parents[1] / "Data"
+DIRECTIONS = ((0.0, 1.0, 0.0), (0.35, 0.8, -0.45), (0.6, -0.7, 0.5), (-0.9, 0.1, 0.3))
+
+
+def projection_of(image, view, mode):
+    projection = Filter()
+    projection.SetInputData(image)
+    projection.SetCamera(view.camera)
+    projection.SetOutputSize(view.size, view.size)
+    projection.SetQualityMode(zoom.MODES.index(mode))
+    return projection
+
+
+def array_of(projection, name=None):
+    projection.Update()
+    data = projection.GetOutput().GetPointData()
+    array = vtk_to_numpy(data.GetArray(name) if name else data.GetScalars())
+    width, height = projection.GetOutput().GetDimensions()[:2]
+    return array.reshape(height, width, -1).squeeze()
+
+
+class TestZoom(unittest.TestCase):
+    def test_exact_is_the_field(self):
+        """At least 45 dB from the largest value of the field on the ray of each pixel."""
+        random = numpy.random.default_rng(4)
+        for name in ("headsq.vti", "ironProt.vtk"):
+            voxels = zoom.voxels_of(DATA / name)
+            voxels = numpy.ascontiguousarray(
+                voxels[tuple(slice(n // 2 - 24, n // 2 + 24) for n in voxels.shape)])
+            image = zoom.image_of(voxels)
+            for angle in (0.0, 30.0):
+                for magnification in (1.0, 1.3, 2.0, 4.0):
+                    size = int(1.2 * 48 * magnification)
+                    view = zoom.View(voxels, DIRECTIONS[1], size, magnification, angle)
+                    found = array_of(projection_of(image, view, "exact"))
+                    x, y = random.integers(int(0.25 * size), int(0.75 * size), (2, 400))
+                    truth = zoom.field_maxima(voxels, *view.rays(x, y))
+                    decibels = zoom.decibels(found[y, x], truth, voxels)
+                    self.assertGreater(decibels, 45.0, (name, angle, magnification))
+
+    def test_overviews_show_every_voxel(self):
+        """Each at its full value in the pixel of its place or beside it, and none is larger."""
+        random = numpy.random.default_rng(5)
+        voxels = numpy.zeros((90, 100, 80), numpy.int16)
+        places = numpy.column_stack([random.integers(0, n, 200) for n in voxels.shape[::-1]])
+        values = random.permutation(numpy.arange(100, 300))
+        voxels[places[:, 2], places[:, 1], places[:, 0]] = values
+        values = voxels[places[:, 2], places[:, 1], places[:, 0]]
+        image = zoom.image_of(voxels)
+        for direction in DIRECTIONS:
+            for size, angle in ((150, 0.0), (100, 0.0), (40, 0.0), (17, 0.0), (60, 20.0)):
+                view = zoom.View(voxels, direction, size, size / 160.0, angle)
+                for mode in ("preview", "exact"):
+                    projection = projection_of(image, view, mode)
+                    projection.RecordLocationsOn()
+                    found = array_of(projection)
+                    self.assertEqual(found.max(), values.max())
+                    x, y = (numpy.clip(numpy.round(c).astype(int), 1, size - 2)
+                            for c in view.project(places))
+                    near = numpy.max([found[y + j, x + i] for i in (-1, 0, 1)
+                                      for j in (-1, 0, 1)], axis=0)
+                    self.assertTrue((near >= values).all(), (direction, size, angle, mode))
+                    self.check_locations(projection, found, voxels, view)
+
+    def check_locations(self, projection, found, voxels, view):
+        """Pixels that show a voxel's value tell of such a voxel, near its place."""
+        told = array_of(projection, "Voxel")
+        position = array_of(projection, "Position")
+        y, x = numpy.nonzero((found >= 100) & (found == numpy.round(found)))
+        i, j, k = told[y, x].T
+        same = voxels[k, j, i] == found[y, x]
+        self.assertGreater(same.mean(), 0.9)
+        across, up = view.project(position[y, x][same])
+        off = numpy.maximum(abs(across - x[same]), abs(up - y[same]))
+        # A sample in the area, or one beside it that is seen coming.
+        self.assertLess(off.max(), 0.5 + 1.5 / view.pixel + 1e-6)
+
+    def test_largest_of_areas(self):
+        """Front views of pixels three and a half voxels wide, against the definition."""
+        random = numpy.random.default_rng(6)
+        voxels = random.integers(-500, 500, (31, 9, 34)).astype(numpy.int16)
+        image = zoom.image_of(voxels)
+        for mode in ("preview", "exact", "standard"):
+            for minimum in (False, True):
+                if minimum and mode == "exact":
+                    continue  # HIGH's
+                projection = projection_of(image, zoom.View(voxels, (0, 1, 0), 9, 1 / 3.5), mode)
+                projection.SetCamera(None)
+                projection.SetViewDirection(0.0, 1.0, 0.0)
+                projection.SetViewUp(0.0, 0.0, 1.0)
+                projection.SetOutputSpacing(3.5, 3.5)
+                sign = 1.0
+                if minimum:
+                    projection.SetBlendModeToMinimumIntensity()
+                    sign = -1.0
+                found = sign * array_of(projection)
+                plane = (sign * voxels).max(axis=1)
+                for b in range(1, 8):
+                    for a in range(1, 8):
+                        ends = [(c - 4) * 3.5 + 0.5 * (n - 1) + numpy.array((-1.75, 1.75))
+                                for c, n in ((b, 31), (a, 34))]
+                        rows, columns = (numpy.concatenate(
+                            [e, numpy.arange(numpy.ceil(e[0]), numpy.floor(e[1]) + 1)])
+                            for e in ends)
+                        grid = numpy.stack(numpy.meshgrid(rows, columns, indexing="ij"), -1)
+                        expected = zoom.interpolate(plane, grid).max()
+                        if grid.min() >= 0 and rows.max() <= 30 and columns.max() <= 33:
+                            self.assertAlmostEqual(found[b, a], expected, places=2)
+
+    def test_automatic_sampling_places_previews(self):
+        """Within a quarter of a voxel; with a pixel per voxel they lie up to half of one off."""
+        random = numpy.random.default_rng(7)
+        worst = {}
+        for sampling in (SAMPLING_OF_MODE, AUTOMATIC_SAMPLING):
+            worst[sampling] = 0.0
+            for _ in range(30):
+                voxels = numpy.zeros((15, 15, 15), numpy.uint8)
+                place = random.integers(3, 12, 3)
+                voxels[tuple(place[::-1])] = 100
+                view = zoom.View(voxels, random.uniform(-1.0, 1.0, 3), 200, 8.0)
+                projection = projection_of(zoom.image_of(voxels), view, "preview")
+                projection.SetShearImageSampling(sampling)
+                y, x = numpy.nonzero(array_of(projection) >= 50)
+                a, b = view.project(place[None])
+                off = numpy.hypot(x.mean() - a[0], y.mean() - b[0]) / 8.0
+                worst[sampling] = max(worst[sampling], off)
+        self.assertLess(worst[AUTOMATIC_SAMPLING], 0.25)
+        self.assertGreater(worst[SAMPLING_OF_MODE], 0.3)
+
+
+if __name__ == "__main__":
+    unittest.main()
