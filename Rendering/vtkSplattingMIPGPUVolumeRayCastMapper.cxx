@@ -31,7 +31,7 @@ namespace
 const char* const Replaced = "vtkGPUVolumeRayCastMapper";
 const char* const Replacement = "vtkSplattingMIPGPUVolumeRayCastMapper";
 
-int globalQualityMode = vtkSplattingMIPVolumeMapper::HIGH;
+int globalQualityMode = vtkSplattingMIPVolumeMapper::EXACT;
 
 VTK_CREATE_CREATE_FUNCTION(vtkSplattingMIPGPUVolumeRayCastMapper);
 

@@ -93,7 +93,8 @@ public:
   ///@{
   /**
    * The QualityMode of vtkSplattingMIPVolumeMapper that new objects of this class start with, as
-   * vtkSmartVolumeMapper does not show what it has made. Default HIGH, clamped to [PREVIEW, EXACT].
+   * vtkSmartVolumeMapper does not show what it has made. Default EXACT, clamped to [PREVIEW,
+   * EXACT].
    */
   static void SetGlobalQualityMode(int mode);
   static int GetGlobalQualityMode();

@@ -55,7 +55,7 @@ MIPScene::MIPScene(const Volume& volume, const ProjectionSettings& settings,
   SetColors(this->Property, look);
   this->Prop->SetProperty(this->Property);
   this->Prop->SetUserMatrix(volume.Orientation);
-  this->UseSplatting(vtkSplattingMIPVolumeMapper::HIGH);
+  this->UseSplatting(vtkSplattingMIPVolumeMapper::EXACT);
 
   const double paper = look.Colormap == "inverted" ? 1.0 : 0.0;
   this->Label->GetTextProperty()->SetColor(1.0 - paper, 1.0 - paper, 1.0 - paper);

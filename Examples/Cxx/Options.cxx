@@ -26,7 +26,7 @@ namespace
  */
 struct Words
 {
-  std::string Mode = "all";
+  std::string Mode = "exact";
   std::string Kernel = "trilinear";
   std::string Blend = "max";
   std::vector<double> Crop;
@@ -146,7 +146,7 @@ void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
 {
   Group group(app, "What is projected");
   group.AddChoice("--mode", words.Mode, "MODE", { "preview", "standard", "high", "exact", "all" },
-    "Quality mode, or preview, standard and high (all) side by side");
+    "Quality mode, or all of them side by side (stills only)");
   group.AddChoice("--kernel", words.Kernel, "KERNEL", { "trilinear", "cosine-bell" },
     "Reconstruction kernel of mode high");
   group
@@ -229,8 +229,7 @@ void DeclareOutputOptions(CLI::App& app, Options& options, Words& words)
         JoinWords(GetSeriesEndings()) + " (DICOM, a multi-frame secondary capture)")
     ->capture_default_str();
   group.Add("--rotate", options.Rotate, "VIEWS", Between(2, 3600),
-    "Once round the patient in so many views, 2 to 3600, from --azimuth on, in one mode (high "
-    "unless --mode names one)");
+    "Once round the patient in so many views, 2 to 3600, from --azimuth on");
   group.Add("--rate", options.Rate, "VIEWS", Between(1, 50), "Views per second of a film")
     ->capture_default_str();
   group.AddFlag("--no-marks", options.NoMarks,
@@ -258,16 +257,15 @@ void CheckOutputName(const Options& options)
   }
 }
 
-std::vector<int> ChooseModes(const std::string& name, bool isOne)
+std::vector<int> ChooseModes(const std::string& name)
 {
   const auto mode = std::find(ModeNames.begin(), ModeNames.end(), name);
   if (mode != ModeNames.end())
   {
     return { static_cast<int>(mode - ModeNames.begin()) };
   }
-  return isOne ? std::vector<int>{ vtkSplattingMIPProjection::HIGH }
-               : std::vector<int>{ vtkSplattingMIPProjection::PREVIEW,
-                   vtkSplattingMIPProjection::STANDARD, vtkSplattingMIPProjection::HIGH };
+  return { vtkSplattingMIPProjection::PREVIEW, vtkSplattingMIPProjection::STANDARD,
+    vtkSplattingMIPProjection::HIGH, vtkSplattingMIPProjection::EXACT };
 }
 
 void TranslateWords(const Words& words, Options& options)
@@ -306,6 +304,11 @@ void CheckCombinations(const Options& options)
   {
     throw CLI::ValidationError("--rotate, --compare, --interactive", "choose one of them");
   }
+  if (options.Modes.size() > 1 &&
+    (options.Interactive || options.Rotate > 0 || IsValueFile(options.Output)))
+  {
+    throw CLI::ValidationError("--mode", "all is for stills: choose one");
+  }
   if (options.Compare &&
     (!isMaximum || settings.DepthShading || settings.Slab > 0.0 || settings.Cropping ||
       options.DepthCoding || !options.Mask.Path.empty()))
@@ -343,9 +346,9 @@ void CheckCombinations(const Options& options)
 }
 
 const char* const Examples = R"(Examples:
-  splatmip scan.nii.gz --mode high --azimuth 30 --output scan.png
+  splatmip scan.nii.gz --azimuth 30 --output scan.png
       a picture, the camera 30 degrees to the patient's left
-  splatmip dicom-folder --mode exact --view left --slab 30 --window 600 --level 300
+  splatmip dicom-folder --view left --slab 30 --window 600 --level 300
       30 mm in the middle of the largest series in a folder, white from the value 600 on
   splatmip dicom-folder --rotate 36 --output turn.gif
       a film once round the patient)";
@@ -365,8 +368,7 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
   app.footer(Examples);
   app.parse(argc, argv);
 
-  options.Modes =
-    ChooseModes(words.Mode, options.Interactive || options.Rotate > 0 || IsValueFile(words.Output));
+  options.Modes = ChooseModes(words.Mode);
   TranslateWords(words, options);
   options.Output = std::filesystem::absolute(words.Output).string();
   options.HasWindow = app.count("--window") > 0;

@@ -43,16 +43,30 @@ class TestPictures(splatmip.SplatmipTest):
 
     def test_default(self):
         pixels, text = self.draw()
-        self.assertEqual(pixels.shape, (600, 1200, 3))
+        self.assertEqual(pixels.shape, (600, 400, 3))
         self.assertEqual(os.listdir(self.scratch.name), ["splatmip.png"])
         self.assertIn("128 x 128 x 256", text)
         self.assertNotIn(" ms", text)
-        for third in (pixels[:, :400], pixels[:, 400:800], pixels[:, 800:]):
-            self.assertEqual(third.max(), 255)
-            self.assertEqual(third[:20, :100].max(), 255)  # the label
-            self.assertEqual(third[-12:].max(), 0)
-        modes, _ = self.draw("--mode", "all", "--output", "a.png")
-        self.assertTrue((modes == pixels).all())
+        self.assert_shows_something(pixels)
+        exact, _ = self.draw("--mode", "exact")
+        self.assertTrue((pixels == exact).all())
+
+    def test_all_modes(self):
+        """Side by side, each as it is by itself."""
+        pixels, _ = self.draw("--mode", "all")
+        self.assertEqual(pixels.shape, (600, 1600, 3))
+        for n, mode in enumerate(("preview", "standard", "high", "exact")):
+            part = pixels[:, 400 * n : 400 * (n + 1)]
+            self.assert_shows_something(part)
+            alone, _ = self.draw("--mode", mode)
+            self.assertTrue((part == alone).all())
+        for other in (("--rotate", "4"), ("--output", "a.mha"), ("--interactive",)):
+            self.assert_refused("--mode", "all", *other, word="all is for stills", code=2)
+
+    def assert_shows_something(self, pixels):
+        self.assertEqual(pixels.max(), 255)
+        self.assertEqual(pixels[:20, :100].max(), 255)  # the label
+        self.assertEqual(pixels[-12:].max(), 0)
 
     def test_options(self):
         pixels, text = self.draw(

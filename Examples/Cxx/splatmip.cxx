@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // splatmip: maximum intensity projections of a volume by splatting. Without an argument it writes a
-// picture of the volume that it carries, in three quality modes side by side. Stills and turns come
-// from vtkSplattingMIPProjection, which needs no display; windows show what
-// vtkSplattingMIPVolumeMapper draws.
+// picture of the volume that it carries. Stills and turns come from vtkSplattingMIPProjection,
+// which needs no display; windows show what vtkSplattingMIPVolumeMapper draws.
 #include "Comparison.h"
 #include "DepthCoding.h"
 #include "Interaction.h"

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Write a maximum intensity projection of a volume as a PNG picture.
 
-    python3 splatmip.py [volume.vti] [--mode preview|standard|high] [--output splatmip.png]
+    python3 splatmip.py [volume.vti] [--mode preview|standard|high|exact] [--output splatmip.png]
 """
 import argparse
 import pathlib
@@ -19,7 +19,7 @@ AORTA = pathlib.Path(__file__).resolve().parent.parent / "Data" / "aorta-stent.v
 
 parser = argparse.ArgumentParser(description="Maximum intensity projection by splatting")
 parser.add_argument("volume", nargs="?", type=pathlib.Path, default=AORTA, help="a .vti file")
-parser.add_argument("--mode", choices=("preview", "standard", "high", "exact"), default="high")
+parser.add_argument("--mode", choices=("preview", "standard", "high", "exact"), default="exact")
 parser.add_argument("--output", default="splatmip.png")
 arguments = parser.parse_args()
 if not arguments.volume.is_file():

@@ -5,7 +5,7 @@
 // of it, when VTK loads libraries from VTK_AUTOLOAD_PATH. The environment says what programs
 // otherwise say by calls:
 //
-// SPLATTINGMIP_QUALITY  preview, standard, high (the default) or exact
+// SPLATTINGMIP_QUALITY  preview, standard, high or exact (the default)
 // SPLATTINGMIP_LOG      a file, in a folder that is there, to which VTK's log of verbosity up to 1
 //                       is appended: which mapper renders, beside all warnings and errors
 #include "vtkLogger.h"
@@ -67,15 +67,15 @@ void setQuality(const std::string& quality)
   {
     Override::SetGlobalQualityMode(vtkSplattingMIPVolumeMapper::STANDARD);
   }
-  else if (quality == "exact")
+  else if (quality == "high")
   {
-    Override::SetGlobalQualityMode(vtkSplattingMIPVolumeMapper::EXACT);
+    Override::SetGlobalQualityMode(vtkSplattingMIPVolumeMapper::HIGH);
   }
-  else if (!quality.empty() && quality != "high")
+  else if (!quality.empty() && quality != "exact")
   {
     vtkGenericWarningMacro(
       << "SPLATTINGMIP_QUALITY is \"" << quality
-      << "\", which is taken as high: set it to preview, standard, high or exact.");
+      << "\", which is taken as exact: set it to preview, standard, high or exact.");
   }
 }
 }

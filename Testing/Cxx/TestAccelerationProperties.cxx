@@ -69,6 +69,7 @@ void testForced(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
 void testBudget(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
 {
   const auto mapper = stage::splatting(image);
+  mapper->SetQualityModeToHigh(); // which has chains
   stage.show(mapper);
   stage.look(directions[0], up); // along the first axis
   const stage::Pixels rich = stage.pixels();

@@ -334,6 +334,7 @@ void testReuse(stage::Stage& stage, stage::Checks& check)
   const auto image =
     stage::toImageData(reference::uniformNoise<std::uint8_t>({ 13, 11, 16 }, 7, 0, 255));
   const auto mapper = stage::splatting(image);
+  mapper->SetQualityModeToHigh(); // the same at the rim of the field for all of them
   stage.show(mapper);
   const auto projectionsOfTurn = [&]
   {

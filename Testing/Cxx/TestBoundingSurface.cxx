@@ -96,6 +96,7 @@ void testBox(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stage::Ch
   for (const stage::Vector& direction : directions)
   {
     stage.look(direction, up);
+    mapper->SetQualityModeToHigh();
     const stage::Pixels whole = stage.pixels();
     for (int mode = 0; mode < 3; ++mode)
     {

@@ -64,6 +64,9 @@ void testPictureOfCells(const Size& cells, stage::Stage& stage, stage::Checks& c
   pointImage->SetOrigin(middle);
   const auto cellMapper = stage::splatting(cellImage);
   const auto pointMapper = stage::splatting(pointImage);
+  // The field of mode EXACT goes on to where the picture ends.
+  cellMapper->SetQualityModeToHigh();
+  pointMapper->SetQualityModeToHigh();
   for (const stage::Vector& direction : directions())
   {
     stage.show(cellMapper);

@@ -194,6 +194,7 @@ int TestClipping(int, char*[])
   stage::Stage stage(Width, Height);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
   const auto mapper = stage::splatting(image);
+  mapper->SetQualityModeToHigh();
   for (double viewAngle : { 0.0, 50.0 })
   {
     stage.viewAngle = viewAngle;

@@ -153,6 +153,7 @@ void comparePictures(
   const double voxel = *std::min_element(spacing, spacing + 3);
   const auto exact = stage::splatting(image), high = stage::splatting(image);
   exact->SetQualityModeToExact();
+  high->SetQualityModeToHigh();
   for (double viewAngle : { 0.0, 30.0 })
   {
     stage.viewAngle = viewAngle;
@@ -204,37 +205,47 @@ double spacingOf(Mapper* mapper)
   return mapper->GetShearImage()->GetSpacing()[0];
 }
 
-/// Shear pixels are no smaller than the screen's, and no larger than a voxel; only in EXACT they
-/// are smaller unless asked for.
-void testAutomaticSampling(stage::Stage& stage, stage::Checks& check)
+/// EXACT has four pixels along a voxel's side, but one where the screen's are wider than voxels; the
+/// other modes one. AUTOMATIC_SAMPLING gives each mode as many as the screen asks for, no fewer.
+void testSampling(stage::Stage& stage, stage::Checks& check)
 {
   const auto image = stage::toImageData(stage::blobsAndTubes({ 40, 40, 40 }, 5));
   const auto mapper = stage::splatting(image);
   mapper->AutoAdjustSampleDistancesOff();
   stage.show(mapper);
+  const auto spacingIn = [&](int mode, int sampling)
+  {
+    mapper->SetQualityMode(mode);
+    mapper->SetShearImageSampling(sampling);
+    stage.window->Render();
+    return spacingOf(mapper);
+  };
+  const auto isNear = [](double a, double b) { return std::abs(a - b) < 0.01 * b; };
   for (double viewAngle : { 0.0, 20.0 })
   {
     stage.viewAngle = viewAngle;
-    const double slack = viewAngle > 0.0 ? 1.5 : 1.001; // the nearer, the larger
-    for (double pixelsPerVoxel : { 0.5, 1.9, 2.2, 3.9, 4.3, 30.0 })
+    for (double pixelsPerVoxel : { 0.5, 1.1, 1.9, 2.2, 3.9, 4.3, 30.0 })
     {
       const double diagonal = 39.0 * std::sqrt(3.0);
       stage.look({ 0.0, 0.0, -1.0 }, { 0.0, 1.0, 0.0 }, Size / (pixelsPerVoxel * diagonal));
-      mapper->SetQualityModeToExact();
-      stage.window->Render();
-      const double exact = spacingOf(mapper);
-      check(exact <= 1.0 && exact > 0.24 && (exact > 0.9 || exact * pixelsPerVoxel * slack >= 1.0),
-        "Pixels of the shear image are as large as the screen's.");
-      check(exact < 0.26 || exact * pixelsPerVoxel < 2.0 * slack,
-        "Pixels of the shear image are less than two of the screen's wide.");
-      mapper->SetQualityModeToHigh();
-      stage.window->Render();
-      check(spacingOf(mapper) > 0.99, "Other modes have a pixel per voxel.");
+      check(isNear(spacingIn(Mapper::EXACT, Mapper::SAMPLING_OF_MODE),
+              pixelsPerVoxel < 1.0 ? 1.0 : 0.25),
+        "EXACT has four pixels along a voxel's side, or one in overviews.");
+      check(isNear(spacingIn(Mapper::HIGH, Mapper::SAMPLING_OF_MODE), 1.0),
+        "Other modes have a pixel per voxel.");
+      check(
+        isNear(spacingIn(Mapper::HIGH, 2), 0.5), "Unless another sampling is asked for.");
+      // Where the volume is farthest from the eye.
+      const double distance = stage.renderer->GetActiveCamera()->GetDistance();
+      const double farthest =
+        viewAngle > 0.0 ? pixelsPerVoxel * distance / (distance + 20.0) : pixelsPerVoxel;
+      const double needed = farthest <= 1.0 ? 1.0 : farthest <= 2.0 ? 0.5 : 0.25;
+      for (int mode : { Mapper::PREVIEW, Mapper::HIGH, Mapper::EXACT })
+      {
+        check(isNear(spacingIn(mode, Mapper::AUTOMATIC_SAMPLING), needed),
+          "Automatic sampling is as fine as the screen.");
+      }
     }
-    mapper->SetShearImageSampling(2);
-    stage.window->Render();
-    check(std::abs(spacingOf(mapper) - 0.5) < 0.01, "Unless another sampling is asked for.");
-    mapper->SetShearImageSampling(Mapper::AUTOMATIC_SAMPLING);
   }
   stage.viewAngle = 0.0;
 }
@@ -295,7 +306,7 @@ int TestExactPictures(int argc, char* argv[])
 {
   stage::Checks check;
   stage::Stage stage(Size, Size);
-  testAutomaticSampling(stage, check);
+  testSampling(stage, check);
   testWithoutMaxima(stage, check);
   testKept(stage, check);
   reference::forScenes("pictures", 3,

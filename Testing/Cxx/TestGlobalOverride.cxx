@@ -89,16 +89,16 @@ void testGlobalQualityMode(stage::Checks& check)
 {
   const auto qualityOfNew = []()
   { return vtkSmartPointer<Override>::New()->GetSplattingMapper()->GetQualityMode(); };
-  check(qualityOfNew() == vtkSplattingMIPVolumeMapper::HIGH, "High quality by default.");
+  check(qualityOfNew() == vtkSplattingMIPVolumeMapper::EXACT, "Exact by default.");
   for (const auto& [mode, expected] :
-    { std::pair(1, 1), { 0, 0 }, { -1, 0 }, { 3, 3 }, { 4, 3 }, { 2, 2 } })
+    { std::pair(1, 1), { 0, 0 }, { -1, 0 }, { 2, 2 }, { 4, 3 }, { 3, 3 } })
   {
     Override::SetGlobalQualityMode(mode);
     check(Override::GetGlobalQualityMode() == expected && qualityOfNew() == expected,
       "Quality mode " + std::to_string(mode) + ".");
   }
   check(vtkSmartPointer<vtkSplattingMIPVolumeMapper>::New()->GetQualityMode() ==
-      vtkSplattingMIPVolumeMapper::HIGH,
+      vtkSplattingMIPVolumeMapper::EXACT,
     "Only of this class.");
 }
 

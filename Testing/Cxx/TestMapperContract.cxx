@@ -30,7 +30,7 @@ void testFactory(stage::Checks& check)
 
 void testDefaults(Mapper* mapper, stage::Checks& check)
 {
-  check(mapper->GetQualityMode() == Mapper::HIGH, "Default mode is high.");
+  check(mapper->GetQualityMode() == Mapper::EXACT, "Default mode is exact.");
   check(mapper->GetKernel() == Mapper::TRILINEAR, "Default kernel is trilinear.");
   check(mapper->GetKernelRadius() == 1.0, "Default radius is 1.");
   check(mapper->GetFootprintSampling() == 0, "Default weights are in closed form.");
@@ -45,7 +45,7 @@ void testDefaults(Mapper* mapper, stage::Checks& check)
     "Default is all components.");
   check(mapper->GetMaskInput() == nullptr, "Default is no mask.");
   check(mapper->GetAutoAdjustSampleDistances() == 1, "Default adjusts to the time, as VTK does.");
-  check(mapper->GetQualityModeUsed() == Mapper::HIGH, "A new mapper has used no other mode.");
+  check(mapper->GetQualityModeUsed() == Mapper::EXACT, "A new mapper has used no other mode.");
   check(mapper->GetFinalColorWindow() == 1.0f && mapper->GetFinalColorLevel() == 0.5f,
     "Default colours are those of the transfer functions.");
   check(!mapper->GetLastRenderUsedRayCasting(), "A new mapper has not cast rays.");
@@ -92,7 +92,7 @@ void testClamping(Mapper* mapper, stage::Checks& check)
       "SetFootprintSampling " + std::to_string(value));
   }
   for (const auto& [value, expected] :
-    { std::pair(1, 1), { 4, 4 }, { -1, 0 }, { 5, 4 }, { 2, 2 }, { 0, 0 } })
+    { std::pair(1, 1), { 4, 4 }, { 0, 0 }, { 5, 4 }, { 2, 2 }, { -2, -1 }, { 3, 3 }, { -1, -1 } })
   {
     check(
       sets(mapper, &Mapper::SetShearImageSampling, &Mapper::GetShearImageSampling, value, expected),
@@ -177,12 +177,12 @@ void testPrinting(Mapper* mapper, stage::Checks& check)
   std::ostringstream stream;
   mapper->Print(stream);
   const std::string text = stream.str();
-  for (const char* variable : { "QualityMode: high", "Kernel: trilinear",
-         "KernelRadius: ", "FootprintSampling: ", "ShearImageSampling: automatic",
+  for (const char* variable : { "QualityMode: exact", "Kernel: trilinear",
+         "KernelRadius: ", "FootprintSampling: ", "ShearImageSampling: of the mode",
          "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ", "IndexMemorySize: ",
          "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ", "Acceleration: auto",
          "AccelerationUsed: dense", "LineTolerance: ", "EliminateInvisible: ",
-         "QualityModeUsed: high", "AutoAdjustSampleDistances: On", "FinalColorWindow: 1",
+         "QualityModeUsed: exact", "AutoAdjustSampleDistances: On", "FinalColorWindow: 1",
          "FinalColorLevel: 0.5", "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend",
          "VectorMode: disabled", "VectorComponent: ", "MaskInput: ", "Cropping" })
   {

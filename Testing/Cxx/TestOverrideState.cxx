@@ -316,7 +316,7 @@ void testPrint(stage::Checks& check)
   mapper->Print(text);
   check(text.str().find("LastRenderUsedSplatting: No") != std::string::npos &&
       text.str().find("GlobalOverride: Off") != std::string::npos &&
-      text.str().find("QualityMode: high") != std::string::npos,
+      text.str().find("QualityMode: exact") != std::string::npos,
     "Print().");
 }
 }

@@ -71,8 +71,10 @@ struct Scene
 
 void testStepsDown(Scene& scene, stage::Checks& check)
 {
-  check(scene.turn(Hasty) == Mapper::HIGH, "The first frame is in the wanted mode.");
-  check(scene.turn(Hasty) == Mapper::HIGH, "First frames do not count.");
+  check(scene.turn(Hasty) == Mapper::EXACT, "The first frame is in the wanted mode.");
+  check(scene.turn(Hasty) == Mapper::EXACT, "First frames do not count.");
+  check(scene.turn(Hasty) == Mapper::HIGH, "Exact gives way to high.");
+  check(scene.isTrue(), "It is high.");
   check(scene.turn(Hasty) == Mapper::STANDARD, "High gives way to standard.");
   check(scene.isTrue(), "It is standard.");
   check(scene.turn(Hasty) == Mapper::PREVIEW, "Standard gives way to preview.");
@@ -80,7 +82,7 @@ void testStepsDown(Scene& scene, stage::Checks& check)
   check(scene.turn(Hasty) == Mapper::PREVIEW, "Preview stays.");
   std::ostringstream text;
   scene.mapper->Print(text);
-  check(text.str().find("QualityMode: high") != std::string::npos &&
+  check(text.str().find("QualityMode: exact") != std::string::npos &&
       text.str().find("QualityModeUsed: preview") != std::string::npos,
     "PrintSelf tells both modes.");
   check(scene.mapper->GetTimeToDraw() > 0.0, "The time to draw is known.");
@@ -91,14 +93,14 @@ void testComesBack(Scene& scene, stage::Checks& check)
   const vtkIdType before = scene.mapper->GetNumberOfProjections();
   scene.stage.window->SetDesiredUpdateRate(Patient);
   scene.stage.window->Render();
-  check(scene.mapper->GetQualityModeUsed() == Mapper::HIGH &&
+  check(scene.mapper->GetQualityModeUsed() == Mapper::EXACT &&
       scene.mapper->GetNumberOfProjections() == before + 1,
     "A still frame of the same view is in the wanted mode.");
-  check(scene.isTrue(), "It is high.");
+  check(scene.isTrue(), "It is exact.");
   scene.stage.window->SetDesiredUpdateRate(Hasty);
-  scene.stage.renderer->GetActiveCamera()->Zoom(0.9);
+  scene.stage.renderer->GetActiveCamera()->Zoom(1.1);
   scene.stage.window->Render();
-  check(scene.mapper->GetQualityModeUsed() == Mapper::HIGH &&
+  check(scene.mapper->GetQualityModeUsed() == Mapper::EXACT &&
       scene.mapper->GetNumberOfProjections() == before + 1,
     "A better shear image is kept while it shows the view.");
   check(scene.turn(Hasty) == Mapper::PREVIEW, "Frames that re-use an image are not measured.");
@@ -114,8 +116,8 @@ void testWishes(Scene& scene, stage::Checks& check)
   scene.mapper->AutoAdjustSampleDistancesOff();
   check(scene.turn(Hasty) == Mapper::STANDARD && scene.turn(Hasty) == Mapper::STANDARD,
     "Off: always the wanted mode.");
-  scene.mapper->SetQualityModeToHigh();
-  check(scene.turn(Hasty) == Mapper::HIGH && scene.isTrue(), "Off: high is high.");
+  scene.mapper->SetQualityModeToExact();
+  check(scene.turn(Hasty) == Mapper::EXACT && scene.isTrue(), "Off: exact is exact.");
   scene.mapper->AutoAdjustSampleDistancesOn();
   check(scene.turn(Hasty) == Mapper::PREVIEW, "On again.");
 }
@@ -127,13 +129,13 @@ void testOthers(Scene& scene, stage::Checks& check)
   other.look({ 0.2, 0.1, 0.9 }, { 0.0, 1.0, 0.0 });
   other.window->SetDesiredUpdateRate(Hasty);
   other.window->Render();
-  check(scene.mapper->GetQualityModeUsed() == Mapper::HIGH, "Another view has its own times.");
+  check(scene.mapper->GetQualityModeUsed() == Mapper::EXACT, "Another view has its own times.");
   check(scene.turn(Hasty) == Mapper::PREVIEW, "The first view keeps its own.");
   scene.image->Modified();
   check(scene.turn(Hasty) == Mapper::PREVIEW, "Changed data take what the last ones took.");
   scene.image = stage::toImageData(stage::blobsAndTubes({ 50, 54, 60 }, 9));
   scene.mapper->SetInputData(scene.image);
-  check(scene.turn(Hasty) == Mapper::HIGH, "Data of another size have other times.");
+  check(scene.turn(Hasty) == Mapper::EXACT, "Data of another size have other times.");
 }
 }
 

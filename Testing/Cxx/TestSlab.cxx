@@ -57,6 +57,7 @@ void testPlanes(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stage:
   for (const stage::Vector& direction : directions)
   {
     stage.look(direction, up);
+    mapper->SetQualityModeToHigh();
     const stage::Pixels whole = stage.pixels();
     for (int mode = 0; mode < 3; ++mode)
     {

@@ -273,6 +273,7 @@ void testReuse(Checks& check)
   reference::Random random(9);
   const auto image = someImage(random);
   const auto filter = projectiontesting::projectionOf(image);
+  filter->SetQualityModeToHigh(); // a shear image for all sizes of pixels
   filter->SetOutputSize(30, 30);
   filter->Update();
   check(filter->GetNumberOfProjections() == 1, "the first view is projected");
@@ -368,6 +369,7 @@ void testComponents(Checks& check)
   const auto ofPoints = projectiontesting::projectionOf(one);
   for (const auto& each : { ofCells, ofPoints })
   {
+    each->SetQualityModeToHigh(); // the field of cells ends elsewhere
     each->SetViewDirection(0.2, -0.3, 1.0);
     each->SetOutputSize(9, 8);
     each->SetOutputSpacing(1.0, 1.0);

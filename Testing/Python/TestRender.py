@@ -79,7 +79,7 @@ class TestRender(unittest.TestCase):
         self.assertIn(mapper.GetPrincipalAxis(), (0, 1, 2))
         self.assertLessEqual(max(abs(s) for s in mapper.GetShear()), 1.0)
         self.assertFalse(mapper.GetLastRenderUsedRayCasting())
-        self.assertIn("QualityMode: high", str(mapper))
+        self.assertIn("QualityMode: exact", str(mapper))
 
 
 if __name__ == "__main__":

@@ -159,6 +159,7 @@ def plain(_):
 
 
 def cut(mapper):
+    mapper.SetQualityModeToHigh()
     mapper.CroppingOn()
     mapper.SetCroppingRegionPlanes(3, 12, 3, 11, 2, 10)
     mapper.SlabOn()

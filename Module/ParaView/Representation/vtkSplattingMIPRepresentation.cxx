@@ -104,7 +104,7 @@ bool isInteractive(vtkInformation* request)
 vtkStandardNewMacro(vtkSplattingMIPRepresentation);
 
 vtkSplattingMIPRepresentation::vtkSplattingMIPRepresentation()
-  : QualityMode(vtkSplattingMIPVolumeMapper::HIGH),
+  : QualityMode(vtkSplattingMIPVolumeMapper::EXACT),
     InteractiveQualityMode(AUTOMATIC)
 {
   this->VolumeMapper.TakeReference(vtkSplattingMIPVolumeMapper::New());

@@ -66,7 +66,7 @@ public:
 
   ///@{
   /**
-   * The mapper's QualityMode in still and in interactive renders. Defaults HIGH and AUTOMATIC. In
+   * The mapper's QualityMode in still and in interactive renders. Defaults EXACT and AUTOMATIC. In
    * interactive renders AUTOMATIC is the best mode up to the still one that is expected to fit into
    * the time that ParaView allows for a frame.
    */

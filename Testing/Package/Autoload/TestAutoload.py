@@ -33,7 +33,7 @@ SPLATTED = "renders by vtkSplattingMIPVolumeMapper."
 LEFT_TO_VTK = "renders by vtkOpenGLGPUVolumeRayCastMapper, because the blend mode"
 
 
-def splatted(mode, quality="High"):
+def splatted(mode, quality="Exact"):
     """What the splatting mapper itself shows."""
     mapper = vtkSplattingMIPVolumeMapper()
     getattr(mapper, f"SetQualityModeTo{quality}")()
@@ -94,7 +94,7 @@ class TestAutoload(unittest.TestCase):
 
     def test_quality(self):
         command = [str(PROGRAM), str(MAXIMUM)]
-        for quality in ("Preview", "Standard", "High"):
+        for quality in ("Preview", "Standard", "High", "Exact"):
             run = self.run_silently(command, FOLDER, SPLATTINGMIP_QUALITY=quality.lower())
             self.assertEqual(run.pixels, splatted(MAXIMUM, quality), quality)
         self.assertEqual(
@@ -102,7 +102,7 @@ class TestAutoload(unittest.TestCase):
         )
         run = Run(command, FOLDER, SPLATTINGMIP_QUALITY="best")
         self.assertEqual(run.pixels, splatted(MAXIMUM))
-        self.assertIn('SPLATTINGMIP_QUALITY is "best", which is taken as high', run.messages)
+        self.assertIn('SPLATTINGMIP_QUALITY is "best", which is taken as exact', run.messages)
 
     def test_log_that_cannot_be_written(self):
         """No folder is made for it, the program is told, and is splatted for all the same."""
