@@ -236,10 +236,10 @@ public:
   /**
    * What a slice contributes to a pixel. Default EXACT. PREVIEW, STANDARD, HIGH: see
    * vtkSplattingMIPVolumeMapper::SetQualityMode. EXACT: the largest value that the trilinearly
-   * interpolated volume takes along each ray of the shear image, between the centres of the outermost
-   * voxels (the ends of their boxes for cells); for maxima of all MaximumTypes, minima and averages
-   * are those of HIGH. Pixels that are wider than voxels show the largest value over their area (of
-   * minima the least, of averages the average), in EXACT that of voxels.
+   * interpolated volume takes along each ray of the shear image, between the centres of the
+   * outermost voxels (the ends of their boxes for cells); for maxima of all MaximumTypes, minima
+   * and averages are those of HIGH. Pixels that are wider than voxels show the largest value over
+   * their area (of minima the least, of averages the average), in EXACT that of voxels.
    */
   vtkSetClampMacro(QualityMode, int, PREVIEW, EXACT);
   vtkGetMacro(QualityMode, int);

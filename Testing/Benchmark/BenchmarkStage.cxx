@@ -142,7 +142,7 @@ BenchmarkStage& BenchmarkStage::GetInstance()
 }
 
 //------------------------------------------------------------------------------
-BenchmarkStage::BenchmarkStage() : Sampling(vtkSplattingMIPVolumeMapper::AUTOMATIC_SAMPLING)
+BenchmarkStage::BenchmarkStage() : Sampling(vtkSplattingMIPVolumeMapper::SAMPLING_OF_MODE)
 {
   RequireDisplay(this->Window);
   this->Window->SetOffScreenRendering(1);

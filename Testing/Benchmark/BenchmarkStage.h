@@ -105,7 +105,7 @@ public:
   double GetViewAngle() const { return this->ViewAngle; }
 
   /**
-   * The splatting mapper's ShearImageSampling; as by default AUTOMATIC_SAMPLING.
+   * The splatting mapper's ShearImageSampling; as by default SAMPLING_OF_MODE.
    */
   void SetSampling(int sampling) { this->Sampling = sampling; }
   int GetSampling() const { return this->Sampling; }

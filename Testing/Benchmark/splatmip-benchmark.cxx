@@ -31,7 +31,7 @@ struct Options
 {
   std::string Data = SPLATTINGMIP_TEST_DATA;
   double ViewAngle = 0.0;
-  int Sampling = vtkSplattingMIPVolumeMapper::AUTOMATIC_SAMPLING;
+  int Sampling = vtkSplattingMIPVolumeMapper::SAMPLING_OF_MODE;
   int Threads = 0;
   bool Quick = false;
   bool IsConsole = true; // what Google Benchmark prints is meant for people
@@ -147,8 +147,8 @@ std::string DescribeCamera()
 std::string DescribeSampling()
 {
   const int sampling = BenchmarkStage::GetInstance().GetSampling();
-  return sampling == vtkSplattingMIPVolumeMapper::AUTOMATIC_SAMPLING ? "automatic"
-                                                                     : std::to_string(sampling);
+  return sampling == vtkSplattingMIPVolumeMapper::SAMPLING_OF_MODE ? "of the mode"
+                                                                   : std::to_string(sampling);
 }
 
 /// What the numbers depend on, besides the program.

@@ -205,8 +205,9 @@ double spacingOf(Mapper* mapper)
   return mapper->GetShearImage()->GetSpacing()[0];
 }
 
-/// EXACT has four pixels along a voxel's side, but one where the screen's are wider than voxels; the
-/// other modes one. AUTOMATIC_SAMPLING gives each mode as many as the screen asks for, no fewer.
+/// EXACT has four pixels along a voxel's side, but one where the screen's are wider than voxels;
+/// the other modes one. AUTOMATIC_SAMPLING gives each mode as many as the screen asks for, no
+/// fewer.
 void testSampling(stage::Stage& stage, stage::Checks& check)
 {
   const auto image = stage::toImageData(stage::blobsAndTubes({ 40, 40, 40 }, 5));
@@ -233,8 +234,7 @@ void testSampling(stage::Stage& stage, stage::Checks& check)
         "EXACT has four pixels along a voxel's side, or one in overviews.");
       check(isNear(spacingIn(Mapper::HIGH, Mapper::SAMPLING_OF_MODE), 1.0),
         "Other modes have a pixel per voxel.");
-      check(
-        isNear(spacingIn(Mapper::HIGH, 2), 0.5), "Unless another sampling is asked for.");
+      check(isNear(spacingIn(Mapper::HIGH, 2), 0.5), "Unless another sampling is asked for.");
       // Where the volume is farthest from the eye.
       const double distance = stage.renderer->GetActiveCamera()->GetDistance();
       const double farthest =
