@@ -40,7 +40,7 @@ int samplingOf(const ProjectionChoice& choice, int mode)
   switch (choice.shearImageSampling)
   {
     case Names::SAMPLING_OF_MODE:
-      return mode == Names::EXACT ? splatting::ShearWarp::MostSampling : 1;
+      return mode == Names::EXACT ? splatting::ShearWarp::Automatic : 1;
     case Names::AUTOMATIC_SAMPLING:
       return splatting::ShearWarp::Automatic;
     case 3:

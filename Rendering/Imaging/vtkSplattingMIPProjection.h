@@ -254,8 +254,8 @@ public:
    * As of the mapper: the reconstruction kernel of mode HIGH, default TRILINEAR; the radius of the
    * cosine bell in voxels, default 1, clamped to [0.5, 1.5]; how footprints are sampled, default 0
    * (closed form), clamped to [0, 64]; how many pixels the shear image has along the side of a
-   * voxel: 1, 2, 4, AUTOMATIC_SAMPLING (as fine as the output) or SAMPLING_OF_MODE (the default: 4
-   * in EXACT, else 1).
+   * voxel: 1, 2, 4, AUTOMATIC_SAMPLING (as fine as the output) or SAMPLING_OF_MODE (the default:
+   * AUTOMATIC_SAMPLING in EXACT, else 1).
    */
   vtkSetClampMacro(Kernel, int, TRILINEAR, COSINE_BELL);
   vtkGetMacro(Kernel, int);
