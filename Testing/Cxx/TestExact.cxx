@@ -144,8 +144,8 @@ void testShaded(Checks& check, const reference::Volume<T>& volume, const splatti
   }
   constexpr A none = std::numeric_limits<A>::quiet_NaN();
   std::vector<A> pixels(std::size_t(view.viewport.x) * view.viewport.y, none);
-  splatting::Warper().warpScalars(
-    images, geometries, view.viewport, settings.instructionSet, none, pixels.data());
+  splatting::Warper().warpScalars(images, geometries, settings.reduction, view.viewport,
+    settings.instructionSet, none, pixels.data());
   for (const A pixel : pixels)
   {
     check(pixel != pixel || (pixel >= low - bound && pixel <= high + bound), "shaded by ",

@@ -53,7 +53,6 @@ class TestZoom(unittest.TestCase):
                     view = zoom.View(voxels, DIRECTIONS[1], size, magnification, angle)
                     projection = projection_of(image, view, "exact")
                     projection.SetShearImageSampling(4)
-                    projection.Update()
                     found = array_of(projection)
                     x, y = random.integers(int(0.25 * size), int(0.75 * size), (2, 400))
                     truth = zoom.field_maxima(voxels, *view.rays(x, y))
