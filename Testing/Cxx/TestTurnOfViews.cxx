@@ -8,8 +8,12 @@
 #include "WorldView.h"
 
 #include "vtkCamera.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
+#include "vtkNew.h"
 #include "vtkTransform.h"
 
 #include <algorithm>
@@ -94,6 +98,14 @@ void testCamera(Checks& check, const TurnOfViews& turn, const TurnSettings& sett
   }
 }
 
+/// Of the pixels of a picture that is placed by the turn.
+glm::dvec2 spacingOf(const TurnOfViews& turn)
+{
+  vtkNew<vtkImageData> picture;
+  turn.Place(picture);
+  return { picture->GetSpacing()[0], picture->GetSpacing()[1] };
+}
+
 /// Points of the focal plane that lie steps of pixels from the focal point.
 void testPixels(Checks& check, const TurnOfViews& turn, int view, reference::Random& random)
 {
@@ -103,8 +115,8 @@ void testPixels(Checks& check, const TurnOfViews& turn, int view, reference::Ran
   const glm::dvec3 right = glm::normalize(glm::cross(direction, vector(camera->GetViewUp())));
   const glm::dvec2 size(turn.Size());
   const glm::dvec2 steps(random.uniform(-40.0, 40.0), random.uniform(-40.0, 40.0));
-  const glm::dvec3 point = vector(camera->GetFocalPoint()) + steps.x * turn.Spacing().x * right +
-    steps.y * turn.Spacing().y * glm::cross(right, direction);
+  const glm::dvec3 point = vector(camera->GetFocalPoint()) + steps.x * spacingOf(turn).x * right +
+    steps.y * spacingOf(turn).y * glm::cross(right, direction);
   const glm::dvec4 clip = turn.WorldToClip(view) * glm::dvec4(point, 1.0);
   const glm::dvec2 found = 0.5 * size * glm::dvec2(clip) / clip.w;
   check(glm::length(found - steps) < 1e-6, "view ", view, ": pixel ", steps.x, " ", steps.y,
@@ -143,20 +155,24 @@ void testScene(Checks& check, reference::Random& random)
   testCamera(check, turn, settings, view);
   testPixels(check, turn, view, random);
   testOrder(check, turn, settings.angle);
-  check(turn.AngleStep() == (settings.views > 1 ? settings.angle / settings.views : 1.0),
-    "another step of angles");
+  vtkNew<vtkImageData> picture;
+  turn.Place(picture);
+  vtkDataArray* const angles = picture->GetFieldData()->GetArray("ViewAngle");
+  check(angles->GetNumberOfTuples() == settings.views &&
+      std::abs(angles->GetTuple1(view) - view * settings.angle / settings.views) < 1e-9,
+    "another angle");
   const bool isAutomatic = settings.spacing == glm::dvec2(0.0);
-  check(isAutomatic || turn.Spacing() == settings.spacing, "another spacing than was set");
+  check(isAutomatic || spacingOf(turn) == settings.spacing, "another spacing than was set");
   if (isAutomatic && !settings.camera)
   {
     const int least = std::min(settings.size.x, settings.size.y);
-    check(std::abs(turn.Spacing().x * least - settings.diagonal) < 1e-9 &&
-        turn.Spacing().x == turn.Spacing().y,
+    check(std::abs(spacingOf(turn).x * least - settings.diagonal) < 1e-9 &&
+        spacingOf(turn).x == spacingOf(turn).y,
       "the diagonal does not fill the picture");
   }
   TurnSettings bad = settings;
   bad.angle = 0.0;
-  check(turn.Set(bad) && turn.AngleStep() != 0.0, "a turn of 0 degrees is taken");
+  check(turn.Set(bad) && turn.Views() == settings.views, "a turn of 0 degrees is taken");
 }
 }
 
