@@ -41,7 +41,7 @@ def compare(found, expected):
 
 def main():
     program, *options = sys.argv[1:]
-    text = README.read_text()
+    text = README.read_text().split("\n## In a browser")[0]
     commands = [shlex.split(line) for block in re.findall(r"```sh\n(.*?)```", text, re.S)
                 for line in block.splitlines()]
     shown = set(re.findall(r"\]\(([\w/-]+\.png)\)", text))
