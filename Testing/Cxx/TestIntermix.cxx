@@ -397,11 +397,19 @@ void testWindows(
   const stage::Pixels expected = alone.stage.pixels();
   alone.stage.volume->VisibilityOff();
   const stage::Pixels actors = alone.stage.pixels();
+  // In perspective coordinates are rounded in another way: a ray that passes between two pixels of
+  // the depth buffer at a rim may end at either. It is seen in up to 5 x 5 pixels.
+  const int most = viewAngle > 0.0 ? 1 : 0;
   {
     Crowd viewport(2 * Width, 2 * Height, viewAngle, mapper, image);
     viewport.stage.renderer->SetViewport(0.5, 0.5, 1.0, 1.0);
-    check(part(viewport.stage.pixels(), 2 * Width, Width, Height) == expected,
-      "A viewport shows what a window does.");
+    const stage::Pixels picture = part(viewport.stage.pixels(), 2 * Width, Width, Height);
+    int wrong = 0;
+    for (int pixel = 0; pixel < Width * Height; ++pixel)
+    {
+      wrong += !isNearly(expected, picture, pixel, most);
+    }
+    check(wrong <= 25 * most, "A viewport shows what a window does.");
   }
   {
     // The filter renders a picture of twice the size in four tiles. Rays that are seen beside a
@@ -419,9 +427,6 @@ void testWindows(
       bytes->GetPointer(0), bytes->GetPointer(0) + bytes->GetNumberOfValues());
     Crowd large(2 * Width, 2 * Height, viewAngle, mapper, image);
     const stage::Pixels whole = large.stage.pixels();
-    // In perspective coordinates are rounded in another way: a ray that passes between two pixels
-    // of the depth buffer at a rim may end at either. It is seen in up to 5 x 5 pixels.
-    const int most = viewAngle > 0.0 ? 1 : 0;
     int wrong = 0;
     for (int pixel = 0; pixel < 4 * Width * Height; ++pixel)
     {
@@ -483,7 +488,6 @@ int TestIntermix(int, char*[])
   stage::Stage stage(Width, Height);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
   const auto mapper = stage::splatting(image);
-  mapper->SetQualityModeToHigh();
   for (double viewAngle : { 0.0, 50.0 })
   {
     stage.viewAngle = viewAngle;
