@@ -29,7 +29,10 @@ void SetColors(vtkVolumeProperty* property, const LookSettings& look)
 
 void CheckDisplay()
 {
+  // Newer VTKs would tell in their own way that there is no display.
+  vtkObject::GlobalWarningDisplayOff();
   vtkNew<vtkRenderWindow> window;
+  vtkObject::GlobalWarningDisplayOn();
   const char* display = std::getenv("DISPLAY");
   if (window->IsA("vtkXOpenGLRenderWindow") && (!display || !*display))
   {

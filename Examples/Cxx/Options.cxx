@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <sstream>
 #include <tuple>
 #include <utility>
@@ -351,7 +352,19 @@ const char* const Examples = R"(Examples:
   splatmip dicom-folder --view left --slab 30 --window 600 --level 300
       30 mm in the middle of the largest series in a folder, white from the value 600 on
   splatmip dicom-folder --rotate 36 --output turn.gif
-      a film once round the patient)";
+      a film once round the patient
+)";
+
+/// The examples come as they are: newer versions of CLI11 would fill the lines of a footer.
+class HelpWithExamples : public CLI::Formatter
+{
+public:
+  std::string make_help(
+    const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override
+  {
+    return Formatter::make_help(app, std::move(name), mode) + Examples;
+  }
+};
 }
 
 Options ParseOptions(CLI::App& app, int argc, char* argv[])
@@ -365,7 +378,7 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
   DeclareOutputOptions(app, options, words);
   app.set_version_flag(
     "--version", std::string("splatmip " SPLATMIP_VERSION ", VTK ") + vtkVersion::GetVTKVersion());
-  app.footer(Examples);
+  app.formatter(std::make_shared<HelpWithExamples>());
   app.parse(argc, argv);
 
   options.Modes = ChooseModes(words.Mode);
