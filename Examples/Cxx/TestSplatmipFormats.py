@@ -50,6 +50,14 @@ ElementDataFile = LOCAL
         self.draw_block(splatmip.write_nrrd(self.path("b.nrrd"), space="right-anterior-superior",
                               directions="(-1.5,0,0) (0,-1,0) (0,0,2)"))
 
+    def test_nrrd_spaces(self):
+        """Values lie where the space says, in the patient's coordinates."""
+        for space, center in (("left-posterior-superior", (6.75, 5.5, 13.0)),
+                              ("LPS", (6.75, 5.5, 13.0)),
+                              ("left-anterior-superior", (6.75, -5.5, 13.0)),
+                              ("RAS", (-6.75, -5.5, 13.0))):
+            self.assert_center(splatmip.write_nrrd(self.path("a.nrrd"), space=space), center)
+
     def test_nifti(self):
         self.draw_block(splatmip.write_nifti(self.path("a.nii")))
         self.draw_block(splatmip.write_nifti(self.path("a.nii.gz")))

@@ -30,8 +30,10 @@
 #include <filesystem>
 #include <fstream>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
 
 namespace
 {
@@ -66,11 +68,38 @@ bool EndsXML(const std::string& path)
   return tail.find("</VTKFile>") != std::string::npos;
 }
 
+/// By which a file's coordinates are multiplied to become the patient's left, back and head.
+using Signs = std::array<double, 3>;
+constexpr Signs ToLPS = { 1.0, 1.0, 1.0 };
+
+/**
+ * Of a space of NRRD; nothing for spaces that do not say how the patient lies.
+ */
+std::optional<Signs> FindSigns(std::string space)
+{
+  std::transform(space.begin(), space.end(), space.begin(),
+    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::tuple<const char*, const char*, Signs> spaces[] = {
+    { "left-posterior-superior", "lps", ToLPS },
+    { "left-anterior-superior", "las", { 1.0, -1.0, 1.0 } },
+    { "right-anterior-superior", "ras", { -1.0, -1.0, 1.0 } },
+  };
+  for (const auto& [words, letters, signs] : spaces)
+  {
+    // "-time" may follow, or "t".
+    if (space.rfind(words, 0) == 0 || space.rfind(letters, 0) == 0)
+    {
+      return signs;
+    }
+  }
+  return std::nullopt;
+}
+
 /**
  * VTK's readers for NRRD and MetaImage pass over the directions of the axes: nine numbers in the
  * header, axis after axis.
  */
-vtkSmartPointer<vtkMatrix4x4> ParseOrientation(std::string numbers, bool isRAS = false)
+vtkSmartPointer<vtkMatrix4x4> ParseOrientation(std::string numbers, const Signs& signs = ToLPS)
 {
   const std::size_t bracket = numbers.find('('); // NRRD may have "none" before
   numbers.erase(0, bracket == std::string::npos ? 0 : bracket);
@@ -84,21 +113,22 @@ vtkSmartPointer<vtkMatrix4x4> ParseOrientation(std::string numbers, bool isRAS =
     {
       return vtkSmartPointer<vtkMatrix4x4>::New();
     }
+    axes[i / 3][i % 3] *= signs[i % 3];
   }
-  return MakeOrientation(axes, isRAS);
+  return MakeOrientation(axes);
 }
 
 /**
  * A place of three numbers, or 0.
  */
-std::array<double, 3> ParseOrigin(std::string numbers, bool isRAS = false)
+std::array<double, 3> ParseOrigin(std::string numbers, const Signs& signs = ToLPS)
 {
   std::replace_if(
     numbers.begin(), numbers.end(), [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
   std::istringstream stream(numbers);
   std::array<double, 3> origin = {};
   stream >> origin[0] >> origin[1] >> origin[2];
-  return isRAS ? std::array<double, 3>{ -origin[0], -origin[1], origin[2] } : origin;
+  return { signs[0] * origin[0], signs[1] * origin[1], signs[2] * origin[2] };
 }
 
 Volume ReadXML(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
@@ -153,12 +183,11 @@ Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const Qui
   CheckHeader(header, path, quiet);
   volume.Image = RunReader(reader, path, quiet, &header);
   const std::string space = header.Get("space");
-  const bool isRAS = space.find("right-anterior-superior") != std::string::npos ||
-    space.find("RAS") != std::string::npos;
-  volume.Orientation = ParseOrientation(header.Get("space directions"), isRAS);
-  volume.Origin = ParseOrigin(header.Get("space origin"), isRAS);
+  const std::optional<Signs> signs = FindSigns(space);
+  volume.Orientation = ParseOrientation(header.Get("space directions"), signs.value_or(ToLPS));
+  volume.Origin = ParseOrigin(header.Get("space origin"), signs.value_or(ToLPS));
   const std::string unit = header.Get("space units");
-  volume.IsOriented = !space.empty();
+  volume.IsOriented = signs.has_value();
   volume.IsInMillimeters = !space.empty() && (unit.empty() || unit.find("mm") == 1);
   return volume;
 }
