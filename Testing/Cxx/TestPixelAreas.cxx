@@ -130,10 +130,26 @@ public:
   float at(std::size_t n) const { return this->Values[n]; }
 
 private:
-  /// Whether a ray passes between the outermost voxels' centres, where the picture does not end.
+  /// Whether a ray passes between the outermost voxels' centres, where the picture does not end:
+  /// the outermost half slices are beyond.
   static bool isShown(const splatting::ShearWarp& geometry, int u, int v)
   {
-    return u < geometry.rayCount().x && meets(geometry, u, v, -0.5 - 1e-6);
+    if (u >= geometry.rayCount().x || !meets(geometry, u, v, -0.5 - 1e-6))
+    {
+      return false;
+    }
+    const glm::dvec3 last = glm::dvec3(geometry.size()) - 1.0;
+    double near = last.z > 0.0 ? 0.0 : -0.5, far = last.z > 0.0 ? last.z : 0.5;
+    for (int a = 0; a < 2; ++a)
+    {
+      const splatting::Fan& fan = a == 0 ? geometry.columns() : geometry.rows();
+      const int n = a == 0 ? u : v;
+      const double first = (1e-6 - fan.at[n]) / fan.slope[n];
+      const double second = (last[a] - 1e-6 - fan.at[n]) / fan.slope[n];
+      near = std::max(near, geometry.reference() + std::min(first, second));
+      far = std::min(far, geometry.reference() + std::max(first, second));
+    }
+    return near <= far;
   }
 
   void put(const splatting::ShearWarp& geometry, const glm::dvec2& place, double value)
