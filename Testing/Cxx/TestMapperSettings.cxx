@@ -5,6 +5,7 @@
 // meaning is refused.
 #include "CoreTesting.h"
 #include "MapperSettings.h"
+#include "WideViews.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
 
@@ -17,20 +18,6 @@
 
 using coretesting::Checks;
 using namespace splatting;
-
-namespace
-{
-/// In which a voxel is twelve pixels wide.
-View magnifiedView()
-{
-  View view;
-  view.dimensions = glm::ivec3(8);
-  view.viewport = glm::ivec2(96);
-  view.indexToClip = glm::dmat4(0.25);
-  view.indexToClip[3] = glm::dvec4(-1.0, -1.0, 0.0, 1.0);
-  return view;
-}
-}
 
 int TestMapperSettings(int, char*[])
 {
@@ -62,9 +49,9 @@ int TestMapperSettings(int, char*[])
   mapper->SetBlendModeToMaximumIntensity();
   const auto changes = [&](int mode, auto change)
   {
-    const auto before = projectionSettings(mapper, mode, magnifiedView());
+    const auto before = projectionSettings(mapper, mode, coretesting::magnifiedView());
     change();
-    return !(projectionSettings(mapper, mode, magnifiedView()) == before);
+    return !(projectionSettings(mapper, mode, coretesting::magnifiedView()) == before);
   };
   check(changes(Mapper::HIGH, [&] { mapper->SetKernelToCosineBell(); }), "the kernel");
   check(changes(Mapper::HIGH, [&] { mapper->SetKernelRadius(0.7); }), "the kernel's radius");
@@ -85,10 +72,10 @@ int TestMapperSettings(int, char*[])
   check(changes(Mapper::HIGH, [&] { mapper->SetBlendModeToAverageIntensity(); }), "averages");
   check(changes(Mapper::HIGH, [&] { mapper->SetAverageIPScalarRange(2.0, 5.0); }), "the range");
   check(changes(Mapper::HIGH, [&] { mapper->SetFootprintSampling(9); }), "the footprint");
-  check(projectionSettings(mapper, Mapper::HIGH, magnifiedView()).sampling == 1,
+  check(projectionSettings(mapper, Mapper::HIGH, coretesting::magnifiedView()).sampling == 1,
     "the shear image's sampling");
   mapper->SetShearImageSampling(4);
-  check(
-    projectionSettings(mapper, Mapper::HIGH, magnifiedView()).sampling == 4, "a finer sampling");
+  check(projectionSettings(mapper, Mapper::HIGH, coretesting::magnifiedView()).sampling == 4,
+    "a finer sampling");
   return check.result();
 }

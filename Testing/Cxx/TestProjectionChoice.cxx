@@ -5,6 +5,7 @@
 // meaning are refused where they have an effect only.
 #include "ProjectionChoice.h"
 #include "ProjectionTesting.h"
+#include "WideViews.h"
 
 #include <cmath>
 #include <string>
@@ -48,17 +49,6 @@ void testFaults(Checks& check)
     "an empty range");
 }
 
-/// In which a voxel is twelve pixels wide.
-View magnifiedView()
-{
-  View view;
-  view.dimensions = glm::ivec3(8);
-  view.viewport = glm::ivec2(96);
-  view.indexToClip = glm::dmat4(0.25);
-  view.indexToClip[3] = glm::dvec4(-1.0, -1.0, 0.0, 1.0);
-  return view;
-}
-
 /// In each mode and reduction a setting that has no effect leaves all as it is, and one that has
 /// does not.
 void testEffects(Checks& check)
@@ -72,13 +62,14 @@ void testEffects(Checks& check)
         : n == 4                ? Names::AVERAGE_INTENSITY_BLEND
                                 : Names::MAXIMUM_INTENSITY_BLEND;
       choice.maximumType = n == 1 ? Names::DEPTH_SHADED : n == 2 ? Names::LOCAL : 0;
-      const auto before = settingsOfChoice(choice, mode, magnifiedView());
+      const auto before = settingsOfChoice(choice, mode, coretesting::magnifiedView());
       const auto test = [&](const char* name, bool expected, auto change)
       {
         ProjectionChoice changed = choice;
         change(changed);
-        check((settingsOfChoice(changed, mode, magnifiedView()) == before) != expected, name,
-          " in mode ", mode, ", reduction ", n, expected ? ": has no effect" : ": has an effect");
+        check((settingsOfChoice(changed, mode, coretesting::magnifiedView()) == before) != expected,
+          name, " in mode ", mode, ", reduction ", n,
+          expected ? ": has no effect" : ": has an effect");
       };
       // Exact are maxima only; the others are those of high mode then.
       const bool isHigh = mode == Names::HIGH || (mode == Names::EXACT && n > 2);
@@ -107,7 +98,7 @@ int TestProjectionChoice(int, char*[])
   testEffects(check);
   ProjectionChoice choice;
   const auto samplingOf = [&choice](int mode)
-  { return settingsOfChoice(choice, mode, magnifiedView()).sampling; };
+  { return settingsOfChoice(choice, mode, coretesting::magnifiedView()).sampling; };
   check(samplingOf(Names::HIGH) == 1 && samplingOf(Names::EXACT) == splatting::ShearWarp::Automatic,
     "only exact mode samples as finely as the screen by default");
   for (const int sampling : { 1, 2, 3, 4 })

@@ -10,6 +10,17 @@
 
 namespace coretesting
 {
+/// In which a voxel is twelve pixels wide.
+inline splatting::View magnifiedView()
+{
+  splatting::View view;
+  view.dimensions = glm::ivec3(8);
+  view.viewport = glm::ivec2(96);
+  view.indexToClip = glm::dmat4(0.25);
+  view.indexToClip[3] = glm::dvec4(-1.0, -1.0, 0.0, 1.0);
+  return view;
+}
+
 /// The same view with so many pixels that it is no overview.
 inline splatting::View magnified(splatting::View view)
 {
