@@ -8,6 +8,8 @@
 
 #include "Geometry/ShearWarp.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 namespace coretesting
 {
 /// In which a voxel is twelve pixels wide.
@@ -21,12 +23,21 @@ inline splatting::View magnifiedView()
   return view;
 }
 
-/// The same view with so many pixels that it is no overview.
+/// The same view with so many pixels, or so near to the window's middle, that it is no overview.
+/// Large windows would be looked at for seconds.
 inline splatting::View magnified(splatting::View view)
 {
   while (splatting::isOverview(view))
   {
-    view.viewport *= 2;
+    if (view.viewport.x < 300 && view.viewport.y < 300)
+    {
+      view.viewport *= 2;
+    }
+    else
+    {
+      const glm::dvec3 twiceAsLarge(2.0, 2.0, 1.0);
+      view.indexToClip = glm::scale(glm::dmat4(1.0), twiceAsLarge) * view.indexToClip;
+    }
   }
   return view;
 }
