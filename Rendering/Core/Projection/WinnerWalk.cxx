@@ -145,28 +145,32 @@ private:
       std::transform(minima, minima + this->Tiles, flags.data(),
         [](P least) { return static_cast<unsigned char>(least < Nothing); });
     }
-    const bool isCut = !this->Shared.cuts.none() && this->leaveOutCut(z, group);
+    const unsigned char* const shares =
+      this->Shared.cuts.none() ? nullptr : this->Scratch.shares.find(this->slicesIn(z), group);
+    for (int t = 0; shares && t < this->Tiles; ++t)
+    {
+      flags[t] = static_cast<unsigned char>(flags[t] & (shares[t] != NoSamples));
+    }
     findTileRuns(flags.data(), this->Tiles, this->Stack.traits().runUnit, this->Band.width,
       this->Scratch.runs);
     const Span rows{ this->Band.firstRow(group), this->Band.endRow(group) };
-    if (!this->Scratch.runs.empty() && this->findIn(this->slicesIn(z), rows, isCut))
+    if (!this->Scratch.runs.empty() &&
+      this->findIn(this->slicesIn(z), rows, shares && this->areCut(shares)))
     {
       this->findMinima(group);
     }
   }
 
-  /// Takes the flags from tiles no samples of which count. Whether others have such samples.
-  bool leaveOutCut(int z, int group)
+  /// Whether the runs have samples that do not count: runs may be wider than the tiles with flags.
+  bool areCut(const unsigned char* shares) const
   {
-    const unsigned char* const shares = this->Scratch.shares.find(this->slicesIn(z), group);
-    bool isCut = false;
-    for (int t = 0; t < this->Tiles; ++t)
-    {
-      unsigned char& flag = this->Scratch.flags[t];
-      flag = static_cast<unsigned char>(flag & (shares[t] != NoSamples));
-      isCut = isCut || (flag && shares[t] == SomeSamples);
-    }
-    return isCut;
+    return std::any_of(this->Scratch.runs.begin(), this->Scratch.runs.end(),
+      [shares](const Span& run)
+      {
+        return std::any_of(shares + run.begin / TileWidth,
+          shares + (run.end + TileWidth - 1) / TileWidth,
+          [](unsigned char share) { return share != AllSamples; });
+      });
   }
 
   /// The winners among some slices, for the runs. Whether there are any.
