@@ -136,6 +136,54 @@ void testBricks(Checks& check, Sightings& skipping)
     });
 }
 
+/// Hides single voxels, some of all, those beyond a plane, or all.
+template <class T>
+void hideSome(reference::Volume<T>& volume, reference::Random& random)
+{
+  constexpr T nan = std::numeric_limits<T>::quiet_NaN();
+  const int kind = random.uniform(0, 9), last = static_cast<int>(volume.voxels.size()) - 1;
+  const double share = random.uniform(0.0, 1.0);
+  const int plane = random.uniform(0, volume.size[2]);
+  const int single = random.uniform(0, last);
+  for (int n = 0; n <= last; ++n)
+  {
+    const bool isHidden = kind < 3 ? n == single
+      : kind < 6                   ? random.uniform(0.0, 1.0) < share
+      : kind < 9                   ? n / (volume.size[0] * volume.size[1]) < plane
+                                   : true;
+    volume.voxels[n] = isHidden ? nan : volume.voxels[n];
+  }
+}
+
+/// Where voxels are NaN, most of the volume is walked as if there were none, and only what reads
+/// them is looked at closely. The walk that keeps winners looks at each sample by itself.
+template <class T>
+void testNaN(Checks& check)
+{
+  reference::forScenes(seriesOf<T>("NaN"), 160,
+    [&](int n, reference::Random& random)
+    {
+      reference::Volume<T> volume = spottedVolume<T>(random);
+      hideSome(volume, random);
+      const splatting::ShearWarp geometry = n % 2
+        ? splatting::ShearWarp(anyView(volume.size, random))
+        : randomPerspectiveImage(volume.size, random);
+      Case c = randomCase(random, volume.size);
+      c.settings.quality = static_cast<Quality>(random.uniform(0, 3));
+      const Result dense = projected(volume, geometry, c, Acceleration::Dense);
+      c.settings.instructionSet = anyInstructionSet(random);
+      const Result bricks = projected(volume, geometry, c, Acceleration::Bricks);
+      check(bricks.used == Acceleration::Bricks, "bricks were not used");
+      check(sameImages(dense.image, bricks.image), "type ", int(splatting::scalarTypeOf<T>()),
+        ", mode ", int(c.settings.quality), ": bricks change the picture of a volume with NaN");
+      c.settings.keepWinners = true;
+      check(sameImages(dense.image, projected(volume, geometry, c, Acceleration::Auto).image),
+        "type ", int(splatting::scalarTypeOf<T>()), ", mode ", int(c.settings.quality), ", axis ",
+        geometry.principalAxis(), geometry.isPerspective() ? " in perspective" : "",
+        ": single samples of a volume with NaN have another maximum");
+    });
+}
+
 /// Steep views with narrow kernels of volumes that are flat but for some voxels at the rim: there
 /// worksheets see voxels of the next slice only by repeating them, beyond the tiles that see the
 /// slice itself.
@@ -324,6 +372,8 @@ int TestAccelerations(int, char*[])
       testBricks<T>(check, skipping);
       testFloor<T>(check);
     });
+  testNaN<float>(check);
+  testNaN<double>(check);
   check(skipping.areEnough(0.01), "bricks leave half of the tiles out in only ", skipping);
   testRims(check);
   testBudget<std::uint8_t>(check);

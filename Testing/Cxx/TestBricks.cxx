@@ -48,7 +48,7 @@ T largestIn(const reference::Volume<T>& volume, const std::array<int, 3>& axes,
         place[axes[0]] = i;
         place[axes[1]] = j;
         place[axes[2]] = k;
-        largest = std::max(largest, volume.at(place));
+        largest = std::max(largest, volume.at(place)); // which NaN never is
       }
     }
   }
@@ -91,17 +91,19 @@ void testMaxima(Checks& check, const reference::Volume<T>& volume)
   }
 }
 
-/// Also of volumes with NaN and infinities, which have no bricks, and of those without room.
+/// Also of volumes with NaN, of those with infinities, which have no bricks, and of those without
+/// room.
 template <class T>
 void testRange(Checks& check, const reference::Volume<T>& volume, bool hasRoom)
 {
   T low = splatting::greatestValue<T>(), high = splatting::leastValue<T>();
-  bool special = false;
+  bool special = false, infinite = false;
   for (const T& voxel : volume.voxels)
   {
     low = voxel < low ? voxel : low;
     high = voxel > high ? voxel : high;
     special = special || !std::isfinite(static_cast<double>(voxel));
+    infinite = infinite || std::isinf(static_cast<double>(voxel));
   }
   splatting::VolumeIndex index = indexOf(volume);
   if (!hasRoom)
@@ -113,7 +115,8 @@ void testRange(Checks& check, const reference::Volume<T>& volume, bool hasRoom)
       range.special == special,
     "range ", range.low, " to ", range.high, ", not ", +low, " to ", +high, ", special ",
     range.special, ", not ", special);
-  check(index.hasBricks() == (hasRoom && !special), "bricks though special ", special,
+  check(range.hasInfinities() == infinite, "infinities: ", range.hasInfinities());
+  check(index.hasBricks() == (hasRoom && !infinite), "bricks though infinite ", infinite,
     ", room for them ", hasRoom, ", or none without a reason");
 }
 
@@ -130,7 +133,17 @@ void testType(Checks& check)
     [&](int, reference::Random& random)
     {
       const std::array<int, 3> size = randomSize(random, 40);
-      testMaxima(check, wholeRangeNoise<T>(size, random));
+      reference::Volume<T> volume = wholeRangeNoise<T>(size, random);
+      testMaxima(check, volume);
+      if constexpr (!std::numeric_limits<T>::is_integer)
+      {
+        const double share = random.uniform(0.0, 1.0);
+        for (T& voxel : volume.voxels)
+        {
+          voxel = random.uniform(0.0, 1.0) < share ? std::numeric_limits<T>::quiet_NaN() : voxel;
+        }
+        testMaxima(check, volume);
+      }
       const bool hasRoom = random.uniform(0, 3) > 0;
       testRange(check, volumeWithOddValues<T>(size, random), hasRoom);
     });

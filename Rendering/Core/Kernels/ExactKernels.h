@@ -124,18 +124,31 @@ struct Lanes
       store<A>(p, value);
     }
   }
+  /// NaN aside.
+  template <bool Special>
   static inline R largestOf(const R (&corners)[8])
   {
-    return larger(larger(larger(corners[0], corners[1]), larger(corners[2], corners[3])),
-      larger(larger(corners[4], corners[5]), larger(corners[6], corners[7])));
+    if constexpr (Special)
+    {
+      R most = all(-std::numeric_limits<A>::infinity());
+      for (int n = 0; n < 8; ++n)
+      {
+        most = larger(corners[n], most);
+      }
+      return most;
+    }
+    else
+    {
+      return larger(larger(larger(corners[0], corners[1]), larger(corners[2], corners[3])),
+        larger(larger(corners[4], corners[5]), larger(corners[6], corners[7])));
+    }
   }
 
   /// Rounding can take sums beyond the largest corner. Where that is no more than the best so far a
   /// pixel may have been left out, and must not change if it is not.
-  template <bool Special>
   static inline R limitedTo(R raised, R most, R best)
   {
-    return Special ? raised : larger(smaller(raised, most), best);
+    return larger(smaller(raised, most), best);
   }
 
   /// What pixels start from: those without a sample, if there are, from less than all.
@@ -200,6 +213,11 @@ struct CubicLoop : Lanes<A, R>
     return sum;
   }
 
+  static inline M numbers(R a, R b)
+  {
+    return (a == a) & (b == b);
+  }
+
   /// The field at the start of piece p, which is the end of the one before.
   inline R startOf(int p, const R (&corners)[8], std::ptrdiff_t x) const
   {
@@ -249,8 +267,8 @@ struct CubicLoop : Lanes<A, R>
     {
       const CubicPiece<A>& piece = this->row.pieces[p];
       this->loadCorners(piece, x, corners);
-      const R most = Lanes<A, R>::largestOf(corners);
-      if (!Special && !anyOf(most > best))
+      const R most = Lanes<A, R>::template largestOf<Special>(corners);
+      if (!anyOf(most > best))
       {
         follows = false;
         continue;
@@ -259,25 +277,23 @@ struct CubicLoop : Lanes<A, R>
       b[3] = combine(piece.weights + 24, corners);
       follows = true;
       R raised = larger(b[3], larger(b[0], best));
+      M exists = numbers(b[0], b[3]);
       if (piece.curved)
       {
         b[1] = combine(piece.weights + 8, corners);
         b[2] = combine(piece.weights + 16, corners);
+        exists = exists & numbers(b[1], b[2]);
         const R inner = larger(b[1], b[2]);
         if (anyOf(inner > raised))
         {
           raised = larger(peakOf<A>(b, inner, raised), raised);
         }
       }
-      raised = Lanes<A, R>::template limitedTo<Special>(raised, most, best);
+      raised = Lanes<A, R>::limitedTo(raised, most, best);
       if constexpr (Special)
       {
         // Cells with NaN are left out, faces that they share with others, too.
-        raised = ((b[0] == b[0]) & (b[3] == b[3])) ? raised : best;
-        if (piece.curved)
-        {
-          raised = ((b[1] == b[1]) & (b[2] == b[2])) ? raised : best;
-        }
+        raised = exists ? raised : best;
       }
       if constexpr (Masked)
       {
@@ -425,7 +441,7 @@ struct FanCubicLoop : Lanes<A, R>
       raised = larger(peakOf<A>(b, inner, raised), raised);
     }
     raised =
-      Lanes<A, R>::template limitedTo<Special>(raised, Lanes<A, R>::largestOf(corners), best);
+      Lanes<A, R>::limitedTo(raised, Lanes<A, R>::template largestOf<Special>(corners), best);
     return counts ? raised : best;
   }
 
@@ -459,16 +475,16 @@ struct FanCubicLoop : Lanes<A, R>
         continue;
       }
       R voxels[4][3];
-      R most = zero;
+      R most = all(-std::numeric_limits<A>::infinity());
       for (int n = 0; n < 4; ++n)
       {
         for (int t = 0; t < 3; ++t)
         {
           voxels[n][t] = cells.pick(part.rows[n] + t);
-          most = n + t == 0 ? voxels[0][0] : larger(voxels[n][t], most);
+          most = larger(voxels[n][t], most);
         }
       }
-      if (!Special && !anyOf(most > best))
+      if (!anyOf(most > best))
       {
         continue;
       }
@@ -486,10 +502,7 @@ struct FanCubicLoop : Lanes<A, R>
         const R start = at - (slope > zero ? one : zero);
         best = this->largestFrom(part, corners, start, slope, change, to, best, second);
       }
-      if constexpr (!Special)
-      {
-        best = smaller(best, atMost); // as in parallel views
-      }
+      best = smaller(best, atMost); // as in parallel views
     }
     Lanes<A, R>::template close<Special>(this->row, x, before, best);
   }

@@ -214,11 +214,12 @@ struct CrossedRow
   double rowTime;
   std::int16_t rowTick;
 
-  /// The largest voxels on the paths of a register of pixels.
-  SPLATTING_INLINE Pack<T> largestAt(std::ptrdiff_t at) const
+  /// The larger of a register of pixels and the voxels on their paths; voxels that are NaN change
+  /// nothing.
+  SPLATTING_INLINE Pack<T> raised(std::ptrdiff_t at, Pack<T> pixels) const
   {
     const Pack<T> entry = load<T>(this->first->entry + at);
-    const Pack<T> best = larger(entry, load<T>(this->last->exit + at));
+    const Pack<T> best = larger(load<T>(this->last->exit + at), larger(entry, pixels));
     if (this->first == this->last)
     {
       return best;
@@ -259,8 +260,8 @@ public:
     for (int n = 0; n < count; ++n)
     {
       const std::ptrdiff_t at = n * width<T>;
-      const Pack<T> best = larger(near.largestAt(at), load<T>(image + at));
-      store<T>(image + at, two ? larger(far.largestAt(at), best) : best);
+      const Pack<T> best = near.raised(at, load<T>(image + at));
+      store<T>(image + at, two ? far.raised(at, best) : best);
     }
   }
 

@@ -348,6 +348,19 @@ struct FanCubicRow
   bool special; ///< whether there are NaN or infinities
 };
 
+/// Worksheets from voxels of which some are not finite.
+template <class A>
+struct Averages
+{
+  A* image; ///< NaN is "no sample yet"
+  /// The worksheets of the finite voxels, the others being 0, and of which are finite: averages are
+  /// the quotients.
+  const A *sums, *weights;
+  A whole; ///< what weights are at least where all voxels are finite: `sums` are averages
+  /// The worksheets of which voxels are positive and negative infinities, or nullptr.
+  const A *positive, *negative;
+};
+
 /// Loops over worksheets and images of type A (float or double).
 template <class A>
 struct WorksheetLoops
@@ -370,9 +383,13 @@ struct WorksheetLoops
   void (*raiseCubics)(const CubicRow<A>& row);
   /// The same in perspective views, where each pixel has cubics of its own.
   void (*raiseFanCubics)(const FanCubicRow<A>& row);
-  /// image[x] = max(image[x], average of rows[0..count)[x], NaN left out, weighted and divided by
-  /// the weights that remain). image[x] = NaN is "no sample yet". Rows may hold infinities.
-  void (*splatValid)(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
+  /// Pixels become the larger of themselves and the averages.
+  void (*raiseAverages)(const Averages<A>& averages, std::ptrdiff_t n);
+  /// Whether there are neither NaN nor infinities.
+  bool (*allFinite)(const A* voxels, std::ptrdiff_t n);
+  /// Tells with 1 and 0 which voxels are finite and, unless these are nullptr, which are positive
+  /// and negative infinities; those that are not finite become 0.
+  void (*separate)(A* voxels, A* finite, A* positive, A* negative, std::ptrdiff_t n);
   /// `raise` by low + (samples[x] - low) * (ambient + (1 - n / N) changeRate), the sample being the
   /// n-th of N from 0 on.
   void (*shade)(

@@ -10,6 +10,8 @@
 #include "Kernels/Kernels.h"
 #include "Kernels/Registers.h"
 
+#include <limits>
+
 namespace splatting
 {
 namespace
@@ -219,27 +221,85 @@ void splat(const Splat<A, S>& s)
   }
 }
 
+/// The average of what counts, of a register of pixels or one of them.
 template <class A>
-void splatValid(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n)
+struct AverageLoop
+{
+  const Averages<A>& a;
+
+  template <class R, class Fetch>
+  inline R raised(R image, Fetch&& fetch) const
+  {
+    const R zero = R{}, sum = fetch(this->a.sums), weight = fetch(this->a.weights);
+    const R quotient = sum / weight; // NaN if nothing counts
+    R average = weight >= this->a.whole ? sum : quotient;
+    if (this->a.positive)
+    {
+      const R up = fetch(this->a.positive), down = fetch(this->a.negative);
+      const R infinite = zero + std::numeric_limits<A>::infinity();
+      average = up > zero ? infinite : average;
+      // Opposite infinities have no average.
+      average = down > zero ? (up > zero ? infinite - infinite : -infinite) : average;
+    }
+    const R first = image == image ? image : average;
+    return average > first ? average : first;
+  }
+  template <int V>
+  inline void run(std::ptrdiff_t x) const
+  {
+    for (int v = 0; v < V; ++v, x += width<A>)
+    {
+      A* const at = this->a.image + x;
+      store<A>(at, this->raised<Pack<A>>(load<A>(at), [x](const A* p) { return load<A>(p + x); }));
+    }
+  }
+  inline void single(std::ptrdiff_t x) const
+  {
+    A& pixel = this->a.image[x];
+    pixel = this->raised<A>(pixel, [x](const A* p) { return p[x]; });
+  }
+};
+
+template <class A>
+void raiseAverages(const Averages<A>& averages, std::ptrdiff_t n)
+{
+  const AverageLoop<A> loop{ averages };
+  blocks<A>(n, loop, [&](std::ptrdiff_t x) { loop.single(x); });
+}
+
+/// Differences of numbers that are not finite are NaN, as are their sums with others.
+template <class A>
+bool allFinite(const A* voxels, std::ptrdiff_t n)
+{
+  Pack<A> differences = {};
+  std::ptrdiff_t x = 0;
+  for (; x + width<A> <= n; x += width<A>)
+  {
+    const Pack<A> value = load<A>(voxels + x);
+    differences += value - value;
+  }
+  A last = 0;
+  for (; x < n; ++x)
+  {
+    last += voxels[x] - voxels[x];
+  }
+  return last == last && !anyOf(differences != differences);
+}
+
+template <class A>
+void separate(A* __restrict voxels, A* __restrict finite, A* __restrict positive,
+  A* __restrict negative, std::ptrdiff_t n)
 {
   for (std::ptrdiff_t x = 0; x < n; ++x)
   {
-    A sum = 0, weight = 0;
-    for (int t = 0; t < count; ++t)
+    const A value = voxels[x];
+    const bool counts = value - value == A(0);
+    finite[x] = counts ? A(1) : A(0);
+    voxels[x] = counts ? value : A(0);
+    if (positive)
     {
-      const A value = rows[t][x];
-      if (value == value)
-      {
-        sum += weights[t] * value;
-        weight += weights[t];
-      }
-    }
-    // All weights add up to exactly 1, so that nothing changes where there is no NaN. The quotient
-    // is NaN if nothing is left, or if opposite infinities met.
-    const A average = sum / weight;
-    if (average > image[x] || (image[x] != image[x] && average == average))
-    {
-      image[x] = average;
+      positive[x] = !counts && value > A(0) ? A(1) : A(0);
+      negative[x] = !counts && value < A(0) ? A(1) : A(0);
     }
   }
 }

@@ -44,7 +44,6 @@ public:
     {
       scratch.shares.reset(frame.cuts, frame.kernels, v0, v1, frame.image.width,
         frame.bricks ? TileHeight : DenseHeight);
-      scratch.mask.resize(frame.image.width);
     }
   }
 
@@ -52,7 +51,7 @@ public:
   {
     if (!this->Shared.cuts.none())
     {
-      this->Shared.range.special ? this->walkSamples() : this->walkCut();
+      this->walkCut();
       return;
     }
     std::vector<Span>& runs = this->Scratch.runs;
@@ -270,26 +269,6 @@ private:
     return apart;
   }
 
-  /// The same sample by sample, for voxels that compare with nothing.
-  void walkSamples()
-  {
-    const RayLoops<P>& loops = this->Shared.kernels;
-    const Span slices{ this->Range.begin * BrickDepth,
-      std::min(this->Range.end * BrickDepth, this->Shared.geometry.size().z) };
-    this->Stack.forSamples(slices, false, this->Band.v0, this->Band.v1,
-      { 0, this->Shared.image.width }, this->Scratch.patch,
-      [&](int step, int v, const Span& pixels, const P* samples, const unsigned char* present)
-      {
-        unsigned char* const mask = this->Scratch.mask.data();
-        if (this->Shared.cuts.findMask(step / StepsPerSlice, v, pixels, mask))
-        {
-          narrow(mask, present, pixels);
-          loops.raise(this->Shared.image.template row<P>(v) + pixels.begin, samples, mask,
-            pixels.end - pixels.begin);
-        }
-      });
-  }
-
   const Frame& Shared;
   const Sampler& Stack;
   BandScratch& Scratch;
@@ -317,6 +296,10 @@ void walkBands(Frame& frame, const SliceSampler<T, P>& sampler)
           frame.bricks ? band.walkBricks(*frame.bricks) : band.walkDensely();
           if (isLast && !findsWinners)
           {
+            if (frame.range.special)
+            {
+              dropEmpty<P>(frame.image, v0, v1);
+            }
             sampler.finish(v0, v1);
             closeRows<P>(frame.image, v0, v1);
           }

@@ -212,6 +212,10 @@ T roundedDown(double x)
 template <class T>
 T previewFloor(const Frame& frame)
 {
+  if (frame.range.special)
+  {
+    return leastValue<T>(); // which tells pixels without a sample: see dropEmpty()
+  }
   // The range's double need not be a 64-bit integer's exact value.
   constexpr bool exact = !std::numeric_limits<T>::is_integer || sizeof(T) < 8;
   const T low = exact ? static_cast<T>(frame.range.low) : leastValue<T>();
@@ -223,8 +227,7 @@ T previewFloor(const Frame& frame)
 template <class P>
 void openRows(ShearImage& image, P floor, int v0, int v1)
 {
-  const P empty = image.special ? std::numeric_limits<P>::quiet_NaN() : floor;
-  const P outside = image.special ? empty : greatestValue<P>();
+  const P outside = greatestValue<P>();
   for (int v = v0; v < v1; ++v)
   {
     P* const row = image.row<P>(v);
@@ -232,15 +235,29 @@ void openRows(ShearImage& image, P floor, int v0, int v1)
     std::fill(row, row + image.width, outside);
     if (image.mask.empty())
     {
-      std::fill(row + span.begin, row + std::max(span.begin, span.end), empty);
+      std::fill(row + span.begin, row + std::max(span.begin, span.end), floor);
       continue;
     }
     const unsigned char* const mask = &image.mask[std::ptrdiff_t(v) * image.width];
     const Span pixels = span; // not what a pixel might overwrite
     for (int u = pixels.begin; u < pixels.end; ++u)
     {
-      row[u] = mask[u] ? empty : outside;
+      row[u] = mask[u] ? floor : outside;
     }
+  }
+}
+
+/// Where voxels are NaN, pixels between those of the outline may have no sample, too. Infinities
+/// mark both kinds for a walk; now they are NaN.
+template <class P>
+void dropEmpty(ShearImage& image, int v0, int v1)
+{
+  if constexpr (!std::numeric_limits<P>::is_integer)
+  {
+    P* const row = image.row<P>(v0);
+    std::replace_if(
+      row, row + std::ptrdiff_t(v1 - v0) * image.width, [](P x) { return std::isinf(x); },
+      std::numeric_limits<P>::quiet_NaN());
   }
 }
 

@@ -73,7 +73,8 @@ Acceleration choose(
 /// Whether each sample has to be looked at by itself.
 bool looksAtAll(const ProjectionSettings& settings, const VolumeIndex::Range& range)
 {
-  return settings.reduction != Reduction::Maximum || (settings.keepWinners && range.special);
+  return settings.reduction != Reduction::Maximum || range.hasInfinities() ||
+    (settings.keepWinners && range.special);
 }
 
 /// What voxels are summed in.
@@ -162,12 +163,12 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   const ProjectionSettings& settings, const ShearWarp& geometry, const Cuts& cuts,
   const LineIndex*& lines)
 {
-  if (looksAtAll(settings, index.range()) || index.range().special)
+  if (looksAtAll(settings, index.range()))
   {
     return Acceleration::Dense;
   }
-  if (wanted >= Acceleration::Lines && cuts.none() && !geometry.isPerspective() &&
-    !settings.keepWinners && settings.quality != Quality::Exact &&
+  if (wanted >= Acceleration::Lines && !index.range().special && cuts.none() &&
+    !geometry.isPerspective() && !settings.keepWinners && settings.quality != Quality::Exact &&
     &geometry != &this->Memory->part && !this->stopped())
   {
     lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),

@@ -81,9 +81,10 @@ struct ProjectionSettings
   /// 0: weights in closed form; N: from a general table with N x N sub-pixels.
   int footprintSampling = 0;
   InstructionSet instructionSet = bestInstructionSet();
-  /// Reductions other than Maximum are walked densely, as are volumes with NaN or infinities. Lines
-  /// and its sorted kin are Bricks where rays are cut and in perspective; sorted orders are for
-  /// Quality::Preview, elsewhere they are Lines.
+  /// Reductions other than Maximum are walked densely, as are volumes with infinities, and those
+  /// with NaN if winners are kept. Lines and its sorted kin are Bricks where rays are cut, in
+  /// perspective and where there are NaN; sorted orders are for Quality::Preview, elsewhere they
+  /// are Lines.
   Acceleration acceleration = Acceleration::Auto;
   /// Delta encoding of lines: see LineEncoding. 0 gives the same bits as Dense.
   double lineTolerance = 0.0;

@@ -11,6 +11,7 @@
 #include "Sampling/SliceSampler.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 #include <vector>
@@ -256,9 +257,27 @@ private:
       P* const own = this->bounds(z, 0);
       std::copy(own, own + row, kept);
       const bool hasBefore = z > this->Known.begin, hasAfter = z + 1 < this->Known.end;
-      loops.bound(own, hasBefore ? before : kept, hasAfter ? own + row : kept, this->Stack.share(z),
-        slack, magnitude, row);
+      const P *const front = hasBefore ? before : kept, *const back = hasAfter ? own + row : kept;
+      if (this->Shared.range.special)
+      {
+        this->takeLargest(own, front, back, row);
+      }
+      else
+      {
+        loops.bound(own, front, back, this->Stack.share(z), slack, magnitude, row);
+      }
       std::swap(before, kept);
+    }
+  }
+
+  /// Where voxels are NaN others weigh more, and a layer's neighbours may be all that counts.
+  void takeLargest(P* own, const P* before, const P* after, int count) const
+  {
+    const P slack = this->Stack.slack(), magnitude = this->Stack.magnitude();
+    for (int t = 0; t < count; ++t)
+    {
+      const P most = std::max({ own[t], before[t], after[t] });
+      own[t] = most > leastValue<P>() ? most + slack * std::max(std::abs(most), magnitude) : most;
     }
   }
 

@@ -83,11 +83,23 @@ protected:
   void splatRows(
     int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
   {
+    this->raise(k, first, end, span, target, false, patch);
+  }
+  void splatSpecialRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  {
+    this->raise(k, first, end, span, target, true, patch);
+  }
+
+private:
+  void raise(int k, int first, int end, const Span& span, const Target& target, bool special,
+    Patch& patch) const
+  {
     const WorksheetLoops<A>& loops = this->Shared.kernels;
     CubicRow<A> row;
     row.pixels = span;
     row.sourceStride = patch.rowLength;
-    row.special = this->Shared.range.special;
+    row.special = special;
     for (int v = first; v < end; ++v)
     {
       row.image = target.at(0, v);
@@ -101,7 +113,6 @@ protected:
     }
   }
 
-private:
   CubicPiece<A> inRow(const ExactPiece<A>& piece, int k, int v, Patch& patch) const
   {
     const int last = this->Shared.geometry.size().z - 1;

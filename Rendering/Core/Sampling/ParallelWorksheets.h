@@ -30,10 +30,11 @@ public:
 
   /// Rounding can take a worksheet beyond its largest voxel by slack() times the larger of that and
   /// magnitude(): 75 products and sums, and a few operations for the bound itself. Sums of 8-bit
-  /// voxels are exact.
+  /// voxels are exact. Where voxels are NaN, sums of weights are divided by.
   A slack() const override
   {
-    return sizeof(T) == 1 ? A(0) : 90 * std::numeric_limits<A>::epsilon() / 2;
+    const int operations = this->Shared.range.special ? 180 : 90;
+    return sizeof(T) == 1 ? A(0) : operations * std::numeric_limits<A>::epsilon() / 2;
   }
 
 protected:
@@ -50,14 +51,6 @@ protected:
   void splatRows(
     int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
   {
-    if (this->Shared.range.special)
-    {
-      for (int v = first; v < end; ++v)
-      {
-        this->splatValidRow(k, v, span, target, patch);
-      }
-      return;
-    }
     const WorksheetLoops<A>& loops = this->Shared.kernels;
     loops.splat(this->splatOf(k, first, end, span, target, patch));
   }
@@ -151,21 +144,6 @@ private:
       this->splatRows(k, first, end, columns, target, patch);
       this->open(rows.begin, rows.end, pixels, patch);
     }
-  }
-
-  void splatValidRow(int k, int v, const Span& span, const Target& target, Patch& patch) const
-  {
-    const SliceFootprint<A>& footprint = this->Footprints[k];
-    const A* rows[75];
-    const int count = footprint.taps.size();
-    for (int t = 0; t < count; ++t)
-    {
-      const Tap& tap = footprint.taps[t];
-      rows[t] = this->voxel(patch, k, tap.slice, span.begin + tap.di, v + tap.dj);
-    }
-    const WorksheetLoops<A>& loops = this->Shared.kernels;
-    loops.splatValid(
-      target.at(span.begin, v), rows, footprint.weights.data(), count, span.end - span.begin);
   }
 
   /// The voxel of slice k + c that is nearest to pixel (u, v) of slice k, in the patch.

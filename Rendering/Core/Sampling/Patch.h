@@ -24,10 +24,16 @@ struct Patch
     int slice = -1;
     int i = 0, j = 0; // the first voxel
     int columns = 0, rows = 0;
+    bool finite = true;     ///< whether there are neither NaN nor infinities
+    bool separated = false; ///< whether the other parts are there, see WorksheetLayers
   };
-  std::vector<unsigned char> bytes;
+  /// The voxels; where some are not finite, also which are, and which are infinite.
+  static constexpr int MostParts = 4;
+  std::array<std::vector<unsigned char>, MostParts> bytes;
+  int part = 0;                         ///< which of them voxel() tells
   std::vector<std::uint16_t> runEnds;   ///< of walks along chains only
   std::vector<unsigned char> worksheet; ///< of walks that look at each sample only
+  std::vector<unsigned char> averages;  ///< worksheets of parts
   std::vector<unsigned char> present;   ///< which of its pixels have one, in perspective previews
   std::vector<Span> runs;               ///< of perspective previews: what a slice covers of others
   Span rows, pixels;                    ///< of the image, that it has the voxels for
@@ -41,14 +47,17 @@ struct Patch
 
   /// Forgets all sheets.
   template <class A>
-  void resize(int columns, int rows)
+  void resize(int columns, int rows, int parts)
   {
     this->rowLength = columns;
     this->sheetLength = this->rowLength * rows;
     const std::size_t size = this->sheets.size() * this->sheetLength * sizeof(A) + Padding;
-    if (this->bytes.size() < size)
+    for (int p = 0; p < parts; ++p)
     {
-      this->bytes.resize(size);
+      if (this->bytes[p].size() < size)
+      {
+        this->bytes[p].resize(size);
+      }
     }
     this->sheets.fill(Sheet{});
   }
@@ -86,7 +95,7 @@ struct Patch
   template <class A>
   A* voxel(int i, int j, int slice)
   {
-    return reinterpret_cast<A*>(this->bytes.data()) + this->place(i, j, slice);
+    return reinterpret_cast<A*>(this->bytes[this->part].data()) + this->place(i, j, slice);
   }
 
   /// For each voxel the next column of its sheet with another value.

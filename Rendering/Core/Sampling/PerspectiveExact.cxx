@@ -74,6 +74,18 @@ protected:
   void splatRows(
     int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
   {
+    this->raise(k, first, end, span, target, false, patch);
+  }
+  void splatSpecialRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  {
+    this->raise(k, first, end, span, target, true, patch);
+  }
+
+private:
+  void raise(int k, int first, int end, const Span& span, const Target& target, bool special,
+    Patch& patch) const
+  {
     const WorksheetLoops<A>& loops = this->Shared.kernels;
     const FanCellArrays<A> rows = this->Rows.slice(k);
     const int slice = k + this->Shared.geometry.first().z;
@@ -83,7 +95,7 @@ protected:
     FanCubicRow<A> row;
     row.pixels = span;
     row.columns = this->Columns.slice(k);
-    row.special = this->Shared.range.special;
+    row.special = special;
     row.shortest = shortest;
     for (int v = first; v < end; ++v)
     {
@@ -100,7 +112,6 @@ protected:
     }
   }
 
-private:
   const glm::ivec3& size() const { return this->Shared.geometry.size(); }
   /// The slices whose worksheets read some slices.
   static Span readers(const Span& slices) { return { slices.begin - 1, slices.end + 1 }; }

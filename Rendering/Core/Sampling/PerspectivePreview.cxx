@@ -54,11 +54,6 @@ public:
     const PixelRows<T>& pixels, Patch& patch) const override
   {
     const Span some = common(slices, this->Shared.geometry.slices());
-    if (this->Shared.range.special)
-    {
-      this->splatSamples(some, v0, v1, patch);
-      return;
-    }
     const VoxelLoops<T>& loops = this->Shared.kernels;
     // Two slices at a time: the image is read and written once.
     const int step = pixels.sliceStride != 0 ? 1 : 2;
@@ -217,18 +212,6 @@ private:
     c.runs = runs.data();
     c.runCount = static_cast<int>(runs.size());
     return c;
-  }
-
-  /// Voxels that compare with nothing.
-  void splatSamples(const Span& slices, int v0, int v1, Patch& patch) const
-  {
-    const RayLoops<T>& loops = this->Shared.kernels;
-    this->forSamples(slices, false, v0, v1, { 0, this->Shared.image.width }, patch,
-      [&](int, int v, const Span& pixels, const T* samples, const unsigned char* present)
-      {
-        loops.raise(this->Shared.image.template row<T>(v) + pixels.begin, samples, present,
-          pixels.end - pixels.begin);
-      });
   }
 
   /// One step of the rays of some pixels, into patch.worksheet and patch.present. Whether there is

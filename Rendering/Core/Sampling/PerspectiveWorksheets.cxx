@@ -70,7 +70,10 @@ public:
   }
 
   /// As in ParallelWorksheets, of up to 3 + 5 + 15 products and sums and the weights' own rounding.
-  A slack() const override { return 60 * std::numeric_limits<A>::epsilon() / 2; }
+  A slack() const override
+  {
+    return (this->Shared.range.special ? 2 : 1) * 60 * std::numeric_limits<A>::epsilon() / 2;
+  }
 
 private:
   using typename WorksheetLayers<T>::Target;
@@ -93,14 +96,6 @@ private:
   void splatRows(
     int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
   {
-    if (this->Shared.range.special)
-    {
-      for (int v = first; v < end; ++v)
-      {
-        this->splatValidRow(k, v, span, target, patch);
-      }
-      return;
-    }
     Span voxelRows[MostParts];
     this->resampleRows(k, { first, end }, span, patch, voxelRows);
     const WorksheetLoops<A>& loops = this->Shared.kernels;
@@ -132,6 +127,9 @@ private:
       loops.raiseBlend(target.at(span.begin, v), rows, weights, count, span.end - span.begin);
     }
   }
+
+  /// Sums of weights are rounded, too.
+  A wholeWeight() const override { return A(1) - 60 * std::numeric_limits<A>::epsilon() / 2; }
 
   /// Registers of pixels begin at their multiples.
   static constexpr int Unit = 16;
@@ -208,31 +206,6 @@ private:
     }
     resampling.voxels = out - columns.begin;
     resampling.voxelStride = n;
-  }
-
-  void splatValidRow(int k, int v, const Span& span, const Target& target, Patch& patch) const
-  {
-    const int last = this->Shared.geometry.size().z - 1;
-    for (int u = span.begin; u < span.end; ++u)
-    {
-      A sum = 0, weight = 0;
-      this->Own.forVoxels(u, v, k,
-        [&](int i, int j, int s, A w)
-        {
-          const A value = *patch.template voxel<A>(i, j, std::clamp(s, 0, last));
-          if (value == value && w != 0)
-          {
-            sum += w * value;
-            weight += w;
-          }
-        });
-      const A average = sum / weight;
-      A& pixel = *target.at(u, v);
-      if (average > pixel || (pixel != pixel && average == average))
-      {
-        pixel = average;
-      }
-    }
   }
 
   const PerspectiveFootprints<A>& Own;

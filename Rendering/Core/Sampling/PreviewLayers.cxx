@@ -167,8 +167,7 @@ private:
   /// others: a rim reads a few voxels beyond its row.
   Span plainRows(const Layer& layer, int v0, int v1) const
   {
-    const bool plain = layer.rimsFit && !this->Shared.range.special;
-    const int first = plain ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
+    const int first = layer.rimsFit ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
     const int last = this->Shared.geometry.size().y - 1 - layer.window.jMax;
     return { first, std::clamp(last, first, v1) };
   }
@@ -317,14 +316,9 @@ private:
   void splatRow(int k, int v, const Span& span, T* row) const
   {
     const VoxelLoops<T>& loops = this->Shared.kernels;
-    const RayLoops<T>& any = this->Shared.kernels;
     this->forVoxels(k, v, span, false,
       [&](int, const Span& pixels, const T* voxels)
-      {
-        const std::ptrdiff_t n = pixels.end - pixels.begin;
-        this->Shared.range.special ? any.raise(row + pixels.begin, voxels, nullptr, n)
-                                   : loops.maximum(row + pixels.begin, &voxels, 1, n);
-      });
+      { loops.maximum(row + pixels.begin, &voxels, 1, pixels.end - pixels.begin); });
   }
 
   /// Calls f(k, v, span) for the rows and columns of pixels whose rays cross some slices.

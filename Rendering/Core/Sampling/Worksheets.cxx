@@ -210,7 +210,8 @@ void WorksheetLayers<T>::splatPieces(
 template <class T>
 void WorksheetLayers<T>::open(int v0, int v1, const Span& columns, Patch& patch) const
 {
-  patch.resize<A>(columns.end - columns.begin + this->Reach.columns, v1 - v0 + this->Reach.rows);
+  patch.resize<A>(columns.end - columns.begin + this->Reach.columns, v1 - v0 + this->Reach.rows,
+    this->Shared.range.special ? this->parts() : 1);
   patch.rows = { v0, v1 };
   patch.pixels = columns;
 }
@@ -219,7 +220,6 @@ template <class T>
 void WorksheetLayers<T>::forSamples(const Span& slices, bool reversed, int v0, int v1,
   const Span& columns, Patch& patch, const Samples& f) const
 {
-  const A none = this->Shared.range.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>();
   this->forPieces(v0, v1, columns,
     [&](int first, int last, const Span& piece)
     {
@@ -231,11 +231,7 @@ void WorksheetLayers<T>::forSamples(const Span& slices, bool reversed, int v0, i
         this->forRows(k, first, last, piece,
           [&](int begin, int end, const Span& span)
           {
-            for (int v = begin; v < end; ++v)
-            {
-              std::fill_n(worksheet.at(span.begin, v), span.end - span.begin, none);
-            }
-            this->splatOne(k, reversed ? -1 : 1, begin, end, span, worksheet, patch);
+            this->sample(k, reversed ? -1 : 1, begin, end, span, worksheet, patch);
             for (int v = begin; v < end; ++v)
             {
               f(StepsPerSlice * k, v, span, worksheet.at(span.begin, v), nullptr);
@@ -287,7 +283,105 @@ void WorksheetLayers<T>::splatOne(
   if (!this->splatOwn(k, step, first, end, span, target, patch))
   {
     this->load(k, step, patch);
-    this->splatRows(k, first, end, span, target, patch);
+    this->isFinite(k, patch) ? this->splatRows(k, first, end, span, target, patch)
+                             : this->splatSpecialRows(k, first, end, span, target, patch);
+  }
+}
+
+template <class T>
+void WorksheetLayers<T>::splatSpecialRows(
+  int k, int first, int end, const Span& span, const Target& target, Patch& patch) const
+{
+  this->separate(k, patch);
+  const std::ptrdiff_t width = span.end - span.begin, size = (end - first) * width;
+  patch.averages.resize(std::max(patch.averages.size(), this->parts() * size * sizeof(A)));
+  A* const worksheets = reinterpret_cast<A*>(patch.averages.data());
+  std::fill_n(worksheets, this->parts() * size, leastValue<A>());
+  for (patch.part = 0; patch.part < this->parts(); ++patch.part)
+  {
+    const Target part{ worksheets + patch.part * size - first * width - span.begin, width };
+    this->splatRows(k, first, end, span, part, patch);
+  }
+  patch.part = 0;
+  const WorksheetLoops<A>& loops = this->Shared.kernels;
+  for (int v = first; v < end; ++v)
+  {
+    const A* const row = worksheets + (v - first) * width;
+    const bool infinite = this->parts() == 4;
+    loops.raiseAverages(
+      { target.at(span.begin, v), row, row + size, this->wholeWeight(),
+        infinite ? row + 2 * size : nullptr, infinite ? row + 3 * size : nullptr },
+      width);
+  }
+}
+
+template <class T>
+bool WorksheetLayers<T>::isFinite(int k, Patch& patch) const
+{
+  bool finite = true;
+  const Span sheets = this->sheetsOf(k);
+  for (int s = sheets.begin; this->Shared.range.special && s < sheets.end; ++s)
+  {
+    finite = finite && patch.sheet(s).finite;
+  }
+  return finite;
+}
+
+template <class T>
+bool WorksheetLayers<T>::isFinite(const Patch::Sheet& sheet, Patch& patch) const
+{
+  const WorksheetLoops<A>& loops = this->Shared.kernels;
+  for (int j = sheet.j; this->Shared.range.special && j < sheet.j + sheet.rows; ++j)
+  {
+    if (!loops.allFinite(patch.voxel<A>(sheet.i, j, sheet.slice), sheet.columns))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <class T>
+void WorksheetLayers<T>::separate(int k, Patch& patch) const
+{
+  const WorksheetLoops<A>& loops = this->Shared.kernels;
+  const Span sheets = this->sheetsOf(k);
+  for (int s = sheets.begin; s < sheets.end; ++s)
+  {
+    Patch::Sheet& sheet = patch.sheet(s);
+    for (int j = sheet.j; !sheet.separated && j < sheet.j + sheet.rows; ++j)
+    {
+      A* rows[Patch::MostParts] = {};
+      for (patch.part = 0; patch.part < this->parts(); ++patch.part)
+      {
+        rows[patch.part] = patch.voxel<A>(sheet.i, j, s);
+      }
+      loops.separate(rows[0], rows[1], rows[2], rows[3], sheet.columns);
+    }
+    sheet.separated = true;
+  }
+  patch.part = 0;
+}
+
+template <class T>
+void WorksheetLayers<T>::sample(int k, int step, int first, int end, const Span& span,
+  const Target& worksheet, Patch& patch) const
+{
+  const A none = leastValue<A>(), nan = std::numeric_limits<A>::quiet_NaN();
+  const bool special = this->Shared.range.special;
+  if (special)
+  {
+    this->load(k, step, patch);
+  }
+  const bool finite = this->isFinite(k, patch);
+  for (int v = first; v < end; ++v)
+  {
+    std::fill(worksheet.at(span.begin, v), worksheet.at(span.end, v), finite ? none : nan);
+  }
+  this->splatOne(k, step, first, end, span, worksheet, patch);
+  for (int v = first; special && finite && v < end; ++v)
+  {
+    std::replace(worksheet.at(span.begin, v), worksheet.at(span.end, v), none, nan);
   }
 }
 
@@ -308,7 +402,8 @@ template <class T>
 void WorksheetLayers<T>::load(int k, int step, Patch& patch) const
 {
   const int last = this->Shared.geometry.size().z - 1;
-  for (int s = std::max(k - this->Depth, 0); s <= std::min(k + this->Depth, last); ++s)
+  const Span sheets = this->sheetsOf(k);
+  for (int s = sheets.begin; s < sheets.end; ++s)
   {
     if (patch.sheet(s).slice != s)
     {
@@ -316,6 +411,7 @@ void WorksheetLayers<T>::load(int k, int step, Patch& patch) const
       patch.ahead = exists ? step * this->Shared.slices.sliceStride : 0;
       patch.sheet(s) = this->sheetOf(s, patch.rows.begin, patch.rows.end, patch.pixels);
       this->loadSheet(patch.sheet(s), patch);
+      patch.sheet(s).finite = this->isFinite(patch.sheet(s), patch);
     }
   }
 }

@@ -96,6 +96,10 @@ public:
       Depth(depth),
       Base(baseOf(frame.range))
   {
+    if (frame.range.special)
+    {
+      this->PieceWidth = 64; // whose voxels are mostly finite
+    }
   }
 
   A share(int layer) const override { return this->Reach.layers[layer].share; }
@@ -119,6 +123,10 @@ public:
 
   A floor() const override
   {
+    if (this->Shared.range.special)
+    {
+      return leastValue<A>(); // as in previewFloor()
+    }
     const double floor =
       std::clamp(this->Shared.floor, this->Shared.range.low, this->Shared.range.high);
     return static_cast<A>(floor) - this->Base;
@@ -147,9 +155,18 @@ protected:
     return false;
   }
 
-  /// Raises pixels of some rows to the worksheet of slice k, whose voxels have been loaded.
+  /// Raises pixels of some rows to the worksheet of slice k, whose voxels have been loaded and are
+  /// finite.
   virtual void splatRows(
     int k, int first, int end, const Span& span, const Target& target, Patch& patch) const = 0;
+
+  /// The same where some are not. NaN is left out of averages: the worksheet of the others, divided
+  /// by that of their weights. Pixels that are NaN have no sample yet.
+  virtual void splatSpecialRows(
+    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const;
+
+  /// What the weights of a pixel add up to at least.
+  virtual A wholeWeight() const { return 1; }
 
 private:
   /// The widest registers hold two tiles, and take no longer for both than for one.
@@ -161,6 +178,20 @@ private:
     return std::numeric_limits<T>::is_integer && sizeof(T) < 8 ? static_cast<A>(range.low) : A(0);
   }
 
+  /// The sheets that worksheet k reads, as slices.
+  Span sheetsOf(int k) const
+  {
+    return { std::max(k - this->Depth, 0),
+      std::min(k + this->Depth, this->Shared.geometry.size().z - 1) + 1 };
+  }
+  bool isFinite(int k, Patch& patch) const;
+  bool isFinite(const Patch::Sheet& sheet, Patch& patch) const;
+  /// Voxels, which of them are finite, and, if there are infinities, which are positive or
+  /// negative.
+  int parts() const { return this->Shared.range.hasInfinities() ? 4 : 2; }
+  /// Makes the parts of the sheets that worksheet k reads.
+  void separate(int k, Patch& patch) const;
+
   /// Room for one worksheet.
   Target worksheetFor(int v0, int v1, const Span& columns, Patch& patch) const;
 
@@ -168,6 +199,10 @@ private:
   template <class F>
   void forPieces(int v0, int v1, const Span& columns, F&& f) const;
 
+  /// Makes the worksheet of slice k for pixels of some rows: NaN or, where no voxel is, the least
+  /// value where there is no sample.
+  void sample(int k, int step, int first, int end, const Span& span, const Target& worksheet,
+    Patch& patch) const;
   /// Raises pixels of some rows to the worksheet of slice k.
   /// @param step  to the worksheet that comes next, 0 if none does
   void splatOne(int k, int step, int first, int end, const Span& span, const Target& target,

@@ -236,8 +236,8 @@ void VolumeIndex::survey()
   const Extremes<T> extremes = Survey<T>(this->Volume, fits ? this->Bricks.data() : nullptr)();
   this->ValueRange = { static_cast<double>(extremes.low), static_cast<double>(extremes.high),
     extremes.special };
-  // Walks of volumes with NaN or infinities leave nothing out.
-  this->BricksMade = fits && !extremes.special;
+  // Walks of volumes with infinities leave nothing out.
+  this->BricksMade = fits && !this->ValueRange.hasInfinities();
   if (!this->BricksMade)
   {
     this->Bricks = {};
@@ -284,7 +284,7 @@ std::size_t VolumeIndex::brickSize() const
 
 bool VolumeIndex::hasBricks()
 {
-  this->Exceeded = this->Exceeded || (!this->range().special && !this->BricksMade);
+  this->Exceeded = this->Exceeded || (!this->range().hasInfinities() && !this->BricksMade);
   return this->BricksMade;
 }
 
@@ -366,7 +366,7 @@ void VolumeIndex::setRangeOfWhole(const Range& range)
   }
   this->Surveyed = true;
   this->ValueRange = range;
-  this->BricksMade = this->BricksMade && !range.special;
+  this->BricksMade = this->BricksMade && !range.hasInfinities();
 }
 
 const BrickMaxima& VolumeIndex::bricks(int principalAxis)

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -116,6 +117,11 @@ public:
   {
     double low = 0.0, high = 0.0; ///< of all voxels but NaN; low > high if there are none
     bool special = false;         ///< whether there are NaN or infinities
+
+    bool hasInfinities() const
+    {
+      return this->low <= this->high && (std::isinf(this->low) || std::isinf(this->high));
+    }
   };
   /// Made on first use: one pass over the voxels, which makes the bricks as well.
   const Range& range();
@@ -123,8 +129,7 @@ public:
   /// holds the voxels' own.
   void setRangeOfWhole(const Range& range);
 
-  /// Whether there are bricks: the budget has room for them, and there are neither NaN nor
-  /// infinities.
+  /// Whether there are bricks: the budget has room for them, and there are no infinities.
   bool hasBricks();
   /// The bricks along an axis; 3/128 of the volume for all axes together.
   const BrickMaxima& bricks(int principalAxis);
