@@ -124,23 +124,21 @@ struct Lanes
       store<A>(p, value);
     }
   }
-  /// NaN aside.
+  /// Less than all if one of them is NaN: such cells are left out.
   template <bool Special>
   static inline R largestOf(const R (&corners)[8])
   {
+    const R most = larger(larger(larger(corners[0], corners[1]), larger(corners[2], corners[3])),
+      larger(larger(corners[4], corners[5]), larger(corners[6], corners[7])));
     if constexpr (Special)
     {
-      R most = all(-std::numeric_limits<A>::infinity());
-      for (int n = 0; n < 8; ++n)
-      {
-        most = larger(corners[n], most);
-      }
-      return most;
+      const R sum = ((corners[0] + corners[1]) + (corners[2] + corners[3])) +
+        ((corners[4] + corners[5]) + (corners[6] + corners[7]));
+      return sum == sum ? most : all(-std::numeric_limits<A>::infinity());
     }
     else
     {
-      return larger(larger(larger(corners[0], corners[1]), larger(corners[2], corners[3])),
-        larger(larger(corners[4], corners[5]), larger(corners[6], corners[7])));
+      return most;
     }
   }
 
@@ -192,30 +190,29 @@ struct CubicLoop : Lanes<A, R>
 
   static inline R combine(const A* weights, const R (&corners)[8])
   {
-    R sum = all(A(0));
-    if constexpr (Special)
-    {
-      // What does not count may be no number.
-      for (int n = 0; n < 8; ++n)
-      {
-        sum = weights[n] != 0 ? sum + weights[n] * corners[n] : sum;
-      }
-    }
-    else
-    {
-      sum = weights[0] * corners[0];
+    R sum = weights[0] * corners[0];
 #pragma GCC unroll 8
-      for (int n = 1; n < 8; ++n)
-      {
-        sum = sum + weights[n] * corners[n];
-      }
+    for (int n = 1; n < 8; ++n)
+    {
+      sum = sum + weights[n] * corners[n];
     }
     return sum;
   }
 
-  static inline M numbers(R a, R b)
+  /// The field at the start of piece p as the end of the one before has it or, where that has NaN,
+  /// as its own cell has it.
+  inline R numberOf(R start, int p, const R (&corners)[8]) const
   {
-    return (a == a) & (b == b);
+    if constexpr (Special)
+    {
+      return start == start ? start : combine(this->row.pieces[p].weights, corners);
+    }
+    else
+    {
+      (void)p;
+      (void)corners;
+      return start;
+    }
   }
 
   /// The field at the start of piece p, which is the end of the one before.
@@ -228,7 +225,7 @@ struct CubicLoop : Lanes<A, R>
     const CubicPiece<A>& before = this->row.pieces[p - 1];
     R others[8];
     this->loadCorners(before, x, others);
-    return combine(before.weights + 24, others);
+    return this->numberOf(combine(before.weights + 24, others), p, corners);
   }
 
   /// The pixels from x on that a piece counts for.
@@ -273,16 +270,14 @@ struct CubicLoop : Lanes<A, R>
         follows = false;
         continue;
       }
-      b[0] = follows ? b[3] : this->startOf(p, corners, x);
+      b[0] = follows ? this->numberOf(b[3], p, corners) : this->startOf(p, corners, x);
       b[3] = combine(piece.weights + 24, corners);
       follows = true;
       R raised = larger(b[3], larger(b[0], best));
-      M exists = numbers(b[0], b[3]);
       if (piece.curved)
       {
         b[1] = combine(piece.weights + 8, corners);
         b[2] = combine(piece.weights + 16, corners);
-        exists = exists & numbers(b[1], b[2]);
         const R inner = larger(b[1], b[2]);
         if (anyOf(inner > raised))
         {
@@ -290,11 +285,6 @@ struct CubicLoop : Lanes<A, R>
         }
       }
       raised = Lanes<A, R>::limitedTo(raised, most, best);
-      if constexpr (Special)
-      {
-        // Cells with NaN are left out, faces that they share with others, too.
-        raised = exists ? raised : best;
-      }
       if constexpr (Masked)
       {
         raised = this->counting(piece, x) ? raised : best;

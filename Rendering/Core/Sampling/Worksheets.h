@@ -96,10 +96,6 @@ public:
       Depth(depth),
       Base(baseOf(frame.range))
   {
-    if (frame.range.special)
-    {
-      this->PieceWidth = 64; // whose voxels are mostly finite
-    }
   }
 
   A share(int layer) const override { return this->Reach.layers[layer].share; }
