@@ -12,12 +12,10 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkVolumeProperty.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <type_traits>
 
 namespace splatting
@@ -54,7 +52,7 @@ bool ComponentProjector::LookAt(ScalarSource& source)
     this->Channels[c].Whole.reset();
   }
   this->Projected = false;
-  this->Colored = false;
+  this->Colors.Forget();
   return differs;
 }
 
@@ -73,7 +71,7 @@ void ComponentProjector::LookAtNothing(splatting::ScalarType type, std::size_t c
     this->Dependent = false;
     this->Version = 0;
     this->Projected = false;
-    this->Colored = false;
+    this->Colors.Forget();
   }
 }
 
@@ -87,7 +85,7 @@ void ComponentProjector::HoldNothing()
   this->Dependent = false;
   this->Version = 0;
   this->Projected = false;
-  this->Colored = false;
+  this->Colors.Forget();
 }
 
 //------------------------------------------------------------------------------
@@ -115,7 +113,8 @@ void ComponentProjector::SetRanks(PieceExchange* ranks)
       {
         channel.Index.reset(channel.Index.volume());
         channel.Whole.reset();
-        this->Colored = this->Projected = false;
+        this->Colors.Forget();
+        this->Projected = false;
       }
       continue;
     }
@@ -123,7 +122,8 @@ void ComponentProjector::SetRanks(PieceExchange* ranks)
     if (!channel.Whole || channel.Whole->low != range.low || channel.Whole->high != range.high ||
       channel.Whole->special != range.special)
     {
-      this->Colored = this->Projected = false;
+      this->Colors.Forget();
+      this->Projected = false;
     }
     channel.Whole = range;
     channel.Index.setRangeOfWhole(*channel.Whole); // again if the budget has changed
@@ -172,77 +172,15 @@ double ComponentProjector::Time() const
 }
 
 //------------------------------------------------------------------------------
-// Of what is projected: depth shading can leave the range of the voxels.
-ScalarRange ComponentProjector::RangeOf(Channel& channel) const
-{
-  const splatting::VolumeIndex::Range& range = channel.Index.range();
-  const bool integers = channel.Index.volume().type < splatting::ScalarType::Float32;
-  if (this->Shading[0] >= 0.0 && this->Shading[1] <= 1.0)
-  {
-    return { range.low, range.high, integers };
-  }
-  const double low = std::isfinite(range.low) ? range.low : 0.0;
-  return { std::min(range.low, low + this->Shading[0] * (range.high - low)),
-    std::max(range.high, low + this->Shading[1] * (range.high - low)), integers };
-}
-
-//------------------------------------------------------------------------------
-splatting::ColorTable ComponentProjector::ColorsOf(
-  int channel, vtkVolumeProperty* property, const FinalColor& finalColor)
-{
-  const ScalarRange scalars = this->RangeOf(this->Channels[channel]);
-  const int components = static_cast<int>(this->Channels.size());
-  if (!this->Dependent)
-  {
-    const double weight = components > 1 ? property->GetComponentWeight(channel) : 1.0;
-    return tabulateColors(property, channel, weight, scalars, finalColor);
-  }
-  if (channel == components - 1)
-  {
-    return tabulateOpacity(property, scalars);
-  }
-  return components == 2 ? tabulateOpaque(property, scalars, finalColor)
-                         : tabulatePrimary(channel, finalColor);
-}
-
-//------------------------------------------------------------------------------
 void ComponentProjector::UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor,
   const splatting::ProjectionSettings& settings)
 {
-  double shading[2] = { 0.0, 1.0 };
-  if (settings.reduction == splatting::Reduction::DepthShaded)
+  std::vector<splatting::VolumeIndex*> components;
+  for (Channel& channel : this->Channels)
   {
-    const double nearest = settings.ambient + settings.changeRate;
-    shading[0] = std::min({ 0.0, settings.ambient, nearest });
-    shading[1] = std::max({ 1.0, settings.ambient, nearest });
+    components.push_back(&channel.Index);
   }
-  if (this->Colored && std::equal(shading, shading + 2, this->Shading) &&
-    this->ColoredBy == property && this->ColorTime == property->GetMTime() &&
-    this->ColoredFor == finalColor)
-  {
-    return;
-  }
-  std::copy(shading, shading + 2, this->Shading);
-  for (std::size_t c = 0; c < this->Channels.size(); ++c)
-  {
-    this->Channels[c].Colors = this->ColorsOf(static_cast<int>(c), property, finalColor);
-  }
-  this->ColoredFor = finalColor;
-  this->ColoredBy = property;
-  this->ColorTime = property->GetMTime();
-  this->Colored = true;
-}
-
-//------------------------------------------------------------------------------
-// The scalar up to which all have the colour of the lowest.
-double ComponentProjector::Channel::FloorOfWindow() const
-{
-  const std::vector<std::uint32_t>& colors = this->Colors.colors;
-  const auto last = std::adjacent_find(colors.begin(), colors.end(), std::not_equal_to<>());
-  const double steps = std::max<double>(static_cast<double>(colors.size()) - 1.0, 1.0);
-  const double share =
-    last == colors.end() ? 1.0 : static_cast<double>(last - colors.begin()) / steps;
-  return this->Colors.low + share * (this->Colors.high - this->Colors.low);
+  this->Colors.Update(property, finalColor, settings, components, this->Dependent);
 }
 
 //------------------------------------------------------------------------------
@@ -266,7 +204,7 @@ splatting::ProjectionSettings ComponentProjector::SettingsOf(
   // Colours that are carried, and locations, matter below the window, too.
   if (this->Cull && !settings.keepWinners && settings.reduction == splatting::Reduction::Maximum)
   {
-    settings.floor = channel.FloorOfWindow();
+    settings.floor = this->Colors.FloorOfWindow(&channel - this->Channels.data());
   }
   return settings;
 }
@@ -443,39 +381,11 @@ bool ComponentProjector::CanProjectPixels() const
 }
 
 //------------------------------------------------------------------------------
-const ComponentProjector::Pixel& ComponentProjector::ProjectPixel(
-  const splatting::ShearPixel& pixel, const std::vector<splatting::ShearWarp>& geometries,
-  const std::vector<splatting::Cuts>& cuts)
+const PixelProjector::Pixel& ComponentProjector::ProjectPixel(const splatting::ShearPixel& pixel,
+  const std::vector<splatting::ShearWarp>& geometries, const std::vector<splatting::Cuts>& cuts)
 {
   Channel& channel = this->Dependent ? this->Channels.back() : this->Channels.front();
-  const splatting::ShearWarp& whole = geometries[pixel.image];
-  const splatting::Cuts& wholeCuts = cuts[pixel.image];
-  const glm::ivec2 place(pixel.u, pixel.v);
-  const int phases = whole.phases();
-  if (phases > 1)
-  {
-    whole.takePhase(place % phases, this->PhaseGeometry);
-  }
-  splatting::ShearWarp& geometry = this->OnePixel.Geometries.front();
-  (phases > 1 ? this->PhaseGeometry : whole).takePixel(place / phases, geometry);
-  this->OnePixel.Cuts.cropping = wholeCuts.cropping;
-  this->OnePixel.Cuts.intervals.clear();
-  if (!wholeCuts.intervals.empty())
-  {
-    this->OnePixel.Cuts.intervals.takePixel(wholeCuts.intervals, place, geometry.width());
-  }
-  splatting::ProjectionSettings settings = channel.Settings;
-  settings.keepWinners = true;
-  settings.floor = splatting::ProjectionSettings().floor;
-  settings.acceleration = splatting::Acceleration::Dense;
-  // What frames have learnt is for frames.
-  splatting::Experience& experience = channel.Index.experience(
-    geometry.principalAxis(), static_cast<int>(settings.quality), !this->OnePixel.Cuts.none());
-  const splatting::Experience kept = experience;
-  this->PixelProjector.project(
-    channel.Index, geometry, settings, this->OnePixel.Cuts, this->OnePixel.Images.front());
-  experience = kept;
-  return this->OnePixel;
+  return this->Pixels.Project(channel.Index, channel.Settings, pixel, geometries, cuts);
 }
 
 //------------------------------------------------------------------------------
@@ -570,20 +480,21 @@ void ComponentProjector::Warp(const std::vector<splatting::ShearWarp>& geometrie
   const splatting::View& view, splatting::Picture& picture)
 {
   this->FindShown(geometries, view);
-  for (Channel& channel : this->Channels)
+  for (std::size_t c = 0; c < this->Channels.size(); ++c)
   {
-    const bool first = &channel == &this->Channels.front();
+    Channel& channel = this->Channels[c];
+    const bool first = c == 0;
     splatting::Picture& layer = first ? picture : this->Layer;
     if (this->Shown.empty())
     {
-      this->Warper.warp(channel.Images, geometries, channel.Settings.reduction, channel.Colors,
+      this->Warper.warp(channel.Images, geometries, channel.Settings.reduction, this->Colors.Of(c),
         view.viewport, channel.Settings.instructionSet, layer, channel.Rim);
     }
     else
     {
       splatting::placePicture(geometries, view.viewport, layer);
       this->Warper.warpPixels(
-        channel.Images, this->Shown, channel.Colors, channel.Settings.instructionSet, layer);
+        channel.Images, this->Shown, this->Colors.Of(c), channel.Settings.instructionSet, layer);
     }
     if (first)
     {

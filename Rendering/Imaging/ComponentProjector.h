@@ -3,10 +3,11 @@
 #ifndef ComponentProjector_h
 #define ComponentProjector_h
 
+#include "ComponentColors.h"
 #include "Display/Warp.h"
+#include "PixelProjector.h"
 #include "Projection/Locations.h"
 #include "Projection/Project.h"
-#include "TransferFunctions.h"
 
 #include "vtkType.h"
 
@@ -117,16 +118,9 @@ public:
   /// Sets what is located: images, volume and its range, settings. There must be winners.
   void Describe(splatting::Located& located) const;
 
-  /// Projects one pixel of the images once more, with its winner: the image of that pixel alone.
-  /// Not of pieces, nor of means.
-  struct Pixel
-  {
-    std::vector<splatting::ShearWarp> Geometries = std::vector<splatting::ShearWarp>(1);
-    std::vector<splatting::ShearImage> Images = std::vector<splatting::ShearImage>(1);
-    splatting::Cuts Cuts;
-  };
+  /// See PixelProjector: not of pieces, nor of means.
   bool CanProjectPixels() const;
-  const Pixel& ProjectPixel(const splatting::ShearPixel& pixel,
+  const PixelProjector::Pixel& ProjectPixel(const splatting::ShearPixel& pixel,
     const std::vector<splatting::ShearWarp>& geometries, const std::vector<splatting::Cuts>& cuts);
 
   /// Of the last projection.
@@ -144,15 +138,12 @@ private:
   {
     splatting::VolumeIndex Index;
     std::optional<splatting::VolumeIndex::Range> Here, Whole; // of pieces only
-    splatting::ColorTable Colors;
     splatting::ProjectionSettings Settings;
     std::vector<splatting::ShearImage> Images; // at least as many as the view has
     splatting::ShearImage Phase;               // the present part of one of them
     splatting::FieldRim Rim;
     splatting::VolumeIndex::Range Range; // of what was projected
     splatting::Acceleration Used = splatting::Acceleration::Dense;
-
-    double FloorOfWindow() const;
   };
 
   void FindShown(const std::vector<splatting::ShearWarp>& geometries, const splatting::View& view);
@@ -178,9 +169,6 @@ private:
   bool ProjectChannel(Channel& channel, splatting::ShearImage& image,
     const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
     const splatting::Cuts& cuts);
-  ScalarRange RangeOf(Channel& channel) const;
-  splatting::ColorTable ColorsOf(
-    int channel, vtkVolumeProperty* property, const FinalColor& finalColor);
 
   std::vector<Channel> Channels = std::vector<Channel>(1);
   bool Dependent = false;
@@ -191,16 +179,11 @@ private:
   vtkIdType Version = 0; // of the source
   PieceExchange* Ranks = nullptr;
 
-  vtkVolumeProperty* ColoredBy = nullptr; // only compared
-  vtkMTimeType ColorTime = 0;
-  FinalColor ColoredFor;
-  double Shading[2] = { 0.0, 1.0 }; // of all samples, the least and the greatest factor
-  bool Colored = false;
-
+  ComponentColors Colors;
   splatting::ShearWarp PhaseGeometry;
   splatting::Cuts PhaseCuts;
-  splatting::Projector Projector, PixelProjector;
-  Pixel OnePixel;
+  splatting::Projector Projector;
+  PixelProjector Pixels;
   splatting::Warper Warper;
   splatting::Picture Layer; // of one component
   std::vector<splatting::ShearPixel> Shown;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ProjectionChoice.h"
 
+#include "Geometry/Magnification.h"
 #include "vtkSplattingMIPProjection.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #ifndef RayCastFallback_h
 #define RayCastFallback_h
 
-#include "Display/Warp.h"
+#include "Display/Picture.h"
 #include "Scene/VolumeStandIn.h"
 
 #include "vtkNew.h"

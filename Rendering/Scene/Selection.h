@@ -3,7 +3,7 @@
 #ifndef Selection_h
 #define Selection_h
 
-#include "Display/Warp.h"
+#include "Display/Picture.h"
 
 class vtkHardwareSelector;
 

@@ -169,7 +169,7 @@ bool WinnerLocations::PickRay(const glm::ivec2& pixel, Sample& sample)
   }
   if (!hasWinners)
   {
-    const ComponentProjector::Pixel& alone =
+    const PixelProjector::Pixel& alone =
       this->Projector.ProjectPixel(shown, this->Images, this->Cuts.OfProjection());
     if (alone.Images.front().winners[0] < 0)
     {

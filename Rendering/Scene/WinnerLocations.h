@@ -6,6 +6,7 @@
 #ifndef WinnerLocations_h
 #define WinnerLocations_h
 
+#include "Display/Picture.h"
 #include "Projection/Locations.h"
 
 #include "vtkSmartPointer.h"
