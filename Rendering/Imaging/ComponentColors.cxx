@@ -30,7 +30,6 @@ ColorTable tableOf(vtkVolumeProperty* property, const FinalColor& finalColor, bo
 }
 }
 
-//------------------------------------------------------------------------------
 // Of what is projected: depth shading can leave the range of the voxels.
 ScalarRange ComponentColors::RangeOf(VolumeIndex& component) const
 {
@@ -45,7 +44,6 @@ ScalarRange ComponentColors::RangeOf(VolumeIndex& component) const
     std::max(range.high, low + this->Shading[1] * (range.high - low)), integers };
 }
 
-//------------------------------------------------------------------------------
 void ComponentColors::Update(vtkVolumeProperty* property, const FinalColor& finalColor,
   const ProjectionSettings& settings, const std::vector<VolumeIndex*>& components, bool dependent)
 {
@@ -75,7 +73,6 @@ void ComponentColors::Update(vtkVolumeProperty* property, const FinalColor& fina
   this->Known = true;
 }
 
-//------------------------------------------------------------------------------
 double ComponentColors::FloorOfWindow(std::size_t component) const
 {
   const ColorTable& table = this->Tables[component];

@@ -4,13 +4,12 @@
 
 namespace splatting
 {
-//------------------------------------------------------------------------------
 const PixelProjector::Pixel& PixelProjector::Project(VolumeIndex& index,
   ProjectionSettings settings, const ShearPixel& pixel, const std::vector<ShearWarp>& geometries,
   const std::vector<Cuts>& cuts)
 {
   const ShearWarp& whole = geometries[pixel.image];
-  const splatting::Cuts& wholeCuts = cuts[pixel.image];
+  const Cuts& wholeCuts = cuts[pixel.image];
   const glm::ivec2 place(pixel.u, pixel.v);
   const int phases = whole.phases();
   if (phases > 1)
