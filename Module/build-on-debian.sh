@@ -25,8 +25,6 @@ packages=(
   cmake ninja-build "${compiler[@]}" pkgconf ccache xz-utils
   libvtk9-dev python3-vtk9 libglm-dev          # the module and its Python package
   libcli11-dev libvtk-dicom-dev                # splatmip
-  libgif-dev                                   # its turns as GIF
-  libavformat-dev libavcodec-dev libavutil-dev # its turns as AVI
   libbenchmark-dev                             # the benchmark
   dpkg-dev file help2man                       # Debian packages
   python3-numpy                                # tests and examples in Python

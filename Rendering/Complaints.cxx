@@ -9,7 +9,6 @@
 
 namespace splatting
 {
-//------------------------------------------------------------------------------
 bool Complaints::Update(vtkRenderer* renderer, vtkVolume* volume, const std::string& problem)
 {
   const auto drop = [this](const auto& isOver)

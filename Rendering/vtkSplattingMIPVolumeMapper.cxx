@@ -2,38 +2,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSplattingMIPVolumeMapper.h"
 
-#include "Common/RenderTimes.h"
 #include "Complaints.h"
-#include "ComponentProjector.h"
-#include "Geometry/View.h"
-#include "MapperSettings.h"
-#include "Ranks/RankAgreement.h"
-#include "ScalarSource.h"
+#include "MapperProperties.h"
+#include "PropertyMethods.h"
+#include "Scene/ProjectedVolume.h"
 #include "Scene/RayCastFallback.h"
-#include "Scene/SceneCuts.h"
+#include "Scene/Refusals.h"
 #include "Scene/Selection.h"
 #include "Scene/ViewOfVolume.h"
 #include "Scene/WinnerLocations.h"
 #include "TurnOfViews.h"
 
 #include "vtkCommand.h"
-#include "vtkDataSet.h"
 #include "vtkImageData.h"
 #include "vtkMultiProcessController.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPolyData.h"
 #include "vtkRayCastImageDisplayHelper.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
-#include "vtkScalarsToColors.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimerLog.h"
 #include "vtkVolume.h"
-#include "vtkVolumeProperty.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <new>
 #include <set>
@@ -42,8 +33,8 @@
 using namespace splatting;
 
 vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
-vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, MaskInput, vtkImageData);
-vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, Controller, vtkMultiProcessController);
+splattingObjectMethods(vtkSplattingMIPVolumeMapper, vtkMultiProcessController, Controller);
+splattingMethods(vtkSplattingMIPVolumeMapper, bool, DisplayOnRootOnly);
 
 namespace
 {
@@ -58,12 +49,6 @@ bool isProjection(int blendMode)
     blendMode == vtkVolumeMapper::AVERAGE_INTENSITY_BLEND;
 }
 
-const char* nameOfMode(int mode)
-{
-  static const char* const names[] = { "preview", "standard", "high", "exact" };
-  return names[mode];
-}
-
 /// Sets a pointer for as long as this lives, whatever is thrown.
 class During
 {
@@ -76,38 +61,18 @@ public:
 private:
   vtkRenderWindow*& Pointer;
 };
-
-const char* nameOf(int acceleration)
-{
-  static const char* const names[] = { "auto", "dense", "bricks", "lines", "sorted lines",
-    "sorted volume" };
-  return names[acceleration];
-}
 }
 
 //------------------------------------------------------------------------------
 class vtkSplattingMIPVolumeMapper::Internals
 {
 public:
-  std::string Problem(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
-  std::string ProblemOfSettings(vtkSplattingMIPVolumeMapper* self, vtkVolume* volume);
-  std::string ProblemOfRanks(
-    vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* volume, std::string problem);
-  const VolumeGrid& Grid() const
-  {
-    return this->Ranks.AreMany() ? this->Ranks.Grid() : this->Source.Grid();
-  }
   void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
+  void WarnOfSurface(vtkSplattingMIPVolumeMapper* self);
+  void WarnOfBudget(vtkSplattingMIPVolumeMapper* self);
   void GiveBack();
   void DropRayCaster();
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
-  bool AreAsBefore(bool ordered) const;
-  bool HasImage() const { return this->Components.IsProjected() && !this->Images.empty(); }
-  double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
-  bool Factorise(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
-    const splatting::View& view, const splatting::ProjectionSettings& settings);
-  bool Project(vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* vol,
-    const splatting::View& view, int mode);
 
   Complaints Reported;
   std::set<std::string> Announced;   // what ray casting leads to, and was told
@@ -115,145 +80,33 @@ public:
   bool OpenSurfaceReported = false;  // likewise
   vtkRenderWindow* Window = nullptr; // which may abort, during a render
 
-  RankAgreement Ranks;
-  ScalarSource Source;
-  ComponentProjector Components;
-  SceneCuts Cuts;
-  std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last frame and the one before
-  WinnerLocations Locations{ Components, Cuts, Images };
+  ProjectedVolume Data;
+  WinnerLocations Locations{ Data.Components, Data.Cuts, Data.Images };
   splatting::Picture Picture;
-
-  vtkIdType Projections = 0;
-  int QualityModeUsed = EXACT; // in the last projection that was not aborted
-  double ProjectionTime = 0.0;
-  double CutTime = 0.0; // of it, to find what cuts the present images
-  splatting::RenderTimes Times;
-  double IndexTimeBefore = 0.0; // before what the present frame makes of the index
   double Shear[2] = { 0.0, 0.0 };
-  vtkSmartPointer<vtkImageData> ShearImageOutput;
 
   std::unique_ptr<RayCastFallback> RayCaster; // made when first needed: it is megabytes large
 };
 
 //------------------------------------------------------------------------------
 vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
-  : VectorMode(DISABLED),
-    VectorComponent(0),
-    MaskInput(nullptr),
-    Controller(nullptr),
-    DisplayOnRootOnly(false),
-    QualityMode(EXACT),
-    Kernel(TRILINEAR),
-    KernelRadius(1.0),
-    MaximumType(GLOBAL),
-    DepthShadingAmbient(0.3),
-    DepthShadingChangeRate(0.7),
-    LocalMaximumThreshold(0.0),
-    Slab(false),
-    SlabThickness(10.0),
-    SlabCenter{ 0.0, 0.0, 0.0 },
-    BoundingSurface(nullptr),
-    IntermixIntersectingGeometry(1),
-    FootprintSampling(0),
-    ShearImageSampling(SAMPLING_OF_MODE),
-    Acceleration(AUTO),
-    LineTolerance(0.0),
-    EliminateInvisible(false),
-    CullBelowWindow(false),
-    IndexMemoryBudget(vtkTypeInt64(1) << 32),
-    AutoAdjustSampleDistances(1),
-    FinalColorWindow(1.0f),
-    FinalColorLevel(0.5f),
-    LastRenderUsedRayCasting(false),
-    RecordLocations(false),
-    DepthCoding(false),
-    DepthCodingColors(nullptr),
-    DepthCodingRange{ 0.0, 0.0 },
-    WriteDepth(false),
-    WriteDepthOpacity(0.5),
+  : LastRenderUsedRayCasting(false),
     Internal(new Internals)
 {
-  splatting::Projector& projector = this->Internal->Components.GetProjector();
+  splatting::Projector& projector = this->Internal->Data.Components.GetProjector();
   projector.setProgress([this](double done) { this->UpdateProgress(done); });
   projector.setWatch([this](double done) { return this->Internal->GoOn(this, done); });
-  this->BlendMode = MAXIMUM_INTENSITY_BLEND;
 }
 
 //------------------------------------------------------------------------------
-vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper()
-{
-  this->SetDepthCodingColors(nullptr);
-  this->SetBoundingSurface(nullptr);
-  this->SetMaskInput(nullptr);
-  this->SetController(nullptr);
-}
-
-//------------------------------------------------------------------------------
-vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, BoundingSurface, vtkPolyData);
-vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, DepthCodingColors, vtkScalarsToColors);
-
-//------------------------------------------------------------------------------
-// The gate: a sentence that says why this input cannot be rendered and what to do, or nothing.
-std::string vtkSplattingMIPVolumeMapper::Internals::Problem(
-  vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
-{
-  if (volume->IsA("vtkMultiVolume"))
-  {
-    return "A vtkMultiVolume cannot be splatted: give each of its volumes a mapper of its own.";
-  }
-  ScalarChoice choice;
-  choice.scalarMode = self->ScalarMode;
-  choice.arrayAccessMode = self->ArrayAccessMode;
-  choice.arrayId = self->ArrayId;
-  choice.arrayName = self->ArrayName;
-  choice.vectorMode = self->VectorMode;
-  choice.vectorComponent = self->VectorComponent;
-  choice.independentComponents = volume->GetProperty()->GetIndependentComponents() != 0;
-  choice.mask = self->MaskInput;
-  if (this->Ranks.Use(self->Controller) && !pieceOf(self))
-  {
-    return ""; // a rank may hold nothing
-  }
-  std::string problem = this->Source.Examine(self->GetInput(), choice);
-  if (problem.empty() && isFlat(this->Source.Grid(), volume))
-  {
-    problem =
-      "Spacing, direction and prop matrix flatten the volume: none of them may be singular.";
-  }
-  return problem;
-}
-
-//------------------------------------------------------------------------------
-// As Problem(), what any rank has to say, once each has looked at its piece. Collective.
-std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfRanks(
-  vtkSplattingMIPVolumeMapper* self, vtkRenderer* ren, vtkVolume* volume, std::string problem)
-{
-  RankReport report = reportOf(self, problem);
-  if (!report.problem[0] && !report.isEmpty())
-  {
-    if (this->Components.LookAt(this->Source))
-    {
-      this->Times.clear();
-    }
-    describeScalars(this->Components, this->Source, report);
-  }
-  report.view = viewNumber(self, ren, volume);
-  problem = this->Ranks.Agree(report);
-  if (problem.empty() && report.isEmpty())
-  {
-    this->Source.HoldNothing(this->Ranks.Common().vtkType);
-    this->Components.LookAtNothing(static_cast<splatting::ScalarType>(this->Ranks.Common().type),
-      static_cast<std::size_t>(this->Ranks.Common().components));
-  }
-  return problem;
-}
+vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper() = default;
 
 //------------------------------------------------------------------------------
 bool vtkSplattingMIPVolumeMapper::UpdateWhole()
 {
-  RankAgreement& ranks = this->Internal->Ranks;
+  RankAgreement& ranks = this->Internal->Data.Ranks;
   this->Update();
-  if (!ranks.Use(this->Controller))
+  if (!ranks.Use(this->GetController()))
   {
     return true;
   }
@@ -273,8 +126,8 @@ bool vtkSplattingMIPVolumeMapper::UpdateWhole()
 //------------------------------------------------------------------------------
 double* vtkSplattingMIPVolumeMapper::GetBounds()
 {
-  RankAgreement& ranks = this->Internal->Ranks;
-  if (!ranks.Use(this->Controller))
+  RankAgreement& ranks = this->Internal->Data.Ranks;
+  if (!ranks.Use(this->GetController()))
   {
     return this->Superclass::GetBounds();
   }
@@ -290,98 +143,16 @@ double* vtkSplattingMIPVolumeMapper::GetBounds()
 // Tells how much of the projection is done and whether the window wants the rest.
 bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* self, double done)
 {
-  done = this->Components.ShareOfAll(done);
+  done = this->Data.Components.ShareOfAll(done);
   self->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &done);
   return !this->Window || !this->Window->CheckAbortStatus();
-}
-
-//------------------------------------------------------------------------------
-// As Problem(): of the mapper's own settings, once the input is known to be good.
-std::string vtkSplattingMIPVolumeMapper::Internals::ProblemOfSettings(
-  vtkSplattingMIPVolumeMapper* self, vtkVolume* volume)
-{
-  if (const char* const fault = faultOfSettings(self, volume->GetProperty()))
-  {
-    return fault;
-  }
-  const glm::dmat4 toIndex =
-    self->BoundingSurface ? worldToIndex(this->Grid(), volume) : glm::dmat4(1.0);
-  const char* const fault = this->Cuts.Surface().Update(self->BoundingSurface, toIndex);
-  return fault ? fault : "";
-}
-
-//------------------------------------------------------------------------------
-// Whether this frame's rays are the last one's, and come from the same side where that matters.
-bool vtkSplattingMIPVolumeMapper::Internals::AreAsBefore(bool ordered) const
-{
-  return std::equal(this->Images.begin(), this->Images.end(), this->ImagesBefore.begin(),
-    this->ImagesBefore.end(),
-    [=](const splatting::ShearWarp& a, const splatting::ShearWarp& b)
-    { return a.sameShear(b) && (!ordered || a.reversed() == b.reversed()); });
-}
-
-//------------------------------------------------------------------------------
-// The images of a view and what cuts them; false if it has no meaning.
-bool vtkSplattingMIPVolumeMapper::Internals::Factorise(vtkSplattingMIPVolumeMapper* self,
-  vtkRenderer* ren, vtkVolume* vol, const splatting::View& view,
-  const splatting::ProjectionSettings& settings)
-{
-  const double start = vtkTimerLog::GetUniversalTime();
-  if (!splatting::ShearWarp::factorise(view, this->Images, settings.sampling, settings.meets))
-  {
-    return false;
-  }
-  this->Cuts.Find(view, this->Images, ren, vol, self->IntermixIntersectingGeometry != 0,
-    [=](const int origin[2], const int size[2], float* depths)
-    { return self->ReadDepth(ren, origin, size, depths); });
-  this->CutTime = vtkTimerLog::GetUniversalTime() - start;
-  return true;
-}
-
-//------------------------------------------------------------------------------
-// Projects in this mode, unless the last shear image shows the same, or better within what is
-// wanted. False if the view has no meaning. There is no image after an abort.
-bool vtkSplattingMIPVolumeMapper::Internals::Project(vtkSplattingMIPVolumeMapper* self,
-  vtkRenderer* ren, vtkVolume* vol, const splatting::View& view, int mode)
-{
-  const int usable = std::clamp(this->QualityModeUsed, mode, self->QualityMode);
-  const splatting::ProjectionSettings best = projectionSettings(self, usable, view);
-  std::swap(this->Images, this->ImagesBefore);
-  if (!this->Factorise(self, ren, vol, view, best))
-  {
-    return false;
-  }
-  const bool ordered = splatting::isOrdered(best.reduction) || best.keepWinners ||
-    this->Source.AreDependent(); // the nearest of equal samples wins
-  const bool isShown =
-    this->AreAsBefore(ordered) && this->Cuts.AreKept() && this->Components.Shows(best);
-  // Where one rank projects all do.
-  if (this->Ranks.AreMany() ? !this->Ranks.Any(!isShown) : isShown)
-  {
-    return true;
-  }
-  const splatting::ProjectionSettings wanted = projectionSettings(self, mode, view);
-  if (wanted.sampling != best.sampling || wanted.meets != best.meets)
-  {
-    this->Factorise(self, ren, vol, view, wanted);
-  }
-  const double start = vtkTimerLog::GetUniversalTime();
-  this->ShearImageOutput = nullptr;
-  if (this->Components.Project(this->Images, wanted, this->Cuts.Get()))
-  {
-    this->Cuts.Keep();
-    this->ProjectionTime = this->CutTime + vtkTimerLog::GetUniversalTime() - start;
-    ++this->Projections;
-    this->QualityModeUsed = mode;
-  }
-  return true;
 }
 
 //------------------------------------------------------------------------------
 // What is set but means nothing where rays are cast.
 void vtkSplattingMIPVolumeMapper::Internals::WarnOfIgnored(vtkSplattingMIPVolumeMapper* self)
 {
-  if ((self->Slab || self->BoundingSurface) && this->Announced.insert("ignored").second)
+  if ((self->GetSlab() || self->GetBoundingSurface()) && this->Announced.insert("ignored").second)
   {
     vtkWarningWithObjectMacro(self,
       << "Slab and BoundingSurface mean nothing where a volume is ray cast: it is shown without "
@@ -390,13 +161,38 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfIgnored(vtkSplattingMIPVolume
 }
 
 //------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::Internals::WarnOfSurface(vtkSplattingMIPVolumeMapper* self)
+{
+  const bool isOpen = this->Data.Cuts.Surface().IsOpen();
+  if (isOpen && !this->OpenSurfaceReported)
+  {
+    vtkWarningWithObjectMacro(self,
+      << "The bounding surface is not closed: rays that cross it once show nothing. Close it, for "
+         "instance with vtkFillHolesFilter.");
+  }
+  this->OpenSurfaceReported = isOpen;
+}
+
+//------------------------------------------------------------------------------
+void vtkSplattingMIPVolumeMapper::Internals::WarnOfBudget(vtkSplattingMIPVolumeMapper* self)
+{
+  const bool exceeds = this->Data.Components.ExceedsBudget();
+  if (exceeds && !this->BudgetReported)
+  {
+    vtkWarningWithObjectMacro(
+      self, << "An index for fast projection does not fit into IndexMemoryBudget ("
+            << self->GetIndexMemoryBudget()
+            << " bytes): this volume is projected without it. Raise the budget.");
+  }
+  this->BudgetReported = exceeds;
+}
+
+//------------------------------------------------------------------------------
 // Holds nothing, after a frame that there was no memory for.
 void vtkSplattingMIPVolumeMapper::Internals::GiveBack()
 {
-  this->Source.HoldNothing(VTK_VOID);
-  this->Components.HoldNothing();
+  this->Data.HoldNothing();
   this->Picture = {};
-  this->ShearImageOutput = nullptr;
   this->DropRayCaster();
 }
 
@@ -420,23 +216,15 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     return;
   }
   const During during(in.Window, ren->GetRenderWindow());
-  const vtkIdType projections = in.Projections;
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
+  in.Data.BeginFrame();
   in.Locations.Forget();
   std::string problem;
   try
   {
-    problem = in.Problem(this, vol);
-    if (in.Ranks.AreMany())
-    {
-      problem = in.ProblemOfRanks(this, ren, vol, problem);
-    }
-    if (problem.empty())
-    {
-      problem = in.ProblemOfSettings(this, vol);
-    }
+    problem = refusalOf(this, ren, vol, in.Data);
     if (problem.empty())
     {
       problem = this->RenderBySplatting(ren, vol);
@@ -446,7 +234,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   {
     problem = ScalarSource::NoMemory;
     in.GiveBack();
-    if (in.Ranks.AreMany())
+    if (in.Data.Ranks.AreMany())
     {
       vtkErrorMacro(<< problem);
       throw; // the other ranks wait for this one
@@ -457,18 +245,13 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< problem);
   }
   // The old scalars would stay in memory with it.
-  if (!this->LastRenderUsedRayCasting && !in.Source.HasImage())
+  if (!this->LastRenderUsedRayCasting && !in.Data.Source.HasImage())
   {
     in.DropRayCaster();
   }
   this->Timer->StopTimer();
   this->TimeToDraw = this->Timer->GetElapsedTime();
-  // Frames that re-use an image say nothing about the next ones, nor does what is made once.
-  if (in.Projections != projections)
-  {
-    in.Times.add({ ren, vol }, this->GetQualityModeUsed(),
-      this->TimeToDraw - (in.IndexTime() - in.IndexTimeBefore));
-  }
+  in.Data.EndFrame(ren, vol, this->TimeToDraw);
   this->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent);
 }
 
@@ -477,13 +260,15 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
-  splatting::View view = makeView(in.Grid(), vol, ren, this);
+  ProjectedVolume& data = in.Data;
+  const MapperProperties& properties = this->ReadProperties();
+  splatting::View view = makeView(data.Grid(), vol, ren, this);
   // Nothing can be seen in a window that is not shown yet.
   if (view.viewport.x < 1 || view.viewport.y < 1)
   {
     return "";
   }
-  const FinalColor finalColor = { this->FinalColorWindow, this->FinalColorLevel };
+  const FinalColor finalColor = { properties.FinalColorWindow, properties.FinalColorLevel };
   if (!finalColor.isValid())
   {
     return NoColors;
@@ -492,7 +277,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return TurnOfViews::Degenerate;
   }
-  if (in.Source.IsCoarse() && in.Announced.insert("coarse").second)
+  if (data.Source.IsCoarse() && in.Announced.insert("coarse").second)
   {
     vtkWarningMacro(<< "The rectilinear grid is resampled to larger steps than its least, which is "
                        "too small for that: small cells may be lost. Extract a part of it.");
@@ -502,55 +287,28 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     this->RenderByRayCasting(ren, vol);
     return "";
   }
-  if (this->Slab)
+  if (properties.Slab)
   {
-    addSlab(view, in.Grid(), vol, this->SlabCenter, this->SlabThickness);
+    addSlab(view, data.Grid(), vol, properties.SlabCenter, properties.SlabThickness);
   }
-  const bool isOpen = in.Cuts.Surface().IsOpen();
-  if (isOpen && !in.OpenSurfaceReported)
-  {
-    vtkWarningMacro(<< "The bounding surface is not closed: rays that cross it once show nothing. "
-                       "Close it, for instance with vtkFillHolesFilter.");
-  }
-  in.OpenSurfaceReported = isOpen;
-  const vtkIdType version = in.Source.Version();
-  if (!in.Ranks.AreMany() && in.Components.LookAt(in.Source))
-  {
-    in.Times.clear(); // changed data of the same kind take what the last ones took
-  }
-  in.Components.SetBudget(static_cast<std::size_t>(this->IndexMemoryBudget));
-  in.Components.SetRanks(in.Ranks.AreMany() ? &in.Ranks : nullptr);
-  in.IndexTimeBefore = in.Source.Version() == version ? in.IndexTime() : 0.0;
-  in.Components.UpdateColors(
-    vol->GetProperty(), finalColor, projectionSettings(this, PREVIEW, view));
-  in.Components.SetCullBelowWindow(this->CullBelowWindow);
-  // Selection is by what is seen.
-  int mode = !this->AutoAdjustSampleDistances ? this->QualityMode
-    : ren->GetSelector()
-    ? std::min(this->GetQualityModeUsed(), this->QualityMode)
-    : in.Times.choose({ ren, vol }, this->QualityMode, vol->GetAllocatedRenderTime());
-  mode = in.Ranks.AreMany() ? in.Ranks.Least(mode) : mode;
-  if (!in.Project(this, ren, vol, view, mode))
+  in.WarnOfSurface(this);
+  data.Prepare(properties, view, vol, finalColor);
+  const auto readDepth = [this, ren](const int origin[2], const int size[2], float* depths)
+  { return this->ReadDepth(ren, origin, size, depths); };
+  if (!data.Project(properties, view, ren, vol, readDepth))
   {
     return TurnOfViews::Degenerate;
   }
-  const bool exceeds = in.Components.ExceedsBudget();
-  if (exceeds && !in.BudgetReported)
+  in.WarnOfBudget(this);
+  if (data.Components.IsProjected())
   {
-    vtkWarningMacro(<< "An index for fast projection does not fit into IndexMemoryBudget ("
-                    << this->IndexMemoryBudget
-                    << " bytes): this volume is projected without it. Raise the budget.");
+    data.Components.FindRim(data.Images, data.Cuts.OfProjection(), view);
   }
-  in.BudgetReported = exceeds;
-  if (in.Components.IsProjected())
+  if (data.Components.IsProjected() && (!properties.DisplayOnRootOnly || data.Ranks.IsRoot()))
   {
-    in.Components.FindRim(in.Images, in.Cuts.OfProjection(), view);
-  }
-  if (in.Components.IsProjected() && (!this->DisplayOnRootOnly || in.Ranks.IsRoot()))
-  {
-    in.Components.Warp(in.Images, view, in.Picture);
-    in.Cuts.Hide(in.Picture);
-    in.Locations.Remember(view, in.Grid(), vol, ren);
+    data.Components.Warp(data.Images, view, in.Picture);
+    data.Cuts.Hide(in.Picture);
+    in.Locations.Remember(view, data.Grid(), vol, ren);
     this->DisplayLocated(ren);
   }
   return "";
@@ -561,21 +319,23 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
 {
   Internals& in = *this->Internal;
-  const bool wanted = this->RecordLocations || this->DepthCoding || this->WriteDepth;
-  if (wanted && this->BlendMode == AVERAGE_INTENSITY_BLEND && in.Announced.insert("mean").second)
+  const MapperProperties& properties = this->ReadProperties();
+  if (properties.needsLocations() && this->BlendMode == AVERAGE_INTENSITY_BLEND &&
+    in.Announced.insert("mean").second)
   {
     vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
                        "one, no depth coding and no depths: choose another blend mode.");
   }
-  if (this->DepthCoding && !ren->GetSelector())
+  if (properties.DepthCoding && !ren->GetSelector())
   {
-    in.Locations.ColorByDepth(in.Picture, this->DepthCodingColors, this->DepthCodingRange);
+    in.Locations.ColorByDepth(
+      in.Picture, properties.DepthCodingColors, properties.DepthCodingRange);
   }
   this->DisplayPicture(ren);
-  if (this->WriteDepth && !in.Picture.pixels.empty())
+  if (properties.WriteDepth && !in.Picture.pixels.empty())
   {
     this->DisplayDepths(ren, &in.Picture.origin.x, &in.Picture.size.x,
-      in.Locations.ClipDepths(in.Picture, this->WriteDepthOpacity).data());
+      in.Locations.ClipDepths(in.Picture, properties.WriteDepthOpacity).data());
   }
 }
 
@@ -618,7 +378,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
   }
   in.WarnOfIgnored(this);
   this->LastRenderUsedRayCasting = true;
-  vtkImageData* const image = in.Source.Image();
+  vtkImageData* const image = in.Data.Source.Image();
   if (!image)
   {
     return; // no voxel is shown
@@ -681,7 +441,7 @@ void vtkSplattingMIPVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 //------------------------------------------------------------------------------
 vtkImageData* vtkSplattingMIPVolumeMapper::GetLocations()
 {
-  if (!this->RecordLocations)
+  if (!this->GetRecordLocations())
   {
     vtkErrorMacro(<< "There are no locations: call RecordLocationsOn() before the render.");
     return nullptr;
@@ -724,39 +484,22 @@ double vtkSplattingMIPVolumeMapper::PickValue(int x, int y)
 //------------------------------------------------------------------------------
 vtkImageData* vtkSplattingMIPVolumeMapper::GetShearImage()
 {
-  Internals& in = *this->Internal;
-  if (!in.HasImage())
-  {
-    in.ShearImageOutput = nullptr;
-  }
-  else if (!in.ShearImageOutput)
-  {
-    in.ShearImageOutput = vtkSmartPointer<vtkImageData>::New();
-    const std::size_t n = mainImage(in.Images);
-    in.Components.CopyImage(
-      n, in.Images[n], in.Source.VtkTypeOf(in.Components.ImageType()), in.ShearImageOutput);
-  }
-  return in.ShearImageOutput;
+  return this->Internal->Data.ShearImage();
 }
 
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetPrincipalAxis()
 {
-  const Internals& in = *this->Internal;
-  return in.HasImage() ? in.Images[mainImage(in.Images)].principalAxis() : -1;
+  const splatting::ShearWarp* const image = this->Internal->Data.MainImage();
+  return image ? image->principalAxis() : -1;
 }
 
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::GetShear(double shear[2])
 {
-  const Internals& in = *this->Internal;
-  shear[0] = shear[1] = 0.0;
-  if (in.HasImage())
-  {
-    const splatting::ShearWarp& image = in.Images[mainImage(in.Images)];
-    shear[0] = -image.columns().slope[image.rayCount().x / 2];
-    shear[1] = -image.rows().slope[image.rayCount().y / 2];
-  }
+  const splatting::ShearWarp* const image = this->Internal->Data.MainImage();
+  shear[0] = image ? -image->columns().slope[image->rayCount().x / 2] : 0.0;
+  shear[1] = image ? -image->rows().slope[image->rayCount().y / 2] : 0.0;
 }
 
 //------------------------------------------------------------------------------
@@ -769,156 +512,60 @@ double* vtkSplattingMIPVolumeMapper::GetShear()
 //------------------------------------------------------------------------------
 vtkIdType vtkSplattingMIPVolumeMapper::GetIndexMemorySize()
 {
-  return static_cast<vtkIdType>(
-    this->Internal->Source.MemorySize() + this->Internal->Components.MemorySize());
+  return static_cast<vtkIdType>(this->Internal->Data.IndexMemorySize());
 }
 
 //------------------------------------------------------------------------------
 double vtkSplattingMIPVolumeMapper::GetIndexTime()
 {
-  return this->Internal->IndexTime();
+  return this->Internal->Data.IndexTime();
 }
 
 //------------------------------------------------------------------------------
 vtkIdType vtkSplattingMIPVolumeMapper::GetNumberOfProjections()
 {
-  return this->Internal->Projections;
+  return this->Internal->Data.NumberOfProjections();
 }
 
 //------------------------------------------------------------------------------
 double vtkSplattingMIPVolumeMapper::GetProjectionTime()
 {
-  return this->Internal->ProjectionTime;
+  return this->Internal->Data.ProjectionTime();
 }
 
 //------------------------------------------------------------------------------
 const char* vtkSplattingMIPVolumeMapper::GetInstructionSet()
 {
-  return splatting::nameOf(this->Internal->Components.Settings().instructionSet);
+  return splatting::nameOf(this->Internal->Data.Components.Settings().instructionSet);
 }
 
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetAccelerationUsed()
 {
-  return static_cast<int>(this->Internal->Components.Used());
-}
-
-//------------------------------------------------------------------------------
-const char* vtkSplattingMIPVolumeMapper::GetAccelerationAsString()
-{
-  return nameOf(this->Acceleration);
-}
-
-//------------------------------------------------------------------------------
-const char* vtkSplattingMIPVolumeMapper::GetVectorModeAsString()
-{
-  switch (this->VectorMode)
-  {
-    case MAGNITUDE:
-      return "magnitude";
-    case COMPONENT:
-      return "component";
-    default:
-      return "disabled";
-  }
-}
-
-//------------------------------------------------------------------------------
-const char* vtkSplattingMIPVolumeMapper::GetQualityModeAsString()
-{
-  return nameOfMode(this->QualityMode);
+  return static_cast<int>(this->Internal->Data.Components.Used());
 }
 
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetQualityModeUsed()
 {
-  return this->Internal->QualityModeUsed;
-}
-
-//------------------------------------------------------------------------------
-const char* vtkSplattingMIPVolumeMapper::GetMaximumTypeAsString()
-{
-  switch (this->MaximumType)
-  {
-    case DEPTH_SHADED:
-      return "depth shaded";
-    case LOCAL:
-      return "local";
-    default:
-      return "global";
-  }
-}
-
-//------------------------------------------------------------------------------
-const char* vtkSplattingMIPVolumeMapper::GetKernelAsString()
-{
-  return this->Kernel == COSINE_BELL ? "cosine bell" : "trilinear";
+  return this->Internal->Data.QualityModeUsed();
 }
 
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "VectorMode: " << this->GetVectorModeAsString() << "\n";
-  os << indent << "VectorComponent: " << this->VectorComponent << "\n";
-  os << indent << "MaskInput: ";
-  this->MaskInput ? os << this->MaskInput << "\n" : os << "(none)\n";
-  os << indent << "Controller: ";
-  this->Controller ? os << this->Controller << "\n" : os << "(none)\n";
-  os << indent << "DisplayOnRootOnly: " << (this->DisplayOnRootOnly ? "On" : "Off") << "\n";
-  os << indent << "QualityMode: " << this->GetQualityModeAsString() << "\n";
-  os << indent << "QualityModeUsed: " << nameOfMode(this->GetQualityModeUsed()) << "\n";
-  os << indent << "AutoAdjustSampleDistances: " << (this->AutoAdjustSampleDistances ? "On" : "Off")
-     << "\n";
-  os << indent << "FinalColorWindow: " << this->FinalColorWindow << "\n";
-  os << indent << "FinalColorLevel: " << this->FinalColorLevel << "\n";
-  os << indent << "Kernel: " << this->GetKernelAsString() << "\n";
-  os << indent << "KernelRadius: " << this->KernelRadius << "\n";
-  os << indent << "MaximumType: " << this->GetMaximumTypeAsString() << "\n";
-  os << indent << "DepthShadingAmbient: " << this->DepthShadingAmbient << "\n";
-  os << indent << "DepthShadingChangeRate: " << this->DepthShadingChangeRate << "\n";
-  os << indent << "LocalMaximumThreshold: " << this->LocalMaximumThreshold << "\n";
-  os << indent << "Slab: " << (this->Slab ? "On" : "Off") << "\n";
-  os << indent << "SlabThickness: " << this->SlabThickness << "\n";
-  os << indent << "SlabCenter: " << this->SlabCenter[0] << ", " << this->SlabCenter[1] << ", "
-     << this->SlabCenter[2] << "\n";
-  os << indent << "BoundingSurface: " << this->BoundingSurface << "\n";
-  os << indent
-     << "IntermixIntersectingGeometry: " << (this->IntermixIntersectingGeometry ? "On" : "Off")
-     << "\n";
-  os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";
-  os << indent << "ShearImageSampling: ";
-  switch (this->ShearImageSampling)
-  {
-    case SAMPLING_OF_MODE:
-      os << "of the mode\n";
-      break;
-    case AUTOMATIC_SAMPLING:
-      os << "automatic\n";
-      break;
-    default:
-      os << this->ShearImageSampling << "\n";
-  }
-  os << indent << "Acceleration: " << this->GetAccelerationAsString() << "\n";
-  os << indent << "AccelerationUsed: " << nameOf(this->GetAccelerationUsed()) << "\n";
-  os << indent << "LineTolerance: " << this->LineTolerance << "\n";
-  os << indent << "EliminateInvisible: " << (this->EliminateInvisible ? "On" : "Off") << "\n";
-  os << indent << "CullBelowWindow: " << (this->CullBelowWindow ? "On" : "Off") << "\n";
-  os << indent << "IndexMemoryBudget: " << this->IndexMemoryBudget << "\n";
+  const PropertyPrinter print{ os, indent };
+  print("QualityModeUsed", this->GetQualityModeUsed(), nameOfQualityMode);
+  print("AccelerationUsed", this->GetAccelerationUsed(), nameOfAcceleration);
   os << indent << "LastRenderUsedRayCasting: " << (this->LastRenderUsedRayCasting ? "Yes" : "No")
      << "\n";
-  os << indent << "RecordLocations: " << (this->RecordLocations ? "On" : "Off") << "\n";
-  os << indent << "DepthCoding: " << (this->DepthCoding ? "On" : "Off") << "\n";
-  os << indent << "DepthCodingColors: " << this->DepthCodingColors << "\n";
-  os << indent << "DepthCodingRange: " << this->DepthCodingRange[0] << ", "
-     << this->DepthCodingRange[1] << "\n";
-  os << indent << "WriteDepth: " << (this->WriteDepth ? "On" : "Off") << "\n";
-  os << indent << "WriteDepthOpacity: " << this->WriteDepthOpacity << "\n";
-  os << indent << "PrincipalAxis: " << this->GetPrincipalAxis() << "\n";
-  os << indent << "Shear: " << this->GetShear()[0] << ", " << this->GetShear()[1] << "\n";
-  os << indent << "IndexMemorySize: " << this->GetIndexMemorySize() << "\n";
-  os << indent << "IndexTime: " << this->GetIndexTime() << "\n";
-  os << indent << "NumberOfProjections: " << this->GetNumberOfProjections() << "\n";
-  os << indent << "ProjectionTime: " << this->GetProjectionTime() << "\n";
-  os << indent << "InstructionSet: " << this->GetInstructionSet() << "\n";
+  print("PrincipalAxis", this->GetPrincipalAxis());
+  this->GetShear(this->Internal->Shear);
+  print("Shear", this->Internal->Shear);
+  print("IndexMemorySize", this->GetIndexMemorySize());
+  print("IndexTime", this->GetIndexTime());
+  print("NumberOfProjections", this->GetNumberOfProjections());
+  print("ProjectionTime", this->GetProjectionTime());
+  print("InstructionSet", this->GetInstructionSet());
 }

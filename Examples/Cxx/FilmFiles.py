@@ -3,65 +3,8 @@
 """The pictures of films, for the tests of the program splatmip: rows from the top, three colours."""
 import ctypes
 import ctypes.util
-import struct
 
 import numpy
-
-
-def unpack_gif(data, least):
-    """The codes of GIF's LZW, which starts with codes of so many bits."""
-    clear, end = 1 << least, (1 << least) + 1
-    table, width, held, bits, before = [], 0, 0, 0, b""
-    out = bytearray()
-    for byte in data:
-        held |= byte << bits
-        bits += 8
-        while bits >= max(width, least + 1):
-            width = max(width, least + 1)
-            code = held & ((1 << width) - 1)
-            held >>= width
-            bits -= width
-            if code == clear:
-                table = [bytes([n]) for n in range(clear)] + [b"", b""]
-                width, before = least + 1, b""
-                continue
-            if code == end:
-                return bytes(out)
-            entry = table[code] if code < len(table) else before + before[:1]
-            if before and len(table) < 4096:
-                table.append(before + entry[:1])
-            out += entry
-            before = entry
-            if len(table) == 1 << width and width < 12:
-                width += 1
-    return bytes(out)
-
-
-def read_blocks(data, place):
-    """Blocks, each behind its length, up to an empty one; and where that ends."""
-    content = bytearray()
-    while data[place]:
-        content += data[place + 1:place + 1 + data[place]]
-        place += 1 + data[place]
-    return bytes(content), place + 1
-
-
-def read_gif(path):
-    """All pictures of a GIF with one table of 256 colours."""
-    with open(path, "rb") as file:
-        data = file.read()
-    width, height = struct.unpack_from("<HH", data, 6)
-    colors = numpy.frombuffer(data, numpy.uint8, 768, 13).reshape(256, 3)
-    place, pictures = 13 + 768, []
-    while data[place] != 0x3B:
-        if data[place] == 0x21:
-            _, place = read_blocks(data, place + 2)
-            continue
-        least = data[place + 10]
-        content, place = read_blocks(data, place + 11)
-        indices = numpy.frombuffer(unpack_gif(content, least), numpy.uint8)
-        pictures.append(colors[indices].reshape(height, width, 3).astype(float))
-    return pictures
 
 
 class OggPacket(ctypes.Structure):

@@ -248,9 +248,8 @@ void CheckOutputName(const Options& options)
 {
   const bool isPNG = std::filesystem::path(options.Output).extension() == ".png";
   const bool isStill = isPNG || (IsValueFile(options.Output) && !options.Compare);
-  const std::string fault = options.Rotate > 0
-    ? CheckSeriesName(options.Output, options.DepthCoding)
-    : isStill ? ""
+  const std::string fault = options.Rotate > 0 ? CheckSeriesName(options.Output)
+    : isStill                                  ? ""
               : "not a name that ends in .png, or for values in " + JoinWords(GetValueEndings());
   if (!fault.empty())
   {
@@ -351,8 +350,9 @@ const char* const Examples = R"(Examples:
       a picture, the camera 30 degrees to the patient's left
   splatmip dicom-folder --view left --slab 30 --window 600 --level 300
       30 mm in the middle of the largest series in a folder, white from the value 600 on
-  splatmip dicom-folder --rotate 36 --output turn.gif
-      a film once round the patient
+  splatmip dicom-folder --rotate 36 --output turn.ogv
+      a film once round the patient; numbered pictures, with --output turn.png, become any other
+      film by: ffmpeg -i turn-%05d.png turn.gif
 )";
 
 /// The examples come as they are: newer versions of CLI11 would fill the lines of a footer.

@@ -48,11 +48,11 @@ struct FilmSettings
 std::vector<std::string> GetSeriesEndings();
 
 /**
- * What is wrong with the name of a series, or nothing: by its ending it is a GIF, a film (AVI or
- * Ogg Theora) or DICOM, if this build has their libraries, or PNG pictures, of which each gets its
- * number before the ending. Not all take slices that have colours of their own.
+ * What is wrong with the name of a series, or nothing: by its ending it is a film (Ogg Theora) or
+ * DICOM, if this build has their libraries, or PNG pictures, of which each gets its number before
+ * the ending.
  */
-std::string CheckSeriesName(const std::string& path, bool isColored);
+std::string CheckSeriesName(const std::string& path);
 
 /**
  * Writes the slices of an image, bottom row first: bytes, which are places in the palette, or

@@ -274,8 +274,7 @@ class TestOptions(splatmip.SplatmipTest):
         depths = find("--perspective", 60)
         self.assertGreater(depths.min(), 24 / 40 - 0.03)
         self.assertLess(depths.max(), 26 / 40 + 0.03)
-        for words in (("--blend", "mean"), ("--colormap", "hot"), ("--output", "v.nii"),
-                      ("--rotate", "4", "--output", "a.gif"), ("--compare",)):
+        for words in (("--blend", "mean"), ("--colormap", "hot"), ("--output", "v.nii"), ("--compare",)):
             self.assert_refused("--depth-coding", *words, code=2)
 
     def test_depth_legend(self):

@@ -303,7 +303,7 @@ encoding: raw
 
     def test_refusals(self):
         self.assert_refused("--output", "v.nii", "--compare", word=".png", code=2)
-        self.assert_refused("--output", "v.nii", "--rotate", "5", word=".gif", code=2)
+        self.assert_refused("--output", "v.nii", "--rotate", "5", word=".ogv", code=2)
         self.assert_refused("--output", "no/v.nii", word="no/v.nii: this cannot be written")
 
 

@@ -70,7 +70,6 @@ bool isOpen(vtkPolyData* triangles)
 }
 }
 
-//------------------------------------------------------------------------------
 const char* BoundingSurface::Update(vtkPolyData* data, const glm::dmat4& worldToIndex)
 {
   const vtkMTimeType time = data ? data->GetMTime() : 0;
@@ -98,7 +97,6 @@ const char* BoundingSurface::Update(vtkPolyData* data, const glm::dmat4& worldTo
   return this->Fault;
 }
 
-//------------------------------------------------------------------------------
 const char* BoundingSurface::MakeTriangles(vtkPolyData* data)
 {
   const vtkIdType polygons = data->GetNumberOfPolys() + data->GetNumberOfStrips();
@@ -156,7 +154,6 @@ const char* BoundingSurface::MakeTriangles(vtkPolyData* data)
   return nullptr;
 }
 
-//------------------------------------------------------------------------------
 const char* BoundingSurface::MakeSurface()
 {
   std::vector<glm::dvec3> places(this->Points.size());

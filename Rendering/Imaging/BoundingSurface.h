@@ -27,7 +27,7 @@ public:
   bool IsOpen() const { return this->Open; }
 
   /// Nullptr if there is none.
-  splatting::ClosedSurface* Get() { return this->Surface.empty() ? nullptr : &this->Surface; }
+  ClosedSurface* Get() { return this->Surface.empty() ? nullptr : &this->Surface; }
 
 private:
   const char* MakeTriangles(vtkPolyData* data);
@@ -40,7 +40,7 @@ private:
   bool Open = false;
   std::vector<glm::dvec3> Points; // in the world
   std::vector<glm::ivec3> Triangles;
-  splatting::ClosedSurface Surface;
+  ClosedSurface Surface;
 };
 }
 

@@ -12,26 +12,29 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkVolumeProperty.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <type_traits>
 
 namespace splatting
 {
-//------------------------------------------------------------------------------
-std::size_t mainImage(const std::vector<splatting::ShearWarp>& images)
+std::size_t mainImage(const std::vector<ShearWarp>& images)
 {
   const auto largest = std::max_element(images.begin(), images.end(),
-    [](const splatting::ShearWarp& a, const splatting::ShearWarp& b)
+    [](const ShearWarp& a, const ShearWarp& b)
     { return a.rayCount().x * a.rayCount().y < b.rayCount().x * b.rayCount().y; });
   return static_cast<std::size_t>(largest - images.begin());
 }
 
-//------------------------------------------------------------------------------
+bool haveSameRays(const std::vector<ShearWarp>& a, const std::vector<ShearWarp>& b, bool ordered)
+{
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+    [=](const ShearWarp& left, const ShearWarp& right)
+    { return left.sameShear(right) && (!ordered || left.reversed() == right.reversed()); });
+}
+
 bool ComponentProjector::LookAt(ScalarSource& source)
 {
   source.Update();
@@ -40,8 +43,8 @@ bool ComponentProjector::LookAt(ScalarSource& source)
   {
     return false;
   }
-  const splatting::VoxelArray before = this->Channels.front().Index.volume();
-  const splatting::VoxelArray now = source.Volume(0);
+  const VoxelArray before = this->Channels.front().Index.volume();
+  const VoxelArray now = source.Volume(0);
   const std::size_t components = source.Components();
   const bool differs = before.dimensions != now.dimensions || before.type != now.type ||
     this->Channels.size() != components;
@@ -54,14 +57,13 @@ bool ComponentProjector::LookAt(ScalarSource& source)
     this->Channels[c].Whole.reset();
   }
   this->Projected = false;
-  this->Colored = false;
+  this->Colors.Forget();
   return differs;
 }
 
-//------------------------------------------------------------------------------
-void ComponentProjector::LookAtNothing(splatting::ScalarType type, std::size_t components)
+void ComponentProjector::LookAtNothing(ScalarType type, std::size_t components)
 {
-  const splatting::VolumeIndex& before = this->Channels.front().Index;
+  const VolumeIndex& before = this->Channels.front().Index;
   if (before.volume().voxels || before.volume().type != type || this->Channels.size() != components)
   {
     this->Channels.resize(components);
@@ -73,11 +75,10 @@ void ComponentProjector::LookAtNothing(splatting::ScalarType type, std::size_t c
     this->Dependent = false;
     this->Version = 0;
     this->Projected = false;
-    this->Colored = false;
+    this->Colors.Forget();
   }
 }
 
-//------------------------------------------------------------------------------
 void ComponentProjector::HoldNothing()
 {
   this->Channels.clear();
@@ -87,11 +88,10 @@ void ComponentProjector::HoldNothing()
   this->Dependent = false;
   this->Version = 0;
   this->Projected = false;
-  this->Colored = false;
+  this->Colors.Forget();
 }
 
-//------------------------------------------------------------------------------
-const splatting::VolumeIndex::Range& ComponentProjector::RangeOfPiece(std::size_t component)
+const VolumeIndex::Range& ComponentProjector::RangeOfPiece(std::size_t component)
 {
   Channel& channel = this->Channels[component];
   if (!channel.Here)
@@ -101,7 +101,6 @@ const splatting::VolumeIndex::Range& ComponentProjector::RangeOfPiece(std::size_
   return *channel.Here;
 }
 
-//------------------------------------------------------------------------------
 void ComponentProjector::SetRanks(PieceExchange* ranks)
 {
   this->Projected = this->Projected && this->Ranks == ranks;
@@ -115,22 +114,23 @@ void ComponentProjector::SetRanks(PieceExchange* ranks)
       {
         channel.Index.reset(channel.Index.volume());
         channel.Whole.reset();
-        this->Colored = this->Projected = false;
+        this->Colors.Forget();
+        this->Projected = false;
       }
       continue;
     }
-    const splatting::VolumeIndex::Range range = ranks->RangeOfWhole(c);
+    const VolumeIndex::Range range = ranks->RangeOfWhole(c);
     if (!channel.Whole || channel.Whole->low != range.low || channel.Whole->high != range.high ||
       channel.Whole->special != range.special)
     {
-      this->Colored = this->Projected = false;
+      this->Colors.Forget();
+      this->Projected = false;
     }
     channel.Whole = range;
     channel.Index.setRangeOfWhole(*channel.Whole); // again if the budget has changed
   }
 }
 
-//------------------------------------------------------------------------------
 bool ComponentProjector::SetBudget(std::size_t bytes)
 {
   bool changed = false;
@@ -142,14 +142,12 @@ bool ComponentProjector::SetBudget(std::size_t bytes)
   return changed;
 }
 
-//------------------------------------------------------------------------------
 bool ComponentProjector::ExceedsBudget() const
 {
   return std::any_of(this->Channels.begin(), this->Channels.end(),
     [](const Channel& channel) { return channel.Index.exceedsBudget(); });
 }
 
-//------------------------------------------------------------------------------
 std::size_t ComponentProjector::MemorySize() const
 {
   std::size_t size = 0;
@@ -160,7 +158,6 @@ std::size_t ComponentProjector::MemorySize() const
   return size;
 }
 
-//------------------------------------------------------------------------------
 double ComponentProjector::Time() const
 {
   double seconds = 0.0;
@@ -171,108 +168,42 @@ double ComponentProjector::Time() const
   return seconds;
 }
 
-//------------------------------------------------------------------------------
-// Of what is projected: depth shading can leave the range of the voxels.
-ScalarRange ComponentProjector::RangeOf(Channel& channel) const
+void ComponentProjector::UpdateColors(
+  vtkVolumeProperty* property, const FinalColor& finalColor, const ProjectionSettings& settings)
 {
-  const splatting::VolumeIndex::Range& range = channel.Index.range();
-  const bool integers = channel.Index.volume().type < splatting::ScalarType::Float32;
-  if (this->Shading[0] >= 0.0 && this->Shading[1] <= 1.0)
+  std::vector<VolumeIndex*> components;
+  for (Channel& channel : this->Channels)
   {
-    return { range.low, range.high, integers };
+    components.push_back(&channel.Index);
   }
-  const double low = std::isfinite(range.low) ? range.low : 0.0;
-  return { std::min(range.low, low + this->Shading[0] * (range.high - low)),
-    std::max(range.high, low + this->Shading[1] * (range.high - low)), integers };
+  this->Colors.Update(property, finalColor, settings, components, this->Dependent);
 }
 
-//------------------------------------------------------------------------------
-splatting::ColorTable ComponentProjector::ColorsOf(
-  int channel, vtkVolumeProperty* property, const FinalColor& finalColor)
-{
-  const ScalarRange scalars = this->RangeOf(this->Channels[channel]);
-  const int components = static_cast<int>(this->Channels.size());
-  if (!this->Dependent)
-  {
-    const double weight = components > 1 ? property->GetComponentWeight(channel) : 1.0;
-    return tabulateColors(property, channel, weight, scalars, finalColor);
-  }
-  if (channel == components - 1)
-  {
-    return tabulateOpacity(property, scalars);
-  }
-  return components == 2 ? tabulateOpaque(property, scalars, finalColor)
-                         : tabulatePrimary(channel, finalColor);
-}
-
-//------------------------------------------------------------------------------
-void ComponentProjector::UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor,
-  const splatting::ProjectionSettings& settings)
-{
-  double shading[2] = { 0.0, 1.0 };
-  if (settings.reduction == splatting::Reduction::DepthShaded)
-  {
-    const double nearest = settings.ambient + settings.changeRate;
-    shading[0] = std::min({ 0.0, settings.ambient, nearest });
-    shading[1] = std::max({ 1.0, settings.ambient, nearest });
-  }
-  if (this->Colored && std::equal(shading, shading + 2, this->Shading) &&
-    this->ColoredBy == property && this->ColorTime == property->GetMTime() &&
-    this->ColoredFor == finalColor)
-  {
-    return;
-  }
-  std::copy(shading, shading + 2, this->Shading);
-  for (std::size_t c = 0; c < this->Channels.size(); ++c)
-  {
-    this->Channels[c].Colors = this->ColorsOf(static_cast<int>(c), property, finalColor);
-  }
-  this->ColoredFor = finalColor;
-  this->ColoredBy = property;
-  this->ColorTime = property->GetMTime();
-  this->Colored = true;
-}
-
-//------------------------------------------------------------------------------
-// The scalar up to which all have the colour of the lowest.
-double ComponentProjector::Channel::FloorOfWindow() const
-{
-  const std::vector<std::uint32_t>& colors = this->Colors.colors;
-  const auto last = std::adjacent_find(colors.begin(), colors.end(), std::not_equal_to<>());
-  const double steps = std::max<double>(static_cast<double>(colors.size()) - 1.0, 1.0);
-  const double share =
-    last == colors.end() ? 1.0 : static_cast<double>(last - colors.begin()) / steps;
-  return this->Colors.low + share * (this->Colors.high - this->Colors.low);
-}
-
-//------------------------------------------------------------------------------
 // Whether all but the last component go with the winners.
-bool ComponentProjector::Carries(const splatting::ProjectionSettings& settings) const
+bool ComponentProjector::Carries(const ProjectionSettings& settings) const
 {
-  return this->Dependent && settings.reduction != splatting::Reduction::Mean;
+  return this->Dependent && settings.reduction != Reduction::Mean;
 }
 
-//------------------------------------------------------------------------------
-splatting::ProjectionSettings ComponentProjector::SettingsOf(
-  const Channel& channel, splatting::ProjectionSettings settings) const
+ProjectionSettings ComponentProjector::SettingsOf(
+  const Channel& channel, ProjectionSettings settings) const
 {
   // Whether locations are wanted is the mapper's affair.
   settings.keepWinners =
     this->Carries(settings) || (settings.keepWinners && &channel == &this->LocatedChannel());
-  if (this->Carries(settings) && settings.quality == splatting::Quality::Exact)
+  if (this->Carries(settings) && settings.quality == Quality::Exact)
   {
-    settings.quality = splatting::Quality::High; // what is carried is an average
+    settings.quality = Quality::High; // what is carried is an average
   }
   // Colours that are carried, and locations, matter below the window, too.
-  if (this->Cull && !settings.keepWinners && settings.reduction == splatting::Reduction::Maximum)
+  if (this->Cull && !settings.keepWinners && settings.reduction == Reduction::Maximum)
   {
-    settings.floor = channel.FloorOfWindow();
+    settings.floor = this->Colors.FloorOfWindow(&channel - this->Channels.data());
   }
   return settings;
 }
 
-//------------------------------------------------------------------------------
-bool ComponentProjector::Shows(const splatting::ProjectionSettings& settings) const
+bool ComponentProjector::Shows(const ProjectionSettings& settings) const
 {
   return this->Projected &&
     std::all_of(this->Channels.begin(), this->Channels.end(),
@@ -280,21 +211,19 @@ bool ComponentProjector::Shows(const splatting::ProjectionSettings& settings) co
       { return this->SettingsOf(channel, settings) == channel.Settings; });
 }
 
-//------------------------------------------------------------------------------
-bool ComponentProjector::ProjectChannel(Channel& channel, splatting::ShearImage& image,
-  const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
-  const splatting::Cuts& cuts)
+bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
+  const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts)
 {
   channel.Settings = this->SettingsOf(channel, settings);
   if (this->Ranks && !channel.Index.volume().voxels)
   {
-    splatting::blank(geometry, channel.Index.volume().type, channel.Settings, image);
+    blank(geometry, channel.Index.volume().type, channel.Settings, image);
     image.special = channel.Index.range().special;
     ++this->Done;
     return true;
   }
-  const splatting::Acceleration used = this->Projector.project(channel.Index, geometry,
-    channel.Settings, cuts, image, this->Ranks ? this->Ranks->First() : glm::ivec3(0));
+  const Acceleration used = this->Projector.project(channel.Index, geometry, channel.Settings, cuts,
+    image, this->Ranks ? this->Ranks->First() : glm::ivec3(0));
   if (this->Projector.stopped())
   {
     return false;
@@ -305,11 +234,9 @@ bool ComponentProjector::ProjectChannel(Channel& channel, splatting::ShearImage&
   return true;
 }
 
-//------------------------------------------------------------------------------
 // One image of all channels: what is carried needs the projector as the projection has left it.
-bool ComponentProjector::ProjectPart(std::size_t n, Place place,
-  const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
-  const splatting::Cuts& cuts)
+bool ComponentProjector::ProjectPart(std::size_t n, Place place, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const Cuts& cuts)
 {
   if (!this->Carries(settings))
   {
@@ -318,7 +245,7 @@ bool ComponentProjector::ProjectPart(std::size_t n, Place place,
       { return this->ProjectChannel(channel, place(channel, n), geometry, settings, cuts); });
   }
   Channel& last = this->Channels.back();
-  const splatting::ShearImage& winners = place(last, n);
+  const ShearImage& winners = place(last, n);
   if (!this->ProjectChannel(last, place(last, n), geometry, settings, cuts))
   {
     return false;
@@ -336,10 +263,9 @@ bool ComponentProjector::ProjectPart(std::size_t n, Place place,
   return true;
 }
 
-//------------------------------------------------------------------------------
 // The geometry and the cuts of a phase.
 void ComponentProjector::LookAtPhase(
-  const splatting::ShearWarp& geometry, const splatting::Cuts& cuts, const glm::ivec2& phase)
+  const ShearWarp& geometry, const Cuts& cuts, const glm::ivec2& phase)
 {
   geometry.takePhase(phase, this->PhaseGeometry);
   this->PhaseCuts.cropping = cuts.cropping;
@@ -350,20 +276,18 @@ void ComponentProjector::LookAtPhase(
   }
 }
 
-//------------------------------------------------------------------------------
 // As it is, or phase by phase.
-bool ComponentProjector::ProjectImage(std::size_t n, const splatting::ShearWarp& geometry,
-  const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts)
+bool ComponentProjector::ProjectImage(
+  std::size_t n, const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts)
 {
   const int phases = geometry.phases();
   if (phases == 1)
   {
-    const Place whole = [](Channel& channel, std::size_t image) -> splatting::ShearImage&
+    const Place whole = [](Channel& channel, std::size_t image) -> ShearImage&
     { return channel.Images[image]; };
     return this->ProjectPart(n, whole, geometry, settings, cuts);
   }
-  const Place part = [](Channel& channel, std::size_t) -> splatting::ShearImage&
-  { return channel.Phase; };
+  const Place part = [](Channel& channel, std::size_t) -> ShearImage& { return channel.Phase; };
   for (int p = 0; p < phases * phases; ++p)
   {
     const glm::ivec2 phase(p % phases, p / phases);
@@ -374,20 +298,19 @@ bool ComponentProjector::ProjectImage(std::size_t n, const splatting::ShearWarp&
     }
     for (Channel& channel : this->Channels)
     {
-      splatting::interleave(channel.Phase, phases, phase, channel.Images[n]);
+      interleave(channel.Phase, phases, phase, channel.Images[n]);
     }
   }
   return true;
 }
 
-//------------------------------------------------------------------------------
-bool ComponentProjector::Project(const std::vector<splatting::ShearWarp>& geometries,
-  const splatting::ProjectionSettings& settings, const std::vector<splatting::Cuts>& cuts)
+bool ComponentProjector::Project(const std::vector<ShearWarp>& geometries,
+  const ProjectionSettings& settings, const std::vector<Cuts>& cuts)
 {
   this->Projected = false;
   this->Done = 0;
   this->Parts = 0;
-  for (const splatting::ShearWarp& geometry : geometries)
+  for (const ShearWarp& geometry : geometries)
   {
     this->Parts += static_cast<std::size_t>(geometry.phases()) * geometry.phases();
   }
@@ -414,14 +337,12 @@ bool ComponentProjector::Project(const std::vector<splatting::ShearWarp>& geomet
   return true;
 }
 
-//------------------------------------------------------------------------------
 bool ComponentProjector::HasWinners() const
 {
   return this->Projected && this->LocatedChannel().Settings.keepWinners;
 }
 
-//------------------------------------------------------------------------------
-void ComponentProjector::Describe(splatting::Located& located) const
+void ComponentProjector::Describe(Located& located) const
 {
   const Channel& channel = this->LocatedChannel();
   located.images = &channel.Images;
@@ -435,73 +356,40 @@ void ComponentProjector::Describe(splatting::Located& located) const
   located.high = std::isfinite(channel.Range.high) ? channel.Range.high : 0.0;
 }
 
-//------------------------------------------------------------------------------
 bool ComponentProjector::CanProjectPixels() const
 {
   return this->Projected && !this->Ranks &&
-    this->LocatedChannel().Settings.reduction != splatting::Reduction::Mean;
+    this->LocatedChannel().Settings.reduction != Reduction::Mean;
 }
 
-//------------------------------------------------------------------------------
-const ComponentProjector::Pixel& ComponentProjector::ProjectPixel(
-  const splatting::ShearPixel& pixel, const std::vector<splatting::ShearWarp>& geometries,
-  const std::vector<splatting::Cuts>& cuts)
+const PixelProjector::Pixel& ComponentProjector::ProjectPixel(
+  const ShearPixel& pixel, const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts)
 {
   Channel& channel = this->Dependent ? this->Channels.back() : this->Channels.front();
-  const splatting::ShearWarp& whole = geometries[pixel.image];
-  const splatting::Cuts& wholeCuts = cuts[pixel.image];
-  const glm::ivec2 place(pixel.u, pixel.v);
-  const int phases = whole.phases();
-  if (phases > 1)
-  {
-    whole.takePhase(place % phases, this->PhaseGeometry);
-  }
-  splatting::ShearWarp& geometry = this->OnePixel.Geometries.front();
-  (phases > 1 ? this->PhaseGeometry : whole).takePixel(place / phases, geometry);
-  this->OnePixel.Cuts.cropping = wholeCuts.cropping;
-  this->OnePixel.Cuts.intervals.clear();
-  if (!wholeCuts.intervals.empty())
-  {
-    this->OnePixel.Cuts.intervals.takePixel(wholeCuts.intervals, place, geometry.width());
-  }
-  splatting::ProjectionSettings settings = channel.Settings;
-  settings.keepWinners = true;
-  settings.floor = splatting::ProjectionSettings().floor;
-  settings.acceleration = splatting::Acceleration::Dense;
-  // What frames have learnt is for frames.
-  splatting::Experience& experience = channel.Index.experience(
-    geometry.principalAxis(), static_cast<int>(settings.quality), !this->OnePixel.Cuts.none());
-  const splatting::Experience kept = experience;
-  this->PixelProjector.project(
-    channel.Index, geometry, settings, this->OnePixel.Cuts, this->OnePixel.Images.front());
-  experience = kept;
-  return this->OnePixel;
+  return this->Pixels.Project(channel.Index, channel.Settings, pixel, geometries, cuts);
 }
 
-//------------------------------------------------------------------------------
 // From the images of pieces to those of the whole.
-void ComponentProjector::Exchange(const std::vector<splatting::ShearWarp>& geometries,
-  const splatting::ProjectionSettings& settings, const std::vector<splatting::Cuts>& cuts)
+void ComponentProjector::Exchange(const std::vector<ShearWarp>& geometries,
+  const ProjectionSettings& settings, const std::vector<Cuts>& cuts)
 {
   for (std::size_t n = 0; n < geometries.size(); ++n)
   {
     for (Channel& channel : this->Channels)
     {
       this->Ranks->Reduce(channel.Images[n], geometries[n], settings.reduction);
-      if (settings.reduction == splatting::Reduction::DepthShaded)
+      if (settings.reduction == Reduction::DepthShaded)
       {
-        splatting::fillEmpty(channel.Images[n], channel.Range.low);
+        fillEmpty(channel.Images[n], channel.Range.low);
       }
       this->OutlineWhole(channel, n, geometries[n], settings, cuts[n]);
     }
   }
 }
 
-//------------------------------------------------------------------------------
 // Which pixels of an image of the whole have samples.
-void ComponentProjector::OutlineWhole(Channel& channel, std::size_t n,
-  const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
-  const splatting::Cuts& cuts)
+void ComponentProjector::OutlineWhole(Channel& channel, std::size_t n, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const Cuts& cuts)
 {
   const int phases = geometry.phases();
   if (phases == 1)
@@ -514,11 +402,10 @@ void ComponentProjector::OutlineWhole(Channel& channel, std::size_t n,
     const glm::ivec2 phase(p % phases, p / phases);
     this->LookAtPhase(geometry, cuts, phase);
     this->Projector.outline(this->PhaseGeometry, settings, this->PhaseCuts, channel.Phase);
-    splatting::interleaveOutline(channel.Phase, phases, phase, channel.Images[n]);
+    interleaveOutline(channel.Phase, phases, phase, channel.Images[n]);
   }
 }
 
-//------------------------------------------------------------------------------
 double ComponentProjector::ShareOfAll(double done) const
 {
   const std::size_t channels = this->Carries(this->Settings()) ? 1 : this->Channels.size();
@@ -526,15 +413,14 @@ double ComponentProjector::ShareOfAll(double done) const
     static_cast<double>(channels * std::max<std::size_t>(this->Parts, 1));
 }
 
-//------------------------------------------------------------------------------
-void ComponentProjector::FindRim(const std::vector<splatting::ShearWarp>& geometries,
-  const std::vector<splatting::Cuts>& cuts, const splatting::View& view)
+void ComponentProjector::FindRim(
+  const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts, const View& view)
 {
   const glm::ivec3 first = this->Ranks ? this->Ranks->First() : glm::ivec3(0);
   for (Channel& channel : this->Channels)
   {
     channel.Rim.clear();
-    if (geometries.empty() || !splatting::hasFieldRim(channel.Settings))
+    if (geometries.empty() || !hasFieldRim(channel.Settings))
     {
       continue;
     }
@@ -542,15 +428,13 @@ void ComponentProjector::FindRim(const std::vector<splatting::ShearWarp>& geomet
       channel.Images, geometries, { channel.Index.volume(), first, &cuts }, view.viewport);
     if (this->Ranks && channel.Rim.values().width > 0)
     {
-      this->Ranks->Reduce(channel.Rim.values(), geometries.front(), splatting::Reduction::Maximum);
+      this->Ranks->Reduce(channel.Rim.values(), geometries.front(), Reduction::Maximum);
     }
   }
 }
 
-//------------------------------------------------------------------------------
 // Where areas are shown, what is carried is that of the sample that wins in the area.
-void ComponentProjector::FindShown(
-  const std::vector<splatting::ShearWarp>& geometries, const splatting::View& view)
+void ComponentProjector::FindShown(const std::vector<ShearWarp>& geometries, const View& view)
 {
   const Channel& last = this->Channels.back();
   this->Shown.clear();
@@ -558,32 +442,32 @@ void ComponentProjector::FindShown(
   {
     return;
   }
-  splatting::Picture place;
-  splatting::placePicture(geometries, view.viewport, place);
+  Picture place;
+  placePicture(geometries, view.viewport, place);
   this->Shown.resize(std::size_t(place.size.x) * place.size.y);
-  splatting::findShearPixels(
+  findShearPixels(
     last.Images, geometries, last.Settings.reduction, place.origin, place.size, this->Shown.data());
 }
 
-//------------------------------------------------------------------------------
-void ComponentProjector::Warp(const std::vector<splatting::ShearWarp>& geometries,
-  const splatting::View& view, splatting::Picture& picture)
+void ComponentProjector::Warp(
+  const std::vector<ShearWarp>& geometries, const View& view, Picture& picture)
 {
   this->FindShown(geometries, view);
-  for (Channel& channel : this->Channels)
+  for (std::size_t c = 0; c < this->Channels.size(); ++c)
   {
-    const bool first = &channel == &this->Channels.front();
-    splatting::Picture& layer = first ? picture : this->Layer;
+    Channel& channel = this->Channels[c];
+    const bool first = c == 0;
+    Picture& layer = first ? picture : this->Layer;
     if (this->Shown.empty())
     {
-      this->Warper.warp(channel.Images, geometries, channel.Settings.reduction, channel.Colors,
+      this->Warper.warp(channel.Images, geometries, channel.Settings.reduction, this->Colors.Of(c),
         view.viewport, channel.Settings.instructionSet, layer, channel.Rim);
     }
     else
     {
-      splatting::placePicture(geometries, view.viewport, layer);
+      placePicture(geometries, view.viewport, layer);
       this->Warper.warpPixels(
-        channel.Images, this->Shown, channel.Colors, channel.Settings.instructionSet, layer);
+        channel.Images, this->Shown, this->Colors.Of(c), channel.Settings.instructionSet, layer);
     }
     if (first)
     {
@@ -591,18 +475,17 @@ void ComponentProjector::Warp(const std::vector<splatting::ShearWarp>& geometrie
     }
     if (this->Dependent && &channel == &this->Channels.back())
     {
-      splatting::multiplyByOpacity(this->Layer, picture);
+      multiplyByOpacity(this->Layer, picture);
     }
     else
     {
-      splatting::addSaturated(this->Layer, picture);
+      addSaturated(this->Layer, picture);
     }
   }
 }
 
-//------------------------------------------------------------------------------
-void ComponentProjector::WarpScalars(const std::vector<splatting::ShearWarp>& geometries,
-  const splatting::View& view, double background, void* scalars)
+void ComponentProjector::WarpScalars(
+  const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars)
 {
   const std::size_t components = this->Channels.size();
   const std::size_t pixels = std::size_t(view.viewport.x) * view.viewport.y;
@@ -627,8 +510,8 @@ void ComponentProjector::WarpScalars(const std::vector<splatting::ShearWarp>& ge
       }
     }
   };
-  const splatting::ScalarType type = this->Channels.front().Index.volume().type;
-  if (splatting::averageType(type) == splatting::ScalarType::Float32)
+  const ScalarType type = this->Channels.front().Index.volume().type;
+  if (averageType(type) == ScalarType::Float32)
   {
     interleave(static_cast<float*>(scalars));
   }
@@ -638,16 +521,18 @@ void ComponentProjector::WarpScalars(const std::vector<splatting::ShearWarp>& ge
   }
 }
 
-//------------------------------------------------------------------------------
-void ComponentProjector::CopyImage(
-  std::size_t n, const splatting::ShearWarp& geometry, int vtkType, vtkImageData* output) const
+vtkSmartPointer<vtkImageData> ComponentProjector::MakeShearImage(
+  const std::vector<ShearWarp>& geometries, const ScalarSource& source) const
 {
-  const splatting::ShearImage& first = this->Channels.front().Images[n];
-  const std::size_t components = this->Channels.size(), size = splatting::sizeOf(first.type);
+  const auto output = vtkSmartPointer<vtkImageData>::New();
+  const std::size_t n = mainImage(geometries);
+  const ShearWarp& geometry = geometries[n];
+  const ShearImage& first = this->Channels.front().Images[n];
+  const std::size_t components = this->Channels.size(), size = sizeOf(first.type);
   output->SetDimensions(first.width, first.height, 1);
   output->SetOrigin(geometry.columns().at.front(), geometry.rows().at.front(), 0.0);
   output->SetSpacing(geometry.pitch(), geometry.pitch(), 1.0);
-  output->AllocateScalars(vtkType, static_cast<int>(components));
+  output->AllocateScalars(source.VtkTypeOf(first.type), static_cast<int>(components));
   const std::size_t pixels = static_cast<std::size_t>(output->GetNumberOfPoints());
   auto* const scalars = static_cast<unsigned char*>(output->GetScalarPointer());
   vtkNew<vtkUnsignedCharArray> ghosts;
@@ -656,7 +541,7 @@ void ComponentProjector::CopyImage(
   ghosts->Fill(vtkDataSetAttributes::HIDDENPOINT);
   for (std::size_t c = 0; c < components; ++c)
   {
-    const splatting::ShearImage& image = this->Channels[c].Images[n];
+    const ShearImage& image = this->Channels[c].Images[n];
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     {
       std::memcpy(
@@ -672,5 +557,6 @@ void ComponentProjector::CopyImage(
     }
   }
   output->GetPointData()->AddArray(ghosts);
+  return output;
 }
 }

@@ -3,11 +3,13 @@
 #ifndef ComponentProjector_h
 #define ComponentProjector_h
 
+#include "ComponentColors.h"
 #include "Display/Warp.h"
+#include "PixelProjector.h"
 #include "Projection/Locations.h"
 #include "Projection/Project.h"
-#include "TransferFunctions.h"
 
+#include "vtkSmartPointer.h"
 #include "vtkType.h"
 
 #include <cstddef>
@@ -23,7 +25,11 @@ class PieceExchange;
 class ScalarSource;
 
 /// The largest of a view's images, of which there is at least one.
-std::size_t mainImage(const std::vector<splatting::ShearWarp>& images);
+std::size_t mainImage(const std::vector<ShearWarp>& images);
+
+/// Whether two views have the same rays, in images as sharp, and from the same side if they are
+/// ordered.
+bool haveSameRays(const std::vector<ShearWarp>& a, const std::vector<ShearWarp>& b, bool ordered);
 
 /**
  * From the volumes of a data set's components to one picture.
@@ -40,7 +46,7 @@ public:
   bool LookAt(ScalarSource& source);
 
   /// In place of LookAt() on a rank that holds nothing of a volume of this type.
-  void LookAtNothing(splatting::ScalarType type, std::size_t components);
+  void LookAtNothing(ScalarType type, std::size_t components);
 
   /// As before the first volume: gives back what it holds, whatever state that is in.
   void HoldNothing();
@@ -48,8 +54,8 @@ public:
   /// What volumes hold, and of a piece the range of its own voxels.
   std::size_t NumberOfComponents() const { return this->Channels.size(); }
   bool AreDependent() const { return this->Dependent; }
-  splatting::ScalarType VolumeType() const { return this->Channels.front().Index.volume().type; }
-  const splatting::VolumeIndex::Range& RangeOfPiece(std::size_t component);
+  ScalarType VolumeType() const { return this->Channels.front().Index.volume().type; }
+  const VolumeIndex::Range& RangeOfPiece(std::size_t component);
 
   /// From now on the volumes are pieces, of which the images are exchanged; nullptr: they are
   /// whole. Must outlive its use.
@@ -64,8 +70,8 @@ public:
   double Time() const;
 
   /// Tables of colours for what these settings project, anew if something changed.
-  void UpdateColors(vtkVolumeProperty* property, const FinalColor& finalColor,
-    const splatting::ProjectionSettings& settings);
+  void UpdateColors(
+    vtkVolumeProperty* property, const FinalColor& finalColor, const ProjectionSettings& settings);
 
   /// Values at or below the window are not told apart; needs the colours.
   void SetCullBelowWindow(bool cull) { this->Cull = cull; }
@@ -73,14 +79,14 @@ public:
   /**
    * Whether the images are those that project() would make, the viewer's side aside.
    */
-  bool Shows(const splatting::ProjectionSettings& settings) const;
+  bool Shows(const ProjectionSettings& settings) const;
 
   /**
    * Projects all components into all images of a view, each with its cuts. False if the projector's
    * watch has stopped it: there are no images then.
    */
-  bool Project(const std::vector<splatting::ShearWarp>& geometries,
-    const splatting::ProjectionSettings& settings, const std::vector<splatting::Cuts>& cuts);
+  bool Project(const std::vector<ShearWarp>& geometries, const ProjectionSettings& settings,
+    const std::vector<Cuts>& cuts);
 
   /// Whether there are images.
   bool IsProjected() const { return this->Projected; }
@@ -90,12 +96,11 @@ public:
   /// Before the pictures of a view: finds what exact mode shows at the rim of the field.
   /// Collective.
   /// @param cuts  of the projection, for each image
-  void FindRim(const std::vector<splatting::ShearWarp>& geometries,
-    const std::vector<splatting::Cuts>& cuts, const splatting::View& view);
+  void FindRim(
+    const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts, const View& view);
 
   /// The picture of the images in a view with these geometries.
-  void Warp(const std::vector<splatting::ShearWarp>& geometries, const splatting::View& view,
-    splatting::Picture& picture);
+  void Warp(const std::vector<ShearWarp>& geometries, const View& view, Picture& picture);
 
   /**
    * The same as scalars, component after component of each pixel, row after row of the whole
@@ -103,36 +108,28 @@ public:
    * @param background  of pixels without a sample
    * @param scalars     of type averageType() of the images' type
    */
-  void WarpScalars(const std::vector<splatting::ShearWarp>& geometries, const splatting::View& view,
-    double background, void* scalars);
+  void WarpScalars(
+    const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars);
 
-  /// One image of all components as one with as many components, and which pixels have no sample in
-  /// its ghost array.
-  void CopyImage(
-    std::size_t n, const splatting::ShearWarp& geometry, int vtkType, vtkImageData* output) const;
+  /// The largest image, all components of it, and which pixels have no sample in its ghost array.
+  /// There must be images.
+  vtkSmartPointer<vtkImageData> MakeShearImage(
+    const std::vector<ShearWarp>& geometries, const ScalarSource& source) const;
 
   /// Whether the images tell where their samples lie: those of the component that is located, the
   /// last of dependent ones, else the first.
   bool HasWinners() const;
   /// Sets what is located: images, volume and its range, settings. There must be winners.
-  void Describe(splatting::Located& located) const;
+  void Describe(Located& located) const;
 
-  /// Projects one pixel of the images once more, with its winner: the image of that pixel alone.
-  /// Not of pieces, nor of means.
-  struct Pixel
-  {
-    std::vector<splatting::ShearWarp> Geometries = std::vector<splatting::ShearWarp>(1);
-    std::vector<splatting::ShearImage> Images = std::vector<splatting::ShearImage>(1);
-    splatting::Cuts Cuts;
-  };
+  /// See PixelProjector: not of pieces, nor of means.
   bool CanProjectPixels() const;
-  const Pixel& ProjectPixel(const splatting::ShearPixel& pixel,
-    const std::vector<splatting::ShearWarp>& geometries, const std::vector<splatting::Cuts>& cuts);
+  const PixelProjector::Pixel& ProjectPixel(const ShearPixel& pixel,
+    const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts);
 
   /// Of the last projection.
-  const splatting::ProjectionSettings& Settings() const { return this->Channels.front().Settings; }
-  splatting::Acceleration Used() const { return this->Channels.front().Used; }
-  splatting::ScalarType ImageType() const { return this->Channels.front().Images.front().type; }
+  const ProjectionSettings& Settings() const { return this->Channels.front().Settings; }
+  Acceleration Used() const { return this->Channels.front().Used; }
 
   /// Part of all components that the projection of one is, from the share of that.
   double ShareOfAll(double done) const;
@@ -142,45 +139,36 @@ public:
 private:
   struct Channel
   {
-    splatting::VolumeIndex Index;
-    std::optional<splatting::VolumeIndex::Range> Here, Whole; // of pieces only
-    splatting::ColorTable Colors;
-    splatting::ProjectionSettings Settings;
-    std::vector<splatting::ShearImage> Images; // at least as many as the view has
-    splatting::ShearImage Phase;               // the present part of one of them
-    splatting::FieldRim Rim;
-    splatting::VolumeIndex::Range Range; // of what was projected
-    splatting::Acceleration Used = splatting::Acceleration::Dense;
-
-    double FloorOfWindow() const;
+    VolumeIndex Index;
+    std::optional<VolumeIndex::Range> Here, Whole; // of pieces only
+    ProjectionSettings Settings;
+    std::vector<ShearImage> Images; // at least as many as the view has
+    ShearImage Phase;               // the present part of one of them
+    FieldRim Rim;
+    VolumeIndex::Range Range; // of what was projected
+    Acceleration Used = Acceleration::Dense;
   };
 
-  void FindShown(const std::vector<splatting::ShearWarp>& geometries, const splatting::View& view);
-  splatting::ProjectionSettings SettingsOf(
-    const Channel& channel, splatting::ProjectionSettings settings) const;
-  bool Carries(const splatting::ProjectionSettings& settings) const;
+  void FindShown(const std::vector<ShearWarp>& geometries, const View& view);
+  ProjectionSettings SettingsOf(const Channel& channel, ProjectionSettings settings) const;
+  bool Carries(const ProjectionSettings& settings) const;
   const Channel& LocatedChannel() const
   {
     return this->Dependent ? this->Channels.back() : this->Channels.front();
   }
-  void Exchange(const std::vector<splatting::ShearWarp>& geometries,
-    const splatting::ProjectionSettings& settings, const std::vector<splatting::Cuts>& cuts);
-  void OutlineWhole(Channel& channel, std::size_t n, const splatting::ShearWarp& geometry,
-    const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
-  void LookAtPhase(
-    const splatting::ShearWarp& geometry, const splatting::Cuts& cuts, const glm::ivec2& phase);
-  bool ProjectImage(std::size_t n, const splatting::ShearWarp& geometry,
-    const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
+  void Exchange(const std::vector<ShearWarp>& geometries, const ProjectionSettings& settings,
+    const std::vector<Cuts>& cuts);
+  void OutlineWhole(Channel& channel, std::size_t n, const ShearWarp& geometry,
+    const ProjectionSettings& settings, const Cuts& cuts);
+  void LookAtPhase(const ShearWarp& geometry, const Cuts& cuts, const glm::ivec2& phase);
+  bool ProjectImage(
+    std::size_t n, const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts);
   /// Where a channel's image belongs.
-  using Place = splatting::ShearImage& (*)(Channel&, std::size_t n);
-  bool ProjectPart(std::size_t n, Place place, const splatting::ShearWarp& geometry,
-    const splatting::ProjectionSettings& settings, const splatting::Cuts& cuts);
-  bool ProjectChannel(Channel& channel, splatting::ShearImage& image,
-    const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
-    const splatting::Cuts& cuts);
-  ScalarRange RangeOf(Channel& channel) const;
-  splatting::ColorTable ColorsOf(
-    int channel, vtkVolumeProperty* property, const FinalColor& finalColor);
+  using Place = ShearImage& (*)(Channel&, std::size_t n);
+  bool ProjectPart(std::size_t n, Place place, const ShearWarp& geometry,
+    const ProjectionSettings& settings, const Cuts& cuts);
+  bool ProjectChannel(Channel& channel, ShearImage& image, const ShearWarp& geometry,
+    const ProjectionSettings& settings, const Cuts& cuts);
 
   std::vector<Channel> Channels = std::vector<Channel>(1);
   bool Dependent = false;
@@ -191,19 +179,14 @@ private:
   vtkIdType Version = 0; // of the source
   PieceExchange* Ranks = nullptr;
 
-  vtkVolumeProperty* ColoredBy = nullptr; // only compared
-  vtkMTimeType ColorTime = 0;
-  FinalColor ColoredFor;
-  double Shading[2] = { 0.0, 1.0 }; // of all samples, the least and the greatest factor
-  bool Colored = false;
-
-  splatting::ShearWarp PhaseGeometry;
-  splatting::Cuts PhaseCuts;
-  splatting::Projector Projector, PixelProjector;
-  Pixel OnePixel;
+  ComponentColors Colors;
+  ShearWarp PhaseGeometry;
+  Cuts PhaseCuts;
+  splatting::Projector Projector;
+  PixelProjector Pixels;
   splatting::Warper Warper;
-  splatting::Picture Layer; // of one component
-  std::vector<splatting::ShearPixel> Shown;
+  Picture Layer; // of one component
+  std::vector<ShearPixel> Shown;
   std::vector<unsigned char> Plane; // likewise, scalars
 };
 }

@@ -28,10 +28,9 @@ T* addArray(vtkImageData* image, const char* name, int components, T none)
 }
 }
 
-//------------------------------------------------------------------------------
-splatting::Locator::Arrays addLocationArrays(vtkImageData* image)
+Locator::Arrays addLocationArrays(vtkImageData* image)
 {
-  splatting::Locator::Arrays arrays;
+  Locator::Arrays arrays;
   arrays.voxels = addArray<vtkIntArray>(image, "Voxel", 3, -1);
   arrays.depths =
     addArray<vtkFloatArray>(image, "Depth", 1, std::numeric_limits<float>::quiet_NaN());

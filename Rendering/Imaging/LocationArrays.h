@@ -13,7 +13,7 @@ namespace splatting
  * Gives an image the point arrays "Voxel" (three ints), "Depth" (float) and "Position" (three
  * doubles), for now those of pixels without a sample: -1 and NaN. Returns where to write others.
  */
-splatting::Locator::Arrays addLocationArrays(vtkImageData* image);
+Locator::Arrays addLocationArrays(vtkImageData* image);
 }
 
 #endif

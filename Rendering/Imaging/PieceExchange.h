@@ -21,14 +21,13 @@ public:
 
   /// Where the piece's voxels begin in the whole.
   virtual const glm::ivec3& First() const = 0;
-  virtual splatting::VolumeIndex::Range RangeOfWhole(std::size_t component) const = 0;
+  virtual VolumeIndex::Range RangeOfWhole(std::size_t component) const = 0;
 
   /// Collective: all must call it. Whether something is so with any of them.
   virtual bool Any(bool here) const = 0;
   /// Collective. From the image of a piece to that of the whole, but for its spans and mask.
   /// @param geometry  of the whole
-  virtual void Reduce(splatting::ShearImage& image, const splatting::ShearWarp& geometry,
-    splatting::Reduction reduction) = 0;
+  virtual void Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction) = 0;
 };
 }
 

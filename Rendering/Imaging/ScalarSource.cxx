@@ -25,19 +25,19 @@ namespace splatting
 namespace
 {
 template <class T>
-splatting::ScalarType sizedType()
+ScalarType sizedType()
 {
   constexpr bool isSigned = std::numeric_limits<T>::is_signed;
   switch (sizeof(T))
   {
     case 1:
-      return isSigned ? splatting::ScalarType::Int8 : splatting::ScalarType::UInt8;
+      return isSigned ? ScalarType::Int8 : ScalarType::UInt8;
     case 2:
-      return isSigned ? splatting::ScalarType::Int16 : splatting::ScalarType::UInt16;
+      return isSigned ? ScalarType::Int16 : ScalarType::UInt16;
     case 4:
-      return isSigned ? splatting::ScalarType::Int32 : splatting::ScalarType::UInt32;
+      return isSigned ? ScalarType::Int32 : ScalarType::UInt32;
     default:
-      return isSigned ? splatting::ScalarType::Int64 : splatting::ScalarType::UInt64;
+      return isSigned ? ScalarType::Int64 : ScalarType::UInt64;
   }
 }
 
@@ -63,9 +63,9 @@ bool isSeparate(vtkSOADataArrayTemplate<T>* array)
 
 /// A component of an array, without a place if it is stored in an unusual way.
 template <class T>
-splatting::StridedVoxels componentOf(vtkDataArray* array, int component)
+StridedVoxels componentOf(vtkDataArray* array, int component)
 {
-  const splatting::ScalarType type = scalarTypeOfVtk(array->GetDataType());
+  const ScalarType type = scalarTypeOfVtk(array->GetDataType());
   auto* const structure = vtkSOADataArrayTemplate<T>::SafeDownCast(array);
   if (structure && isSeparate(structure))
   {
@@ -76,13 +76,13 @@ splatting::StridedVoxels componentOf(vtkDataArray* array, int component)
     array->GetNumberOfComponents() };
 }
 
-splatting::StridedVoxels componentOf(vtkDataArray* array, int component)
+StridedVoxels componentOf(vtkDataArray* array, int component)
 {
   switch (array->GetDataType())
   {
     vtkTemplateMacro(return componentOf<VTK_TT>(array, component));
   }
-  return { nullptr, splatting::ScalarType::Float32, 1 };
+  return { nullptr, ScalarType::Float32, 1 };
 }
 
 std::ptrdiff_t count(const glm::ivec3& size)
@@ -128,7 +128,7 @@ std::string problemOfInput(vtkDataSet* input)
 /// The voxels of one component of several, in an array of T. In place of NaN the least
 /// number. False if all are NaN.
 template <class T>
-bool interleave(const splatting::VoxelArray& volume, int component, int components, T* out)
+bool interleave(const VoxelArray& volume, int component, int components, T* out)
 {
   const T* const in = static_cast<const T*>(volume.voxels);
   const std::ptrdiff_t n = count(volume.dimensions);
@@ -154,7 +154,7 @@ bool interleave(const splatting::VoxelArray& volume, int component, int componen
 /// Whether one of the values, stored one after the other, is NaN.
 bool hasNaN(vtkDataArray* scalars)
 {
-  return splatting::dispatch(scalarTypeOfVtk(scalars->GetDataType()),
+  return dispatch(scalarTypeOfVtk(scalars->GetDataType()),
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
@@ -166,36 +166,31 @@ bool hasNaN(vtkDataArray* scalars)
 }
 }
 
-//------------------------------------------------------------------------------
-splatting::ScalarType scalarTypeOfVtk(int vtkType)
+ScalarType scalarTypeOfVtk(int vtkType)
 {
   if (vtkType == VTK_DOUBLE)
   {
-    return splatting::ScalarType::Float64;
+    return ScalarType::Float64;
   }
   if (vtkType == VTK_FLOAT)
   {
-    return splatting::ScalarType::Float32;
+    return ScalarType::Float32;
   }
   switch (vtkType)
   {
     vtkTemplateMacro(return sizedType<VTK_TT>());
   }
-  return splatting::ScalarType::Float32;
+  return ScalarType::Float32;
 }
 
-//------------------------------------------------------------------------------
 const char* const ScalarSource::NoMemory =
   "There is not enough memory to project this volume: make room, lower IndexMemoryBudget, or show "
   "a part of the volume or fewer components.";
 
-//------------------------------------------------------------------------------
 ScalarSource::ScalarSource() = default;
 
-//------------------------------------------------------------------------------
 ScalarSource::~ScalarSource() = default;
 
-//------------------------------------------------------------------------------
 bool ScalarSource::Key::operator==(const Key& other) const
 {
   return this->input == other.input && this->time == other.time && this->scalars == other.scalars &&
@@ -205,7 +200,6 @@ bool ScalarSource::Key::operator==(const Key& other) const
     this->maskTime == other.maskTime;
 }
 
-//------------------------------------------------------------------------------
 // Choices that make no difference are made equal, so that a change of them changes nothing.
 void ScalarSource::Key::DropIdle()
 {
@@ -220,15 +214,13 @@ void ScalarSource::Key::DropIdle()
   this->independent = this->independent || isSingle || this->vectorMode != all;
 }
 
-//------------------------------------------------------------------------------
-void* ScalarSource::Copy::Allocate(std::ptrdiff_t voxels, splatting::ScalarType type)
+void* ScalarSource::Copy::Allocate(std::ptrdiff_t voxels, ScalarType type)
 {
-  this->size = static_cast<std::size_t>(voxels) * splatting::sizeOf(type);
+  this->size = static_cast<std::size_t>(voxels) * sizeOf(type);
   this->bytes.reset(new unsigned char[this->size]);
   return this->bytes.get();
 }
 
-//------------------------------------------------------------------------------
 std::string ScalarSource::Examine(vtkDataSet* input, const ScalarChoice& choice)
 {
   Key key;
@@ -259,7 +251,6 @@ std::string ScalarSource::Examine(vtkDataSet* input, const ScalarChoice& choice)
   return problem;
 }
 
-//------------------------------------------------------------------------------
 // Finds the chosen array and says what is wrong with it.
 std::string ScalarSource::FindScalars(vtkDataSet* input, const ScalarChoice& choice, Key& key) const
 {
@@ -296,7 +287,6 @@ std::string ScalarSource::FindScalars(vtkDataSet* input, const ScalarChoice& cho
   return {};
 }
 
-//------------------------------------------------------------------------------
 // What is projected of the array's components.
 std::string ScalarSource::CheckComponents(const Key& key)
 {
@@ -332,16 +322,14 @@ std::string ScalarSource::CheckComponents(const Key& key)
   return {};
 }
 
-//------------------------------------------------------------------------------
 bool ScalarSource::IsMagnitude() const
 {
   return this->Examined.vectorMode == ScalarChoice::Magnitude &&
     this->Examined.scalars->GetNumberOfComponents() > 1;
 }
 
-//------------------------------------------------------------------------------
 // The components that are projected, or make up the magnitude that is.
-std::vector<splatting::StridedVoxels> ScalarSource::ChosenComponents()
+std::vector<StridedVoxels> ScalarSource::ChosenComponents()
 {
   vtkDataArray* scalars = this->Examined.scalars;
   if (!componentOf(scalars, 0).voxels)
@@ -353,7 +341,7 @@ std::vector<splatting::StridedVoxels> ScalarSource::ChosenComponents()
   const int available = scalars->GetNumberOfComponents();
   const bool one = this->Examined.vectorMode == ScalarChoice::Component;
   const int first = one ? this->Examined.vectorComponent : 0;
-  std::vector<splatting::StridedVoxels> components;
+  std::vector<StridedVoxels> components;
   for (int c = first; c < (one ? first + 1 : available); ++c)
   {
     components.push_back(componentOf(scalars, c));
@@ -361,25 +349,24 @@ std::vector<splatting::StridedVoxels> ScalarSource::ChosenComponents()
   return components;
 }
 
-//------------------------------------------------------------------------------
-splatting::VoxelArray ScalarSource::MakeVolume(
-  splatting::StridedVoxels voxels, const std::vector<unsigned char>& hidden, Copy& copy) const
+VoxelArray ScalarSource::MakeVolume(
+  StridedVoxels voxels, const std::vector<unsigned char>& hidden, Copy& copy) const
 {
   const std::ptrdiff_t given = count(this->Place.dimensions);
   if (!hidden.empty())
   {
-    const splatting::ScalarType type = splatting::averageType(voxels.type);
+    const ScalarType type = averageType(voxels.type);
     void* const shown = copy.Allocate(given, type);
-    splatting::hide(voxels, hidden.data(), given, shown);
+    hide(voxels, hidden.data(), given, shown);
     voxels = { shown, type, 1 };
   }
   if (this->Place.resampled)
   {
     const bool cells = this->Place.grid.cells;
-    const splatting::ScalarType type = cells ? voxels.type : splatting::averageType(voxels.type);
+    const ScalarType type = cells ? voxels.type : averageType(voxels.type);
     Copy even;
     void* const resampled = even.Allocate(count(this->Place.grid.dimensions), type);
-    (cells ? splatting::resampleCells : splatting::resamplePoints)(
+    (cells ? resampleCells : resamplePoints)(
       voxels, this->Place.dimensions, this->Place.axes, resampled);
     copy = std::move(even);
     voxels = { resampled, type, 1 };
@@ -387,13 +374,12 @@ splatting::VoxelArray ScalarSource::MakeVolume(
   if (voxels.stride != 1)
   {
     void* const gathered = copy.Allocate(given, voxels.type);
-    splatting::gather(voxels, given, gathered);
+    gather(voxels, given, gathered);
     voxels = { gathered, voxels.type, 1 };
   }
   return { voxels.voxels, voxels.type, this->Place.grid.dimensions };
 }
 
-//------------------------------------------------------------------------------
 void ScalarSource::Update()
 {
   if (this->Volumed == this->Examined)
@@ -408,16 +394,16 @@ void ScalarSource::Update()
   this->VtkType = this->Examined.scalars->GetDataType();
   const std::vector<unsigned char> hidden =
     findBlanked(this->Examined.input, this->Examined.cells, this->Examined.mask);
-  std::vector<splatting::StridedVoxels> components = this->ChosenComponents();
+  std::vector<StridedVoxels> components = this->ChosenComponents();
   Copy lengths;
   if (this->IsMagnitude())
   {
     const std::ptrdiff_t voxels = count(this->Place.dimensions);
-    const splatting::ScalarType type = splatting::averageType(components.front().type);
-    splatting::magnitude(components, voxels, lengths.Allocate(voxels, type));
+    const ScalarType type = averageType(components.front().type);
+    magnitude(components, voxels, lengths.Allocate(voxels, type));
     components = { { lengths.bytes.get(), type, 1 } };
   }
-  for (const splatting::StridedVoxels& component : components)
+  for (const StridedVoxels& component : components)
   {
     Copy copy;
     this->Volumes.push_back(this->MakeVolume(component, hidden, copy));
@@ -429,7 +415,6 @@ void ScalarSource::Update()
   this->Seconds = vtkTimerLog::GetUniversalTime() - start;
 }
 
-//------------------------------------------------------------------------------
 void ScalarSource::HoldNothing(int vtkType)
 {
   this->Examined = this->Volumed = this->Imaged = {};
@@ -441,24 +426,21 @@ void ScalarSource::HoldNothing(int vtkType)
   this->VtkType = vtkType;
 }
 
-//------------------------------------------------------------------------------
-int ScalarSource::VtkTypeOf(splatting::ScalarType type) const
+int ScalarSource::VtkTypeOf(ScalarType type) const
 {
   if (type == scalarTypeOfVtk(this->VtkType))
   {
     return this->VtkType; // keeps char apart from signed char, long from long long
   }
-  return type == splatting::ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
+  return type == ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
 }
 
-//------------------------------------------------------------------------------
 int ScalarSource::AverageVtkType(int vtkType)
 {
-  const splatting::ScalarType type = splatting::averageType(scalarTypeOfVtk(vtkType));
-  return type == splatting::ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
+  const ScalarType type = averageType(scalarTypeOfVtk(vtkType));
+  return type == ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
 }
 
-//------------------------------------------------------------------------------
 // Whether the chosen array is what is projected, one voxel after the other and without holes: ray
 // casters take NaN for a number, and read the buffer from several threads, while an array that is
 // stored otherwise makes one only then.
@@ -472,7 +454,6 @@ bool ScalarSource::IsInputArray() const
     !hasNaN(this->Examined.scalars);
 }
 
-//------------------------------------------------------------------------------
 // Nothing if no voxel has a number.
 vtkSmartPointer<vtkDataArray> ScalarSource::InterleavedVolumes() const
 {
@@ -484,7 +465,7 @@ vtkSmartPointer<vtkDataArray> ScalarSource::InterleavedVolumes() const
   bool found = false;
   for (int c = 0; c < components; ++c)
   {
-    splatting::dispatch(this->Volumes[c].type,
+    dispatch(this->Volumes[c].type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
@@ -495,7 +476,6 @@ vtkSmartPointer<vtkDataArray> ScalarSource::InterleavedVolumes() const
   return found ? array : nullptr;
 }
 
-//------------------------------------------------------------------------------
 vtkImageData* ScalarSource::Image()
 {
   if (!this->StandIn || !(this->Imaged == this->Examined))
@@ -505,7 +485,6 @@ vtkImageData* ScalarSource::Image()
   return this->StandIn->GetPointData()->GetScalars() ? this->StandIn.Get() : nullptr;
 }
 
-//------------------------------------------------------------------------------
 // Without scalars if there is nothing to see, so that this, too, is found once.
 void ScalarSource::MakeImage()
 {
@@ -538,7 +517,6 @@ void ScalarSource::MakeImage()
   this->Imaged = this->Examined;
 }
 
-//------------------------------------------------------------------------------
 std::size_t ScalarSource::MemorySize() const
 {
   std::size_t size = 0;

@@ -78,11 +78,11 @@ public:
   /// Another number after each Update() that changed the volumes.
   vtkIdType Version() const { return this->NumberOfUpdates; }
   /// Valid after Update(), as long as the input.
-  const splatting::VoxelArray& Volume(int component) const { return this->Volumes[component]; }
+  const VoxelArray& Volume(int component) const { return this->Volumes[component]; }
   /// There is no volume here, but perhaps elsewhere, of this type.
   void HoldNothing(int vtkType);
   /// VTK's name for the type of a volume, or of what is projected from it.
-  int VtkTypeOf(splatting::ScalarType type) const;
+  int VtkTypeOf(ScalarType type) const;
   /// VTK_FLOAT or VTK_DOUBLE, whichever holds averages of scalars of a VTK type.
   static int AverageVtkType(int vtkType);
   /// Of the scalars that the volumes are made of.
@@ -125,15 +125,15 @@ private:
     std::unique_ptr<unsigned char[]> bytes;
     std::size_t size = 0;
 
-    void* Allocate(std::ptrdiff_t count, splatting::ScalarType type);
+    void* Allocate(std::ptrdiff_t count, ScalarType type);
   };
 
   std::string FindScalars(vtkDataSet* input, const ScalarChoice& choice, Key& key) const;
   std::string CheckComponents(const Key& key);
   bool IsMagnitude() const;
-  std::vector<splatting::StridedVoxels> ChosenComponents();
-  splatting::VoxelArray MakeVolume(
-    splatting::StridedVoxels voxels, const std::vector<unsigned char>& hidden, Copy& copy) const;
+  std::vector<StridedVoxels> ChosenComponents();
+  VoxelArray MakeVolume(
+    StridedVoxels voxels, const std::vector<unsigned char>& hidden, Copy& copy) const;
   bool IsInputArray() const;
   vtkSmartPointer<vtkDataArray> InterleavedVolumes() const;
   void MakeImage();
@@ -147,7 +147,7 @@ private:
   int VtkType = VTK_VOID;
   vtkIdType NumberOfUpdates = 0;
   double Seconds = 0.0;
-  std::vector<splatting::VoxelArray> Volumes;
+  std::vector<VoxelArray> Volumes;
   std::vector<Copy> Copies;
   vtkSmartPointer<vtkDataArray> Packed; // the scalars, if they are stored in an unusual way
   vtkSmartPointer<vtkImageData> StandIn;
@@ -157,7 +157,7 @@ private:
 /**
  * The core's name for a VTK type; Float32 for types that are no numbers.
  */
-splatting::ScalarType scalarTypeOfVtk(int vtkType);
+ScalarType scalarTypeOfVtk(int vtkType);
 }
 
 #endif

@@ -88,7 +88,7 @@ void sample(vtkPiecewiseFunction* grays, double low, double high, std::vector<fl
 }
 
 template <class ColorFunction>
-splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* colors, float weight,
+ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* colors, float weight,
   const ScalarRange& range, const FinalColor& finalColor)
 {
   double low = range.low, high = range.high;
@@ -100,7 +100,7 @@ splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* col
   std::vector<float> alpha(sampled), rgb(3 * static_cast<std::size_t>(sampled));
   opacity->GetTable(low, end, sampled, alpha.data());
   sample(colors, low, end, rgb);
-  splatting::ColorTable table{ low, high, std::vector<std::uint32_t>(entries) };
+  ColorTable table{ low, high, std::vector<std::uint32_t>(entries) };
   for (int e = 0; e < entries; ++e)
   {
     table.colors[e] =
@@ -109,9 +109,8 @@ splatting::ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* col
   return table;
 }
 
-splatting::ColorTable tabulateColors(vtkVolumeProperty* property, int component,
-  vtkPiecewiseFunction* opacity, double weight, const ScalarRange& range,
-  const FinalColor& finalColor)
+ColorTable tabulateColors(vtkVolumeProperty* property, int component, vtkPiecewiseFunction* opacity,
+  double weight, const ScalarRange& range, const FinalColor& finalColor)
 {
   const float share = static_cast<float>(weight);
   return property->GetColorChannels(component) == 1
@@ -133,32 +132,32 @@ bool FinalColor::isValid() const
     std::isfinite(1.0f / this->window) && std::isfinite(this->level / this->window);
 }
 
-splatting::ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
+ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
   const ScalarRange& range, const FinalColor& finalColor)
 {
   return tabulateColors(
     property, component, property->GetScalarOpacity(component), weight, range, finalColor);
 }
 
-splatting::ColorTable tabulateOpaque(
+ColorTable tabulateOpaque(
   vtkVolumeProperty* property, const ScalarRange& range, const FinalColor& finalColor)
 {
   return tabulateColors(property, 0, constantOne(range), 1.0, range, finalColor);
 }
 
-splatting::ColorTable tabulateOpacity(vtkVolumeProperty* property, const ScalarRange& range)
+ColorTable tabulateOpacity(vtkVolumeProperty* property, const ScalarRange& range)
 {
   return tabulate<vtkPiecewiseFunction>(
     property->GetScalarOpacity(0), constantOne(range), 1.0f, range, {});
 }
 
-splatting::ColorTable tabulatePrimary(int primary, const FinalColor& finalColor)
+ColorTable tabulatePrimary(int primary, const FinalColor& finalColor)
 {
   const ScalarRange bytes{ 0.0, 255.0, true };
   vtkNew<vtkColorTransferFunction> colors;
   colors->AddRGBPoint(0.0, 0.0, 0.0, 0.0);
   colors->AddRGBPoint(255.0, primary == 0, primary == 1, primary == 2);
-  splatting::ColorTable table =
+  ColorTable table =
     tabulate<vtkColorTransferFunction>(constantOne(bytes), colors, 1.0f, bytes, finalColor);
   // The others are added to it: a level must not show in their colours.
   for (std::uint32_t& color : table.colors)

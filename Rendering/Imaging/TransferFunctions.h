@@ -42,7 +42,7 @@ struct ScalarRange
  * multiplied by the weight. Integers get sixteen entries per grey level, as far as 65536 go, other
  * values all of those.
  */
-splatting::ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
+ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
   const ScalarRange& range, const FinalColor& finalColor);
 
 /**
@@ -50,10 +50,10 @@ splatting::ColorTable tabulateColors(vtkVolumeProperty* property, int component,
  * the opacities (white, premultiplied), and, for unsigned char as red (0), green (1) or blue (2),
  * the primary colour itself.
  */
-splatting::ColorTable tabulateOpaque(
+ColorTable tabulateOpaque(
   vtkVolumeProperty* property, const ScalarRange& range, const FinalColor& finalColor);
-splatting::ColorTable tabulateOpacity(vtkVolumeProperty* property, const ScalarRange& range);
-splatting::ColorTable tabulatePrimary(int primary, const FinalColor& finalColor);
+ColorTable tabulateOpacity(vtkVolumeProperty* property, const ScalarRange& range);
+ColorTable tabulatePrimary(int primary, const FinalColor& finalColor);
 }
 
 #endif

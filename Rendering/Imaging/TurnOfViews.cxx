@@ -92,7 +92,6 @@ const char* const TurnOfViews::Degenerate =
   "The camera flattens the volume to a line or has no extent: give it a parallel scale, or a view "
   "angle, above 0 and a view-up that is not its direction.";
 
-//------------------------------------------------------------------------------
 const char* TurnOfViews::Set(const TurnSettings& settings)
 {
   if (const char* const fault = faultOf(settings))
@@ -114,7 +113,6 @@ const char* TurnOfViews::Set(const TurnSettings& settings)
                                                                                    : Degenerate;
 }
 
-//------------------------------------------------------------------------------
 // Without a camera: a parallel one, outside the volume.
 void TurnOfViews::PlaceCamera()
 {
@@ -133,7 +131,6 @@ void TurnOfViews::PlaceCamera()
   }
 }
 
-//------------------------------------------------------------------------------
 // Makes spacing what it was set to, or finds what the camera makes it.
 void TurnOfViews::ScaleCamera()
 {
@@ -164,13 +161,11 @@ void TurnOfViews::ScaleCamera()
   }
 }
 
-//------------------------------------------------------------------------------
 double TurnOfViews::Angle(int view) const
 {
   return view * this->Settings.angle / this->Settings.views;
 }
 
-//------------------------------------------------------------------------------
 // By the matrices of the view, because they know of shifts and of what a user adds to a camera.
 void TurnOfViews::Place(vtkImageData* picture) const
 {
@@ -215,7 +210,6 @@ void TurnOfViews::Place(vtkImageData* picture) const
   picture->GetFieldData()->AddArray(angles);
 }
 
-//------------------------------------------------------------------------------
 std::vector<int> TurnOfViews::Order() const
 {
   std::vector<int> order(this->Settings.views);
@@ -232,7 +226,6 @@ std::vector<int> TurnOfViews::Order() const
   return order;
 }
 
-//------------------------------------------------------------------------------
 glm::dmat4 TurnOfViews::WorldToClip(int view) const
 {
   vtkNew<vtkCamera> camera;
@@ -241,7 +234,6 @@ glm::dmat4 TurnOfViews::WorldToClip(int view) const
     toGlm(camera->GetViewTransformMatrix());
 }
 
-//------------------------------------------------------------------------------
 void TurnOfViews::SetCamera(int view, vtkCamera* camera) const
 {
   camera->DeepCopy(this->First);

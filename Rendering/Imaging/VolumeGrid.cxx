@@ -111,9 +111,9 @@ glm::ivec3 resampledSize(const Axis (&axes)[3], bool cells, double most)
 }
 
 /// Where the voxels at first + n * step lie among the points or cells of an axis.
-splatting::ResampledAxis locate(const Axis& axis, double first, double step, int count, bool cells)
+ResampledAxis locate(const Axis& axis, double first, double step, int count, bool cells)
 {
-  splatting::ResampledAxis result;
+  ResampledAxis result;
   const std::vector<double>& points = axis.points;
   const int last = std::max(static_cast<int>(points.size()) - 2, 0);
   int below = 0;
@@ -191,8 +191,7 @@ void describeAxes(const Axis (&axes)[3], GridOfDataSet& result)
     const double first = axis.points[0] + (cells && axis.step != 0.0 ? 0.5 * step : 0.0);
     result.grid.indexToPhysical[a][a] = result.grid.spacing[a] = step;
     result.grid.indexToPhysical[3][a] = result.grid.first[a] = first;
-    result.axes[a] =
-      result.resampled ? locate(axis, first, step, count, cells) : splatting::ResampledAxis{};
+    result.axes[a] = result.resampled ? locate(axis, first, step, count, cells) : ResampledAxis{};
   }
 }
 }

@@ -49,7 +49,7 @@ struct GridOfDataSet
   bool resampled = false;
   /// Whether it was resampled to steps that are larger than the least one of an axis.
   bool coarse = false;
-  splatting::ResampledAxis axes[3];
+  ResampledAxis axes[3];
 };
 
 /**

@@ -44,10 +44,10 @@ struct Projection
   double slice;
 };
 
-Projection projectionOf(const splatting::View& view, const glm::dmat4& world)
+Projection projectionOf(const View& view, const glm::dmat4& world)
 {
   const glm::dmat3 linear(world);
-  if (splatting::isParallel(view))
+  if (isParallel(view))
   {
     // Rays run where neither coordinate on the screen changes.
     const glm::dvec3 ray =
@@ -65,7 +65,7 @@ Projection projectionOf(const splatting::View& view, const glm::dmat4& world)
 }
 
 /// Keeps a half-space of index space if it cuts into the volume's voxels at all.
-void addHalfSpace(splatting::View& view, const glm::dvec4& h)
+void addHalfSpace(View& view, const glm::dvec4& h)
 {
   double least = h.w;
   for (int a = 0; a < 3; ++a)
@@ -79,7 +79,6 @@ void addHalfSpace(splatting::View& view, const glm::dvec4& h)
 }
 }
 
-//------------------------------------------------------------------------------
 glm::dmat4 toGlm(const vtkMatrix4x4* matrix)
 {
   glm::dmat4 m;
@@ -93,7 +92,6 @@ glm::dmat4 toGlm(const vtkMatrix4x4* matrix)
   return m;
 }
 
-//------------------------------------------------------------------------------
 bool isSingular(const glm::dmat4& indexToWorld)
 {
   const glm::dmat3 linear(indexToWorld);
@@ -102,11 +100,10 @@ bool isSingular(const glm::dmat4& indexToWorld)
     !std::isfinite(glm::length(indexToWorld[3]));
 }
 
-//------------------------------------------------------------------------------
-splatting::View viewOf(const VolumeGrid& grid, const glm::dmat4& indexToWorld,
-  const glm::dmat4& worldToClip, const glm::ivec2& viewport)
+View viewOf(const VolumeGrid& grid, const glm::dmat4& indexToWorld, const glm::dmat4& worldToClip,
+  const glm::ivec2& viewport)
 {
-  splatting::View view;
+  View view;
   view.dimensions = grid.dimensions;
   view.showsBoxes = grid.cells;
   view.viewport = viewport;
@@ -118,8 +115,7 @@ splatting::View viewOf(const VolumeGrid& grid, const glm::dmat4& indexToWorld,
   return view;
 }
 
-//------------------------------------------------------------------------------
-void addPlanes(splatting::View& view, const glm::dmat4& indexToWorld, vtkPlaneCollection* planes)
+void addPlanes(View& view, const glm::dmat4& indexToWorld, vtkPlaneCollection* planes)
 {
   vtkCollectionSimpleIterator it;
   planes->InitTraversal(it);
@@ -132,10 +128,9 @@ void addPlanes(splatting::View& view, const glm::dmat4& indexToWorld, vtkPlaneCo
   }
 }
 
-//------------------------------------------------------------------------------
-splatting::Cropping croppingOf(const VolumeGrid& grid, const double planes[6], int flags)
+Cropping croppingOf(const VolumeGrid& grid, const double planes[6], int flags)
 {
-  splatting::Cropping cropping;
+  Cropping cropping;
   unsigned shown = static_cast<unsigned>(flags);
   for (int a = 0, stride = 1; a < 3; ++a, stride *= 3)
   {
@@ -148,13 +143,11 @@ splatting::Cropping croppingOf(const VolumeGrid& grid, const double planes[6], i
       shown = mirrored(shown, stride);
     }
   }
-  cropping.flags = shown & splatting::Cropping::All;
+  cropping.flags = shown & Cropping::All;
   return cropping;
 }
 
-//------------------------------------------------------------------------------
-void addSlab(
-  splatting::View& view, const glm::dmat4& indexToWorld, const double centre[3], double thickness)
+void addSlab(View& view, const glm::dmat4& indexToWorld, const double centre[3], double thickness)
 {
   const Projection projection = projectionOf(view, indexToWorld);
   const double place = glm::dot(projection.normal, glm::dvec3(centre[0], centre[1], centre[2]));

@@ -24,27 +24,26 @@ bool isSingular(const glm::dmat4& indexToWorld);
 /**
  * Half-spaces: those of the near and far plane that cut into the volume.
  */
-splatting::View viewOf(const VolumeGrid& grid, const glm::dmat4& indexToWorld,
-  const glm::dmat4& worldToClip, const glm::ivec2& viewport);
+View viewOf(const VolumeGrid& grid, const glm::dmat4& indexToWorld, const glm::dmat4& worldToClip,
+  const glm::ivec2& viewport);
 
 /**
  * Adds the half-spaces of clipping planes in the world.
  */
-void addPlanes(splatting::View& view, const glm::dmat4& indexToWorld, vtkPlaneCollection* planes);
+void addPlanes(View& view, const glm::dmat4& indexToWorld, vtkPlaneCollection* planes);
 
 /**
  * VTK's cropping, whose planes lie across the axes of the image, wherever its direction matrix
  * turns these.
  */
-splatting::Cropping croppingOf(const VolumeGrid& grid, const double planes[6], int flags);
+Cropping croppingOf(const VolumeGrid& grid, const double planes[6], int flags);
 
 /**
  * Adds the two half-spaces of a slab across the direction of projection: that of the rays of a
  * parallel view; in perspective that in which w, the fourth coordinate of clip space, grows. Centre
  * and thickness are in the world.
  */
-void addSlab(
-  splatting::View& view, const glm::dmat4& indexToWorld, const double centre[3], double thickness);
+void addSlab(View& view, const glm::dmat4& indexToWorld, const double centre[3], double thickness);
 }
 
 #endif

@@ -4,7 +4,8 @@
 
 #include "ComponentProjector.h"
 #include "LocationArrays.h"
-#include "ProjectionChoice.h"
+#include "ProjectionProperties.h"
+#include "PropertyMethods.h"
 #include "ScalarSource.h"
 #include "TurnOfViews.h"
 #include "WorldView.h"
@@ -41,7 +42,6 @@ vtkCxxSetObjectMacro(vtkSplattingMIPProjection, Camera, vtkCamera);
 class vtkSplattingMIPProjection::Internals
 {
 public:
-  ProjectionChoice ChoiceOf(vtkSplattingMIPProjection* self) const;
   ScalarChoice ScalarsOf(vtkSplattingMIPProjection* self, vtkDataArray* array, int association,
     vtkImageData* input) const;
   TurnSettings TurnOf(vtkSplattingMIPProjection* self, vtkImageData* input) const;
@@ -58,7 +58,7 @@ public:
 
   ScalarSource Source;
   ComponentProjector Components;
-  ProjectionChoice Choice;
+  ProjectionProperties Properties; // of the last Update()
   TurnOfViews Turn;
   splatting::Locator::Arrays Places;                      // of locations, in the output
   std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last view and the one before
@@ -81,31 +81,8 @@ vtkSplattingMIPProjection::vtkSplattingMIPProjection()
     RotationAxis{ 0.0, 0.0, 0.0 },
     TotalAngle(360.0),
     BackgroundValue(0.0),
-    BlendMode(MAXIMUM_INTENSITY_BLEND),
-    AverageIPScalarRange{ VTK_FLOAT_MIN, VTK_FLOAT_MAX },
-    QualityMode(EXACT),
-    Kernel(TRILINEAR),
-    KernelRadius(1.0),
-    FootprintSampling(0),
-    ShearImageSampling(SAMPLING_OF_MODE),
-    MaximumType(GLOBAL),
-    DepthShadingAmbient(0.3),
-    DepthShadingChangeRate(0.7),
-    LocalMaximumThreshold(0.0),
-    VectorMode(DISABLED),
-    VectorComponent(0),
-    Slab(false),
-    SlabThickness(10.0),
-    SlabCenter{ 0.0, 0.0, 0.0 },
-    Cropping(0),
-    CroppingRegionPlanes{ 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 },
-    CroppingRegionFlags(1 << 13),
-    Acceleration(AUTO),
-    LineTolerance(0.0),
-    EliminateInvisible(false),
-    RecordLocations(false),
-    IndexMemoryBudget(vtkTypeInt64(1) << 32),
     NumberOfProjections(0),
+    Properties(new ProjectionProperties),
     Internal(new Internals)
 {
   this->Internal->Components.GetProjector().setWatch(
@@ -119,37 +96,19 @@ vtkSplattingMIPProjection::~vtkSplattingMIPProjection()
 }
 
 //------------------------------------------------------------------------------
+splattingProjectionMethods(vtkSplattingMIPProjection);
+splattingClampMethods(
+  vtkSplattingMIPProjection, int, BlendMode, MAXIMUM_INTENSITY_BLEND, AVERAGE_INTENSITY_BLEND);
+splattingVector2Methods(vtkSplattingMIPProjection, AverageIPScalarRange);
+splattingMethods(vtkSplattingMIPProjection, vtkTypeBool, Cropping);
+splattingVector6Methods(vtkSplattingMIPProjection, CroppingRegionPlanes);
+splattingClampMethods(vtkSplattingMIPProjection, int, CroppingRegionFlags, 0, 0x7ffffff);
+
+//------------------------------------------------------------------------------
 vtkMTimeType vtkSplattingMIPProjection::GetMTime()
 {
   const vtkMTimeType own = this->Superclass::GetMTime();
   return this->Camera ? std::max(own, this->Camera->GetMTime()) : own;
-}
-
-//------------------------------------------------------------------------------
-ProjectionChoice vtkSplattingMIPProjection::Internals::ChoiceOf(
-  vtkSplattingMIPProjection* self) const
-{
-  ProjectionChoice choice;
-  choice.blendMode = self->BlendMode;
-  choice.maximumType = self->MaximumType;
-  choice.depthShadingAmbient = self->DepthShadingAmbient;
-  choice.depthShadingChangeRate = self->DepthShadingChangeRate;
-  choice.localMaximumThreshold = self->LocalMaximumThreshold;
-  std::copy_n(self->AverageIPScalarRange, 2, choice.averageRange);
-  choice.kernel = self->Kernel;
-  choice.kernelRadius = self->KernelRadius;
-  choice.footprintSampling = self->FootprintSampling;
-  choice.shearImageSampling = self->ShearImageSampling;
-  choice.acceleration = self->Acceleration;
-  choice.lineTolerance = self->LineTolerance;
-  choice.eliminateInvisible = self->EliminateInvisible;
-  choice.locations = self->RecordLocations;
-  choice.slab = self->Slab;
-  choice.slabThickness = self->SlabThickness;
-  std::copy_n(self->SlabCenter, 3, choice.slabCenter);
-  choice.cropping = self->Cropping != 0;
-  std::copy_n(self->CroppingRegionPlanes, 6, choice.croppingPlanes);
-  return choice;
 }
 
 //------------------------------------------------------------------------------
@@ -158,8 +117,8 @@ ScalarChoice vtkSplattingMIPProjection::Internals::ScalarsOf(
   vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input) const
 {
   ScalarChoice choice;
-  choice.vectorMode = self->VectorMode;
-  choice.vectorComponent = self->VectorComponent;
+  choice.vectorMode = self->Properties->VectorMode;
+  choice.vectorComponent = self->Properties->VectorComponent;
   const bool ofCells = association == vtkDataObject::FIELD_ASSOCIATION_CELLS;
   vtkDataSetAttributes* const arrays =
     input->GetAttributes(ofCells ? vtkDataObject::CELL : vtkDataObject::POINT);
@@ -189,9 +148,11 @@ TurnSettings vtkSplattingMIPProjection::Internals::TurnOf(
   turn.views = self->NumberOfViews;
   turn.axis = { self->RotationAxis[0], self->RotationAxis[1], self->RotationAxis[2] };
   turn.angle = self->TotalAngle;
-  turn.slab = self->Slab;
-  turn.slabCenter = { self->SlabCenter[0], self->SlabCenter[1], self->SlabCenter[2] };
-  turn.slabThickness = self->SlabThickness;
+  const ProjectionProperties& properties = *self->Properties;
+  turn.slab = properties.Slab;
+  turn.slabCenter = { properties.SlabCenter[0], properties.SlabCenter[1],
+    properties.SlabCenter[2] };
+  turn.slabThickness = properties.SlabThickness;
   const double* const bounds = input->GetBounds();
   const glm::dvec3 low(bounds[0], bounds[2], bounds[4]), high(bounds[1], bounds[3], bounds[5]);
   turn.focalPoint = self->CenterOnVolume
@@ -223,8 +184,8 @@ std::string vtkSplattingMIPProjection::Internals::Problem(
   {
     problem = "Spacing and direction matrix flatten the volume: neither may be singular.";
   }
-  this->Choice = this->ChoiceOf(self);
-  const char* fault = problem.empty() ? faultOfChoice(this->Choice) : nullptr;
+  this->Properties = *self->Properties;
+  const char* fault = problem.empty() ? faultOf(this->Properties) : nullptr;
   if (problem.empty() && !fault)
   {
     fault = this->Turn.Set(this->TurnOf(self, input));
@@ -263,14 +224,11 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(
     this->Cuts[n].intervals.find(this->Images[n], view.halfSpaces);
   }
   const splatting::ProjectionSettings settings =
-    settingsOfChoice(this->Choice, self->QualityMode, view);
+    settingsOf(this->Properties, this->Properties.QualityMode, view);
   // Of equal samples the nearest wins.
   const bool ordered = splatting::isOrdered(settings.reduction) || settings.keepWinners;
-  const bool sameRays = std::equal(this->Images.begin(), this->Images.end(),
-    this->ImagesBefore.begin(), this->ImagesBefore.end(),
-    [=](const splatting::ShearWarp& a, const splatting::ShearWarp& b)
-    { return a.sameShear(b) && (!ordered || a.reversed() == b.reversed()); });
-  if (sameRays && this->Cuts == this->CutsBefore && this->Components.Shows(settings))
+  if (haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts == this->CutsBefore &&
+    this->Components.Shows(settings))
   {
     return true;
   }
@@ -298,7 +256,7 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
   // memory nobody uses, but not a call.
   constexpr std::size_t located = 3 * sizeof(int) + sizeof(float) + 3 * sizeof(double);
   const std::size_t bytes = (std::size_t(vtkDataArray::GetDataTypeSize(type)) * components +
-                              (this->Choice.locations ? located : 0)) *
+                              (this->Properties.RecordLocations ? located : 0)) *
     static_cast<std::size_t>(output->GetNumberOfPoints());
   void* const memory = ::operator new(bytes, std::nothrow);
   ::operator delete(memory);
@@ -308,7 +266,7 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
   }
   output->AllocateScalars(type, components);
   output->GetPointData()->GetScalars()->SetName(scalars->GetName());
-  if (this->Choice.locations)
+  if (this->Properties.RecordLocations)
   {
     this->Places = addLocationArrays(output);
   }
@@ -321,7 +279,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectInput(
   vtkSplattingMIPProjection* self, vtkImageData* output)
 {
   this->Components.LookAt(this->Source);
-  this->Components.SetBudget(static_cast<std::size_t>(self->IndexMemoryBudget));
+  this->Components.SetBudget(static_cast<std::size_t>(this->Properties.IndexMemoryBudget));
   return this->PlaceOutput(output)
     ? this->ProjectViews(self, output)
     : "There is no memory for the output: choose fewer pixels or views.";
@@ -345,18 +303,18 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     {
       return TurnOfViews::Degenerate;
     }
-    if (this->Choice.slab)
+    if (this->Properties.Slab)
     {
-      addSlab(view, toWorld, this->Choice.slabCenter, this->Choice.slabThickness);
+      addSlab(view, toWorld, this->Properties.SlabCenter, this->Properties.SlabThickness);
     }
-    if (this->Choice.cropping)
+    if (this->Properties.Cropping)
     {
-      view.cropping =
-        croppingOf(this->Source.Grid(), this->Choice.croppingPlanes, self->CroppingRegionFlags);
+      view.cropping = croppingOf(this->Source.Grid(), this->Properties.CroppingRegionPlanes,
+        this->Properties.CroppingRegionFlags);
     }
     std::swap(this->Images, this->ImagesBefore);
     const splatting::ProjectionSettings settings =
-      settingsOfChoice(this->Choice, self->QualityMode, view);
+      settingsOf(this->Properties, this->Properties.QualityMode, view);
     if (!splatting::ShearWarp::factorise(view, this->Images, settings.sampling, settings.meets))
     {
       return TurnOfViews::Degenerate;
@@ -437,7 +395,7 @@ int vtkSplattingMIPProjection::RequestInformation(
     type = ScalarSource::AverageVtkType(array->Get(vtkDataObject::FIELD_ARRAY_TYPE()));
   }
   if (array && array->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()) &&
-    this->VectorMode == DISABLED)
+    this->Properties->VectorMode == DISABLED)
   {
     components = array->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS());
   }
@@ -484,7 +442,7 @@ int vtkSplattingMIPProjection::RequestData(
   {
     vtkErrorMacro(<< problem);
   }
-  else if (this->RecordLocations && this->BlendMode == AVERAGE_INTENSITY_BLEND)
+  else if (in.Properties.RecordLocations && in.Properties.BlendMode == AVERAGE_INTENSITY_BLEND)
   {
     vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
                        "them: choose maxima or minima, or turn RecordLocations off.");
@@ -532,10 +490,7 @@ vtkImageData* vtkSplattingMIPProjection::GetShearImage()
   }
   else if (!in.ShearImageOutput)
   {
-    const std::size_t n = mainImage(in.Images);
-    in.ShearImageOutput = vtkSmartPointer<vtkImageData>::New();
-    in.Components.CopyImage(
-      n, in.Images[n], in.Source.VtkTypeOf(in.Components.ImageType()), in.ShearImageOutput);
+    in.ShearImageOutput = in.Components.MakeShearImage(in.Images, in.Source);
   }
   return in.ShearImageOutput;
 }
@@ -544,54 +499,22 @@ vtkImageData* vtkSplattingMIPProjection::GetShearImage()
 void vtkSplattingMIPProjection::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  const auto list = [&os, indent](const char* name, const auto* values, int count)
-  {
-    os << indent << name << ":";
-    for (int n = 0; n < count; ++n)
-    {
-      os << (n ? ", " : " ") << values[n];
-    }
-    os << "\n";
-  };
-  const auto line = [&os, indent](const char* name, const auto& value)
-  { os << indent << name << ": " << value << "\n"; };
-  os << indent << "Camera: ";
-  this->Camera ? os << this->Camera << "\n" : os << "(none)\n";
-  list("ViewDirection", this->ViewDirection, 3);
-  list("ViewUp", this->ViewUp, 3);
-  line("CenterOnVolume", this->CenterOnVolume ? "On" : "Off");
-  list("FocalPoint", this->FocalPoint, 3);
-  list("OutputSize", this->OutputSize, 2);
-  list("OutputSpacing", this->OutputSpacing, 2);
-  line("NumberOfViews", this->NumberOfViews);
-  list("RotationAxis", this->RotationAxis, 3);
-  line("TotalAngle", this->TotalAngle);
-  line("BackgroundValue", this->BackgroundValue);
-  line("BlendMode", this->BlendMode);
-  list("AverageIPScalarRange", this->AverageIPScalarRange, 2);
-  line("QualityMode", this->QualityMode);
-  line("Kernel", this->Kernel);
-  line("KernelRadius", this->KernelRadius);
-  line("FootprintSampling", this->FootprintSampling);
-  line("ShearImageSampling", this->ShearImageSampling);
-  line("MaximumType", this->MaximumType);
-  line("DepthShadingAmbient", this->DepthShadingAmbient);
-  line("DepthShadingChangeRate", this->DepthShadingChangeRate);
-  line("LocalMaximumThreshold", this->LocalMaximumThreshold);
-  line("VectorMode", this->VectorMode);
-  line("VectorComponent", this->VectorComponent);
-  line("Slab", this->Slab ? "On" : "Off");
-  line("SlabThickness", this->SlabThickness);
-  list("SlabCenter", this->SlabCenter, 3);
-  line("Cropping", this->Cropping ? "On" : "Off");
-  list("CroppingRegionPlanes", this->CroppingRegionPlanes, 6);
-  line("CroppingRegionFlags", this->CroppingRegionFlags);
-  line("Acceleration", this->Acceleration);
-  line("LineTolerance", this->LineTolerance);
-  line("EliminateInvisible", this->EliminateInvisible ? "On" : "Off");
-  line("RecordLocations", this->RecordLocations ? "On" : "Off");
-  line("IndexMemoryBudget", this->IndexMemoryBudget);
-  line("NumberOfProjections", this->NumberOfProjections);
-  line("IndexMemorySize", this->GetIndexMemorySize());
-  line("InstructionSet", this->GetInstructionSet());
+  const PropertyPrinter print{ os, indent };
+  print("Camera", this->Camera);
+  print("ViewDirection", this->ViewDirection);
+  print("ViewUp", this->ViewUp);
+  print("CenterOnVolume", this->CenterOnVolume);
+  print("FocalPoint", this->FocalPoint);
+  print("OutputSize", this->OutputSize);
+  print("OutputSpacing", this->OutputSpacing);
+  print("NumberOfViews", this->NumberOfViews);
+  print("RotationAxis", this->RotationAxis);
+  print("TotalAngle", this->TotalAngle);
+  print("BackgroundValue", this->BackgroundValue);
+  this->Properties->visitInherited(print);
+  this->Properties->visit(print);
+  this->Properties->visitIndifferent(print);
+  print("NumberOfProjections", this->NumberOfProjections);
+  print("IndexMemorySize", this->GetIndexMemorySize());
+  print("InstructionSet", this->GetInstructionSet());
 }

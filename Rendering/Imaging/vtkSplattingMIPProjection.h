@@ -55,8 +55,12 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkImagingSplattingMIPModule.h" // for the export macro
 
-#include <memory> // for the hidden implementation
+#include <memory> // for the hidden properties and implementation
 
+namespace splatting
+{
+struct ProjectionProperties;
+}
 class vtkCamera;
 
 class VTKIMAGINGSPLATTINGMIP_EXPORT vtkSplattingMIPProjection : public vtkImageAlgorithm
@@ -223,13 +227,18 @@ public:
    * vtkSplattingMIPVolumeMapper::SetBlendMode. Of averages, samples outside AverageIPScalarRange
    * (default: that of float) do not count; both limits do.
    */
-  vtkSetClampMacro(BlendMode, int, MAXIMUM_INTENSITY_BLEND, AVERAGE_INTENSITY_BLEND);
-  vtkGetMacro(BlendMode, int);
+  virtual void SetBlendMode(int);
+  virtual int GetBlendMode();
+  virtual int GetBlendModeMinValue();
+  virtual int GetBlendModeMaxValue();
   void SetBlendModeToMaximumIntensity() { this->SetBlendMode(MAXIMUM_INTENSITY_BLEND); }
   void SetBlendModeToMinimumIntensity() { this->SetBlendMode(MINIMUM_INTENSITY_BLEND); }
   void SetBlendModeToAverageIntensity() { this->SetBlendMode(AVERAGE_INTENSITY_BLEND); }
-  vtkSetVector2Macro(AverageIPScalarRange, double);
-  vtkGetVector2Macro(AverageIPScalarRange, double);
+  virtual void SetAverageIPScalarRange(double low, double high);
+  virtual void SetAverageIPScalarRange(const double values[2]);
+  virtual double* GetAverageIPScalarRange() VTK_SIZEHINT(2);
+  virtual void GetAverageIPScalarRange(double& low, double& high);
+  virtual void GetAverageIPScalarRange(double values[2]);
   ///@}
 
   ///@{
@@ -241,8 +250,10 @@ public:
    * and averages are those of HIGH. Pixels that are wider than voxels show the largest value over
    * their area (of minima the least, of averages the average), in EXACT that of voxels.
    */
-  vtkSetClampMacro(QualityMode, int, PREVIEW, EXACT);
-  vtkGetMacro(QualityMode, int);
+  virtual void SetQualityMode(int);
+  virtual int GetQualityMode();
+  virtual int GetQualityModeMinValue();
+  virtual int GetQualityModeMaxValue();
   void SetQualityModeToPreview() { this->SetQualityMode(PREVIEW); }
   void SetQualityModeToStandard() { this->SetQualityMode(STANDARD); }
   void SetQualityModeToHigh() { this->SetQualityMode(HIGH); }
@@ -257,16 +268,24 @@ public:
    * voxel: 1, 2, 4, AUTOMATIC_SAMPLING (as fine as the output) or SAMPLING_OF_MODE (the default:
    * AUTOMATIC_SAMPLING in EXACT, else 1).
    */
-  vtkSetClampMacro(Kernel, int, TRILINEAR, COSINE_BELL);
-  vtkGetMacro(Kernel, int);
+  virtual void SetKernel(int);
+  virtual int GetKernel();
+  virtual int GetKernelMinValue();
+  virtual int GetKernelMaxValue();
   void SetKernelToTrilinear() { this->SetKernel(TRILINEAR); }
   void SetKernelToCosineBell() { this->SetKernel(COSINE_BELL); }
-  vtkSetClampMacro(KernelRadius, double, 0.5, 1.5);
-  vtkGetMacro(KernelRadius, double);
-  vtkSetClampMacro(FootprintSampling, int, 0, 64);
-  vtkGetMacro(FootprintSampling, int);
-  vtkSetClampMacro(ShearImageSampling, int, SAMPLING_OF_MODE, 4);
-  vtkGetMacro(ShearImageSampling, int);
+  virtual void SetKernelRadius(double);
+  virtual double GetKernelRadius();
+  virtual double GetKernelRadiusMinValue();
+  virtual double GetKernelRadiusMaxValue();
+  virtual void SetFootprintSampling(int);
+  virtual int GetFootprintSampling();
+  virtual int GetFootprintSamplingMinValue();
+  virtual int GetFootprintSamplingMaxValue();
+  virtual void SetShearImageSampling(int);
+  virtual int GetShearImageSampling();
+  virtual int GetShearImageSamplingMinValue();
+  virtual int GetShearImageSamplingMaxValue();
   ///@}
 
   ///@{
@@ -275,17 +294,19 @@ public:
    * after dimming by depth (DEPTH_SHADED, with DepthShadingAmbient 0.3 and DepthShadingChangeRate
    * 0.7 by default), or the first local one from LocalMaximumThreshold on (LOCAL, default 0).
    */
-  vtkSetClampMacro(MaximumType, int, GLOBAL, LOCAL);
-  vtkGetMacro(MaximumType, int);
+  virtual void SetMaximumType(int);
+  virtual int GetMaximumType();
+  virtual int GetMaximumTypeMinValue();
+  virtual int GetMaximumTypeMaxValue();
   void SetMaximumTypeToGlobal() { this->SetMaximumType(GLOBAL); }
   void SetMaximumTypeToDepthShaded() { this->SetMaximumType(DEPTH_SHADED); }
   void SetMaximumTypeToLocal() { this->SetMaximumType(LOCAL); }
-  vtkSetMacro(DepthShadingAmbient, double);
-  vtkGetMacro(DepthShadingAmbient, double);
-  vtkSetMacro(DepthShadingChangeRate, double);
-  vtkGetMacro(DepthShadingChangeRate, double);
-  vtkSetMacro(LocalMaximumThreshold, double);
-  vtkGetMacro(LocalMaximumThreshold, double);
+  virtual void SetDepthShadingAmbient(double);
+  virtual double GetDepthShadingAmbient();
+  virtual void SetDepthShadingChangeRate(double);
+  virtual double GetDepthShadingChangeRate();
+  virtual void SetLocalMaximumThreshold(double);
+  virtual double GetLocalMaximumThreshold();
   ///@}
 
   ///@{
@@ -293,13 +314,17 @@ public:
    * What is projected of several components, as of the mapper: all (DISABLED, the default), their
    * Euclidean length, or the one that VectorComponent names (default 0, clamped to [0, 3]).
    */
-  vtkSetClampMacro(VectorMode, int, DISABLED, COMPONENT);
-  vtkGetMacro(VectorMode, int);
+  virtual void SetVectorMode(int);
+  virtual int GetVectorMode();
+  virtual int GetVectorModeMinValue();
+  virtual int GetVectorModeMaxValue();
   void SetVectorModeToDisabled() { this->SetVectorMode(DISABLED); }
   void SetVectorModeToMagnitude() { this->SetVectorMode(MAGNITUDE); }
   void SetVectorModeToComponent() { this->SetVectorMode(COMPONENT); }
-  vtkSetClampMacro(VectorComponent, int, 0, 3);
-  vtkGetMacro(VectorComponent, int);
+  virtual void SetVectorComponent(int);
+  virtual int GetVectorComponent();
+  virtual int GetVectorComponentMinValue();
+  virtual int GetVectorComponentMaxValue();
   ///@}
 
   ///@{
@@ -308,13 +333,16 @@ public:
    * (default 10, in world units, above 0) of the plane through SlabCenter, a point of the world, by
    * default (0, 0, 0). Default off. In a turn the slab turns with the view.
    */
-  vtkSetMacro(Slab, bool);
-  vtkGetMacro(Slab, bool);
+  virtual void SetSlab(bool);
+  virtual bool GetSlab();
   vtkBooleanMacro(Slab, bool);
-  vtkSetMacro(SlabThickness, double);
-  vtkGetMacro(SlabThickness, double);
-  vtkSetVector3Macro(SlabCenter, double);
-  vtkGetVector3Macro(SlabCenter, double);
+  virtual void SetSlabThickness(double);
+  virtual double GetSlabThickness();
+  virtual void SetSlabCenter(double x, double y, double z);
+  virtual void SetSlabCenter(const double values[3]);
+  virtual double* GetSlabCenter() VTK_SIZEHINT(3);
+  virtual void GetSlabCenter(double& x, double& y, double& z);
+  virtual void GetSlabCenter(double values[3]);
   ///@}
 
   ///@{
@@ -323,13 +351,20 @@ public:
    * coordinates of the input along its axes, are projected. Default off, all planes 0 and 1, flags
    * VTK_CROP_SUBVOLUME (the middle region), clamped to [0, 0x7ffffff].
    */
-  vtkSetMacro(Cropping, vtkTypeBool);
-  vtkGetMacro(Cropping, vtkTypeBool);
+  virtual void SetCropping(vtkTypeBool);
+  virtual vtkTypeBool GetCropping();
   vtkBooleanMacro(Cropping, vtkTypeBool);
-  vtkSetVector6Macro(CroppingRegionPlanes, double);
-  vtkGetVector6Macro(CroppingRegionPlanes, double);
-  vtkSetClampMacro(CroppingRegionFlags, int, 0, 0x7ffffff);
-  vtkGetMacro(CroppingRegionFlags, int);
+  virtual void SetCroppingRegionPlanes(
+    double xMin, double xMax, double yMin, double yMax, double zMin, double zMax);
+  virtual void SetCroppingRegionPlanes(const double values[6]);
+  virtual double* GetCroppingRegionPlanes() VTK_SIZEHINT(6);
+  virtual void GetCroppingRegionPlanes(
+    double& xMin, double& xMax, double& yMin, double& yMax, double& zMin, double& zMax);
+  virtual void GetCroppingRegionPlanes(double values[6]);
+  virtual void SetCroppingRegionFlags(int);
+  virtual int GetCroppingRegionFlags();
+  virtual int GetCroppingRegionFlagsMinValue();
+  virtual int GetCroppingRegionFlagsMaxValue();
   ///@}
 
   ///@{
@@ -338,18 +373,22 @@ public:
    * picture is the same but for LineTolerance (default 0, clamped to [0, 64]), the difference that
    * the chains of LINES and its kin may neglect. Default AUTO; EliminateInvisible default off.
    */
-  vtkSetClampMacro(Acceleration, int, AUTO, SORTED_VOLUME);
-  vtkGetMacro(Acceleration, int);
+  virtual void SetAcceleration(int);
+  virtual int GetAcceleration();
+  virtual int GetAccelerationMinValue();
+  virtual int GetAccelerationMaxValue();
   void SetAccelerationToAuto() { this->SetAcceleration(AUTO); }
   void SetAccelerationToDense() { this->SetAcceleration(DENSE); }
   void SetAccelerationToBricks() { this->SetAcceleration(BRICKS); }
   void SetAccelerationToLines() { this->SetAcceleration(LINES); }
   void SetAccelerationToSortedLines() { this->SetAcceleration(SORTED_LINES); }
   void SetAccelerationToSortedVolume() { this->SetAcceleration(SORTED_VOLUME); }
-  vtkSetClampMacro(LineTolerance, double, 0.0, 64.0);
-  vtkGetMacro(LineTolerance, double);
-  vtkSetMacro(EliminateInvisible, bool);
-  vtkGetMacro(EliminateInvisible, bool);
+  virtual void SetLineTolerance(double);
+  virtual double GetLineTolerance();
+  virtual double GetLineToleranceMinValue();
+  virtual double GetLineToleranceMaxValue();
+  virtual void SetEliminateInvisible(bool);
+  virtual bool GetEliminateInvisible();
   vtkBooleanMacro(EliminateInvisible, bool);
   ///@}
 
@@ -363,8 +402,8 @@ public:
    * a Camera the plane lies the diagonal of the volume's bounds before the focal point. Default
    * off.
    */
-  vtkSetMacro(RecordLocations, bool);
-  vtkGetMacro(RecordLocations, bool);
+  virtual void SetRecordLocations(bool);
+  virtual bool GetRecordLocations();
   vtkBooleanMacro(RecordLocations, bool);
   ///@}
 
@@ -373,8 +412,10 @@ public:
    * Bytes that the index may hold besides the input. Default 4 GiB. What would exceed them is not
    * made: projections are slower then, and the same.
    */
-  vtkSetClampMacro(IndexMemoryBudget, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
-  vtkGetMacro(IndexMemoryBudget, vtkTypeInt64);
+  virtual void SetIndexMemoryBudget(vtkTypeInt64);
+  virtual vtkTypeInt64 GetIndexMemoryBudget();
+  virtual vtkTypeInt64 GetIndexMemoryBudgetMinValue();
+  virtual vtkTypeInt64 GetIndexMemoryBudgetMaxValue();
   ///@}
 
   /**
@@ -431,36 +472,13 @@ protected:
   double RotationAxis[3];
   double TotalAngle;
   double BackgroundValue;
-  int BlendMode;
-  double AverageIPScalarRange[2];
-  int QualityMode;
-  int Kernel;
-  double KernelRadius;
-  int FootprintSampling;
-  int ShearImageSampling;
-  int MaximumType;
-  double DepthShadingAmbient;
-  double DepthShadingChangeRate;
-  double LocalMaximumThreshold;
-  int VectorMode;
-  int VectorComponent;
-  bool Slab;
-  double SlabThickness;
-  double SlabCenter[3];
-  vtkTypeBool Cropping;
-  double CroppingRegionPlanes[6];
-  int CroppingRegionFlags;
-  int Acceleration;
-  double LineTolerance;
-  bool EliminateInvisible;
-  bool RecordLocations;
-  vtkTypeInt64 IndexMemoryBudget;
   vtkIdType NumberOfProjections;
 
 private:
   vtkSplattingMIPProjection(const vtkSplattingMIPProjection&) = delete;
   void operator=(const vtkSplattingMIPProjection&) = delete;
 
+  std::unique_ptr<splatting::ProjectionProperties> Properties;
   class Internals;
   std::unique_ptr<Internals> Internal;
 };

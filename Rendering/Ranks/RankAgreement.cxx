@@ -3,6 +3,7 @@
 #include "Ranks/RankAgreement.h"
 
 #include "ComponentProjector.h"
+#include "MapperProperties.h"
 #include "ScalarSource.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
@@ -34,7 +35,7 @@ static_assert(std::is_trivially_copyable<RankReport>::value, "reports are sent a
 namespace
 {
 /// VTK's name for the numbers that images are reduced as.
-int vtkTypeOf(splatting::ScalarType type)
+int vtkTypeOf(ScalarType type)
 {
   static const int types[] = { VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_UNSIGNED_SHORT,
     VTK_INT, VTK_UNSIGNED_INT, VTK_LONG_LONG, VTK_UNSIGNED_LONG_LONG, VTK_FLOAT, VTK_DOUBLE };
@@ -60,6 +61,11 @@ public:
     static_assert(std::is_arithmetic<T>::value, "pointers and padding differ from rank to rank");
     this->add(&value, 1);
   }
+  template <class T, int N>
+  void add(const T (&values)[N])
+  {
+    this->add(values, N);
+  }
   std::uint64_t get() const { return this->Value; }
 
 private:
@@ -78,72 +84,43 @@ void addScalars(vtkSplattingMIPVolumeMapper* mapper, Number& number)
   {
     number.add(name, static_cast<int>(std::strlen(name)));
   }
-  number.add(mapper->GetVectorMode());
-  number.add(mapper->GetVectorComponent());
 }
 
-void addDepthCoding(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+/// A part of the table: all of its colours would take too long.
+void addColors(vtkScalarsToColors* colors, Number& number)
 {
-  number.add(mapper->GetDepthCoding());
-  number.add(mapper->GetDepthCodingRange(), 2);
-  if (vtkScalarsToColors* const colors = mapper->GetDepthCodingColors())
+  constexpr int samples = 64;
+  const double* const range = colors->GetRange();
+  number.add(range, 2);
+  for (int n = 0; n <= samples; ++n)
   {
-    constexpr int samples = 64; // all colours of a table would take too long
-    const double* const range = colors->GetRange();
-    number.add(range, 2);
-    for (int n = 0; n <= samples; ++n)
-    {
-      number.add(colors->MapValue(range[0] + (range[1] - range[0]) * n / samples), 4);
-    }
+    number.add(colors->MapValue(range[0] + (range[1] - range[0]) * n / samples), 4);
   }
 }
 
-/// All but DisplayOnRootOnly, which each rank may do as it likes, and IndexMemoryBudget, which
-/// changes no picture.
-void addSettings(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+/// All that can change the picture, but masks, which are data.
+void addProperties(const MapperProperties& properties, Number& number)
 {
-  number.add(mapper->GetBlendMode());
-  number.add(mapper->GetMaximumType());
-  number.add(mapper->GetQualityMode());
-  number.add(mapper->GetKernel());
-  number.add(mapper->GetKernelRadius());
-  number.add(mapper->GetFootprintSampling());
-  number.add(mapper->GetDepthShadingAmbient());
-  number.add(mapper->GetDepthShadingChangeRate());
-  number.add(mapper->GetFinalColorWindow());
-  number.add(mapper->GetFinalColorLevel());
-  number.add(mapper->GetCullBelowWindow());
-  number.add(mapper->GetAutoAdjustSampleDistances());
-  number.add(mapper->GetShearImageSampling());
-  number.add(mapper->GetLocalMaximumThreshold());
-  number.add(mapper->GetAverageIPScalarRange(), 2);
-  number.add(mapper->GetAcceleration());
-  number.add(mapper->GetLineTolerance());
-  number.add(mapper->GetEliminateInvisible());
-  number.add(mapper->GetIntermixIntersectingGeometry());
-  number.add(mapper->GetRecordLocations());
-  number.add(mapper->GetWriteDepth());
-  number.add(mapper->GetWriteDepthOpacity());
+  const auto add = [&number](const char*, const auto& value, auto...) { number.add(value); };
+  properties.visitInherited(add);
+  properties.visit(add);
+  if (properties.DepthCodingColors)
+  {
+    addColors(properties.DepthCodingColors, number);
+  }
+  if (vtkPolyData* const surface = properties.BoundingSurface)
+  {
+    number.add(surface->GetNumberOfPoints());
+    number.add(surface->GetBounds(), 6);
+  }
 }
 
-void addCuts(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+void addPlanes(vtkPlaneCollection* planes, Number& number)
 {
-  number.add(mapper->GetCropping());
-  number.add(mapper->GetCroppingRegionFlags());
-  number.add(mapper->GetCroppingRegionPlanes(), 6);
-  number.add(mapper->GetSlab());
-  number.add(mapper->GetSlabThickness());
-  number.add(mapper->GetSlabCenter(), 3);
-  vtkPlaneCollection* const planes = mapper->GetClippingPlanes();
   for (int n = 0; planes && n < planes->GetNumberOfItems(); ++n)
   {
     number.add(planes->GetItem(n)->GetNormal(), 3);
     number.add(planes->GetItem(n)->GetOrigin(), 3);
-  }
-  if (vtkPolyData* const surface = mapper->GetBoundingSurface())
-  {
-    number.add(surface->GetNumberOfPoints());
-    number.add(surface->GetBounds(), 6);
   }
 }
 
@@ -159,8 +136,17 @@ bool sameScalars(const RankReport& a, const RankReport& b)
   return a.cells == b.cells && a.type == b.type && a.components == b.components;
 }
 
-/// The first problem of a rank, told with its number.
-std::string problemOf(const std::vector<RankReport>& reports)
+/// The first rank that holds something.
+const RankReport* firstPiece(const std::vector<RankReport>& reports)
+{
+  const auto first = std::find_if(
+    reports.begin(), reports.end(), [](const RankReport& report) { return !report.isEmpty(); });
+  return first == reports.end() ? nullptr : &*first;
+}
+
+/// The first problem that a rank has, or that all have together; of their grids alone, or also of
+/// views and scalars.
+std::string problemOf(const std::vector<RankReport>& reports, bool ofGrids)
 {
   for (std::size_t rank = 0; rank < reports.size(); ++rank)
   {
@@ -169,32 +155,43 @@ std::string problemOf(const std::vector<RankReport>& reports)
       return "Rank " + std::to_string(rank) + ": " + reports[rank].problem;
     }
   }
+  const RankReport* const first = firstPiece(reports);
+  if (!first)
+  {
+    return "No rank has any voxels: give at least one of them an image.";
+  }
+  const auto any = [&](auto&& isOther)
+  { return std::any_of(reports.begin(), reports.end(), isOther); };
+  if (!ofGrids && any([&](const RankReport& r) { return r.view != first->view; }))
+  {
+    return "The ranks see the volume in different ways: give their cameras, windows and mappers "
+           "the same settings.";
+  }
+  if (any([&](const RankReport& r) { return !r.isEmpty() && !sameGrid(r, *first); }))
+  {
+    return "The ranks' pieces are not of one image: give them the same origin, spacing and "
+           "direction matrix, and extents of one grid.";
+  }
+  if (!ofGrids && any([&](const RankReport& r) { return !r.isEmpty() && !sameScalars(r, *first); }))
+  {
+    return "The ranks' scalars differ in type, number of components, or in being of cells or "
+           "points (pieces with hidden voxels are float): give all pieces the same.";
+  }
   return {};
 }
-
-/// The first rank that holds something.
-const RankReport* firstPiece(const std::vector<RankReport>& reports)
-{
-  const auto first = std::find_if(
-    reports.begin(), reports.end(), [](const RankReport& report) { return !report.isEmpty(); });
-  return first == reports.end() ? nullptr : &*first;
-}
 }
 
-//------------------------------------------------------------------------------
 bool RankReport::isEmpty() const
 {
   return this->extent[0] > this->extent[1] || this->extent[2] > this->extent[3] ||
     this->extent[4] > this->extent[5];
 }
 
-//------------------------------------------------------------------------------
 void RankReport::setProblem(const std::string& sentence)
 {
   std::strncpy(this->problem, sentence.c_str(), sizeof this->problem - 1);
 }
 
-//------------------------------------------------------------------------------
 void RankReport::setGrid(vtkImageData* image)
 {
   std::copy(image->GetExtent(), image->GetExtent() + 6, this->extent);
@@ -204,21 +201,19 @@ void RankReport::setGrid(vtkImageData* image)
   std::copy(direction9, direction9 + 9, this->direction);
 }
 
-//------------------------------------------------------------------------------
 vtkImageData* pieceOf(vtkSplattingMIPVolumeMapper* mapper)
 {
   auto* const image = vtkImageData::SafeDownCast(mapper->GetDataSetInput());
   return image && image->GetNumberOfPoints() > 0 ? image : nullptr;
 }
 
-//------------------------------------------------------------------------------
 RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& problem)
 {
   RankReport report;
   report.setProblem(problem);
   // EXACT gives way to HIGH, which reaches farther, where it takes too long or there are no maxima.
   const int mode = std::min<int>(mapper->GetQualityMode(), vtkSplattingMIPVolumeMapper::HIGH);
-  report.layers = splatting::reachOf(static_cast<splatting::Quality>(mode)).layers();
+  report.layers = reachOf(static_cast<Quality>(mode)).layers();
   if (vtkImageData* const image = pieceOf(mapper))
   {
     report.setGrid(image);
@@ -245,7 +240,6 @@ RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& prob
   return report;
 }
 
-//------------------------------------------------------------------------------
 std::uint64_t viewNumber(
   vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume)
 {
@@ -260,14 +254,12 @@ std::uint64_t viewNumber(
   number.add(camera->GetViewTransformMatrix()->GetData(), 16);
   number.add(volume->GetMatrix()->GetData(), 16);
   number.add(volume->GetProperty()->GetIndependentComponents());
-  addSettings(mapper, number);
+  addProperties(mapper->ReadProperties(), number);
   addScalars(mapper, number);
-  addDepthCoding(mapper, number);
-  addCuts(mapper, number);
+  addPlanes(mapper->GetClippingPlanes(), number);
   return number.get();
 }
 
-//------------------------------------------------------------------------------
 bool RankAgreement::Use(vtkMultiProcessController* controller)
 {
   vtkMultiProcessController* const several =
@@ -280,13 +272,11 @@ bool RankAgreement::Use(vtkMultiProcessController* controller)
   return this->AreMany();
 }
 
-//------------------------------------------------------------------------------
 bool RankAgreement::IsRoot() const
 {
   return !this->AreMany() || this->Controller->GetLocalProcessId() == 0;
 }
 
-//------------------------------------------------------------------------------
 std::vector<RankReport> RankAgreement::Gather(const RankReport& own) const
 {
   std::vector<RankReport> reports(this->Controller->GetNumberOfProcesses());
@@ -295,7 +285,6 @@ std::vector<RankReport> RankAgreement::Gather(const RankReport& own) const
   return reports;
 }
 
-//------------------------------------------------------------------------------
 // All reports are of one grid.
 void RankAgreement::SetWhole(const std::vector<RankReport>& reports)
 {
@@ -325,11 +314,10 @@ void RankAgreement::SetWhole(const std::vector<RankReport>& reports)
   this->Image->SetDirectionMatrix(this->All.direction);
 }
 
-//------------------------------------------------------------------------------
 // In voxels of the whole.
-splatting::Box RankAgreement::BoxOf(const RankReport& report) const
+Box RankAgreement::BoxOf(const RankReport& report) const
 {
-  splatting::Box box;
+  Box box;
   for (int a = 0; a < 3; ++a)
   {
     box.begin[a] = report.extent[2 * a] - this->All.extent[2 * a];
@@ -339,38 +327,24 @@ splatting::Box RankAgreement::BoxOf(const RankReport& report) const
   return box;
 }
 
-//------------------------------------------------------------------------------
 bool RankAgreement::IsCovered(const std::vector<RankReport>& reports) const
 {
-  std::vector<splatting::Box> interiors;
+  std::vector<Box> interiors;
   for (const RankReport& report : reports)
   {
     if (!report.isEmpty())
     {
-      interiors.push_back(splatting::interiorOf(
-        this->BoxOf(report), this->Place.grid.dimensions, glm::ivec3(report.layers)));
+      interiors.push_back(
+        interiorOf(this->BoxOf(report), this->Place.grid.dimensions, glm::ivec3(report.layers)));
     }
   }
-  return splatting::cover(interiors, this->Place.grid.dimensions);
+  return cover(interiors, this->Place.grid.dimensions);
 }
 
-//------------------------------------------------------------------------------
 std::string RankAgreement::AgreeOnGrid(const RankReport& own)
 {
   const std::vector<RankReport> reports = this->Gather(own);
-  const RankReport* const first = firstPiece(reports);
-  const auto isOther = [&](const RankReport& r) { return !r.isEmpty() && !sameGrid(r, *first); };
-  std::string problem = problemOf(reports);
-  if (problem.empty() && !first)
-  {
-    problem = "No rank has any voxels: give at least one of them an image.";
-  }
-  if (problem.empty() && std::any_of(reports.begin(), reports.end(), isOther))
-  {
-    problem =
-      "The ranks' pieces are not of one image: give them the same origin, spacing and direction "
-      "matrix, and extents of one grid.";
-  }
+  const std::string problem = problemOf(reports, true);
   if (problem.empty())
   {
     this->SetWhole(reports);
@@ -378,44 +352,16 @@ std::string RankAgreement::AgreeOnGrid(const RankReport& own)
   return problem;
 }
 
-//------------------------------------------------------------------------------
 std::string RankAgreement::Agree(const RankReport& own)
 {
   const std::vector<RankReport> reports = this->Gather(own);
-  std::string problem = problemOf(reports);
-  const RankReport* const first = firstPiece(reports);
-  const auto none = [&](auto&& isOther)
-  { return std::none_of(reports.begin(), reports.end(), isOther); };
-  if (problem.empty() && !first)
-  {
-    problem = "No rank has any voxels: give at least one of them an image.";
-  }
-  if (problem.empty() && !none([&](const RankReport& r) { return r.view != first->view; }))
-  {
-    problem =
-      "The ranks see the volume in different ways: give their cameras, windows and mappers the "
-      "same settings.";
-  }
-  if (problem.empty() &&
-    !none([&](const RankReport& r) { return !r.isEmpty() && !sameGrid(r, *first); }))
-  {
-    problem =
-      "The ranks' pieces are not of one image: give them the same origin, spacing and direction "
-      "matrix, and extents of one grid.";
-  }
-  if (problem.empty() &&
-    !none([&](const RankReport& r) { return !r.isEmpty() && !sameScalars(r, *first); }))
-  {
-    problem =
-      "The ranks' scalars differ in type, number of components, or in being of cells or points "
-      "(pieces with hidden voxels are float): give all pieces the same.";
-  }
+  std::string problem = problemOf(reports, false);
   if (!problem.empty())
   {
     return problem;
   }
   this->SetWhole(reports);
-  problem = describeGrid(this->Image, first->cells != 0, this->Place);
+  problem = describeGrid(this->Image, this->All.cells != 0, this->Place);
   if (problem.empty() && !this->IsCovered(reports))
   {
     problem = "The ranks' pieces do not cover the image: each needs " + std::to_string(own.layers) +
@@ -429,13 +375,11 @@ std::string RankAgreement::Agree(const RankReport& own)
   return problem;
 }
 
-//------------------------------------------------------------------------------
 bool RankAgreement::Any(bool here) const
 {
   return this->Least(here ? 0 : 1) == 0;
 }
 
-//------------------------------------------------------------------------------
 int RankAgreement::Least(int here) const
 {
   int least = here;
@@ -443,32 +387,28 @@ int RankAgreement::Least(int here) const
   return least;
 }
 
-//------------------------------------------------------------------------------
-void RankAgreement::Reduce(splatting::ShearImage& image, const splatting::ShearWarp& geometry,
-  splatting::Reduction reduction)
+void RankAgreement::Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction)
 {
-  const splatting::ScalarType type = image.type, keys = splatting::encode(image, reduction);
+  const ScalarType type = image.type, keys = encode(image, reduction);
   this->Received.resize(image.bytes.size());
   this->Controller->GetCommunicator()->AllReduceVoidArray(image.bytes.data(), this->Received.data(),
     vtkIdType(image.width) * image.height, vtkTypeOf(keys),
-    reduction == splatting::Reduction::Minimum ? vtkCommunicator::MIN_OP : vtkCommunicator::MAX_OP);
+    reduction == Reduction::Minimum ? vtkCommunicator::MIN_OP : vtkCommunicator::MAX_OP);
   image.bytes.swap(this->Received); // which is now what this rank had
   if (!image.winners.empty())
   {
     this->ReduceWinners(image, geometry);
   }
-  splatting::decode(image, type, reduction);
+  decode(image, type, reduction);
 }
 
-//------------------------------------------------------------------------------
 // Steps are counted from the first slice of this rank's piece, and shall be from that of the whole.
-void RankAgreement::ReduceWinners(
-  splatting::ShearImage& image, const splatting::ShearWarp& geometry)
+void RankAgreement::ReduceWinners(ShearImage& image, const ShearWarp& geometry)
 {
   constexpr std::int32_t behind = std::numeric_limits<std::int32_t>::max();
   const std::int32_t none = geometry.reversed() ? -1 : behind;
-  const std::int32_t first = splatting::StepsPerSlice * this->FirstVoxel[geometry.principalAxis()];
-  const std::size_t size = splatting::sizeOf(image.type);
+  const std::int32_t first = StepsPerSlice * this->FirstVoxel[geometry.principalAxis()];
+  const std::size_t size = sizeOf(image.type);
   for (std::size_t pixel = 0; pixel < image.winners.size(); ++pixel)
   {
     std::int32_t& step = image.winners[pixel];
@@ -484,14 +424,12 @@ void RankAgreement::ReduceWinners(
   std::replace(image.winners.begin(), image.winners.end(), behind, std::int32_t(-1));
 }
 
-//------------------------------------------------------------------------------
-splatting::VolumeIndex::Range RankAgreement::RangeOfWhole(std::size_t component) const
+VolumeIndex::Range RankAgreement::RangeOfWhole(std::size_t component) const
 {
   const auto& range = this->All.ranges[component];
   return { range.low, range.high, range.special != 0.0 };
 }
 
-//------------------------------------------------------------------------------
 void describeScalars(ComponentProjector& components, const ScalarSource& source, RankReport& report)
 {
   report.cells = source.Grid().cells;
@@ -500,7 +438,7 @@ void describeScalars(ComponentProjector& components, const ScalarSource& source,
   report.components = static_cast<std::int32_t>(components.NumberOfComponents());
   for (std::size_t c = 0; c < components.NumberOfComponents(); ++c)
   {
-    const splatting::VolumeIndex::Range& range = components.RangeOfPiece(c);
+    const VolumeIndex::Range& range = components.RangeOfPiece(c);
     report.ranges[c] = { range.low, range.high, range.special ? 1.0 : 0.0 };
   }
   if (components.AreDependent())

@@ -77,7 +77,7 @@ public:
   const RankReport& Common() const { return this->All; }
   /// Where this rank's voxels begin.
   const glm::ivec3& First() const override { return this->FirstVoxel; }
-  splatting::VolumeIndex::Range RangeOfWhole(std::size_t component) const override;
+  VolumeIndex::Range RangeOfWhole(std::size_t component) const override;
 
   /// Collective. Whether something is so on any rank.
   bool Any(bool here) const override;
@@ -90,21 +90,20 @@ public:
    * of each if the image has winners: of the ranks whose pixel is the whole's, the step nearest to
    * the viewer.
    */
-  void Reduce(splatting::ShearImage& image, const splatting::ShearWarp& geometry,
-    splatting::Reduction reduction) override;
+  void Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction) override;
 
 private:
   std::vector<RankReport> Gather(const RankReport& own) const;
   void SetWhole(const std::vector<RankReport>& reports);
   bool IsCovered(const std::vector<RankReport>& reports) const;
-  splatting::Box BoxOf(const RankReport& report) const;
+  Box BoxOf(const RankReport& report) const;
 
   vtkMultiProcessController* Controller = nullptr; // only if there are several ranks
   RankReport All;
   GridOfDataSet Place;
   glm::ivec3 FirstVoxel{ 0 };
   vtkSmartPointer<vtkImageData> Image;
-  void ReduceWinners(splatting::ShearImage& image, const splatting::ShearWarp& geometry);
+  void ReduceWinners(ShearImage& image, const ShearWarp& geometry);
 
   std::vector<unsigned char> Received;
   std::vector<std::int32_t> ReceivedSteps;

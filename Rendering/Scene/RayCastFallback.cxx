@@ -83,7 +83,7 @@ void RayCastFallback::RenderOnGpu(vtkSplattingMIPVolumeMapper* settings, vtkImag
 }
 
 void RayCastFallback::FindMask(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image,
-  vtkRenderer* renderer, vtkVolume* volume, splatting::Picture& mask)
+  vtkRenderer* renderer, vtkVolume* volume, Picture& mask)
 {
   this->Update(settings, image, volume);
   this->Mapper->PerImageInitialization(renderer, this->Volume, 0, nullptr, nullptr, nullptr);

@@ -3,7 +3,7 @@
 #ifndef RayCastFallback_h
 #define RayCastFallback_h
 
-#include "Display/Warp.h"
+#include "Display/Picture.h"
 #include "Scene/VolumeStandIn.h"
 
 #include "vtkNew.h"
@@ -40,7 +40,7 @@ public:
     vtkVolume* volume);
   /// The picture that Render() would draw: white where it is not transparent. Takes as long.
   void FindMask(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, vtkRenderer* renderer,
-    vtkVolume* volume, splatting::Picture& mask);
+    vtkVolume* volume, Picture& mask);
   void ReleaseGraphicsResources(vtkWindow* window);
 
   /// Whether the mapper for a blend mode is vtkGPUVolumeRayCastMapper, which draws into selections

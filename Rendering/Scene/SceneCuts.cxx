@@ -9,11 +9,10 @@
 
 namespace splatting
 {
-//------------------------------------------------------------------------------
-void SceneCuts::Find(const splatting::View& view, const std::vector<splatting::ShearWarp>& images,
-  vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
+void SceneCuts::Find(const View& view, const std::vector<ShearWarp>& images, vtkRenderer* renderer,
+  vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
 {
-  splatting::placePicture(images, view.viewport, this->Place);
+  placePicture(images, view.viewport, this->Place);
   this->Seen = renderer->GetSelector() ? this->RememberScene(view, renderer, volume, intermixes)
                                        : this->LookAtScene(renderer, volume, intermixes, readDepth);
   if (this->Seen)
@@ -30,8 +29,7 @@ void SceneCuts::Find(const splatting::View& view, const std::vector<splatting::S
   }
 }
 
-//------------------------------------------------------------------------------
-void SceneCuts::Hide(splatting::Picture& picture) const
+void SceneCuts::Hide(Picture& picture) const
 {
   if (this->Seen)
   {
@@ -39,11 +37,10 @@ void SceneCuts::Hide(splatting::Picture& picture) const
   }
 }
 
-//------------------------------------------------------------------------------
 // Selection is by what is seen: its passes draw other depths than frames. What no frame has shown,
 // as after the camera has moved, is not known.
-SceneCuts::Scene* SceneCuts::RememberScene(const splatting::View& view, const vtkRenderer* renderer,
-  const vtkVolume* volume, bool intermixes)
+SceneCuts::Scene* SceneCuts::RememberScene(
+  const View& view, const vtkRenderer* renderer, const vtkVolume* volume, bool intermixes)
 {
   const auto scene = std::find_if(this->Scenes.begin(), this->Scenes.end(),
     [&](const Scene& s)
@@ -54,7 +51,6 @@ SceneCuts::Scene* SceneCuts::RememberScene(const splatting::View& view, const vt
   return intermixes && scene != this->Scenes.end() ? &*scene : nullptr;
 }
 
-//------------------------------------------------------------------------------
 // What has been rendered where the volume will be seen, if there is anything.
 SceneCuts::Scene* SceneCuts::LookAtScene(
   vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
@@ -81,7 +77,6 @@ SceneCuts::Scene* SceneCuts::LookAtScene(
   return &scene;
 }
 
-//------------------------------------------------------------------------------
 // A renderer's and volume's own, in the place of one that has not been rendered for long.
 SceneCuts::Scene& SceneCuts::SceneOf(const vtkRenderer* renderer, const vtkVolume* volume)
 {

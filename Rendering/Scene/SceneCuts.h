@@ -34,21 +34,21 @@ public:
   /**
    * @param intermixes  whether geometry in the scene hides the volume and ends rays in it
    */
-  void Find(const splatting::View& view, const std::vector<splatting::ShearWarp>& images,
-    vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
+  void Find(const View& view, const std::vector<ShearWarp>& images, vtkRenderer* renderer,
+    vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
 
   /// What Find() has found, for each image.
-  const std::vector<splatting::Cuts>& Get() const { return this->Present; }
+  const std::vector<Cuts>& Get() const { return this->Present; }
 
   /// Whether that is what it was when it was last kept.
   bool AreKept() const { return this->Present == this->Kept; }
   /// The present cuts are those of a projection. They are no longer to be had.
   void Keep() { std::swap(this->Present, this->Kept); }
   /// Those that were kept.
-  const std::vector<splatting::Cuts>& OfProjection() const { return this->Kept; }
+  const std::vector<Cuts>& OfProjection() const { return this->Kept; }
 
   /// Clears the pixels of a picture that other things hide.
-  void Hide(splatting::Picture& picture) const;
+  void Hide(Picture& picture) const;
 
 private:
   /// What a renderer's last frame had rendered before a volume was.
@@ -58,23 +58,23 @@ private:
     const vtkVolume* volume;
     vtkTypeInt64 lastFrame = 0;
     glm::dmat4 indexToClip{ 0.0 };
-    splatting::SceneDepth depth{};
+    SceneDepth depth{};
   };
   /// A scene that others were rendered so often after is given up.
   static constexpr vtkTypeInt64 FramesKept = 64;
 
-  Scene* RememberScene(const splatting::View& view, const vtkRenderer* renderer,
-    const vtkVolume* volume, bool intermixes);
+  Scene* RememberScene(
+    const View& view, const vtkRenderer* renderer, const vtkVolume* volume, bool intermixes);
   Scene* LookAtScene(
     vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
   Scene& SceneOf(const vtkRenderer* renderer, const vtkVolume* volume);
 
   BoundingSurface Bounds;
-  std::vector<splatting::Cuts> Present, Kept;
+  std::vector<Cuts> Present, Kept;
   std::vector<Scene> Scenes;
   Scene* Seen = nullptr; // in the present frame, if there is anything
   vtkTypeInt64 Frame = 0;
-  splatting::Picture Place; // where the volume will be seen
+  Picture Place; // where the volume will be seen
 };
 }
 

@@ -51,7 +51,7 @@ bool isTransparent(std::uint32_t color)
 }
 }
 
-void drawIdentifiers(vtkHardwareSelector* selector, splatting::Picture& picture)
+void drawIdentifiers(vtkHardwareSelector* selector, Picture& picture)
 {
   selector->BeginRenderProp();
   chooseIdentifier(selector);

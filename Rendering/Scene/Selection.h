@@ -3,7 +3,7 @@
 #ifndef Selection_h
 #define Selection_h
 
-#include "Display/Warp.h"
+#include "Display/Picture.h"
 
 class vtkHardwareSelector;
 
@@ -14,7 +14,7 @@ namespace splatting
  * picture is not transparent. A volume is one thing: it has the prop's and the process's
  * identifier, composite index 1 (as vtkPolyData's mapper has) and point and cell 0.
  */
-void drawIdentifiers(vtkHardwareSelector* selector, splatting::Picture& picture);
+void drawIdentifiers(vtkHardwareSelector* selector, Picture& picture);
 }
 
 #endif

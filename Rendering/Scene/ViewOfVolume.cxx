@@ -14,20 +14,17 @@
 
 namespace splatting
 {
-//------------------------------------------------------------------------------
 glm::dmat4 indexToWorld(const VolumeGrid& grid, vtkVolume* volume)
 {
   return toGlm(volume->GetMatrix()) * grid.indexToPhysical;
 }
 
-//------------------------------------------------------------------------------
 bool isFlat(const VolumeGrid& grid, vtkVolume* volume)
 {
   return isSingular(indexToWorld(grid, volume));
 }
 
-//------------------------------------------------------------------------------
-splatting::View makeView(
+View makeView(
   const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper)
 {
   int width, height, left, bottom;
@@ -38,7 +35,7 @@ splatting::View makeView(
     toGlm(camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0)) *
     toGlm(camera->GetViewTransformMatrix());
   const glm::dmat4 world = indexToWorld(grid, volume);
-  splatting::View view = viewOf(grid, world, worldToClip, { width, height });
+  View view = viewOf(grid, world, worldToClip, { width, height });
   if (vtkPlaneCollection* const planes = mapper->GetClippingPlanes())
   {
     addPlanes(view, world, planes);
@@ -51,15 +48,13 @@ splatting::View makeView(
   return view;
 }
 
-//------------------------------------------------------------------------------
 glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume)
 {
   return glm::inverse(indexToWorld(grid, volume));
 }
 
-//------------------------------------------------------------------------------
-void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
-  const double centre[3], double thickness)
+void addSlab(
+  View& view, const VolumeGrid& grid, vtkVolume* volume, const double centre[3], double thickness)
 {
   addSlab(view, indexToWorld(grid, volume), centre, thickness);
 }

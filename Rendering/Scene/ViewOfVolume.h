@@ -24,7 +24,7 @@ bool isFlat(const VolumeGrid& grid, vtkVolume* volume);
  * The view of the renderer's active camera. Half-spaces: those of the mapper's clipping planes and
  * of the near and far plane that cut into the volume. Cropping: the mapper's.
  */
-splatting::View makeView(
+View makeView(
   const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper);
 
 /**
@@ -40,8 +40,8 @@ glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume);
 /**
  * As in WorldView.h.
  */
-void addSlab(splatting::View& view, const VolumeGrid& grid, vtkVolume* volume,
-  const double centre[3], double thickness);
+void addSlab(
+  View& view, const VolumeGrid& grid, vtkVolume* volume, const double centre[3], double thickness);
 }
 
 #endif

@@ -36,13 +36,11 @@ double valueOf(const splatting::ShearImage& image, int u, int v)
 
 namespace splatting
 {
-//------------------------------------------------------------------------------
-vtkSmartPointer<vtkImageData> makeLocationImage(
-  const splatting::Locator* locator, const int extent[6])
+vtkSmartPointer<vtkImageData> makeLocationImage(const Locator* locator, const int extent[6])
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetExtent(extent[0], extent[1], extent[2], extent[3], 0, 0);
-  const splatting::Locator::Arrays arrays = addLocationArrays(image);
+  const Locator::Arrays arrays = addLocationArrays(image);
   if (locator)
   {
     const int* const size = image->GetDimensions();
@@ -51,7 +49,6 @@ vtkSmartPointer<vtkImageData> makeLocationImage(
   return image;
 }
 
-//------------------------------------------------------------------------------
 std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors)
 {
   constexpr int count = 256;
@@ -74,16 +71,14 @@ std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors)
   return table;
 }
 
-//------------------------------------------------------------------------------
 void WinnerLocations::Forget()
 {
   this->Known = false;
   this->Output = nullptr;
 }
 
-//------------------------------------------------------------------------------
 void WinnerLocations::Remember(
-  const splatting::View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer)
+  const View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer)
 {
   this->Output = nullptr;
   this->Known = true;
@@ -96,22 +91,19 @@ void WinnerLocations::Remember(
   renderer->GetTiledSizeAndOrigin(&width, &height, &this->Left, &this->Bottom);
 }
 
-//------------------------------------------------------------------------------
 bool WinnerLocations::HasWinners() const
 {
   return this->Known && !this->Images.empty() && this->Projector.HasWinners();
 }
 
-//------------------------------------------------------------------------------
-splatting::Locator WinnerLocations::Locate() const
+Locator WinnerLocations::Locate() const
 {
-  splatting::Located located = this->Frame;
+  Located located = this->Frame;
   located.geometries = &this->Images;
   this->Projector.Describe(located);
-  return splatting::Locator(located);
+  return Locator(located);
 }
 
-//------------------------------------------------------------------------------
 bool WinnerLocations::Pick(int x, int y, Sample& sample)
 {
   const glm::ivec2 pixel(x - this->Left, y - this->Bottom);
@@ -121,7 +113,7 @@ bool WinnerLocations::Pick(int x, int y, Sample& sample)
   {
     return false;
   }
-  splatting::Picture place;
+  Picture place;
   place.origin = pixel;
   place.size = glm::ivec2(1);
   place.pixels = { 1u };
@@ -129,10 +121,8 @@ bool WinnerLocations::Pick(int x, int y, Sample& sample)
   return place.pixels.front() && this->PickRay(pixel, sample);
 }
 
-//------------------------------------------------------------------------------
 // Only at the image's rim rounding can let rays meet the volume that have no sample.
-bool WinnerLocations::HasSample(
-  const splatting::ShearImage& image, const splatting::ShearPixel& pixel)
+bool WinnerLocations::HasSample(const ShearImage& image, const ShearPixel& pixel)
 {
   const int u = pixel.u, v = pixel.v;
   const bool isInside = image.meetsVolume(u - 1, v - 1) && image.meetsVolume(u + 1, v - 1) &&
@@ -145,7 +135,6 @@ bool WinnerLocations::HasSample(
           .winners[0] >= 0);
 }
 
-//------------------------------------------------------------------------------
 // Of a pixel of the viewport.
 bool WinnerLocations::PickRay(const glm::ivec2& pixel, Sample& sample)
 {
@@ -154,22 +143,21 @@ bool WinnerLocations::PickRay(const glm::ivec2& pixel, Sample& sample)
   {
     return false;
   }
-  splatting::Located located = this->Frame;
+  Located located = this->Frame;
   located.geometries = &this->Images;
   this->Projector.Describe(located);
-  const auto hasSample = [&](const splatting::ShearPixel& shear)
+  const auto hasSample = [&](const ShearPixel& shear)
   { return this->HasSample((*located.images)[shear.image], shear); };
-  splatting::ShearPixel shown;
-  splatting::findShearPixels(*located.images, this->Images, located.settings.reduction, pixel,
-    glm::ivec2(1), &shown,
-    hasWinners ? std::function<bool(const splatting::ShearPixel&)>() : hasSample);
+  ShearPixel shown;
+  findShearPixels(*located.images, this->Images, located.settings.reduction, pixel, glm::ivec2(1),
+    &shown, hasWinners ? std::function<bool(const ShearPixel&)>() : hasSample);
   if (shown.image < 0)
   {
     return false;
   }
   if (!hasWinners)
   {
-    const ComponentProjector::Pixel& alone =
+    const PixelProjector::Pixel& alone =
       this->Projector.ProjectPixel(shown, this->Images, this->Cuts.OfProjection());
     if (alone.Images.front().winners[0] < 0)
     {
@@ -179,14 +167,13 @@ bool WinnerLocations::PickRay(const glm::ivec2& pixel, Sample& sample)
     located.geometries = &alone.Geometries;
     shown = { 0, 0, 0 };
   }
-  const splatting::Locator locator(located);
+  const Locator locator(located);
   sample.position = locator.inWorld(locator.point(glm::dvec2(pixel), shown));
-  sample.voxel = splatting::findVoxel(located, shown);
+  sample.voxel = findVoxel(located, shown);
   sample.value = valueOf((*located.images)[shown.image], shown.u, shown.v);
   return true;
 }
 
-//------------------------------------------------------------------------------
 vtkImageData* WinnerLocations::Image()
 {
   if (!this->Known || this->Output)
@@ -201,10 +188,10 @@ vtkImageData* WinnerLocations::Image()
     this->Output = makeLocationImage(nullptr, extent);
     return this->Output;
   }
-  const splatting::Locator locator = this->Locate();
+  const Locator locator = this->Locate();
   this->Output = makeLocationImage(&locator, extent);
   // What other things hide is not seen.
-  splatting::Picture seen;
+  Picture seen;
   seen.size = viewport;
   seen.pixels.assign(std::size_t(viewport.x) * viewport.y, 1u);
   this->Cuts.Hide(seen);
@@ -222,20 +209,19 @@ vtkImageData* WinnerLocations::Image()
   return this->Output;
 }
 
-//------------------------------------------------------------------------------
 void WinnerLocations::ColorByDepth(
-  splatting::Picture& picture, vtkScalarsToColors* colors, const double range[2])
+  Picture& picture, vtkScalarsToColors* colors, const double range[2])
 {
   if (!this->HasWinners())
   {
     return;
   }
   const std::vector<glm::dvec3> table = depthColors(colors);
-  const splatting::Locator locator = this->Locate();
+  const Locator locator = this->Locate();
   const glm::dvec2 depths =
     range[0] < range[1] ? glm::dvec2(range[0], range[1]) : locator.depthRange();
   this->Depths.resize(picture.pixels.size());
-  splatting::Locator::Arrays arrays;
+  Locator::Arrays arrays;
   arrays.depths = this->Depths.data();
   locator.fill(picture.origin, picture.size, arrays);
   const double last = static_cast<double>(table.size()) - 1.0;
@@ -257,9 +243,7 @@ void WinnerLocations::ColorByDepth(
   }
 }
 
-//------------------------------------------------------------------------------
-const std::vector<float>& WinnerLocations::ClipDepths(
-  const splatting::Picture& picture, double opacity)
+const std::vector<float>& WinnerLocations::ClipDepths(const Picture& picture, double opacity)
 {
   constexpr float none = 2.0f;
   this->Depths.assign(picture.pixels.size(), none);
@@ -267,7 +251,7 @@ const std::vector<float>& WinnerLocations::ClipDepths(
   {
     return this->Depths;
   }
-  splatting::Locator::Arrays arrays;
+  Locator::Arrays arrays;
   arrays.clipDepths = this->Depths.data();
   this->Locate().fill(picture.origin, picture.size, arrays);
   for (std::size_t n = 0; n < picture.pixels.size(); ++n)

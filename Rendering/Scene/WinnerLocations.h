@@ -6,6 +6,7 @@
 #ifndef WinnerLocations_h
 #define WinnerLocations_h
 
+#include "Display/Picture.h"
 #include "Projection/Locations.h"
 
 #include "vtkSmartPointer.h"
@@ -31,8 +32,7 @@ struct VolumeGrid;
  *
  * @param locator  nullptr: there are no samples
  */
-vtkSmartPointer<vtkImageData> makeLocationImage(
-  const splatting::Locator* locator, const int extent[6]);
+vtkSmartPointer<vtkImageData> makeLocationImage(const Locator* locator, const int extent[6]);
 
 /**
  * 256 colours, from the nearest to the farthest depth: those of a look-up table or transfer
@@ -46,8 +46,8 @@ std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors);
 class WinnerLocations
 {
 public:
-  WinnerLocations(ComponentProjector& projector, const SceneCuts& cuts,
-    const std::vector<splatting::ShearWarp>& images)
+  WinnerLocations(
+    ComponentProjector& projector, const SceneCuts& cuts, const std::vector<ShearWarp>& images)
     : Projector(projector),
       Cuts(cuts),
       Images(images)
@@ -57,8 +57,7 @@ public:
   /// Nothing has been rendered.
   void Forget();
   /// How a frame has seen the volume.
-  void Remember(
-    const splatting::View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer);
+  void Remember(const View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer);
 
   /// What a pixel of the window shows: point of the world, voxel and value. False if the picture
   /// has no sample there. Without winners, looks along rays.
@@ -73,20 +72,20 @@ public:
   vtkImageData* Image();
 
   /// Gives each pixel of a picture its depth's colour, as bright as the picture is.
-  void ColorByDepth(splatting::Picture& picture, vtkScalarsToColors* colors, const double range[2]);
+  void ColorByDepth(Picture& picture, vtkScalarsToColors* colors, const double range[2]);
   /// From 0 to 1, of the pixels of a picture that are no less opaque than this; else 2.
-  const std::vector<float>& ClipDepths(const splatting::Picture& picture, double opacity);
+  const std::vector<float>& ClipDepths(const Picture& picture, double opacity);
 
 private:
   bool HasWinners() const;
-  splatting::Locator Locate() const;
-  bool HasSample(const splatting::ShearImage& image, const splatting::ShearPixel& pixel);
+  Locator Locate() const;
+  bool HasSample(const ShearImage& image, const ShearPixel& pixel);
   bool PickRay(const glm::ivec2& pixel, Sample& sample);
 
   ComponentProjector& Projector;
   const SceneCuts& Cuts;
-  const std::vector<splatting::ShearWarp>& Images;
-  splatting::Located Frame; // but for what the projector knows
+  const std::vector<ShearWarp>& Images;
+  Located Frame; // but for what the projector knows
   int Left = 0, Bottom = 0;
   bool Known = false;
   std::vector<float> Depths;

@@ -10,6 +10,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkSmartVolumeMapper.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace
@@ -117,6 +118,34 @@ void testClampingOfAcceleration(Mapper* mapper, stage::Checks& check)
     "SetIndexMemoryBudget below zero");
 }
 
+void testRanges(Mapper* mapper, stage::Checks& check)
+{
+  check(mapper->GetQualityModeMinValue() == Mapper::PREVIEW &&
+      mapper->GetQualityModeMaxValue() == Mapper::EXACT,
+    "The range of QualityMode.");
+  check(mapper->GetKernelRadiusMinValue() == 0.5 && mapper->GetKernelRadiusMaxValue() == 1.5,
+    "The range of KernelRadius.");
+  check(mapper->GetIndexMemoryBudgetMaxValue() == VTK_TYPE_INT64_MAX, "The largest budget.");
+  check(mapper->GetAutoAdjustSampleDistancesMaxValue() == 1, "The range of a switch.");
+}
+
+/// Vectors have several methods, which are about the same numbers.
+void testVectors(Mapper* mapper, stage::Checks& check)
+{
+  const double center[3] = { 1.0, -2.0, 3.0 };
+  const vtkMTimeType before = mapper->GetMTime();
+  mapper->SetSlabCenter(1.0, -2.0, 3.0);
+  const vtkMTimeType changed = mapper->GetMTime();
+  mapper->SetSlabCenter(center);
+  check(changed > before && mapper->GetMTime() == changed, "SetSlabCenter is one change.");
+  double x = 0.0, y = 0.0, z = 0.0, all[3] = { 0.0, 0.0, 0.0 };
+  mapper->GetSlabCenter(x, y, z);
+  mapper->GetSlabCenter(all);
+  check(x == 1.0 && y == -2.0 && z == 3.0 && std::equal(center, center + 3, all) &&
+      std::equal(center, center + 3, mapper->GetSlabCenter()),
+    "GetSlabCenter");
+}
+
 /// The values are vtkSmartVolumeMapper's.
 void testVectorMode(Mapper* mapper, stage::Checks& check)
 {
@@ -201,6 +230,8 @@ int TestMapperContract(int, char*[])
   testPrinting(mapper, check);
   testClamping(mapper, check);
   testClampingOfAcceleration(mapper, check);
+  testRanges(mapper, check);
+  testVectors(mapper, check);
   testVectorMode(mapper, check);
   testNames(mapper, check);
   return check.exitCode();

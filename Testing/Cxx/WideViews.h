@@ -6,6 +6,7 @@
 #ifndef WideViews_h
 #define WideViews_h
 
+#include "Geometry/Magnification.h"
 #include "Geometry/ShearWarp.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -6,7 +6,7 @@
 #ifndef splattingSceneDepth_h
 #define splattingSceneDepth_h
 
-#include "Display/Warp.h"
+#include "Display/Picture.h"
 #include "Geometry/ShearWarp.h"
 #include "Geometry/View.h"
 

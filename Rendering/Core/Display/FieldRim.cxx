@@ -3,7 +3,7 @@
 #include "Display/FieldRim.h"
 
 #include "Display/Outline.h"
-#include "Display/Warp.h"
+#include "Display/Picture.h"
 #include "Projection/Piece.h"
 #include "Sampling/FieldOnRay.h"
 

@@ -10,6 +10,9 @@
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <vector>
 
 namespace splatting
@@ -65,6 +68,43 @@ Outline metByAreas(const ShearWarp& geometry);
 
 /// The pixels of the screen whose four neighbours in the image are samples, if it has no holes.
 Outline withinSamples(const ShearWarp& geometry);
+
+/// Of a view: one for each direction of each axis.
+inline constexpr std::size_t MostImages = 6;
+
+/// Calls show(n, row) for the pixels of a row, `start` being the first, that image n shows, and
+/// skip(row) for those that none does. What is shown of image n is within shownOf(n).
+template <class ShownOf, class Show, class Skip>
+void forSpans(std::size_t count, const glm::dvec3& start, int width, const ShownOf& shownOf,
+  const Show& show, const Skip& skip)
+{
+  // Images meet at lines: the one that begins first has the pixels that two show.
+  std::array<std::size_t, MostImages> order;
+  std::array<Span, MostImages> spans;
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    spans[n] = shownOf(n).cut({ 0, width }, start);
+    std::size_t place = n;
+    for (; place > 0 && spans[n].begin < spans[order[place - 1]].begin; --place)
+    {
+      order[place] = order[place - 1];
+    }
+    order[place] = n;
+  }
+  int done = 0;
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    const std::size_t which = order[n];
+    const Span row{ std::max(spans[which].begin, done), spans[which].end };
+    if (!row.empty())
+    {
+      skip(Span{ done, row.begin });
+      show(which, row);
+      done = row.end;
+    }
+  }
+  skip(Span{ done, width });
+}
 }
 
 #endif

@@ -7,12 +7,14 @@
 #define splattingWarp_h
 
 #include "Display/FieldRim.h"
+#include "Display/Picture.h"
+#include "Display/ShearPixels.h"
 #include "Kernels/Kernels.h"
 #include "Projection/ShearImage.h"
 
 #include <glm/vec2.hpp>
 
-#include <functional>
+#include <cstdint>
 #include <vector>
 
 namespace splatting
@@ -27,55 +29,6 @@ struct ColorTable
   double high = 0.0;
   std::vector<std::uint32_t> colors;
 };
-
-/**
- * The part of a viewport that a volume may cover. Rows from bottom to top.
- */
-struct Picture
-{
-  glm::ivec2 origin{ 0 };
-  glm::ivec2 size{ 0 };
-  std::vector<std::uint32_t> pixels;
-};
-
-/**
- * Sets the picture's origin and size.
- * @param images  as ShearWarp::factorise() gives them; without any the picture is empty
- */
-void placePicture(
-  const std::vector<ShearWarp>& images, const glm::ivec2& viewport, Picture& picture);
-
-/**
- * A pixel of one of a view's shear images; none by default.
- */
-struct ShearPixel
-{
-  int image = -1;
-  int u = 0, v = 0;
-};
-
-/**
- * For each pixel of a rectangle of the viewport, row by row from the bottom, the shear pixel whose
- * location stands for it: the nearest of those that Warper interpolates its value between, where
- * areas are shown the one that the area's value comes from; none where the picture has no sample.
- * @param images     as in Warper::warp()
- * @param hasSample  whether a shear pixel has one; without it, whether it has a winner
- */
-void findShearPixels(const std::vector<ShearImage>& images,
-  const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& origin,
-  const glm::ivec2& size, ShearPixel* out,
-  const std::function<bool(const ShearPixel&)>& hasSample = {});
-
-/**
- * Adds a picture of the same size and place, byte by byte, no further than 255.
- */
-void addSaturated(const Picture& layer, Picture& sum);
-
-/**
- * Multiplies a picture without transparency by the opacities of another one of the same size and
- * place.
- */
-void multiplyByOpacity(const Picture& opacity, Picture& picture);
 
 /**
  * Warps shear images. Holds work space between frames.

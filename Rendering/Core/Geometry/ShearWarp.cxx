@@ -2,24 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Geometry/ShearWarp.h"
 
+#include "Geometry/Magnification.h"
+
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_access.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace splatting
 {
 namespace
 {
-/// Row r of a matrix (GLM's are columns).
-glm::dvec4 row(const glm::dmat4& m, int r)
-{
-  return { m[0][r], m[1][r], m[2][r], m[3][r] };
-}
-
 /// The nearest multiple of 2^-bits.
 double quantised(double x, int bits)
 {
@@ -49,62 +45,6 @@ glm::dmat3 scaled(double factor)
 {
   return { factor, 0.0, 0.0, 0.0, factor, 0.0, 0.0, 0.0, 1.0 };
 }
-
-/// One coordinate of a ray while it crosses a slice, relative to its pixel.
-struct Crossing
-{
-  int first, last;     // offsets of the voxels where it enters and leaves the slice
-  double faceDistance; // from the entry to the face between the two
-};
-
-Crossing cross(double entry, double exit)
-{
-  // The ray enters and leaves voxels through faces at half-integers. A point on a face belongs to
-  // the voxel that the ray runs in next to it: after the entry, before the exit.
-  const bool forward = exit >= entry;
-  const int first = static_cast<int>(forward ? std::floor(entry + 0.5) : std::ceil(entry - 0.5));
-  if (exit == entry)
-  {
-    return { first, first, 0.0 };
-  }
-  const int last = static_cast<int>(forward ? std::ceil(exit - 0.5) : std::floor(exit + 0.5));
-  return { first, last, std::abs(first + (forward ? 0.5 : -0.5) - entry) };
-}
-
-/// The voxels between two points of a ray, a slice apart or less.
-RayPath path(const glm::dvec2& entry, const glm::dvec2& exit, const glm::dvec2& speed)
-{
-  const Crossing x = cross(entry.x, exit.x);
-  const Crossing y = cross(entry.y, exit.y);
-  RayPath found;
-  const auto add = [&found](int di, int dj)
-  {
-    found.di[found.count] = di;
-    found.dj[found.count] = dj;
-    ++found.count;
-  };
-  add(x.first, y.first);
-  if (x.first != x.last && y.first != y.last)
-  {
-    // Which face comes first? distance / speed, multiplied out: products of 25 and 24 bits, exact;
-    // in the slice with the eye of 34 and 24 bits, rounded.
-    const double timeX = x.faceDistance * speed.y;
-    const double timeY = y.faceDistance * speed.x;
-    if (timeX < timeY)
-    {
-      add(x.last, y.first);
-    }
-    else if (timeY < timeX)
-    {
-      add(x.first, y.last);
-    }
-  }
-  if (x.first != x.last || y.first != y.last)
-  {
-    add(x.last, y.last);
-  }
-  return found;
-}
 }
 
 std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm::dvec3& side)
@@ -127,68 +67,15 @@ std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm:
   return result;
 }
 
-namespace
-{
-/// The larger singular value of a map to a plane, from the sum of the squares of its elements and
-/// how it changes areas: how much it stretches the direction that it stretches most.
-double largerStretch(double squares, double area)
-{
-  return std::sqrt(
-    0.5 * (squares + std::sqrt(std::max(squares * squares - 4.0 * area * area, 0.0))));
-}
-}
-
-glm::dvec2 voxelsPerPixel(const View& view)
-{
-  const glm::dmat4& m = view.indexToClip;
-  glm::dvec2 least(std::numeric_limits<double>::infinity());
-  for (int n = 0; n < 8; ++n)
-  {
-    const glm::dvec4 corner(
-      glm::dvec3(n & 1, n >> 1 & 1, n >> 2) * glm::dvec3(view.dimensions - 1), 1.0);
-    const glm::dvec4 clip = m * corner;
-    if (!(clip.w > 0.0))
-    {
-      return glm::dvec2(0.0);
-    }
-    // How the pixel's coordinates change from voxel to voxel there.
-    const glm::dvec3 w(row(m, 3));
-    const glm::dvec3 x =
-      0.5 * view.viewport.x / clip.w * (glm::dvec3(row(m, 0)) - clip.x / clip.w * w);
-    const glm::dvec3 y =
-      0.5 * view.viewport.y / clip.w * (glm::dvec3(row(m, 1)) - clip.y / clip.w * w);
-    const double area = glm::length(glm::cross(x, y));
-    const double most = largerStretch(glm::dot(x, x) + glm::dot(y, y), area);
-    least = glm::min(least, glm::dvec2(1.0 / most, most / area));
-  }
-  return least;
-}
-
-namespace
-{
-/// Pixels that are as wide as voxels are not wider by rounding.
-constexpr double Wide = 1.0 + 1e-6;
-}
-
-bool isOverview(const View& view)
-{
-  return voxelsPerPixel(view).y > Wide;
-}
-
-bool isCoarse(const View& view)
-{
-  return voxelsPerPixel(view).x > Wide;
-}
-
 ShearWarp::ShearWarp(const View& view, int sampling, Meets meets)
 {
   const glm::dmat4& m = view.indexToClip;
   const glm::dvec3 centre = 0.5 * glm::dvec3(view.dimensions - 1);
-  const double w = glm::dot(glm::dvec3(row(m, 3)), centre) + m[3][3];
+  const double w = glm::dot(glm::dvec3(glm::row(m, 3)), centre) + m[3][3];
   // Rows of the affine map from index space to pixels, whose centres lie at integers.
   const glm::dvec4 half(0.0, 0.0, 0.0, 1.0);
-  const glm::dvec4 rowX = 0.5 * view.viewport.x * (row(m, 0) / w + half) - 0.5 * half;
-  const glm::dvec4 rowY = 0.5 * view.viewport.y * (row(m, 1) / w + half) - 0.5 * half;
+  const glm::dvec4 rowX = 0.5 * view.viewport.x * (glm::row(m, 0) / w + half) - 0.5 * half;
+  const glm::dvec4 rowY = 0.5 * view.viewport.y * (glm::row(m, 1) / w + half) - 0.5 * half;
   // Rays run where neither pixel coordinate changes.
   const glm::dvec3 x(rowX), y(rowY);
   const glm::dvec3 direction = glm::cross(x, y);
@@ -201,10 +88,10 @@ ShearWarp::ShearWarp(const View& view, int sampling, Meets meets)
   this->Size = view.dimensions;
   this->ShowsBoxes = view.showsBoxes;
   this->Overview = splatting::isOverview(view);
-  this->MeetsNearest = meets == Meets::Nearest;
+  this->Met = meets;
   this->chooseAxes(direction);
   // Clip space is deeper away from the viewer; along the ray, with the principal axis growing:
-  const double deeper = glm::dot(glm::dvec3(row(m, 2)) / w, direction);
+  const double deeper = glm::dot(glm::dvec3(glm::row(m, 2)) / w, direction);
   this->Reversed = deeper * direction[this->Axes[2]] < 0.0;
   this->computeWarp(rowX, rowY);
   this->refine(sampling == Automatic ? neededSampling(this->screenWidth({})) : sampling);
@@ -230,7 +117,7 @@ bool ShearWarp::factorise(
   {
     images.resize(std::max(images.size(), count + 1));
     images[count].Overview = overview;
-    images[count].MeetsNearest = meets == Meets::Nearest;
+    images[count].Met = meets;
     count += images[count].lookAlong(direction / 2, direction % 2 == 1, view, rays, sampling);
   }
   images.resize(count);
@@ -554,37 +441,17 @@ double ShearWarp::screenWidth(const glm::dvec2& pixel) const
     glm::dot(change[0], change[0]) + glm::dot(change[1], change[1]), glm::determinant(change));
 }
 
-/// The voxels that a ray meets between two points.
-RayPath ShearWarp::pathOf(
-  const glm::dvec2& enter, const glm::dvec2& leave, const glm::dvec2& slope) const
-{
-  if (!this->MeetsNearest)
-  {
-    return path(enter, leave, glm::abs(slope));
-  }
-  const auto nearest = [&](int a)
-  {
-    return static_cast<int>(
-      slope[a] < 0.0 ? std::ceil(enter[a] - 0.5) : std::floor(enter[a] + 0.5));
-  };
-  RayPath found;
-  found.count = 1;
-  found.di[0] = nearest(0);
-  found.dj[0] = nearest(1);
-  return found;
-}
-
 RayPath ShearWarp::rayPath(int k) const
 {
-  const glm::dvec2 way = this->MeetsNearest ? glm::dvec2(k) : glm::dvec2(k - 0.5, k + 0.5);
-  return this->pathOf(-this->position(way.x), -this->position(way.y), -this->Shear);
+  const glm::dvec2 way = this->Met == Meets::Nearest ? glm::dvec2(k) : glm::dvec2(k - 0.5, k + 0.5);
+  return pathBetween(-this->position(way.x), -this->position(way.y), -this->Shear, this->Met);
 }
 
 RayPath ShearWarp::voxelsOnRay(int u, int v, int k) const
 {
   const glm::dvec2 slope(this->Columns.slope[u], this->Rows.slope[v]);
   const glm::dvec2 depths = this->passage(k);
-  return this->pathOf(this->onRay(u, v, depths.x), this->onRay(u, v, depths.y), slope);
+  return pathBetween(this->onRay(u, v, depths.x), this->onRay(u, v, depths.y), slope, this->Met);
 }
 
 Span ShearWarp::coverage(const RayPath& path, int v) const
@@ -615,8 +482,8 @@ glm::dvec4 ShearWarp::inPixels(const glm::dvec4& halfSpace) const
 bool ShearWarp::sameShear(const ShearWarp& other) const
 {
   // Fans hold the shears.
-  return this->Valid == other.Valid && this->MeetsNearest == other.MeetsNearest &&
-    this->Axes == other.Axes && this->Size == other.Size && this->PixelSize == other.PixelSize &&
+  return this->Valid == other.Valid && this->Met == other.Met && this->Axes == other.Axes &&
+    this->Size == other.Size && this->PixelSize == other.PixelSize &&
     this->Reference == other.Reference && this->DepthRange == other.DepthRange &&
     this->Columns == other.Columns && this->Rows == other.Rows;
 }

@@ -9,6 +9,7 @@
 #ifndef splattingShearWarp_h
 #define splattingShearWarp_h
 
+#include "Geometry/RayPath.h"
 #include "Geometry/View.h"
 #include "Kernels/Kernels.h"
 
@@ -23,18 +24,6 @@
 namespace splatting
 {
 /**
- * The voxels (u + di, v + dj) that the ray of shear pixel (u, v) crosses in one slice: the same
- * offsets for every pixel, at most three because a ray moves by at most one voxel in each
- * direction.
- */
-struct RayPath
-{
-  int count = 0;
-  std::array<int, 3> di{};
-  std::array<int, 3> dj{};
-};
-
-/**
  * The rays of the columns (or of the rows) of a shear image, in one coordinate: that of pixel n
  * passes at[n] + slope[n] (z - ShearWarp::reference()) at depth z.
  */
@@ -47,26 +36,6 @@ struct Fan
     return this->at == other.at && this->slope == other.slope;
   }
   double steepest = 0.0; ///< in perspective, the largest slope of the whole image, either way
-};
-
-/**
- * How many voxels a pixel of the viewport spans, across its ray, in the direction in which it spans
- * fewest and in that in which it spans most: the least of the volume's corners, 0 if one of them is
- * not before the eye.
- */
-glm::dvec2 voxelsPerPixel(const View& view);
-
-/// Whether all of a volume is seen in pixels wider than voxels in some direction, ...
-bool isOverview(const View& view);
-/// ... or in all directions.
-bool isCoarse(const View& view);
-
-/// The voxels of a slice that a ray meets: all that it crosses, or the one that it passes nearest
-/// to in the middle of the slice.
-enum class Meets
-{
-  All,
-  Nearest
 };
 
 /**
@@ -192,7 +161,10 @@ public:
     return glm::clamp(glm::dvec2(k - 0.5, k + 0.5), this->DepthRange.x, this->DepthRange.y);
   }
   /// Where on their way through slice k rays meet voxels: between its faces, or in its middle.
-  glm::dvec2 passage(int k) const { return this->MeetsNearest ? glm::dvec2(k) : this->faces(k); }
+  glm::dvec2 passage(int k) const
+  {
+    return this->Met == Meets::Nearest ? glm::dvec2(k) : this->faces(k);
+  }
   /// The slices whose middle lies before the eye; in parallel views all.
   const Span& slices() const { return this->SlicesSeen; }
   /// Of perspective views, (i, j, k).
@@ -265,7 +237,6 @@ private:
   void refine(int sampling);
   void setParallelFans();
   double screenWidth(const glm::dvec2& pixel) const;
-  RayPath pathOf(const glm::dvec2& enter, const glm::dvec2& leave, const glm::dvec2& slope) const;
 
   /// The rays of a perspective view: through the eye, of viewport pixel (x, y) along
   /// directions (x, y, 1), in index space.
@@ -284,8 +255,8 @@ private:
   bool Valid = false;
   bool ShowsBoxes = false;
   bool Overview = false;
-  bool MeetsNearest = false;
   bool Reversed = false;
+  Meets Met = Meets::All;
   std::array<int, 3> Axes{ 0, 1, 2 };
   glm::ivec3 Size{ 0 };
   glm::ivec3 FirstVoxel{ 0 };

@@ -15,7 +15,7 @@
 #ifndef splattingLocations_h
 #define splattingLocations_h
 
-#include "Display/Warp.h"
+#include "Display/ShearPixels.h"
 #include "Projection/Project.h"
 
 #include <glm/mat4x4.hpp>

@@ -4,7 +4,7 @@
 // The mapper's properties as the projection takes them: what matters is passed on, and what has no
 // meaning is refused.
 #include "CoreTesting.h"
-#include "MapperSettings.h"
+#include "MapperProperties.h"
 #include "WideViews.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
@@ -19,39 +19,43 @@
 using coretesting::Checks;
 using namespace splatting;
 
-int TestMapperSettings(int, char*[])
+int TestMapperProperties(int, char*[])
 {
   Checks check;
   vtkNew<vtkSplattingMIPVolumeMapper> mapper;
   vtkNew<vtkVolumeProperty> property;
   using Mapper = vtkSplattingMIPVolumeMapper;
   mapper->SetBlendModeToMaximumIntensity();
+  const auto fault = [&]
+  { return faultOf(mapper->ReadProperties(), mapper->GetClippingPlanes(), property); };
   const auto refuses = [&](const std::string& word)
   {
-    const char* const fault = faultOfSettings(mapper, property);
-    return fault && std::string(fault).find(word) != std::string::npos;
+    const char* const sentence = fault();
+    return sentence && std::string(sentence).find(word) != std::string::npos;
   };
-  check(!faultOfSettings(mapper, property), "defaults are refused");
+  check(!fault(), "defaults are refused");
   mapper->SlabOn();
   mapper->SetSlabThickness(0.0);
   check(refuses("SlabThickness"), "a slab without thickness is taken");
   mapper->SlabOff();
   vtkNew<vtkPlane> plane;
   mapper->AddClippingPlane(plane);
-  check(!faultOfSettings(mapper, property), "a plane is refused");
+  check(!fault(), "a plane is refused");
   plane->SetOrigin(0.0, NAN, 0.0);
   check(refuses("plane"), "a plane without place is taken");
   mapper->RemoveAllClippingPlanes();
   mapper->SetBlendMode(vtkVolumeMapper::SLICE_BLEND);
   check(refuses("SetSliceFunction"), "no slice is taken");
   property->SetSliceFunction(plane);
-  check(!faultOfSettings(mapper, property), "a slice is refused");
+  check(!fault(), "a slice is refused");
   mapper->SetBlendModeToMaximumIntensity();
+  const auto settings = [&](int mode)
+  { return settingsOf(mapper->ReadProperties(), mode, coretesting::magnifiedView()); };
   const auto changes = [&](int mode, auto change)
   {
-    const auto before = projectionSettings(mapper, mode, coretesting::magnifiedView());
+    const auto before = settings(mode);
     change();
-    return !(projectionSettings(mapper, mode, coretesting::magnifiedView()) == before);
+    return !(settings(mode) == before);
   };
   check(changes(Mapper::HIGH, [&] { mapper->SetKernelToCosineBell(); }), "the kernel");
   check(changes(Mapper::HIGH, [&] { mapper->SetKernelRadius(0.7); }), "the kernel's radius");
@@ -72,10 +76,8 @@ int TestMapperSettings(int, char*[])
   check(changes(Mapper::HIGH, [&] { mapper->SetBlendModeToAverageIntensity(); }), "averages");
   check(changes(Mapper::HIGH, [&] { mapper->SetAverageIPScalarRange(2.0, 5.0); }), "the range");
   check(changes(Mapper::HIGH, [&] { mapper->SetFootprintSampling(9); }), "the footprint");
-  check(projectionSettings(mapper, Mapper::HIGH, coretesting::magnifiedView()).sampling == 1,
-    "the shear image's sampling");
+  check(settings(Mapper::HIGH).sampling == 1, "the shear image's sampling");
   mapper->SetShearImageSampling(4);
-  check(projectionSettings(mapper, Mapper::HIGH, coretesting::magnifiedView()).sampling == 4,
-    "a finer sampling");
+  check(settings(Mapper::HIGH).sampling == 4, "a finer sampling");
   return check.result();
 }

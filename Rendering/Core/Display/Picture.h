@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef splattingPicture_h
+#define splattingPicture_h
+
+#include "Geometry/ShearWarp.h"
+
+#include <glm/vec2.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace splatting
+{
+/**
+ * The part of a viewport that a volume may cover. Rows from bottom to top.
+ */
+struct Picture
+{
+  glm::ivec2 origin{ 0 };
+  glm::ivec2 size{ 0 };
+  std::vector<std::uint32_t> pixels;
+};
+
+/**
+ * Sets the picture's origin and size.
+ * @param images  as ShearWarp::factorise() gives them; without any the picture is empty
+ */
+void placePicture(
+  const std::vector<ShearWarp>& images, const glm::ivec2& viewport, Picture& picture);
+
+/**
+ * Adds a picture of the same size and place, byte by byte, no further than 255.
+ */
+void addSaturated(const Picture& layer, Picture& sum);
+
+/**
+ * Multiplies a picture without transparency by the opacities of another one of the same size and
+ * place.
+ */
+void multiplyByOpacity(const Picture& opacity, Picture& picture);
+}
+
+#endif

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Display/ShearPixels.h"
+
+#include "Display/Outline.h"
+#include "Display/PixelArea.h"
+#include "Display/WarpSource.h"
+
+#include <vtkSMPTools.h>
+
+#include <algorithm>
+#include <type_traits>
+
+namespace splatting
+{
+namespace
+{
+/// Of the shear pixels that a point's value is interpolated between, the nearest.
+ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& homogeneous,
+  const std::function<bool(const ShearPixel&)>& hasSample)
+{
+  const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
+  ShearPixel nearest;
+  double lost = 0.0, largest = -1.0;
+  forNeighbours(image, p,
+    [&](int u, int v, double w)
+    {
+      const bool has = hasSample ? hasSample({ number, u, v })
+                                 : image.winners[std::size_t(v) * image.width + u] >= 0;
+      if (!has)
+      {
+        lost += w;
+      }
+      else if (w > largest)
+      {
+        largest = w;
+        nearest = { number, u, v };
+      }
+    });
+  return lost > 0.5 ? ShearPixel{} : nearest;
+}
+
+/// Where pixels show areas.
+template <class T>
+ShearPixel shownOfArea(const std::vector<ShearImage>& images,
+  const std::vector<ShearWarp>& geometries, const std::vector<Outline>& met, bool least,
+  const glm::dvec3& pixel)
+{
+  AreaValue<Accumulator<T>> best;
+  ShearPixel shown;
+  for (std::size_t n = 0; n < geometries.size(); ++n)
+  {
+    if (met[n].cut({ 0, 1 }, pixel).empty())
+    {
+      continue;
+    }
+    const AreaValue<Accumulator<T>> before = best;
+    best.take(PixelAreas<T>(images[n], images[n].row<T>(0))
+                .extremum(areaOf(geometries[n], pixel.x, pixel.y), least),
+      least);
+    if (best.found() && !(best.value == before.value))
+    {
+      shown = { static_cast<int>(n), best.u, best.v };
+    }
+  }
+  return shown;
+}
+
+/// Of those that have one.
+void findAreaPixels(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+  bool least, const glm::ivec2& origin, const glm::ivec2& size, ShearPixel* out)
+{
+  std::vector<Outline> met;
+  for (const ShearWarp& geometry : geometries)
+  {
+    met.push_back(metByAreas(geometry));
+  }
+  dispatch(images.front().type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      vtkSMPTools::For(0, size.y, 16,
+        [&](vtkIdType first, vtkIdType last)
+        {
+          for (vtkIdType n = first * size.x; n < last * size.x; ++n)
+          {
+            const glm::dvec3 pixel(origin.x + static_cast<double>(n % size.x),
+              origin.y + static_cast<double>(n / size.x), 1.0);
+            const ShearPixel found = shownOfArea<T>(images, geometries, met, least, pixel);
+            out[n] = found.image < 0 ? out[n] : found;
+          }
+        });
+    });
+}
+}
+
+void findShearPixels(const std::vector<ShearImage>& images,
+  const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& origin,
+  const glm::ivec2& size, ShearPixel* out, const std::function<bool(const ShearPixel&)>& hasSample)
+{
+  std::vector<Outline> shown;
+  for (const ShearWarp& geometry : geometries)
+  {
+    shown.push_back(shownBy(geometry));
+  }
+  vtkSMPTools::For(0, size.y, 16,
+    [&](vtkIdType first, vtkIdType last)
+    {
+      for (vtkIdType y = first; y < last; ++y)
+      {
+        // From the viewport's edge on, so that a pixel that two images show is the same one's in
+        // any rectangle.
+        const glm::dvec3 start(0.0, origin.y + static_cast<double>(y), 1.0);
+        ShearPixel* const row = out + y * size.x;
+        forSpans(
+          geometries.size(), start, origin.x + size.x,
+          [&](std::size_t n) -> const Outline& { return shown[n]; },
+          [&](std::size_t n, const Span& span)
+          {
+            const glm::dmat3& m = geometries[n].screenToShear();
+            for (int x = std::max(span.begin, origin.x); x < span.end; ++x)
+            {
+              row[x - origin.x] = nearestPixel(
+                images[n], static_cast<int>(n), m * glm::dvec3(x, start.y, 1.0), hasSample);
+            }
+          },
+          [&](const Span& span)
+          {
+            for (int x = std::max(span.begin, origin.x); x < span.end; ++x)
+            {
+              row[x - origin.x] = ShearPixel{};
+            }
+          });
+      }
+    });
+  if (!geometries.empty() && geometries.front().isOverview())
+  {
+    findAreaPixels(images, geometries, reduction == Reduction::Minimum, origin, size, out);
+  }
+}
+}

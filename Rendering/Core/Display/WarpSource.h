@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * A shear image as the screen sees it: its values between pixels.
+ */
+#ifndef splattingWarpSource_h
+#define splattingWarpSource_h
+
+#include "Display/FieldRim.h"
+#include "Display/Outline.h"
+#include "Projection/ShearImage.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace splatting
+{
+/// Calls f(u, v, weight) for the pixels in the volume between which a point is interpolated.
+template <class F>
+void forNeighbours(const ShearImage& image, const glm::dvec2& p, F&& f)
+{
+  // Points on the line between two images may round out of theirs, where they have no neighbours.
+  const int u = static_cast<int>(std::floor(p.x)), v = static_cast<int>(std::floor(p.y));
+  const double fu = p.x - u, fv = p.y - v;
+  for (int n = 0; n < 4; ++n)
+  {
+    const int i = n & 1, j = n >> 1;
+    if (image.meetsVolume(u + i, v + j))
+    {
+      f(u + i, v + j, (i ? fu : 1.0 - fu) * (j ? fv : 1.0 - fv));
+    }
+  }
+}
+
+/**
+ * One of a view's images, with its pixels in the accumulator's type.
+ */
+template <class A>
+struct WarpSource
+{
+  const ShearImage& image;
+  const A* pixels;
+  const ShearWarp& geometry;
+  const FieldRim& rim;
+  std::size_t number; // of the image
+  Outline shown, inside;
+
+  /// All must outlive its use.
+  WarpSource(const ShearImage& i, const A* p, const ShearWarp& g, const FieldRim& r, std::size_t n)
+    : image(i),
+      pixels(p),
+      geometry(g),
+      rim(r),
+      number(n),
+      shown(shownBy(g)),
+      inside(withinSamples(g))
+  {
+  }
+  bool hasHoles() const { return !this->image.mask.empty() || this->image.special; }
+
+  /// Where a neighbour may be missing, NaN or infinite: interpolates between those that count; NaN
+  /// where there is no sample.
+  A valueAt(const glm::dvec3& homogeneous) const
+  {
+    const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
+    double sum = 0.0, weight = 0.0, lost = 0.0, largest = -1.0;
+    A nearest = 0;
+    forNeighbours(this->image, p,
+      [&](int u, int v, double w)
+      {
+        const A value = this->pixels[std::ptrdiff_t(v) * this->image.width + u];
+        if (value != value || !this->image.covers(u, v))
+        {
+          lost += w;
+          return;
+        }
+        sum += w * value;
+        weight += w;
+        if (w > largest)
+        {
+          largest = w;
+          nearest = value;
+        }
+      });
+    // Where samples are missing inside the volume, the picture ends half-way to the last one; at
+    // the volume's rim it ends with the silhouette.
+    if (weight <= 0.0 || lost > 0.5)
+    {
+      return std::numeric_limits<A>::quiet_NaN();
+    }
+    const double average = sum / weight;
+    return std::isfinite(average) ? static_cast<A>(average) : nearest;
+  }
+};
+}
+
+#endif

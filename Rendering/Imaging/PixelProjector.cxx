@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PixelProjector.h"
+
+namespace splatting
+{
+const PixelProjector::Pixel& PixelProjector::Project(VolumeIndex& index,
+  ProjectionSettings settings, const ShearPixel& pixel, const std::vector<ShearWarp>& geometries,
+  const std::vector<Cuts>& cuts)
+{
+  const ShearWarp& whole = geometries[pixel.image];
+  const Cuts& wholeCuts = cuts[pixel.image];
+  const glm::ivec2 place(pixel.u, pixel.v);
+  const int phases = whole.phases();
+  if (phases > 1)
+  {
+    whole.takePhase(place % phases, this->PhaseGeometry);
+  }
+  ShearWarp& geometry = this->Alone.Geometries.front();
+  (phases > 1 ? this->PhaseGeometry : whole).takePixel(place / phases, geometry);
+  this->Alone.Cuts.cropping = wholeCuts.cropping;
+  this->Alone.Cuts.intervals.clear();
+  if (!wholeCuts.intervals.empty())
+  {
+    this->Alone.Cuts.intervals.takePixel(wholeCuts.intervals, place, geometry.width());
+  }
+  settings.keepWinners = true;
+  settings.floor = ProjectionSettings().floor;
+  settings.acceleration = Acceleration::Dense;
+  // What frames have learnt is for frames.
+  Experience& experience = index.experience(
+    geometry.principalAxis(), static_cast<int>(settings.quality), !this->Alone.Cuts.none());
+  const Experience kept = experience;
+  this->Projector.project(index, geometry, settings, this->Alone.Cuts, this->Alone.Images.front());
+  experience = kept;
+  return this->Alone;
+}
+}

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MapperProperties.h"
+
+#include "vtkMath.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
+#include "vtkVolumeMapper.h"
+#include "vtkVolumeProperty.h"
+
+#include <cmath>
+
+namespace splatting
+{
+namespace
+{
+/// What is wrong with clipping planes, or nullptr.
+const char* faultOfPlanes(vtkPlaneCollection* planes)
+{
+  for (int n = 0; planes && n < planes->GetNumberOfItems(); ++n)
+  {
+    vtkPlane* const plane = planes->GetItem(n);
+    const double* const normal = plane->GetNormal();
+    const double* const origin = plane->GetOrigin();
+    const double length = vtkMath::Norm(normal);
+    if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(vtkMath::Norm(origin)))
+    {
+      return "A clipping plane has no place: its normal must not be 0, and its numbers finite.";
+    }
+  }
+  return nullptr;
+}
+}
+
+const char* faultOf(
+  const MapperProperties& properties, vtkPlaneCollection* planes, vtkVolumeProperty* property)
+{
+  const ProjectionProperties& projection = properties;
+  if (const char* const fault = faultOf(projection))
+  {
+    return fault;
+  }
+  if (properties.BlendMode == vtkVolumeMapper::SLICE_BLEND && !property->GetSliceFunction())
+  {
+    return "There is no slice to show: give the vtkVolumeProperty a plane with SetSliceFunction.";
+  }
+  return faultOfPlanes(planes);
+}
+
+ProjectionSettings settingsOf(const MapperProperties& properties, int mode, const View& view)
+{
+  ProjectionProperties projection = properties;
+  projection.RecordLocations = properties.needsLocations();
+  return settingsOf(projection, mode, view);
+}
+}

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Scene/ProjectedVolume.h"
+
+#include "Geometry/View.h"
+#include "MapperProperties.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkImageData.h"
+#include "vtkRenderer.h"
+#include "vtkTimerLog.h"
+#include "vtkVolume.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace splatting
+{
+void ProjectedVolume::BeginFrame()
+{
+  this->ProjectionsBefore = this->Projections;
+}
+
+void ProjectedVolume::EndFrame(vtkRenderer* renderer, vtkVolume* volume, double seconds)
+{
+  // Frames that re-use an image say nothing about the next ones, nor does what is made once.
+  if (this->Projections != this->ProjectionsBefore)
+  {
+    this->Times.add(
+      { renderer, volume }, this->ModeUsed, seconds - (this->IndexTime() - this->IndexTimeBefore));
+  }
+}
+
+void ProjectedVolume::Prepare(const MapperProperties& properties, const View& view,
+  vtkVolume* volume, const FinalColor& finalColor)
+{
+  const vtkIdType version = this->Source.Version();
+  if (!this->Ranks.AreMany() && this->Components.LookAt(this->Source))
+  {
+    this->ForgetTimes(); // changed data of the same kind take what the last ones took
+  }
+  this->Components.SetBudget(static_cast<std::size_t>(properties.IndexMemoryBudget));
+  this->Components.SetRanks(this->Ranks.AreMany() ? &this->Ranks : nullptr);
+  this->IndexTimeBefore = this->Source.Version() == version ? this->IndexTime() : 0.0;
+  this->Components.UpdateColors(volume->GetProperty(), finalColor,
+    settingsOf(properties, vtkSplattingMIPVolumeMapper::PREVIEW, view));
+  this->Components.SetCullBelowWindow(properties.CullBelowWindow);
+}
+
+// Selection is by what is seen.
+int ProjectedVolume::ChooseMode(
+  const MapperProperties& properties, vtkRenderer* renderer, vtkVolume* volume)
+{
+  const int best = properties.QualityMode;
+  const int mode = !properties.AutoAdjustSampleDistances ? best
+    : renderer->GetSelector()
+    ? std::min(this->ModeUsed, best)
+    : this->Times.choose({ renderer, volume }, best, volume->GetAllocatedRenderTime());
+  return this->Ranks.AreMany() ? this->Ranks.Least(mode) : mode;
+}
+
+// The images of a view and what cuts them; false if it has no meaning.
+bool ProjectedVolume::Factorise(const MapperProperties& properties, const View& view,
+  vtkRenderer* renderer, vtkVolume* volume, const SceneCuts::DepthReader& readDepth,
+  const ProjectionSettings& settings)
+{
+  const double start = vtkTimerLog::GetUniversalTime();
+  if (!ShearWarp::factorise(view, this->Images, settings.sampling, settings.meets))
+  {
+    return false;
+  }
+  this->Cuts.Find(
+    view, this->Images, renderer, volume, properties.IntermixIntersectingGeometry, readDepth);
+  this->CutTime = vtkTimerLog::GetUniversalTime() - start;
+  return true;
+}
+
+// Whether the last projection is this frame's.
+bool ProjectedVolume::Shows(const ProjectionSettings& settings) const
+{
+  const bool ordered = isOrdered(settings.reduction) || settings.keepWinners ||
+    this->Source.AreDependent(); // the nearest of equal samples wins
+  return haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts.AreKept() &&
+    this->Components.Shows(settings);
+}
+
+bool ProjectedVolume::Project(const MapperProperties& properties, const View& view,
+  vtkRenderer* renderer, vtkVolume* volume, const SceneCuts::DepthReader& readDepth)
+{
+  const int mode = this->ChooseMode(properties, renderer, volume);
+  const int usable = std::clamp(this->ModeUsed, mode, properties.QualityMode);
+  const ProjectionSettings best = settingsOf(properties, usable, view);
+  std::swap(this->Images, this->ImagesBefore);
+  if (!this->Factorise(properties, view, renderer, volume, readDepth, best))
+  {
+    return false;
+  }
+  const bool isShown = this->Shows(best);
+  // Where one rank projects all do.
+  if (this->Ranks.AreMany() ? !this->Ranks.Any(!isShown) : isShown)
+  {
+    return true;
+  }
+  const ProjectionSettings wanted = settingsOf(properties, mode, view);
+  if (wanted.sampling != best.sampling || wanted.meets != best.meets)
+  {
+    this->Factorise(properties, view, renderer, volume, readDepth, wanted);
+  }
+  const double start = vtkTimerLog::GetUniversalTime();
+  this->ShearImageOutput = nullptr;
+  if (this->Components.Project(this->Images, wanted, this->Cuts.Get()))
+  {
+    this->Cuts.Keep();
+    this->TimeToProject = this->CutTime + vtkTimerLog::GetUniversalTime() - start;
+    ++this->Projections;
+    this->ModeUsed = mode;
+  }
+  return true;
+}
+
+void ProjectedVolume::HoldNothing()
+{
+  this->Source.HoldNothing(VTK_VOID);
+  this->Components.HoldNothing();
+  this->ShearImageOutput = nullptr;
+}
+
+const ShearWarp* ProjectedVolume::MainImage() const
+{
+  return this->Components.IsProjected() && !this->Images.empty()
+    ? &this->Images[mainImage(this->Images)]
+    : nullptr;
+}
+
+vtkImageData* ProjectedVolume::ShearImage()
+{
+  if (!this->MainImage())
+  {
+    this->ShearImageOutput = nullptr;
+  }
+  else if (!this->ShearImageOutput)
+  {
+    this->ShearImageOutput = this->Components.MakeShearImage(this->Images, this->Source);
+  }
+  return this->ShearImageOutput;
+}
+}

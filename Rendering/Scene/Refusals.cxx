@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Scene/Refusals.h"
+
+#include "MapperProperties.h"
+#include "Scene/ProjectedVolume.h"
+#include "Scene/ViewOfVolume.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+
+#include "vtkDataSet.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+namespace splatting
+{
+namespace
+{
+std::string problemOfInput(
+  vtkSplattingMIPVolumeMapper* mapper, vtkVolume* volume, ProjectedVolume& data)
+{
+  if (volume->IsA("vtkMultiVolume"))
+  {
+    return "A vtkMultiVolume cannot be splatted: give each of its volumes a mapper of its own.";
+  }
+  const MapperProperties& properties = mapper->ReadProperties();
+  ScalarChoice choice;
+  choice.scalarMode = mapper->GetScalarMode();
+  choice.arrayAccessMode = mapper->GetArrayAccessMode();
+  choice.arrayId = mapper->GetArrayId();
+  choice.arrayName = mapper->GetArrayName();
+  choice.vectorMode = properties.VectorMode;
+  choice.vectorComponent = properties.VectorComponent;
+  choice.independentComponents = volume->GetProperty()->GetIndependentComponents() != 0;
+  choice.mask = properties.MaskInput;
+  if (data.Ranks.Use(mapper->GetController()) && !pieceOf(mapper))
+  {
+    return ""; // a rank may hold nothing
+  }
+  std::string problem = data.Source.Examine(mapper->GetInput(), choice);
+  if (problem.empty() && isFlat(data.Source.Grid(), volume))
+  {
+    problem =
+      "Spacing, direction and prop matrix flatten the volume: none of them may be singular.";
+  }
+  return problem;
+}
+
+/// What any rank has to say, once each has looked at its piece. Collective.
+std::string problemOfRanks(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer,
+  vtkVolume* volume, ProjectedVolume& data, const std::string& problemOfPiece)
+{
+  RankReport report = reportOf(mapper, problemOfPiece);
+  if (!report.problem[0] && !report.isEmpty())
+  {
+    if (data.Components.LookAt(data.Source))
+    {
+      data.ForgetTimes();
+    }
+    describeScalars(data.Components, data.Source, report);
+  }
+  report.view = viewNumber(mapper, renderer, volume);
+  std::string problem = data.Ranks.Agree(report);
+  if (problem.empty() && report.isEmpty())
+  {
+    const RankReport& common = data.Ranks.Common();
+    data.Source.HoldNothing(common.vtkType);
+    data.Components.LookAtNothing(
+      static_cast<ScalarType>(common.type), static_cast<std::size_t>(common.components));
+  }
+  return problem;
+}
+
+/// Of the mapper's own properties, once the input is known to be good.
+std::string problemOfProperties(
+  vtkSplattingMIPVolumeMapper* mapper, vtkVolume* volume, ProjectedVolume& data)
+{
+  const MapperProperties& properties = mapper->ReadProperties();
+  if (const char* const fault =
+        faultOf(properties, mapper->GetClippingPlanes(), volume->GetProperty()))
+  {
+    return fault;
+  }
+  const glm::dmat4 toIndex =
+    properties.BoundingSurface ? worldToIndex(data.Grid(), volume) : glm::dmat4(1.0);
+  const char* const fault = data.Cuts.Surface().Update(properties.BoundingSurface, toIndex);
+  return fault ? fault : "";
+}
+}
+
+std::string refusalOf(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+  ProjectedVolume& data)
+{
+  std::string problem = problemOfInput(mapper, volume, data);
+  if (data.Ranks.AreMany())
+  {
+    problem = problemOfRanks(mapper, renderer, volume, data, problem);
+  }
+  return problem.empty() ? problemOfProperties(mapper, volume, data) : problem;
+}
+}
