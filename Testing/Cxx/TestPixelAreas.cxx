@@ -11,12 +11,9 @@
 #include "Display/Warp.h"
 
 #include <glm/common.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <iostream>
 #include <limits>
 #include <vector>
 
@@ -474,7 +471,35 @@ void testAverages(Checks& check)
   check(joint.areEnough(0.0003), "only ", joint, " pixels show several images");
 }
 
-/// The location of a pixel is the sample that it shows.
+/// The largest sample in each pixel's area: those within 1e-9 of two areas are left out.
+std::vector<float> largestSamples(
+  const Images& images, const Geometries& geometries, const glm::ivec2& viewport)
+{
+  std::vector<float> largest(std::size_t(viewport.x) * viewport.y, Background);
+  for (std::size_t n = 0; n < images.size(); ++n)
+  {
+    for (int v = 0; v < images[n].height; ++v)
+    {
+      for (int u = images[n].spans[v].begin; u < images[n].spans[v].end; ++u)
+      {
+        const glm::dvec3 h = geometries[n].shearToScreen() * glm::dvec3(u, v, 1.0);
+        const glm::dvec2 p = glm::dvec2(h) / h.z, pixel = glm::floor(p + 0.5);
+        const glm::dvec2 off = glm::abs(p - pixel), end(viewport);
+        const bool isClear = off.x < 0.5 - 1e-9 && off.y < 0.5 - 1e-9;
+        if (isClear && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < end.x && pixel.y < end.y &&
+          images[n].covers(u, v) && isShown(geometries[n], u, v))
+        {
+          float& own = largest[std::size_t(pixel.y) * viewport.x + std::size_t(pixel.x)];
+          own = std::max(own, images[n].row<float>(v)[u]);
+        }
+      }
+    }
+  }
+  return largest;
+}
+
+/// The location of a pixel is the largest sample in its area, or without any one that its value
+/// lies next to.
 void testLocations(Checks& check)
 {
   Sightings samples;
@@ -494,6 +519,7 @@ void testLocations(Checks& check)
       std::vector<splatting::ShearPixel> shown(found.size());
       splatting::findShearPixels(images, geometries, splatting::Reduction::Maximum, glm::ivec2(0),
         view.viewport, shown.data());
+      const auto largest = largestSamples(images, geometries, view.viewport);
       for (std::size_t p = 0; p < found.size(); ++p)
       {
         check((shown[p].image < 0) == (found[p] == Background), "pixel ", p,
@@ -520,6 +546,7 @@ void testLocations(Checks& check)
         check(inside || away < most + 1e-6,
           "a location is neither in its pixel's area nor the nearest to a place on its outline");
         check(value <= found[p] || !inside, "a sample in the area is larger than the pixel");
+        check(value >= largest[p], "a location has ", value, ", but the area ", largest[p]);
         splatting::ShearPixel alone;
         const glm::ivec2 at(p % view.viewport.x, p / view.viewport.x);
         splatting::findShearPixels(
@@ -530,53 +557,11 @@ void testLocations(Checks& check)
     });
   check(samples.areEnough(0.1), "only ", samples, " pixels show samples themselves");
 }
-
-/// How wide a pixel is in voxels.
-void testWidths(Checks& check)
-{
-  reference::forScenes("widths", 100,
-    [&](int, reference::Random& random)
-    {
-      // So many pixels of the screen per unit of the world, and voxels of these sides.
-      const double zoom = random.uniform(0.2, 3.0);
-      const glm::dvec3 spacing = anyVector(random, 0.3, 3.0);
-      splatting::View view;
-      view.dimensions = toGlm(randomSize(random, 30));
-      view.viewport = { 90, 70 };
-      const glm::dvec3 eye = glm::normalize(anyVector(random, -1.0, 1.0)) * 100.0;
-      const glm::dvec2 half = 0.5 * glm::dvec2(view.viewport) / zoom;
-      view.indexToClip = glm::ortho(-half.x, half.x, -half.y, half.y, 1.0, 1000.0) *
-        glm::lookAt(eye, glm::dvec3(0.0), anyVector(random, -1.0, 1.0)) *
-        glm::scale(glm::dmat4(1.0), spacing);
-      const glm::dvec2 width = splatting::voxelsPerPixel(view);
-      const double least = std::min({ spacing.x, spacing.y, spacing.z });
-      const double most = std::max({ spacing.x, spacing.y, spacing.z });
-      // Along the side of a voxel that lies across the view it is one over its pixels.
-      check(width.x >= 1.0 / (zoom * most) - 1e-9 && width.y <= 1.0 / (zoom * least) + 1e-9 &&
-          width.x <= width.y + 1e-9,
-        "pixels are ", width.x, " to ", width.y, " voxels wide");
-      check(splatting::isOverview(view) == (width.y > 1.0 + 1e-6) &&
-          splatting::isCoarse(view) == (width.x > 1.0 + 1e-6),
-        "what an overview is");
-      // Of cubes it is the same from everywhere.
-      view.indexToClip = view.indexToClip * glm::scale(glm::dmat4(1.0), 1.0 / spacing);
-      const glm::dvec2 ofCubes = splatting::voxelsPerPixel(view);
-      check(std::abs(ofCubes.x * zoom - 1.0) < 1e-6 && std::abs(ofCubes.y * zoom - 1.0) < 1e-6,
-        "pixels are ", ofCubes.x, " to ", ofCubes.y, " cubes wide, not ", 1.0 / zoom);
-    });
-  splatting::View inside;
-  inside.dimensions = { 30, 30, 30 };
-  inside.viewport = { 8, 8 };
-  inside.indexToClip = glm::perspective(1.0, 1.0, 0.1, 100.0) *
-    glm::lookAt(glm::dvec3(15.0), glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0));
-  check(!splatting::isOverview(inside), "from inside a volume there is no overview");
-}
 }
 
 int TestPixelAreas(int, char*[])
 {
   Checks check;
-  testWidths(check);
   testExtrema(check);
   testNothingElse(check);
   testAverages(check);

@@ -102,15 +102,21 @@ struct AreaValue
   int u = 0, v = 0;
 
   bool found() const { return this->value == this->value; }
-  /// Takes another one if it is larger, or less.
-  void take(const AreaValue& other, bool least)
+  /// Takes another one if it is larger, or less. Returns whether it is.
+  bool take(const AreaValue& other, bool least)
   {
-    const bool better = least ? other.value < this->value : other.value > this->value;
-    if (better || (!this->found() && other.found()))
-    {
-      *this = other;
-    }
+    const bool better = (least ? other.value < this->value : other.value > this->value) ||
+      (!this->found() && other.found());
+    *this = better ? other : *this;
+    return better;
   }
+};
+
+/// The extremum of an area's samples, and that of what it shows between samples.
+template <class A>
+struct AreaExtrema
+{
+  AreaValue<A> sample, between;
 };
 
 /**
@@ -125,16 +131,23 @@ public:
   /// Both must outlive its use.
   PixelAreas(const ShearImage& image, const T* pixels) : Image(image), Pixels(pixels) {}
 
-  AreaValue<A> extremum(const PixelArea& area, bool least) const
+  AreaExtrema<A> extrema(const PixelArea& area, bool least) const
   {
-    AreaValue<A> best;
+    AreaExtrema<A> best;
     this->takeLines<0>(area, least, best);
     this->takeLines<1>(area, least, best);
     for (const glm::dvec2& corner : area)
     {
-      best.take(this->interpolated(corner), least);
+      best.between.take(this->interpolated(corner), least);
     }
     return best;
+  }
+
+  AreaValue<A> extremum(const PixelArea& area, bool least) const
+  {
+    AreaExtrema<A> best = this->extrema(area, least);
+    best.sample.take(best.between, least);
+    return best.sample;
   }
 
   /**
@@ -198,7 +211,7 @@ private:
    * column the ends alone: the samples are the rows').
    */
   template <int Along>
-  void takeLines(const PixelArea& area, bool least, AreaValue<A>& best) const
+  void takeLines(const PixelArea& area, bool least, AreaExtrema<A>& best) const
   {
     constexpr int across = 1 - Along;
     const int last = (Along == 0 ? this->Image.height : this->Image.width) - 1;
@@ -234,15 +247,15 @@ private:
   }
 
   template <int Along>
-  void takeEnd(int line, double at, bool least, AreaValue<A>& best) const
+  void takeEnd(int line, double at, bool least, AreaExtrema<A>& best) const
   {
     const int n = static_cast<int>(std::floor(at));
-    best.take(Along == 0 ? this->between(n, line, n + 1, line, at - n)
-                         : this->between(line, n, line, n + 1, at - n),
+    best.between.take(Along == 0 ? this->between(n, line, n + 1, line, at - n)
+                                 : this->between(line, n, line, n + 1, at - n),
       least);
   }
 
-  void takeRow(int v, double low, double high, bool least, AreaValue<A>& best) const
+  void takeRow(int v, double low, double high, bool least, AreaExtrema<A>& best) const
   {
     const Span& span = this->Image.spans[v];
     const int begin = static_cast<int>(std::ceil(std::max<double>(low, span.begin)));
@@ -251,7 +264,7 @@ private:
     {
       if (this->Image.covers(u, v))
       {
-        best.take({ this->at(u, v), u, v }, least);
+        best.sample.take({ this->at(u, v), u, v }, least);
       }
     }
   }
