@@ -181,8 +181,9 @@ int countStrange(stage::Stage& stage, const Scene& scene, const stage::Pixels& p
 bool testStereo(const Scene& scene, stage::Checks& check)
 {
   stage::Stage stage(Width, Height);
-  scene.look(stage);
-  stage.renderer->GetActiveCamera()->SetEyeAngle(20.0);
+  // No pixel is wider than a voxel: they show points, not areas.
+  scene.look(stage, 0.8);
+  stage.renderer->GetActiveCamera()->SetEyeAngle(50.0);
   stage.renderer->ResetCameraClippingRange();
   const stage::Pixels middle = stage.pixels();
   const stage::Pixels left = eye(stage, VTK_STEREO_LEFT);
