@@ -44,20 +44,23 @@ public:
     vtkMatrix4x4::Multiply4x4(
       stage.volume->GetMatrix(), image->GetIndexToPhysicalMatrix(), toWorld);
     vtkCamera* const camera = stage.renderer->GetActiveCamera();
-    vtkMatrix4x4::Multiply4x4(camera->GetCompositeProjectionTransformMatrix(
-                                stage.renderer->GetTiledAspectRatio(), -1.0, 1.0),
-      toWorld, this->ToIndex);
+    // The camera's composite matrix leaves stereo out.
+    vtkMatrix4x4::Multiply4x4(camera->GetViewTransformMatrix(), toWorld, this->ToIndex);
+    vtkMatrix4x4::Multiply4x4(
+      camera->GetProjectionTransformMatrix(stage.renderer->GetTiledAspectRatio(), -1.0, 1.0),
+      this->ToIndex, this->ToIndex);
     this->ToIndex->Invert();
     toWorld->Invert();
     const double* const eye = camera->GetPosition();
     this->Eye = this->pointOf(toWorld, { eye[0], eye[1], eye[2] });
-    this->IsParallel = camera->GetParallelProjection() != 0;
+    this->BeginsAtEye = !camera->GetParallelProjection() && !camera->GetStereo();
   }
 
-  /// Where a pixel's ray begins: at the eye, or before the volume.
+  /// Where a pixel's ray begins: at the eye or, in parallel views and those of one of two eyes
+  /// beside the camera's place, on the near plane.
   Point begin(double x, double y) const
   {
-    return this->IsParallel ? this->at(x, y, -1.0) : this->Eye;
+    return this->BeginsAtEye ? this->Eye : this->at(x, y, -1.0);
   }
   Point end(double x, double y) const { return this->at(x, y, 1.0); }
 
@@ -79,7 +82,7 @@ private:
   int Size[2];
   int First[3];
   Point Eye;
-  bool IsParallel;
+  bool BeginsAtEye;
 };
 
 /// The largest (or least) voxel within so many voxels along each axis.

@@ -6,11 +6,14 @@
 #include "MapperOracle.h"
 #include "ScalarTesting.h"
 
+#include "vtkCamera.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkGPUVolumeRayCastMapper.h"
+#include "vtkMatrix4x4.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkRenderer.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
@@ -78,65 +81,236 @@ bool carriesTuples(stage::Stage& stage, Mapper* mapper, vtkImageData* image)
   return same;
 }
 
+Size anySize(reference::Random& random)
+{
+  Size size;
+  for (int& voxels : size)
+  {
+    voxels = random.uniform(6, 24);
+  }
+  return size;
+}
+
+stage::Vector anyDirection(reference::Random& random)
+{
+  stage::Vector direction;
+  do
+  {
+    for (double& component : direction)
+    {
+      component = random.uniform(-1.0, 1.0);
+    }
+  } while (vtkMath::Norm(direction.data()) < 0.2);
+  return direction;
+}
+
+/// From anywhere.
+void lookAtRandom(stage::Stage& stage, double scale, reference::Random& random)
+{
+  const stage::Vector direction = anyDirection(random);
+  const stage::Vector up = anyDirection(random);
+  stage.look(direction, up, scale);
+}
+
 void testTuples(stage::Stage& stage, stage::Checks& check)
 {
   stage.property->IndependentComponentsOff();
-  for (int components : { 2, 4 })
-  {
-    const auto image = noise({ 20, 17, 14 }, components, 5);
-    const auto mapper = stage::splatting(image);
-    mapper->SetQualityModeToPreview();
-    stage.show(mapper);
-    for (const stage::Vector& direction : directions())
+  reference::forScenes("tuples", 80,
+    [&](int n, reference::Random& random)
     {
-      for (double side : { 1.0, -1.0 })
-      {
-        stage.look(
-          { side * direction[0], side * direction[1], side * direction[2] }, { 0.2, 0.9, 0.1 });
-        for (int blendMode :
-          { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::MINIMUM_INTENSITY_BLEND })
-        {
-          mapper->SetBlendMode(blendMode);
-          mapper->SetShearImageSampling(side > 0.0 ? 1 : 2);
-          stage.window->Render();
-          check(!mapper->GetLastRenderUsedRayCasting() && carriesTuples(stage, mapper, image),
-            std::to_string(components) + " components, blend mode " + std::to_string(blendMode) +
-              ": each pixel has the tuple that wins.");
-        }
-      }
-    }
-  }
+      const int components = n % 2 ? 4 : 2;
+      const Size size = anySize(random);
+      const auto image = noise(size, components, random.bits());
+      const auto mapper = stage::splatting(image);
+      mapper->SetQualityModeToPreview();
+      mapper->SetShearImageSampling(random.uniform(1, 2));
+      mapper->SetBlendMode(random.uniform(0, 1) ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
+                                                : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
+      stage.show(mapper);
+      lookAtRandom(stage, 1.0, random);
+      stage.window->Render();
+      check(!mapper->GetLastRenderUsedRayCasting() && carriesTuples(stage, mapper, image),
+        "Each pixel has the tuple that wins.");
+    });
 }
 
 /// The mean of each component by itself, as if it were alone.
 void testMeans(stage::Stage& stage, stage::Checks& check)
 {
   stage.property->IndependentComponentsOff();
-  const auto image = noise({ 20, 17, 14 }, 2, 8);
-  const auto mapper = stage::splatting(image);
-  mapper->SetBlendModeToAverageIntensity();
-  stage.show(mapper);
-  stage.look(directions()[0], { 0.2, 0.9, 0.1 });
-  stage.window->Render();
-  vtkNew<vtkImageData> both;
-  both->DeepCopy(mapper->GetShearImage());
-  for (int c = 0; c < 2; ++c)
-  {
-    const auto alone = stage::splatting(
-      plainImage({ 20, 17, 14 }, componentOf(image->GetPointData()->GetScalars(), c)));
-    alone->SetBlendModeToAverageIntensity();
-    stage.show(alone);
-    stage.window->Render();
-    vtkImageData* const shear = alone->GetShearImage();
-    bool same = shear->GetNumberOfPoints() == both->GetNumberOfPoints();
-    for (vtkIdType n = 0; same && n < shear->GetNumberOfPoints(); ++n)
+  reference::forScenes("means", 24,
+    [&](int n, reference::Random& random)
     {
-      const double a = shear->GetPointData()->GetScalars()->GetComponent(n, 0);
-      const double b = both->GetPointData()->GetScalars()->GetComponent(n, c);
-      same = a == b || (std::isnan(a) && std::isnan(b));
+      const Size size = anySize(random);
+      const auto image = noise(size, n % 2 ? 4 : 2, random.bits());
+      const auto mapper = stage::splatting(image);
+      mapper->SetQualityMode(random.uniform(0, 3));
+      mapper->SetBlendModeToAverageIntensity();
+      stage.viewAngle = random.uniform(0, 1) ? random.uniform(5.0, 90.0) : 0.0;
+      stage.show(mapper);
+      lookAtRandom(stage, 1.0, random);
+      stage.window->Render();
+      vtkNew<vtkImageData> all;
+      all->DeepCopy(mapper->GetShearImage());
+      for (int c = 0; c < all->GetNumberOfScalarComponents(); ++c)
+      {
+        const auto alone =
+          stage::splatting(plainImage(size, componentOf(image->GetPointData()->GetScalars(), c)));
+        alone->SetQualityMode(mapper->GetQualityMode());
+        alone->SetBlendModeToAverageIntensity();
+        stage.show(alone);
+        stage.window->Render();
+        vtkImageData* const shear = alone->GetShearImage();
+        bool same = shear->GetNumberOfPoints() == all->GetNumberOfPoints();
+        for (vtkIdType p = 0; same && p < shear->GetNumberOfPoints(); ++p)
+        {
+          const double a = shear->GetPointData()->GetScalars()->GetComponent(p, 0);
+          const double b = all->GetPointData()->GetScalars()->GetComponent(p, c);
+          same = a == b || (std::isnan(a) && std::isnan(b));
+        }
+        check(same, "The mean of component " + std::to_string(c) + " is that of it alone.");
+      }
+    });
+  stage.viewAngle = 0.0;
+}
+
+/// Noise as opacity; the colour is the voxel's number, counted from 1.
+vtkSmartPointer<vtkImageData> numberedVoxels(const Size& size, reference::Random& random)
+{
+  const auto image = noise(size, 4, random.bits());
+  vtkDataArray* const scalars = image->GetPointData()->GetScalars();
+  for (vtkIdType n = 0; n < scalars->GetNumberOfTuples(); ++n)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      scalars->SetComponent(n, c, double((n + 1) >> (8 * c) & 255));
     }
-    check(same, "The mean of component " + std::to_string(c) + " is that of it alone.");
   }
+  return image;
+}
+
+/// Where the window shows a box about a voxel.
+class ScreenBoxes
+{
+public:
+  struct Box
+  {
+    double low[2] = { HUGE_VAL, HUGE_VAL }, high[2] = { -HUGE_VAL, -HUGE_VAL };
+  };
+
+  ScreenBoxes(stage::Stage& stage, vtkImageData* image) : Image(image)
+  {
+    std::copy_n(stage.window->GetSize(), 2, this->Size);
+    vtkMatrix4x4::Multiply4x4(
+      stage.renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
+        stage.renderer->GetTiledAspectRatio(), -1.0, 1.0),
+      image->GetIndexToPhysicalMatrix(), this->ToClip);
+  }
+
+  /// Of so many voxels to all sides of the middle of voxel n.
+  Box at(vtkIdType n, double reach) const
+  {
+    const int* const size = this->Image->GetDimensions();
+    const vtkIdType voxel[3] = { n % size[0], n / size[0] % size[1], n / size[0] / size[1] };
+    Box box;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      double p[4] = { 0.0, 0.0, 0.0, 1.0 };
+      for (int a = 0; a < 3; ++a)
+      {
+        p[a] = static_cast<double>(voxel[a]) + ((corner >> a & 1) ? reach : -reach);
+      }
+      this->ToClip->MultiplyPoint(p, p);
+      for (int a = 0; a < 2; ++a)
+      {
+        const double pixel = 0.5 * this->Size[a] * (p[a] / p[3] + 1.0) - 0.5;
+        box.low[a] = std::min(box.low[a], pixel);
+        box.high[a] = std::max(box.high[a], pixel);
+      }
+    }
+    return box;
+  }
+
+private:
+  vtkImageData* Image;
+  vtkNew<vtkMatrix4x4> ToClip;
+  int Size[2];
+};
+
+/// In overviews of previews a pixel has the tuple of a voxel in its area, or near it, and that of
+/// the largest last component there.
+///
+/// A sample is a voxel wide at most, and may be half of that beside the area (see PixelArea.h). Its
+/// ray crosses voxels whose middle is no more than one beside it. Conversely, the ray that passes
+/// nearest to a voxel's middle is no more than half a voxel beside it.
+void testOverviews(stage::Checks& check)
+{
+  constexpr int width = 60, height = 50;
+  stage::Stage stage(width, height);
+  stage.property->IndependentComponentsOff();
+  int shown = 0, chosen = 0;
+  reference::forScenes("overviews", 120,
+    [&](int n, reference::Random& random)
+    {
+      const Size size = anySize(random);
+      const auto image = numberedVoxels(size, random);
+      vtkDataArray* const scalars = image->GetPointData()->GetScalars();
+      const auto mapper = stage::splatting(image);
+      mapper->SetQualityModeToPreview();
+      const bool isMinimum = random.uniform(0, 2) == 0;
+      mapper->SetBlendMode(isMinimum ? vtkVolumeMapper::MINIMUM_INTENSITY_BLEND
+                                     : vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND);
+      stage.viewAngle = n % 2 ? random.uniform(5.0, 40.0) : 0.0;
+      stage.show(mapper);
+      // Pixels so wide in the middle are wider than the longest edge of a voxel, 1.25, everywhere:
+      // in perspective by diagonal / height tan(angle / 2) < 0.35 less in the nearest corner.
+      const double pixel = random.uniform(1.7, 6.0);
+      lookAtRandom(stage, height * pixel / image->GetLength(), random);
+      const stage::Pixels pixels = stage.pixels();
+      const ScreenBoxes boxes(stage, image);
+      const auto voxelAt = [&](int x, int y)
+      {
+        const unsigned char* const rgb = &pixels[3 * (std::size_t(y) * width + x)];
+        return vtkIdType(rgb[0] | rgb[1] << 8 | rgb[2] << 16) - 1;
+      };
+      for (int y = 0; y < height; ++y)
+      {
+        for (int x = 0; x < width; ++x)
+        {
+          const vtkIdType voxel = voxelAt(x, y);
+          if (voxel < 0 || !check(voxel < scalars->GetNumberOfTuples(), "A pixel has a tuple."))
+          {
+            continue;
+          }
+          ++shown;
+          const ScreenBoxes::Box box = boxes.at(voxel, 1.5);
+          check(box.low[0] <= x + 0.5 && box.high[0] >= x - 0.5 && box.low[1] <= y + 0.5 &&
+              box.high[1] >= y - 0.5,
+            "A pixel has the tuple of a voxel that is near its area.");
+        }
+      }
+      for (vtkIdType voxel = 0; voxel < scalars->GetNumberOfTuples(); ++voxel)
+      {
+        const ScreenBoxes::Box box = boxes.at(voxel, 0.5);
+        const int x = static_cast<int>(std::lround(box.low[0]));
+        const int y = static_cast<int>(std::lround(box.low[1]));
+        if (x < 0 || y < 0 || x >= width || y >= height || box.high[0] > x + 0.4999 ||
+          box.high[1] > y + 0.4999 || box.low[0] < x - 0.4999 || box.low[1] < y - 0.4999)
+        {
+          continue;
+        }
+        ++chosen;
+        const vtkIdType winner = voxelAt(x, y);
+        const double own = scalars->GetComponent(voxel, 3);
+        const double best = winner < 0 ? NAN : scalars->GetComponent(winner, 3);
+        check(isMinimum ? best <= own : best >= own,
+          "A voxel of " + std::to_string(own) + " is lost in a pixel that shows one of " +
+            std::to_string(best) + ".");
+      }
+    });
+  check(!reference::onlyScene().empty() || (shown > 1000 && chosen > 100),
+    "Overviews are seen: " + std::to_string(shown) + " pixels, " + std::to_string(chosen) +
+      " voxels.");
 }
 
 /// Soft blobs as opacity; the colour varies slowly, so that it hardly matters which of two
@@ -228,22 +402,29 @@ void testRayCasters(stage::Stage& stage, stage::Checks& check)
 /// Other colours need no projection, other kinds of components do.
 void testChanges(stage::Stage& stage, stage::Checks& check)
 {
-  const auto image = noise({ 20, 17, 14 }, 2, 3);
-  const auto mapper = stage::splatting(image);
-  stage.property->IndependentComponentsOff();
-  stage.show(mapper);
-  stage.look(directions()[1], { 0.2, 0.9, 0.1 });
-  const stage::Pixels dependent = stage.pixels();
-  const vtkIdType before = mapper->GetNumberOfProjections();
-  stage.setGrayRamp(10.0, 90.0);
-  check(stage.pixels() != dependent && mapper->GetNumberOfProjections() == before,
-    "Other colours show without a projection.");
-  stage.setGrayRamp(0.0, 255.0);
-  stage.property->IndependentComponentsOn();
-  check(stage.pixels() != dependent && mapper->GetNumberOfProjections() == before + 1,
-    "Independent components are projected anew.");
-  stage.property->IndependentComponentsOff();
-  check(stage.pixels() == dependent, "Dependent again, they show what they did.");
+  reference::forScenes("changes", 12,
+    [&](int, reference::Random& random)
+    {
+      const Size size = anySize(random);
+      const auto image = noise(size, 2, random.bits());
+      const auto mapper = stage::splatting(image);
+      stage.property->IndependentComponentsOff();
+      stage.viewAngle = random.uniform(0, 1) ? random.uniform(5.0, 90.0) : 0.0;
+      stage.show(mapper);
+      lookAtRandom(stage, 1.0, random);
+      const stage::Pixels dependent = stage.pixels();
+      const vtkIdType before = mapper->GetNumberOfProjections();
+      stage.setGrayRamp(10.0, 90.0);
+      check(stage.pixels() != dependent && mapper->GetNumberOfProjections() == before,
+        "Other colours show without a projection.");
+      stage.setGrayRamp(0.0, 255.0);
+      stage.property->IndependentComponentsOn();
+      check(stage.pixels() != dependent && mapper->GetNumberOfProjections() == before + 1,
+        "Independent components are projected anew.");
+      stage.property->IndependentComponentsOff();
+      check(stage.pixels() == dependent, "Dependent again, they show what they did.");
+    });
+  stage.viewAngle = 0.0;
 }
 
 void testBadInput(stage::Stage& stage, stage::Checks& check)
@@ -270,12 +451,13 @@ int TestDependentComponents(int, char*[])
   stage::Checks check;
   stage::Stage stage(180, 170);
   testTuples(stage, check);
+  testMeans(stage, check);
+  testOverviews(check);
+  testChanges(stage, check);
   for (double viewAngle : { 0.0, 50.0 })
   {
     stage.viewAngle = viewAngle;
-    testMeans(stage, check);
     testRayCasters(stage, check);
-    testChanges(stage, check);
   }
   testBadInput(stage, check);
   return check.exitCode();

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The factorisation: shear followed by warp is the view, and rays cross the voxels they should.
+// The factorisation: shear followed by warp is the view, rays cross the voxels they should, and
+// pixels are as wide as they are.
 #include "CoreTesting.h"
 
 #include <algorithm>
@@ -270,6 +271,47 @@ void testDegenerateViews(Checks& check)
   perspective.indexToClip[2][3] = 0.001;
   check(!splatting::isParallel(perspective), "a perspective view is taken for a parallel one");
 }
+
+/// How wide a pixel is in voxels.
+void testWidths(Checks& check)
+{
+  reference::forScenes("widths", 100,
+    [&](int, reference::Random& random)
+    {
+      // So many pixels of the screen per unit of the world, and voxels of these sides.
+      const double zoom = random.uniform(0.2, 3.0);
+      const glm::dvec3 spacing = anyVector(random, 0.3, 3.0);
+      splatting::View view;
+      view.dimensions = toGlm(randomSize(random, 30));
+      view.viewport = { 90, 70 };
+      const glm::dvec3 eye = glm::normalize(anyVector(random, -1.0, 1.0)) * 100.0;
+      const glm::dvec2 half = 0.5 * glm::dvec2(view.viewport) / zoom;
+      view.indexToClip = glm::ortho(-half.x, half.x, -half.y, half.y, 1.0, 1000.0) *
+        glm::lookAt(eye, glm::dvec3(0.0), anyVector(random, -1.0, 1.0)) *
+        glm::scale(glm::dmat4(1.0), spacing);
+      const glm::dvec2 width = splatting::voxelsPerPixel(view);
+      const double least = std::min({ spacing.x, spacing.y, spacing.z });
+      const double most = std::max({ spacing.x, spacing.y, spacing.z });
+      // Along the side of a voxel that lies across the view it is one over its pixels.
+      check(width.x >= 1.0 / (zoom * most) - 1e-9 && width.y <= 1.0 / (zoom * least) + 1e-9 &&
+          width.x <= width.y + 1e-9,
+        "pixels are ", width.x, " to ", width.y, " voxels wide");
+      check(splatting::isOverview(view) == (width.y > 1.0 + 1e-6) &&
+          splatting::isCoarse(view) == (width.x > 1.0 + 1e-6),
+        "what an overview is");
+      // Of cubes it is the same from everywhere.
+      view.indexToClip = view.indexToClip * glm::scale(glm::dmat4(1.0), 1.0 / spacing);
+      const glm::dvec2 ofCubes = splatting::voxelsPerPixel(view);
+      check(std::abs(ofCubes.x * zoom - 1.0) < 1e-6 && std::abs(ofCubes.y * zoom - 1.0) < 1e-6,
+        "pixels are ", ofCubes.x, " to ", ofCubes.y, " cubes wide, not ", 1.0 / zoom);
+    });
+  splatting::View inside;
+  inside.dimensions = { 30, 30, 30 };
+  inside.viewport = { 8, 8 };
+  inside.indexToClip = glm::perspective(1.0, 1.0, 0.1, 100.0) *
+    glm::lookAt(glm::dvec3(15.0), glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0));
+  check(!splatting::isOverview(inside), "from inside a volume there is no overview");
+}
 }
 
 int TestShearWarp(int, char*[])
@@ -281,5 +323,6 @@ int TestShearWarp(int, char*[])
   testPerspectiveRayPaths(check);
   testSymmetricViewsAreExact(check);
   testDegenerateViews(check);
+  testWidths(check);
   return check.result();
 }

@@ -3,7 +3,7 @@
 //
 // Large screenshots, stereo, layers, multisampling, and mappers that are shared, hidden, replaced
 // and set beside others: the volume looks as it does alone.
-#include "Stage.h"
+#include "ScreenOracle.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
 
@@ -14,6 +14,7 @@
 #include "vtkExecutive.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkImageData.h"
+#include "vtkMath.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
@@ -36,13 +37,73 @@ using Mapper = vtkSplattingMIPVolumeMapper;
 
 constexpr int Width = 130;
 constexpr int Height = 110;
-const stage::Vector Direction = { 0.3, 0.4, -0.8 };
-const stage::Vector Up = { 0.0, 1.0, 0.0 };
 
-vtkSmartPointer<vtkImageData> blobs()
+stage::Vector anyDirection(reference::Random& random)
 {
-  return stage::toImageData(stage::blobsAndTubes({ 48, 44, 40 }, 9));
+  stage::Vector direction;
+  do
+  {
+    for (double& component : direction)
+    {
+      component = random.uniform(-1.0, 1.0);
+    }
+  } while (vtkMath::Norm(direction.data()) < 0.2);
+  return direction;
 }
+
+reference::Volume<std::uint8_t> anyBlobs(reference::Random& random)
+{
+  std::array<int, 3> size;
+  for (int& voxels : size)
+  {
+    voxels = random.uniform(32, 52);
+  }
+  const int count = random.uniform(6, 16);
+  return stage::blobsAndTubes(size, count, random);
+}
+
+/// A volume, a mapper of it, and how both are seen.
+struct Scene
+{
+  reference::Volume<std::uint8_t> volume;
+  vtkSmartPointer<vtkImageData> image;
+  vtkSmartPointer<Mapper> mapper;
+  stage::Vector direction, up;
+  double viewAngle;
+
+  explicit Scene(reference::Random& random)
+    : volume(anyBlobs(random)),
+      image(stage::toImageData(this->volume)),
+      mapper(stage::splatting(this->image)),
+      direction(anyDirection(random)),
+      up(anyDirection(random)),
+      viewAngle(random.uniform(0, 1) ? random.uniform(5.0, 45.0) : 0.0)
+  {
+    this->mapper->SetQualityMode(random.uniform(0, 2));
+  }
+
+  void look(stage::Stage& stage, double scale = 1.0) const
+  {
+    stage.viewAngle = this->viewAngle;
+    stage.show(this->mapper);
+    stage.look(this->direction, this->up, scale);
+  }
+
+  /// Shows it on the left of the window, where `second` is on the right: the spheres about them do
+  /// not meet in any view of no more than 45 degrees.
+  void lookAtBoth(stage::Stage& stage, vtkVolume* second) const
+  {
+    stage::Vector right;
+    vtkMath::Cross(this->direction.data(), this->up.data(), right.data());
+    vtkMath::Normalize(right.data());
+    vtkMath::MultiplyScalar(right.data(), 1.25 * this->image->GetLength());
+    second->SetPosition(right.data());
+    stage.renderer->AddVolume(second);
+    this->look(stage, 1.8);
+    stage.renderer->GetActiveCamera()->SetWindowCenter(0.5, 0.0);
+    stage.renderer->ResetCameraClippingRange();
+  }
+};
 
 int largestDifference(const stage::Pixels& a, const stage::Pixels& b)
 {
@@ -61,18 +122,15 @@ bool isBlack(const stage::Pixels& pixels)
 
 /// A screenshot in tiles is that of a larger window: coordinates in the shear image are rounded in
 /// another way, which moves a grey level by no more than one. Nothing is projected again.
-void testScreenshot(Mapper* mapper, double viewAngle, int scale, stage::Checks& check)
+void testScreenshot(const Scene& scene, int scale, stage::Checks& check)
 {
+  Mapper* const mapper = scene.mapper;
   stage::Stage large(scale * Width, scale * Height);
-  large.viewAngle = viewAngle;
-  large.show(mapper);
-  large.look(Direction, Up);
+  scene.look(large);
   const stage::Pixels expected = large.pixels();
 
   stage::Stage stage(Width, Height);
-  stage.viewAngle = viewAngle;
-  stage.show(mapper);
-  stage.look(Direction, Up);
+  scene.look(stage);
   const stage::Pixels before = stage.pixels();
   const vtkIdType projections = mapper->GetNumberOfProjections();
   vtkNew<vtkWindowToImageFilter> filter;
@@ -89,7 +147,7 @@ void testScreenshot(Mapper* mapper, double viewAngle, int scale, stage::Checks& 
   const int difference = largestDifference(tiled, expected);
   check(!isBlack(expected) && difference <= 1, what + " differ by " + std::to_string(difference));
   // In perspective each tile has images of what it shows.
-  check(viewAngle > 0.0 || mapper->GetNumberOfProjections() == projections,
+  check(scene.viewAngle > 0.0 || mapper->GetNumberOfProjections() == projections,
     what + " share a shear image.");
   check(stage.pixels() == before, what + ": the window is as before.");
 }
@@ -103,42 +161,41 @@ stage::Pixels eye(stage::Stage& stage, int stereoType)
   return pixels;
 }
 
-reference::Image<double> grayOf(const stage::Pixels& pixels)
+/// How many pixels are not what the voxels near the rays of a camera allow, as it was last used.
+int countStrange(stage::Stage& stage, const Scene& scene, const stage::Pixels& pixels)
 {
-  reference::Image<double> image(Width, Height);
-  for (std::size_t n = 0; n < image.value.size(); ++n)
+  const stage::Envelope envelope(scene.volume, scene.mapper->GetQualityMode());
+  const stage::ScreenRays rays(stage, scene.image);
+  int strange = 0;
+  for (int n = 0; n < Width * Height; n += 3)
   {
-    image.value[n] = pixels[3 * n];
+    const stage::Envelope::Limits limits = envelope.at(rays, n % Width, n / Width);
+    const double found = pixels[3 * static_cast<std::size_t>(n)];
+    strange += found < limits.low - stage::GrayTolerance;
+    strange += found > limits.high + stage::GrayTolerance;
   }
-  return image;
+  return strange;
 }
 
-/// Each eye sees what a ray caster shows it, as near as TestRegistration has both without
-/// stereo.
-void testStereo(Mapper* mapper, double viewAngle, vtkImageData* image, stage::Checks& check)
+/// Each eye sees what is near its rays. Returns whether the other eye sees something else.
+bool testStereo(const Scene& scene, stage::Checks& check)
 {
   stage::Stage stage(Width, Height);
-  stage.viewAngle = viewAngle;
-  stage.show(mapper);
-  stage.look(Direction, Up);
-  stage.renderer->GetActiveCamera()->SetEyeAngle(20.0);
+  // No pixel is wider than a voxel: they show points, not areas.
+  scene.look(stage, 0.8);
+  stage.renderer->GetActiveCamera()->SetEyeAngle(50.0);
+  stage.renderer->ResetCameraClippingRange();
   const stage::Pixels middle = stage.pixels();
-  const stage::Pixels left = eye(stage, VTK_STEREO_LEFT), right = eye(stage, VTK_STEREO_RIGHT);
+  const stage::Pixels left = eye(stage, VTK_STEREO_LEFT);
+  const int strangeLeft = countStrange(stage, scene, left);
+  const stage::Pixels right = eye(stage, VTK_STEREO_RIGHT);
+  const int strangeRight = countStrange(stage, scene, right);
+  const bool differs = countStrange(stage, scene, left) > 0;
   check(left != middle && right != middle && left != right, "Eyes see different pictures.");
+  check(strangeLeft == 0 && strangeRight == 0,
+    "Eyes see what they should but for " + std::to_string(strangeLeft) + " and " +
+      std::to_string(strangeRight) + " pixels.");
   check(stage.pixels() == middle, "Without stereo the picture is as before.");
-
-  const auto caster = stage::fixedPointRayCaster(image, 0.5);
-  stage.show(caster);
-  const reference::Image<double> truths[] = { grayOf(eye(stage, VTK_STEREO_LEFT)),
-    grayOf(eye(stage, VTK_STEREO_RIGHT)) };
-  stage.show(mapper);
-  for (int e = 0; e < 2; ++e)
-  {
-    const reference::Image<double> picture = grayOf(e == 0 ? left : right);
-    const stage::Likeness same(truths[e], picture), other(truths[1 - e], picture);
-    check(same.largestShift() < 0.13, "An eye sees what it should: " + same.text());
-    check(other.psnr < same.psnr - 2.0, "It does not see the other's: " + other.text());
-  }
 
   // Anaglyph: red from the left eye, the rest from the right one.
   stage.window->SetAnaglyphColorSaturation(1.0f);
@@ -166,12 +223,19 @@ void testStereo(Mapper* mapper, double viewAngle, vtkImageData* image, stage::Ch
     check(isRowOf(left) || isRowOf(right), "An interlaced row belongs to an eye.");
   }
   check(leftRows >= Height / 2 && rightRows >= Height / 2, "Both eyes have their rows.");
+  return differs;
 }
 
-vtkSmartPointer<vtkActor> greenSphere(double x, double y, double z, double radius)
+/// Behind the volume.
+vtkSmartPointer<vtkActor> greenSphere(const Scene& scene)
 {
+  const double radius = 0.2 * scene.image->GetLength();
+  const double away =
+    (0.55 * scene.image->GetLength() + radius) / vtkMath::Norm(scene.direction.data());
+  const double* const middle = scene.image->GetCenter();
   vtkNew<vtkSphereSource> source;
-  source->SetCenter(x, y, z);
+  source->SetCenter(middle[0] + away * scene.direction[0], middle[1] + away * scene.direction[1],
+    middle[2] + away * scene.direction[2]);
   source->SetRadius(radius);
   vtkNew<vtkPolyDataMapper> polyMapper;
   polyMapper->SetInputConnection(source->GetOutputPort());
@@ -182,19 +246,16 @@ vtkSmartPointer<vtkActor> greenSphere(double x, double y, double z, double radiu
 }
 
 /// A volume in a transparent layer above is a volume behind which the other layer is.
-void testLayers(Mapper* mapper, double viewAngle, stage::Checks& check)
+void testLayers(const Scene& scene, stage::Checks& check)
 {
   stage::Stage stage(Width, Height);
-  stage.viewAngle = viewAngle;
   vtkNew<vtkPiecewiseFunction> opacity;
   opacity->AddPoint(50.0, 0.0);
   opacity->AddPoint(200.0, 0.8);
   stage.property->SetScalarOpacity(opacity);
-  stage.show(mapper);
-  const auto actor = greenSphere(30.0, 30.0, -40.0, 15.0); // behind the volume
-  stage.renderer->AddActor(actor);
+  stage.renderer->AddActor(greenSphere(scene));
   stage.renderer->SetBackground(0.1, 0.2, 0.4);
-  stage.look({ 0.1, 0.2, -0.9 }, Up);
+  scene.look(stage);
   stage.renderer->ResetCameraClippingRange();
   const stage::Pixels expected = stage.pixels();
   vtkNew<vtkRenderer> top;
@@ -210,11 +271,10 @@ void testLayers(Mapper* mapper, double viewAngle, stage::Checks& check)
 }
 
 /// Two props with one mapper, side by side and with properties of their own.
-void testTwoProps(Mapper* mapper, double viewAngle, stage::Checks& check)
+void testTwoProps(const Scene& scene, double turn, stage::Checks& check)
 {
+  Mapper* const mapper = scene.mapper;
   stage::Stage stage(Width, Height);
-  stage.viewAngle = viewAngle;
-  stage.show(mapper);
   vtkNew<vtkVolume> second;
   vtkNew<vtkVolumeProperty> property;
   property->DeepCopy(stage.property);
@@ -224,12 +284,9 @@ void testTwoProps(Mapper* mapper, double viewAngle, stage::Checks& check)
   property->SetColor(color);
   second->SetProperty(property);
   second->SetMapper(mapper);
-  second->SetPosition(90.0, 0.0, 0.0);
-  second->RotateZ(20.0);
-  stage.renderer->AddVolume(second);
-  stage.look({ 0.1, 0.2, -0.9 }, Up, 1.8);
-  stage.renderer->GetActiveCamera()->SetWindowCenter(0.5, 0.0);
-  stage.renderer->ResetCameraClippingRange();
+  second->SetOrigin(scene.image->GetCenter());
+  second->RotateZ(turn);
+  scene.lookAtBoth(stage, second);
   const stage::Pixels both = stage.pixels();
   check(stage.pixels() == both, "Two props with one mapper stay as they are.");
   second->VisibilityOff();
@@ -253,7 +310,7 @@ void testTwoProps(Mapper* mapper, double viewAngle, stage::Checks& check)
 
 /// Large opaque parts of a picture are copied, but for windows with multisampling, which must show
 /// the same, whether all of the picture is opaque, some, or nothing.
-void testMultisampling(Mapper* mapper, double viewAngle, stage::Checks& check)
+void testMultisampling(const Scene& scene, stage::Checks& check)
 {
   constexpr double opacities[][2] = { { 1.0, 1.0 }, { 0.4, 1.0 }, { 0.4, 0.6 } };
   stage::Pixels last;
@@ -264,45 +321,43 @@ void testMultisampling(Mapper* mapper, double viewAngle, stage::Checks& check)
     {
       stage::Stage stage(3 * Width, 3 * Height);
       stage.window->SetMultiSamples(samples);
-      stage.viewAngle = viewAngle;
-      stage.show(mapper);
       vtkNew<vtkPiecewiseFunction> function;
       function->AddPoint(20.0, opacity[0]);
       function->AddPoint(20.5, opacity[1]);
       stage.property->SetScalarOpacity(function);
       stage.renderer->SetBackground(0.1, 0.2, 0.4);
-      stage.look(Direction, Up, 0.6);
+      scene.look(stage, 0.6);
       pixels[samples > 0] = stage.pixels();
     }
     check(pixels[0] == pixels[1],
-      std::string("Multisampling changes nothing in mode ") + mapper->GetQualityModeAsString() +
-        " with opacity " + std::to_string(opacity[0]) + ".");
+      std::string("Multisampling changes nothing in mode ") +
+        scene.mapper->GetQualityModeAsString() + " with opacity " + std::to_string(opacity[0]) +
+        ".");
     check(pixels[0] != last, "Opacity matters.");
     last = pixels[0];
   }
 }
 
-stage::Pixels alone(vtkImageData* image, int mode, double viewAngle)
+/// What a new mapper of another volume shows.
+stage::Pixels alone(const Scene& scene, vtkImageData* image)
 {
   stage::Stage stage(Width, Height);
-  stage.viewAngle = viewAngle;
-  const auto mapper = stage::splatting(image);
-  mapper->SetQualityMode(mode);
-  stage.show(mapper);
-  stage.look(Direction, Up);
+  Scene other = scene;
+  other.mapper = stage::splatting(image);
+  other.mapper->SetQualityMode(scene.mapper->GetQualityMode());
+  other.look(stage);
   return stage.pixels();
 }
 
-void testReplacements(Mapper* mapper, double viewAngle, vtkImageData* image, stage::Checks& check)
+void testReplacements(const Scene& scene, reference::Random& random, stage::Checks& check)
 {
+  Mapper* const mapper = scene.mapper;
   stage::Stage stage(Width, Height);
-  stage.viewAngle = viewAngle;
-  stage.show(mapper);
-  stage.look(Direction, Up);
+  scene.look(stage);
   const stage::Pixels before = stage.pixels();
   for (int time = 0; time < 2; ++time)
   {
-    stage.show(stage::fixedPointRayCaster(image, 0.5));
+    stage.show(stage::fixedPointRayCaster(scene.image, 0.5));
     const stage::Pixels cast = stage.pixels();
     check(!isBlack(cast) && cast != before, "A ray caster takes the mapper's place.");
     stage.show(mapper);
@@ -311,39 +366,34 @@ void testReplacements(Mapper* mapper, double viewAngle, vtkImageData* image, sta
   mapper->SetInputDataObject(nullptr);
   const stage::Messages pipelineErrors(mapper->GetExecutive(), vtkCommand::ErrorEvent);
   check(isBlack(stage.pixels()), "Without input there is nothing to see.");
-  const auto other = stage::toImageData(stage::blobsAndTubes({ 48, 44, 40 }, 4));
+  const auto& size = scene.volume.size;
+  const auto other = stage::toImageData(stage::blobsAndTubes(size, 4, random));
   mapper->SetInputData(other);
   const stage::Pixels replaced = stage.pixels();
-  check(replaced == alone(other, mapper->GetQualityMode(), viewAngle) && replaced != before,
-    "Other data are shown.");
+  check(replaced == alone(scene, other) && replaced != before, "Other data are shown.");
   auto* const voxels = static_cast<unsigned char*>(other->GetScalarPointer());
-  std::fill(voxels + 48 * 44 * 10, voxels + 48 * 44 * 30, static_cast<unsigned char>(90));
+  const std::ptrdiff_t slice = std::ptrdiff_t(size[0]) * size[1];
+  std::fill(voxels + slice * 10, voxels + slice * 30, static_cast<unsigned char>(90));
   other->GetPointData()->GetScalars()->Modified();
   const stage::Pixels changed = stage.pixels();
-  check(changed == alone(other, mapper->GetQualityMode(), viewAngle) && changed != replaced,
-    "Changed data are shown.");
-  mapper->SetInputData(image);
+  check(changed == alone(scene, other) && changed != replaced, "Changed data are shown.");
+  mapper->SetInputData(scene.image);
   check(stage.pixels() == before, "The first data are shown again.");
 }
 
 /// Where only it is seen, a volume beside ones by VTK's own mapper looks as it does alone, and they
 /// do, too.
-void testBesideSmartMapper(Mapper* mapper, vtkImageData* image, stage::Checks& check)
+void testBesideSmartMapper(const Scene& scene, stage::Checks& check)
 {
   stage::Stage stage(Width, Height);
-  stage.show(mapper);
   vtkNew<vtkSmartVolumeMapper> smart;
-  smart->SetInputData(image);
+  smart->SetInputData(scene.image);
   smart->SetBlendModeToMaximumIntensity();
   smart->SetRequestedRenderModeToRayCast();
   vtkNew<vtkVolume> second;
   second->SetMapper(smart);
   second->SetProperty(stage.property);
-  second->SetPosition(90.0, 0.0, 0.0);
-  stage.renderer->AddVolume(second);
-  stage.look({ 0.1, 0.2, -0.9 }, Up, 1.8);
-  stage.renderer->GetActiveCamera()->SetWindowCenter(0.5, 0.0);
-  stage.renderer->ResetCameraClippingRange();
+  scene.lookAtBoth(stage, second);
   const stage::Pixels both = stage.pixels();
   second->VisibilityOff();
   const stage::Pixels ours = stage.pixels();
@@ -358,13 +408,12 @@ void testBesideSmartMapper(Mapper* mapper, vtkImageData* image, stage::Checks& c
 }
 
 /// Windows without pixels draw nothing and say nothing.
-void testEmptyWindow(Mapper* mapper, stage::Checks& check)
+void testEmptyWindow(const Scene& scene, stage::Checks& check)
 {
   stage::Stage stage(Width, Height);
-  stage.show(mapper);
-  stage.look(Direction, Up);
+  scene.look(stage);
   const stage::Pixels before = stage.pixels();
-  const stage::Messages errors(mapper, vtkCommand::ErrorEvent);
+  const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
   stage.renderer->SetViewport(0.5, 0.5, 0.5, 0.5);
   stage.window->Render();
   stage.renderer->SetViewport(0.0, 0.0, 1.0, 1.0);
@@ -383,23 +432,20 @@ int TestWindows(int, char*[])
   stage::Checks check;
   stage::Stage keeper(10, 10); // X servers may restart when their last client leaves
   keeper.window->Render();
-  const auto image = blobs();
-  const auto mapper = stage::splatting(image);
-  for (int mode = 0; mode < 3; ++mode)
-  {
-    mapper->SetQualityMode(mode);
-    for (double viewAngle : { 0.0, 45.0 })
+  int eyes = 0;
+  reference::forScenes("windows", 24,
+    [&](int, reference::Random& random)
     {
-      testScreenshot(mapper, viewAngle, 3, check);
-      testStereo(mapper, viewAngle, image, check);
-      testLayers(mapper, viewAngle, check);
-      testMultisampling(mapper, viewAngle, check);
-      testTwoProps(mapper, viewAngle, check);
-      testReplacements(mapper, viewAngle, image, check);
-    }
-  }
-  mapper->SetQualityModeToHigh();
-  testBesideSmartMapper(mapper, image, check);
-  testEmptyWindow(mapper, check);
+      const Scene scene(random);
+      testScreenshot(scene, random.uniform(2, 4), check);
+      eyes += testStereo(scene, check);
+      testLayers(scene, check);
+      testMultisampling(scene, check);
+      testTwoProps(scene, random.uniform(0.0, 360.0), check);
+      testReplacements(scene, random, check);
+      testBesideSmartMapper(scene, check);
+      testEmptyWindow(scene, check);
+    });
+  check(!reference::onlyScene().empty() || eyes > 0, "Eyes do not see what the others do.");
   return check.exitCode();
 }

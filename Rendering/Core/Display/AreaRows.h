@@ -69,6 +69,13 @@ private:
   {
     for (int p = x; p < x + n; ++p)
     {
+      // Of all images the same points, or those of one would count for more.
+      glm::ivec2 points(0);
+      for (const WarpSource<A>& source : this->Images)
+      {
+        const PixelArea area = areaOf(source.geometry, start.x + p, start.y);
+        points = glm::max(points, pointsOf(source.geometry, area));
+      }
       double sum = 0.0;
       int count = 0;
       for (std::size_t number = 0; number < this->Images.size(); ++number)
@@ -77,7 +84,7 @@ private:
         if (!this->Met[number].cut({ p, p + 1 }, start).empty())
         {
           PixelAreas<A>(source.image, source.pixels)
-            .addAverage(source.geometry, start.x + p, start.y, sum, count);
+            .addAverage(source.geometry, start.x + p, start.y, points, sum, count);
         }
       }
       values[p - x] = count > 0 ? static_cast<A>(sum / count) : std::numeric_limits<A>::quiet_NaN();

@@ -14,6 +14,7 @@
 
 #include "Projection/ShearImage.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
@@ -21,22 +22,76 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace splatting
 {
-/// A convex quadrangle of a shear image, its corners in order.
-using PixelArea = std::array<glm::dvec2, 4>;
+/// A convex part of a shear image, its corners in order; none if it is empty.
+struct PixelArea
+{
+  std::array<glm::dvec2, 8> corners;
+  int count = 0;
 
-/// The area of the viewport pixel (x, y).
+  const glm::dvec2* begin() const { return this->corners.data(); }
+  const glm::dvec2* end() const { return this->corners.data() + this->count; }
+};
+
+/// Of the area of the viewport pixel (x, y) what lies in the image or no more than a sample beside
+/// it. In perspective views the rest may reach behind the eye.
 inline PixelArea areaOf(const ShearWarp& geometry, double x, double y)
 {
   const glm::dmat3& m = geometry.screenToShear();
-  const auto corner = [&](double dx, double dy)
+  std::array<glm::dvec3, 4> quadrangle{ glm::dvec3(x - 0.5, y - 0.5, 1.0),
+    { x + 0.5, y - 0.5, 1.0 }, { x + 0.5, y + 0.5, 1.0 }, { x - 0.5, y + 0.5, 1.0 } };
+  const std::array<glm::dvec3, 4> sides{ glm::dvec3(1.0, 0.0, 1.0), { 0.0, 1.0, 1.0 },
+    { -1.0, 0.0, geometry.width() }, { 0.0, -1.0, geometry.height() } };
+  bool isInside = true;
+  for (glm::dvec3& corner : quadrangle)
   {
-    const glm::dvec3 p = m * glm::dvec3(x + dx, y + dy, 1.0);
-    return glm::dvec2(p) / p.z;
-  };
-  return { corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5), corner(-0.5, 0.5) };
+    corner = m * corner;
+    for (const glm::dvec3& side : sides)
+    {
+      isInside = isInside && glm::dot(side, corner) > 0.0;
+    }
+  }
+  PixelArea area;
+  const auto add = [&](const glm::dvec3& corner)
+  { area.corners[area.count++] = glm::dvec2(corner) / corner.z; };
+  if (isInside)
+  {
+    std::for_each(quadrangle.begin(), quadrangle.end(), add);
+    return area;
+  }
+  std::vector<glm::dvec3> rest(quadrangle.begin(), quadrangle.end());
+  for (const glm::dvec3& side : sides)
+  {
+    rest = clipped(rest, side);
+  }
+  // Where corners lie on sides, rounding may double some.
+  rest.resize(std::min(rest.size(), area.corners.size()));
+  std::for_each(rest.begin(), rest.end(), add);
+  return area;
+}
+
+/// So many points along x and y of a pixel are no farther apart than samples anywhere in its area.
+inline glm::ivec2 pointsOf(const ShearWarp& geometry, const PixelArea& area)
+{
+  // The place (u, v) = (a, b) / w moves with x by (da - u dw, db - v dw) / w.
+  const glm::dmat3& m = geometry.screenToShear();
+  glm::dvec2 farthest(0.0);
+  double nearness = 0.0; // 1 / w
+  for (const glm::dvec2& corner : area)
+  {
+    const glm::dvec3 pixel = geometry.shearToScreen() * glm::dvec3(corner, 1.0);
+    nearness = std::max(nearness, pixel.z);
+    for (int a = 0; a < 2; ++a)
+    {
+      farthest[a] = std::max(farthest[a], glm::length(glm::dvec2(m[a]) - corner * m[a].z));
+    }
+  }
+  // Pixels as wide as some samples are not wider by rounding.
+  constexpr double rounding = 1e-9;
+  return glm::max(glm::ivec2(glm::ceil(farthest * nearness - rounding)), glm::ivec2(1));
 }
 
 /// A value of an area, and the sample that it comes from, or of two or four the nearest.
@@ -47,15 +102,21 @@ struct AreaValue
   int u = 0, v = 0;
 
   bool found() const { return this->value == this->value; }
-  /// Takes another one if it is larger, or less.
-  void take(const AreaValue& other, bool least)
+  /// Takes another one if it is larger, or less. Returns whether it is.
+  bool take(const AreaValue& other, bool least)
   {
-    const bool better = least ? other.value < this->value : other.value > this->value;
-    if (better || (!this->found() && other.found()))
-    {
-      *this = other;
-    }
+    const bool better = (least ? other.value < this->value : other.value > this->value) ||
+      (!this->found() && other.found());
+    *this = better ? other : *this;
+    return better;
   }
+};
+
+/// The extremum of an area's samples, and that of what it shows between samples.
+template <class A>
+struct AreaExtrema
+{
+  AreaValue<A> sample, between;
 };
 
 /**
@@ -70,35 +131,44 @@ public:
   /// Both must outlive its use.
   PixelAreas(const ShearImage& image, const T* pixels) : Image(image), Pixels(pixels) {}
 
-  AreaValue<A> extremum(const PixelArea& area, bool least) const
+  AreaExtrema<A> extrema(const PixelArea& area, bool least) const
   {
-    AreaValue<A> best;
+    AreaExtrema<A> best;
     this->takeLines<0>(area, least, best);
     this->takeLines<1>(area, least, best);
     for (const glm::dvec2& corner : area)
     {
-      best.take(this->interpolated(corner), least);
+      best.between.take(this->interpolated(corner), least);
     }
     return best;
   }
 
-  /**
-   * Adds up the image at points that are spread evenly over a pixel's area, no farther apart than
-   * samples, and counts those that are between samples.
-   */
-  void addAverage(const ShearWarp& geometry, double x, double y, double& sum, int& count) const
+  AreaValue<A> extremum(const PixelArea& area, bool least) const
   {
-    const PixelArea area = areaOf(geometry, x, y);
-    const auto steps = [](const glm::dvec2& a, const glm::dvec2& b)
-    { return std::max(static_cast<int>(std::ceil(std::max(glm::length(a), glm::length(b)))), 1); };
-    const int columns = steps(area[1] - area[0], area[2] - area[3]);
-    const int rows = steps(area[3] - area[0], area[2] - area[1]);
-    for (int n = 0; n < columns * rows; ++n)
+    AreaExtrema<A> best = this->extrema(area, least);
+    best.sample.take(best.between, least);
+    return best.sample;
+  }
+
+  /**
+   * Adds up the image at so many points, spread evenly over a pixel's area, and counts those that
+   * are between samples.
+   */
+  void addAverage(const ShearWarp& geometry, double x, double y, const glm::ivec2& points,
+    double& sum, int& count) const
+  {
+    const glm::dvec2 last(this->Image.width - 1, this->Image.height - 1);
+    for (int n = 0; n < points.x * points.y; ++n)
     {
-      const glm::dvec2 at(x - 0.5 + (n % columns + 0.5) / columns,
-        y - 0.5 + (static_cast<double>(n / columns) + 0.5) / rows);
-      const glm::dvec3 p = geometry.screenToShear() * glm::dvec3(at, 1.0);
-      const AreaValue<A> value = this->interpolated(glm::dvec2(p) / p.z);
+      const glm::dvec2 at(x - 0.5 + (n % points.x + 0.5) / points.x,
+        y - 0.5 + (static_cast<double>(n / points.x) + 0.5) / points.y);
+      const glm::dvec3 h = geometry.screenToShear() * glm::dvec3(at, 1.0);
+      const glm::dvec2 p = glm::dvec2(h) / h.z;
+      if (!(h.z > 0.0 && p.x >= 0.0 && p.y >= 0.0 && p.x < last.x && p.y < last.y))
+      {
+        continue;
+      }
+      const AreaValue<A> value = this->interpolated(p);
       if (value.found())
       {
         sum += value.value;
@@ -141,19 +211,22 @@ private:
    * column the ends alone: the samples are the rows').
    */
   template <int Along>
-  void takeLines(const PixelArea& area, bool least, AreaValue<A>& best) const
+  void takeLines(const PixelArea& area, bool least, AreaExtrema<A>& best) const
   {
     constexpr int across = 1 - Along;
-    const auto range =
-      std::minmax({ area[0][across], area[1][across], area[2][across], area[3][across] });
-    const double last = (Along == 0 ? this->Image.height : this->Image.width) - 1.0;
-    const int end = static_cast<int>(std::floor(std::min(range.second, last)));
-    for (int line = static_cast<int>(std::ceil(std::max(range.first, 0.0))); line <= end; ++line)
+    const int last = (Along == 0 ? this->Image.height : this->Image.width) - 1;
+    double first = last + 1.0, end = -1.0;
+    for (const glm::dvec2& corner : area)
+    {
+      first = std::min(first, std::max(corner[across], 0.0));
+      end = std::max(end, std::min<double>(corner[across], last));
+    }
+    for (int line = static_cast<int>(std::ceil(first)); line <= end; ++line)
     {
       double low = std::numeric_limits<double>::infinity(), high = -low;
-      for (int edge = 0; edge < 4; ++edge)
+      for (int edge = 0; edge < area.count; ++edge)
       {
-        const glm::dvec2 &a = area[edge], &b = area[(edge + 1) % 4];
+        const glm::dvec2 &a = area.corners[edge], &b = area.corners[(edge + 1) % area.count];
         if ((a[across] <= line) == (b[across] <= line) && a[across] != line)
         {
           continue;
@@ -174,15 +247,15 @@ private:
   }
 
   template <int Along>
-  void takeEnd(int line, double at, bool least, AreaValue<A>& best) const
+  void takeEnd(int line, double at, bool least, AreaExtrema<A>& best) const
   {
     const int n = static_cast<int>(std::floor(at));
-    best.take(Along == 0 ? this->between(n, line, n + 1, line, at - n)
-                         : this->between(line, n, line, n + 1, at - n),
+    best.between.take(Along == 0 ? this->between(n, line, n + 1, line, at - n)
+                                 : this->between(line, n, line, n + 1, at - n),
       least);
   }
 
-  void takeRow(int v, double low, double high, bool least, AreaValue<A>& best) const
+  void takeRow(int v, double low, double high, bool least, AreaExtrema<A>& best) const
   {
     const Span& span = this->Image.spans[v];
     const int begin = static_cast<int>(std::ceil(std::max<double>(low, span.begin)));
@@ -191,7 +264,7 @@ private:
     {
       if (this->Image.covers(u, v))
       {
-        best.take({ this->at(u, v), u, v }, least);
+        best.sample.take({ this->at(u, v), u, v }, least);
       }
     }
   }

@@ -40,30 +40,27 @@ ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& h
   return lost > 0.5 ? ShearPixel{} : nearest;
 }
 
-/// Where pixels show areas.
+/// Where pixels show areas: none of their samples is passed over for one beside them.
 template <class T>
 ShearPixel shownOfArea(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, const std::vector<Outline>& met, bool least,
   const glm::dvec3& pixel)
 {
-  AreaValue<Accumulator<T>> best;
-  ShearPixel shown;
+  AreaExtrema<Accumulator<T>> best;
+  int sampled = -1, between = -1; // the images that they are of
   for (std::size_t n = 0; n < geometries.size(); ++n)
   {
     if (met[n].cut({ 0, 1 }, pixel).empty())
     {
       continue;
     }
-    const AreaValue<Accumulator<T>> before = best;
-    best.take(PixelAreas<T>(images[n], images[n].row<T>(0))
-                .extremum(areaOf(geometries[n], pixel.x, pixel.y), least),
-      least);
-    if (best.found() && !(best.value == before.value))
-    {
-      shown = { static_cast<int>(n), best.u, best.v };
-    }
+    const auto found = PixelAreas<T>(images[n], images[n].row<T>(0))
+                         .extrema(areaOf(geometries[n], pixel.x, pixel.y), least);
+    sampled = best.sample.take(found.sample, least) ? static_cast<int>(n) : sampled;
+    between = best.between.take(found.between, least) ? static_cast<int>(n) : between;
   }
-  return shown;
+  return sampled >= 0 ? ShearPixel{ sampled, best.sample.u, best.sample.v }
+                      : ShearPixel{ between, best.between.u, best.between.v };
 }
 
 /// Of those that have one.

@@ -25,7 +25,8 @@ struct ShearPixel
 /**
  * For each pixel of a rectangle of the viewport, row by row from the bottom, the shear pixel whose
  * location stands for it: the nearest of those that Warper interpolates its value between, where
- * areas are shown the one that the area's value comes from; none where the picture has no sample.
+ * areas are shown the largest (of minima the least) in the area, or without any the nearest to
+ * where the area's value comes from; none where the picture has no sample.
  * @param images     as in Warper::warp()
  * @param hasSample  whether a shear pixel has one; without it, whether it has a winner
  */
