@@ -393,9 +393,10 @@ public:
    * again. It never takes chains, which are slower on all data that we measured
    * (splatmip-paper reports it), but need less memory than the volume.
    *
-   * Where rays are cut and in perspective, BRICKS take the place of chains. Volumes with NaN or
-   * infinity are walked densely, as are all when IndexMemoryBudget has no room for the index;
-   * GetAccelerationUsed() tells.
+   * Where rays are cut, in perspective and where voxels are NaN or hidden, BRICKS take the place of
+   * chains. Volumes with infinity are walked densely, as are all when IndexMemoryBudget has no room
+   * for the index, and those with NaN or hidden voxels with RecordLocations; GetAccelerationUsed()
+   * tells.
    */
   virtual void SetAcceleration(int);
   virtual int GetAcceleration();
