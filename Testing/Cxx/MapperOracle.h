@@ -21,8 +21,10 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace stage
 {
@@ -100,13 +102,19 @@ inline reference::ShearView viewOf(vtkSplattingMIPVolumeMapper* mapper)
 /**
  * After a render in mode PREVIEW, the largest difference of the mapper's shear image to the
  * reference; infinity where one has a sample and the other has not.
+ *
+ * The half-spaces, of index space with the image's first voxel at the origin, are what planes
+ * leave.
  */
 inline double shearImageError(Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
-  vtkImageData* image, const reference::Volume<std::uint8_t>& volume)
+  vtkImageData* image, const reference::Volume<std::uint8_t>& volume,
+  const std::vector<std::array<double, 4>>& halfSpaces = {})
 {
   const reference::ShearView view = viewOf(mapper);
   const reference::ShearGrid grid = reference::makeShearGrid(volume.size, view);
-  const reference::RayCutter cutter(grid, view, croppingOf(mapper, image));
+  reference::RayCuts cuts = croppingOf(mapper, image);
+  cuts.halfSpaces = halfSpaces;
+  const reference::RayCutter cutter(grid, view, cuts);
   const auto rays = reference::voxelSamples(volume, view);
   const double lowest = reference::lowestVoxel(volume);
   const bool reversed = looksBackwards(stage, image, view.axis);
