@@ -3,7 +3,7 @@
 //
 // Projections along chains of voxels have the same bits as dense ones: every scalar type, mode,
 // order, with and without invisible voxels. Delta encoding stays within its bound.
-#include "CoreTesting.h"
+#include "LineTesting.h"
 
 #include <vtkSMPTools.h>
 
@@ -13,90 +13,11 @@
 #include <numeric>
 #include <thread>
 
-using namespace coretesting;
-using splatting::Acceleration;
-using splatting::LineEncoding;
-using splatting::LineIndex;
-using splatting::LineOrder;
+using namespace linetesting;
 using splatting::Quality;
 
 namespace
 {
-const Acceleration lineAccelerations[] = { Acceleration::Lines, Acceleration::SortedLines,
-  Acceleration::SortedVolume };
-const LineOrder orders[] = { LineOrder::Lines, LineOrder::SortedLines, LineOrder::SortedVolume };
-
-/// A value at a share, out of 255, of the type's range, or of [-1, 1].
-template <class T>
-T level(int share)
-{
-  using Limits = std::numeric_limits<T>;
-  if constexpr (Limits::is_integer)
-  {
-    using U = std::make_unsigned_t<T>;
-    const U step = static_cast<U>(Limits::max()) - static_cast<U>(Limits::lowest());
-    return static_cast<T>(static_cast<U>(Limits::lowest()) + U(step / 255) * U(share));
-  }
-  else
-  {
-    return static_cast<T>(share / 127.5 - 1.0);
-  }
-}
-
-/// Boxes of a few values, and perhaps some noise: long chains, short ones and ties.
-template <class T>
-reference::Volume<T> boxes(const std::array<int, 3>& size, int levels, reference::Random& random)
-{
-  const auto anyLevel = [&] { return level<T>(random.uniform(0, levels - 1) * 255 / levels); };
-  reference::Volume<T> volume(size, anyLevel());
-  for (int n = random.uniform(1, 8); n > 0; --n)
-  {
-    std::array<int, 3> first, last, p;
-    for (int a = 0; a < 3; ++a)
-    {
-      first[a] = random.uniform(0, size[a] - 1);
-      last[a] = random.uniform(first[a], size[a] - 1);
-    }
-    const T value = anyLevel();
-    for (p[2] = first[2]; p[2] <= last[2]; ++p[2])
-    {
-      for (p[1] = first[1]; p[1] <= last[1]; ++p[1])
-      {
-        for (p[0] = first[0]; p[0] <= last[0]; ++p[0])
-        {
-          volume.at(p) = value;
-        }
-      }
-    }
-  }
-  const int noise = std::max(random.uniform(-30, 20), 0);
-  for (T& voxel : volume.voxels)
-  {
-    voxel = random.uniform(0, 99) < noise ? anyLevel() : voxel;
-  }
-  return volume;
-}
-
-/// Some volumes are long enough for runs of equal worksheets.
-std::array<int, 3> anySize(reference::Random& random)
-{
-  std::array<int, 3> size = randomSize(random, 12);
-  if (random.uniform(0, 1))
-  {
-    const int axis = random.uniform(0, 2);
-    size[axis] = random.uniform(40, 90);
-  }
-  return size;
-}
-
-template <class T>
-reference::Volume<T> anyVolume(reference::Random& random)
-{
-  const std::array<int, 3> size = anySize(random);
-  return random.uniform(0, 4) == 0 ? wholeRangeNoise<T>(size, random)
-                                   : boxes<T>(size, random.uniform(1, 9), random);
-}
-
 std::vector<glm::dvec4> anyHalfSpaces(const std::array<int, 3>& size, reference::Random& random)
 {
   std::vector<glm::dvec4> halfSpaces(random.uniform(1, 2));
@@ -241,131 +162,6 @@ void testOddValues(Checks& check)
       settings.lineTolerance = 20.0;
       const splatting::ShearWarp geometry(anyView(volume.size, random));
       compareWithDense(check, volume, geometry, settings, {}, "odd values");
-    });
-}
-
-template <class T>
-LineIndex makeLines(const reference::Volume<T>& volume, const LineEncoding& encoding)
-{
-  const auto& size = volume.size;
-  return LineIndex(splatting::scalarTypeOf<T>(),
-    { volume.voxels.data(), size[0], std::ptrdiff_t(size[0]) * size[1] }, toGlm(size), encoding);
-}
-
-/// dv(x), in more digits than voxels have.
-template <class T>
-long double toleranceAt(T x, T high, double levels)
-{
-  return static_cast<long double>(levels) *
-    (static_cast<long double>(high) - static_cast<long double>(x)) / 255;
-}
-
-/// The voxels that the rows' chains stand for.
-template <class T>
-reference::Volume<T> decoded(const LineIndex& index, const std::array<int, 3>& size)
-{
-  reference::Volume<T> volume(size);
-  auto out = volume.voxels.begin();
-  for (int k = 0; k < size[2]; ++k)
-  {
-    for (int j = 0; j < size[1]; ++j)
-    {
-      const splatting::LineRow<T> row = index.row<T>(j, k);
-      for (std::ptrdiff_t c = 0; c < row.count; ++c)
-      {
-        out = std::fill_n(out, row.last[c] + 1, row.values[c]);
-      }
-    }
-  }
-  return volume;
-}
-
-/// Every chain is within the tolerance of each of its voxels, and as long as it can be.
-template <class T>
-void testDecoded(Checks& check)
-{
-  reference::forScenes(seriesOf<T>("decoded"), 20,
-    [&](int, reference::Random& random)
-    {
-      const auto volume = anyVolume<T>(random);
-      check(decoded<T>(makeLines(volume, {}), volume.size).voxels == volume.voxels,
-        "chains of equal voxels are not the volume");
-      const T high = *std::max_element(volume.voxels.begin(), volume.voxels.end());
-      for (double levels : { 1.0, 8.0, 255.0 })
-      {
-        const auto found =
-          decoded<T>(makeLines(volume, { LineOrder::Lines, levels, false }), volume.size);
-        for (std::size_t v = 0; v < volume.voxels.size(); ++v)
-        {
-          const T x = volume.voxels[v], d = found.voxels[v];
-          const long double difference =
-            std::abs(static_cast<long double>(x) - static_cast<long double>(d));
-          check(difference <= toleranceAt(x, high, levels), "type ",
-            int(splatting::scalarTypeOf<T>()), ": ", double(d), " stands for ", double(x),
-            " with tolerance ", levels);
-        }
-      }
-    });
-}
-
-/// What chains there are in rows of which that is known.
-void testChains(Checks& check)
-{
-  reference::Volume<std::uint8_t> volume({ 8, 1, 1 });
-  volume.voxels = { 7, 7, 7, 9, 9, 5, 255, 255 };
-  check(makeLines(volume, {}).chainCount() == 4, "four chains of equal voxels");
-  // 8 levels at 0 are 7.8 at 7: from 0 to 14 for 7, from 2 to 16 for 9, from -2 to 12 for 5.
-  check(makeLines(volume, { LineOrder::Lines, 8.0, false }).chainCount() == 2, "7, 9 and 5 join");
-  // Values may differ by twice the tolerance: 0 and 20 meet where 10 levels at 0 end.
-  volume.voxels = { 0, 19, 0, 20, 0, 19, 0, 255 };
-  check(makeLines(volume, { LineOrder::Lines, 10.0, false }).chainCount() == 4,
-    "0 and 19 join at 10, 0 and 20 do not: 9 levels are left at 20");
-  volume = reference::Volume<std::uint8_t>({ 600, 1, 1 }, 3);
-  check(makeLines(volume, {}).chainCount() == 3, "chains in rows are at most 256 voxels long");
-  check(makeLines(volume, { LineOrder::SortedLines, 0.0, false }).chainCount() == 1,
-    "sorted chains are as long as they can be");
-  volume = reference::Volume<std::uint8_t>({ 600, 1, 1 }, 0);
-  check(makeLines(volume, { LineOrder::SortedVolume, 0.0, false }).chainCount() == 0,
-    "sorted orders leave out the lowest value of the type");
-}
-
-/// Runs go down, and hold chains in the order of memory.
-void testSorting(Checks& check)
-{
-  reference::forScenes("sorting", 1,
-    [&](int, reference::Random& random)
-    {
-      const auto volume = boxes<std::int16_t>({ 30, 20, 10 }, 9, random);
-      const LineIndex slices = makeLines(volume, { LineOrder::SortedLines, 0.0, false });
-      for (int k = 0; k < volume.size[2]; ++k)
-      {
-        for (std::size_t r = slices.runsOf(k); r < slices.runsOf(k + 1); ++r)
-        {
-          const auto run = slices.run<std::int16_t, splatting::SliceChain>(r);
-          check(r == slices.runsOf(k) ||
-              run.value < slices.run<std::int16_t, splatting::SliceChain>(r - 1).value,
-            "slice ", k, " is not sorted");
-          check(
-            std::is_sorted(run.begin, run.end,
-              [](const auto& a, const auto& b) { return a.j < b.j || (a.j == b.j && a.i < b.i); }),
-            "a run is not in the order of memory");
-          for (auto chain = run.begin; chain < run.end; ++chain)
-          {
-            check(volume.at(chain->i, chain->j, k) == run.value, "a chain lies elsewhere");
-          }
-        }
-      }
-      const LineIndex all = makeLines(volume, { LineOrder::SortedVolume, 0.0, false });
-      for (std::size_t r = 0; r < all.runsOf(1); ++r)
-      {
-        const auto run = all.run<std::int16_t, splatting::VolumeChain>(r);
-        check(r == 0 || run.value < all.run<std::int16_t, splatting::VolumeChain>(r - 1).value,
-          "the volume is not sorted");
-        for (auto chain = run.begin; chain < run.end; ++chain)
-        {
-          check(volume.at(chain->i, chain->j, chain->k) == run.value, "a chain lies elsewhere");
-        }
-      }
     });
 }
 
@@ -629,7 +425,6 @@ int TestLineIndex(int, char*[])
       using T = std::remove_pointer_t<decltype(null)>;
       testExact<T>(check);
       testFlat<T>(check);
-      testDecoded<T>(check);
       testTolerance<T>(check, savings);
       testFloor<T>(check);
     });
@@ -638,8 +433,6 @@ int TestLineIndex(int, char*[])
   testLargeVolumes(check);
   testOddValues<float>(check);
   testOddValues<double>(check);
-  testChains(check);
-  testSorting(check);
   testElimination(check);
   testHiddenCount(check);
   testRenewal(check);

@@ -3,12 +3,9 @@
 //
 // Where the samples lie that a projection shows: the voxel of previews, the slice of averages and
 // the place of the field's extremum are those that brute force finds; of equal samples the nearest
-// to the viewer wins, for any acceleration, instruction set and number of threads; and points of
-// the screen lie on the rays of their pixels.
-#include "CoreTesting.h"
+// to the viewer wins, for any acceleration, instruction set and number of threads.
 #include "FieldMaximum.h"
-#include "Projection/Locations.h"
-#include "WideViews.h"
+#include "WinnerScenes.h"
 #include "Winners.h"
 
 #include <vtkSMPTools.h>
@@ -16,127 +13,13 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace coretesting;
+using namespace winnerscenes;
 using splatting::Acceleration;
 using splatting::Quality;
 using splatting::Reduction;
 
 namespace
 {
-std::string nameOf(const char* series, bool perspective)
-{
-  return std::string(series) + (perspective ? ", in perspective" : "");
-}
-
-/// A view with one or more shear images, and what cuts it.
-struct Scene
-{
-  splatting::View view;
-  std::vector<splatting::ShearWarp> images;
-  reference::RayCuts cuts;
-};
-
-Scene anyScene(
-  const std::array<int, 3>& size, bool perspective, reference::Random& random, bool mayBeCut = true)
-{
-  Scene scene;
-  while (scene.images.empty())
-  {
-    scene.view = magnified(perspective ? randomPerspective(size, random) : anyView(size, random));
-    splatting::ShearWarp::factorise(scene.view, scene.images, anySampling(random));
-  }
-  if (mayBeCut && random.uniform(0, 2) == 0)
-  {
-    const glm::dvec3 normal = anyVector(random, -1.0, 1.0);
-    const glm::dvec3 middle = 0.5 * glm::dvec3(scene.view.dimensions - 1);
-    scene.view.halfSpaces.emplace_back(normal, -glm::dot(normal, middle) + 0.1);
-  }
-  if (mayBeCut && random.uniform(0, 2) == 0)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      const double low = random.uniform(0.0, size[a] - 1.0);
-      scene.view.cropping.planes[a] = { low, low + 1.0 + random.uniform(0.0, 4.0) };
-    }
-    scene.view.cropping.flags =
-      static_cast<std::uint32_t>(random.bits()) & splatting::Cropping::All;
-  }
-  for (const glm::dvec4& h : scene.view.halfSpaces)
-  {
-    scene.cuts.halfSpaces.push_back({ h.x, h.y, h.z, h.w });
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    scene.cuts.planes[a] = { scene.view.cropping.planes[a].x, scene.view.cropping.planes[a].y };
-  }
-  scene.cuts.regions = scene.view.cropping.flags;
-  return scene;
-}
-
-reference::RayCutter cutterOf(
-  const splatting::ShearWarp& geometry, const std::array<int, 3>& size, const Scene& scene)
-{
-  if (geometry.isPerspective())
-  {
-    return { referenceRays(geometry), scene.cuts };
-  }
-  const reference::ShearView view = referenceView(geometry);
-  return { reference::makeShearGrid(size, view), view, scene.cuts };
-}
-
-template <class T>
-splatting::VoxelArray arrayOf(const reference::Volume<T>& volume)
-{
-  return { volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) };
-}
-
-template <class T>
-std::vector<splatting::ShearImage> projectScene(
-  const reference::Volume<T>& volume, const Scene& scene, splatting::ProjectionSettings& settings)
-{
-  settings.keepWinners = true;
-  splatting::VolumeIndex index;
-  index.reset(arrayOf(volume));
-  std::vector<splatting::ShearImage> result;
-  for (const splatting::ShearWarp& geometry : scene.images)
-  {
-    result.push_back(project(
-      index, geometry, settings, cutsBy(geometry, scene.view.halfSpaces, scene.view.cropping)));
-  }
-  return result;
-}
-
-template <class T>
-splatting::Located located(const reference::Volume<T>& volume, const Scene& scene,
-  const std::vector<splatting::ShearImage>& images, const splatting::ProjectionSettings& settings)
-{
-  splatting::Located located;
-  located.images = &images;
-  located.geometries = &scene.images;
-  located.volume = arrayOf(volume);
-  const auto range = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
-  located.low = static_cast<double>(*range.first);
-  located.high = static_cast<double>(*range.second);
-  located.settings = settings;
-  located.view = scene.view;
-  return located;
-}
-
-template <class T>
-reference::RaySamples<T> voxelsOf(
-  const reference::Volume<T>& volume, const splatting::ShearWarp& geometry)
-{
-  return geometry.isPerspective() ? reference::voxelSamples(volume, referenceRays(geometry))
-                                  : reference::voxelSamples(volume, referenceView(geometry));
-}
-
-std::vector<std::array<int, 3>> pathOf(
-  const std::array<int, 3>& size, const splatting::ShearWarp& geometry, int u, int v)
-{
-  return geometry.isPerspective() ? reference::crossedVoxels(referenceRays(geometry), u, v)
-                                  : reference::crossedVoxels(size, referenceView(geometry), u, v);
-}
-
 /// Few values, so that ties are common, on a background of the lowest.
 template <class T>
 reference::Volume<T> withTies(const std::array<int, 3>& size, reference::Random& random)
@@ -536,103 +419,6 @@ void testInvariance(Checks& check, bool perspective)
       }
     });
 }
-
-/**
- * How many pixels beside its own a point may be shown.
- *
- * The plane of a pixel's column is x = X - c W, of the rows X and W of the view's matrix, that of
- * its row y alike. Where they meet in a slice is found by Cramer's rule: a coordinate is a sum of
- * products of two coefficients and the point, rounded six times and divided by the determinant.
- * Times x that is how far x p is from 0. X p and W p are rounded four times where the point is
- * viewed. Divided by w, both are seen in units of half the viewport. Twice that allows for slices
- * along an axis that another ray follows most.
- */
-glm::dvec2 rayBound(const Scene& scene, const glm::dvec3& point, double w, const glm::ivec2& pixel)
-{
-  const glm::dmat4 rows = glm::transpose(scene.view.indexToClip);
-  const glm::dvec2 viewport(scene.view.viewport);
-  const glm::dvec2 place = (2.0 * glm::dvec2(pixel) + 1.0) / viewport - 1.0;
-  const glm::dvec4 planes[] = { rows[0] - place.x * rows[3], rows[1] - place.y * rows[3] };
-  const glm::dvec3 x(planes[0]), y(planes[1]), ray = glm::abs(glm::cross(x, y));
-  const glm::dvec4 size = glm::abs(glm::dvec4(point, 1.0));
-  const double reach = glm::length(size);
-  const double coordinate = 6.0 * reach *
-    (glm::length(planes[0]) * glm::length(y) + glm::length(planes[1]) * glm::length(x)) /
-    std::max({ ray.x, ray.y, ray.z });
-  glm::dvec2 bound;
-  for (int a = 0; a < 2; ++a)
-  {
-    const double solved = 2.0 * glm::length(glm::dvec3(planes[a])) * coordinate;
-    const double viewed = 4.0 * glm::dot(glm::abs(rows[a]), size) +
-      4.0 * std::abs(place[a]) * glm::dot(glm::abs(rows[3]), size);
-    bound[a] = 2.0 * 0x1p-53 * viewport[a] * ((solved + viewed) / std::abs(w) * 0.5 + 2.0);
-  }
-  return bound;
-}
-
-/// Points lie on the rays of their pixels, in their slices, and next to their voxels.
-void testPoints(Checks& check, bool perspective)
-{
-  reference::forScenes(nameOf("points", perspective), 60,
-    [&](int n, reference::Random& random)
-    {
-      const std::array<int, 3> size = randomSize(random, 12);
-      const auto volume = reference::uniformNoise<std::uint8_t>(size, random.bits(), 0, 255);
-      const Scene scene = anyScene(volume.size, perspective, random);
-      splatting::ProjectionSettings settings;
-      settings.quality = static_cast<Quality>(n % 4);
-      const auto images = projectScene(volume, scene, settings);
-      const splatting::Locator locator(located(volume, scene, images, settings));
-      const glm::ivec2& viewport = scene.view.viewport;
-      std::vector<int> voxels(std::size_t(3) * viewport.x * viewport.y);
-      std::vector<float> clipDepths(std::size_t(viewport.x) * viewport.y);
-      std::vector<double> positions(voxels.size());
-      splatting::Locator::Arrays arrays;
-      arrays.voxels = voxels.data();
-      arrays.positions = positions.data();
-      arrays.clipDepths = clipDepths.data();
-      locator.fill({ 0, 0 }, viewport, arrays);
-      // A square and its ray may be as far from the shear pixel's as half a pixel, and that half a
-      // voxel and a slice's drift from the voxel; footprints of high reach two voxels more.
-      const double reach = settings.quality == Quality::Preview ? 2.01 : 3.01;
-      for (int y = 0; y < viewport.y; ++y)
-      {
-        for (int x = 0; x < viewport.x; ++x)
-        {
-          const std::size_t at = std::size_t(y) * viewport.x + x;
-          const glm::dvec3 point(positions[3 * at], positions[3 * at + 1], positions[3 * at + 2]);
-          const glm::ivec3 voxel(voxels[3 * at], voxels[3 * at + 1], voxels[3 * at + 2]);
-          glm::dvec3 picked(0.0);
-          splatting::ShearPixel nearest;
-          splatting::findShearPixels(
-            images, scene.images, settings.reduction, { x, y }, glm::ivec2(1), &nearest);
-          const bool has = nearest.image >= 0;
-          picked = has ? locator.point(glm::dvec2(x, y), nearest) : picked;
-          check(has == (voxel.x >= 0) && has == (point.x == point.x), "arrays differ");
-          if (!has)
-          {
-            continue;
-          }
-          const glm::dvec4 clip = scene.view.indexToClip * glm::dvec4(point, 1.0);
-          const glm::dvec2 shown =
-            (glm::dvec2(clip) / clip.w + 1.0) * 0.5 * glm::dvec2(viewport) - 0.5;
-          const glm::dvec2 off = glm::abs(shown - glm::dvec2(x, y));
-          const glm::dvec2 bound = rayBound(scene, point, clip.w, { x, y });
-          check(picked == point && off.x <= bound.x && off.y <= bound.y,
-            "the point is not on the ray of pixel ", x, " ", y, ": ", off.x, " ", off.y,
-            " beside it, not ", bound.x, " ", bound.y);
-          // Points may be next to the eye, before any near plane.
-          const double rounding = 1e-6 / std::min(std::abs(clip.w), 1.0);
-          const double depth = 0.5 * clip.z / clip.w + 0.5;
-          check(std::abs(clipDepths[at] - depth) < rounding * std::max(1.0, std::abs(depth)),
-            "another depth: ", clipDepths[at], ", not ", depth);
-          const glm::dvec3 way = glm::abs(point - glm::dvec3(voxel));
-          check(std::max({ way.x, way.y, way.z }) <= reach, "pixel ", x, " ", y, ": the point is ",
-            way.x, " ", way.y, " ", way.z, " from its voxel");
-        }
-      }
-    });
-}
 }
 
 int TestWinners(int, char*[])
@@ -650,7 +436,6 @@ int TestWinners(int, char*[])
     testInvariance<std::uint8_t>(check, perspective);
     testInvariance<float>(check, perspective);
     testExact(check, perspective);
-    testPoints(check, perspective);
   }
   testLongRows<std::uint8_t>(check);
   testLongRows<std::int8_t>(check);

@@ -1,0 +1,455 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The warp of perspective views: each pixel is what a slow, independent look-up in the image of its
+// ray gives, images meet without seams, and every way gives the same bits.
+#include "WarpTesting.h"
+#include "WideViews.h"
+
+#include <vtkSMPTools.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <vector>
+
+using namespace coretesting;
+
+namespace
+{
+/// A perspective view as its matrix has it: the eye and the rays of pixels.
+struct Camera
+{
+  glm::dvec3 x, y, w; // rows of the matrix
+  glm::dvec3 eye;
+  glm::dvec2 viewport;
+
+  explicit Camera(const splatting::View& view) : viewport(view.viewport)
+  {
+    const glm::dmat4& m = view.indexToClip;
+    for (int c = 0; c < 3; ++c)
+    {
+      this->x[c] = m[c][0];
+      this->y[c] = m[c][1];
+      this->w[c] = m[c][3];
+    }
+    // Where three planes meet.
+    const glm::dvec3 yw = glm::cross(this->y, this->w), wx = glm::cross(this->w, this->x),
+                     xy = glm::cross(this->x, this->y);
+    this->eye = -(m[3][0] * yw + m[3][1] * wx + m[3][3] * xy) / glm::dot(this->x, yw);
+  }
+  /// Where neither pixel coordinate changes.
+  glm::dvec3 direction(double px, double py) const
+  {
+    const glm::dvec2 clip = 2.0 * (glm::dvec2(px, py) + 0.5) / this->viewport - 1.0;
+    const glm::dvec3 d =
+      glm::normalize(glm::cross(this->x - clip.x * this->w, this->y - clip.y * this->w));
+    return glm::dot(d, this->w) < 0.0 ? -d : d;
+  }
+};
+
+struct Box
+{
+  glm::dvec3 low, high;
+};
+
+/// Whether a ray meets a box, grown by `margin` voxels.
+bool meets(const Box& box, const glm::dvec3& eye, const glm::dvec3& direction, double margin)
+{
+  double enter = 0.0, leave = 1e30;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = box.low[a] - margin - eye[a], high = box.high[a] + margin - eye[a];
+    const double d = direction[a];
+    if (d == 0.0)
+    {
+      leave = low > 0.0 || high < 0.0 ? -1.0 : leave;
+      continue;
+    }
+    enter = std::max(enter, std::min(low / d, high / d));
+    leave = std::min(leave, std::max(low / d, high / d));
+  }
+  return enter <= leave;
+}
+
+/// What pictures show.
+Box shownBox(const splatting::View& view)
+{
+  Box box;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int n = view.dimensions[a];
+    const double rim = n > 1 && !view.showsBoxes ? 0.0 : 0.5;
+    box.low[a] = -rim;
+    box.high[a] = n - 1.0 + rim;
+  }
+  return box;
+}
+
+/// The slices along an axis whose middle lies before the eye.
+Box slicesSeen(const splatting::View& view, const glm::dvec3& eye, int axis, bool reversed)
+{
+  Box box{ glm::dvec3(-0.5), glm::dvec3(view.dimensions) - 0.5 };
+  if (reversed)
+  {
+    box.high[axis] = std::min(box.high[axis], std::ceil(eye[axis]) - 0.5);
+  }
+  else
+  {
+    box.low[axis] = std::max(box.low[axis], std::floor(eye[axis]) + 0.5);
+  }
+  return box;
+}
+
+/// The direction that an image's rays follow, axes permuted.
+glm::dvec3 inImage(const splatting::ShearWarp& image, const glm::dvec3& direction)
+{
+  const auto& axes = image.axes();
+  return { direction[axes[0]], direction[axes[1]],
+    image.reversed() ? -direction[axes[2]] : direction[axes[2]] };
+}
+
+/// Of pixels: rays may belong to either image where that is what they are off the line between two.
+/// Images are 3 pixels wide or more from slope -1 to 1.
+constexpr double OnTheLine = 1e-8;
+
+/// Whether a ray follows the image's axis most.
+bool follows(const splatting::ShearWarp& image, const glm::dvec3& direction)
+{
+  const glm::dvec3 d = inImage(image, direction);
+  return d.z * (1.0 + OnTheLine) >= std::max(std::abs(d.x), std::abs(d.y));
+}
+
+/// How many axes a ray follows most: more than one on the line between images.
+int axesFollowed(const glm::dvec3& direction)
+{
+  const glm::dvec3 d = glm::abs(direction) * (1.0 + OnTheLine);
+  const double most = std::max({ d.x, d.y, d.z }) / (1.0 + OnTheLine);
+  return int(d.x >= most) + int(d.y >= most) + int(d.z >= most);
+}
+
+/// Where a ray lies between the columns and rows of an image, told by what these pass.
+glm::dvec2 placeIn(const splatting::ShearWarp& image, const glm::dvec3& direction)
+{
+  const glm::dvec3 d = inImage(image, direction);
+  const double far = std::abs(image.reference() - image.eye().z);
+  const glm::dvec2 at = glm::dvec2(image.eye()) + far * glm::dvec2(d) / d.z;
+  return (at - glm::dvec2(image.columns().at.front(), image.rows().at.front())) / image.pitch();
+}
+
+/// Columns and rows are rounded to 2^-20 of a voxel, the first one as well.
+constexpr double Misplaced = 2.0 * 0x1p-20;
+/// Interpolation and colours, of values in [0, 1].
+constexpr double Rounded = 8.0 * 0x1p-24 + 1.0 / 65535;
+
+/// The values that an image may have at p: interpolated between the four pixels around, or, where
+/// some of them are no samples, anything between the others.
+bool mayBe(const splatting::ShearImage& image, const glm::dvec2& p, double found)
+{
+  const glm::ivec2 last(image.width - 1, image.height - 1);
+  const glm::ivec2 low = glm::clamp(glm::ivec2(glm::floor(p - Misplaced)), glm::ivec2(0), last);
+  const glm::ivec2 high =
+    glm::clamp(glm::ivec2(glm::floor(p + Misplaced)) + 1, glm::ivec2(0), last);
+  double least = 1e30, greatest = -1e30;
+  bool all = true;
+  for (int v = low.y; v <= high.y; ++v)
+  {
+    for (int u = low.x; u <= high.x; ++u)
+    {
+      all = all && image.covers(u, v);
+      if (image.covers(u, v))
+      {
+        least = std::min<double>(least, image.row<float>(v)[u]);
+        greatest = std::max<double>(greatest, image.row<float>(v)[u]);
+      }
+    }
+  }
+  if (found < least - Rounded || found > greatest + Rounded)
+  {
+    return false;
+  }
+  double expected = 0.0;
+  for (int v = low.y; all && v <= high.y; ++v)
+  {
+    for (int u = low.x; u <= high.x; ++u)
+    {
+      const double weight =
+        std::max(0.0, 1.0 - std::abs(p.x - u)) * std::max(0.0, 1.0 - std::abs(p.y - v));
+      expected += weight * image.row<float>(v)[u];
+    }
+  }
+  // Neighbours differ by at most 1, along u and along v.
+  return !all || std::abs(found - expected) <= 2.0 * Misplaced + Rounded;
+}
+
+struct PixelCounts
+{
+  int shown = 0, beside = 0;
+};
+
+void checkPerspectivePicture(Checks& check, const splatting::View& view,
+  const std::vector<splatting::ShearWarp>& geometries,
+  const std::vector<splatting::ShearImage>& images, const splatting::Picture& picture,
+  PixelCounts& counts)
+{
+  const Camera camera(view);
+  glm::dvec3 eye = camera.eye;
+  for (const splatting::ShearWarp& geometry : geometries)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      eye[geometry.axes()[a]] = geometry.eye()[a]; // rounded
+    }
+  }
+  check(glm::length(eye - camera.eye) <= 0x1p-10 + 1e-9 * glm::length(eye), "the eye has moved");
+  const Box shown = shownBox(view);
+  for (int y = 0; y < view.viewport.y; ++y)
+  {
+    for (int x = 0; x < view.viewport.x; ++x)
+    {
+      const std::uint32_t color = colorAt(picture, x, y);
+      const glm::dvec3 ray = camera.direction(x, y);
+      constexpr double margin = 1e-6;
+      counts.shown += color != 0;
+      if (!meets(shown, eye, ray, margin))
+      {
+        counts.beside += check(color == 0, "a pixel outside the volume has a colour");
+        continue;
+      }
+      int axes = 0;
+      bool crosses = true, matches = false;
+      for (std::size_t n = 0; n < geometries.size(); ++n)
+      {
+        const splatting::ShearWarp& image = geometries[n];
+        if (follows(image, ray))
+        {
+          // From within half a voxel of the rim a ray may leave before it comes to a slice.
+          ++axes;
+          crosses = crosses &&
+            meets(slicesSeen(view, eye, image.principalAxis(), image.reversed()), eye, ray, -1e-5);
+          matches = matches || mayBe(images[n], placeIn(image, ray), (double(color) - 1.0) / 65535);
+        }
+      }
+      check(color != 0 || axes < axesFollowed(ray) || !crosses || !meets(shown, eye, ray, -margin),
+        "a pixel inside the volume is transparent, ", x, ", ", y);
+      check(color == 0 || matches, "a pixel has another colour than its ray, ", x, ", ", y);
+    }
+  }
+}
+
+std::vector<splatting::ShearImage> noiseImages(
+  const std::vector<splatting::ShearWarp>& geometries, reference::Random& random)
+{
+  std::vector<splatting::ShearImage> images;
+  for (const splatting::ShearWarp& geometry : geometries)
+  {
+    images.push_back(imageOf(geometry, [&](int, int) { return random.uniform(0.0, 1.0); }));
+  }
+  return images;
+}
+
+void testPerspective(Checks& check)
+{
+  const splatting::ColorTable table = countingTable(0.0, 1.0);
+  Sightings shown, beside, many;
+  reference::forScenes("perspective", 500,
+    [&](int n, reference::Random& random)
+    {
+      splatting::Warper warper;
+      std::vector<splatting::ShearWarp> geometries;
+      PixelCounts counts;
+      auto size = randomSize(random, 30);
+      if (n % 6 < 3)
+      {
+        size[n % 3] = 1;
+      }
+      splatting::View view = magnified(randomPerspective(size, random));
+      view.showsBoxes = n % 4 == 0;
+      splatting::ShearWarp::factorise(view, geometries);
+      std::vector<splatting::ShearImage> images = noiseImages(geometries, random);
+      images.resize(images.size() + random.uniform(0, 2)); // spare ones
+      for (bool special : { false, true }) // where all pixels go the way of those near holes
+      {
+        for (splatting::ShearImage& image : images)
+        {
+          image.special = special;
+        }
+        splatting::Picture picture;
+        warper.warp(images, geometries, splatting::Reduction::Maximum, table, view.viewport,
+          anyInstructionSet(random), picture);
+        checkPerspectivePicture(check, view, geometries, images, picture, counts);
+      }
+
+      shown.add(counts.shown > 0);
+      beside.add(counts.beside > 0);
+      many.add(geometries.size() >= 3);
+    });
+  std::cout << "perspective: the volume is shown in " << shown << ", pixels beside it in " << beside
+            << ", three or more images in " << many << std::endl;
+  check(shown.areEnough(0.3) && beside.areEnough(0.3) && many.areEnough(0.02),
+    "the volume is shown in only ", shown, ", pixels beside it in ", beside,
+    ", three or more images in ", many);
+}
+
+/// A view from a place in index space, its middle ray along `direction`. Along axes and between
+/// two, rays of pixels have slopes of exactly 1: those of the 16th from the middle, and the middle.
+splatting::View wideView(const std::array<int, 3>& size, const glm::dvec3& eye,
+  const glm::dvec3& direction, const glm::dvec3& up, int pixels)
+{
+  splatting::View view;
+  view.dimensions = toGlm(size);
+  view.viewport = { pixels, pixels };
+  const double right = 0.1 * pixels / 32.0;
+  view.indexToClip =
+    glm::frustum(-right, right, -right, right, 0.1, 1000.0) * glm::lookAt(eye, eye + direction, up);
+  return view;
+}
+
+/// Images of a smooth function of the ray's direction show that function, whatever the image.
+void testSeams(Checks& check)
+{
+  const glm::dvec3 slope(0.11, -0.13, 0.17);
+  const auto f = [&](const glm::dvec3& d) { return 0.5 + glm::dot(slope, glm::normalize(d)); };
+  const splatting::ColorTable table = countingTable(0.0, 1.0);
+  const glm::dvec3 z(0.0, 0.0, 1.0);
+  const std::array<int, 3> size{ 31, 27, 35 };
+  // From the first five places, along these directions, one to five images show the volume.
+  const glm::dvec3 eyes[] = { { -30.0, 13.0, 17.0 }, { -30.0, -20.0, 17.0 }, { -9.0, -9.0, -9.0 },
+    { -3.0, 13.0, 17.0 }, { 15.0, 13.0, 17.0 }, { 7.3, 20.1, 11.9 } };
+  const glm::dvec3 directions[] = { { 1.0, 0.0, 0.0 }, { 1.0, 1.0, 0.0 }, { 1.0, 1.0, 1.0 }, z, z };
+  Sightings shown;
+  reference::forScenes("seams", 54,
+    [&](int n, reference::Random& random)
+    {
+      // Each place with each direction; half of the views are random.
+      const int place = n % 6, way = (n + n / 6) % 9;
+      const glm::dvec3 direction = n < 5 ? directions[n]
+        : way < 4                        ? directions[way]
+                                         : anyVector(random, -1.0, 1.0);
+      const glm::dvec3 up = direction == z ? glm::dvec3(0.0, 1.0, 0.0) : z;
+      const splatting::View view =
+        wideView(size, eyes[place], direction, up, random.uniform(0, 2) ? 65 : 129);
+      bool isShown = false;
+      std::vector<splatting::ShearWarp> geometries;
+      splatting::ShearWarp::factorise(view, geometries);
+      check(n >= 5 || int(geometries.size()) == n + 1, "place ", n, " has ", geometries.size(),
+        " images");
+      std::vector<splatting::ShearImage> images;
+      double step = 0.0; // of slopes
+      for (const splatting::ShearWarp& geometry : geometries)
+      {
+        const auto atPixel = [&](int u, int v)
+        {
+          const double forwards = geometry.reversed() ? -1.0 : 1.0;
+          const glm::dvec3 d(
+            forwards * geometry.columns().slope[u], forwards * geometry.rows().slope[v], forwards);
+          glm::dvec3 direction;
+          for (int a = 0; a < 3; ++a)
+          {
+            direction[geometry.axes()[a]] = d[a];
+          }
+          return f(direction);
+        };
+        images.push_back(imageOf(geometry, atPixel));
+        for (int v = 0; v < geometry.height(); ++v)
+        {
+          // Beside the volume, too: all points have four neighbours.
+          images.back().spans[v] = { 0, geometry.rayCount().x };
+          for (int u = 0; u < geometry.width(); ++u)
+          {
+            images.back().row<float>(v)[u] = static_cast<float>(atPixel(u, v));
+          }
+        }
+        step = std::max(step, geometry.pitch() / std::abs(geometry.reference() - geometry.eye().z));
+      }
+      splatting::Picture picture;
+      splatting::Warper().warp(images, geometries, splatting::Reduction::Maximum, table,
+        view.viewport, splatting::bestInstructionSet(), picture);
+      const Camera camera(view);
+      // Second derivatives of each component of a direction with regard to a slope are at most 1.
+      const double bound =
+        step * step / 4.0 * (std::abs(slope.x) + std::abs(slope.y) + std::abs(slope.z)) +
+        Misplaced * step + Rounded;
+      for (int y = 0; y < view.viewport.y; ++y)
+      {
+        for (int x = 0; x < view.viewport.x; ++x)
+        {
+          const std::uint32_t color = colorAt(picture, x, y);
+          const glm::dvec3 ray = camera.direction(x, y);
+          isShown |= color != 0;
+          check(
+            color != 0 || !meets(shownBox(view), camera.eye, ray, -0.01), "a gap at ", x, ", ", y);
+          const double value = (double(color) - 1.0) / 65535;
+          if (!splatting::isOverview(view))
+          {
+            const double off = value - f(ray);
+            check(color == 0 || std::abs(off) <= bound, "a seam: ", off, " at ", x, ", ", y,
+              ", not within ", bound);
+            continue;
+          }
+          // The largest on the outline: the function has no maximum within but where it is flat.
+          double largest = f(ray);
+          bool isWhole = true;
+          for (int side = 0; side < 64; ++side)
+          {
+            const double along = (side % 16) / 16.0 - 0.5;
+            const glm::dvec2 border[] = { { along, -0.5 }, { 0.5, along }, { -along, 0.5 },
+              { -0.5, -along } };
+            const glm::dvec3 d = camera.direction(x + border[side / 16].x, y + border[side / 16].y);
+            largest = std::max(largest, f(d));
+            isWhole = isWhole && meets(shownBox(view), camera.eye, d, -0.01);
+          }
+          check(!isWhole || std::abs(value - largest) <= bound + 1e-3, "a seam: ", value, " at ", x,
+            ", ", y, ", not ", largest, " within ", bound);
+        }
+      }
+
+      shown.add(isShown);
+    });
+  std::cout << "seams: the volume is shown in " << shown << std::endl;
+  check(shown.areEnough(0.3), "the volume is shown in only ", shown);
+}
+
+void testEveryWayGivesTheSameBits(Checks& check)
+{
+  reference::forScenes("every way", 1,
+    [&](int, reference::Random& random)
+    {
+      const splatting::ColorTable table = countingTable(0.0, 1.0);
+      const splatting::View view =
+        wideView({ 31, 27, 35 }, { 7.0, 13.0, 17.0 }, { 1.0, 0.3, 0.8 }, { 0.0, 0.0, 1.0 }, 257);
+      std::vector<splatting::ShearWarp> geometries;
+      splatting::ShearWarp::factorise(view, geometries);
+      const std::vector<splatting::ShearImage> images = noiseImages(geometries, random);
+      splatting::Picture expected;
+      splatting::Warper().warp(images, geometries, splatting::Reduction::Maximum, table,
+        view.viewport, splatting::InstructionSet::Baseline, expected);
+      for (splatting::InstructionSet set : instructionSets)
+      {
+        for (int threads : { 1, 2 })
+        {
+          vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
+            [&]
+            {
+              splatting::Picture picture;
+              splatting::Warper().warp(images, geometries, splatting::Reduction::Maximum, table,
+                view.viewport, set, picture);
+              check(picture.pixels == expected.pixels, splatting::nameOf(set), " with ", threads,
+                " threads gives other bits");
+            });
+        }
+      }
+    });
+}
+}
+
+int TestPerspectiveWarp(int, char*[])
+{
+  Checks check;
+  testPerspective(check);
+  testSeams(check);
+  testEveryWayGivesTheSameBits(check);
+  return check.result();
+}

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where the samples lie that pixels show: points of the screen lie on the rays of their pixels, in
+// their slices, and next to their voxels.
+#include "WinnerScenes.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace winnerscenes;
+using splatting::Quality;
+
+namespace
+{
+/**
+ * How many pixels beside its own a point may be shown.
+ *
+ * The plane of a pixel's column is x = X - c W, of the rows X and W of the view's matrix, that of
+ * its row y alike. Where they meet in a slice is found by Cramer's rule: a coordinate is a sum of
+ * products of two coefficients and the point, rounded six times and divided by the determinant.
+ * Times x that is how far x p is from 0. X p and W p are rounded four times where the point is
+ * viewed. Divided by w, both are seen in units of half the viewport. Twice that allows for slices
+ * along an axis that another ray follows most.
+ */
+glm::dvec2 rayBound(const Scene& scene, const glm::dvec3& point, double w, const glm::ivec2& pixel)
+{
+  const glm::dmat4 rows = glm::transpose(scene.view.indexToClip);
+  const glm::dvec2 viewport(scene.view.viewport);
+  const glm::dvec2 place = (2.0 * glm::dvec2(pixel) + 1.0) / viewport - 1.0;
+  const glm::dvec4 planes[] = { rows[0] - place.x * rows[3], rows[1] - place.y * rows[3] };
+  const glm::dvec3 x(planes[0]), y(planes[1]), ray = glm::abs(glm::cross(x, y));
+  const glm::dvec4 size = glm::abs(glm::dvec4(point, 1.0));
+  const double reach = glm::length(size);
+  const double coordinate = 6.0 * reach *
+    (glm::length(planes[0]) * glm::length(y) + glm::length(planes[1]) * glm::length(x)) /
+    std::max({ ray.x, ray.y, ray.z });
+  glm::dvec2 bound;
+  for (int a = 0; a < 2; ++a)
+  {
+    const double solved = 2.0 * glm::length(glm::dvec3(planes[a])) * coordinate;
+    const double viewed = 4.0 * glm::dot(glm::abs(rows[a]), size) +
+      4.0 * std::abs(place[a]) * glm::dot(glm::abs(rows[3]), size);
+    bound[a] = 2.0 * 0x1p-53 * viewport[a] * ((solved + viewed) / std::abs(w) * 0.5 + 2.0);
+  }
+  return bound;
+}
+
+/// Points lie on the rays of their pixels, in their slices, and next to their voxels.
+void testPoints(Checks& check, bool perspective)
+{
+  reference::forScenes(nameOf("points", perspective), 60,
+    [&](int n, reference::Random& random)
+    {
+      const std::array<int, 3> size = randomSize(random, 12);
+      const auto volume = reference::uniformNoise<std::uint8_t>(size, random.bits(), 0, 255);
+      const Scene scene = anyScene(volume.size, perspective, random);
+      splatting::ProjectionSettings settings;
+      settings.quality = static_cast<Quality>(n % 4);
+      const auto images = projectScene(volume, scene, settings);
+      const splatting::Locator locator(located(volume, scene, images, settings));
+      const glm::ivec2& viewport = scene.view.viewport;
+      std::vector<int> voxels(std::size_t(3) * viewport.x * viewport.y);
+      std::vector<float> clipDepths(std::size_t(viewport.x) * viewport.y);
+      std::vector<double> positions(voxels.size());
+      splatting::Locator::Arrays arrays;
+      arrays.voxels = voxels.data();
+      arrays.positions = positions.data();
+      arrays.clipDepths = clipDepths.data();
+      locator.fill({ 0, 0 }, viewport, arrays);
+      // A square and its ray may be as far from the shear pixel's as half a pixel, and that half a
+      // voxel and a slice's drift from the voxel; footprints of high reach two voxels more.
+      const double reach = settings.quality == Quality::Preview ? 2.01 : 3.01;
+      for (int y = 0; y < viewport.y; ++y)
+      {
+        for (int x = 0; x < viewport.x; ++x)
+        {
+          const std::size_t at = std::size_t(y) * viewport.x + x;
+          const glm::dvec3 point(positions[3 * at], positions[3 * at + 1], positions[3 * at + 2]);
+          const glm::ivec3 voxel(voxels[3 * at], voxels[3 * at + 1], voxels[3 * at + 2]);
+          glm::dvec3 picked(0.0);
+          splatting::ShearPixel nearest;
+          splatting::findShearPixels(
+            images, scene.images, settings.reduction, { x, y }, glm::ivec2(1), &nearest);
+          const bool has = nearest.image >= 0;
+          picked = has ? locator.point(glm::dvec2(x, y), nearest) : picked;
+          check(has == (voxel.x >= 0) && has == (point.x == point.x), "arrays differ");
+          if (!has)
+          {
+            continue;
+          }
+          const glm::dvec4 clip = scene.view.indexToClip * glm::dvec4(point, 1.0);
+          const glm::dvec2 shown =
+            (glm::dvec2(clip) / clip.w + 1.0) * 0.5 * glm::dvec2(viewport) - 0.5;
+          const glm::dvec2 off = glm::abs(shown - glm::dvec2(x, y));
+          const glm::dvec2 bound = rayBound(scene, point, clip.w, { x, y });
+          check(picked == point && off.x <= bound.x && off.y <= bound.y,
+            "the point is not on the ray of pixel ", x, " ", y, ": ", off.x, " ", off.y,
+            " beside it, not ", bound.x, " ", bound.y);
+          // Points may be next to the eye, before any near plane.
+          const double rounding = 1e-6 / std::min(std::abs(clip.w), 1.0);
+          const double depth = 0.5 * clip.z / clip.w + 0.5;
+          check(std::abs(clipDepths[at] - depth) < rounding * std::max(1.0, std::abs(depth)),
+            "another depth: ", clipDepths[at], ", not ", depth);
+          const glm::dvec3 way = glm::abs(point - glm::dvec3(voxel));
+          check(std::max({ way.x, way.y, way.z }) <= reach, "pixel ", x, " ", y, ": the point is ",
+            way.x, " ", way.y, " ", way.z, " from its voxel");
+        }
+      }
+    });
+}
+}
+
+int TestWinnerPoints(int, char*[])
+{
+  Checks check;
+  testPoints(check, false);
+  testPoints(check, true);
+  return check.result();
+}

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What the tests of the warp share: shear images of functions, and colours that can be counted.
+ */
+#ifndef WarpTesting_h
+#define WarpTesting_h
+
+#include "CoreTesting.h"
+#include "Display/Warp.h"
+
+#include <limits>
+#include <vector>
+
+namespace coretesting
+{
+/// Whether the ray of a pixel crosses a voxel.
+inline bool meetsVolume(const splatting::ShearWarp& geometry, int u, int v)
+{
+  for (int k = geometry.slices().begin; k < geometry.slices().end; ++k)
+  {
+    const splatting::RayPath path = geometry.voxelsOnRay(u, v, k);
+    for (int n = 0; n < path.count; ++n)
+    {
+      if (path.di[n] >= 0 && path.di[n] < geometry.size().x && path.dj[n] >= 0 &&
+        path.dj[n] < geometry.size().y)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// A shear image of a float function of the pixel.
+template <class F>
+splatting::ShearImage imageOf(const splatting::ShearWarp& geometry, F&& f)
+{
+  splatting::ShearImage image;
+  image.type = splatting::ScalarType::Float32;
+  image.width = geometry.width();
+  image.height = geometry.height();
+  image.bytes.resize(sizeof(float) * image.width * image.height);
+  image.spans.assign(image.height, { image.width, 0 });
+  for (int v = 0; v < image.height; ++v)
+  {
+    for (int u = 0; u < image.width; ++u)
+    {
+      // What lies outside has no meaning and must not be read.
+      const bool meets = meetsVolume(geometry, u, v);
+      image.row<float>(v)[u] =
+        meets ? static_cast<float>(f(u, v)) : std::numeric_limits<float>::quiet_NaN();
+      if (meets)
+      {
+        image.spans[v] = { std::min(image.spans[v].begin, u), u + 1 };
+      }
+    }
+  }
+  return image;
+}
+
+/// Colours that name their entry, from 1 on; 0 is the transparent pixel.
+inline splatting::ColorTable countingTable(double low, double high)
+{
+  splatting::ColorTable table;
+  table.low = low;
+  table.high = high;
+  for (std::uint32_t entry = 0; entry < 65536; ++entry)
+  {
+    table.colors.push_back(entry + 1);
+  }
+  return table;
+}
+
+/// Of a pixel of the viewport; 0 beside the picture.
+inline std::uint32_t colorAt(const splatting::Picture& picture, int x, int y)
+{
+  const int px = x - picture.origin.x, py = y - picture.origin.y;
+  const bool inPicture = px >= 0 && py >= 0 && px < picture.size.x && py < picture.size.y;
+  return inPicture ? picture.pixels[std::size_t(py) * picture.size.x + px] : 0;
+}
+}
+
+#endif
