@@ -4,6 +4,7 @@
 // The factorisation: shear followed by warp is the view, rays cross the voxels they should, and
 // pixels are as wide as they are.
 #include "CoreTesting.h"
+#include "Geometry/Magnification.h"
 
 #include <algorithm>
 #include <cmath>
