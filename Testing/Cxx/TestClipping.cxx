@@ -165,6 +165,23 @@ std::array<double, 4> halfSpaceOf(
   return halfSpace;
 }
 
+/// Half-spaces that hold all voxels cut nothing, not even where rays run beside the volume.
+void forgetIdlePlanes(
+  const std::array<int, 3>& size, std::vector<std::array<double, 4>>& halfSpaces)
+{
+  const auto holdsAll = [&](const std::array<double, 4>& h)
+  {
+    double least = h[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      least += std::min(-0.5 * h[a], (size[a] - 0.5) * h[a]);
+    }
+    return least >= 0.0;
+  };
+  halfSpaces.erase(
+    std::remove_if(halfSpaces.begin(), halfSpaces.end(), holdsAll), halfSpaces.end());
+}
+
 void turnAtRandom(vtkVolume* volume, reference::Random& random)
 {
   stage::Vector angles, scales;
@@ -237,6 +254,7 @@ void testSamples(stage::Checks& check)
         mapper->AddClippingPlane(plane);
         halfSpaces.push_back(halfSpaceOf(stage.volume, image, origin, normal));
       }
+      forgetIdlePlanes(size, halfSpaces);
       stage.window->Render();
       const double error = stage::shearImageError(stage, mapper, image, volume, halfSpaces);
       check(error <= stage::allowedError(mapper),
