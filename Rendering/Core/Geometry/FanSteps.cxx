@@ -42,6 +42,7 @@ void FanSteps::find(const ShearWarp& geometry, int a, const FanLoops& loops)
   this->Time.resize(steps);
   this->Tick.resize(steps);
   this->Reaches.resize(slices);
+  this->Ascends.resize(slices);
   vtkSMPTools::For(0, slices, 8,
     [&](vtkIdType begin, vtkIdType end)
     {
@@ -58,6 +59,8 @@ void FanSteps::find(const ShearWarp& geometry, int a, const FanLoops& loops)
         std::fill(last + this->Count, last + this->Padded, size);
         std::fill_n(&this->Tick[at + this->Count], this->Padded - this->Count, std::int16_t(0));
         std::fill_n(&this->Time[at + this->Count], this->Padded - this->Count, 0.0);
+        this->Ascends[n] = std::is_sorted(first, first + this->Count) &&
+          std::is_sorted(last, last + this->Count);
         const auto inside = [size](int voxel) { return voxel >= 0 && voxel < size; };
         this->Reaches[n].some =
           pixelsThat(this->Count, [&](int p) { return inside(first[p]) || inside(last[p]); });
@@ -74,8 +77,10 @@ Span FanSteps::voxels(const Span& slices, const Span& pixels) const
   for (int k = slices.begin; k < slices.end && p <= q; ++k)
   {
     const Slice slice = this->slice(k);
-    all.begin = std::min({ all.begin, slice.first[p], slice.last[p] });
-    all.end = std::max({ all.end, slice.first[q] + 1, slice.last[q] + 1 });
+    // The rounding of rays that meet in the eye, on a face, moves some into the voxel beside it.
+    const int beside = this->Ascends[k - this->Slices.begin] ? 0 : 1;
+    all.begin = std::min({ all.begin, slice.first[p] - beside, slice.last[p] - beside });
+    all.end = std::max({ all.end, slice.first[q] + 1 + beside, slice.last[q] + 1 + beside });
   }
   return all;
 }

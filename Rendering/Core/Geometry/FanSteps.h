@@ -41,8 +41,8 @@ public:
     return { &this->First[at], &this->Last[at], &this->Time[at], &this->Tick[at] };
   }
 
-  /// The voxels from the first to the last that some pixels meet in some slices; may be one outside
-  /// the volume at either end.
+  /// The voxels from the first to the last that some pixels meet in some slices, and perhaps one
+  /// beside them; may be two outside the volume at either end.
   Span voxels(const Span& slices, const Span& pixels) const;
 
   /// The pixels that enter or leave slice k in the volume, and those that do both.
@@ -61,6 +61,7 @@ private:
   std::vector<double> Time;
   std::vector<std::int16_t> Tick;
   std::vector<Reach> Reaches;
+  std::vector<unsigned char> Ascends; // of each slice, whether its pixels' voxels do
 };
 
 /**
