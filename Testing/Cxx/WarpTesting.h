@@ -44,16 +44,21 @@ splatting::ShearImage imageOf(const splatting::ShearWarp& geometry, F&& f)
   image.spans.assign(image.height, { image.width, 0 });
   for (int v = 0; v < image.height; ++v)
   {
+    // Rays that graze the volume may or may not meet it; an image's rows are whole all the same.
+    splatting::Span& span = image.spans[v];
+    for (int u = 0; u < image.width; ++u)
+    {
+      if (meetsVolume(geometry, u, v))
+      {
+        span = { std::min(span.begin, u), u + 1 };
+      }
+    }
     for (int u = 0; u < image.width; ++u)
     {
       // What lies outside has no meaning and must not be read.
-      const bool meets = meetsVolume(geometry, u, v);
+      const bool meets = u >= span.begin && u < span.end;
       image.row<float>(v)[u] =
         meets ? static_cast<float>(f(u, v)) : std::numeric_limits<float>::quiet_NaN();
-      if (meets)
-      {
-        image.spans[v] = { std::min(image.spans[v].begin, u), u + 1 };
-      }
     }
   }
   return image;
