@@ -59,8 +59,8 @@ void FanSteps::find(const ShearWarp& geometry, int a, const FanLoops& loops)
         std::fill(last + this->Count, last + this->Padded, size);
         std::fill_n(&this->Tick[at + this->Count], this->Padded - this->Count, std::int16_t(0));
         std::fill_n(&this->Time[at + this->Count], this->Padded - this->Count, 0.0);
-        this->Ascends[n] = std::is_sorted(first, first + this->Count) &&
-          std::is_sorted(last, last + this->Count);
+        this->Ascends[n] =
+          std::is_sorted(first, first + this->Count) && std::is_sorted(last, last + this->Count);
         const auto inside = [size](int voxel) { return voxel >= 0 && voxel < size; };
         this->Reaches[n].some =
           pixelsThat(this->Count, [&](int p) { return inside(first[p]) || inside(last[p]); });
