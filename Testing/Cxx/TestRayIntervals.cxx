@@ -64,52 +64,86 @@ Scene randomScene(Random& random, int cutters)
   return scene;
 }
 
-/// Half of the boxes have their corners where rays pass when there is no shear.
-void testBoxes(Checks& check)
+/// What rays of boxes were compared.
+struct BoxCounts
 {
   coretesting::Sightings cut, sure;
+};
+
+/// A box of triangles cuts what six planes cut. Corners may be rounded to where rays pass when
+/// there is no shear.
+void compareBox(Checks& check, const View& view, bool isRounded, Random& random, BoxCounts& counts)
+{
+  Scene planes, mesh, wide, narrow;
+  planes.view = mesh.view = wide.view = narrow.view = view;
+  glm::dvec3 low = randomPoint(random, view.dimensions);
+  glm::dvec3 high = low + glm::abs(randomVector(random)) * 20.0;
+  if (isRounded)
+  {
+    low = glm::floor(low);
+    high = glm::floor(high) + 1.0;
+  }
+  planes.view.halfSpaces = halfSpacesOfBox(low, high);
+  wide.view.halfSpaces = halfSpacesOfBox(low - Doubt, high + Doubt);
+  narrow.view.halfSpaces = halfSpacesOfBox(low + Doubt, high - Doubt);
+  const int parts = random.uniform(1, 5);
+  mesh.mesh = boxOfTriangles(random, low, high, parts);
+  const Found a(planes), b(mesh), c(wide), d(narrow);
+  counts.cut.add(!a.cutsNothing());
+  int rays = 0, doubtful = 0;
+  const ShearWarp& image = a.images[0];
+  const bool isStraight = image.shear() == glm::dvec2(0.0);
+  const Oracle oracle(planes, image);
+  forEachRay(oracle, image,
+    [&](int u, int v, const std::vector<int>& crossed)
+    {
+      const auto slicesOf = [&](const Found& found)
+      { return left(found.intervals[0], u, v, crossed); };
+      // Rays along a face are inside; those that meet an edge are for rounding to decide.
+      const bool isDoubtful = !isStraight &&
+        (slicesOf(c) != slicesOf(d) ||
+          meetsEdge(oracle, u, v, wide.view.halfSpaces, narrow.view.halfSpaces));
+      ++rays;
+      doubtful += isDoubtful;
+      check(isDoubtful || slicesOf(a) == slicesOf(b), "A surface cuts pixel ", u, ", ", v,
+        " as planes do.");
+    });
+  counts.sure.add(10 * doubtful <= rays);
+}
+
+void testBoxes(Checks& check)
+{
+  BoxCounts counts;
   reference::forScenes("boxes", 300,
     [&](int n, Random& random)
     {
-      Scene planes, mesh, wide, narrow;
       const std::array<int, 3> size = coretesting::randomSize(random, 20);
-      planes.view = coretesting::anyView(size, random);
-      mesh.view = wide.view = narrow.view = planes.view;
-      glm::dvec3 low = randomPoint(random, planes.view.dimensions);
-      glm::dvec3 high = low + glm::abs(randomVector(random)) * 20.0;
-      if (n % 2)
-      {
-        low = glm::floor(low);
-        high = glm::floor(high) + 1.0;
-      }
-      planes.view.halfSpaces = halfSpacesOfBox(low, high);
-      wide.view.halfSpaces = halfSpacesOfBox(low - Doubt, high + Doubt);
-      narrow.view.halfSpaces = halfSpacesOfBox(low + Doubt, high - Doubt);
-      mesh.mesh = boxOfTriangles(random, low, high, random.uniform(1, 5));
-      const Found a(planes), b(mesh), c(wide), d(narrow);
-      cut.add(!a.cutsNothing());
-      int rays = 0, doubtful = 0;
-      const ShearWarp& image = a.images[0];
-      const bool isStraight = image.shear() == glm::dvec2(0.0);
-      const Oracle oracle(planes, image);
-      forEachRay(oracle, image,
-        [&](int u, int v, const std::vector<int>& crossed)
-        {
-          const auto slicesOf = [&](const Found& found)
-          { return left(found.intervals[0], u, v, crossed); };
-          // Rays along a face are inside; those that meet an edge are for rounding to decide.
-          const bool isDoubtful = !isStraight &&
-            (slicesOf(c) != slicesOf(d) ||
-              meetsEdge(oracle, u, v, wide.view.halfSpaces, narrow.view.halfSpaces));
-          ++rays;
-          doubtful += isDoubtful;
-          check(isDoubtful || slicesOf(a) == slicesOf(b), "A surface cuts pixel ", u, ", ", v,
-            " as planes do.");
-        });
-      sure.add(10 * doubtful <= rays);
+      compareBox(check, coretesting::anyView(size, random), n % 2 == 1, random, counts);
     });
-  std::cout << "boxes: " << cut << " are cut, " << sure << " leave few rays out" << std::endl;
-  check(cut.areEnough(0.4) && sure.areEnough(0.6), "Boxes cut, and few rays are left out.");
+  std::cout << "boxes: " << counts.cut << " are cut, " << counts.sure << " leave few rays out"
+            << std::endl;
+  check(counts.cut.areEnough(0.4) && counts.sure.areEnough(0.6),
+    "Boxes cut, and few rays are left out.");
+}
+
+/// Rays pass along two faces at next to no angle, and steeply beside them.
+void testGrazedBoxes(Checks& check)
+{
+  BoxCounts counts;
+  reference::forScenes("grazed boxes", 4000,
+    [&](int n, Random& random)
+    {
+      const std::array<int, 3> size = coretesting::randomSize(random, 20);
+      const int axis = random.uniform(0, 2);
+      glm::dvec2 shear;
+      shear[n % 2] = random.uniform(-1.0, 1.0);
+      shear[1 - n % 2] = (n % 4 < 2 ? 1.0 : -1.0) * std::exp2(-random.uniform(22.0, 28.0));
+      const View view = coretesting::viewWithShear(size, axis, shear.x, shear.y);
+      compareBox(check, view, true, random, counts);
+    });
+  std::cout << "grazed boxes: " << counts.cut << " are cut, " << counts.sure
+            << " leave few rays out" << std::endl;
+  check(counts.cut.areEnough(0.4), "Grazed boxes cut.");
 }
 
 void testNothingCut(Checks& check)
@@ -258,6 +292,77 @@ void testWatertight(Checks& check)
   check(corners.areEnough(0.5), "Rays pass corners in only ", corners);
 }
 
+/// A tetrahedron with a small face about pixel (u, v), whose corners are up to 16 slices apart.
+/// @param width  how narrow the face is seen, in pixels
+Mesh randomNeedle(const Oracle& oracle, const ShearWarp& image, const glm::ivec2& pixel,
+  Random& random, double& width)
+{
+  const double z = image.reference(), eye = image.eye().z;
+  const double half = image.isPerspective() ? std::min(8.0, 0.7 * std::abs(eye - z)) : 8.0;
+  Mesh mesh;
+  const auto add = [&](const glm::dvec2& p)
+  {
+    const double depth = z + random.uniform(-half, half);
+    const double scale = image.isPerspective() ? (depth - eye) / (z - eye) : 1.0;
+    glm::dvec3 point = oracle.point(pixel.x, pixel.y, depth);
+    point[image.axes()[0]] += scale * p.x;
+    point[image.axes()[1]] += scale * p.y;
+    mesh.points.push_back(point);
+  };
+  const double size = std::exp2(-random.uniform(2.0, 13.0)), turn = random.uniform(0.0, 6.3);
+  glm::dvec2 corners[3];
+  for (int c = 0; c < 3; ++c)
+  {
+    const double angle = turn + 2.1 * (c + random.uniform(-0.4, 0.4));
+    corners[c] = size * random.uniform(0.02, 1.0) * glm::dvec2(std::cos(angle), std::sin(angle));
+    add(corners[c]);
+  }
+  const double x = random.uniform(-8.0, 8.0), y = random.uniform(-8.0, 8.0);
+  add({ x, y });
+  mesh.triangles = { { 0, 1, 2 }, { 0, 1, 3 }, { 1, 2, 3 }, { 2, 0, 3 } };
+  const glm::dvec2 a = corners[1] - corners[0], b = corners[2] - corners[0];
+  width = std::abs(a.x * b.y - a.y * b.x) /
+    std::max({ glm::length(a), glm::length(b), glm::length(a - b) });
+  return mesh;
+}
+
+/// No ray slips through triangles that are long, and narrow as rays see them.
+void testNeedles(Checks& check)
+{
+  coretesting::Sightings met;
+  reference::forScenes("needles", 4000,
+    [&](int n, Random& random)
+    {
+      Scene scene;
+      const ShearWarp image = n % 2 ? coretesting::randomPerspectiveImage({ 20, 20, 20 }, random)
+                                    : ShearWarp(coretesting::anyView({ 20, 20, 20 }, random));
+      const Oracle oracle(scene, image);
+      const glm::ivec2 pixel = image.rayCount() / 2;
+      double width = 0.0;
+      const Mesh mesh = randomNeedle(oracle, image, pixel, random, width);
+      const double z = image.reference();
+      const glm::dvec3 from = oracle.point(pixel.x, pixel.y, z);
+      const Crossings crossings =
+        crossMesh(mesh, from, oracle.point(pixel.x, pixel.y, z + 1.0) - from);
+      // Rounding moves crossings by about 2^-53 20^3 / width^2.
+      const bool isMet = crossings.places.size() == 2 && !crossings.doubtful && width > 1e-4;
+      met.add(isMet);
+      if (isMet)
+      {
+        splatting::ClosedSurface surface;
+        surface.reset(mesh.points, mesh.triangles);
+        const splatting::SurfaceDepths& depths = surface.project(image);
+        const double near = depths.near(pixel.y)[pixel.x], far = depths.far(pixel.y)[pixel.x];
+        const auto places = std::minmax(crossings.places[0], crossings.places[1]);
+        check(near <= z + places.first + 1e-3 && far >= z + places.second - 1e-3,
+          "A ray slips through a needle of width ", width, ": it is met from ", near, " to ", far,
+          ", not ", z + places.first, " to ", z + places.second);
+      }
+    });
+  std::cout << "needles: met in " << met << std::endl;
+  check(met.areEnough(0.3), "Needles are met in only ", met);
+}
+
 /// A surface with a hole: rays through the hole cross it once.
 void testOpenSurface(Checks& check)
 {
@@ -286,8 +391,10 @@ int TestRayIntervals(int, char*[])
     compareSeries(series, 250, randomScene, check);
   }
   testBoxes(check);
+  testGrazedBoxes(check);
   testNothingCut(check);
   testWatertight(check);
+  testNeedles(check);
   testOpenSurface(check);
   return check.result();
 }

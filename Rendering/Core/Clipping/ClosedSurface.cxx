@@ -34,16 +34,22 @@ double largest(const glm::dvec3& p)
   return std::max({ std::abs(p.x), std::abs(p.y), std::abs(p.z) });
 }
 
-double sumOfSizes(const glm::dvec3& p)
-{
-  return std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
-}
-
 /// Depths of all pixels.
 struct SurfaceRows
 {
   double *near, *far;
 };
+
+/// A point of (i, j, k) where parallel rays, which are moved to run along k, see it.
+glm::dvec3 asSeen(const ShearWarp& geometry, const glm::dvec3& p)
+{
+  if (geometry.isPerspective())
+  {
+    return p;
+  }
+  const double depth = p.z - geometry.reference();
+  return { p.x - geometry.columns().slope[0] * depth, p.y - geometry.rows().slope[0] * depth, p.z };
+}
 
 /// A triangle of (i, j, k), and how the rays of an image meet it.
 class Triangle
@@ -51,8 +57,8 @@ class Triangle
 public:
   Triangle(const ShearWarp& geometry, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
     : Geometry(geometry),
-      Corners{ a, b, c },
-      Normal(glm::cross(b - a, c - a))
+      Corners{ asSeen(geometry, a), asSeen(geometry, b), asSeen(geometry, c) },
+      Normal(glm::cross(this->Corners[1] - this->Corners[0], this->Corners[2] - this->Corners[0]))
   {
     this->Low = std::min({ a.z, b.z, c.z });
     this->High = std::max({ a.z, b.z, c.z });
@@ -60,8 +66,9 @@ public:
     if (geometry.isPerspective())
     {
       const glm::dvec3& eye = geometry.eye();
-      const double distance = std::max({ largest(a - eye), largest(b - eye), largest(c - eye) });
-      this->Facing = glm::dot(this->Normal, a - eye) / (geometry.reversed() ? -distance : distance);
+      const double nearest = std::min({ this->ahead(0), this->ahead(1), this->ahead(2) });
+      this->Facing = glm::dot(this->Normal, a - eye) / std::max(nearest, 0.0);
+      this->Facing = geometry.reversed() ? -this->Facing : this->Facing;
       reach = std::max(reach, largest(eye));
       const double z = geometry.reference();
       this->Margin = PlaceRounding +
@@ -71,73 +78,105 @@ public:
     }
     else
     {
-      const glm::dvec3 ray(geometry.columns().slope[0], geometry.rows().slope[0], 1.0);
-      this->Facing = glm::dot(this->Normal, ray);
+      this->Facing = this->Normal.z;
     }
     // Larger than what rounding does to the distance between a ray and an edge.
     this->Margin += 1e-9 * (1.0 + reach);
   }
 
-  /// Whether no ray meets the triangle, or it has no more than edges for them.
+  /// Whether no ray meets the triangle, or the neighbour at its longest edge has what rays meet.
   bool isUnseen() const
   {
-    const double longest =
-      std::max({ largest(this->edge(0)), largest(this->edge(1)), largest(this->edge(2)) });
+    const double longest = std::max({ this->length(0), this->length(1), this->length(2) });
     return !(std::abs(this->Facing) > this->Margin * longest) || this->Low > this->High;
   }
 
   /// The rows of pixels that may see the triangle.
-  Span rows() const
-  {
-    double low = Infinity, high = -Infinity;
-    for (const glm::dvec3& corner : this->Corners)
-    {
-      const glm::dvec2 range =
-        this->Geometry.isPerspective() ? this->rowsOf(corner) : this->parallelRowsOf(corner);
-      low = std::min(low, range.x);
-      high = std::max(high, range.y);
-    }
-    return integersIn(low, high, this->Geometry.height());
-  }
+  Span rows() const { return this->extent(1, this->Geometry.height()); }
 
   /// Widens the depths of the pixels that the triangle covers in some rows.
   void cover(const Span& rows, SurfaceRows depths) const
   {
     const Side sides[] = { this->side(0), this->side(1), this->side(2) };
+    // Rays that graze the triangle are near the lines of its edges far beyond its corners, too.
+    const Span columns = this->extent(0, this->Geometry.width());
     for (int v = rows.begin; v < rows.end; ++v)
     {
       const std::size_t row = std::size_t(v) * this->Geometry.width();
-      this->cover(v, this->pixels(sides, v), depths.near + row, depths.far + row);
+      this->cover(v, this->pixels(sides, v, columns), depths.near + row, depths.far + row);
     }
   }
 
 private:
-  glm::dvec3 edge(int e) const { return this->Corners[(e + 1) % 3] - this->Corners[e]; }
-
-  glm::dvec2 parallelRowsOf(const glm::dvec3& corner) const
+  /// Of what parallel rays see, which is flat, so that margins are distances in the image.
+  glm::dvec3 edge(int e) const
   {
-    const Fan& rows = this->Geometry.rows();
-    const double v =
-      corner.y - rows.at[0] - rows.slope[0] * (corner.z - this->Geometry.reference());
-    return { v - this->Margin, v + this->Margin };
+    const glm::dvec3 edge = this->Corners[(e + 1) % 3] - this->Corners[e];
+    return this->Geometry.isPerspective() ? edge : glm::dvec3(edge.x, edge.y, 0.0);
   }
 
-  /// Of a perspective view: all if the point does not lie well before the eye.
-  glm::dvec2 rowsOf(const glm::dvec3& corner) const
+  /// How far a corner of a perspective view is before the eye.
+  double ahead(int c) const
   {
-    const glm::dvec3 place = corner - this->Geometry.eye();
-    const double far = this->Geometry.reference() - this->Geometry.eye().z;
-    const double ratio = far / place.z;
+    const double depth = this->Corners[c].z - this->Geometry.eye().z;
+    return this->Geometry.reversed() ? -depth : depth;
+  }
+
+  /// How long rays see an edge at most: times its distance from a ray, the volume between them.
+  double length(int e) const
+  {
+    const glm::dvec3 edge = this->edge(e);
+    if (!this->Geometry.isPerspective())
+    {
+      return glm::length(edge);
+    }
+    const double nearest = std::min(this->ahead(e), this->ahead((e + 1) % 3));
+    const glm::dvec3 area = glm::cross(edge, this->Corners[e] - this->Geometry.eye());
+    // No slope of rays is much above 1.
+    const double most = 2.0 * glm::length(edge);
+    return nearest > 0.0 ? std::min(most, glm::length(area) / nearest) : most;
+  }
+
+  double slope(const Fan& fan, int n) const
+  {
+    return this->Geometry.isPerspective() ? fan.slope[n] : 0.0;
+  }
+
+  /// The columns (a = 0) or rows (1) of pixels from corner to corner, out of so many.
+  Span extent(int a, int size) const
+  {
+    double low = Infinity, high = -Infinity;
+    for (const glm::dvec3& corner : this->Corners)
+    {
+      const glm::dvec2 range = this->rangeOf(corner, a);
+      low = std::min(low, range.x);
+      high = std::max(high, range.y);
+    }
+    return integersIn(low, high, size);
+  }
+
+  /// Between which columns or rows a corner is seen: all if it does not lie well before the eye.
+  glm::dvec2 rangeOf(const glm::dvec3& corner, int a) const
+  {
+    const double first = (a == 0 ? this->Geometry.columns() : this->Geometry.rows()).at[0];
+    if (!this->Geometry.isPerspective())
+    {
+      return { corner[a] - first - this->Margin, corner[a] - first + this->Margin };
+    }
+    const glm::dvec3& eye = this->Geometry.eye();
+    const glm::dvec3 way = corner - eye;
+    const double far = this->Geometry.reference() - eye.z;
+    const double ratio = far / way.z;
     if (!(ratio > 0.0 && ratio < 1e12))
     {
       return { -Infinity, Infinity };
     }
-    const double v = (this->Geometry.eye().y + place.y * ratio - this->Geometry.rows().at[0]) /
-      this->Geometry.pitch();
+    const double pitch = this->Geometry.pitch();
+    const double place = (eye[a] + way[a] * ratio - first) / pitch;
     // Rounding matters most near the eye, where rays are close together.
-    const double rounding = (this->Margin + SlopeRounding * std::abs(far)) * std::max(ratio, 1.0) /
-      this->Geometry.pitch();
-    return { v - rounding, v + rounding };
+    const double rounding =
+      (this->Margin + SlopeRounding * std::abs(far)) * std::max(ratio, 1.0) / pitch;
+    return { place - rounding, place + rounding };
   }
 
   /// What rays are compared with an edge by.
@@ -149,27 +188,28 @@ private:
 
   Side side(int e) const
   {
+    // Twice the margin: one for a neighbour that is left out.
     const glm::dvec3 edge = this->Facing > 0.0 ? this->edge(e) : -this->edge(e);
     return { this->Corners[e], edge, this->Corners[e].z - this->Geometry.reference(),
-      this->Margin * sumOfSizes(edge) };
+      2.0 * this->Margin * this->length(e) };
   }
 
-  /// The pixels of row v that the triangle covers.
-  Span pixels(const Side (&sides)[3], int v) const
+  /// The pixels of row v that the triangle covers, out of some columns.
+  Span pixels(const Side (&sides)[3], int v, const Span& some) const
   {
     const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
     const int last = this->Geometry.rayCount().x - 1;
-    double low = -Infinity, high = Infinity;
+    double low = some.begin, high = some.end - 1.0;
     for (const Side& s : sides)
     {
       // The volume between a ray and an edge is not negative if the ray passes inside. Along the
       // row it is linear, but for what the rays are rounded by.
-      const double q = rows.at[v] + rows.slope[v] * s.depth - s.corner.y;
-      const double across = s.edge.z * rows.slope[v] - s.edge.y;
+      const double q = rows.at[v] + this->slope(rows, v) * s.depth - s.corner.y;
+      const double across = s.edge.z * this->slope(rows, v) - s.edge.y;
       const double turned = across * s.depth - s.edge.z * q;
       const double rest = s.edge.x * q - across * s.corner.x;
       const auto inside = [&](int u)
-      { return across * columns.at[u] + turned * columns.slope[u] + rest; };
+      { return across * columns.at[u] + turned * this->slope(columns, u) + rest; };
       const double begin = inside(0), rise = inside(last) - begin;
       const double start = begin + s.tolerance;
       if (rise > 0.0)
@@ -193,14 +233,14 @@ private:
     const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
     const glm::dvec3 &a = this->Corners[0], &n = this->Normal;
     const double depth = a.z - this->Geometry.reference();
-    const double rest = n.y * (rows.at[v] + rows.slope[v] * depth - a.y);
-    const double speed = n.y * rows.slope[v] + n.z;
+    const double rest = n.y * (rows.at[v] + this->slope(rows, v) * depth - a.y);
+    const double speed = n.y * this->slope(rows, v) + n.z;
     for (int u = pixels.begin; u < pixels.end; ++u)
     {
-      const double distance = n.x * (columns.at[u] + columns.slope[u] * depth - a.x) + rest;
+      const double distance = n.x * (columns.at[u] + this->slope(columns, u) * depth - a.x) + rest;
       // Steep triangles would leave their own depths beside their edges.
       const double z =
-        std::clamp(a.z - distance / (n.x * columns.slope[u] + speed), this->Low, this->High);
+        std::clamp(a.z - distance / (n.x * this->slope(columns, u) + speed), this->Low, this->High);
       near[u] = std::min(near[u], z);
       far[u] = std::max(far[u], z);
     }

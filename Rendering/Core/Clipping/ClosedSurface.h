@@ -38,10 +38,11 @@ private:
 /**
  * A surface of triangles.
  *
- * A triangle has its edges, and what lies within 1e-9 voxels (relative to its coordinates) of them,
+ * A triangle has its edges, and what lies within 1e-9 pixels (relative to its coordinates) of them,
  * so that no ray slips through between neighbours; in perspective views also what the rounding of
- * rays (see ShearWarp) may take away. Triangles that rays see edge-on are left out: the neighbours
- * have their edges. The eye is inside where a line from it meets the surface an odd number of
+ * rays (see ShearWarp) may take away. No ray beside all columns or all rows of its corners meets
+ * it. Triangles that rays see narrower than that are left out: the neighbour at the longest edge
+ * has them. The eye is inside where a line from it meets the surface an odd number of
  * times.
  */
 class ClosedSurface
