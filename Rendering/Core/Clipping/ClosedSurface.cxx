@@ -66,9 +66,8 @@ public:
     if (geometry.isPerspective())
     {
       const glm::dvec3& eye = geometry.eye();
-      const double nearest = std::min({ this->ahead(0), this->ahead(1), this->ahead(2) });
-      this->Facing = glm::dot(this->Normal, a - eye) / std::max(nearest, 0.0);
-      this->Facing = geometry.reversed() ? -this->Facing : this->Facing;
+      this->Facing = glm::dot(this->Normal, geometry.reversed() ? eye - a : a - eye);
+      this->Nearest = std::min({ this->ahead(0), this->ahead(1), this->ahead(2) });
       reach = std::max(reach, largest(eye));
       const double z = geometry.reference();
       this->Margin = PlaceRounding +
@@ -88,7 +87,8 @@ public:
   bool isUnseen() const
   {
     const double longest = std::max({ this->length(0), this->length(1), this->length(2) });
-    return !(std::abs(this->Facing) > this->Margin * longest) || this->Low > this->High;
+    return !(std::abs(this->Facing) > std::max(this->Nearest, 0.0) * this->Margin * longest) ||
+      this->Low > this->High;
   }
 
   /// The rows of pixels that may see the triangle.
@@ -249,7 +249,8 @@ private:
   const ShearWarp& Geometry;
   glm::dvec3 Corners[3];
   glm::dvec3 Normal;
-  double Facing; // more than 0 if rays see the corners in the sense of rotation from i to j
+  double Facing;        // more than 0 if rays see the corners in the sense of rotation from i to j
+  double Nearest = 1.0; // of a perspective view, how far the nearest corner is before the eye
   double Margin = 0.0, Low, High;
 };
 
