@@ -34,7 +34,7 @@ DepthRange placePlanes(View& view, Random& random)
   {
     const glm::dvec3 p(corner & 1 ? view.dimensions.x : 0, corner & 2 ? view.dimensions.y : 0,
       corner & 4 ? view.dimensions.z : 0);
-    const double w = (view.indexToClip * glm::dvec4(p, 1.0)).w;
+    const double w = (view.indexToClip * glm::dvec4(p - 0.5, 1.0)).w; // voxels are boxes
     least = std::min(least, w);
     greatest = std::max(greatest, w);
   }
