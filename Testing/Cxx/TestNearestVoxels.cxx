@@ -27,9 +27,10 @@ void testNearest(Checks& check)
     {
       const auto volume = wholeRangeNoise<T>(randomSize(random, 20), random);
       std::vector<splatting::ShearWarp> geometries;
+      const splatting::View view =
+        n % 2 ? randomPerspective(volume.size, random) : anyView(volume.size, random);
       splatting::ShearWarp::factorise(
-        n % 2 ? randomPerspective(volume.size, random) : anyView(volume.size, random), geometries,
-        anySampling(random), splatting::Meets::Nearest);
+        view, geometries, anySampling(random), splatting::Meets::Nearest);
       for (const splatting::ShearWarp& geometry : geometries)
       {
         if (geometry.phases() > 1)

@@ -198,11 +198,11 @@ void testPictures(Checks& check)
   reference::forScenes("pictures", 80,
     [&](int n, Random& random)
     {
-      const auto volume = reference::uniformNoise<std::uint8_t>(
-        coretesting::randomSize(random, 30), random.bits(), 0, 255);
+      const std::array<int, 3> size = coretesting::randomSize(random, 30);
+      const auto volume = reference::uniformNoise<std::uint8_t>(size, random.bits(), 0, 255);
       const View view = coretesting::randomPerspective(volume.size, random);
-      const glm::dvec4 plane =
-        halfSpaceThrough(randomPoint(random, view.dimensions), randomVector(random));
+      const glm::dvec3 point = randomPoint(random, view.dimensions);
+      const glm::dvec4 plane = halfSpaceThrough(point, randomVector(random));
       reference::RayCuts cuts;
       cuts.halfSpaces.push_back({ plane.x, plane.y, plane.z, plane.w });
       splatting::ProjectionSettings settings;

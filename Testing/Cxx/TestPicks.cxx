@@ -99,7 +99,8 @@ void chooseAtRandom(
   {
     vtkNew<vtkPlane> plane;
     plane->SetOrigin(image->GetCenter());
-    plane->SetNormal(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 1.0);
+    const double x = random.uniform(-1.0, 1.0), y = random.uniform(-1.0, 1.0);
+    plane->SetNormal(x, y, 1.0);
     mapper->AddClippingPlane(plane);
   }
 }
@@ -158,9 +159,9 @@ int TestPicks(int, char*[])
       stage.show(mapper);
       stage.viewAngle = random.uniform(0, 1) ? 40.0 : 0.0;
       chooseAtRandom(mapper, image, n, random);
-      stage.look(
-        { random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0) },
-        { 0.1, 1.0, 0.2 }, random.uniform(0.6, 1.2));
+      const stage::Vector direction{ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
+        random.uniform(-1.0, 1.0) };
+      stage.look(direction, { 0.1, 1.0, 0.2 }, random.uniform(0.6, 1.2));
       stage.window->Render();
       const vtkIdType projections = mapper->GetNumberOfProjections();
       const std::vector<Pick> alone = pickAll(mapper);

@@ -55,7 +55,8 @@ vtkSmartPointer<vtkCamera> someCamera(vtkImageData* image, bool parallel, refere
   camera->SetParallelProjection(parallel);
   camera->SetParallelScale(0.4 * image->GetLength());
   camera->SetViewAngle(random.uniform(15.0, 40.0));
-  camera->SetWindowCenter(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
+  const double x = random.uniform(-0.3, 0.3), y = random.uniform(-0.3, 0.3);
+  camera->SetWindowCenter(x, y);
   return camera;
 }
 
@@ -68,7 +69,8 @@ vtkSmartPointer<Filter> someView(vtkImageData* image, bool parallel, reference::
   if (random.uniform(0, 1))
   {
     const double step = image->GetLength() / 320.0;
-    filter->SetOutputSpacing(step * random.uniform(0.5, 1.5), step * random.uniform(0.5, 1.5));
+    const double x = step * random.uniform(0.5, 1.5), y = step * random.uniform(0.5, 1.5);
+    filter->SetOutputSpacing(x, y);
   }
   filter->SetQualityMode(random.uniform(0, 3));
   return filter;

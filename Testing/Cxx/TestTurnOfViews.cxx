@@ -114,7 +114,7 @@ void testPixels(Checks& check, const TurnOfViews& turn, int view, reference::Ran
   const glm::dvec3 direction = vector(camera->GetDirectionOfProjection());
   const glm::dvec3 right = glm::normalize(glm::cross(direction, vector(camera->GetViewUp())));
   const glm::dvec2 size(turn.Size());
-  const glm::dvec2 steps(random.uniform(-40.0, 40.0), random.uniform(-40.0, 40.0));
+  const glm::dvec2 steps{ random.uniform(-40.0, 40.0), random.uniform(-40.0, 40.0) };
   const glm::dvec3 point = vector(camera->GetFocalPoint()) + steps.x * spacingOf(turn).x * right +
     steps.y * spacingOf(turn).y * glm::cross(right, direction);
   const glm::dvec4 clip = turn.WorldToClip(view) * glm::dvec4(point, 1.0);

@@ -37,8 +37,8 @@ void setScene(stage::Stage& stage, vtkImageData* image, reference::Random& rando
   stage.volume->SetPosition(place.x, place.y, place.z);
   stage.volume->SetScale(1.0, random.uniform(0.5, 2.0), 1.0);
   const double left = random.uniform(0.0, 0.5), bottom = random.uniform(0.0, 0.5);
-  stage.renderer->SetViewport(
-    left, bottom, left + random.uniform(0.2, 0.5), bottom + random.uniform(0.2, 0.5));
+  const double right = left + random.uniform(0.2, 0.5), top = bottom + random.uniform(0.2, 0.5);
+  stage.renderer->SetViewport(left, bottom, right, top);
   const glm::dvec3 direction = projectiontesting::randomDirection(random);
   const glm::dvec3 up = projectiontesting::randomDirection(random);
   stage.viewAngle = random.uniform(0, 1) ? random.uniform(10.0, 80.0) : 0.0;
