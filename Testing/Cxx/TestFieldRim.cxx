@@ -177,6 +177,10 @@ std::array<double, 2> seenDepths(const Scene<T>& scene, const ScreenRay& screen,
     const bool isThick = scene.view.showsBoxes || n == 1;
     const double side = (isThick ? 0.5 : 0.0) + (a < 2 ? more : 0.0);
     const double begin = -side, end = n - 1 + side;
+    if (begin > end) // nothing is sure to be in what is thinner than twice the way
+    {
+      return { near, near - 1.0 };
+    }
     if (a == 2)
     {
       near = std::max(near, begin);
