@@ -184,6 +184,55 @@ void testNaN(Checks& check)
     });
 }
 
+/// A flat volume in which a few voxels at the end of a layer of bricks are bright, and those across
+/// the layers' border are NaN: samples there are of the bright voxels alone.
+template <class T>
+reference::Volume<T> brightAtLayer(
+  const std::array<int, 3>& size, int axis, reference::Random& random)
+{
+  reference::Volume<T> volume(size, T(0));
+  const int borders = (size[axis] - 1) / splatting::BrickDepth;
+  const int border = splatting::BrickDepth * random.uniform(1, borders);
+  const bool isBefore = random.uniform(0, 1);
+  std::array<int, 3> first, p;
+  for (int& f : first)
+  {
+    f = random.uniform(0, 6);
+  }
+  const int width = random.uniform(1, 4), height = random.uniform(1, 4);
+  for (int n = 0; n < width * height; ++n)
+  {
+    p[(axis + 1) % 3] = first[(axis + 1) % 3] + n % width;
+    p[(axis + 2) % 3] = first[(axis + 2) % 3] + n / width;
+    p[axis] = isBefore ? border - 1 : border;
+    volume.at(p) = T(1);
+    p[axis] = isBefore ? border : border - 1;
+    volume.at(p) = std::numeric_limits<T>::quiet_NaN();
+  }
+  return volume;
+}
+
+/// What a layer of bricks can add may be all of a neighbouring layer's voxels.
+template <class T>
+void testNaNAtLayers(Checks& check)
+{
+  reference::forScenes(seriesOf<T>("NaN between layers"), 80,
+    [&](int n, reference::Random& random)
+    {
+      const std::array<int, 3> size{ random.uniform(10, 30), random.uniform(10, 30),
+        random.uniform(10, 30) };
+      const splatting::ShearWarp geometry =
+        n % 2 ? splatting::ShearWarp(anyView(size, random)) : randomPerspectiveImage(size, random);
+      const auto volume = brightAtLayer<T>(size, geometry.principalAxis(), random);
+      Case c = randomCase(random, size);
+      c.settings.quality = Quality::High;
+      check(sameImages(projected(volume, geometry, c, Acceleration::Dense).image,
+              projected(volume, geometry, c, Acceleration::Bricks).image),
+        "type ", int(splatting::scalarTypeOf<T>()),
+        ": bricks lose what counts alone beside NaN in the next layer");
+    });
+}
+
 /// Steep views with narrow kernels of volumes that are flat but for some voxels at the rim: there
 /// worksheets see voxels of the next slice only by repeating them, beyond the tiles that see the
 /// slice itself.
@@ -374,6 +423,8 @@ int TestAccelerations(int, char*[])
     });
   testNaN<float>(check);
   testNaN<double>(check);
+  testNaNAtLayers<float>(check);
+  testNaNAtLayers<double>(check);
   check(skipping.areEnough(0.01), "bricks leave half of the tiles out in only ", skipping);
   testRims(check);
   testBudget<std::uint8_t>(check);
