@@ -69,6 +69,7 @@ void FanFootprints<A>::find(const ShearWarp& whole, const ShearWarp& geometry, i
   this->Steepest = (a == 0 ? whole.columns() : whole.rows()).steepest;
   const std::size_t all = std::size_t(this->Slices.end - this->Slices.begin) * parts;
   this->Taps.resize(all);
+  this->Ascends.resize(all);
   this->First.resize(all * this->Padded);
   this->Room =
     std::min(tapsOf(geometry.pitch() + this->Steepest / parts + 2.0 * kernel.support()), MostTaps);
@@ -119,6 +120,7 @@ void FanFootprints<A>::findPart(const ShearWarp& whole, const ShearWarp& geometr
     weights.first[p] -= firstVoxel;
   }
   this->Taps[n] = weights.taps;
+  this->Ascends[n] = std::is_sorted(weights.first, weights.first + this->Count);
   std::fill_n(weights.first + this->Count, this->Padded - this->Count,
     this->Count > 0 ? weights.first[this->Count - 1] : 0);
   for (int t = 0; t < weights.taps; ++t)
@@ -148,18 +150,32 @@ typename FanFootprints<A>::Part FanFootprints<A>::part(int k, int q) const
 }
 
 template <class A>
+Span FanFootprints<A>::voxels(int k, int q, const Span& pixels) const
+{
+  const std::size_t n = this->at(k, q);
+  const std::int32_t* const first = &this->First[n * this->Padded];
+  if (this->Ascends[n])
+  {
+    return { first[pixels.begin], first[pixels.end - 1] + this->Taps[n] };
+  }
+  // Before the eye the points of pixels widen as rays run apart: all on one side begin at the same
+  // place, and where it is between two voxels, rounding decides.
+  const auto ends = std::minmax_element(first + pixels.begin, first + pixels.end);
+  return { *ends.first, *ends.second + this->Taps[n] };
+}
+
+template <class A>
 Span FanFootprints<A>::voxels(const Span& slices, const Span& pixels) const
 {
   Span all{ this->Size + Margin, -Margin };
-  const int p = pixels.begin, last = std::min(pixels.end, this->Count) - 1;
+  const Span own{ pixels.begin, std::min(pixels.end, this->Count) };
   for (int k = std::max(slices.begin, this->Slices.begin);
-       k < std::min(slices.end, this->Slices.end) && p <= last; ++k)
+       k < std::min(slices.end, this->Slices.end) && !own.empty(); ++k)
   {
     for (int q = 0; q < this->Parts; ++q)
     {
-      const Part part = this->part(k, q);
-      all.begin = std::min(all.begin, part.first[p]);
-      all.end = std::max(all.end, part.first[last] + part.taps);
+      const Span some = this->voxels(k, q, own);
+      all = { std::min(all.begin, some.begin), std::max(all.end, some.end) };
     }
   }
   return all;

@@ -63,8 +63,10 @@ public:
   };
   Part part(int k, int q) const;
 
-  /// The voxels that some pixels read for the worksheets of some slices, from first to last; they
-  /// may lie outside the volume.
+  /// The voxels that some pixels read for part q of the worksheet of slice k, from first to last;
+  /// they may lie outside the volume.
+  Span voxels(int k, int q, const Span& pixels) const;
+  /// The same for all parts of some slices; there may be no slice or no pixel.
   Span voxels(const Span& slices, const Span& pixels) const;
 
   /// Farthest outside the volume that a pixel can begin to read.
@@ -84,6 +86,7 @@ private:
   std::ptrdiff_t Padded = 0;
   double Steepest = 0.0;
   std::vector<int> Taps;
+  std::vector<unsigned char> Ascends; // of each part, whether its pixels' first voxels do
   std::vector<std::int32_t> First, Bases;
   std::vector<A> Weights;
   std::vector<unsigned char> Lanes;

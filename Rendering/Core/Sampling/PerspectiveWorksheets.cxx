@@ -143,8 +143,7 @@ private:
     int most = 0;
     for (int q = 0; q < this->Own.parts; ++q)
     {
-      const auto part = this->Own.rows.part(k, q);
-      voxelRows[q] = { part.first[rows.begin], part.first[rows.end - 1] + part.taps };
+      voxelRows[q] = this->Own.rows.voxels(k, q, rows);
       most = std::max(most, voxelRows[q].end - voxelRows[q].begin);
     }
     patch.template resizeResampled<A>(this->Own.parts, most, length);
