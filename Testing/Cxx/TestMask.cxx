@@ -14,7 +14,10 @@
 #include "vtkUniformGrid.h"
 #include "vtkVolumeProperty.h"
 
+#include <algorithm>
 #include <iostream>
+#include <string>
+#include <vector>
 
 using namespace scalartesting;
 
@@ -111,6 +114,31 @@ void testMaskOfNothing(stage::Stage& stage, stage::Checks& check)
   inside->Modified();
   stage.pixels();
   check(mapper->GetIndexMemorySize() > plain->GetIndexMemorySize(), "One hidden, a copy.");
+}
+
+/// EXACT interpolates between voxels that are shown: between those of one slice there is nothing.
+void testThinMask(stage::Stage& stage, stage::Checks& check)
+{
+  const auto inside = flags(Voxels, 0, 0.0, 1);
+  const auto mapper =
+    stage::splatting(plainImage(size, noiseArray(VTK_UNSIGNED_CHAR, Voxels, 1, 4)));
+  mapper->SetMaskInput(plainImage(size, inside));
+  const vtkIdType slice = vtkIdType(size[0]) * size[1];
+  for (int slices = 1; slices <= 2; ++slices)
+  {
+    std::fill_n(inside->GetPointer(2 * slice), slices * slice, static_cast<unsigned char>(1));
+    inside->Modified();
+    for (const int mode : { vtkSplattingMIPVolumeMapper::HIGH, vtkSplattingMIPVolumeMapper::EXACT })
+    {
+      mapper->SetQualityMode(mode);
+      stage.show(mapper);
+      const std::vector<double> pixels = stage.gray().value;
+      const bool isShown =
+        std::any_of(pixels.begin(), pixels.end(), [](double pixel) { return pixel > 0.0; });
+      check(isShown == (slices == 2 || mode == vtkSplattingMIPVolumeMapper::HIGH),
+        "A mask of " + std::to_string(slices) + " slices in mode " + std::to_string(mode) + ".");
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -279,6 +307,7 @@ int TestMask(int, char*[])
       testMaskOfCells(stage, check);
       testMaskOfComponents(stage, check);
       testMaskOfNothing(stage, check);
+      testThinMask(stage, check);
     }
   }
   testRayCasting(check);
