@@ -97,9 +97,13 @@ public:
   /// Widens the depths of the pixels that the triangle covers in some rows.
   void cover(const Span& rows, SurfaceRows depths) const
   {
-    const Side sides[] = { this->side(0), this->side(1), this->side(2) };
     // Rays that graze the triangle are near the lines of its edges far beyond its corners, too.
     const Span columns = this->extent(0, this->Geometry.width());
+    if (columns.empty())
+    {
+      return;
+    }
+    const Side sides[] = { this->side(0), this->side(1), this->side(2) };
     for (int v = rows.begin; v < rows.end; ++v)
     {
       const std::size_t row = std::size_t(v) * this->Geometry.width();
@@ -133,8 +137,8 @@ private:
     const double nearest = std::min(this->ahead(e), this->ahead((e + 1) % 3));
     const glm::dvec3 area = glm::cross(edge, this->Corners[e] - this->Geometry.eye());
     // No slope of rays is much above 1.
-    const double most = 2.0 * glm::length(edge);
-    return nearest > 0.0 ? std::min(most, glm::length(area) / nearest) : most;
+    const double most = 4.0 * glm::dot(edge, edge), seen = glm::dot(area, area);
+    return std::sqrt(nearest > 0.0 ? std::min(most, seen / (nearest * nearest)) : most);
   }
 
   double slope(const Fan& fan, int n) const
@@ -318,7 +322,8 @@ void ClosedSurface::findRows(const ShearWarp& geometry)
     [&](const glm::ivec3& t)
     {
       const Triangle triangle(geometry, this->Places[t[0]], this->Places[t[1]], this->Places[t[2]]);
-      return triangle.isUnseen() ? Span{} : triangle.rows();
+      const Span rows = triangle.rows();
+      return rows.empty() || triangle.isUnseen() ? Span{} : rows;
     });
 }
 
