@@ -42,8 +42,7 @@ private:
  * so that no ray slips through between neighbours; in perspective views also what the rounding of
  * rays (see ShearWarp) may take away. No ray beside all columns or all rows of its corners meets
  * it. Triangles that rays see narrower than that are left out: the neighbour at the longest edge
- * has them. The eye is inside where a line from it meets the surface an odd number of
- * times.
+ * has them. The eye is inside where a line from it meets the surface an odd number of times.
  */
 class ClosedSurface
 {
