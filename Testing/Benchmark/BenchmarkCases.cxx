@@ -179,6 +179,21 @@ void Rotate(benchmark::State& state, const BenchmarkRotation& rotation, Function
   }
 }
 
+/// A window in which no volume is an overview, whose projections are others, and a pixel per voxel
+/// unless another sampling is asked for: the same work in all modes.
+vtkSplattingMIPVolumeMapper* ShowProjections(const BenchmarkMapper& mapper, vtkImageData* image)
+{
+  BenchmarkStage& stage = BenchmarkStage::GetInstance();
+  stage.SetSize(1024);
+  stage.SetMapper(mapper, image);
+  auto* splatting = vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper());
+  if (stage.GetSampling() == vtkSplattingMIPVolumeMapper::SAMPLING_OF_MODE)
+  {
+    splatting->SetShearImageSampling(1);
+  }
+  return splatting;
+}
+
 void AddPlane(vtkVolumeMapper* mapper, const double origin[3], double x, double y, double z)
 {
   vtkNew<vtkPlane> plane;
@@ -308,10 +323,8 @@ void MeasureProjections(benchmark::State& state, const BenchmarkVolume& volume,
     return;
   }
   BenchmarkStage& stage = BenchmarkStage::GetInstance();
-  stage.SetSize(64); // exact projections depend on it: so small, they have a pixel per voxel
-  stage.SetMapper(mapper, image);
-  AddCut(stage.GetMapper(), image, cut);
-  auto* splatting = vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper());
+  auto* splatting = ShowProjections(mapper, image);
+  AddCut(splatting, image, cut);
   ShowEachAxis();
   Rotate(state, rotation, [=](double) { return splatting->GetProjectionTime(); });
   stage.Clear();
@@ -327,9 +340,7 @@ void MeasureLocations(benchmark::State& state, const BenchmarkVolume& volume,
     return;
   }
   BenchmarkStage& stage = BenchmarkStage::GetInstance();
-  stage.SetSize(64);
-  stage.SetMapper(mapper, image);
-  auto* splatting = vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper());
+  auto* splatting = ShowProjections(mapper, image);
   splatting->RecordLocationsOn();
   ShowEachAxis();
   Rotate(state, rotation, [=](double) { return splatting->GetProjectionTime(); });

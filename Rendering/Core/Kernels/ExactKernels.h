@@ -157,12 +157,62 @@ struct Lanes
                    : before;
   }
   /// Stores what has been raised.
-  template <bool Special, class Row>
-  static inline void close(const Row& row, std::ptrdiff_t x, R before, R best)
+  template <bool Special>
+  static inline void close(A* pixels, R before, R best)
   {
     const R none = all(-std::numeric_limits<A>::infinity());
-    storeTo(row.image + x, Special ? (best > none ? best : before) : best);
+    storeTo(pixels, Special ? (best > none ? best : before) : best);
   }
+};
+
+/// The largest value between the ends of a side, from the three voxels that follow each other, of
+/// which the last counts only if it crosses.
+template <class A, class R>
+inline R largestBetween(const BoxSide<A>& side, R a, R b, R c)
+{
+  const R first = a + side.begin * (b - a);
+  return side.crosses ? larger(first, larger(b, b + side.end * (c - b)))
+                      : larger(first, a + side.end * (b - a));
+}
+
+/// The largest values in the boxes of a register of pixels, row after row.
+template <class A, class R>
+class BoxesOfRows : Lanes<A, R>
+{
+public:
+  /// @param at  from the voxels of pixel (0, 0) to those of the first pixel
+  BoxesOfRows(const PathBox<A>& box, std::ptrdiff_t stride, std::ptrdiff_t at)
+    : Box(box), Stride(stride), Next(box.voxels + at)
+  {
+    this->Rows[0] = this->takeRow();
+    this->Rows[1] = box.rows.crosses ? this->takeRow() : this->Rows[0];
+  }
+
+  inline R take()
+  {
+    const R next = this->takeRow();
+    const R result = this->Box.rows.crosses
+      ? largestBetween(this->Box.rows, this->Rows[0], this->Rows[1], next)
+      : largestBetween(this->Box.rows, this->Rows[1], next, next);
+    this->Rows[0] = this->Rows[1];
+    this->Rows[1] = next;
+    return result;
+  }
+
+private:
+  inline R takeRow()
+  {
+    const A* const voxels = this->Next;
+    this->Next += this->Stride;
+    const R a = Lanes<A, R>::loadFrom(voxels), b = Lanes<A, R>::loadFrom(voxels + 1);
+    return largestBetween(
+      this->Box.columns, a, b, this->Box.columns.crosses ? Lanes<A, R>::loadFrom(voxels + 2) : b);
+  }
+
+  const PathBox<A>& Box;
+  std::ptrdiff_t Stride;
+  const A* Next;
+  R Rows[2]; // the last two
 };
 
 /// The cubics of a parallel view.
@@ -173,14 +223,14 @@ struct CubicLoop : Lanes<A, R>
   using typename Lanes<A, R>::I;
   using Lanes<A, R>::all;
   using Lanes<A, R>::loadFrom;
-  const CubicRow<A>& row;
+  const Cubics<A>& cubics;
 
-  explicit CubicLoop(const CubicRow<A>& own) : row(own) {}
+  explicit CubicLoop(const Cubics<A>& own) : cubics(own) {}
 
-  inline void loadCorners(const CubicPiece<A>& piece, std::ptrdiff_t x, R (&corners)[8]) const
+  inline void loadCorners(const CubicPiece<A>& piece, std::ptrdiff_t at, R (&corners)[8]) const
   {
-    const A* const rows[4] = { piece.low + x, piece.low + x + this->row.sourceStride,
-      piece.high + x, piece.high + x + this->row.sourceStride };
+    const A* const rows[4] = { piece.low + at, piece.low + at + this->cubics.sourceStride,
+      piece.high + at, piece.high + at + this->cubics.sourceStride };
 #pragma GCC unroll 8
     for (int n = 0; n < 8; ++n)
     {
@@ -205,7 +255,7 @@ struct CubicLoop : Lanes<A, R>
   {
     if constexpr (Special)
     {
-      return start == start ? start : combine(this->row.pieces[p].weights, corners);
+      return start == start ? start : combine(this->cubics.pieces[p].weights, corners);
     }
     else
     {
@@ -216,26 +266,29 @@ struct CubicLoop : Lanes<A, R>
   }
 
   /// The field at the start of piece p, which is the end of the one before.
-  inline R startOf(int p, const R (&corners)[8], std::ptrdiff_t x) const
+  inline R startOf(int p, const R (&corners)[8], std::ptrdiff_t at) const
   {
     if (p == 0)
     {
-      return combine(this->row.pieces[0].weights, corners);
+      return combine(this->cubics.pieces[0].weights, corners);
     }
-    const CubicPiece<A>& before = this->row.pieces[p - 1];
+    const CubicPiece<A>& before = this->cubics.pieces[p - 1];
     R others[8];
-    this->loadCorners(before, x, others);
+    this->loadCorners(before, at, others);
     return this->numberOf(combine(before.weights + 24, others), p, corners);
   }
 
-  /// The pixels from x on that a piece counts for.
-  inline M counting(const CubicPiece<A>& piece, std::ptrdiff_t x) const
+  /// The pixels from (x, v) on that a piece counts for.
+  inline M counting(const CubicPiece<A>& piece, std::ptrdiff_t x, std::ptrdiff_t v) const
   {
+    const auto inRow = [=](const Span* pixels)
+    { return v >= pixels[1].begin && v < pixels[1].end ? pixels[0] : Span{}; };
+    const Span field = this->cubics.field[v], own = inRow(piece.inField),
+               boxes = inRow(piece.inBoxes);
     M lane;
     if constexpr (std::is_same_v<R, A>)
     {
-      const bool inField = x >= this->row.field.begin && x < this->row.field.end;
-      const Span& span = inField ? piece.inField : piece.inBoxes;
+      const Span& span = x >= field.begin && x < field.end ? own : boxes;
       lane = x >= span.begin && x < span.end;
       return lane;
     }
@@ -245,7 +298,6 @@ struct CubicLoop : Lanes<A, R>
       {
         lane[n] = static_cast<I>(x + n);
       }
-      const Span &field = this->row.field, &own = piece.inField, &boxes = piece.inBoxes;
       const auto inSpan = [&lane](const Span& span)
       { return (lane >= static_cast<I>(span.begin)) & (lane < static_cast<I>(span.end)); };
       const M inField = inSpan(field);
@@ -253,24 +305,40 @@ struct CubicLoop : Lanes<A, R>
     }
   }
 
-  template <bool Masked>
-  inline void run(std::ptrdiff_t x) const
+  /// Whether all pieces count for all of a register's pixels, which see the field.
+  inline bool allCount(std::ptrdiff_t x, std::ptrdiff_t v) const
   {
-    const R before = loadFrom(this->row.image + x);
+    const auto inSpan = [](const Span& span, std::ptrdiff_t begin, std::ptrdiff_t end)
+    { return begin >= span.begin && end <= span.end; };
+    bool all = inSpan(this->cubics.field[v], x, x + width<A>);
+    for (int p = 0; p < this->cubics.count; ++p)
+    {
+      const Span* const pixels = this->cubics.pieces[p].inField;
+      all = all && inSpan(pixels[0], x, x + width<A>) && inSpan(pixels[1], v, v + 1);
+    }
+    return all;
+  }
+
+  template <bool Masked>
+  inline void run(std::ptrdiff_t x, std::ptrdiff_t v) const
+  {
+    const std::ptrdiff_t at = v * this->cubics.sourceStride + x;
+    A* const pixels = this->cubics.image + v * this->cubics.imageStride + x;
+    const R before = loadFrom(pixels);
     R best = Lanes<A, R>::template opened<Special>(before);
     R b[4], corners[8];
     bool follows = false; // whether b[3] is where this piece starts
-    for (int p = 0; p < this->row.count; ++p)
+    for (int p = 0; p < this->cubics.count; ++p)
     {
-      const CubicPiece<A>& piece = this->row.pieces[p];
-      this->loadCorners(piece, x, corners);
+      const CubicPiece<A>& piece = this->cubics.pieces[p];
+      this->loadCorners(piece, at, corners);
       const R most = Lanes<A, R>::template largestOf<Special>(corners);
       if (!anyOf(most > best))
       {
         follows = false;
         continue;
       }
-      b[0] = follows ? this->numberOf(b[3], p, corners) : this->startOf(p, corners, x);
+      b[0] = follows ? this->numberOf(b[3], p, corners) : this->startOf(p, corners, at);
       b[3] = combine(piece.weights + 24, corners);
       follows = true;
       R raised = larger(b[3], larger(b[0], best));
@@ -287,50 +355,164 @@ struct CubicLoop : Lanes<A, R>
       raised = Lanes<A, R>::limitedTo(raised, most, best);
       if constexpr (Masked)
       {
-        raised = this->counting(piece, x) ? raised : best;
+        raised = this->counting(piece, x, v) ? raised : best;
       }
       best = raised;
     }
-    Lanes<A, R>::template close<Special>(this->row, x, before, best);
+    Lanes<A, R>::template close<Special>(pixels, before, best);
+  }
+
+  /// All rows of a register of columns.
+  inline void runRows(std::ptrdiff_t x) const
+  {
+    const Span& rows = this->cubics.rows;
+    for (std::ptrdiff_t v = rows.begin; v < rows.end; ++v)
+    {
+      this->allCount(x, v) ? this->template run<false>(x, v) : this->template run<true>(x, v);
+    }
+  }
+
+  /// The same, but for those that have seen more than their boxes have. Between two slices the
+  /// field is at most what the boxes in both have, of which the nearer one weighs half or more.
+  inline void runRowsAboveBoxes(std::ptrdiff_t x) const
+  {
+    const Span& rows = this->cubics.rows;
+    const std::ptrdiff_t stride = this->cubics.sourceStride, first = rows.begin * stride + x;
+    BoxesOfRows<A, R> before(this->cubics.before, stride, first),
+      own(this->cubics.own, stride, first), behind(this->cubics.behind, stride, first);
+    for (std::ptrdiff_t v = rows.begin; v < rows.end; ++v)
+    {
+      const R middle = own.take(), others = larger(before.take(), behind.take());
+      const R most = larger(middle, A(0.5) * (middle + others)) + this->cubics.slack;
+      if (anyOf(most > loadFrom(this->cubics.image + v * this->cubics.imageStride + x)))
+      {
+        this->allCount(x, v) ? this->template run<false>(x, v) : this->template run<true>(x, v);
+      }
+    }
   }
 };
 
 template <class A, bool Special>
-inline void raiseCubicRow(const CubicRow<A>& row)
+inline void raiseCubicRows(const Cubics<A>& cubics)
 {
   constexpr std::ptrdiff_t w = width<A>;
-  const CubicLoop<A, Pack<A>, Special> loop(row);
-  const std::ptrdiff_t begin = row.pixels.begin, end = row.pixels.end;
+  const std::ptrdiff_t begin = cubics.columns.begin, end = cubics.columns.end;
   if (end - begin < w)
   {
-    for (std::ptrdiff_t x = begin; x < end; ++x)
+    for (std::ptrdiff_t v = cubics.rows.begin; v < cubics.rows.end; ++v)
     {
-      CubicLoop<A, A, Special>(row).template run<true>(x);
+      for (std::ptrdiff_t x = begin; x < end; ++x)
+      {
+        CubicLoop<A, A, Special>(cubics).template run<true>(x, v);
+      }
     }
     return;
   }
-  // Pixels for which all pieces count.
-  std::ptrdiff_t first = begin > row.field.begin ? begin : row.field.begin;
-  std::ptrdiff_t last = end < row.field.end ? end : row.field.end;
-  for (int p = 0; p < row.count; ++p)
-  {
-    first = first > row.pieces[p].inField.begin ? first : row.pieces[p].inField.begin;
-    last = last < row.pieces[p].inField.end ? last : row.pieces[p].inField.end;
-  }
   // A maximum may be taken twice, so the last register overlaps the one before.
+  const CubicLoop<A, Pack<A>, Special> loop(cubics);
   for (std::ptrdiff_t x = begin; x < end; x += w)
   {
     const std::ptrdiff_t at = x + w <= end ? x : end - w;
-    at >= first&& at + w <= last ? loop.template run<false>(at) : loop.template run<true>(at);
+    Special ? loop.runRows(at) : loop.runRowsAboveBoxes(at);
   }
 }
 
 /// One pixel's maximum is the same in a register and by itself.
 template <class A>
-void raiseCubics(const CubicRow<A>& row)
+void raiseCubics(const Cubics<A>& cubics)
 {
-  row.special ? raiseCubicRow<A, true>(row) : raiseCubicRow<A, false>(row);
+  cubics.special ? raiseCubicRows<A, true>(cubics) : raiseCubicRows<A, false>(cubics);
 }
+
+/// Of a row of pixels in perspective, what no voxel is above that a register of them reads. Most
+/// registers have seen more than that before, and need not know where their rays are.
+template <class A>
+class FanCeilings
+{
+public:
+  FanCeilings(const FanCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
+    : Cells(row.columns.cell),
+      First(Cells[begin] - 1),
+      Count(Cells[end - 1] + Beyond - First)
+  {
+    if (this->known())
+    {
+      this->findColumns(row);
+      this->widenToRegisters();
+    }
+  }
+
+  /// Pixels are narrower than voxels: there is room.
+  bool known() const { return this->Count >= width<A> && this->Count <= Room; }
+
+  A of(std::ptrdiff_t x) const
+  {
+    const std::ptrdiff_t begin = this->Cells[x] - 1 - this->First,
+                         end = this->Cells[x + width<A> - 1] + Beyond - this->First;
+    // Two windows of a register's width, which overlap.
+    const std::ptrdiff_t second = end - width<A>;
+    return end - begin > 2 * width<A>
+      ? std::numeric_limits<A>::infinity()
+      : larger(this->Most[begin], this->Most[second > begin ? second : begin]);
+  }
+
+private:
+  /// Behind the last voxel of a pixel, as in FanCells::voxels().
+  static constexpr std::ptrdiff_t Beyond = 4;
+  static constexpr std::ptrdiff_t Room = 512;
+
+  void findColumns(const FanCubicRow<A>& row)
+  {
+    const A* rows[12];
+    int count = 0;
+    for (int p = 0; p < row.count; ++p)
+    {
+      for (const A* own : row.parts[p].rows)
+      {
+        bool isNew = true;
+        for (int n = 0; n < count; ++n)
+        {
+          isNew = isNew && rows[n] != own;
+        }
+        rows[count] = own;
+        count += isNew;
+      }
+    }
+    constexpr std::ptrdiff_t w = width<A>;
+    for (std::ptrdiff_t c = 0; c < this->Count; c += w)
+    {
+      const std::ptrdiff_t at = c + w <= this->Count ? c : this->Count - w;
+      Pack<A> most = Pack<A>{} - std::numeric_limits<A>::infinity();
+      for (int n = 0; n < count; ++n)
+      {
+        most = larger(load<A>(rows[n] + this->First + at), most);
+      }
+      store<A>(this->Most + at, most);
+    }
+    for (int n = 0; n < 2; ++n)
+    {
+      store<A>(this->Most + this->Count + n * w, Pack<A>{} - std::numeric_limits<A>::infinity());
+    }
+  }
+
+  /// From columns of voxels to as many of them, from each on, as a register has pixels.
+  void widenToRegisters()
+  {
+    constexpr std::ptrdiff_t w = width<A>;
+    for (std::ptrdiff_t step = 1; step < w; step *= 2)
+    {
+      for (std::ptrdiff_t c = 0; c < this->Count; c += w)
+      {
+        store<A>(this->Most + c,
+          larger(load<A>(this->Most + c + step), load<A>(this->Most + c)));
+      }
+    }
+  }
+
+  const std::int32_t* Cells;
+  std::ptrdiff_t First, Count; // of columns of voxels
+  A Most[Room + 2 * width<A>];
+};
 
 /// The cubics of a perspective view: each pixel has a place of its own in the cells, that of a row
 /// of cells goes for all.
@@ -435,6 +617,12 @@ struct FanCubicLoop : Lanes<A, R>
     return counts ? raised : best;
   }
 
+  /// Whether a pixel is less than the ceiling.
+  inline bool isBelow(A ceiling, std::ptrdiff_t x) const
+  {
+    return anyOf(all(ceiling) > Lanes<A, R>::template opened<Special>(loadFrom(this->row.image + x)));
+  }
+
   inline void run(std::ptrdiff_t x) const
   {
     const FanCellArrays<A>& c = this->row.columns;
@@ -494,7 +682,7 @@ struct FanCubicLoop : Lanes<A, R>
       }
       best = smaller(best, atMost); // as in parallel views
     }
-    Lanes<A, R>::template close<Special>(this->row, x, before, best);
+    Lanes<A, R>::template close<Special>(this->row.image + x, before, best);
   }
 
   /// The voxels of the upper or the lower cell.
@@ -509,17 +697,40 @@ struct FanCubicLoop : Lanes<A, R>
   }
 };
 
+/// Some pixels: a register or more.
+template <class A, bool Special>
+inline void raiseFanRegisters(const FanCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
+{
+  using Loop = FanCubicLoop<A, Pack<A>, Special>;
+  const FanCeilings<A> ceilings(row, begin, end);
+  const bool known = ceilings.known();
+  for (std::ptrdiff_t x = begin; x < end; x += width<A>)
+  {
+    const std::ptrdiff_t at = x + width<A> <= end ? x : end - width<A>;
+    if (!known || Loop(row).isBelow(ceilings.of(at), at))
+    {
+      Loop(row).run(at);
+    }
+  }
+}
+
 template <class A, bool Special>
 inline void raiseFanCubicRow(const FanCubicRow<A>& row)
 {
+  constexpr std::ptrdiff_t w = width<A>, chunk = 256;
   const std::ptrdiff_t begin = row.pixels.begin, end = row.pixels.end;
-  for (std::ptrdiff_t x = begin; end - begin >= width<A> && x < end; x += width<A>)
+  if (end - begin < w)
   {
-    FanCubicLoop<A, Pack<A>, Special>(row).run(x + width<A> <= end ? x : end - width<A>);
+    for (std::ptrdiff_t x = begin; x < end; ++x)
+    {
+      FanCubicLoop<A, A, Special>(row).run(x);
+    }
+    return;
   }
-  for (std::ptrdiff_t x = begin; end - begin < width<A> && x < end; ++x)
+  for (std::ptrdiff_t x = begin; x < end; x += chunk)
   {
-    FanCubicLoop<A, A, Special>(row).run(x);
+    const std::ptrdiff_t last = x + chunk < end ? x + chunk : end;
+    raiseFanRegisters<A, Special>(row, last - x >= w ? x : last - w, last);
   }
 }
 

@@ -288,26 +288,47 @@ struct Resampling
 /// Most pieces of a ray's path in a slice: cut in its middle, and twice along i and j.
 constexpr int MostPieces = 6;
 
-/// A piece of the path of all rays in a slice, as in ExactPieces.h, for one row of pixels.
+/// A piece of the path of all rays in a slice, as in ExactPieces.h.
 template <class A>
 struct CubicPiece
 {
-  const A *low, *high;   ///< the first voxel of pixel 0's cell in its two slices
-  const A* weights;      ///< as in ExactPiece
-  bool curved;           ///< likewise
-  Span inField, inBoxes; ///< the pixels that it counts for
+  const A *low, *high; ///< the first voxel of pixel (0, 0)'s cell in its two slices
+  const A* weights;    ///< as in ExactPiece
+  bool curved;         ///< likewise
+  const Span *inField, *inBoxes; ///< the columns and rows of pixels that it counts for, likewise
 };
 
+/// A side of a box, along columns or rows of voxels: at most a voxel long.
 template <class A>
-struct CubicRow
+struct BoxSide
 {
-  A* image;                    ///< pixel 0, which need not exist
-  Span pixels;                 ///< those that are raised
-  Span field;                  ///< those that see the field, others see boxes
+  int cell;     ///< the voxel before its begin, relative to the pixel
+  A begin, end; ///< places between two voxels: from 0 to 1
+  bool crosses; ///< whether the end lies behind the voxel that follows
+};
+
+/// A box around what the rays pass in one slice.
+template <class A>
+struct PathBox
+{
+  const A* voxels; ///< of pixel (0, 0), the first that it reads
+  BoxSide<A> columns, rows;
+};
+
+/// A rectangle of pixels in one slice, and the pieces of their path.
+template <class A>
+struct Cubics
+{
+  A* image; ///< pixel (0, 0), which need not exist
+  std::ptrdiff_t imageStride;
+  Span columns, rows;          ///< the pixels that are raised
+  const Span* field;           ///< for row 0: the columns that see the field, others see boxes
   std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
   CubicPiece<A> pieces[MostPieces];
   int count;
-  bool special; ///< whether there are NaN or infinities
+  PathBox<A> before, own, behind; ///< around the path in the slice before, this, and the next
+  A slack;      ///< how far rounding can take samples beyond what follows from the boxes
+  bool special; ///< whether there are NaN or infinities, which say nothing of boxes
 };
 
 /// What FanCells knows of all columns (or rows) in a slice, depths relative to its middle.
@@ -380,8 +401,8 @@ struct WorksheetLoops
   void (*splat)(const Splat<A>& splat);
   /// Pixels become the largest of themselves and the cubics that their rays meet. A cubic with a
   /// NaN coefficient is left out but for its ends.
-  void (*raiseCubics)(const CubicRow<A>& row);
-  /// The same in perspective views, where each pixel has cubics of its own.
+  void (*raiseCubics)(const Cubics<A>& cubics);
+  /// The same in perspective views, for a row of pixels, each of which has cubics of its own.
   void (*raiseFanCubics)(const FanCubicRow<A>& row);
   /// Pixels become the larger of themselves and the averages.
   void (*raiseAverages)(const Averages<A>& averages, std::ptrdiff_t n);

@@ -62,6 +62,15 @@ std::array<Corners, 4> coefficients(const glm::dvec3& p, const glm::dvec3& q)
 }
 
 template <class A>
+BoxSide<A> sideBetween(double from, double to)
+{
+  const double low = std::min(from, to), high = std::max(from, to), cell = std::floor(low);
+  const bool crosses = high > cell + 1.0;
+  return { static_cast<int>(cell), static_cast<A>(low - cell),
+    static_cast<A>(high - cell - crosses), crosses };
+}
+
+template <class A>
 ExactPiece<A> pieceBetween(
   const ShearWarp& geometry, int k, const glm::dvec3& from, const glm::dvec3& to)
 {
@@ -89,6 +98,24 @@ ExactPiece<A> pieceBetween(
   }
   return piece;
 }
+}
+
+template <class A>
+void findExactBoxes(
+  const ShearWarp& geometry, const ShearWarp& part, std::vector<ExactBoxes<A>>& boxes)
+{
+  const glm::ivec3& first = part.first();
+  boxes.resize(part.size().z);
+  for (int own = 0; own < part.size().z; ++own)
+  {
+    const int k = own + first.z;
+    const glm::dvec2 begin = -geometry.position(k - 0.5) - glm::dvec2(first),
+                     middle = -geometry.position(k) - glm::dvec2(first),
+                     end = -geometry.position(k + 0.5) - glm::dvec2(first);
+    const auto box = [](const glm::dvec2& from, const glm::dvec2& to) -> ExactBox<A>
+    { return { sideBetween<A>(from.x, to.x), sideBetween<A>(from.y, to.y) }; };
+    boxes[own] = { box(begin, middle), box(begin, end), box(middle, end) };
+  }
 }
 
 template <class A>
@@ -125,6 +152,9 @@ void findExactPaths(
     }
   }
 }
+
+template void findExactBoxes(const ShearWarp&, const ShearWarp&, std::vector<ExactBoxes<float>>&);
+template void findExactBoxes(const ShearWarp&, const ShearWarp&, std::vector<ExactBoxes<double>>&);
 
 void findFieldSpans(const ShearWarp& geometry, std::vector<Span>& spans)
 {

@@ -16,7 +16,8 @@ namespace splatting
 namespace
 {
 template <class A>
-void findReach(const std::vector<ExactPath<A>>& paths, WorksheetReach<A>& reach)
+void findReach(const std::vector<ExactPath<A>>& paths, const std::vector<ExactBoxes<A>>& boxes,
+  WorksheetReach<A>& reach)
 {
   const int count = static_cast<int>(paths.size());
   reach.slices.assign(count, {});
@@ -31,6 +32,13 @@ void findReach(const std::vector<ExactPath<A>>& paths, WorksheetReach<A>& reach)
         window.add(piece.di, piece.dj);
         window.add(piece.di + 1, piece.dj + 1);
       }
+    }
+    for (int n = 0; n < 3; ++n)
+    {
+      const BoxSide<A>&columns = boxes[k][n].columns, &rows = boxes[k][n].rows;
+      Window& window = reach.slices[std::clamp(k + n - 1, 0, count - 1)];
+      window.add(columns.cell, rows.cell);
+      window.add(columns.cell + 1 + columns.crosses, rows.cell + 1 + rows.crosses);
     }
   }
   reach.columns = reach.rows = 0;
@@ -59,10 +67,13 @@ public:
 
   /// @param field  of each row the pixels that see the field, see findFieldSpans()
   ExactWorksheets(const Frame& frame, const std::vector<ExactPath<A>>& paths,
-    const std::vector<Span>& field, const WorksheetReach<A>& reach)
+    const std::vector<ExactBoxes<A>>& boxes, const std::vector<Span>& field,
+    const WorksheetReach<A>& reach)
     : WorksheetLayers<T>(frame, false, reach, 1),
       Paths(paths),
-      Field(field)
+      Boxes(boxes),
+      Field(field),
+      Slack(ExactBoxSlack<A> * this->largestVoxel())
   {
   }
 
@@ -95,37 +106,42 @@ private:
   void raise(int k, int first, int end, const Span& span, const Target& target, bool special,
     Patch& patch) const
   {
-    const WorksheetLoops<A>& loops = this->Shared.kernels;
-    CubicRow<A> row;
-    row.pixels = span;
-    row.sourceStride = patch.rowLength;
-    row.special = special;
-    for (int v = first; v < end; ++v)
+    Cubics<A> cubics;
+    cubics.image = target.at(0, 0);
+    cubics.imageStride = target.stride;
+    cubics.columns = span;
+    cubics.rows = { first, end };
+    cubics.field = this->Field.data();
+    cubics.sourceStride = patch.rowLength;
+    cubics.special = special;
+    cubics.slack = this->Slack;
+    cubics.before = this->boxIn(k - 1, this->Boxes[k][0], patch);
+    cubics.own = this->boxIn(k, this->Boxes[k][1], patch);
+    cubics.behind = this->boxIn(k + 1, this->Boxes[k][2], patch);
+    cubics.count = 0;
+    for (const ExactPiece<A>& piece : this->Paths[k])
     {
-      row.image = target.at(0, v);
-      row.field = this->Field[v];
-      row.count = 0;
-      for (const ExactPiece<A>& piece : this->Paths[k])
-      {
-        row.pieces[row.count++] = this->inRow(piece, k, v, patch);
-      }
-      loops.raiseCubics(row);
+      cubics.pieces[cubics.count++] = { this->voxel(piece.di, piece.dj, k + piece.dk, patch),
+        this->voxel(piece.di, piece.dj, k + piece.dk + 1, patch), piece.weights.data(),
+        piece.curved, piece.inField.data(), piece.inBoxes.data() };
     }
+    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    loops.raiseCubics(cubics);
   }
 
-  CubicPiece<A> inRow(const ExactPiece<A>& piece, int k, int v, Patch& patch) const
+  const A* voxel(int i, int j, int slice, Patch& patch) const
   {
-    const int last = this->Shared.geometry.size().z - 1;
-    const auto corner = [&](int slice)
-    { return patch.voxel<A>(piece.di, v + piece.dj, std::clamp(slice, 0, last)); };
-    const auto columns = [v](const std::array<Span, 2>& pixels)
-    { return v >= pixels[1].begin && v < pixels[1].end ? pixels[0] : Span{}; };
-    return { corner(k + piece.dk), corner(k + piece.dk + 1), piece.weights.data(), piece.curved,
-      columns(piece.inField), columns(piece.inBoxes) };
+    return patch.voxel<A>(i, j, std::clamp(slice, 0, this->Shared.geometry.size().z - 1));
+  }
+  PathBox<A> boxIn(int slice, const ExactBox<A>& box, Patch& patch) const
+  {
+    return { this->voxel(box.columns.cell, box.rows.cell, slice, patch), box.columns, box.rows };
   }
 
   const std::vector<ExactPath<A>>& Paths;
+  const std::vector<ExactBoxes<A>>& Boxes;
   const std::vector<Span>& Field;
+  A Slack; ///< see ExactBoxSlack
 };
 
 class ExactMode : public ProjectionMode
@@ -140,15 +156,18 @@ public:
         using A = Accumulator<T>;
         auto& paths = std::get<std::vector<ExactPath<A>>>(this->Paths);
         auto& reach = std::get<WorksheetReach<A>>(this->Reach);
+        auto& boxes = std::get<std::vector<ExactBoxes<A>>>(this->Boxes);
         findExactPaths(frame.whole, frame.geometry, paths);
+        findExactBoxes(frame.whole, frame.geometry, boxes);
         findFieldSpans(frame.whole, this->Field);
-        findReach(paths, reach);
-        walk(frame, ExactWorksheets<T>(frame, paths, this->Field, reach));
+        findReach(paths, boxes, reach);
+        walk(frame, ExactWorksheets<T>(frame, paths, boxes, this->Field, reach));
       });
   }
 
 private:
   std::tuple<std::vector<ExactPath<float>>, std::vector<ExactPath<double>>> Paths;
+  std::tuple<std::vector<ExactBoxes<float>>, std::vector<ExactBoxes<double>>> Boxes;
   std::vector<Span> Field;
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
 };

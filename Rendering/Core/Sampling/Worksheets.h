@@ -132,6 +132,12 @@ public:
   void finish(int v0, int v1) const override;
 
 protected:
+  /// The largest of all voxels, less the base, whatever its sign.
+  A largestVoxel() const
+  {
+    return std::max(this->magnitude(), std::abs(static_cast<A>(this->Shared.range.high) - this->Base));
+  }
+
   /// Room for the voxels of some rows and columns of pixels.
   void open(int v0, int v1, const Span& columns, Patch& patch) const;
 
