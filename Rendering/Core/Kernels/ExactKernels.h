@@ -175,14 +175,25 @@ inline R largestBetween(const BoxSide<A>& side, R a, R b, R c)
                       : larger(first, a + side.end * (b - a));
 }
 
+/// What the field is at most where its ray passes a voxel: between two slices it is between what
+/// these have, and half of it at least is of the nearer one.
+template <class A, class R>
+inline R largestAt(const PathBox<A>& box, std::ptrdiff_t at)
+{
+  using L = Lanes<A, R>;
+  const R own = L::loadFrom(box.own + at);
+  const R others = larger(L::loadFrom(box.before + at), L::loadFrom(box.behind + at));
+  return larger(own, A(0.5) * (own + others));
+}
+
 /// The largest values in the boxes of a register of pixels, row after row.
 template <class A, class R>
-class BoxesOfRows : Lanes<A, R>
+class BoxRows
 {
 public:
   /// @param at  from the voxels of pixel (0, 0) to those of the first pixel
-  BoxesOfRows(const PathBox<A>& box, std::ptrdiff_t stride, std::ptrdiff_t at)
-    : Box(box), Stride(stride), Next(box.voxels + at)
+  BoxRows(const PathBox<A>& box, std::ptrdiff_t stride, std::ptrdiff_t at)
+    : Box(box), Stride(stride), At(at)
   {
     this->Rows[0] = this->takeRow();
     this->Rows[1] = box.rows.crosses ? this->takeRow() : this->Rows[0];
@@ -191,27 +202,26 @@ public:
   inline R take()
   {
     const R next = this->takeRow();
-    const R result = this->Box.rows.crosses
+    const R largest = this->Box.rows.crosses
       ? largestBetween(this->Box.rows, this->Rows[0], this->Rows[1], next)
       : largestBetween(this->Box.rows, this->Rows[1], next, next);
     this->Rows[0] = this->Rows[1];
     this->Rows[1] = next;
-    return result;
+    return largest;
   }
 
 private:
   inline R takeRow()
   {
-    const A* const voxels = this->Next;
-    this->Next += this->Stride;
-    const R a = Lanes<A, R>::loadFrom(voxels), b = Lanes<A, R>::loadFrom(voxels + 1);
-    return largestBetween(
-      this->Box.columns, a, b, this->Box.columns.crosses ? Lanes<A, R>::loadFrom(voxels + 2) : b);
+    const std::ptrdiff_t at = this->At;
+    this->At += this->Stride;
+    const R a = largestAt<A, R>(this->Box, at), b = largestAt<A, R>(this->Box, at + 1);
+    const BoxSide<A>& side = this->Box.columns;
+    return largestBetween(side, a, b, side.crosses ? largestAt<A, R>(this->Box, at + 2) : b);
   }
 
   const PathBox<A>& Box;
-  std::ptrdiff_t Stride;
-  const A* Next;
+  std::ptrdiff_t Stride, At;
   R Rows[2]; // the last two
 };
 
@@ -372,18 +382,15 @@ struct CubicLoop : Lanes<A, R>
     }
   }
 
-  /// The same, but for those that have seen more than their boxes have. Between two slices the
-  /// field is at most what the boxes in both have, of which the nearer one weighs half or more.
+  /// The same, but for those that have seen more than their boxes have.
   inline void runRowsAboveBoxes(std::ptrdiff_t x) const
   {
     const Span& rows = this->cubics.rows;
-    const std::ptrdiff_t stride = this->cubics.sourceStride, first = rows.begin * stride + x;
-    BoxesOfRows<A, R> before(this->cubics.before, stride, first),
-      own(this->cubics.own, stride, first), behind(this->cubics.behind, stride, first);
+    const std::ptrdiff_t stride = this->cubics.sourceStride;
+    BoxRows<A, R> boxes(this->cubics.box, stride, rows.begin * stride + x);
     for (std::ptrdiff_t v = rows.begin; v < rows.end; ++v)
     {
-      const R middle = own.take(), others = larger(before.take(), behind.take());
-      const R most = larger(middle, A(0.5) * (middle + others)) + this->cubics.slack;
+      const R most = boxes.take() + this->cubics.box.slack;
       if (anyOf(most > loadFrom(this->cubics.image + v * this->cubics.imageStride + x)))
       {
         this->allCount(x, v) ? this->template run<false>(x, v) : this->template run<true>(x, v);

@@ -307,12 +307,15 @@ struct BoxSide
   bool crosses; ///< whether the end lies behind the voxel that follows
 };
 
-/// A box around what the rays pass in one slice.
+/// A box around the part of rays' paths that lies half a slice to either side of a slice, and the
+/// first voxels that it reads in the slice before, in this one and in the next.
 template <class A>
 struct PathBox
 {
-  const A* voxels; ///< of pixel (0, 0), the first that it reads
+  const A *before, *own, *behind;
   BoxSide<A> columns, rows;
+  /// How far rounding can take samples beyond what follows from these voxels.
+  A slack;
 };
 
 /// A rectangle of pixels in one slice, and the pieces of their path.
@@ -326,9 +329,8 @@ struct Cubics
   std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
   CubicPiece<A> pieces[MostPieces];
   int count;
-  PathBox<A> before, own, behind; ///< around the path in the slice before, this, and the next
-  A slack;      ///< how far rounding can take samples beyond what follows from the boxes
-  bool special; ///< whether there are NaN or infinities, which say nothing of boxes
+  PathBox<A> box; ///< of pixel (0, 0)
+  bool special;   ///< whether there are NaN or infinities, which boxes know nothing of
 };
 
 /// What FanCells knows of all columns (or rows) in a slice, depths relative to its middle.

@@ -102,19 +102,16 @@ ExactPiece<A> pieceBetween(
 
 template <class A>
 void findExactBoxes(
-  const ShearWarp& geometry, const ShearWarp& part, std::vector<ExactBoxes<A>>& boxes)
+  const ShearWarp& geometry, const ShearWarp& part, std::vector<ExactBox<A>>& boxes)
 {
   const glm::ivec3& first = part.first();
   boxes.resize(part.size().z);
   for (int own = 0; own < part.size().z; ++own)
   {
     const int k = own + first.z;
-    const glm::dvec2 begin = -geometry.position(k - 0.5) - glm::dvec2(first),
-                     middle = -geometry.position(k) - glm::dvec2(first),
-                     end = -geometry.position(k + 0.5) - glm::dvec2(first);
-    const auto box = [](const glm::dvec2& from, const glm::dvec2& to) -> ExactBox<A>
-    { return { sideBetween<A>(from.x, to.x), sideBetween<A>(from.y, to.y) }; };
-    boxes[own] = { box(begin, middle), box(begin, end), box(middle, end) };
+    const glm::dvec2 from = -geometry.position(k - 0.5) - glm::dvec2(first),
+                     to = -geometry.position(k + 0.5) - glm::dvec2(first);
+    boxes[own] = { sideBetween<A>(from.x, to.x), sideBetween<A>(from.y, to.y) };
   }
 }
 
@@ -153,8 +150,8 @@ void findExactPaths(
   }
 }
 
-template void findExactBoxes(const ShearWarp&, const ShearWarp&, std::vector<ExactBoxes<float>>&);
-template void findExactBoxes(const ShearWarp&, const ShearWarp&, std::vector<ExactBoxes<double>>&);
+template void findExactBoxes(const ShearWarp&, const ShearWarp&, std::vector<ExactBox<float>>&);
+template void findExactBoxes(const ShearWarp&, const ShearWarp&, std::vector<ExactBox<double>>&);
 
 void findFieldSpans(const ShearWarp& geometry, std::vector<Span>& spans)
 {

@@ -59,18 +59,16 @@ struct ExactPiece
 template <class A>
 using ExactPath = std::vector<ExactPiece<A>>; ///< one after the other, by ascending depth
 
-/// Around what the path through slice k passes in slice k - 1, k or k + 1, where it reads them.
+/// A box around what the path through a slice passes.
 template <class A>
 struct ExactBox
 {
   BoxSide<A> columns, rows;
 };
-template <class A>
-using ExactBoxes = std::array<ExactBox<A>, 3>;
 
 /// How far rounding can take a sample, or the largest value of a box, beyond what they are, for
 /// voxels up to 1. A sample has 9 roundings of eight products and their sum and 12 of a cubic
-/// between its ends, a box 14 and the mean of two another one. Places are known to 1e-9.
+/// between its ends, a box 1 of a mean and 7 along each side. Places are known to 1e-9.
 template <class A>
 constexpr A ExactBoxSlack = 36 * std::numeric_limits<A>::epsilon() / 2 + A(4e-9);
 
@@ -81,7 +79,7 @@ void findExactPaths(
   const ShearWarp& whole, const ShearWarp& part, std::vector<ExactPath<A>>& paths);
 template <class A>
 void findExactBoxes(
-  const ShearWarp& whole, const ShearWarp& part, std::vector<ExactBoxes<A>>& boxes);
+  const ShearWarp& whole, const ShearWarp& part, std::vector<ExactBox<A>>& boxes);
 
 /**
  * For each row of a parallel image the pixels whose rays run through the field. The others, at the

@@ -16,7 +16,7 @@ namespace splatting
 namespace
 {
 template <class A>
-void findReach(const std::vector<ExactPath<A>>& paths, const std::vector<ExactBoxes<A>>& boxes,
+void findReach(const std::vector<ExactPath<A>>& paths, const std::vector<ExactBox<A>>& boxes,
   WorksheetReach<A>& reach)
 {
   const int count = static_cast<int>(paths.size());
@@ -33,10 +33,10 @@ void findReach(const std::vector<ExactPath<A>>& paths, const std::vector<ExactBo
         window.add(piece.di + 1, piece.dj + 1);
       }
     }
-    for (int n = 0; n < 3; ++n)
+    const BoxSide<A>&columns = boxes[k].columns, &rows = boxes[k].rows;
+    for (int s = k - 1; s <= k + 1; ++s)
     {
-      const BoxSide<A>&columns = boxes[k][n].columns, &rows = boxes[k][n].rows;
-      Window& window = reach.slices[std::clamp(k + n - 1, 0, count - 1)];
+      Window& window = reach.slices[std::clamp(s, 0, count - 1)];
       window.add(columns.cell, rows.cell);
       window.add(columns.cell + 1 + columns.crosses, rows.cell + 1 + rows.crosses);
     }
@@ -67,7 +67,7 @@ public:
 
   /// @param field  of each row the pixels that see the field, see findFieldSpans()
   ExactWorksheets(const Frame& frame, const std::vector<ExactPath<A>>& paths,
-    const std::vector<ExactBoxes<A>>& boxes, const std::vector<Span>& field,
+    const std::vector<ExactBox<A>>& boxes, const std::vector<Span>& field,
     const WorksheetReach<A>& reach)
     : WorksheetLayers<T>(frame, false, reach, 1),
       Paths(paths),
@@ -114,10 +114,10 @@ private:
     cubics.field = this->Field.data();
     cubics.sourceStride = patch.rowLength;
     cubics.special = special;
-    cubics.slack = this->Slack;
-    cubics.before = this->boxIn(k - 1, this->Boxes[k][0], patch);
-    cubics.own = this->boxIn(k, this->Boxes[k][1], patch);
-    cubics.behind = this->boxIn(k + 1, this->Boxes[k][2], patch);
+    const ExactBox<A>& box = this->Boxes[k];
+    const auto firstOf = [&](int slice)
+    { return this->voxel(box.columns.cell, box.rows.cell, slice, patch); };
+    cubics.box = { firstOf(k - 1), firstOf(k), firstOf(k + 1), box.columns, box.rows, this->Slack };
     cubics.count = 0;
     for (const ExactPiece<A>& piece : this->Paths[k])
     {
@@ -133,13 +133,8 @@ private:
   {
     return patch.voxel<A>(i, j, std::clamp(slice, 0, this->Shared.geometry.size().z - 1));
   }
-  PathBox<A> boxIn(int slice, const ExactBox<A>& box, Patch& patch) const
-  {
-    return { this->voxel(box.columns.cell, box.rows.cell, slice, patch), box.columns, box.rows };
-  }
-
   const std::vector<ExactPath<A>>& Paths;
-  const std::vector<ExactBoxes<A>>& Boxes;
+  const std::vector<ExactBox<A>>& Boxes;
   const std::vector<Span>& Field;
   A Slack; ///< see ExactBoxSlack
 };
@@ -156,7 +151,7 @@ public:
         using A = Accumulator<T>;
         auto& paths = std::get<std::vector<ExactPath<A>>>(this->Paths);
         auto& reach = std::get<WorksheetReach<A>>(this->Reach);
-        auto& boxes = std::get<std::vector<ExactBoxes<A>>>(this->Boxes);
+        auto& boxes = std::get<std::vector<ExactBox<A>>>(this->Boxes);
         findExactPaths(frame.whole, frame.geometry, paths);
         findExactBoxes(frame.whole, frame.geometry, boxes);
         findFieldSpans(frame.whole, this->Field);
@@ -167,7 +162,7 @@ public:
 
 private:
   std::tuple<std::vector<ExactPath<float>>, std::vector<ExactPath<double>>> Paths;
-  std::tuple<std::vector<ExactBoxes<float>>, std::vector<ExactBoxes<double>>> Boxes;
+  std::tuple<std::vector<ExactBox<float>>, std::vector<ExactBox<double>>> Boxes;
   std::vector<Span> Field;
   std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
 };
