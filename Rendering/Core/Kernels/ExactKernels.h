@@ -431,94 +431,42 @@ void raiseCubics(const Cubics<A>& cubics)
   cubics.special ? raiseCubicRows<A, true>(cubics) : raiseCubicRows<A, false>(cubics);
 }
 
-/// Of a row of pixels in perspective, what no voxel is above that a register of them reads. Most
-/// registers have seen more than that before, and need not know where their rays are.
+/// Columns of voxels under a row of pixels in perspective, and what the field is at most where the
+/// row's rays pass them.
 template <class A>
-class FanCeilings
+class FanColumns
 {
 public:
-  FanCeilings(const FanCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
-    : Cells(row.columns.cell),
-      First(Cells[begin] - 1),
-      Count(Cells[end - 1] + Beyond - First)
+  FanColumns(const FanCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
+    : First(row.columns.cell[begin] - 1), Count(row.columns.cell[end - 1] + 4 - First)
   {
-    if (this->known())
+    constexpr std::ptrdiff_t w = width<A>;
+    for (std::ptrdiff_t c = 0; c < this->Count && this->known(); c += w)
     {
-      this->findColumns(row);
-      this->widenToRegisters();
+      const std::ptrdiff_t at = c + w <= this->Count ? c : this->Count - w;
+      store<A>(this->Largest + at, largest(row, this->First + at));
     }
   }
 
   /// Pixels are narrower than voxels: there is room.
   bool known() const { return this->Count >= width<A> && this->Count <= Room; }
-
-  A of(std::ptrdiff_t x) const
-  {
-    const std::ptrdiff_t begin = this->Cells[x] - 1 - this->First,
-                         end = this->Cells[x + width<A> - 1] + Beyond - this->First;
-    // Two windows of a register's width, which overlap.
-    const std::ptrdiff_t second = end - width<A>;
-    return end - begin > 2 * width<A>
-      ? std::numeric_limits<A>::infinity()
-      : larger(this->Most[begin], this->Most[second > begin ? second : begin]);
-  }
+  /// Column 0, which need not exist.
+  const A* columns() const { return this->Largest - this->First; }
 
 private:
-  /// Behind the last voxel of a pixel, as in FanCells::voxels().
-  static constexpr std::ptrdiff_t Beyond = 4;
   static constexpr std::ptrdiff_t Room = 512;
 
-  void findColumns(const FanCubicRow<A>& row)
+  static inline Pack<A> largest(const FanCubicRow<A>& row, std::ptrdiff_t at)
   {
-    const A* rows[12];
-    int count = 0;
-    for (int p = 0; p < row.count; ++p)
-    {
-      for (const A* own : row.parts[p].rows)
-      {
-        bool isNew = true;
-        for (int n = 0; n < count; ++n)
-        {
-          isNew = isNew && rows[n] != own;
-        }
-        rows[count] = own;
-        count += isNew;
-      }
-    }
-    constexpr std::ptrdiff_t w = width<A>;
-    for (std::ptrdiff_t c = 0; c < this->Count; c += w)
-    {
-      const std::ptrdiff_t at = c + w <= this->Count ? c : this->Count - w;
-      Pack<A> most = Pack<A>{} - std::numeric_limits<A>::infinity();
-      for (int n = 0; n < count; ++n)
-      {
-        most = larger(load<A>(rows[n] + this->First + at), most);
-      }
-      store<A>(this->Most + at, most);
-    }
-    for (int n = 0; n < 2; ++n)
-    {
-      store<A>(this->Most + this->Count + n * w, Pack<A>{} - std::numeric_limits<A>::infinity());
-    }
+    const PathBox<A>& box = row.box;
+    const Pack<A> a = largestAt<A, Pack<A>>(box, at);
+    const Pack<A> b = largestAt<A, Pack<A>>(box, at + row.sourceStride);
+    return largestBetween(
+      box.rows, a, b, box.rows.crosses ? largestAt<A, Pack<A>>(box, at + 2 * row.sourceStride) : b);
   }
 
-  /// From columns of voxels to as many of them, from each on, as a register has pixels.
-  void widenToRegisters()
-  {
-    constexpr std::ptrdiff_t w = width<A>;
-    for (std::ptrdiff_t step = 1; step < w; step *= 2)
-    {
-      for (std::ptrdiff_t c = 0; c < this->Count; c += w)
-      {
-        store<A>(this->Most + c,
-          larger(load<A>(this->Most + c + step), load<A>(this->Most + c)));
-      }
-    }
-  }
-
-  const std::int32_t* Cells;
-  std::ptrdiff_t First, Count; // of columns of voxels
-  A Most[Room + 2 * width<A>];
+  std::ptrdiff_t First, Count;
+  A Largest[Room + 4 * width<A>]; // loops read whole registers
 };
 
 /// The cubics of a perspective view: each pixel has a place of its own in the cells, that of a row
@@ -624,10 +572,21 @@ struct FanCubicLoop : Lanes<A, R>
     return counts ? raised : best;
   }
 
-  /// Whether a pixel is less than the ceiling.
-  inline bool isBelow(A ceiling, std::ptrdiff_t x) const
+  /// Whether a sample can be above its pixel: whether the largest value in its box is.
+  inline bool canRaise(const FanColumns<A>& columns, std::ptrdiff_t x) const
   {
-    return anyOf(all(ceiling) > Lanes<A, R>::template opened<Special>(loadFrom(this->row.image + x)));
+    const R one = all(A(1));
+    const R at = loadFrom(this->row.columns.at + x), slope = loadFrom(this->row.columns.slope + x);
+    const R near = at + slope * this->row.parts[0].from;
+    const R far = at + slope * this->row.parts[this->row.count - 1].to;
+    const R begin = smaller(near, far), end = larger(near, far);
+    const Cells cells(this->row.columns.cell + x);
+    const R a = cells.pick(columns.columns()), b = cells.pick(columns.columns() + 1),
+            c = cells.pick(columns.columns() + 2);
+    const R first = between(a, b, clampedShare(begin));
+    const R last = end > one ? larger(b, between(b, c, clampedShare(end - one)))
+                             : between(a, b, clampedShare(end));
+    return anyOf(larger(first, last) + this->row.box.slack > loadFrom(this->row.image + x));
   }
 
   inline void run(std::ptrdiff_t x) const
@@ -705,18 +664,17 @@ struct FanCubicLoop : Lanes<A, R>
 };
 
 /// Some pixels: a register or more.
-template <class A, bool Special>
-inline void raiseFanRegisters(const FanCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
+template <class A>
+inline void raiseAboveBoxes(const FanCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
 {
-  using Loop = FanCubicLoop<A, Pack<A>, Special>;
-  const FanCeilings<A> ceilings(row, begin, end);
-  const bool known = ceilings.known();
+  const FanCubicLoop<A, Pack<A>, false> loop(row);
+  const FanColumns<A> columns(row, begin, end);
   for (std::ptrdiff_t x = begin; x < end; x += width<A>)
   {
     const std::ptrdiff_t at = x + width<A> <= end ? x : end - width<A>;
-    if (!known || Loop(row).isBelow(ceilings.of(at), at))
+    if (!columns.known() || loop.canRaise(columns, at))
     {
-      Loop(row).run(at);
+      loop.run(at);
     }
   }
 }
@@ -724,20 +682,24 @@ inline void raiseFanRegisters(const FanCubicRow<A>& row, std::ptrdiff_t begin, s
 template <class A, bool Special>
 inline void raiseFanCubicRow(const FanCubicRow<A>& row)
 {
-  constexpr std::ptrdiff_t w = width<A>, chunk = 256;
+  constexpr std::ptrdiff_t w = width<A>, most = Special ? w : 256; // at a time
   const std::ptrdiff_t begin = row.pixels.begin, end = row.pixels.end;
-  if (end - begin < w)
+  for (std::ptrdiff_t x = begin; end - begin < w && x < end; ++x)
   {
-    for (std::ptrdiff_t x = begin; x < end; ++x)
-    {
-      FanCubicLoop<A, A, Special>(row).run(x);
-    }
-    return;
+    FanCubicLoop<A, A, Special>(row).run(x);
   }
-  for (std::ptrdiff_t x = begin; x < end; x += chunk)
+  for (std::ptrdiff_t x = begin; end - begin >= w && x < end; x += most)
   {
-    const std::ptrdiff_t last = x + chunk < end ? x + chunk : end;
-    raiseFanRegisters<A, Special>(row, last - x >= w ? x : last - w, last);
+    const std::ptrdiff_t last = x + most < end ? x + most : end;
+    const std::ptrdiff_t first = last - x >= w ? x : last - w;
+    if constexpr (Special)
+    {
+      FanCubicLoop<A, Pack<A>, true>(row).run(first);
+    }
+    else
+    {
+      raiseAboveBoxes(row, first, last);
+    }
   }
 }
 

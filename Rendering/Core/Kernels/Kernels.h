@@ -367,8 +367,10 @@ struct FanCubicRow
   int count;
   A fieldBegin, fieldEnd, boxesBegin, boxesEnd; ///< of the row, as in FanCellArrays
   A fieldNear, fieldFar;
-  A shortest;   ///< way through the field that counts as seeing it
-  bool special; ///< whether there are NaN or infinities
+  A shortest;     ///< way through the field that counts as seeing it
+  PathBox<A> box; ///< of voxel column 0; its columns are each pixel's own
+  std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
+  bool special;                ///< as in Cubics
 };
 
 /// Worksheets from voxels of which some are not finite.

@@ -67,10 +67,11 @@ struct ExactBox
 };
 
 /// How far rounding can take a sample, or the largest value of a box, beyond what they are, for
-/// voxels up to 1. A sample has 9 roundings of eight products and their sum and 12 of a cubic
-/// between its ends, a box 1 of a mean and 7 along each side. Places are known to 1e-9.
+/// voxels up to 1. A sample has 9 roundings of eight products and their sum (in perspective 60, see
+/// PerspectiveExact::slack()) and 12 of a cubic between its ends, a box 1 of a mean and 7 along each
+/// side, and in perspective places have 4, which count twice. Else they are known to 1e-9.
 template <class A>
-constexpr A ExactBoxSlack = 36 * std::numeric_limits<A>::epsilon() / 2 + A(4e-9);
+constexpr A ExactBoxSlack = 95 * std::numeric_limits<A>::epsilon() / 2 + A(4e-9);
 
 /// The paths of a parallel view, of all slices of a part of it (or of the whole): the weights do
 /// not depend on where the part begins.

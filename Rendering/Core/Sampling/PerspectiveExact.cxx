@@ -45,7 +45,8 @@ public:
     : WorksheetLayers<T>(frame, true, reach, 1),
       Columns(columns),
       Rows(rows),
-      Depths(frame.whole, 2)
+      Depths(frame.whole, 2),
+      Slack(ExactBoxSlack<A> * this->largestVoxel())
   {
   }
 
@@ -97,6 +98,7 @@ private:
     row.columns = this->Columns.slice(k);
     row.special = special;
     row.shortest = shortest;
+    row.sourceStride = patch.rowLength;
     for (int v = first; v < end; ++v)
     {
       row.image = target.at(0, v);
@@ -108,7 +110,11 @@ private:
       row.fieldNear = std::max(rows.fieldNear[v], this->nearest());
       row.fieldFar = std::min(rows.fieldFar[v], this->farthest());
       this->findParts(k, v, faces - double(slice), rows, patch, row);
-      loops.raiseFanCubics(row);
+      if (row.count > 0)
+      {
+        this->findBox(k, v, rows, patch, row);
+        loops.raiseFanCubics(row);
+      }
     }
   }
 
@@ -162,9 +168,26 @@ private:
     }
   }
 
+  /// What the row's rays pass between the ends of its parts.
+  void findBox(
+    int k, int v, const FanCellArrays<A>& rows, Patch& patch, FanCubicRow<A>& row) const
+  {
+    const int last = this->size().z - 1;
+    const auto firstOf = [&](int slice)
+    { return patch.template voxel<A>(0, rows.cell[v], std::clamp(slice, 0, last)); };
+    row.box = { firstOf(k - 1), firstOf(k), firstOf(k + 1), {}, {}, this->Slack };
+    const auto share = [](A x) { return std::clamp(x, A(0), A(1)); };
+    const A near = rows.at[v] + rows.slope[v] * row.parts[0].from;
+    const A far = rows.at[v] + rows.slope[v] * row.parts[row.count - 1].to;
+    const bool crosses = std::max(near, far) > A(1);
+    row.box.rows = { 0, share(std::min(near, far)),
+      share(std::max(near, far) - static_cast<A>(crosses)), crosses };
+  }
+
   const FanCells<A>& Columns;
   const FanCells<A>& Rows;
   FieldRange Depths;
+  A Slack; ///< of boxes
 };
 
 class PerspectiveExactMode : public ProjectionMode
