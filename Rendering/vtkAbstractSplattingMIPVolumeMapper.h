@@ -360,7 +360,7 @@ public:
    * screen, or 4. SAMPLING_OF_MODE (-1, the default): in EXACT as AUTOMATIC_SAMPLING; in the other
    * modes 1, as in [CS98]. These place what is small up to half a voxel off where it is magnified;
    * with AUTOMATIC_SAMPLING they do not. In EXACT the picture between pixels is interpolated: with
-   * 4 it is at least 45 dB from the field's maxima, with fewer at least 36.
+   * 4 it is at least 43 dB from the field's maxima, with fewer at least 36.
    */
   virtual void SetShearImageSampling(int);
   virtual int GetShearImageSampling();

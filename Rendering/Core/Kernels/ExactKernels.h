@@ -193,7 +193,9 @@ class BoxRows
 public:
   /// @param at  from the voxels of pixel (0, 0) to those of the first pixel
   BoxRows(const PathBox<A>& box, std::ptrdiff_t stride, std::ptrdiff_t at)
-    : Box(box), Stride(stride), At(at)
+    : Box(box),
+      Stride(stride),
+      At(at)
   {
     this->Rows[0] = this->takeRow();
     this->Rows[1] = box.rows.crosses ? this->takeRow() : this->Rows[0];
@@ -438,7 +440,8 @@ class FanColumns
 {
 public:
   FanColumns(const FanCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
-    : First(row.columns.cell[begin] - 1), Count(row.columns.cell[end - 1] + 4 - First)
+    : First(row.columns.cell[begin] - 1),
+      Count(row.columns.cell[end - 1] + 4 - First)
   {
     constexpr std::ptrdiff_t w = width<A>;
     for (std::ptrdiff_t c = 0; c < this->Count && this->known(); c += w)

@@ -292,9 +292,9 @@ constexpr int MostPieces = 6;
 template <class A>
 struct CubicPiece
 {
-  const A *low, *high; ///< the first voxel of pixel (0, 0)'s cell in its two slices
-  const A* weights;    ///< as in ExactPiece
-  bool curved;         ///< likewise
+  const A *low, *high;           ///< the first voxel of pixel (0, 0)'s cell in its two slices
+  const A* weights;              ///< as in ExactPiece
+  bool curved;                   ///< likewise
   const Span *inField, *inBoxes; ///< the columns and rows of pixels that it counts for, likewise
 };
 
@@ -367,8 +367,8 @@ struct FanCubicRow
   int count;
   A fieldBegin, fieldEnd, boxesBegin, boxesEnd; ///< of the row, as in FanCellArrays
   A fieldNear, fieldFar;
-  A shortest;     ///< way through the field that counts as seeing it
-  PathBox<A> box; ///< of voxel column 0; its columns are each pixel's own
+  A shortest;                  ///< way through the field that counts as seeing it
+  PathBox<A> box;              ///< of voxel column 0; its columns are each pixel's own
   std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
   bool special;                ///< as in Cubics
 };

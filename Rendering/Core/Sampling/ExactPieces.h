@@ -68,8 +68,8 @@ struct ExactBox
 
 /// How far rounding can take a sample, or the largest value of a box, beyond what they are, for
 /// voxels up to 1. A sample has 9 roundings of eight products and their sum (in perspective 60, see
-/// PerspectiveExact::slack()) and 12 of a cubic between its ends, a box 1 of a mean and 7 along each
-/// side, and in perspective places have 4, which count twice. Else they are known to 1e-9.
+/// PerspectiveExact::slack()) and 12 of a cubic between its ends, a box 1 of a mean and 7 along
+/// each side, and in perspective places have 4, which count twice. Else they are known to 1e-9.
 template <class A>
 constexpr A ExactBoxSlack = 95 * std::numeric_limits<A>::epsilon() / 2 + A(4e-9);
 
@@ -79,8 +79,7 @@ template <class A>
 void findExactPaths(
   const ShearWarp& whole, const ShearWarp& part, std::vector<ExactPath<A>>& paths);
 template <class A>
-void findExactBoxes(
-  const ShearWarp& whole, const ShearWarp& part, std::vector<ExactBox<A>>& boxes);
+void findExactBoxes(const ShearWarp& whole, const ShearWarp& part, std::vector<ExactBox<A>>& boxes);
 
 /**
  * For each row of a parallel image the pixels whose rays run through the field. The others, at the

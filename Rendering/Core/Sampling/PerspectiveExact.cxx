@@ -169,8 +169,7 @@ private:
   }
 
   /// What the row's rays pass between the ends of its parts.
-  void findBox(
-    int k, int v, const FanCellArrays<A>& rows, Patch& patch, FanCubicRow<A>& row) const
+  void findBox(int k, int v, const FanCellArrays<A>& rows, Patch& patch, FanCubicRow<A>& row) const
   {
     const int last = this->size().z - 1;
     const auto firstOf = [&](int slice)

@@ -135,7 +135,8 @@ protected:
   /// The largest of all voxels, less the base, whatever its sign.
   A largestVoxel() const
   {
-    return std::max(this->magnitude(), std::abs(static_cast<A>(this->Shared.range.high) - this->Base));
+    return std::max(
+      this->magnitude(), std::abs(static_cast<A>(this->Shared.range.high) - this->Base));
   }
 
   /// Room for the voxels of some rows and columns of pixels.
