@@ -7,6 +7,7 @@
 #ifndef ReductionTesting_h
 #define ReductionTesting_h
 
+#include "AverageTesting.h"
 #include "Clipping/Cuts.h"
 #include "CoreTesting.h"
 #include "Reductions.h"

@@ -180,6 +180,21 @@ reference::Image<double> Stage::gray()
 }
 
 //------------------------------------------------------------------------------
+Vector anyDirection(reference::Random& random)
+{
+  Vector direction;
+  do
+  {
+    for (double& component : direction)
+    {
+      component = random.uniform(-1.0, 1.0);
+    }
+  } while (vtkMath::Norm(direction.data()) < 0.2);
+  vtkMath::Normalize(direction.data());
+  return direction;
+}
+
+//------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> toImageData(const reference::Volume<std::uint8_t>& volume)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();

@@ -10,6 +10,7 @@
 
 #include "ImageComparison.h"
 #include "Projection.h"
+#include "Random.h"
 #include "Volume.h"
 
 #include "vtkNew.h"
@@ -123,6 +124,11 @@ private:
   int Width;
   int Height;
 };
+
+/**
+ * Of length 1, and anywhere.
+ */
+Vector anyDirection(reference::Random& random);
 
 /**
  * A copy of a volume of bytes, spacing 1, origin 0, first voxel 0.

@@ -4,6 +4,7 @@
 // What is carried along with the winners of a projection: in preview the voxel that the ray meets
 // first of those that win, in the other modes the average over the footprint of the slice that
 // wins.
+#include "AverageTesting.h"
 #include "CoreTesting.h"
 
 #include <algorithm>

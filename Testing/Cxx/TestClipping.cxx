@@ -131,20 +131,6 @@ void testClippingPlanes(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper
   stage.volume->SetPosition(0.0, 0.0, 0.0);
 }
 
-stage::Vector anyDirection(reference::Random& random)
-{
-  stage::Vector direction;
-  do
-  {
-    for (double& component : direction)
-    {
-      component = random.uniform(-1.0, 1.0);
-    }
-  } while (vtkMath::Norm(direction.data()) < 0.2);
-  vtkMath::Normalize(direction.data());
-  return direction;
-}
-
 /// What a plane of the world leaves, in index space.
 std::array<double, 4> halfSpaceOf(
   vtkVolume* volume, vtkImageData* image, const stage::Vector& origin, const stage::Vector& normal)
@@ -192,7 +178,7 @@ void turnAtRandom(vtkVolume* volume, reference::Random& random)
   }
   volume->SetOrientation(angles.data());
   volume->SetScale(scales.data());
-  stage::Vector place = anyDirection(random);
+  stage::Vector place = stage::anyDirection(random);
   vtkMath::MultiplyScalar(place.data(), 50.0);
   volume->SetPosition(place.data());
 }
@@ -222,8 +208,8 @@ void testSamples(stage::Checks& check)
       stage::Stage stage(Width, Height);
       stage.show(mapper);
       turnAtRandom(stage.volume, random);
-      const stage::Vector direction = anyDirection(random);
-      const stage::Vector up = anyDirection(random);
+      const stage::Vector direction = stage::anyDirection(random);
+      const stage::Vector up = stage::anyDirection(random);
       stage.look(direction, up);
       // As far before and behind the middle of the volume as it reaches, or nearer.
       vtkCamera* const camera = stage.renderer->GetActiveCamera();
@@ -244,10 +230,10 @@ void testSamples(stage::Checks& check)
         halfSpaceOf(stage.volume, image, far, backwards) };
       for (int planes = random.uniform(0, 3); planes > 0; --planes)
       {
-        stage::Vector origin = anyDirection(random);
+        stage::Vector origin = stage::anyDirection(random);
         vtkMath::MultiplyScalar(origin.data(), 0.3 * reach * random.uniform(0.0, 1.0));
         vtkMath::Add(origin.data(), stage.volume->GetCenter(), origin.data());
-        const stage::Vector normal = anyDirection(random);
+        const stage::Vector normal = stage::anyDirection(random);
         vtkNew<vtkPlane> plane;
         plane->SetOrigin(origin.data());
         plane->SetNormal(normal.data());
@@ -291,7 +277,7 @@ void testThinVolumes(stage::Checks& check)
       mapper->SetQualityMode(random.uniform(0, 3));
       stage::Stage stage(Width, Height);
       stage.show(mapper);
-      stage::Vector direction = anyDirection(random);
+      stage::Vector direction = stage::anyDirection(random);
       if (random.uniform(0, 1))
       {
         const int axis = random.uniform(0, 2);
@@ -299,7 +285,7 @@ void testThinVolumes(stage::Checks& check)
         direction = { 0.0, 0.0, 0.0 };
         direction[axis] = side;
       }
-      const stage::Vector up = anyDirection(random);
+      const stage::Vector up = stage::anyDirection(random);
       stage.look(direction, up);
       // All of it is in the window, and voxels are wider than pixels.
       const double pixelsPerVoxel = random.uniform(1.3, std::min(9.0, 180.0 / image->GetLength()));

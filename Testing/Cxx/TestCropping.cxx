@@ -4,6 +4,7 @@
 // Cropping leaves the samples of the regions that are shown: each of the 27 regions by itself, the
 // sets that VTK has names for and random ones, in all modes and with all accelerations; and planes
 // at any angle besides.
+#include "AverageTesting.h"
 #include "CoreTesting.h"
 #include "Reductions.h"
 

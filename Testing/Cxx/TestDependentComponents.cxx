@@ -92,24 +92,11 @@ Size anySize(reference::Random& random)
   return size;
 }
 
-stage::Vector anyDirection(reference::Random& random)
-{
-  stage::Vector direction;
-  do
-  {
-    for (double& component : direction)
-    {
-      component = random.uniform(-1.0, 1.0);
-    }
-  } while (vtkMath::Norm(direction.data()) < 0.2);
-  return direction;
-}
-
 /// From anywhere.
 void lookAtRandom(stage::Stage& stage, double scale, reference::Random& random)
 {
-  const stage::Vector direction = anyDirection(random);
-  const stage::Vector up = anyDirection(random);
+  const stage::Vector direction = stage::anyDirection(random);
+  const stage::Vector up = stage::anyDirection(random);
   stage.look(direction, up, scale);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Exact mode shows the maximum of the trilinear field along each ray, as brute force finds it.
+#include "AverageTesting.h"
 #include "Display/Warp.h"
 #include "ExactTesting.h"
 #include "FieldWithNaN.h"

@@ -3,6 +3,7 @@
 //
 // What must not change a picture: threads, instruction sets, the 48 symmetries of the axes; and the
 // grey-level maps that commute with the projection.
+#include "AverageTesting.h"
 #include "ExactTesting.h"
 
 #include <vtkSMPTools.h>

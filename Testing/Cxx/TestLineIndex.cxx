@@ -3,6 +3,7 @@
 //
 // Projections along chains of voxels have the same bits as dense ones: every scalar type, mode,
 // order, with and without invisible voxels. Delta encoding stays within its bound.
+#include "AverageTesting.h"
 #include "LineTesting.h"
 
 #include <vtkSMPTools.h>

@@ -4,6 +4,7 @@
 // Projections along the rays of an eye. Preview mode equals the exact traversal bit for bit,
 // standard and high mode the averages of parts within their rounding; where the images of two axes
 // meet they show the same.
+#include "AverageTesting.h"
 #include "CoreTesting.h"
 
 #include "Sampling/PerspectiveFootprints.h"

@@ -4,6 +4,7 @@
 // Pictures of vtkSplattingMIPProjection against the definition: where a pixel's ray meets the shear
 // image, between the four rays beside it, each reduced sample by sample. In a process without a
 // display, which never loads OpenGL.
+#include "AverageTesting.h"
 #include "ProjectionTesting.h"
 
 #include "FieldMaximum.h"

@@ -44,19 +44,6 @@ namespace
 constexpr int Width = 160;
 constexpr int Height = 130;
 
-stage::Vector anyDirection(reference::Random& random)
-{
-  stage::Vector direction;
-  do
-  {
-    for (double& component : direction)
-    {
-      component = random.uniform(-1.0, 1.0);
-    }
-  } while (vtkMath::Norm(direction.data()) < 0.2);
-  return direction;
-}
-
 vtkSmartPointer<vtkImageData> anyBlobs(reference::Random& random)
 {
   std::array<int, 3> size;
@@ -102,15 +89,15 @@ struct Scene
     this->actor->SetMapper(polyMapper);
     this->actor->GetProperty()->SetColor(0.0, 1.0, 0.0);
     this->actor->GetProperty()->LightingOff();
-    const stage::Vector side = anyDirection(random);
+    const stage::Vector side = stage::anyDirection(random);
     const double away = random.uniform(0.0, 50.0) / vtkMath::Norm(side.data());
     const double* const middle = this->image->GetCenter();
     this->actor->SetPosition(
       middle[0] + away * side[0], middle[1] + away * side[1], middle[2] + away * side[2]);
     this->stage.renderer->AddActor(this->actor);
     this->stage.viewAngle = random.uniform(0, 1) ? random.uniform(10.0, 80.0) : 0.0;
-    const stage::Vector direction = anyDirection(random);
-    const stage::Vector up = anyDirection(random);
+    const stage::Vector direction = stage::anyDirection(random);
+    const stage::Vector up = stage::anyDirection(random);
     this->stage.look(direction, up, random.uniform(0.8, 1.5));
   }
 

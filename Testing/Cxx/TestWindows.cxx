@@ -39,19 +39,6 @@ using Mapper = vtkSplattingMIPVolumeMapper;
 constexpr int Width = 130;
 constexpr int Height = 110;
 
-stage::Vector anyDirection(reference::Random& random)
-{
-  stage::Vector direction;
-  do
-  {
-    for (double& component : direction)
-    {
-      component = random.uniform(-1.0, 1.0);
-    }
-  } while (vtkMath::Norm(direction.data()) < 0.2);
-  return direction;
-}
-
 reference::Volume<std::uint8_t> anyBlobs(reference::Random& random)
 {
   std::array<int, 3> size;
@@ -76,8 +63,8 @@ struct Scene
     : volume(anyBlobs(random)),
       image(stage::toImageData(this->volume)),
       mapper(stage::splatting(this->image)),
-      direction(anyDirection(random)),
-      up(anyDirection(random)),
+      direction(stage::anyDirection(random)),
+      up(stage::anyDirection(random)),
       viewAngle(random.uniform(0, 1) ? random.uniform(5.0, 45.0) : 0.0)
   {
     this->mapper->SetQualityMode(random.uniform(0, 2));

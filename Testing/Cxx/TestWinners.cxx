@@ -4,6 +4,7 @@
 // Where the samples lie that a projection shows: the voxel of previews, the slice of averages and
 // the place of the field's extremum are those that brute force finds; of equal samples the nearest
 // to the viewer wins, for any acceleration, instruction set and number of threads.
+#include "AverageTesting.h"
 #include "FieldMaximum.h"
 #include "WinnerScenes.h"
 #include "Winners.h"

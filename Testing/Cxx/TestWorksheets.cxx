@@ -3,6 +3,7 @@
 //
 // Standard and high mode equal the average over pixel area and slice thickness, integrated
 // numerically, within the documented error bound.
+#include "AverageTesting.h"
 #include "CoreTesting.h"
 
 #include <algorithm>

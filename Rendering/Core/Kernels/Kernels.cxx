@@ -8,7 +8,7 @@
 // anonymous namespace, but the table.
 #include "Kernels/Kernels.h"
 #include "Kernels/DepthKernels.h"
-#include "Kernels/ExactKernels.h"
+#include "Kernels/ExactFanKernels.h"
 #include "Kernels/FanKernels.h"
 #include "Kernels/RayKernels.h"
 #include "Kernels/Registers.h"

@@ -202,8 +202,8 @@ private:
   template <class F>
   void forPieces(int v0, int v1, const Span& columns, F&& f) const;
 
-  /// Makes the worksheet of slice k for pixels of some rows: NaN or, where no voxel is, the least
-  /// value where there is no sample.
+  /// Makes the worksheet of slice k for pixels of some rows. Pixels without a sample get the least
+  /// value or, if the volume has NaN, NaN.
   void sample(int k, int step, int first, int end, const Span& span, const Target& worksheet,
     Patch& patch) const;
   /// Raises pixels of some rows to the worksheet of slice k.
