@@ -53,7 +53,6 @@ public:
     EXACT = 3
   };
 
-  static constexpr int SAMPLING_OF_MODE = -1;
   static constexpr int AUTOMATIC_SAMPLING = 0;
 
   enum Kernels
@@ -357,10 +356,10 @@ public:
    * is farthest from the eye): 1, 2 or 4; 3 is taken as 2. What STANDARD and HIGH average over
    * shrinks with the pixels. The time of a projection grows with their number. AUTOMATIC_SAMPLING
    * (0): the least of the three with which a pixel of the shear image is no wider than one of the
-   * screen, or 4. SAMPLING_OF_MODE (-1, the default): in EXACT as AUTOMATIC_SAMPLING; in the other
-   * modes 1, as in [CS98]. These place what is small up to half a voxel off where it is magnified;
-   * with AUTOMATIC_SAMPLING they do not. In EXACT the picture between pixels is interpolated: with
-   * 4 it is at least 43 dB from the field's maxima, with fewer at least 36.
+   * screen, or 4. Default: 1, as in [CS98]. PREVIEW, STANDARD and HIGH then place what is small up
+   * to half a voxel off where it is magnified; with AUTOMATIC_SAMPLING they do not. In EXACT the
+   * screen's pixels have rays of their own, which look where those of the shear image have their
+   * maxima; more of these find more in noise.
    */
   virtual void SetShearImageSampling(int);
   virtual int GetShearImageSampling();

@@ -302,7 +302,8 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   in.WarnOfBudget(this);
   if (data.Components.IsProjected())
   {
-    data.Components.FindRim(data.Images, data.Cuts.OfProjection(), view);
+    data.Components.FindScreenRays(
+      data.Images, data.Cuts.OfProjection(), data.Cuts.SceneDepths(), view);
   }
   if (data.Components.IsProjected() && (!properties.DisplayOnRootOnly || data.Ranks.IsRoot()))
   {

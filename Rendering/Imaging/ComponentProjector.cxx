@@ -195,8 +195,9 @@ ProjectionSettings ComponentProjector::SettingsOf(
   {
     settings.quality = Quality::High; // what is carried is an average
   }
-  // Colours that are carried, and locations, matter below the window, too.
-  if (this->Cull && !settings.keepWinners && settings.reduction == Reduction::Maximum)
+  // Colours that are carried, locations and where rays have their maxima matter below the window,
+  // too.
+  if (this->Cull && !settings.findsWinners() && settings.reduction == Reduction::Maximum)
   {
     settings.floor = this->Colors.FloorOfWindow(&channel - this->Channels.data());
   }
@@ -308,6 +309,8 @@ bool ComponentProjector::Project(const std::vector<ShearWarp>& geometries,
   const ProjectionSettings& settings, const std::vector<Cuts>& cuts)
 {
   this->Projected = false;
+  this->LookedFrom.clear();
+  this->LookedAt = glm::ivec2(0);
   this->Done = 0;
   this->Parts = 0;
   for (const ShearWarp& geometry : geometries)
@@ -339,7 +342,7 @@ bool ComponentProjector::Project(const std::vector<ShearWarp>& geometries,
 
 bool ComponentProjector::HasWinners() const
 {
-  return this->Projected && this->LocatedChannel().Settings.keepWinners;
+  return this->Projected && this->LocatedChannel().Settings.findsWinners();
 }
 
 void ComponentProjector::Describe(Located& located) const
@@ -413,24 +416,41 @@ double ComponentProjector::ShareOfAll(double done) const
     static_cast<double>(channels * std::max<std::size_t>(this->Parts, 1));
 }
 
-void ComponentProjector::FindRim(
-  const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts, const View& view)
+void ComponentProjector::FindScreenRays(const std::vector<ShearWarp>& geometries,
+  const std::vector<Cuts>& cuts, const SceneDepth* depth, const View& view)
 {
   const glm::ivec3 first = this->Ranks ? this->Ranks->First() : glm::ivec3(0);
+  std::vector<glm::dmat3> from;
+  for (const ShearWarp& geometry : geometries)
+  {
+    from.push_back(geometry.screenToShear());
+  }
+  // Where other things end within a slice the projection does not tell.
+  if (!depth && from == this->LookedFrom && view.viewport == this->LookedAt)
+  {
+    return;
+  }
+  this->LookedFrom = depth ? std::vector<glm::dmat3>() : from;
+  this->LookedAt = view.viewport;
   for (Channel& channel : this->Channels)
   {
-    channel.Rim.clear();
-    if (geometries.empty() || !hasFieldRim(channel.Settings))
+    channel.Rays.clear();
+    if (geometries.empty() || geometries.front().isOverview() || !channel.Settings.hasScreenRays())
     {
       continue;
     }
-    channel.Rim.find(
-      channel.Images, geometries, { channel.Index.volume(), first, &cuts }, view.viewport);
-    if (this->Ranks && channel.Rim.values().width > 0)
+    channel.Rays.find(channel.Images, geometries, { channel.Index.volume(), first, &cuts, depth },
+      view.viewport, channel.Settings.instructionSet);
+    if (this->Ranks && channel.Rays.values().width > 0)
     {
-      this->Ranks->Reduce(channel.Rim.values(), geometries.front(), Reduction::Maximum);
+      this->Ranks->Reduce(channel.Rays.values(), geometries.front(), Reduction::Maximum);
     }
   }
+}
+
+double ComponentProjector::ValueOnOwnRay(std::size_t image, const glm::ivec2& pixel) const
+{
+  return this->LocatedChannel().Rays.valueAt(image, pixel);
 }
 
 // Where areas are shown, what is carried is that of the sample that wins in the area.
@@ -461,7 +481,7 @@ void ComponentProjector::Warp(
     if (this->Shown.empty())
     {
       this->Warper.warp(channel.Images, geometries, channel.Settings.reduction, this->Colors.Of(c),
-        view.viewport, channel.Settings.instructionSet, layer, channel.Rim);
+        view.viewport, channel.Settings.instructionSet, layer, channel.Rays);
     }
     else
     {
@@ -494,7 +514,7 @@ void ComponentProjector::WarpScalars(
     using A = std::remove_pointer_t<decltype(values)>;
     std::fill_n(values, pixels, static_cast<A>(background));
     this->Warper.warpScalars(channel.Images, geometries, channel.Settings.reduction, view.viewport,
-      channel.Settings.instructionSet, background, values, channel.Rim);
+      channel.Settings.instructionSet, background, values, channel.Rays);
   };
   const auto interleave = [&](auto* to)
   {

@@ -93,11 +93,16 @@ public:
   /// The images no longer show what they should.
   void Forget() { this->Projected = false; }
 
-  /// Before the pictures of a view: finds what exact mode shows at the rim of the field.
+  /// Before the pictures of a view: looks along the rays of the screen's pixels in exact mode.
   /// Collective.
-  /// @param cuts  of the projection, for each image
-  void FindRim(
-    const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts, const View& view);
+  /// @param cuts   of the projection, for each image
+  /// @param depth  of other things in the scene, or nullptr
+  void FindScreenRays(const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts,
+    const SceneDepth* depth, const View& view);
+
+  /// Of the last such view, of the component that is located: what a pixel of the viewport shows;
+  /// NaN if it does not show what its own ray finds.
+  double ValueOnOwnRay(std::size_t image, const glm::ivec2& pixel) const;
 
   /// The picture of the images in a view with these geometries.
   void Warp(const std::vector<ShearWarp>& geometries, const View& view, Picture& picture);
@@ -144,7 +149,7 @@ private:
     ProjectionSettings Settings;
     std::vector<ShearImage> Images; // at least as many as the view has
     ShearImage Phase;               // the present part of one of them
-    FieldRim Rim;
+    ScreenRays Rays;
     VolumeIndex::Range Range; // of what was projected
     Acceleration Used = Acceleration::Dense;
   };
@@ -179,6 +184,8 @@ private:
   vtkIdType Version = 0; // of the source
   PieceExchange* Ranks = nullptr;
 
+  std::vector<glm::dmat3> LookedFrom; // along the screen's rays
+  glm::ivec2 LookedAt{ 0 };
   ComponentColors Colors;
   ShearWarp PhaseGeometry;
   Cuts PhaseCuts;

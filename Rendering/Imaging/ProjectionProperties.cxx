@@ -36,12 +36,10 @@ Reduction reductionOf(const ProjectionProperties& properties)
   }
 }
 
-int samplingOf(const ProjectionProperties& properties, int mode)
+int samplingOf(const ProjectionProperties& properties)
 {
   switch (properties.ShearImageSampling)
   {
-    case Names::SAMPLING_OF_MODE:
-      return mode == Names::EXACT ? ShearWarp::Automatic : 1;
     case Names::AUTOMATIC_SAMPLING:
       return ShearWarp::Automatic;
     case 3:
@@ -65,8 +63,8 @@ const char* nameOfKernel(int kernel)
 
 const char* nameOfSampling(int sampling)
 {
-  static const char* const names[] = { "of the mode", "automatic", "1", "2", "3", "4" };
-  return names[sampling - Names::SAMPLING_OF_MODE];
+  static const char* const names[] = { "automatic", "1", "2", "3", "4" };
+  return names[sampling];
 }
 
 const char* nameOfMaximumType(int type)
@@ -144,15 +142,13 @@ ProjectionSettings settingsOf(const ProjectionProperties& properties, int mode, 
     mode = Names::HIGH;
   }
   settings.quality = static_cast<Quality>(mode);
-  settings.sampling = samplingOf(properties, mode);
+  settings.sampling = samplingOf(properties);
   if (mode == Names::EXACT && isCoarse(view))
   {
     // Between voxels the field is no larger than at one of them. Where pixels are wider than voxels
     // these are all that can be told apart.
     settings.quality = Quality::Preview;
     settings.meets = Meets::Nearest;
-    settings.sampling =
-      properties.ShearImageSampling == Names::SAMPLING_OF_MODE ? 1 : settings.sampling;
   }
   switch (settings.reduction)
   {

@@ -60,7 +60,7 @@ struct ProjectionProperties : InheritedProperties
   int Kernel = 0;
   double KernelRadius = 1.0;
   int FootprintSampling = 0;
-  int ShearImageSampling = -1;
+  int ShearImageSampling = 1;
   int MaximumType = 0;
   double DepthShadingAmbient = 0.3;
   double DepthShadingChangeRate = 0.7;

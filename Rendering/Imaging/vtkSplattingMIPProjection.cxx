@@ -226,7 +226,7 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(
   const splatting::ProjectionSettings settings =
     settingsOf(this->Properties, this->Properties.QualityMode, view);
   // Of equal samples the nearest wins.
-  const bool ordered = splatting::isOrdered(settings.reduction) || settings.keepWinners;
+  const bool ordered = splatting::isOrdered(settings.reduction) || settings.findsWinners();
   if (haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts == this->CutsBefore &&
     this->Components.Shows(settings))
   {
@@ -323,10 +323,10 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     {
       return {};
     }
-    this->Components.FindRim(this->Images, this->CutsBefore, view);
+    this->Components.FindScreenRays(this->Images, this->CutsBefore, nullptr, view);
     this->Components.WarpScalars(
       this->Images, view, self->BackgroundValue, output->GetScalarPointer(0, 0, n));
-    if (this->Components.HasWinners())
+    if (this->Properties.RecordLocations && this->Components.HasWinners())
     {
       this->Locate(view, n);
     }
@@ -345,6 +345,7 @@ void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, i
   }
   splatting::Located located;
   located.geometries = &this->Images;
+  located.cuts = &this->CutsBefore;
   located.view = view;
   located.indexToWorld = this->Source.Grid().indexToPhysical;
   this->Components.Describe(located);

@@ -98,7 +98,6 @@ public:
     EXACT = 3
   };
 
-  static constexpr int SAMPLING_OF_MODE = -1;
   static constexpr int AUTOMATIC_SAMPLING = 0;
 
   enum Kernels
@@ -265,8 +264,7 @@ public:
    * As of the mapper: the reconstruction kernel of mode HIGH, default TRILINEAR; the radius of the
    * cosine bell in voxels, default 1, clamped to [0.5, 1.5]; how footprints are sampled, default 0
    * (closed form), clamped to [0, 64]; how many pixels the shear image has along the side of a
-   * voxel: 1, 2, 4, AUTOMATIC_SAMPLING (as fine as the output) or SAMPLING_OF_MODE (the default:
-   * AUTOMATIC_SAMPLING in EXACT, else 1).
+   * voxel: 1 (the default), 2, 4 or AUTOMATIC_SAMPLING (as fine as the output).
    */
   virtual void SetKernel(int);
   virtual int GetKernel();

@@ -78,7 +78,7 @@ bool ProjectedVolume::Factorise(const MapperProperties& properties, const View& 
 // Whether the last projection is this frame's.
 bool ProjectedVolume::Shows(const ProjectionSettings& settings) const
 {
-  const bool ordered = isOrdered(settings.reduction) || settings.keepWinners ||
+  const bool ordered = isOrdered(settings.reduction) || settings.findsWinners() ||
     this->Source.AreDependent(); // the nearest of equal samples wins
   return haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts.AreKept() &&
     this->Components.Shows(settings);

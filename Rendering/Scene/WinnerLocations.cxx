@@ -96,12 +96,19 @@ bool WinnerLocations::HasWinners() const
   return this->Known && !this->Images.empty() && this->Projector.HasWinners();
 }
 
-Locator WinnerLocations::Locate() const
+Located WinnerLocations::Describe() const
 {
   Located located = this->Frame;
   located.geometries = &this->Images;
+  located.cuts = &this->Cuts.OfProjection();
+  located.depth = this->Cuts.SceneDepths();
   this->Projector.Describe(located);
-  return Locator(located);
+  return located;
+}
+
+Locator WinnerLocations::Locate() const
+{
+  return Locator(this->Describe());
 }
 
 bool WinnerLocations::Pick(int x, int y, Sample& sample)
@@ -143,9 +150,7 @@ bool WinnerLocations::PickRay(const glm::ivec2& pixel, Sample& sample)
   {
     return false;
   }
-  Located located = this->Frame;
-  located.geometries = &this->Images;
-  this->Projector.Describe(located);
+  Located located = this->Describe();
   const auto hasSample = [&](const ShearPixel& shear)
   { return this->HasSample((*located.images)[shear.image], shear); };
   ShearPixel shown;
@@ -165,12 +170,14 @@ bool WinnerLocations::PickRay(const glm::ivec2& pixel, Sample& sample)
     }
     located.images = &alone.Images;
     located.geometries = &alone.Geometries;
+    located.cuts = nullptr;
     shown = { 0, 0, 0 };
   }
   const Locator locator(located);
   sample.position = locator.inWorld(locator.point(glm::dvec2(pixel), shown));
-  sample.voxel = findVoxel(located, shown);
-  sample.value = valueOf((*located.images)[shown.image], shown.u, shown.v);
+  sample.voxel = locator.voxel(glm::dvec2(pixel), shown);
+  const double own = this->Projector.ValueOnOwnRay(shown.image, pixel);
+  sample.value = own == own ? own : valueOf((*located.images)[shown.image], shown.u, shown.v);
   return true;
 }
 

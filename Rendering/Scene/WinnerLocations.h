@@ -78,6 +78,7 @@ public:
 
 private:
   bool HasWinners() const;
+  Located Describe() const;
   Locator Locate() const;
   bool HasSample(const ShearImage& image, const ShearPixel& pixel);
   bool PickRay(const glm::ivec2& pixel, Sample& sample);

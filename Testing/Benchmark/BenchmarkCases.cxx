@@ -179,19 +179,13 @@ void Rotate(benchmark::State& state, const BenchmarkRotation& rotation, Function
   }
 }
 
-/// A window in which no volume is an overview, whose projections are others, and a pixel per voxel
-/// unless another sampling is asked for: the same work in all modes.
+/// A window in which no volume is an overview, whose projections are others.
 vtkSplattingMIPVolumeMapper* ShowProjections(const BenchmarkMapper& mapper, vtkImageData* image)
 {
   BenchmarkStage& stage = BenchmarkStage::GetInstance();
   stage.SetSize(1024);
   stage.SetMapper(mapper, image);
-  auto* splatting = vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper());
-  if (stage.GetSampling() == vtkSplattingMIPVolumeMapper::SAMPLING_OF_MODE)
-  {
-    splatting->SetShearImageSampling(1);
-  }
-  return splatting;
+  return vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper());
 }
 
 void AddPlane(vtkVolumeMapper* mapper, const double origin[3], double x, double y, double z)

@@ -142,7 +142,7 @@ BenchmarkStage& BenchmarkStage::GetInstance()
 }
 
 //------------------------------------------------------------------------------
-BenchmarkStage::BenchmarkStage() : Sampling(vtkSplattingMIPVolumeMapper::SAMPLING_OF_MODE)
+BenchmarkStage::BenchmarkStage() : Sampling(1)
 {
   RequireDisplay(this->Window);
   this->Window->SetOffScreenRendering(1);

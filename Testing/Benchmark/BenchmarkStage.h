@@ -105,7 +105,7 @@ public:
   double GetViewAngle() const { return this->ViewAngle; }
 
   /**
-   * The splatting mapper's ShearImageSampling; as by default SAMPLING_OF_MODE.
+   * The splatting mapper's ShearImageSampling; as by default 1.
    */
   void SetSampling(int sampling) { this->Sampling = sampling; }
   int GetSampling() const { return this->Sampling; }

@@ -31,7 +31,7 @@ struct Options
 {
   std::string Data = SPLATTINGMIP_TEST_DATA;
   double ViewAngle = 0.0;
-  int Sampling = vtkSplattingMIPVolumeMapper::SAMPLING_OF_MODE;
+  int Sampling = 1;
   int Threads = 0;
   bool Quick = false;
   bool IsConsole = true; // what Google Benchmark prints is meant for people
@@ -73,8 +73,7 @@ so there is none with --benchmark_report_aggregates_only.
   --data=DIR     where lidc-idri-0314.nrrd lies
   --threads=N    threads of vtkSMPTools and of the ray caster on the CPU
   --perspective=DEGREES  perspective cameras with this view angle, for all but floor, index and turn
-  --sampling=N   pixels of shear images per voxel along each side; without it, in exact mode up to
-                 those of the window
+  --sampling=N   pixels of shear images per voxel along each side; without it 1
 
   For JSON, too: --benchmark_out=FILE. The rows that matter most:
     splatmip-benchmark --benchmark_filter='frame/vessels256-uint8/[0-9]+/[^g]'
@@ -144,13 +143,6 @@ std::string DescribeCamera()
   return angle > 0.0 ? text.str() : "parallel";
 }
 
-std::string DescribeSampling()
-{
-  const int sampling = BenchmarkStage::GetInstance().GetSampling();
-  return sampling == vtkSplattingMIPVolumeMapper::SAMPLING_OF_MODE ? "of the mode"
-                                                                   : std::to_string(sampling);
-}
-
 /// What the numbers depend on, besides the program.
 Facts DescribeMachine()
 {
@@ -160,7 +152,7 @@ Facts DescribeMachine()
       std::to_string(vtkSMPTools::GetEstimatedNumberOfThreads()) + " (vtkSMPTools, " +
         vtkSMPTools::GetBackend() + ")" },
     { "instruction set", mapper->GetInstructionSet() }, { "camera", DescribeCamera() },
-    { "shear image sampling", DescribeSampling() },
+    { "shear image sampling", std::to_string(BenchmarkStage::GetInstance().GetSampling()) },
     { "OpenGL renderer", BenchmarkStage::GetInstance().GetDeviceName() },
     { "VTK", vtkVersion::GetVTKVersion() } };
 }

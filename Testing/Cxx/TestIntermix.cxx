@@ -227,11 +227,11 @@ void testWall(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImage
       {
         const bool isSure = !isNearRim(part, pixel, 2);
         compared += isSure && !isBlack(part, pixel);
-        wrong += isSure && !isSame(expected, walled.both, pixel);
+        wrong += isSure && !isNearly(expected, walled.both, pixel, 1);
       }
       std::cout << "wall: " << wrong << " of " << compared << " pixels differ" << std::endl;
       check(differing(expected, walled.volume) > 1000, "A wall hides much.");
-      // Depths are rounded: a ray may end a slice sooner or later.
+      // Depths are rounded: a ray may end a little sooner or later.
       check(compared > 5000 && 1000 * wrong <= compared, "A wall ends rays where a plane does.");
     }
   }

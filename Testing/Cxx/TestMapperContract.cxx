@@ -93,7 +93,7 @@ void testClamping(Mapper* mapper, stage::Checks& check)
       "SetFootprintSampling " + std::to_string(value));
   }
   for (const auto& [value, expected] :
-    { std::pair(1, 1), { 4, 4 }, { 0, 0 }, { 5, 4 }, { 2, 2 }, { -2, -1 }, { 3, 3 }, { -1, -1 } })
+    { std::pair(1, 1), { 4, 4 }, { 0, 0 }, { 5, 4 }, { 2, 2 }, { -1, 0 }, { 3, 3 } })
   {
     check(
       sets(mapper, &Mapper::SetShearImageSampling, &Mapper::GetShearImageSampling, value, expected),
@@ -207,7 +207,7 @@ void testPrinting(Mapper* mapper, stage::Checks& check)
   mapper->Print(stream);
   const std::string text = stream.str();
   for (const char* variable : { "QualityMode: exact", "Kernel: trilinear",
-         "KernelRadius: ", "FootprintSampling: ", "ShearImageSampling: of the mode",
+         "KernelRadius: ", "FootprintSampling: ", "ShearImageSampling: 1",
          "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ", "IndexMemorySize: ",
          "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ", "Acceleration: auto",
          "AccelerationUsed: dense", "LineTolerance: ", "EliminateInvisible: ",

@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <limits>
 
 namespace
 {
@@ -32,7 +33,11 @@ struct Oracle
   // Of exact mode:
   reference::Volume<double> volume;
   std::vector<double> ways; ///< of rays through the field
+  std::vector<int> winners; ///< the slices of their maxima
 };
+
+/// Where it is not clear which slice wins.
+constexpr int NoWinner = std::numeric_limits<int>::min();
 
 /// A parallel view in index space: a ray through `corner + x across + y up` runs along `direction`.
 struct Rays
@@ -163,6 +168,26 @@ reference::RayCuts cutsOf(Filter* filter, vtkImageData* image)
   return cuts;
 }
 
+/// The slice in which a ray has its maximum, and that. NoWinner if it is nearly that in others.
+int findWinner(const reference::Volume<double>& field, const reference::FieldRay& ray,
+  const std::array<double, 2>& depths, double& value)
+{
+  std::vector<double> maxima;
+  const int first = static_cast<int>(std::floor(depths[0] + 0.5));
+  for (int k = first; k - 0.5 < depths[1]; ++k)
+  {
+    const double from = std::max(depths[0], k - 0.5), to = std::min(depths[1], k + 0.5);
+    maxima.push_back(from < to ? reference::fieldMaximum(field, ray, from, to) : -HUGE_VAL);
+  }
+  const auto largest = std::max_element(maxima.begin(), maxima.end());
+  value = *largest;
+  // Rounding must not choose. Between two slices the maximum may be in both.
+  constexpr double near = 1e-4;
+  const auto count = std::count_if(maxima.begin(), maxima.end(),
+    [&](double other) { return other > value - near * (1.0 + std::abs(value)); });
+  return count == 1 ? first + static_cast<int>(largest - maxima.begin()) : NoWinner;
+}
+
 template <class T>
 Oracle oracleOf(
   const reference::Volume<T>& volume, Filter* filter, vtkImageData* image, const Rays& rays)
@@ -197,8 +222,8 @@ Oracle oracleOf(
           reference::depthsInField(volume.size, ray, reference::FieldDomain::Centres, -0.5, end);
         known = own.empty() || depths[1] - depths[0] > 1e-6;
         oracle.ways.push_back(depths[1] - depths[0]);
-        outcome.value =
-          known && !own.empty() ? reference::fieldMaximum(exact, ray, depths[0], depths[1]) : 0.0;
+        oracle.winners.push_back(
+          known && !own.empty() ? findWinner(exact, ray, depths, outcome.value) : NoWinner);
       }
       oracle.meets.push_back(!own.empty());
       oracle.hit.push_back(outcome.hit);
@@ -246,9 +271,10 @@ struct Ways
   }
 };
 
-/// At the rim of the field a pixel shows what its own ray finds.
+/// A pixel shows what its own ray finds: at the rim of the field all along it, else from the slice
+/// before to the slice behind each of the winners.
 void expectOwnRay(const Oracle& oracle, const Rays& rays, const glm::dvec3& point, const Ways& ways,
-  Expected& expected)
+  const std::vector<int>& winners, Expected& expected)
 {
   reference::FieldRay ray;
   ray.axes = oracle.grid.axes;
@@ -269,6 +295,21 @@ void expectOwnRay(const Oracle& oracle, const Rays& rays, const glm::dvec3& poin
     expected.certain = expected.certain && own > 1e-5;
     expected.value =
       own > 1e-5 ? reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]) : 0.0;
+    return;
+  }
+  expected.value = -HUGE_VAL;
+  for (const int winner : winners)
+  {
+    const double from = std::max(depths[0], winner - 1.0), to = std::min(depths[1], winner + 1.0);
+    expected.certain = expected.certain && winner != NoWinner && std::abs(to - from) > 1e-5;
+    if (!expected.certain)
+    {
+      return;
+    }
+    // Where the ray is in the field in other slices than a winner's, it looks at all of it.
+    expected.value = std::max(expected.value,
+      from < to ? reference::fieldMaximum(oracle.volume, ray, from, to)
+                : reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]));
   }
 }
 
@@ -291,6 +332,7 @@ Expected expectedPixel(
   const int u = static_cast<int>(std::floor(pu)), v = static_cast<int>(std::floor(pv));
   double sum = 0.0, weight = 0.0, lost = 0.0;
   Ways ways;
+  std::vector<int> winners; // of those that are weighted
   for (int n = 0; n < 4; ++n)
   {
     const int i = u + n % 2, j = v + n / 2;
@@ -305,6 +347,10 @@ Expected expectedPixel(
     if (isExact)
     {
       ways.add(oracle.ways[pixel], w);
+      if (w > 0.0)
+      {
+        winners.push_back(oracle.winners[pixel]);
+      }
     }
     expected.certain = expected.certain && (oracle.known[pixel] || isExact || w < 1e-9);
     if (oracle.meets[pixel])
@@ -318,7 +364,7 @@ Expected expectedPixel(
   expected.value = sum / weight;
   if (!oracle.ways.empty() && expected.hit)
   {
-    expectOwnRay(oracle, rays, point, ways, expected);
+    expectOwnRay(oracle, rays, point, ways, winners, expected);
   }
   return expected;
 }

@@ -21,7 +21,7 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Rounding = DepthLimits::Rounding;
 constexpr double Before = DepthLimits::Before, Beyond = DepthLimits::Beyond;
 
-/// The half-spaces as Depths::cut() and cutFan() take them.
+/// The half-spaces as RowDepths::cut() and cutFan() take them.
 std::vector<glm::dvec4> asSeen(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces)
 {
   const std::array<int, 3>& axes = geometry.axes();
@@ -35,7 +35,7 @@ std::vector<glm::dvec4> asSeen(const ShearWarp& geometry, const std::vector<glm:
 }
 
 /// Near and far depths of some pixels in a row, in slices.
-struct Depths
+struct RowDepths
 {
   static constexpr int Most = 256;
 
@@ -140,7 +140,7 @@ public:
   const glm::dvec2& ends() const { return this->Ends; }
 
   /// Opens the rays that lose no sample, or have none.
-  void openWhole(int u0, int v, int count, Depths& depths) const
+  void openWhole(int u0, int v, int count, RowDepths& depths) const
   {
     const glm::dvec2 row = { std::max(this->All.x, this->Rows[v].x),
       std::min(this->All.y, this->Rows[v].y) };
@@ -188,6 +188,7 @@ void RayIntervals::clear()
   this->Width = 0;
   this->First.clear();
   this->Last.clear();
+  this->Depths.clear();
 }
 
 void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces,
@@ -202,6 +203,7 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
   const std::size_t pixels = std::size_t(this->Width) * geometry.height();
   this->First.resize(pixels);
   this->Last.resize(pixels);
+  this->Depths.resize(pixels);
   Reach reach(geometry);
   if (surface || depth)
   {
@@ -215,13 +217,13 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
   vtkSMPTools::For(0, geometry.height(), 16,
     [&](vtkIdType begin, vtkIdType end)
     {
-      Depths depths;
+      RowDepths depths;
       bool lost = false;
       for (int v = static_cast<int>(begin); v < end; ++v)
       {
-        for (int u = 0; u < this->Width; u += Depths::Most)
+        for (int u = 0; u < this->Width; u += RowDepths::Most)
         {
-          const int count = std::min(Depths::Most, this->Width - u);
+          const int count = std::min(RowDepths::Most, this->Width - u);
           depths.reset(reach.ends().x, reach.ends().y, count);
           for (const glm::dvec4& h : planes)
           {
@@ -238,6 +240,11 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
           {
             depths.cut(hull->near(v) + u, hull->far(v) + u, count);
           }
+          const std::size_t first = std::size_t(v) * this->Width + u;
+          for (int x = 0; x < count; ++x)
+          {
+            this->Depths[first + x] = glm::vec2(depths.near[x], depths.far[x]);
+          }
           if (depth)
           {
             depth->endRays(geometry, u, v, count, depths.near, depths.far);
@@ -247,7 +254,6 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
             // Half-spaces that cut nothing are not there in the first place.
             reach.openWhole(u, v, count, depths);
           }
-          const std::size_t first = std::size_t(v) * this->Width + u;
           lost |= loops.slicesBetween(depths.near, depths.far, slices.begin, slices.end,
             &this->First[first], &this->Last[first], count);
         }

@@ -8,6 +8,7 @@
 
 #include "Projection/Frame.h"
 
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 #include <cstdint>
@@ -62,15 +63,21 @@ public:
   const std::int16_t* first(int v) const { return &this->First[std::size_t(v) * this->Width]; }
   const std::int16_t* last(int v) const { return &this->Last[std::size_t(v) * this->Width]; }
 
+  /// The near and the far depth of a pixel's ray themselves, as find() has found them, but for what
+  /// other things in the scene cut.
+  glm::dvec2 depths(int u, int v) const { return this->Depths[std::size_t(v) * this->Width + u]; }
+
   bool operator==(const RayIntervals& other) const
   {
-    return this->Width == other.Width && this->First == other.First && this->Last == other.Last;
+    return this->Width == other.Width && this->First == other.First && this->Last == other.Last &&
+      this->Depths == other.Depths;
   }
   bool operator!=(const RayIntervals& other) const { return !(*this == other); }
 
 private:
   int Width = 0;
   std::vector<std::int16_t> First, Last;
+  std::vector<glm::vec2> Depths; // only of those that find() has found
 };
 }
 

@@ -125,6 +125,31 @@ bool SceneDepth::endsRay(const glm::ivec2& pixel, double depth) const
   return depth > entry + Rounding && depth < exit - Rounding;
 }
 
+void SceneDepth::endRay(const ShearWarp& geometry, const glm::ivec2& pixel, const glm::dvec2& at,
+  const glm::dvec2& slope, double& near, double& far) const
+{
+  const double depth = this->at(pixel);
+  if (depth >= 1.0 || !this->endsRay(pixel, depth))
+  {
+    return;
+  }
+  // What is deeper than that, a half-space, along the ray.
+  const std::array<int, 3>& axes = geometry.axes();
+  const glm::dvec4 deeper = this->ClipZ - (2.0 * depth - 1.0) * this->ClipW;
+  const glm::dvec3 h(deeper[axes[0]], deeper[axes[1]], deeper[axes[2]]);
+  const double reference = geometry.reference();
+  const double speed = glm::dot(h, glm::dvec3(slope, 1.0));
+  const double z = reference - (glm::dot(h, glm::dvec3(at, reference)) + deeper.w) / speed;
+  if (speed > 0.0)
+  {
+    far = std::min(far, z);
+  }
+  else if (speed < 0.0)
+  {
+    near = std::max(near, z);
+  }
+}
+
 void SceneDepth::endRays(
   const ShearWarp& geometry, int u, int v, int count, double* near, double* far) const
 {
@@ -132,7 +157,6 @@ void SceneDepth::endRays(
   {
     return;
   }
-  const std::array<int, 3>& axes = geometry.axes();
   const glm::ivec2 last = this->Origin + this->Size - 1;
   for (int x = 0; x < count; ++x)
   {
@@ -143,27 +167,9 @@ void SceneDepth::endRays(
     }
     const glm::ivec2 pixel(glm::clamp(
       glm::floor(glm::dvec2(seen) / seen.z + 0.5), glm::dvec2(this->Origin), glm::dvec2(last)));
-    const double depth = this->at(pixel);
-    if (depth >= 1.0 || !this->endsRay(pixel, depth))
-    {
-      continue;
-    }
-    // What is deeper than that, a half-space, along the ray.
-    const glm::dvec4 deeper = this->ClipZ - (2.0 * depth - 1.0) * this->ClipW;
-    const glm::dvec3 h(deeper[axes[0]], deeper[axes[1]], deeper[axes[2]]);
-    const double reference = geometry.reference();
-    const double speed =
-      glm::dot(h, glm::dvec3(geometry.columns().slope[u + x], geometry.rows().slope[v], 1.0));
-    const double z = reference -
-      (glm::dot(h, glm::dvec3(geometry.onRay(u + x, v, reference), reference)) + deeper.w) / speed;
-    if (speed > 0.0)
-    {
-      far[x] = std::min(far[x], z);
-    }
-    else if (speed < 0.0)
-    {
-      near[x] = std::max(near[x], z);
-    }
+    const glm::dvec2 slope(geometry.columns().slope[u + x], geometry.rows().slope[v]);
+    this->endRay(
+      geometry, pixel, geometry.onRay(u + x, v, geometry.reference()), slope, near[x], far[x]);
   }
 }
 

@@ -50,6 +50,11 @@ public:
   /// shear image of this view.
   void endRays(const ShearWarp& geometry, int u, int v, int count, double* near, double* far) const;
 
+  /// The same for a ray that passes at + slope (z - the geometry's reference) at depth z, by the
+  /// depth of one pixel of the viewport.
+  void endRay(const ShearWarp& geometry, const glm::ivec2& pixel, const glm::dvec2& at,
+    const glm::dvec2& slope, double& near, double& far) const;
+
   /// Clears the pixels of a picture that are hidden.
   void hide(Picture& picture) const;
 

@@ -8,6 +8,7 @@
 #include <vtkSMPTools.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 
@@ -144,21 +145,27 @@ private:
       for (int x = begin; x < end; ++x)
       {
         const A at = source.valueAt(first + double(x) * step);
-        const A own = source.rim.template value<A>(source.number, x, y);
-        putValues(this->To, own == own && at == at ? &own : &at, out + x, 1);
+        const A* const own =
+          source.rays.empty() ? &at : source.rays.template values<A>(source.number, x, y);
+        putValues(this->To, *own == *own && std::isfinite(at) ? own : &at, out + x, 1);
       }
     };
-    const Span plain = source.hasHoles()
-      ? Span{}
-      : source.inside.cut(common(row, source.rim.inside(source.number, y, row)), start);
+    const Span plain = source.hasHoles() ? Span{} : source.inside.cut(row, start);
     if (plain.empty())
     {
       warpPoints(row.begin, row.end);
       return;
     }
     warpPoints(row.begin, plain.begin);
-    this->warpInside(
-      source, first + double(plain.begin) * step, step, out + plain.begin, plain.end - plain.begin);
+    if (source.rays.empty())
+    {
+      this->warpInside(source, first + double(plain.begin) * step, step, out + plain.begin,
+        plain.end - plain.begin);
+    }
+    else
+    {
+      this->warpRays(source, first, y, plain, out);
+    }
     warpPoints(plain.end, row.end);
   }
 
@@ -176,6 +183,24 @@ private:
       const glm::dvec3 p = start + double(x) * step;
       interpolate(source.pixels, source.image.width, &p.x, &step.x, values, count);
       this->To.put(values, out + x, count);
+    }
+  }
+
+  /// The same where the screen's rays have values of their own, but for a few.
+  void warpRays(
+    const WarpSource<A>& source, const glm::dvec3& first, int y, const Span& row, Pixel* out) const
+  {
+    A values[Chunk];
+    const glm::dvec3& step = source.geometry.screenToShear()[0];
+    for (int begin = row.begin; begin < row.end; begin += Chunk)
+    {
+      const int count = std::min(Chunk, row.end - begin);
+      const A* const own = source.rays.template values<A>(source.number, begin, y);
+      for (int n = 0; n < count; ++n)
+      {
+        values[n] = own[n] == own[n] ? own[n] : source.valueAt(first + double(begin + n) * step);
+      }
+      this->To.put(values, out + begin, count);
     }
   }
 
@@ -209,14 +234,14 @@ template <class T, class Sink>
 void warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   Reduction reduction, const Kernels& kernels, const Sink& sink,
   std::vector<std::vector<unsigned char>>& widened, const Picture& place,
-  typename Sink::Pixel* pixels, std::ptrdiff_t stride, const FieldRim& rim)
+  typename Sink::Pixel* pixels, std::ptrdiff_t stride, const ScreenRays& rays)
 {
   using A = Accumulator<T>;
   std::vector<WarpSource<A>> sources;
   for (std::size_t n = 0; n < geometries.size(); ++n)
   {
     const A* const own = widenedPixels<T>(images[n], kernels, widened[n]);
-    sources.emplace_back(images[n], own, geometries[n], rim, n);
+    sources.emplace_back(images[n], own, geometries[n], rays, n);
   }
   RowWarp<A, Sink>(sources, reduction, sink).warp(place, pixels, stride);
 }
@@ -224,7 +249,7 @@ void warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWa
 
 void Warper::warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   Reduction reduction, const ColorTable& table, const glm::ivec2& viewport,
-  InstructionSet instructionSet, Picture& picture, const FieldRim& rim)
+  InstructionSet instructionSet, Picture& picture, const ScreenRays& rays)
 {
   placePicture(geometries, viewport, picture);
   picture.pixels.resize(std::size_t(picture.size.x) * picture.size.y);
@@ -240,7 +265,7 @@ void Warper::warp(const std::vector<ShearImage>& images, const std::vector<Shear
       using T = std::remove_pointer_t<decltype(null)>;
       const ColorSink<Accumulator<T>> sink(kernels, table);
       warpImages<T>(images, geometries, reduction, kernels, sink, this->Widened, picture,
-        picture.pixels.data(), picture.size.x, rim);
+        picture.pixels.data(), picture.size.x, rays);
     });
 }
 
@@ -275,7 +300,7 @@ void Warper::warpPixels(const std::vector<ShearImage>& images, const std::vector
 
 void Warper::warpScalars(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& viewport,
-  InstructionSet instructionSet, double background, void* scalars, const FieldRim& rim)
+  InstructionSet instructionSet, double background, void* scalars, const ScreenRays& rays)
 {
   Picture place;
   placePicture(geometries, viewport, place);
@@ -293,8 +318,8 @@ void Warper::warpScalars(const std::vector<ShearImage>& images,
       const ScalarSink<A> sink{ kernels, static_cast<A>(background) };
       A* const first =
         static_cast<A*>(scalars) + std::ptrdiff_t(place.origin.y) * viewport.x + place.origin.x;
-      warpImages<T>(
-        images, geometries, reduction, kernels, sink, this->Widened, place, first, viewport.x, rim);
+      warpImages<T>(images, geometries, reduction, kernels, sink, this->Widened, place, first,
+        viewport.x, rays);
     });
 }
 }

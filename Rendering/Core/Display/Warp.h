@@ -6,8 +6,8 @@
 #ifndef splattingWarp_h
 #define splattingWarp_h
 
-#include "Display/FieldRim.h"
 #include "Display/Picture.h"
+#include "Display/ScreenRays.h"
 #include "Display/ShearPixels.h"
 #include "Kernels/Kernels.h"
 #include "Projection/ShearImage.h"
@@ -47,11 +47,11 @@ public:
    * PixelArea.h, and the picture ends where areas no longer meet the volume.
    * @param images      all of one type; those behind the last geometry are left alone
    * @param geometries  as ShearWarp::factorise() gives them
-   * @param rim         values of pixels that are not interpolated, found for this view
+   * @param rays        of the view's screen: their values take the place of what is interpolated
    */
   void warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
     Reduction reduction, const ColorTable& table, const glm::ivec2& viewport,
-    InstructionSet instructionSet, Picture& picture, const FieldRim& rim = {});
+    InstructionSet instructionSet, Picture& picture, const ScreenRays& rays = {});
 
   /// The same of given shear pixels, one for each pixel of the picture.
   void warpPixels(const std::vector<ShearImage>& images, const std::vector<ShearPixel>& shown,
@@ -64,7 +64,7 @@ public:
    */
   void warpScalars(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
     Reduction reduction, const glm::ivec2& viewport, InstructionSet instructionSet,
-    double background, void* scalars, const FieldRim& rim = {});
+    double background, void* scalars, const ScreenRays& rays = {});
 
 private:
   /// Preview images in the accumulator's type.

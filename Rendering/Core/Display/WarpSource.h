@@ -6,8 +6,8 @@
 #ifndef splattingWarpSource_h
 #define splattingWarpSource_h
 
-#include "Display/FieldRim.h"
 #include "Display/Outline.h"
+#include "Display/ScreenRays.h"
 #include "Projection/ShearImage.h"
 
 #include <glm/vec2.hpp>
@@ -45,16 +45,17 @@ struct WarpSource
   const ShearImage& image;
   const A* pixels;
   const ShearWarp& geometry;
-  const FieldRim& rim;
+  const ScreenRays& rays;
   std::size_t number; // of the image
   Outline shown, inside;
 
   /// All must outlive its use.
-  WarpSource(const ShearImage& i, const A* p, const ShearWarp& g, const FieldRim& r, std::size_t n)
+  WarpSource(
+    const ShearImage& i, const A* p, const ShearWarp& g, const ScreenRays& r, std::size_t n)
     : image(i),
       pixels(p),
       geometry(g),
-      rim(r),
+      rays(r),
       number(n),
       shown(shownBy(g)),
       inside(withinSamples(g))

@@ -68,7 +68,6 @@ struct FanCubicLoop : Lanes<A, R>
 
   explicit FanCubicLoop(const FanCubicRow<A>& own) : row(own) {}
 
-  static inline R between(R a, R b, R share) { return a + share * (b - a); }
   static inline R clampedShare(R x) { return smaller(larger(x, all(A(0))), all(A(1))); }
 
   /// The pixels' cells, as the least of them and how far the others are from it.
@@ -126,37 +125,10 @@ struct FanCubicLoop : Lanes<A, R>
     const R y0 = clampedShare(part.y + this->row.slope * from),
             y1 = clampedShare(part.y + this->row.slope * to);
     const R z0 = clampedShare(part.z + from), z1 = clampedShare(part.z + to);
-    R near[4], far[4]; // along x, at either end
-#pragma GCC unroll 4
-    for (int n = 0; n < 4; ++n)
-    {
-      near[n] = between(corners[2 * n], corners[2 * n + 1], x0);
-      far[n] = between(corners[2 * n], corners[2 * n + 1], x1);
-    }
-    const R near0[2] = { between(near[0], near[1], y0), between(near[2], near[3], y0) };
-    const R near1[2] = { between(near[0], near[1], y1), between(near[2], near[3], y1) };
-    const R far0[2] = { between(far[0], far[1], y0), between(far[2], far[3], y0) };
-    const R far1[2] = { between(far[0], far[1], y1), between(far[2], far[3], y1) };
-    const A third = A(1) / A(3);
-    // The blossom: the coordinates of one end mixed with those of the other in all ways.
-    const R b[4] = { between(near0[0], near0[1], z0),
-      third *
-        (between(far0[0], far0[1], z0) + between(near1[0], near1[1], z0) +
-          between(near0[0], near0[1], z1)),
-      third *
-        (between(far1[0], far1[1], z0) + between(far0[0], far0[1], z1) +
-          between(near1[0], near1[1], z1)),
-      between(far1[0], far1[1], z1) };
-    const R ends = larger(b[3], larger(b[0], best));
-    R raised = ends;
-    const R inner = larger(b[1], b[2]);
-    if (anyOf(inner > raised))
-    {
-      raised = larger(peakOf<A>(b, inner, raised), raised);
-    }
-    raised =
+    const R raised = largestOnWay<A>(corners, { x0, y0, z0 }, { x1, y1, z1 }, best);
+    const R limited =
       Lanes<A, R>::limitedTo(raised, Lanes<A, R>::template largestOf<Special>(corners), best);
-    return counts ? raised : best;
+    return counts ? limited : best;
   }
 
   /// Whether a sample can be above its pixel: whether the largest value in its box is.

@@ -83,6 +83,46 @@ inline R peakOf(const R (&b)[4], R inner, R none)
   return ((t > zero) & (t < A(1))) ? smaller(value, inner) : none;
 }
 
+template <class R>
+inline R between(R a, R b, R share)
+{
+  return a + share * (b - a);
+}
+
+/// The larger of the best so far and of the cubic from one place in a cell to another.
+template <class A, class R>
+inline R largestOnWay(const R (&corners)[8], const R (&from)[3], const R (&to)[3], R best)
+{
+  R near[4], far[4]; // along x, at either end
+#pragma GCC unroll 4
+  for (int n = 0; n < 4; ++n)
+  {
+    near[n] = between(corners[2 * n], corners[2 * n + 1], from[0]);
+    far[n] = between(corners[2 * n], corners[2 * n + 1], to[0]);
+  }
+  const R near0[2] = { between(near[0], near[1], from[1]), between(near[2], near[3], from[1]) };
+  const R near1[2] = { between(near[0], near[1], to[1]), between(near[2], near[3], to[1]) };
+  const R far0[2] = { between(far[0], far[1], from[1]), between(far[2], far[3], from[1]) };
+  const R far1[2] = { between(far[0], far[1], to[1]), between(far[2], far[3], to[1]) };
+  const A third = A(1) / A(3);
+  // The blossom: the coordinates of one end mixed with those of the other in all ways.
+  const R b[4] = { between(near0[0], near0[1], from[2]),
+    third *
+      (between(far0[0], far0[1], from[2]) + between(near1[0], near1[1], from[2]) +
+        between(near0[0], near0[1], to[2])),
+    third *
+      (between(far1[0], far1[1], from[2]) + between(far0[0], far0[1], to[2]) +
+        between(near1[0], near1[1], to[2])),
+    between(far1[0], far1[1], to[2]) };
+  R raised = larger(b[3], larger(b[0], best));
+  const R inner = larger(b[1], b[2]);
+  if (anyOf(inner > raised))
+  {
+    raised = larger(peakOf<A>(b, inner, raised), raised);
+  }
+  return raised;
+}
+
 /// A register of elements of type A, or one of them, of type R.
 template <class A, class R>
 struct Lanes
@@ -431,6 +471,128 @@ template <class A>
 void raiseCubics(const Cubics<A>& cubics)
 {
   cubics.special ? raiseCubicRows<A, true>(cubics) : raiseCubicRows<A, false>(cubics);
+}
+
+/// The field along a register of parts of rays.
+template <class A, bool Special>
+class PartLoop
+{
+public:
+  using R = Pack<A>;
+  using L = Lanes<A, R>;
+  using M = typename L::M;
+
+  PartLoop(const FieldParts<A>& parts, std::ptrdiff_t n)
+    : Parts(parts),
+      At(n),
+      From(L::loadFrom(parts.from + n)),
+      To(L::loadFrom(parts.to + n)),
+      X(parts.x + n, parts.dx + n, From, To),
+      Y(parts.y + n, parts.dy + n, From, To)
+  {
+  }
+
+  /// In up to three cells, one after the other.
+  inline R largest() const
+  {
+    const M columnFirst = this->X.change < this->Y.change;
+    const R first = smaller(this->X.change, this->Y.change);
+    const R second = larger(this->X.change, this->Y.change);
+    R best = L::all(-std::numeric_limits<A>::infinity());
+    best = this->take(this->X.before, this->Y.before, this->From, first, best);
+    best = this->take(columnFirst ? this->X.behind : this->X.before,
+      columnFirst ? this->Y.before : this->Y.behind, first, second, best);
+    return this->take(this->X.behind, this->Y.behind, second, this->To, best);
+  }
+
+private:
+  /// Columns or rows of cells: whether a part is in the upper of two, before and behind a change.
+  struct Side
+  {
+    R at, way, change;
+    M before, behind;
+
+    inline Side(const A* x, const A* dx, R from, R to) : at(L::loadFrom(x)), way(L::loadFrom(dx))
+    {
+      const R one = L::all(A(1)), zero = L::all(A(0));
+      const R begin = this->at + this->way * from, end = this->at + this->way * to;
+      const M rises = this->way > zero, crosses = larger(begin, end) > one;
+      this->change = crosses ? smaller(larger((one - this->at) / this->way, from), to) : to;
+      this->before = crosses & ~rises;
+      this->behind = crosses & rises;
+    }
+    inline R share(M upper, R depth) const
+    {
+      const R one = L::all(A(1)), zero = L::all(A(0));
+      const R place = (this->at - (upper ? one : zero)) + this->way * depth;
+      return smaller(larger(place, zero), one);
+    }
+  };
+
+  inline R take(M upperColumn, M upperRow, R from, R to, R best) const
+  {
+    if (!anyOf(from < to))
+    {
+      return best;
+    }
+    R corners[8];
+#pragma GCC unroll 2
+    for (int z = 0; z < 2; ++z)
+    {
+      R rows[2][3];
+#pragma GCC unroll 3
+      for (int x = 0; x < 3; ++x)
+      {
+        const auto& voxels = this->Parts.voxels[z];
+        const R middle = L::loadFrom(voxels[1][x] + this->At);
+        rows[0][x] = upperRow ? middle : L::loadFrom(voxels[0][x] + this->At);
+        rows[1][x] = upperRow ? L::loadFrom(voxels[2][x] + this->At) : middle;
+      }
+#pragma GCC unroll 2
+      for (int y = 0; y < 2; ++y)
+      {
+        corners[4 * z + 2 * y] = upperColumn ? rows[y][1] : rows[y][0];
+        corners[4 * z + 2 * y + 1] = upperColumn ? rows[y][2] : rows[y][1];
+      }
+    }
+    const R most = L::template largestOf<false>(corners);
+    M counts = from < to;
+    if constexpr (Special)
+    {
+      R sum = corners[0];
+      for (int n = 1; n < 8; ++n)
+      {
+        sum = sum + corners[n];
+      }
+      counts = counts & (sum - sum == L::all(A(0)));
+    }
+    if (!anyOf(counts & (most > best)))
+    {
+      return best;
+    }
+    const R found = largestOnWay<A>(corners,
+      { this->X.share(upperColumn, from), this->Y.share(upperRow, from), from },
+      { this->X.share(upperColumn, to), this->Y.share(upperRow, to), to },
+      L::all(-std::numeric_limits<A>::infinity()));
+    return counts ? larger(smaller(found, most), best) : best;
+  }
+
+  const FieldParts<A>& Parts;
+  const std::ptrdiff_t At;
+  const R From, To;
+  const Side X, Y;
+};
+
+template <class A>
+void findLargest(FieldParts<A>& parts)
+{
+  // Beyond the last one there is room, and something.
+  for (std::ptrdiff_t n = 0; n < parts.count; n += width<A>)
+  {
+    store<A>(parts.largest + n,
+      parts.special ? PartLoop<A, true>(parts, n).largest()
+                    : PartLoop<A, false>(parts, n).largest());
+  }
 }
 }
 }

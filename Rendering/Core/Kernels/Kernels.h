@@ -373,6 +373,22 @@ struct FanCubicRow
   bool special;                ///< as in Cubics
 };
 
+/// Parts of rays between two slices, no longer than a voxel in any direction, and the voxels
+/// around.
+template <class A>
+struct FieldParts
+{
+  static constexpr int most = 128;
+  int count = 0;
+  /// Where rays are at the first of the two slices, from the lowest column and row of voxels that
+  /// the part needs, and what they move by up to the second.
+  A x[most], y[most], dx[most], dy[most];
+  A from[most], to[most];  ///< the part, 0 to 1
+  A voxels[2][3][3][most]; ///< slice, row, column
+  A largest[most];         ///< what the part has
+  bool special;            ///< whether voxels may be NaN or infinite
+};
+
 /// Worksheets from voxels of which some are not finite.
 template <class A>
 struct Averages
@@ -408,6 +424,8 @@ struct WorksheetLoops
   void (*raiseCubics)(const Cubics<A>& cubics);
   /// The same in perspective views, for a row of pixels, each of which has cubics of its own.
   void (*raiseFanCubics)(const FanCubicRow<A>& row);
+  /// Finds the largest value of each part; cells with a corner that is not finite are left out.
+  void (*findLargest)(FieldParts<A>& parts);
   /// Pixels become the larger of themselves and the averages.
   void (*raiseAverages)(const Averages<A>& averages, std::ptrdiff_t n);
   /// Whether there are neither NaN nor infinities.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Projection/Locations.h"
 
+#include "Projection/RayFinder.h"
 #include "Sampling/FieldOnRay.h"
 
 #include <vtkSMPTools.h>
@@ -10,6 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 
 namespace splatting
@@ -316,7 +318,44 @@ void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec
     });
 }
 
-Locator::Locator(const Located& located) : Source(located) {}
+Locator::Locator(const Located& located) : Source(located)
+{
+  if (!located.settings.hasScreenRays() || !located.volume.voxels || !located.cuts)
+  {
+    return;
+  }
+  for (std::size_t n = 0; n < located.geometries->size(); ++n)
+  {
+    const ShearWarp& geometry = (*located.geometries)[n];
+    const ShearImage& image = (*located.images)[n];
+    const Cuts& cuts = (*located.cuts)[n];
+    this->OwnRays.push_back(dispatch(located.volume.type,
+      [&](auto* null) -> DepthOnRay
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        const RaySource source{ located.volume, glm::ivec3(0), located.cuts, located.depth };
+        const auto finder = std::make_shared<RayFinder<T>>(image, geometry, source, cuts);
+        return [finder, &geometry](const glm::ivec2& pixel)
+        {
+          const Extremum found = finder->find({ geometry, pixel });
+          return found.value > -std::numeric_limits<double>::infinity()
+            ? found.depth
+            : std::numeric_limits<double>::quiet_NaN();
+        };
+      }));
+  }
+}
+
+/// NaN if the screen's rays are not looked along, or find nothing.
+double Locator::depthOnOwnRay(const glm::dvec2& pixel, const ShearPixel& shown) const
+{
+  const ShearWarp& geometry = (*this->Source.geometries)[shown.image];
+  if (this->OwnRays.empty() || geometry.isOverview())
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return this->OwnRays[shown.image](glm::ivec2(glm::round(pixel)));
+}
 
 double Locator::depthOf(const ShearPixel& shown) const
 {
@@ -327,22 +366,29 @@ double Locator::depthOf(const ShearPixel& shown) const
   {
     return k;
   }
-  double depth = k;
-  dispatch(this->Source.volume.type,
+  return dispatch(this->Source.volume.type,
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
       const PermutedVoxels<T> voxels(this->Source.volume, geometry);
-      depth = extremumOf<T>(voxels, geometry, shown.u, shown.v, k,
+      return extremumOf<T>(voxels, geometry, shown.u, shown.v, k,
         this->Source.settings.reduction == Reduction::Minimum);
     });
-  return depth;
+}
+
+glm::ivec3 Locator::voxel(const glm::dvec2& pixel, const ShearPixel& shown) const
+{
+  const double own = this->depthOnOwnRay(pixel, shown);
+  return own == own ? glm::clamp(glm::ivec3(glm::round(this->point(pixel, shown))), glm::ivec3(0),
+                        this->Source.view.dimensions - 1)
+                    : findVoxel(this->Source, shown);
 }
 
 glm::dvec3 Locator::point(const glm::dvec2& pixel, const ShearPixel& shown) const
 {
   const ShearWarp& geometry = (*this->Source.geometries)[shown.image];
-  double z = this->depthOf(shown);
+  const double own = this->depthOnOwnRay(pixel, shown);
+  double z = own == own ? own : this->depthOf(shown);
   if (geometry.isPerspective())
   {
     // In exact mode an extremum may lie at the eye itself, where all pixels are one.
@@ -426,10 +472,11 @@ void Locator::fillRow(int y, const glm::ivec2& origin, int width, const ShearPix
     }
     if (arrays.voxels)
     {
-      const glm::ivec3 voxel = has
+      const glm::ivec3 voxel = !has ? glm::ivec3(-1)
+        : this->OwnRays.empty()
         ? voxels[from.image]
                 [std::size_t(from.v) * (*this->Source.images)[from.image].width + from.u]
-        : glm::ivec3(-1);
+        : this->voxel(glm::dvec2(origin.x + x, origin.y + y), from);
       std::copy(&voxel.x, &voxel.x + 3, arrays.voxels + 3 * at);
     }
     if (arrays.depths)
@@ -454,7 +501,7 @@ void Locator::fill(const glm::ivec2& origin, const glm::ivec2& size, const Array
   findShearPixels(*this->Source.images, *this->Source.geometries, this->Source.settings.reduction,
     origin, size, shown.data());
   std::vector<std::vector<glm::ivec3>> voxels(this->Source.geometries->size());
-  for (std::size_t n = 0; arrays.voxels && n < voxels.size(); ++n)
+  for (std::size_t n = 0; arrays.voxels && this->OwnRays.empty() && n < voxels.size(); ++n)
   {
     findVoxels(this->Source, n, voxels[n]);
   }

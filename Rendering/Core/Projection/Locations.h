@@ -5,12 +5,13 @@
  *
  * A sample is the slice (in preview the voxel) that a pixel's value comes from. Its point is where
  * the ray of the screen pixel (where pixels show areas, of the shear pixel) crosses the middle of
- * that slice; in exact mode the depth is that of the field's extremum in the slice, on the ray of
- * the nearest shear pixel. Its voxel is, in preview, the one that wins; in standard and high the
- * one of the slice that adds most to the average: the largest weight times its distance from the
- * volume's lowest value (of minima, from the highest); in exact mode the nearest to the extremum.
- * Without voxels, in all but preview, it is the one that the ray passes in the middle of the slice,
- * which takes the place of the extremum.
+ * that slice; in exact mode it is that of the largest value on that ray, as RayFinder finds it, or
+ * where that finds none, and of other reductions, the depth of the field's extremum in the slice on
+ * the ray of the nearest shear pixel. Its voxel is, in preview, the one that wins; in standard and
+ * high the one of the slice that adds most to the average: the largest weight times its distance
+ * from the volume's lowest value (of minima, from the highest); in exact mode the nearest to the
+ * point. Without voxels, in all but preview, it is the one that the ray passes in the middle of the
+ * slice, which takes the place of the extremum.
  */
 #ifndef splattingLocations_h
 #define splattingLocations_h
@@ -21,6 +22,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include <functional>
 #include <vector>
 
 namespace splatting
@@ -32,7 +34,10 @@ struct Located
   const std::vector<ShearWarp>* geometries = nullptr; ///< as many as the view has
   VoxelArray volume; ///< what was projected; without voxels if only a piece of it is here
   double low = 0.0, high = 0.0; ///< its range, infinities and NaN aside
-  ProjectionSettings settings;  ///< of the projection
+  /// Of each image; without them nothing is looked for on the screen's own rays.
+  const std::vector<Cuts>* cuts = nullptr;
+  const SceneDepth* depth = nullptr; ///< of what else is in the scene, if there is anything
+  ProjectionSettings settings;       ///< of the projection
   View view;
   glm::dmat4 indexToWorld{ 1.0 };
   /// Depths are distances from here: in parallel views along the direction, of length 1.
@@ -45,12 +50,14 @@ class Locator
 public:
   explicit Locator(const Located& located);
 
-  /// Where, along the principal axis, the sample of a shear pixel lies that has one.
+  /// Where, along the principal axis, the sample of a shear pixel lies that has one, on its ray.
   double depthOf(const ShearPixel& shown) const;
 
   /// The point of index space that a viewport pixel (centre at integers) shows by way of its shear
   /// pixel, which must not be none.
   glm::dvec3 point(const glm::dvec2& pixel, const ShearPixel& shown) const;
+  /// The voxel that it shows.
+  glm::ivec3 voxel(const glm::dvec2& pixel, const ShearPixel& shown) const;
   glm::dvec3 inWorld(const glm::dvec3& point) const;
   /// Of a point of the world.
   double depth(const glm::dvec3& world) const;
@@ -69,10 +76,15 @@ public:
   void fill(const glm::ivec2& origin, const glm::ivec2& size, const Arrays& arrays) const;
 
 private:
+  /// The depth of the largest value on the ray of a pixel of the viewport; NaN if there is none.
+  using DepthOnRay = std::function<double(const glm::ivec2&)>;
+
+  double depthOnOwnRay(const glm::dvec2& pixel, const ShearPixel& shown) const;
   void fillRow(int y, const glm::ivec2& origin, int width, const ShearPixel* shown,
     const std::vector<std::vector<glm::ivec3>>& voxels, const Arrays& arrays) const;
 
   Located Source;
+  std::vector<DepthOnRay> OwnRays; // of each image, where the screen's rays are looked along
 };
 
 /// The voxel of a shear pixel with a winner.

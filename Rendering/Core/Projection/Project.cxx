@@ -91,7 +91,7 @@ void openImage(const ProjectionSettings& settings, ScalarType voxels, ShearImage
   const std::size_t pixels = std::size_t(image.width) * image.height;
   image.type = samples ? voxels : accumulatorOf(voxels);
   image.bytes.resize(pixels * sizeOf(image.type));
-  image.winners.resize(settings.keepWinners ? pixels : 0);
+  image.winners.resize(settings.findsWinners() ? pixels : 0);
 }
 
 void learn(Experience& experience, Acceleration used, const TileCount& count)

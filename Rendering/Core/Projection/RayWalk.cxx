@@ -38,7 +38,7 @@ public:
   {
     ShearImage& image = this->Shared.image;
     const std::size_t begin = std::size_t(v0) * image.width, end = std::size_t(v1) * image.width;
-    if (this->Settings.keepWinners)
+    if (this->Settings.findsWinners())
     {
       std::fill(image.winners.begin() + begin, image.winners.begin() + end, -1);
     }
@@ -68,7 +68,7 @@ public:
   /// must not depend on the side that they are seen from.
   bool isReversed() const
   {
-    return (this->Settings.reduction == Reduction::Local || this->Settings.keepWinners) &&
+    return (this->Settings.reduction == Reduction::Local || this->Settings.findsWinners()) &&
       this->Shared.geometry.reversed();
   }
 
@@ -90,8 +90,8 @@ public:
             narrow(scratch.mask.data(), present, pixels);
           }
           const Row row{ step, v, pixels, isCut ? scratch.mask.data() : present };
-          this->Settings.keepWinners ? this->takeAndNote(row, samples, scratch)
-                                     : this->take(row, samples, scratch);
+          this->Settings.findsWinners() ? this->takeAndNote(row, samples, scratch)
+                                        : this->take(row, samples, scratch);
         }
       });
   }

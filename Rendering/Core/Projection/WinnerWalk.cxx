@@ -28,7 +28,8 @@ P justBelow(P value)
 
 /**
  * Which sample each pixel of a band of rows shows: of equal ones the nearest to the viewer. Where a
- * pixel is the floor, which no sample is below, that is the first sample of its ray.
+ * pixel is the floor, which no sample is below, that is the first sample of its ray; where there
+ * may be NaN, the floor is below all, and such a pixel has no sample.
  *
  * Nothing is noted while an image is made. Slices are splatted once more, from the viewer on, into
  * copies of limits just below the pixels: what a slice lifts above its limit has its winner there,
@@ -56,13 +57,14 @@ public:
   {
     const ShearImage& image = this->Shared.image;
     const P floor = this->Stack.floor();
+    const std::int32_t atFloor = this->Shared.range.special ? -1 : AtFloor;
     for (int v = this->Band.v0; v < this->Band.v1; ++v)
     {
       const P* const row = image.row<P>(v);
       for (int u = 0; u < image.width; ++u)
       {
         const bool covers = image.covers(u, v), isFloor = covers && !(row[u] > floor);
-        *this->winner(u, v) = isFloor ? AtFloor : -1;
+        *this->winner(u, v) = isFloor ? atFloor : -1;
         *this->Limits.at(u, v) = covers && !isFloor ? justBelow(row[u]) : Nothing;
       }
     }
@@ -312,6 +314,10 @@ void findWinners(Frame& frame, const SliceSampler<T, P>& sampler)
           if (isLast)
           {
             band.close();
+            if (frame.range.special)
+            {
+              dropEmpty<P>(frame.image, v0, v1);
+            }
             sampler.finish(v0, v1);
             closeRows<P>(frame.image, v0, v1);
           }

@@ -45,6 +45,7 @@ public:
   {
     return i * this->Strides[0] + j * this->Strides[1] + k * this->Strides[2];
   }
+  std::ptrdiff_t stride(int axis) const { return this->Strides[axis]; }
   const T* pointer(int i, int j, int k) const { return this->Voxels + this->place(i, j, k); }
 
 private:

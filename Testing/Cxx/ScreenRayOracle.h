@@ -1,29 +1,32 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// What exact mode shows on the screen is the largest value that the field has on the
-// pixel's own ray: to rounding at the rim of the field, and elsewhere as well as the four rays of
-// the shear image tell that a pixel is interpolated between.
-#include "Display/FieldRim.h"
+/**
+ * @file    ScreenRayOracle.h
+ * @brief   the rays of an exact picture's pixels, from the view's matrix alone, and what they find
+ */
+#ifndef ScreenRayOracle_h
+#define ScreenRayOracle_h
+
+#include "Display/ScreenRays.h"
+#include "Display/ShearPixels.h"
 #include "Display/Warp.h"
 #include "ExactTesting.h"
 #include "FieldWithNaN.h"
-#include "WideViews.h"
+#include "Projection/Locations.h"
 
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <iostream>
 #include <limits>
-#include <string>
 #include <vector>
 
+namespace screenrays
+{
 using namespace coretesting;
 using splatting::Quality;
 
-namespace
-{
 constexpr double Infinite = std::numeric_limits<double>::infinity();
 
 /// What is projected, and how.
@@ -37,19 +40,29 @@ struct Scene
   splatting::Cropping cropping;
 };
 
-/// The whole picture as scalars; NaN where there is nothing.
+/// The whole picture as scalars, NaN where there is nothing, and what it was made from.
 template <class T>
-std::vector<splatting::Accumulator<T>> pictureOf(const Scene<T>& scene, reference::Random& random)
+struct Shown
+{
+  std::vector<splatting::Accumulator<T>> pixels;
+  std::vector<splatting::ShearImage> images;
+  std::vector<splatting::Cuts> cuts;
+  splatting::ProjectionSettings settings;
+};
+
+template <class T>
+Shown<T> pictureOf(const Scene<T>& scene, reference::Random& random)
 {
   using A = splatting::Accumulator<T>;
-  splatting::ProjectionSettings settings;
+  Shown<T> shown;
+  splatting::ProjectionSettings& settings = shown.settings;
   settings.quality = Quality::Exact;
   settings.instructionSet = anyInstructionSet(random);
   splatting::VolumeIndex index;
   index.reset(
     { scene.volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(scene.volume.size) });
-  std::vector<splatting::ShearImage> images;
-  std::vector<splatting::Cuts> cuts;
+  std::vector<splatting::ShearImage>& images = shown.images;
+  std::vector<splatting::Cuts>& cuts = shown.cuts;
   for (const splatting::ShearWarp& geometry : scene.images)
   {
     cuts.push_back(cutsBy(geometry, scene.halfSpaces, scene.cropping));
@@ -57,15 +70,13 @@ std::vector<splatting::Accumulator<T>> pictureOf(const Scene<T>& scene, referenc
   }
   const glm::ivec2& viewport = scene.view.viewport;
   const A none = std::numeric_limits<A>::quiet_NaN();
-  std::vector<A> pixels(std::size_t(viewport.x) * viewport.y, none);
-  splatting::FieldRim rim;
-  if (splatting::hasFieldRim(settings))
-  {
-    rim.find(images, scene.images, { index.volume(), glm::ivec3(0), &cuts }, viewport);
-  }
+  shown.pixels.assign(std::size_t(viewport.x) * viewport.y, none);
+  splatting::ScreenRays rays;
+  rays.find(images, scene.images, { index.volume(), glm::ivec3(0), &cuts }, viewport,
+    settings.instructionSet);
   splatting::Warper().warpScalars(images, scene.images, settings.reduction, viewport,
-    settings.instructionSet, none, pixels.data(), rim);
-  return pixels;
+    settings.instructionSet, none, shown.pixels.data(), rays);
+  return shown;
 }
 
 /// The ray of a screen pixel, from the view's matrix alone.
@@ -77,7 +88,7 @@ struct ScreenRay
   double steepest; ///< the larger of its slopes
 };
 
-ScreenRay screenRay(const splatting::View& view, double x, double y)
+inline ScreenRay screenRay(const splatting::View& view, double x, double y)
 {
   const glm::dmat4 inverse = glm::inverse(view.indexToClip);
   const glm::dvec2 clip = (2.0 * glm::dvec2(x, y) + 1.0) / glm::dvec2(view.viewport) - 1.0;
@@ -214,6 +225,22 @@ struct Limits
   double low = -Infinite, high = -Infinite;
 };
 
+/// Whether some of slice k may count (grown), or all of it surely does. Planes may cut within it.
+template <class T>
+bool countsBeside(
+  const Scene<T>& scene, const reference::FieldRay& ray, int k, double way, bool grown)
+{
+  const int beside = scene.halfSpaces.empty() ? 0 : 1;
+  bool any = false, all = true;
+  for (int n = k - beside; n <= k + beside; ++n)
+  {
+    const Counts counts = countsIn(scene, ray, n, way);
+    any = any || counts >= Some;
+    all = all && counts == All;
+  }
+  return grown ? any : all;
+}
+
 /// Calls take(grown, from, to) for what may count in each slice (grown), and for what surely does.
 template <class T, class Take>
 void forSeenSlices(const Scene<T>& scene, const ScreenRay& screen, const Ways& ways, Take&& take)
@@ -225,7 +252,7 @@ void forSeenSlices(const Scene<T>& scene, const ScreenRay& screen, const Ways& w
     for (int k = 0; k < slices; ++k)
     {
       const double from = std::max(seen[0], k - 0.5), to = std::min(seen[1], k + 0.5);
-      if (from < to && countsIn(scene, screen.line, k, ways.cut) >= (grown ? Some : All))
+      if (from < to && countsBeside(scene, screen.line, k, ways.cut, grown))
       {
         take(grown, from, to);
       }
@@ -268,7 +295,7 @@ Limits limitsWithNaN(const Scene<T>& scene, const reference::Volume<double>& fie
 }
 
 /// How much of the ray of a point between pixels is in the field.
-double lengthAt(const splatting::ShearWarp& geometry, const glm::dvec2& p)
+inline double lengthAt(const splatting::ShearWarp& geometry, const glm::dvec2& p)
 {
   reference::FieldRay ray = rayOf(geometry, 0, 0);
   const glm::ivec2 last = geometry.rayCount() - 1;
@@ -285,7 +312,7 @@ double lengthAt(const splatting::ShearWarp& geometry, const glm::dvec2& p)
 
 /// Whether a square of pixels, or more if it is to be sure, reaches beyond the field. Its outline
 /// is convex.
-bool reachesOut(const splatting::ShearWarp& geometry, const glm::dvec2& p, double width)
+inline bool reachesOut(const splatting::ShearWarp& geometry, const glm::dvec2& p, double width)
 {
   bool out = false;
   for (int n = 0; n < 4; ++n)
@@ -304,17 +331,24 @@ enum Place
   AtRim
 };
 
-Place placeOf(const std::vector<splatting::ShearWarp>& images, const ScreenRay& ray, int x, int y)
+/// The number of the image whose axis a ray follows, or how many there are.
+inline std::size_t imageOf(const std::vector<splatting::ShearWarp>& images, const ScreenRay& ray)
 {
-  const splatting::ShearWarp* geometry = nullptr;
-  for (const splatting::ShearWarp& image : images)
-  {
-    if (image.principalAxis() == ray.line.axes[2] &&
-      (!image.isPerspective() || image.reversed() == ray.reversed))
-    {
-      geometry = &image;
-    }
-  }
+  return static_cast<std::size_t>(
+    std::find_if(images.begin(), images.end(),
+      [&](const splatting::ShearWarp& image)
+      {
+        return image.principalAxis() == ray.line.axes[2] &&
+          (!image.isPerspective() || image.reversed() == ray.reversed);
+      }) -
+    images.begin());
+}
+
+inline Place placeOf(
+  const std::vector<splatting::ShearWarp>& images, const ScreenRay& ray, int x, int y)
+{
+  const std::size_t number = imageOf(images, ray);
+  const splatting::ShearWarp* const geometry = number < images.size() ? &images[number] : nullptr;
   // Where two axes are as near to the ray either image may be shown.
   if (!geometry || ray.steepest > 0.999)
   {
@@ -361,152 +395,101 @@ Place placeOf(const std::vector<splatting::ShearWarp>& images, const ScreenRay& 
     : Unclear;
 }
 
-struct Worst
-{
-  double rim = 0.0, inside = 0.0; ///< beyond what is surely there, of the range
-  long atRim = 0, within = 0;
-};
-
-/// Compares pixels of a picture; of fields with NaN those at the rim.
+/// What a ray has from the slice before to the slice behind each of the winners that it lies
+/// between, if the field begins and ends so much further out.
 template <class T>
-void comparePixels(Checks& check, const Scene<T>& scene, reference::Random& random, Worst& worst)
+double besideWinners(const Scene<T>& scene, const Shown<T>& shown,
+  const reference::Volume<double>& field, const ScreenRay& ray, int x, int y, double more)
 {
-  const auto field = reference::toDouble(scene.volume);
-  const glm::dvec2 range = rangeOfNumbers(field);
-  const double low = range[0], high = range[1];
-  const bool hasNaN = std::any_of(
-    field.voxels.begin(), field.voxels.end(), [](double voxel) { return std::isnan(voxel); });
-  const glm::dvec3 steps = stepsOf(field);
-  const auto pixels = pictureOf(scene, random);
-  const bool perspective = !splatting::isParallel(scene.view);
-  const double rounding = 4.0 * perspectiveExactBound<T>(low, high) + 1e-9 * (high - low);
-  // The eye is rounded to 2^-10 voxels along each axis, slopes to 2^-24.
-  const double turn =
-    0x1p-24 * *std::max_element(scene.volume.size.begin(), scene.volume.size.end());
-  const double exactly = (perspective ? 0x1p-10 : 0.0) + 2.0 * turn + 1e-8;
-  for (int y = 0; y < scene.view.viewport.y; ++y)
+  const std::size_t number = imageOf(scene.images, ray);
+  const splatting::ShearWarp& geometry = scene.images[number];
+  const splatting::ShearImage& image = shown.images[number];
+  const glm::dvec3 point = geometry.screenToShear() * glm::dvec3(x, y, 1.0);
+  const glm::dvec2 p = glm::dvec2(point) / point.z;
+  auto seen = seenDepths(scene, ray, more);
+  for (const glm::dvec4& h : scene.halfSpaces)
   {
-    for (int x = 0; x < scene.view.viewport.x; ++x)
+    // h . (the ray at depth z) >= 0
+    double speed = h[ray.line.axes[2]], value = h.w - more * glm::length(glm::dvec3(h));
+    for (int a = 0; a < 2; ++a)
     {
-      const double shown = double(pixels[std::size_t(y) * scene.view.viewport.x + x]);
-      const ScreenRay ray = screenRay(scene.view, x, y);
-      const Place place = shown == shown ? placeOf(scene.images, ray, x, y) : Unclear;
-      // Brute force takes its time: some of them.
-      if (place == Unclear || (hasNaN && place == Inside) ||
-        random.uniform(0, place == AtRim ? 3 : 31))
-      {
-        continue;
-      }
-      double pitch = 0.0;
-      for (const splatting::ShearWarp& image : scene.images)
-      {
-        pitch = std::max(pitch, image.pitch() * (1.0 + 1e-9));
-      }
-      const double way = place == AtRim ? exactly : pitch;
-      // The intervals are those of a ray beside the pixel's.
-      const Ways ways{ way, scene.halfSpaces.empty() ? way : pitch };
-      const Limits limits = hasNaN ? limitsWithNaN(scene, field, steps, ray, ways)
-                                   : limitsOf(scene, field, steps, ray, ways);
-      if (limits.low == -Infinite)
-      {
-        continue; // what is shown where a ray may have no sample is the warp's affair
-      }
-      const double above = shown - limits.high, below = limits.low - shown;
-      check(above <= rounding && below <= rounding, "pixel ", x, " ", y,
-        place == AtRim ? " at the rim" : " inside", " is ", shown, ", not from ", limits.low,
-        " to ", limits.high, ", axis ", ray.line.axes[2], ", slope ", ray.line.slope[0], " ",
-        ray.line.slope[1]);
-      (place == AtRim ? worst.rim : worst.inside) =
-        std::max(place == AtRim ? worst.rim : worst.inside, std::max(above, below) / (high - low));
-      ++(place == AtRim ? worst.atRim : worst.within);
+      speed += h[ray.line.axes[a]] * ray.line.slope[a];
+      value += h[ray.line.axes[a]] * (ray.line.at[a] - ray.line.slope[a] * ray.line.start);
+    }
+    (speed > 0.0 ? seen[0] : seen[1]) =
+      speed > 0.0 ? std::max(seen[0], -value / speed) : std::min(seen[1], -value / speed);
+  }
+  double largest = -Infinite;
+  for (int n = 0; n < 4; ++n)
+  {
+    const int u = static_cast<int>(std::floor(p.x)) + n % 2;
+    const int v = static_cast<int>(std::floor(p.y)) + n / 2;
+    const double weight = (1.0 - std::abs(p.x - u)) * (1.0 - std::abs(p.y - v));
+    const int winner =
+      weight > 0.0 ? image.winners[std::size_t(v) * image.width + u] / splatting::StepsPerSlice : 0;
+    const double from = std::max(seen[0], winner - 1.0), to = std::min(seen[1], winner + 1.0);
+    if (weight > 0.0 && (winner + 1 < seen[0] || winner - 1 > seen[1]))
+    {
+      // What cuts the ray leaves nothing of that: all is looked at.
+      return reference::fieldMaximum(field, ray.line, seen[0], seen[1]);
+    }
+    if (weight > 0.0 && from < to)
+    {
+      largest = std::max(largest, reference::fieldMaximum(field, ray.line, from, to));
     }
   }
+  return largest;
 }
 
-/// Planes that the middle of some slice lies between.
-splatting::Cropping anyCropping(const std::array<int, 3>& size, reference::Random& random)
-{
-  splatting::Cropping cropping;
-  for (int a = 0; a < 3; ++a)
-  {
-    cropping.planes[a][0] = random.uniform(0.0, 0.4 * size[a]);
-    cropping.planes[a][1] = cropping.planes[a][0] + 1.01 + random.uniform(0.0, 0.5 * size[a]);
-  }
-  cropping.flags = static_cast<std::uint32_t>(random.bits()) & splatting::Cropping::All;
-  return cropping;
-}
-
-/// A view and cuts of a volume of noise.
+/// Whether nothing or a plane cuts a pixel's ray and the four rays around it, which then are cut at
+/// depths that the pixel's is the mean of.
 template <class T>
-Scene<T> anyScene(const std::array<int, 3>& size, bool perspective, reference::Random& random)
+bool isCutClearly(const Scene<T>& scene, const Shown<T>& shown, const ScreenRay& ray, int x, int y)
 {
-  Scene<T> scene;
-  scene.volume = wholeRangeNoise<T>(size, random);
-  scene.view = magnified(perspective ? randomPerspective(size, random) : randomView(size, random));
-  scene.view.showsBoxes = random.uniform(0, 2) == 0;
-  if (random.uniform(0, 3) == 0)
+  if (scene.halfSpaces.empty() || scene.cropping.cuts())
   {
-    scene.cropping = anyCropping(size, random);
+    return !scene.cropping.cuts();
   }
-  if (random.uniform(0, 3) == 0)
+  const std::size_t number = imageOf(scene.images, ray);
+  const splatting::ShearWarp& geometry = scene.images[number];
+  const splatting::ShearImage& image = shown.images[number];
+  const splatting::RayIntervals& intervals = shown.cuts[number].intervals;
+  const glm::dvec3 point = geometry.screenToShear() * glm::dvec3(x, y, 1.0);
+  bool clear = !geometry.isPerspective();
+  for (int n = 0; n < 4 && !intervals.empty(); ++n)
   {
-    const glm::dvec3 normal = anyVector(random, -1.0, 1.0);
-    const glm::dvec3 point = anyVector(random, 0.0, 1.0) * glm::dvec3(toGlm(size) - 1);
-    scene.halfSpaces.push_back({ normal, -glm::dot(normal, point) });
+    const int u = static_cast<int>(std::floor(point.x)) + n % 2;
+    const int v = static_cast<int>(std::floor(point.y)) + n / 2;
+    const glm::dvec2 depths =
+      clear && image.covers(u, v) ? intervals.depths(u, v) : glm::dvec2(0.0);
+    const glm::dvec2 others = clear && image.covers(u, v)
+      ? intervals.depths(static_cast<int>(point.x), static_cast<int>(point.y))
+      : glm::dvec2(9.0);
+    clear = clear && image.covers(u, v) && depths.x < depths.y &&
+      std::abs(depths.x - others.x) < 1.4 && std::abs(depths.y - others.y) < 1.4;
   }
-  splatting::ShearWarp::factorise(scene.view, scene.images, anySampling(random));
-  return scene;
+  return clear;
 }
 
-/// The scene with some voxels hidden, which makes them NaN, in the type of averages.
+/// What the field has at the point that is told of a pixel.
 template <class T>
-Scene<splatting::Accumulator<T>> withHidden(const Scene<T>& from, reference::Random& random)
+double atLocation(const Scene<T>& scene, const Shown<T>& shown,
+  const reference::Volume<double>& field, int x, int y)
 {
-  return { coretesting::withHidden(from.volume, random), from.view, from.images, from.halfSpaces,
-    from.cropping };
-}
-
-template <class T>
-void testType(Checks& check, Sightings& seen, Sightings& seenWithNaN)
-{
-  Worst worst, worstWithNaN;
-  reference::forScenes(seriesOf<T>("noise"), 40,
-    [&](int n, reference::Random& random)
-    {
-      const auto size = randomSize(random, 12);
-      const long before = worst.atRim;
-      comparePixels(check, anyScene<T>(size, n % 2 == 1, random), random, worst);
-      seen.add(worst.atRim > before);
-    });
-  reference::forScenes(seriesOf<T>("hidden voxels"), 40,
-    [&](int n, reference::Random& random)
-    {
-      const auto size = randomSize(random, 12);
-      const auto scene = withHidden(anyScene<T>(size, n % 2 == 1, random), random);
-      const long before = worstWithNaN.atRim;
-      comparePixels(check, scene, random, worstWithNaN);
-      seenWithNaN.add(worstWithNaN.atRim > before);
-    });
-  std::cout << "type " << int(splatting::scalarTypeOf<T>()) << ": " << worst.atRim
-            << " pixels at the rim, " << worst.rim << " beyond; " << worst.within
-            << " pixels inside, " << worst.inside << " beyond; with hidden voxels "
-            << worstWithNaN.atRim << " pixels at the rim, " << worstWithNaN.rim << " beyond"
-            << std::endl;
+  splatting::Located located;
+  located.images = &shown.images;
+  located.geometries = &scene.images;
+  located.cuts = &shown.cuts;
+  located.volume = { scene.volume.voxels.data(), splatting::scalarTypeOf<T>(),
+    toGlm(scene.volume.size) };
+  located.settings = shown.settings;
+  located.view = scene.view;
+  splatting::ShearPixel pixel;
+  splatting::findShearPixels(
+    shown.images, scene.images, shown.settings.reduction, { x, y }, glm::ivec2(1), &pixel);
+  const glm::dvec3 point = splatting::Locator(located).point(glm::dvec2(x, y), pixel);
+  return reference::fieldAt(field, { point.x, point.y, point.z });
 }
 }
 
-int TestFieldRim(int, char*[])
-{
-  Checks check;
-  Sightings seen, seenWithNaN;
-  forEachType(
-    [&](auto* null)
-    {
-      using T = std::remove_pointer_t<decltype(null)>;
-      testType<T>(check, seen, seenWithNaN);
-    });
-  check(seen.areEnough(0.4), "a rim is compared in only ", seen);
-  check(seenWithNaN.areEnough(0.3), "a rim beside hidden voxels is compared in only ", seenWithNaN);
-  std::cout << seenWithNaN << " with hidden voxels" << std::endl;
-  return check.result();
-}
+#endif

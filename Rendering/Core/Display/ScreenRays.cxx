@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Display/ScreenRays.h"
+
+#include "Display/Outline.h"
+#include "Display/Picture.h"
+
+#include <vtkSMPTools.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace splatting
+{
+namespace
+{
+/// Values of a row of pixels from parts of their rays, some of which are looked at together.
+template <class T>
+class RowOfValues
+{
+public:
+  using A = Accumulator<T>;
+
+  RowOfValues(const RayFinder<T>& finder, const WorksheetLoops<A>& loops, A* values, int count)
+    : Finder(finder),
+      Loops(loops),
+      Values(values),
+      Count(count)
+  {
+    this->Parts.special = std::is_floating_point_v<T>;
+    std::fill_n(values, count, Least);
+  }
+
+  /// Looks along the ray of one of them.
+  void find(int pixel, const ScreenPixel& onScreen)
+  {
+    this->Finder.forParts(onScreen,
+      [&](const FieldRay& ray, int k, const glm::dvec2& depths)
+      {
+        this->Pixels[this->Parts.count] = pixel;
+        this->Finder.add(ray, k, depths, this->Parts);
+        if (this->Parts.count == this->Parts.most)
+        {
+          this->take();
+        }
+      });
+  }
+
+  /// Pixels without a part get NaN.
+  void finish()
+  {
+    this->take();
+    std::replace(
+      this->Values, this->Values + this->Count, Least, std::numeric_limits<A>::quiet_NaN());
+  }
+
+private:
+  static constexpr A Least = -std::numeric_limits<A>::infinity();
+
+  void take()
+  {
+    this->Loops.findLargest(this->Parts);
+    for (int n = 0; n < this->Parts.count; ++n)
+    {
+      A& value = this->Values[this->Pixels[n]];
+      value = std::max(value, this->Parts.largest[n]);
+    }
+    this->Parts.count = 0;
+  }
+
+  const RayFinder<T>& Finder;
+  const WorksheetLoops<A>& Loops;
+  A* Values;
+  int Count;
+  FieldParts<A> Parts{};
+  std::array<int, FieldParts<A>::most> Pixels;
+};
+}
+
+/// Which pixels have values; their number.
+std::size_t ScreenRays::findRows(
+  const std::vector<ShearWarp>& geometries, const glm::ivec2& viewport)
+{
+  Picture place;
+  placePicture(geometries, viewport, place);
+  this->Images = geometries.size();
+  this->Origin = place.origin;
+  this->Rows.resize(place.size.y * this->Images);
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < this->Images; ++n)
+  {
+    const Outline shown = shownBy(geometries[n]);
+    for (int y = 0; y < place.size.y; ++y)
+    {
+      const glm::dvec3 start(place.origin.x, place.origin.y + static_cast<double>(y), 1.0);
+      Row& row = this->Rows[y * this->Images + n];
+      row.shown = shown.cut({ 0, place.size.x }, start);
+      row.shown.end = std::max(row.shown.begin, row.shown.end);
+      row.first = count;
+      count += row.shown.end - row.shown.begin;
+    }
+  }
+  return count;
+}
+
+void ScreenRays::find(const std::vector<ShearImage>& images,
+  const std::vector<ShearWarp>& geometries, const RaySource& source, const glm::ivec2& viewport,
+  InstructionSet instructionSet)
+{
+  const Kernels& kernels = kernelsFor(instructionSet);
+  const std::size_t count = this->findRows(geometries, viewport);
+  const int rows = static_cast<int>(this->Images ? this->Rows.size() / this->Images : 0);
+  this->Values.width = static_cast<int>(count);
+  this->Values.height = 1;
+  this->Values.spans.assign(1, { 0, this->Values.width });
+  this->Values.special = true;
+  dispatch(source.volume.type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      using A = Accumulator<T>;
+      this->Values.type = scalarTypeOf<A>();
+      this->Values.bytes.resize(count * sizeof(A));
+      A* const values = this->Values.template row<A>(0);
+      if (!source.volume.voxels)
+      {
+        std::fill_n(values, count, std::numeric_limits<A>::quiet_NaN());
+        return;
+      }
+      for (std::size_t i = 0; i < this->Images; ++i)
+      {
+        const RayFinder<T> finder(images[i], geometries[i], source, (*source.cuts)[i]);
+        vtkSMPTools::For(0, rows, 4,
+          [&](vtkIdType first, vtkIdType last)
+          {
+            for (vtkIdType y = first; y < last; ++y)
+            {
+              const Row& row = this->Rows[y * this->Images + i];
+              const int width = row.shown.end - row.shown.begin;
+              RowOfValues<T> found(finder, kernels, values + row.first, width);
+              for (int n = 0; n < width; ++n)
+              {
+                const glm::ivec2 pixel(row.shown.begin + n, static_cast<int>(y));
+                found.find(n, ScreenPixel(geometries[i], this->Origin + pixel));
+              }
+              found.finish();
+            }
+          });
+      }
+    });
+}
+
+double ScreenRays::valueAt(std::size_t image, const glm::ivec2& pixel) const
+{
+  const glm::ivec2 at = pixel - this->Origin;
+  const std::size_t row = at.y * this->Images + image;
+  if (at.y < 0 || row >= this->Rows.size() || at.x < this->Rows[row].shown.begin ||
+    at.x >= this->Rows[row].shown.end)
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return this->Values.type == ScalarType::Float32
+    ? static_cast<double>(*this->values<float>(image, at.x, at.y))
+    : *this->values<double>(image, at.x, at.y);
+}
+}
