@@ -164,7 +164,8 @@ public:
    * - "Depth", float: the distance in world units, from the plane through the camera's position
    *   across the direction of projection, in perspective from the eye.
    * - "Position", three doubles: the point of the world. It lies on the ray of the pixel, where
-   *   this crosses the middle of the slice that the sample is of.
+   *   this crosses the middle of the slice that the sample is of; in EXACT where the field has the
+   *   largest value that the ray finds. "Voxel" is the nearest to it then.
    *
    * Pixels without a sample, or hidden by other things, have voxel -1 and NaN. nullptr, with an
    * error message, unless RecordLocations is on; nullptr where nothing has been splatted. Computed
@@ -175,18 +176,19 @@ public:
 
   ///@{
   /**
-   * What a pixel of the window shows: the sample of the shear pixel nearest to it, as
-   * RecordLocations finds it, which need not be on: one ray is looked along, in about a
-   * millisecond. (x, y) are display coordinates, as vtkRenderWindowInteractor::GetEventPosition()
+   * What a pixel of the window shows: the sample of the shear pixel nearest to it, in EXACT what its
+   * own ray finds, as RecordLocations finds it, which need not be on: one ray is looked along, in
+   * about a millisecond. (x, y) are display coordinates, as vtkRenderWindowInteractor::GetEventPosition()
    * gives them.
    *
    * - PickWorldPosition(): the point of the world to measure from. It lies on the pixel's ray,
-   * where this crosses the middle of the slice that the sample is of (in EXACT, at the depth of the
-   *   field's extremum): "Position" of GetLocations().
+   *   where this crosses the middle of the slice that the sample is of (in EXACT, where the field
+   *   has the value): "Position" of GetLocations().
    * - PickVoxel(): i, j and k, relative to the image's first voxel, of the voxel that the sample
    *   comes from: "Voxel" of GetLocations().
    * - PickValue(): the sample's value, in units of the scalars: in PREVIEW the voxel's, in the
-   * other modes an average or, in EXACT, the extremum. Pictures interpolate between samples.
+   * other modes an average or, in EXACT, the extremum. Pictures interpolate between samples, but not
+   *   EXACT's maxima.
    *
    * False (PickValue: NaN), and the output stays as it is, where the last render of this mapper has
    * no sample, for averages, and, without RecordLocations, where several ranks render. Whether the

@@ -426,7 +426,8 @@ void ComponentProjector::FindScreenRays(const std::vector<ShearWarp>& geometries
     from.push_back(geometry.screenToShear());
   }
   // Where other things end within a slice the projection does not tell.
-  if (!depth && from == this->LookedFrom && view.viewport == this->LookedAt)
+  const bool isNew = depth || from != this->LookedFrom || view.viewport != this->LookedAt;
+  if (this->Ranks ? !this->Ranks->Any(isNew) : !isNew)
   {
     return;
   }

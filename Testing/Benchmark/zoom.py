@@ -4,7 +4,8 @@
 """
 What magnification does to pictures, in all quality modes and by VTK's two ray casters.
 
-    PYTHONPATH=BUILD/lib/python3/dist-packages xvfb-run -a python3 zoom.py [table ...]
+    PYTHONPATH=BUILD/lib/python3/dist-packages xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" \
+        python3 zoom.py [table ...]
 
 Tables: crest, decibels, voxels, sparkle; all if none is named. Needs NumPy. The modes'
 pictures are vtkSplattingMIPProjection's, in float; the ray casters' are a window's, in 255 grays.
