@@ -138,9 +138,10 @@ public:
    * rays of the shear image around it have their maxima and in those beside them: it shows a value
    * that the field has there, hardly ever less than the largest. Planes, slabs, surfaces and
    * geometry then cut rays where they are, not between slices. A shear image costs two to four
-   * times HIGH's, and the screen's rays about 0.2 microseconds of a core each. Where all of the volume is seen in pixels that are wider than voxels, it
-   * takes of each slice the voxel that a ray passes nearest to: the field is nowhere larger than at
-   * voxels, so that no maximum is lost, and that is the fastest of all.
+   * times HIGH's, and the screen's rays about 0.2 microseconds of a core each. Where all of the
+   * volume is seen in pixels that are wider than voxels, it takes of each slice the voxel that a
+   * ray passes nearest to: the field is nowhere larger than at voxels, so that no maximum is lost,
+   * and that is the fastest of all.
    *
    * In an overview, where pixels are wider than voxels in some direction, a pixel shows the largest
    * value over its area (of minima the least, of averages the average), in all modes. Else it shows

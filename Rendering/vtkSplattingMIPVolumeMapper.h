@@ -176,10 +176,10 @@ public:
 
   ///@{
   /**
-   * What a pixel of the window shows: the sample of the shear pixel nearest to it, in EXACT what its
-   * own ray finds, as RecordLocations finds it, which need not be on: one ray is looked along, in
-   * about a millisecond. (x, y) are display coordinates, as vtkRenderWindowInteractor::GetEventPosition()
-   * gives them.
+   * What a pixel of the window shows: the sample of the shear pixel nearest to it, in EXACT what
+   * its own ray finds, as RecordLocations finds it, which need not be on: one ray is looked along,
+   * in about a millisecond. (x, y) are display coordinates, as
+   * vtkRenderWindowInteractor::GetEventPosition() gives them.
    *
    * - PickWorldPosition(): the point of the world to measure from. It lies on the pixel's ray,
    *   where this crosses the middle of the slice that the sample is of (in EXACT, where the field
@@ -187,8 +187,8 @@ public:
    * - PickVoxel(): i, j and k, relative to the image's first voxel, of the voxel that the sample
    *   comes from: "Voxel" of GetLocations().
    * - PickValue(): the sample's value, in units of the scalars: in PREVIEW the voxel's, in the
-   * other modes an average or, in EXACT, the extremum. Pictures interpolate between samples, but not
-   *   EXACT's maxima.
+   * other modes an average or, in EXACT, the extremum. Pictures interpolate between samples, but
+   * not EXACT's maxima.
    *
    * False (PickValue: NaN), and the output stays as it is, where the last render of this mapper has
    * no sample, for averages, and, without RecordLocations, where several ranks render. Whether the

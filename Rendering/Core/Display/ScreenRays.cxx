@@ -17,20 +17,25 @@ namespace splatting
 {
 namespace
 {
-/// Values of a row of pixels from parts of their rays, some of which are looked at together.
+/// Values of rows of pixels from parts of their rays, some of which are looked at together.
 template <class T>
 class RowOfValues
 {
 public:
   using A = Accumulator<T>;
 
-  RowOfValues(const RayFinder<T>& finder, const WorksheetLoops<A>& loops, A* values, int count)
+  RowOfValues(const RayFinder<T>& finder, const WorksheetLoops<A>& loops)
     : Finder(finder),
-      Loops(loops),
-      Values(values),
-      Count(count)
+      Loops(loops)
   {
     this->Parts.special = std::is_floating_point_v<T>;
+  }
+
+  /// To be called for each row.
+  void open(A* values, int count)
+  {
+    this->Values = values;
+    this->Count = count;
     std::fill_n(values, count, Least);
   }
 
@@ -73,8 +78,8 @@ private:
 
   const RayFinder<T>& Finder;
   const WorksheetLoops<A>& Loops;
-  A* Values;
-  int Count;
+  A* Values = nullptr;
+  int Count = 0;
   FieldParts<A> Parts{};
   std::array<int, FieldParts<A>::most> Pixels;
 };
@@ -136,11 +141,12 @@ void ScreenRays::find(const std::vector<ShearImage>& images,
         vtkSMPTools::For(0, rows, 4,
           [&](vtkIdType first, vtkIdType last)
           {
+            RowOfValues<T> found(finder, kernels);
             for (vtkIdType y = first; y < last; ++y)
             {
               const Row& row = this->Rows[y * this->Images + i];
               const int width = row.shown.end - row.shown.begin;
-              RowOfValues<T> found(finder, kernels, values + row.first, width);
+              found.open(values + row.first, width);
               for (int n = 0; n < width; ++n)
               {
                 const glm::ivec2 pixel(row.shown.begin + n, static_cast<int>(y));

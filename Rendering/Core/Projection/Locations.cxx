@@ -376,19 +376,33 @@ double Locator::depthOf(const ShearPixel& shown) const
     });
 }
 
-glm::ivec3 Locator::voxel(const glm::dvec2& pixel, const ShearPixel& shown) const
+Locator::Sample Locator::sample(const glm::dvec2& pixel, const ShearPixel& shown) const
 {
   const double own = this->depthOnOwnRay(pixel, shown);
-  return own == own ? glm::clamp(glm::ivec3(glm::round(this->point(pixel, shown))), glm::ivec3(0),
-                        this->Source.view.dimensions - 1)
-                    : findVoxel(this->Source, shown);
+  if (own == own)
+  {
+    const glm::dvec3 point = this->pointAt(pixel, shown, own);
+    const glm::ivec3 last = this->Source.view.dimensions - 1;
+    return { point, glm::clamp(glm::ivec3(glm::round(point)), glm::ivec3(0), last), true };
+  }
+  return { this->pointAt(pixel, shown, this->depthOf(shown)), glm::ivec3(-1), false };
+}
+
+glm::ivec3 Locator::voxel(const glm::dvec2& pixel, const ShearPixel& shown) const
+{
+  const Sample sample = this->sample(pixel, shown);
+  return sample.hasVoxel ? sample.voxel : findVoxel(this->Source, shown);
 }
 
 glm::dvec3 Locator::point(const glm::dvec2& pixel, const ShearPixel& shown) const
 {
+  return this->sample(pixel, shown).point;
+}
+
+/// Where a pixel's ray is at a depth along the principal axis.
+glm::dvec3 Locator::pointAt(const glm::dvec2& pixel, const ShearPixel& shown, double z) const
+{
   const ShearWarp& geometry = (*this->Source.geometries)[shown.image];
-  const double own = this->depthOnOwnRay(pixel, shown);
-  double z = own == own ? own : this->depthOf(shown);
   if (geometry.isPerspective())
   {
     // In exact mode an extremum may lie at the eye itself, where all pixels are one.
@@ -465,18 +479,23 @@ void Locator::fillRow(int y, const glm::ivec2& origin, int width, const ShearPix
     const ShearPixel& from = shown[at];
     const bool has = from.image >= 0;
     glm::dvec3 point(none), world(none);
+    glm::ivec3 voxel(-1);
     if (has)
     {
-      point = this->point(glm::dvec2(origin.x + x, origin.y + y), from);
+      const Sample sample = this->sample(glm::dvec2(origin.x + x, origin.y + y), from);
+      point = sample.point;
       world = this->inWorld(point);
+      voxel = sample.voxel;
+      if (arrays.voxels && !sample.hasVoxel)
+      {
+        voxel = this->OwnRays.empty()
+          ? voxels[from.image]
+                  [std::size_t(from.v) * (*this->Source.images)[from.image].width + from.u]
+          : findVoxel(this->Source, from);
+      }
     }
     if (arrays.voxels)
     {
-      const glm::ivec3 voxel = !has ? glm::ivec3(-1)
-        : this->OwnRays.empty()
-        ? voxels[from.image]
-                [std::size_t(from.v) * (*this->Source.images)[from.image].width + from.u]
-        : this->voxel(glm::dvec2(origin.x + x, origin.y + y), from);
       std::copy(&voxel.x, &voxel.x + 3, arrays.voxels + 3 * at);
     }
     if (arrays.depths)

@@ -79,6 +79,15 @@ private:
   /// The depth of the largest value on the ray of a pixel of the viewport; NaN if there is none.
   using DepthOnRay = std::function<double(const glm::ivec2&)>;
 
+  /// Where a pixel's sample lies, and its voxel where its own ray tells that.
+  struct Sample
+  {
+    glm::dvec3 point;
+    glm::ivec3 voxel;
+    bool hasVoxel;
+  };
+  Sample sample(const glm::dvec2& pixel, const ShearPixel& shown) const;
+  glm::dvec3 pointAt(const glm::dvec2& pixel, const ShearPixel& shown, double z) const;
   double depthOnOwnRay(const glm::dvec2& pixel, const ShearPixel& shown) const;
   void fillRow(int y, const glm::ivec2& origin, int width, const ShearPixel* shown,
     const std::vector<std::vector<glm::ivec3>>& voxels, const Arrays& arrays) const;
