@@ -255,6 +255,7 @@ struct Expected
   bool certain = true;
   bool hit = false;
   double value = 0.0;
+  double slack = 0.0; ///< what it may differ by, beside rounding
 };
 
 /// How exact mode's rays about a pixel run through the field.
@@ -271,8 +272,43 @@ struct Ways
   }
 };
 
-/// A pixel shows what its own ray finds: at the rim of the field all along it, else from the slice
-/// before to the slice behind each of the winners.
+/// What a ray finds: at the rim of the field all along it, else from the slice before to the slice
+/// behind each of the winners. False if that is open.
+bool findOnRay(const Oracle& oracle, const reference::FieldRay& ray, const Ways& ways,
+  const std::vector<int>& winners, double& value)
+{
+  const auto depths = reference::depthsInField(
+    oracle.volume.size, ray, reference::FieldDomain::Centres, -0.5, oracle.grid.size[2] - 0.5);
+  const double own = depths[1] - depths[0];
+  const double share = ways.shortest / ways.longest;
+  if (!ways.certain ||
+    (ways.shortest >= 0.0 && (std::abs(own - 3.0) <= 1e-5 || std::abs(share - 0.5) <= 1e-5)))
+  {
+    return false;
+  }
+  if (ways.shortest < 0.0 || (own < 3.0 && share < 0.5))
+  {
+    value = own > 1e-5 ? reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]) : 0.0;
+    return own > 1e-5;
+  }
+  value = -HUGE_VAL;
+  for (const int winner : winners)
+  {
+    const double from = std::max(depths[0], winner - 1.0), to = std::min(depths[1], winner + 1.0);
+    if (winner == NoWinner || std::abs(to - from) <= 1e-5)
+    {
+      return false;
+    }
+    // Where the ray is in the field in other slices than a winner's, it looks at all of it.
+    value = std::max(value,
+      from < to ? reference::fieldMaximum(oracle.volume, ray, from, to)
+                : reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]));
+  }
+  return true;
+}
+
+/// A pixel shows what its own ray finds. Places and shears are rounded, which displaces the ray:
+/// one that grazes a face of the field then ends elsewhere.
 void expectOwnRay(const Oracle& oracle, const Rays& rays, const glm::dvec3& point, const Ways& ways,
   const std::vector<int>& winners, Expected& expected)
 {
@@ -284,32 +320,17 @@ void expectOwnRay(const Oracle& oracle, const Rays& rays, const glm::dvec3& poin
     ray.at[a] = point[ray.axes[a]];
     ray.slope[a] = rays.direction[ray.axes[a]] / rays.direction[ray.axes[2]];
   }
-  const auto depths = reference::depthsInField(
-    oracle.volume.size, ray, reference::FieldDomain::Centres, -0.5, oracle.grid.size[2] - 0.5);
-  const double own = depths[1] - depths[0];
-  const double share = ways.shortest / ways.longest;
-  expected.certain = expected.certain && ways.certain &&
-    (ways.shortest < 0.0 || (std::abs(own - 3.0) > 1e-5 && std::abs(share - 0.5) > 1e-5));
-  if (ways.shortest < 0.0 || (own < 3.0 && share < 0.5))
+  expected.certain = expected.certain && findOnRay(oracle, ray, ways, winners, expected.value);
+  const double way =
+    0x1p-23 * *std::max_element(oracle.volume.size.begin(), oracle.volume.size.end());
+  for (int n = 0; n < 4 && expected.certain; ++n)
   {
-    expected.certain = expected.certain && own > 1e-5;
-    expected.value =
-      own > 1e-5 ? reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]) : 0.0;
-    return;
-  }
-  expected.value = -HUGE_VAL;
-  for (const int winner : winners)
-  {
-    const double from = std::max(depths[0], winner - 1.0), to = std::min(depths[1], winner + 1.0);
-    expected.certain = expected.certain && winner != NoWinner && std::abs(to - from) > 1e-5;
-    if (!expected.certain)
-    {
-      return;
-    }
-    // Where the ray is in the field in other slices than a winner's, it looks at all of it.
-    expected.value = std::max(expected.value,
-      from < to ? reference::fieldMaximum(oracle.volume, ray, from, to)
-                : reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]));
+    reference::FieldRay displaced = ray;
+    displaced.at[0] += n % 2 ? way : -way;
+    displaced.at[1] += n / 2 ? way : -way;
+    double value = 0.0;
+    expected.certain = findOnRay(oracle, displaced, ways, winners, value);
+    expected.slack = std::max(expected.slack, std::abs(value - expected.value));
   }
 }
 
@@ -414,7 +435,7 @@ void compare(Checks& check, const reference::Volume<T>& volume, Filter* filter, 
       ++count.pixels;
       if (expected.hit && !std::isnan(found))
       {
-        const double error = std::abs(found - expected.value) / bound;
+        const double error = std::abs(found - expected.value) / (bound + expected.slack);
         check(error <= 1.0, "mode ", filter->GetQualityMode(), " blend ", filter->GetBlendMode(),
           " pixel ", x, " ", y, " is ", found, ", not ", expected.value, ": ", error, " bounds");
         count.worst = std::max(count.worst, error);
