@@ -24,7 +24,8 @@ def read(path):
     reader.SetFileName(str(path))
     reader.Update()
     image = reader.GetOutput()
-    return image.GetDimensions(), vtk_to_numpy(image.GetPointData().GetScalars()).astype(float)
+    values = vtk_to_numpy(image.GetPointData().GetScalars()).astype(float)
+    return image.GetDimensions(), values.reshape(image.GetNumberOfPoints(), -1)
 
 
 def compare(found, expected):

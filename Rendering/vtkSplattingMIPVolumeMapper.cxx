@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSplattingMIPVolumeMapper.h"
 
-#include "Complaints.h"
 #include "MapperProperties.h"
 #include "PropertyMethods.h"
+#include "ReportedProblems.h"
 #include "Scene/ProjectedVolume.h"
 #include "Scene/RayCastFallback.h"
 #include "Scene/Refusals.h"
@@ -74,7 +74,7 @@ public:
   void DropRayCaster();
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
 
-  Complaints Reported;
+  ReportedProblems Reported;
   std::set<std::string> Announced;   // what ray casting leads to, and was told
   bool BudgetReported = false;       // as in: since it was no problem
   bool OpenSurfaceReported = false;  // likewise
@@ -95,7 +95,7 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
 {
   splatting::Projector& projector = this->Internal->Data.Components.GetProjector();
   projector.setProgress([this](double done) { this->UpdateProgress(done); });
-  projector.setWatch([this](double done) { return this->Internal->GoOn(this, done); });
+  projector.setObserver([this](double done) { return this->Internal->GoOn(this, done); });
 }
 
 //------------------------------------------------------------------------------
@@ -191,7 +191,7 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfBudget(vtkSplattingMIPVolumeM
 // Holds nothing, after a frame that there was no memory for.
 void vtkSplattingMIPVolumeMapper::Internals::GiveBack()
 {
-  this->Data.HoldNothing();
+  this->Data.Clear();
   this->Picture = {};
   this->DropRayCaster();
 }

@@ -18,7 +18,7 @@ from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 from vtkmodules.vtkRenderingCore import (
     vtkColorTransferFunction, vtkRenderer, vtkRenderWindow, vtkVolume, vtkWindowToImageFilter)
 from vtkmodules.vtkRenderingVolume import vtkFixedPointVolumeRayCastMapper
-from vtkmodules.vtkImagingCore import vtkImageMagnify
+from vtkmodules.vtkImagingCore import vtkImageExtractComponents, vtkImageMagnify
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401 (draws the ray caster's image)
 from vtksplattingmip import vtkSplattingMIPVolumeMapper
 
@@ -95,9 +95,12 @@ window.Render()
 
 shot = vtkWindowToImageFilter()
 shot.SetInput(window)
+gray = vtkImageExtractComponents()
+gray.SetComponents(0)
+gray.SetInputConnection(shot.GetOutputPort())
 enlarged = vtkImageMagnify()
 enlarged.SetMagnificationFactors(arguments.enlarge, arguments.enlarge, 1)
-enlarged.SetInputConnection(shot.GetOutputPort())
+enlarged.SetInputConnection(gray.GetOutputPort())
 writer = vtkPNGWriter()
 writer.SetInputConnection(enlarged.GetOutputPort())
 writer.SetFileName(arguments.output)

@@ -35,7 +35,7 @@ bool haveSameRays(const std::vector<ShearWarp>& a, const std::vector<ShearWarp>&
     { return left.sameShear(right) && (!ordered || left.reversed() == right.reversed()); });
 }
 
-bool ComponentProjector::LookAt(ScalarSource& source)
+bool ComponentProjector::SetSource(ScalarSource& source)
 {
   source.Update();
   this->Dependent = source.AreDependent();
@@ -61,7 +61,7 @@ bool ComponentProjector::LookAt(ScalarSource& source)
   return differs;
 }
 
-void ComponentProjector::LookAtNothing(ScalarType type, std::size_t components)
+void ComponentProjector::SetEmpty(ScalarType type, std::size_t components)
 {
   const VolumeIndex& before = this->Channels.front().Index;
   if (before.volume().voxels || before.volume().type != type || this->Channels.size() != components)
@@ -79,7 +79,7 @@ void ComponentProjector::LookAtNothing(ScalarType type, std::size_t components)
   }
 }
 
-void ComponentProjector::HoldNothing()
+void ComponentProjector::Clear()
 {
   this->Channels.clear();
   this->Channels.resize(1);
@@ -121,7 +121,7 @@ void ComponentProjector::SetRanks(PieceExchange* ranks)
     }
     const VolumeIndex::Range range = ranks->RangeOfWhole(c);
     if (!channel.Whole || channel.Whole->low != range.low || channel.Whole->high != range.high ||
-      channel.Whole->special != range.special)
+      channel.Whole->nonFinite != range.nonFinite)
     {
       this->Colors.Forget();
       this->Projected = false;
@@ -180,7 +180,7 @@ void ComponentProjector::UpdateColors(
 }
 
 // Whether all but the last component go with the winners.
-bool ComponentProjector::Carries(const ProjectionSettings& settings) const
+bool ComponentProjector::TakesAtWinners(const ProjectionSettings& settings) const
 {
   return this->Dependent && settings.reduction != Reduction::Mean;
 }
@@ -190,12 +190,12 @@ ProjectionSettings ComponentProjector::SettingsOf(
 {
   // Whether locations are wanted is the mapper's affair.
   settings.keepWinners =
-    this->Carries(settings) || (settings.keepWinners && &channel == &this->LocatedChannel());
-  if (this->Carries(settings) && settings.quality == Quality::Exact)
+    this->TakesAtWinners(settings) || (settings.keepWinners && &channel == &this->LocatedChannel());
+  if (this->TakesAtWinners(settings) && settings.quality == Quality::Exact)
   {
-    settings.quality = Quality::High; // what is carried is an average
+    settings.quality = Quality::High; // what is taken at winners is an average
   }
-  // Colours that are carried, locations and where rays have their maxima matter below the window,
+  // Colours taken at winners, locations and where rays have their maxima matter below the window,
   // too.
   if (this->Cull && !settings.findsWinners() && settings.reduction == Reduction::Maximum)
   {
@@ -219,7 +219,7 @@ bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
   if (this->Ranks && !channel.Index.volume().voxels)
   {
     blank(geometry, channel.Index.volume().type, channel.Settings, image);
-    image.special = channel.Index.range().special;
+    image.nonFinite = channel.Index.range().nonFinite;
     ++this->Done;
     return true;
   }
@@ -235,11 +235,12 @@ bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
   return true;
 }
 
-// One image of all channels: what is carried needs the projector as the projection has left it.
+// One image of all channels: what is taken at winners needs the projector as the projection has
+// left it.
 bool ComponentProjector::ProjectPart(std::size_t n, Place place, const ShearWarp& geometry,
   const ProjectionSettings& settings, const Cuts& cuts)
 {
-  if (!this->Carries(settings))
+  if (!this->TakesAtWinners(settings))
   {
     return std::all_of(this->Channels.begin(), this->Channels.end(),
       [&](Channel& channel)
@@ -257,7 +258,7 @@ bool ComponentProjector::ProjectPart(std::size_t n, Place place, const ShearWarp
     {
       channel.Settings = last.Settings;
       channel.Used = last.Used;
-      this->Projector.carry(
+      this->Projector.takeAtWinners(
         channel.Index.volume(), geometry, last.Settings, winners, place(channel, n));
     }
   }
@@ -411,7 +412,7 @@ void ComponentProjector::OutlineWhole(Channel& channel, std::size_t n, const She
 
 double ComponentProjector::ShareOfAll(double done) const
 {
-  const std::size_t channels = this->Carries(this->Settings()) ? 1 : this->Channels.size();
+  const std::size_t channels = this->TakesAtWinners(this->Settings()) ? 1 : this->Channels.size();
   return (this->Done + done) /
     static_cast<double>(channels * std::max<std::size_t>(this->Parts, 1));
 }
@@ -454,12 +455,13 @@ double ComponentProjector::ValueOnOwnRay(std::size_t image, const glm::ivec2& pi
   return this->LocatedChannel().Rays.valueAt(image, pixel);
 }
 
-// Where areas are shown, what is carried is that of the sample that wins in the area.
+// Where areas are shown, the other components are those of the sample that wins in the area.
 void ComponentProjector::FindShown(const std::vector<ShearWarp>& geometries, const View& view)
 {
   const Channel& last = this->Channels.back();
   this->Shown.clear();
-  if (geometries.empty() || !geometries.front().isOverview() || !this->Carries(last.Settings))
+  if (geometries.empty() || !geometries.front().isOverview() ||
+    !this->TakesAtWinners(last.Settings))
   {
     return;
   }

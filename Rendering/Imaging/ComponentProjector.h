@@ -36,20 +36,20 @@ bool haveSameRays(const std::vector<ShearWarp>& a, const std::vector<ShearWarp>&
  *
  * Independent components are projected and coloured one by one, and their colours add up. Of
  * dependent ones the last, the opacity, is projected, and the others, one colour index or red,
- * green and blue, are carried along with the samples that win; means are taken of each.
+ * green and blue, are those of the samples that win; means are taken of each.
  */
 class ComponentProjector
 {
 public:
   /// Points the indices at the source's volumes, anew if these changed. Returns whether other times
   /// are to be expected now, because there are more voxels, larger ones or other components.
-  bool LookAt(ScalarSource& source);
+  bool SetSource(ScalarSource& source);
 
-  /// In place of LookAt() on a rank that holds nothing of a volume of this type.
-  void LookAtNothing(ScalarType type, std::size_t components);
+  /// In place of SetSource() on a rank that holds nothing of a volume of this type.
+  void SetEmpty(ScalarType type, std::size_t components);
 
   /// As before the first volume: gives back what it holds, whatever state that is in.
-  void HoldNothing();
+  void Clear();
 
   /// What volumes hold, and of a piece the range of its own voxels.
   std::size_t NumberOfComponents() const { return this->Channels.size(); }
@@ -83,7 +83,7 @@ public:
 
   /**
    * Projects all components into all images of a view, each with its cuts. False if the projector's
-   * watch has stopped it: there are no images then.
+   * observer has stopped it: there are no images then.
    */
   bool Project(const std::vector<ShearWarp>& geometries, const ProjectionSettings& settings,
     const std::vector<Cuts>& cuts);
@@ -156,7 +156,7 @@ private:
 
   void FindShown(const std::vector<ShearWarp>& geometries, const View& view);
   ProjectionSettings SettingsOf(const Channel& channel, ProjectionSettings settings) const;
-  bool Carries(const ProjectionSettings& settings) const;
+  bool TakesAtWinners(const ProjectionSettings& settings) const;
   const Channel& LocatedChannel() const
   {
     return this->Dependent ? this->Channels.back() : this->Channels.front();

@@ -28,11 +28,11 @@ const PixelProjector::Pixel& PixelProjector::Project(VolumeIndex& index,
   settings.floor = ProjectionSettings().floor;
   settings.acceleration = Acceleration::Dense;
   // What frames have learnt is for frames.
-  Experience& experience = index.experience(
+  SkipStatistics& statistics = index.statistics(
     geometry.principalAxis(), static_cast<int>(settings.quality), !this->Alone.Cuts.none());
-  const Experience kept = experience;
+  const SkipStatistics kept = statistics;
   this->Projector.project(index, geometry, settings, this->Alone.Cuts, this->Alone.Images.front());
-  experience = kept;
+  statistics = kept;
   return this->Alone;
 }
 }

@@ -415,7 +415,7 @@ void ScalarSource::Update()
   this->Seconds = vtkTimerLog::GetUniversalTime() - start;
 }
 
-void ScalarSource::HoldNothing(int vtkType)
+void ScalarSource::Clear(int vtkType)
 {
   this->Examined = this->Volumed = this->Imaged = {};
   this->Volumes.clear();

@@ -80,7 +80,7 @@ public:
   /// Valid after Update(), as long as the input.
   const VoxelArray& Volume(int component) const { return this->Volumes[component]; }
   /// There is no volume here, but perhaps elsewhere, of this type.
-  void HoldNothing(int vtkType);
+  void Clear(int vtkType);
   /// VTK's name for the type of a volume, or of what is projected from it.
   int VtkTypeOf(ScalarType type) const;
   /// VTK_FLOAT or VTK_DOUBLE, whichever holds averages of scalars of a VTK type.

@@ -85,7 +85,7 @@ vtkSplattingMIPProjection::vtkSplattingMIPProjection()
     Properties(new ProjectionProperties),
     Internal(new Internals)
 {
-  this->Internal->Components.GetProjector().setWatch(
+  this->Internal->Components.GetProjector().setObserver(
     [this](double done) { return this->Internal->GoOn(this, done); });
 }
 
@@ -278,7 +278,7 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
 std::string vtkSplattingMIPProjection::Internals::ProjectInput(
   vtkSplattingMIPProjection* self, vtkImageData* output)
 {
-  this->Components.LookAt(this->Source);
+  this->Components.SetSource(this->Source);
   this->Components.SetBudget(static_cast<std::size_t>(this->Properties.IndexMemoryBudget));
   return this->PlaceOutput(output)
     ? this->ProjectViews(self, output)
@@ -435,8 +435,8 @@ int vtkSplattingMIPProjection::RequestData(
   }
   catch (const std::bad_alloc&)
   {
-    in.Source.HoldNothing(VTK_VOID);
-    in.Components.HoldNothing();
+    in.Source.Clear(VTK_VOID);
+    in.Components.Clear();
     problem = ScalarSource::NoMemory;
   }
   if (!problem.empty())

@@ -301,7 +301,7 @@ void RankAgreement::SetWhole(const std::vector<RankReport>& reports)
       auto& range = this->All.ranges[c];
       range.low = std::min(range.low, report.ranges[c].low);
       range.high = std::max(range.high, report.ranges[c].high);
-      range.special = std::max(range.special, report.ranges[c].special);
+      range.nonFinite = std::max(range.nonFinite, report.ranges[c].nonFinite);
     }
   }
   if (!this->Image)
@@ -427,7 +427,7 @@ void RankAgreement::ReduceWinners(ShearImage& image, const ShearWarp& geometry)
 VolumeIndex::Range RankAgreement::RangeOfWhole(std::size_t component) const
 {
   const auto& range = this->All.ranges[component];
-  return { range.low, range.high, range.special != 0.0 };
+  return { range.low, range.high, range.nonFinite != 0.0 };
 }
 
 void describeScalars(ComponentProjector& components, const ScalarSource& source, RankReport& report)
@@ -439,7 +439,7 @@ void describeScalars(ComponentProjector& components, const ScalarSource& source,
   for (std::size_t c = 0; c < components.NumberOfComponents(); ++c)
   {
     const VolumeIndex::Range& range = components.RangeOfPiece(c);
-    report.ranges[c] = { range.low, range.high, range.special ? 1.0 : 0.0 };
+    report.ranges[c] = { range.low, range.high, range.nonFinite ? 1.0 : 0.0 };
   }
   if (components.AreDependent())
   {

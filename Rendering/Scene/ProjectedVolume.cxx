@@ -35,7 +35,7 @@ void ProjectedVolume::Prepare(const MapperProperties& properties, const View& vi
   vtkVolume* volume, const FinalColor& finalColor)
 {
   const vtkIdType version = this->Source.Version();
-  if (!this->Ranks.AreMany() && this->Components.LookAt(this->Source))
+  if (!this->Ranks.AreMany() && this->Components.SetSource(this->Source))
   {
     this->ForgetTimes(); // changed data of the same kind take what the last ones took
   }
@@ -118,10 +118,10 @@ bool ProjectedVolume::Project(const MapperProperties& properties, const View& vi
   return true;
 }
 
-void ProjectedVolume::HoldNothing()
+void ProjectedVolume::Clear()
 {
-  this->Source.HoldNothing(VTK_VOID);
-  this->Components.HoldNothing();
+  this->Source.Clear(VTK_VOID);
+  this->Components.Clear();
   this->ShearImageOutput = nullptr;
 }
 

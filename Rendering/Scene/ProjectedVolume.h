@@ -60,7 +60,7 @@ public:
     vtkVolume* volume, const SceneCuts::DepthReader& readDepth);
 
   /// Gives back all memory, after a frame that there was not enough for.
-  void HoldNothing();
+  void Clear();
 
   /// The largest image; nullptr if there is none.
   const ShearWarp* MainImage() const;

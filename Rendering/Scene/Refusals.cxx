@@ -52,7 +52,7 @@ std::string problemOfRanks(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* ren
   RankReport report = reportOf(mapper, problemOfPiece);
   if (!report.problem[0] && !report.isEmpty())
   {
-    if (data.Components.LookAt(data.Source))
+    if (data.Components.SetSource(data.Source))
     {
       data.ForgetTimes();
     }
@@ -63,8 +63,8 @@ std::string problemOfRanks(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* ren
   if (problem.empty() && report.isEmpty())
   {
     const RankReport& common = data.Ranks.Common();
-    data.Source.HoldNothing(common.vtkType);
-    data.Components.LookAtNothing(
+    data.Source.Clear(common.vtkType);
+    data.Components.SetEmpty(
       static_cast<ScalarType>(common.type), static_cast<std::size_t>(common.components));
   }
   return problem;

@@ -98,7 +98,7 @@ Result projected(const reference::Volume<T>& volume, const splatting::ShearWarp&
     index, geometry, settings, coretesting::cutsBy(geometry, c.halfSpaces), result.image);
   result.memory = index.memorySize();
   result.share =
-    index.experience(geometry.principalAxis(), static_cast<int>(settings.quality), false).share;
+    index.statistics(geometry.principalAxis(), static_cast<int>(settings.quality), false).share;
   return result;
 }
 
@@ -393,7 +393,7 @@ std::vector<int> framesOfBricks(
       result.push_back(frame);
     }
   }
-  share = index.experience(2, static_cast<int>(quality), false).share;
+  share = index.statistics(2, static_cast<int>(quality), false).share;
   return result;
 }
 

@@ -112,9 +112,9 @@ void testRange(Checks& check, const reference::Volume<T>& volume, bool hasRoom)
   }
   const splatting::VolumeIndex::Range& range = index.range();
   check(range.low == static_cast<double>(low) && range.high == static_cast<double>(high) &&
-      range.special == special,
+      range.nonFinite == special,
     "range ", range.low, " to ", range.high, ", not ", +low, " to ", +high, ", special ",
-    range.special, ", not ", special);
+    range.nonFinite, ", not ", special);
   check(range.hasInfinities() == infinite, "infinities: ", range.hasInfinities());
   check(index.hasBricks() == (hasRoom && !infinite), "bricks though infinite ", infinite,
     ", room for them ", hasRoom, ", or none without a reason");

@@ -274,7 +274,7 @@ void testPerspective(Checks& check)
       {
         for (splatting::ShearImage& image : images)
         {
-          image.special = special;
+          image.nonFinite = special;
         }
         splatting::Picture picture;
         warper.warp(images, geometries, splatting::Reduction::Maximum, table, view.viewport,

@@ -182,7 +182,7 @@ void testPieces(Checks& check, const char* series, int count, int largest, Sight
           " differs: quality ", int(scene.settings.quality), ", reduction ",
           int(scene.settings.reduction), ", ", parts.size(), " pieces, perspective ",
           scene.geometry.isPerspective(), ", axis ", scene.geometry.principalAxis(), ", cut ",
-          !scene.cuts.none(), ", NaN ", index.range().special, ", acceleration ",
+          !scene.cuts.none(), ", NaN ", index.range().nonFinite, ", acceleration ",
           int(scene.settings.acceleration), ", size ", size[0], " ", size[1], " ", size[2]);
       }
     });
@@ -241,7 +241,7 @@ void testKeys(Checks& check)
     image.type = splatting::ScalarType::Float32;
     image.width = count;
     image.height = 1;
-    image.special = true;
+    image.nonFinite = true;
     image.spans.assign(1, { 0, count });
     image.bytes.resize(sizeof numbers);
     std::memcpy(image.bytes.data(), numbers, sizeof numbers);

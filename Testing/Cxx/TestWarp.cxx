@@ -112,7 +112,7 @@ void testOddPixels(Checks& check)
   {
     std::vector<splatting::ShearImage> images{ imageOf(geometry, [](int, int) { return 50.0; }) };
     images.front().row<float>(15)[15] = value;
-    images.front().special = true;
+    images.front().nonFinite = true;
     splatting::Picture picture;
     splatting::Warper().warp(images, { geometry }, splatting::Reduction::Maximum,
       countingTable(0.0, 100.0), view.viewport, splatting::bestInstructionSet(), picture);

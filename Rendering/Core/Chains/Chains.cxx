@@ -18,47 +18,48 @@ namespace
 class ChainsMode : public ProjectionMode
 {
 public:
-  void project(Frame& frame) override
+  void project(ProjectionContext& context) override
   {
-    dispatch(frame.index.volume().type,
+    dispatch(context.index.volume().type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
-        frame.settings.quality == Quality::Preview ? this->preview<T>(frame)
-                                                   : this->splat<T>(frame);
+        context.settings.quality == Quality::Preview ? this->preview<T>(context)
+                                                     : this->splat<T>(context);
       });
   }
 
 private:
   template <class T>
-  void preview(Frame& frame)
+  void preview(ProjectionContext& context)
   {
-    const LinePreview<T> preview(frame, *frame.lines, this->Reaches);
+    const LinePreview<T> preview(context, *context.lines, this->Reaches);
     // All bands look through sorted chains: there must be no more bands than threads.
-    const int height = frame.image.height, threads = vtkSMPTools::GetEstimatedNumberOfThreads();
-    const int rows = frame.lines->encoding().order == LineOrder::Lines
+    const int height = context.image.height, threads = vtkSMPTools::GetEstimatedNumberOfThreads();
+    const int rows = context.lines->encoding().order == LineOrder::Lines
       ? bandHeight(height)
       : (height + threads - 1) / threads;
-    forBands(height, rows, frame.watch,
+    forBands(height, rows, context.observer,
       [&](int v0, int v1)
       {
-        openRows<T>(frame.image, previewFloor<T>(frame), v0, v1);
+        openRows<T>(context.image, previewFloor<T>(context), v0, v1);
         preview.splat(v0, v1, this->Scratch.Local());
-        closeRows<T>(frame.image, v0, v1);
+        closeRows<T>(context.image, v0, v1);
       });
   }
 
   template <class T>
-  void splat(Frame& frame)
+  void splat(ProjectionContext& context)
   {
     using A = Accumulator<T>;
     auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Footprints);
     auto& reach = std::get<WorksheetReach<A>>(this->Reach);
-    findFootprints(frame.geometry, worksheetKernel(frame.settings),
-      frame.settings.footprintSampling, weightBits<T>, this->Table, footprints);
-    findReach(frame.sliceGeometry, footprints, reach);
-    walk(frame,
-      LineWorksheets<T>(frame, footprints, reach, worksheetDepth(frame.settings), *frame.lines));
+    findFootprints(context.geometry, worksheetKernel(context.settings),
+      context.settings.footprintSampling, weightBits<T>, this->Table, footprints);
+    findReach(context.sliceGeometry, footprints, reach);
+    walk(context,
+      LineWorksheets<T>(
+        context, footprints, reach, worksheetDepth(context.settings), *context.lines));
   }
 
   std::vector<LineReach> Reaches;

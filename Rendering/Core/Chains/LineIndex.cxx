@@ -80,7 +80,7 @@ class LineIndex::Builder
 public:
   Builder(LineIndex& index, const Slices& slices, const glm::ivec3& size)
     : Index(index),
-      Stack(slices),
+      Source(slices),
       Size(size),
       Limit(index.Encoding.tolerance,
         index.Encoding.tolerance > 0.0 ? largestVoxel<T>(slices, size) : T())
@@ -213,8 +213,8 @@ private:
     for (int j = 0; j < this->Size.y; ++j)
     {
       slice.startRow(j);
-      this->encodeRow(static_cast<const T*>(this->Stack.voxels) + j * this->Stack.rowStride +
-          k * this->Stack.sliceStride,
+      this->encodeRow(static_cast<const T*>(this->Source.voxels) + j * this->Source.rowStride +
+          k * this->Source.sliceStride,
         this->Hidden ? this->Hidden->row(j, k) : nullptr, slice);
     }
     slice.finish(k);
@@ -275,7 +275,7 @@ private:
   }
 
   LineIndex& Index;
-  const Slices& Stack;
+  const Slices& Source;
   glm::ivec3 Size;
   Tolerance<T> Limit;
   std::unique_ptr<HiddenVoxels<T>> Hidden;

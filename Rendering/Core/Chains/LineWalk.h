@@ -8,7 +8,7 @@
 #define splattingLineWalk_h
 
 #include "Chains/LineIndex.h"
-#include "Projection/Frame.h"
+#include "Projection/ProjectionContext.h"
 
 #include <cmath>
 
@@ -54,14 +54,15 @@ class LinePreview
 {
 public:
   /// @param storage  outlives this, and is kept for the next frame
-  LinePreview(const Frame& frame, const LineIndex& index, std::vector<LineReach>& storage)
-    : Shared(frame),
+  LinePreview(
+    const ProjectionContext& context, const LineIndex& index, std::vector<LineReach>& storage)
+    : Context(context),
       Index(index),
-      Floor(previewFloor<T>(frame)),
+      Floor(previewFloor<T>(context)),
       Reaches(storage)
   {
     storage.clear();
-    for (const SliceGeometry& slice : frame.sliceGeometry)
+    for (const SliceGeometry& slice : context.sliceGeometry)
     {
       storage.push_back(reachOf(slice.path));
     }
@@ -85,7 +86,7 @@ public:
   }
 
 private:
-  T* row(int v) const { return this->Shared.image.template row<T>(v); }
+  T* row(int v) const { return this->Context.image.template row<T>(v); }
 
   static void raise(T* row, const Span& span, T value)
   {
@@ -106,21 +107,21 @@ private:
       const int v = j - row.dj;
       if (v >= v0 && v < v1)
       {
-        raise(v, common({ begin - row.iMax, end - row.iMin }, this->Shared.pixels(v, k)));
+        raise(v, common({ begin - row.iMax, end - row.iMin }, this->Context.pixels(v, k)));
       }
     }
   }
 
   void splatLines(int v0, int v1) const
   {
-    const Span slices = slicesOf(this->Shared.sliceGeometry, v0, v1);
+    const Span slices = slicesOf(this->Context.sliceGeometry, v0, v1);
     for (int k = slices.begin; k < slices.end; ++k)
     {
       const LineReach& reach = this->Reaches[k];
       for (int r = 0; r < reach.count; ++r)
       {
         const LineReach::Row& row = reach.rows[r];
-        const int end = std::min(v1, this->Shared.geometry.size().y - row.dj);
+        const int end = std::min(v1, this->Context.geometry.size().y - row.dj);
         for (int v = std::max(v0, -row.dj); v < end; ++v)
         {
           this->splatRow(row, v, k);
@@ -131,7 +132,7 @@ private:
 
   void splatRow(const LineReach::Row& reach, int v, int k) const
   {
-    const Span pixels = this->Shared.pixels(v, k);
+    const Span pixels = this->Context.pixels(v, k);
     const LineRow<T> chains = this->Index.template row<T>(v + reach.dj, k);
     T* const image = this->row(v);
     int begin = 0;
@@ -151,8 +152,8 @@ private:
   {
     constexpr int most = 64;
     T minima[most]; // of tiles
-    const TileLoops<T>& loops = this->Shared.kernels;
-    const int width = this->Shared.image.width, tiles = width / TileWidth;
+    const TileLoops<T>& loops = this->Context.kernels;
+    const int width = this->Context.image.width, tiles = width / TileWidth;
     T least = greatestValue<T>();
     for (int t = 0; t < tiles; t += most)
     {
@@ -172,7 +173,7 @@ private:
 
   void splatSortedLines(int v0, int v1) const
   {
-    const Span slices = slicesOf(this->Shared.sliceGeometry, v0, v1);
+    const Span slices = slicesOf(this->Context.sliceGeometry, v0, v1);
     T least = this->Floor;
     for (int k = slices.begin; k < slices.end; ++k)
     {
@@ -215,7 +216,7 @@ private:
   /// A pixel's first value is its last: all pixels still without one are linked per row.
   void splatSortedVolume(int v0, int v1, LineScratch& scratch) const
   {
-    const std::ptrdiff_t length = this->Shared.image.width + 1;
+    const std::ptrdiff_t length = this->Context.image.width + 1;
     std::ptrdiff_t open = this->linkOpenPixels(v0, v1, scratch);
     const auto fill = [&](int v, const Span& span, T value)
     {
@@ -256,7 +257,7 @@ private:
   /// Returns how many there are: those that a ray's sample reaches.
   std::ptrdiff_t linkOpenPixels(int v0, int v1, LineScratch& scratch) const
   {
-    const ShearImage& image = this->Shared.image;
+    const ShearImage& image = this->Context.image;
     const std::ptrdiff_t length = image.width + 1;
     scratch.resize((v1 - v0) * length);
     std::ptrdiff_t open = 0;
@@ -285,7 +286,7 @@ private:
     return u;
   }
 
-  const Frame& Shared;
+  const ProjectionContext& Context;
   const LineIndex& Index;
   T Floor;
   const std::vector<LineReach>& Reaches;

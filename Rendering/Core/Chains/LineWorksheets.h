@@ -22,48 +22,48 @@ public:
   using typename ParallelWorksheets<T>::Target;
 
   /// @param index  in rows, of all voxels
-  LineWorksheets(const Frame& frame, const std::vector<SliceFootprint<A>>& footprints,
+  LineWorksheets(const ProjectionContext& context, const std::vector<SliceFootprint<A>>& footprints,
     const WorksheetReach<A>& reach, int depth, const LineIndex& index)
-    : ParallelWorksheets<T>(frame, footprints, reach, depth),
+    : ParallelWorksheets<T>(context, footprints, reach, depth),
       Index(index)
   {
   }
 
 protected:
-  void loadSheet(const Patch::Sheet& sheet, Patch& patch) const override
+  void loadSheet(const LoadedVoxels::Sheet& sheet, LoadedVoxels& loaded) const override
   {
-    patch.resizeRunEnds();
-    const int last = this->Shared.geometry.size().y - 1;
+    loaded.resizeRunEnds();
+    const int last = this->Context.geometry.size().y - 1;
     for (int j = sheet.j; j < sheet.j + sheet.rows; ++j)
     {
       const int row = std::clamp(j, 0, last);
       if (j > sheet.j && row == std::clamp(j - 1, 0, last))
       {
-        const A* const from = patch.voxel<A>(sheet.i, j - 1, sheet.slice);
-        const std::uint16_t* const ends = patch.runEnd(sheet.i, j - 1, sheet.slice);
-        std::copy(from, from + sheet.columns, patch.voxel<A>(sheet.i, j, sheet.slice));
-        std::copy(ends, ends + sheet.columns, patch.runEnd(sheet.i, j, sheet.slice));
+        const A* const from = loaded.voxel<A>(sheet.i, j - 1, sheet.slice);
+        const std::uint16_t* const ends = loaded.runEnd(sheet.i, j - 1, sheet.slice);
+        std::copy(from, from + sheet.columns, loaded.voxel<A>(sheet.i, j, sheet.slice));
+        std::copy(ends, ends + sheet.columns, loaded.runEnd(sheet.i, j, sheet.slice));
       }
       else
       {
         this->decode(this->Index.template row<T>(row, sheet.slice), sheet,
-          patch.voxel<A>(sheet.i, j, sheet.slice), patch.runEnd(sheet.i, j, sheet.slice));
+          loaded.voxel<A>(sheet.i, j, sheet.slice), loaded.runEnd(sheet.i, j, sheet.slice));
       }
     }
   }
 
   /// Chains need not have the volume's own voxels.
-  bool splatOwn(int, int, int, int, const Span&, const Target&, Patch&) const override
+  bool splatOwn(int, int, int, int, const Span&, const Target&, LoadedVoxels&) const override
   {
     return false;
   }
 
-  void splatRows(
-    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  void splatRows(int k, int first, int end, const Span& span, const Target& target,
+    LoadedVoxels& loaded) const override
   {
     for (int v = first; v < end; v += StripHeight)
     {
-      this->splatStrip(k, v, std::min(v + StripHeight, end), span, target, patch);
+      this->splatStrip(k, v, std::min(v + StripHeight, end), span, target, loaded);
     }
   }
 
@@ -73,7 +73,8 @@ private:
   /// Pixels from which on a run of the same worksheet pays, and those of a register.
   static constexpr int LeastRun = 32, Register = 16;
 
-  /// Voxels that the footprint reads in one row of the patch, seen from the strip's first pixel.
+  /// Voxels that the footprint reads in one row of those that are loaded, seen from the strip's
+  /// first pixel.
   struct ReadRow
   {
     const std::uint16_t* ends;
@@ -86,8 +87,8 @@ private:
   };
 
   /// Writes the columns of a sheet, and for each of them where the run of its value ends.
-  void decode(
-    const LineRow<T>& chains, const Patch::Sheet& sheet, A* voxels, std::uint16_t* ends) const
+  void decode(const LineRow<T>& chains, const LoadedVoxels::Sheet& sheet, A* voxels,
+    std::uint16_t* ends) const
   {
     int begin = 0, end = 0; // of the run so far
     A value = 0;
@@ -118,9 +119,10 @@ private:
     write();
   }
 
-  void splatStrip(int k, int v0, int v1, const Span& span, const Target& target, Patch& patch) const
+  void splatStrip(
+    int k, int v0, int v1, const Span& span, const Target& target, LoadedVoxels& loaded) const
   {
-    const ReadRows rows = this->readRows(k, v0, v1, span.begin, patch);
+    const ReadRows rows = this->readRows(k, v0, v1, span.begin, loaded);
     int done = span.begin;
     for (int u = span.begin; u < span.end;)
     {
@@ -140,27 +142,27 @@ private:
         continue;
       }
       const int end = std::min(u + length, span.end);
-      this->splatMixed(k, v0, v1, { done, u }, span, target, patch);
-      this->splatRun(k, v0, v1, { u, end }, target, patch);
+      this->splatMixed(k, v0, v1, { done, u }, span, target, loaded);
+      this->splatRun(k, v0, v1, { u, end }, target, loaded);
       done = u = end;
     }
-    this->splatMixed(k, v0, v1, { done, span.end }, span, target, patch);
+    this->splatMixed(k, v0, v1, { done, span.end }, span, target, loaded);
   }
 
-  ReadRows readRows(int k, int v0, int v1, int u, Patch& patch) const
+  ReadRows readRows(int k, int v0, int v1, int u, LoadedVoxels& loaded) const
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];
-    const int last = this->Shared.geometry.size().z - 1;
+    const int last = this->Context.geometry.size().z - 1;
     ReadRows result;
     for (int p = 0; p < footprint.partCount; ++p)
     {
       const FootprintPart<A>& part = footprint.parts[p];
       const int slice = std::clamp(k + part.slice, 0, last);
-      const Patch::Sheet& sheet = patch.sheet(slice);
+      const LoadedVoxels::Sheet& sheet = loaded.sheet(slice);
       const int j = v0 - footprint.nearest.y + part.dj;
       for (int r = 0; r < part.rows + v1 - v0 - 1; ++r)
       {
-        result.rows[result.count++] = { patch.runEnd(sheet.i, j + r, slice),
+        result.rows[result.count++] = { loaded.runEnd(sheet.i, j + r, slice),
           u - footprint.nearest.x + part.di - sheet.i, part.columns };
       }
     }
@@ -168,27 +170,28 @@ private:
   }
 
   /// Pixels with worksheets of their own: a whole register of them if the span has as many.
-  void splatMixed(
-    int k, int v0, int v1, Span pixels, const Span& span, const Target& target, Patch& patch) const
+  void splatMixed(int k, int v0, int v1, Span pixels, const Span& span, const Target& target,
+    LoadedVoxels& loaded) const
   {
     if (!pixels.empty())
     {
       pixels.end = std::min(std::max(pixels.end, pixels.begin + Register), span.end);
       pixels.begin = std::max(std::min(pixels.begin, pixels.end - Register), span.begin);
-      ParallelWorksheets<T>::splatRows(k, v0, v1, pixels, target, patch);
+      ParallelWorksheets<T>::splatRows(k, v0, v1, pixels, target, loaded);
     }
   }
 
   /// Pixels with the same worksheet in each row.
-  void splatRun(int k, int v0, int v1, const Span& run, const Target& target, Patch& patch) const
+  void splatRun(
+    int k, int v0, int v1, const Span& run, const Target& target, LoadedVoxels& loaded) const
   {
     A worksheet[StripHeight];
     std::fill_n(worksheet, StripHeight, leastValue<A>());
     Splat<A> splat = this->splatOf(
-      k, v0, v1, { run.begin, run.begin + 1 }, { target.origin, target.stride }, patch);
+      k, v0, v1, { run.begin, run.begin + 1 }, { target.origin, target.stride }, loaded);
     splat.image = worksheet;
     splat.imageStride = 1;
-    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    const WorksheetLoops<A>& loops = this->Context.kernels;
     loops.splat(splat);
     for (int v = v0; v < v1; ++v)
     {

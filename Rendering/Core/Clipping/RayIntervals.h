@@ -6,7 +6,7 @@
 #ifndef splattingRayIntervals_h
 #define splattingRayIntervals_h
 
-#include "Projection/Frame.h"
+#include "Projection/ProjectionContext.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>

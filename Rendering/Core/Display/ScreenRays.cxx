@@ -28,7 +28,7 @@ public:
     : Finder(finder),
       Loops(loops)
   {
-    this->Parts.special = std::is_floating_point_v<T>;
+    this->Parts.nonFinite = std::is_floating_point_v<T>;
   }
 
   /// To be called for each row.
@@ -121,7 +121,7 @@ void ScreenRays::find(const std::vector<ShearImage>& images,
   this->Values.width = static_cast<int>(count);
   this->Values.height = 1;
   this->Values.spans.assign(1, { 0, this->Values.width });
-  this->Values.special = true;
+  this->Values.nonFinite = true;
   dispatch(source.volume.type,
     [&](auto* null)
     {

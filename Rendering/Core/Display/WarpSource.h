@@ -61,7 +61,7 @@ struct WarpSource
       inside(withinSamples(g))
   {
   }
-  bool hasHoles() const { return !this->image.mask.empty() || this->image.special; }
+  bool hasHoles() const { return !this->image.mask.empty() || this->image.nonFinite; }
 
   /// Where a neighbour may be missing, NaN or infinite: interpolates between those that count; NaN
   /// where there is no sample.

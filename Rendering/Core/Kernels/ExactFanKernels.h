@@ -56,7 +56,7 @@ private:
 
 /// The cubics of a perspective view: each pixel has a place of its own in the cells, that of a row
 /// of cells goes for all.
-template <class A, class R, bool Special>
+template <class A, class R, bool NonFinite>
 struct FanCubicLoop : Lanes<A, R>
 {
   using typename Lanes<A, R>::M;
@@ -127,7 +127,7 @@ struct FanCubicLoop : Lanes<A, R>
     const R z0 = clampedShare(part.z + from), z1 = clampedShare(part.z + to);
     const R raised = largestOnWay<A>(corners, { x0, y0, z0 }, { x1, y1, z1 }, best);
     const R limited =
-      Lanes<A, R>::limitedTo(raised, Lanes<A, R>::template largestOf<Special>(corners), best);
+      Lanes<A, R>::limitedTo(raised, Lanes<A, R>::template largestOf<NonFinite>(corners), best);
     return counts ? limited : best;
   }
 
@@ -153,7 +153,7 @@ struct FanCubicLoop : Lanes<A, R>
   {
     const FanCellArrays<A>& c = this->row.columns;
     const R before = loadFrom(this->row.image + x);
-    R best = Lanes<A, R>::template opened<Special>(before);
+    R best = Lanes<A, R>::template opened<NonFinite>(before);
     // Rays beside the field see boxes.
     const R near = larger(loadFrom(c.fieldNear + x), all(this->row.fieldNear));
     const R far = smaller(loadFrom(c.fieldFar + x), all(this->row.fieldFar));
@@ -208,7 +208,7 @@ struct FanCubicLoop : Lanes<A, R>
       }
       best = smaller(best, atMost); // as in parallel views
     }
-    Lanes<A, R>::template close<Special>(this->row.image + x, before, best);
+    Lanes<A, R>::template close<NonFinite>(this->row.image + x, before, best);
   }
 
   /// The voxels of the upper or the lower cell.
@@ -239,20 +239,20 @@ inline void raiseAboveBoxes(const FanCubicRow<A>& row, std::ptrdiff_t begin, std
   }
 }
 
-template <class A, bool Special>
+template <class A, bool NonFinite>
 inline void raiseFanCubicRow(const FanCubicRow<A>& row)
 {
-  constexpr std::ptrdiff_t w = width<A>, most = Special ? w : 256; // at a time
+  constexpr std::ptrdiff_t w = width<A>, most = NonFinite ? w : 256; // at a time
   const std::ptrdiff_t begin = row.pixels.begin, end = row.pixels.end;
   for (std::ptrdiff_t x = begin; end - begin < w && x < end; ++x)
   {
-    FanCubicLoop<A, A, Special>(row).run(x);
+    FanCubicLoop<A, A, NonFinite>(row).run(x);
   }
   for (std::ptrdiff_t x = begin; end - begin >= w && x < end; x += most)
   {
     const std::ptrdiff_t last = x + most < end ? x + most : end;
     const std::ptrdiff_t first = last - x >= w ? x : last - w;
-    if constexpr (Special)
+    if constexpr (NonFinite)
     {
       FanCubicLoop<A, Pack<A>, true>(row).run(first);
     }
@@ -266,7 +266,7 @@ inline void raiseFanCubicRow(const FanCubicRow<A>& row)
 template <class A>
 void raiseFanCubics(const FanCubicRow<A>& row)
 {
-  row.special ? raiseFanCubicRow<A, true>(row) : raiseFanCubicRow<A, false>(row);
+  row.nonFinite ? raiseFanCubicRow<A, true>(row) : raiseFanCubicRow<A, false>(row);
 }
 }
 }

@@ -165,12 +165,12 @@ struct Lanes
     }
   }
   /// Less than all if one of them is NaN: such cells are left out.
-  template <bool Special>
+  template <bool NonFinite>
   static inline R largestOf(const R (&corners)[8])
   {
     const R most = larger(larger(larger(corners[0], corners[1]), larger(corners[2], corners[3])),
       larger(larger(corners[4], corners[5]), larger(corners[6], corners[7])));
-    if constexpr (Special)
+    if constexpr (NonFinite)
     {
       const R sum = ((corners[0] + corners[1]) + (corners[2] + corners[3])) +
         ((corners[4] + corners[5]) + (corners[6] + corners[7]));
@@ -190,18 +190,18 @@ struct Lanes
   }
 
   /// What pixels start from: those without a sample, if there are, from less than all.
-  template <bool Special>
+  template <bool NonFinite>
   static inline R opened(R before)
   {
-    return Special ? (before == before ? before : all(-std::numeric_limits<A>::infinity()))
-                   : before;
+    return NonFinite ? (before == before ? before : all(-std::numeric_limits<A>::infinity()))
+                     : before;
   }
   /// Stores what has been raised.
-  template <bool Special>
+  template <bool NonFinite>
   static inline void close(A* pixels, R before, R best)
   {
     const R none = all(-std::numeric_limits<A>::infinity());
-    storeTo(pixels, Special ? (best > none ? best : before) : best);
+    storeTo(pixels, NonFinite ? (best > none ? best : before) : best);
   }
 };
 
@@ -268,7 +268,7 @@ private:
 };
 
 /// The cubics of a parallel view.
-template <class A, class R, bool Special>
+template <class A, class R, bool NonFinite>
 struct CubicLoop : Lanes<A, R>
 {
   using typename Lanes<A, R>::M;
@@ -305,7 +305,7 @@ struct CubicLoop : Lanes<A, R>
   /// as its own cell has it.
   inline R numberOf(R start, int p, const R (&corners)[8]) const
   {
-    if constexpr (Special)
+    if constexpr (NonFinite)
     {
       return start == start ? start : combine(this->cubics.pieces[p].weights, corners);
     }
@@ -377,14 +377,14 @@ struct CubicLoop : Lanes<A, R>
     const std::ptrdiff_t at = v * this->cubics.sourceStride + x;
     A* const pixels = this->cubics.image + v * this->cubics.imageStride + x;
     const R before = loadFrom(pixels);
-    R best = Lanes<A, R>::template opened<Special>(before);
+    R best = Lanes<A, R>::template opened<NonFinite>(before);
     R b[4], corners[8];
     bool follows = false; // whether b[3] is where this piece starts
     for (int p = 0; p < this->cubics.count; ++p)
     {
       const CubicPiece<A>& piece = this->cubics.pieces[p];
       this->loadCorners(piece, at, corners);
-      const R most = Lanes<A, R>::template largestOf<Special>(corners);
+      const R most = Lanes<A, R>::template largestOf<NonFinite>(corners);
       if (!anyOf(most > best))
       {
         follows = false;
@@ -411,7 +411,7 @@ struct CubicLoop : Lanes<A, R>
       }
       best = raised;
     }
-    Lanes<A, R>::template close<Special>(pixels, before, best);
+    Lanes<A, R>::template close<NonFinite>(pixels, before, best);
   }
 
   /// All rows of a register of columns.
@@ -441,7 +441,7 @@ struct CubicLoop : Lanes<A, R>
   }
 };
 
-template <class A, bool Special>
+template <class A, bool NonFinite>
 inline void raiseCubicRows(const Cubics<A>& cubics)
 {
   constexpr std::ptrdiff_t w = width<A>;
@@ -452,17 +452,17 @@ inline void raiseCubicRows(const Cubics<A>& cubics)
     {
       for (std::ptrdiff_t x = begin; x < end; ++x)
       {
-        CubicLoop<A, A, Special>(cubics).template run<true>(x, v);
+        CubicLoop<A, A, NonFinite>(cubics).template run<true>(x, v);
       }
     }
     return;
   }
   // A maximum may be taken twice, so the last register overlaps the one before.
-  const CubicLoop<A, Pack<A>, Special> loop(cubics);
+  const CubicLoop<A, Pack<A>, NonFinite> loop(cubics);
   for (std::ptrdiff_t x = begin; x < end; x += w)
   {
     const std::ptrdiff_t at = x + w <= end ? x : end - w;
-    Special ? loop.runRows(at) : loop.runRowsAboveBoxes(at);
+    NonFinite ? loop.runRows(at) : loop.runRowsAboveBoxes(at);
   }
 }
 
@@ -470,11 +470,11 @@ inline void raiseCubicRows(const Cubics<A>& cubics)
 template <class A>
 void raiseCubics(const Cubics<A>& cubics)
 {
-  cubics.special ? raiseCubicRows<A, true>(cubics) : raiseCubicRows<A, false>(cubics);
+  cubics.nonFinite ? raiseCubicRows<A, true>(cubics) : raiseCubicRows<A, false>(cubics);
 }
 
 /// The field along a register of parts of rays.
-template <class A, bool Special>
+template <class A, bool NonFinite>
 class PartLoop
 {
 public:
@@ -557,7 +557,7 @@ private:
     }
     const R most = L::template largestOf<false>(corners);
     M counts = from < to;
-    if constexpr (Special)
+    if constexpr (NonFinite)
     {
       R sum = corners[0];
       for (int n = 1; n < 8; ++n)
@@ -590,8 +590,8 @@ void findLargest(FieldParts<A>& parts)
   for (std::ptrdiff_t n = 0; n < parts.count; n += width<A>)
   {
     store<A>(parts.largest + n,
-      parts.special ? PartLoop<A, true>(parts, n).largest()
-                    : PartLoop<A, false>(parts, n).largest());
+      parts.nonFinite ? PartLoop<A, true>(parts, n).largest()
+                      : PartLoop<A, false>(parts, n).largest());
   }
 }
 }

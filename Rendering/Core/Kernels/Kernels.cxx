@@ -97,7 +97,7 @@ struct SurveyBlock
 };
 
 template <class T>
-void survey(const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low, bool& special)
+void survey(const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low, bool& nonFinite)
 {
   Pack<T> least = Pack<T>{} + low;
   Pack<Integer<T>> odd{};
@@ -110,7 +110,7 @@ void survey(const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low
         const T value = rows[r][x];
         high = larger(value, high);
         low = smaller(value, low);
-        special = special || static_cast<T>(value - value) != static_cast<T>(0);
+        nonFinite = nonFinite || static_cast<T>(value - value) != static_cast<T>(0);
       }
       maxima[x] = high;
     });
@@ -119,7 +119,7 @@ void survey(const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low
   {
     low = smaller(lanes[lane], low);
   }
-  special = special || anyOf(odd);
+  nonFinite = nonFinite || anyOf(odd);
 }
 
 template <class T>

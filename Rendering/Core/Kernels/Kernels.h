@@ -147,9 +147,9 @@ struct VoxelLoops
   /// WorksheetLoops::splat from the volume's own voxels; nullptr for types that take too long.
   void (*splatVoxels)(const Splat<Accumulator<T>, T>& splat);
   /// maxima[x] = max(maxima[x], rows[0..count)[x]) and low = min(low, all of them), NaN aside; sets
-  /// special if there are NaN or infinity.
+  /// nonFinite if there are NaN or infinity.
   void (*survey)(
-    const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low, bool& special);
+    const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low, bool& nonFinite);
   /// out[x] = the largest of row[4 x], row[4 x + 1], row[4 x + 2] and row[4 x + 3].
   void (*largestOfFour)(const T* row, T* out, std::ptrdiff_t n);
 };
@@ -330,7 +330,7 @@ struct Cubics
   CubicPiece<A> pieces[MostPieces];
   int count;
   PathBox<A> box; ///< of pixel (0, 0)
-  bool special;   ///< whether there are NaN or infinities, which boxes know nothing of
+  bool nonFinite; ///< whether there are NaN or infinities, which boxes know nothing of
 };
 
 /// What FanCells knows of all columns (or rows) in a slice, depths relative to its middle.
@@ -370,7 +370,7 @@ struct FanCubicRow
   A shortest;                  ///< way through the field that counts as seeing it
   PathBox<A> box;              ///< of voxel column 0; its columns are each pixel's own
   std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
-  bool special;                ///< as in Cubics
+  bool nonFinite;              ///< as in Cubics
 };
 
 /// Parts of rays between two slices, no longer than a voxel in any direction, and the voxels
@@ -386,7 +386,7 @@ struct FieldParts
   A from[most], to[most];  ///< the part, 0 to 1
   A voxels[2][3][3][most]; ///< slice, row, column
   A largest[most];         ///< what the part has
-  bool special;            ///< whether voxels may be NaN or infinite
+  bool nonFinite;          ///< whether voxels may be NaN or infinite
 };
 
 /// Worksheets from voxels of which some are not finite.

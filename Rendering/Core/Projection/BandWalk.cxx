@@ -28,44 +28,42 @@ template <class T, class P>
 class BandWalk
 {
 public:
-  using Sampler = SliceSampler<T, P>;
-
   /// @param some  the slices to walk; whole layers
-  BandWalk(const Frame& frame, const Sampler& sampler, BandScratch& scratch, const Span& some,
-    int v0, int v1)
-    : Shared(frame),
-      Stack(sampler),
+  BandWalk(const ProjectionContext& context, const SliceSampler<T, P>& sampler,
+    BandScratch& scratch, const Span& some, int v0, int v1)
+    : Context(context),
+      Sampler(sampler),
       Scratch(scratch),
-      Band{ v0, v1, frame.image.width },
+      Band{ v0, v1, context.image.width },
       Tiles(Band.tiles()),
-      Range(layersOf(frame, some, v0, v1))
+      Range(layersOf(context, some, v0, v1))
   {
-    if (!frame.cuts.none())
+    if (!context.cuts.none())
     {
-      scratch.shares.reset(frame.cuts, frame.kernels, v0, v1, frame.image.width,
-        frame.bricks ? TileHeight : DenseHeight);
+      scratch.shares.reset(context.cuts, context.kernels, v0, v1, context.image.width,
+        context.bricks ? TileHeight : DenseHeight);
     }
   }
 
   void walkDensely()
   {
-    if (!this->Shared.cuts.none())
+    if (!this->Context.cuts.none())
     {
       this->walkCut();
       return;
     }
     std::vector<Span>& runs = this->Scratch.runs;
-    runs.assign(1, { 0, this->Shared.image.width });
-    this->Stack.splatAll(this->Range, this->Band.v0, this->Band.v1, runs, this->Scratch.patch);
+    runs.assign(1, { 0, this->Context.image.width });
+    this->Sampler.splatAll(this->Range, this->Band.v0, this->Band.v1, runs, this->Scratch.loaded);
   }
 
   void walkBricks(const BrickMaxima& bricks)
   {
-    TileBounds<T, P> bounds(this->Shared, this->Stack, this->Band, this->Range, this->Scratch);
+    TileBounds<T, P> bounds(this->Context, this->Sampler, this->Band, this->Range, this->Scratch);
     bounds.find(bricks);
     this->orderLayers(bounds);
     this->Scratch.minima.resize(std::size_t(this->Band.count()) * sizeof(P));
-    std::fill_n(this->minimaOf(0), this->Band.count(), this->Stack.floor());
+    std::fill_n(this->minimaOf(0), this->Band.count(), this->Sampler.floor());
     int walked = 0;
     for (int z : this->Scratch.order)
     {
@@ -88,7 +86,7 @@ private:
   {
     return reinterpret_cast<P*>(this->Scratch.minima.data()) + std::ptrdiff_t(group) * this->Tiles;
   }
-  Span slicesIn(int z) const { return slicesOfLayer(z, this->Shared.geometry.size()); }
+  Span slicesIn(int z) const { return slicesOfLayer(z, this->Context.geometry.size()); }
 
   /// Highest first, by the mean over some of the tiles.
   void orderLayers(TileBounds<T, P>& bounds)
@@ -99,7 +97,7 @@ private:
     order.resize(this->Range.end - this->Range.begin);
     std::iota(order.begin(), order.end(), this->Range.begin);
     scores.resize(order.size());
-    const P low = static_cast<P>(this->Shared.range.low);
+    const P low = static_cast<P>(this->Context.range.low);
     for (int z : order)
     {
       const P* const b = bounds.bounds(z, 0);
@@ -122,29 +120,29 @@ private:
   {
     for (int g = 0; g < this->Band.groups(); ++g)
     {
-      this->Band.template findMinima<P>(this->Shared.kernels,
-        this->Shared.image.template row<P>(this->Band.firstRow(g)), g, this->minimaOf(g));
+      this->Band.template findMinima<P>(this->Context.kernels,
+        this->Context.image.template row<P>(this->Band.firstRow(g)), g, this->minimaOf(g));
     }
   }
 
   /// Splats the tiles of a group that a layer can change.
   void walkGroup(int z, int group, const P* bounds)
   {
-    const TileLoops<P>& loops = this->Shared.kernels;
+    const TileLoops<P>& loops = this->Context.kernels;
     std::vector<unsigned char>& flags = this->Scratch.flags;
     openFlags(this->Tiles, flags);
     loops.exceeds(bounds, this->minimaOf(group), flags.data(), this->Tiles);
-    if (!this->Shared.cuts.none())
+    if (!this->Context.cuts.none())
     {
       this->splatCounting(z, group, this->Band);
       return;
     }
     this->Scratch.count.splatted += findTileRuns(flags.data(), this->Tiles,
-      this->Stack.traits().runUnit, this->Shared.image.width, this->Scratch.runs);
+      this->Sampler.traits().runUnit, this->Context.image.width, this->Scratch.runs);
     if (!this->Scratch.runs.empty())
     {
-      this->Stack.splat(this->slicesIn(z), this->Band.firstRow(group), this->Band.endRow(group),
-        this->Scratch.runs, pixelsOf<P>(this->Shared.image), this->Scratch.patch);
+      this->Sampler.splat(this->slicesIn(z), this->Band.firstRow(group), this->Band.endRow(group),
+        this->Scratch.runs, pixelsOf<P>(this->Context.image), this->Scratch.loaded);
     }
   }
 
@@ -186,7 +184,7 @@ private:
   /// Pixels for which all samples of a layer count, and none beside them.
   void splatWholly(int z, const Span& rows, const Span& run)
   {
-    const PixelRows<P> image = pixelsOf<P>(this->Shared.image);
+    const PixelRows<P> image = pixelsOf<P>(this->Context.image);
     const PixelRows<P> copies =
       this->splatApart(this->slicesIn(z), rows, this->inRegisters(run), 1);
     for (int v = rows.begin; v < rows.end; ++v)
@@ -200,7 +198,7 @@ private:
   {
     // Only worksheets of neighbouring slices share what they read.
     const Span slices = this->slicesIn(z);
-    const int step = this->Stack.traits().beyond > 0 ? slices.end - slices.begin : 1;
+    const int step = this->Sampler.traits().beyond > 0 ? slices.end - slices.begin : 1;
     for (int k = slices.begin; k < slices.end; k += step)
     {
       this->splatMasked({ k, k + step }, rows, this->inRegisters(run));
@@ -211,7 +209,7 @@ private:
   Span inRegisters(const Span& run) const
   {
     constexpr int pixels = 64 / sizeof(P);
-    const int width = this->Shared.image.width, unit = this->Stack.traits().runUnit;
+    const int width = this->Context.image.width, unit = this->Sampler.traits().runUnit;
     const int begin = run.begin / unit * unit, step = std::max(unit, pixels);
     return { begin, std::min(begin + (run.end - begin + step - 1) / step * step, width) };
   }
@@ -230,7 +228,7 @@ private:
       for (int v = all.begin; v < all.end; ++v)
       {
         const bool any =
-          this->Shared.cuts.findMask(k, v, run, &this->Scratch.mask[place(k, v) * width]);
+          this->Context.cuts.findMask(k, v, run, &this->Scratch.mask[place(k, v) * width]);
         this->Scratch.counting[place(k, v)] = any;
         if (any)
         {
@@ -243,8 +241,8 @@ private:
     {
       return;
     }
-    const RayLoops<P>& loops = this->Shared.kernels;
-    const PixelRows<P> image = pixelsOf<P>(this->Shared.image);
+    const RayLoops<P>& loops = this->Context.kernels;
+    const PixelRows<P> image = pixelsOf<P>(this->Context.image);
     const PixelRows<P> copies = this->splatApart(slices, rows, run, slices.end - slices.begin);
     for (int k = slices.begin; k < slices.end; ++k)
     {
@@ -264,13 +262,14 @@ private:
   {
     this->Scratch.runs.assign(1, run);
     const PixelRows<P> apart = this->Scratch.copies.copy(
-      pixelsOf<P>(this->Shared.image), rows.begin, rows.end, this->Scratch.runs, copies);
-    this->Stack.splat(slices, rows.begin, rows.end, this->Scratch.runs, apart, this->Scratch.patch);
+      pixelsOf<P>(this->Context.image), rows.begin, rows.end, this->Scratch.runs, copies);
+    this->Sampler.splat(
+      slices, rows.begin, rows.end, this->Scratch.runs, apart, this->Scratch.loaded);
     return apart;
   }
 
-  const Frame& Shared;
-  const Sampler& Stack;
+  const ProjectionContext& Context;
+  const SliceSampler<T, P>& Sampler;
   BandScratch& Scratch;
   const BandTiles Band;
   const int Tiles;
@@ -279,46 +278,47 @@ private:
 }
 
 template <class T, class P>
-void walkBands(Frame& frame, const SliceSampler<T, P>& sampler)
+void walkBands(ProjectionContext& context, const SliceSampler<T, P>& sampler)
 {
-  const bool findsWinners = frame.image.keepsWinners();
-  forSlices(frame, sampler.traits().beyond, false, { 0.0, findsWinners ? 0.5 : 1.0 },
+  const bool findsWinners = context.image.keepsWinners();
+  forSlices(context, sampler.traits().beyond, false, { 0.0, findsWinners ? 0.5 : 1.0 },
     [&](const Span& slices, bool isFirst, bool isLast)
     {
-      forBands(frame.image.height, bandHeight(frame.image.height), frame.watch,
+      forBands(context.image.height, bandHeight(context.image.height), context.observer,
         [&](int v0, int v1)
         {
           if (isFirst)
           {
-            openRows<P>(frame.image, sampler.floor(), v0, v1);
+            openRows<P>(context.image, sampler.floor(), v0, v1);
           }
-          BandWalk<T, P> band(frame, sampler, frame.space.bands.Local(), slices, v0, v1);
-          frame.bricks ? band.walkBricks(*frame.bricks) : band.walkDensely();
+          BandWalk<T, P> band(context, sampler, context.space.bands.Local(), slices, v0, v1);
+          context.bricks ? band.walkBricks(*context.bricks) : band.walkDensely();
           if (isLast && !findsWinners)
           {
-            if (frame.range.special)
+            if (context.range.nonFinite)
             {
-              dropEmpty<P>(frame.image, v0, v1);
+              dropEmpty<P>(context.image, v0, v1);
             }
             sampler.finish(v0, v1);
-            closeRows<P>(frame.image, v0, v1);
+            closeRows<P>(context.image, v0, v1);
           }
         });
     });
-  for (BandScratch& band : frame.space.bands)
+  for (BandScratch& band : context.space.bands)
   {
-    frame.count.met += band.count.met;
-    frame.count.splatted += band.count.splatted;
+    context.count.met += band.count.met;
+    context.count.splatted += band.count.splatted;
     band.count = {};
   }
   if (findsWinners)
   {
-    findWinners(frame, sampler);
+    findWinners(context, sampler);
   }
 }
 
-#define VOXELS(T) template void walkBands(Frame&, const SliceSampler<T, T>&);
-#define WORKSHEETS(T) template void walkBands(Frame&, const SliceSampler<T, Accumulator<T>>&);
+#define VOXELS(T) template void walkBands(ProjectionContext&, const SliceSampler<T, T>&);
+#define WORKSHEETS(T)                                                                              \
+  template void walkBands(ProjectionContext&, const SliceSampler<T, Accumulator<T>>&);
 SPLATTING_TYPES(VOXELS)
 SPLATTING_INTEGERS(WORKSHEETS) // others are of their voxels' type
 }

@@ -180,7 +180,7 @@ void decodeType(ShearImage& image, Reduction reduction)
           Key key;
           std::memcpy(&key, row + u, sizeof key);
           row[u] = key != none<Key>(reduction) ? numberOf<T>(key)
-            : image.special                    ? std::numeric_limits<T>::quiet_NaN()
+            : image.nonFinite                  ? std::numeric_limits<T>::quiet_NaN()
                                                : leastValue<T>();
         }
       });
@@ -302,7 +302,7 @@ void fillEmpty(ShearImage& image, double low)
     forRows<A>(
       image, [&](int, A* row) { std::replace(row, row + image.width, none, static_cast<A>(low)); });
   };
-  if (!image.special)
+  if (!image.nonFinite)
   {
     image.type == ScalarType::Float32 ? fill(leastValue<float>()) : fill(leastValue<double>());
   }

@@ -9,8 +9,8 @@
 #ifndef splattingPiece_h
 #define splattingPiece_h
 
-#include "Projection/Frame.h"
 #include "Projection/Project.h"
+#include "Projection/ProjectionContext.h"
 
 #include <glm/vec3.hpp>
 

@@ -57,24 +57,24 @@ double worthwhileShare(const ProjectionSettings& settings, bool perspective)
 Acceleration choose(
   VolumeIndex& index, const ShearWarp& geometry, bool isCut, const ProjectionSettings& settings)
 {
-  const Experience& experience =
-    index.experience(geometry.principalAxis(), static_cast<int>(settings.quality), isCut);
+  const SkipStatistics& statistics =
+    index.statistics(geometry.principalAxis(), static_cast<int>(settings.quality), isCut);
   const double worthwhile = worthwhileShare(settings, geometry.isPerspective());
-  double patience = experience.share > worthwhile ? 32.0 : 0.0; // frames
+  double patience = statistics.share > worthwhile ? 32.0 : 0.0; // frames
   if (settings.quality == Quality::High || settings.quality == Quality::Exact)
   {
     // Views change little from frame to frame. Where bricks nearly pay, the next ones may, and
     // trying costs little where much is computed. (Whole registers can make the share exceed 1.)
-    patience *= std::min((experience.share - worthwhile) / (1.0 - worthwhile), 1.0);
+    patience *= std::min((statistics.share - worthwhile) / (1.0 - worthwhile), 1.0);
   }
-  return experience.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
+  return statistics.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
 }
 
 /// Whether each sample has to be looked at by itself.
 bool looksAtAll(const ProjectionSettings& settings, const VolumeIndex::Range& range)
 {
   return settings.reduction != Reduction::Maximum || range.hasInfinities() ||
-    (settings.keepWinners && range.special);
+    (settings.keepWinners && range.nonFinite);
 }
 
 /// What voxels are summed in.
@@ -94,16 +94,16 @@ void openImage(const ProjectionSettings& settings, ScalarType voxels, ShearImage
   image.winners.resize(settings.findsWinners() ? pixels : 0);
 }
 
-void learn(Experience& experience, Acceleration used, const TileCount& count)
+void learn(SkipStatistics& statistics, Acceleration used, const TileCount& count)
 {
   if (used == Acceleration::Bricks)
   {
-    experience.share = count.met > 0 ? double(count.splatted) / double(count.met) : 0.0;
-    experience.framesSince = 0;
+    statistics.share = count.met > 0 ? double(count.splatted) / double(count.met) : 0.0;
+    statistics.framesSince = 0;
   }
   else
   {
-    ++experience.framesSince;
+    ++statistics.framesSince;
   }
 }
 }
@@ -144,7 +144,7 @@ ProjectionMode& Projector::mode(Quality quality, bool perspective)
   return *mode;
 }
 
-void Projector::carry(const VoxelArray& other, const ShearWarp& geometry,
+void Projector::takeAtWinners(const VoxelArray& other, const ShearWarp& geometry,
   const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image)
 {
   image.width = projected.width;
@@ -153,9 +153,9 @@ void Projector::carry(const VoxelArray& other, const ShearWarp& geometry,
   image.mask = projected.mask;
   image.type = projected.type;
   image.bytes.resize(projected.bytes.size());
-  image.special = other.type == ScalarType::Float32 || other.type == ScalarType::Float64;
+  image.nonFinite = other.type == ScalarType::Float32 || other.type == ScalarType::Float64;
   this->mode(settings.quality, geometry.isPerspective())
-    .carry({ other, geometry, this->Memory->slices, projected, image });
+    .takeAtWinners({ other, geometry, this->Memory->slices, projected, image });
 }
 
 /// What can be used at all of what was asked for.
@@ -167,7 +167,7 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   {
     return Acceleration::Dense;
   }
-  if (wanted >= Acceleration::Lines && !index.range().special && cuts.none() &&
+  if (wanted >= Acceleration::Lines && !index.range().nonFinite && cuts.none() &&
     !geometry.isPerspective() && !settings.keepWinners && settings.quality != Quality::Exact &&
     &geometry != &this->Memory->part && !this->stopped())
   {
@@ -269,7 +269,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
   }
   const VolumeIndex::Range& range = index.range();
   // The mean of no sample is none.
-  image.special = range.special || settings.reduction == Reduction::Mean;
+  image.nonFinite = range.nonFinite || settings.reduction == Reduction::Mean;
   const LineIndex* lines = nullptr;
   const Acceleration used = this->possible(settings.acceleration == Acceleration::Auto
       ? choose(index, geometry, !memory.cuts.none(), settings)
@@ -278,24 +278,24 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
   openImage(settings, index.volume().type, image);
   const bool byRays = looksAtAll(settings, range);
   const bool skips = used == Acceleration::Bricks;
-  Frame frame{ index, settings, geometry, whole, kernelsFor(settings.instructionSet), range,
-    memory.slices, memory.steps, memory.cuts, settings.floor, image, memory.walks, this->Observer,
-    byRays, lines, skips ? &index.bricks(geometry.principalAxis()) : nullptr };
+  ProjectionContext context{ index, settings, geometry, whole, kernelsFor(settings.instructionSet),
+    range, memory.slices, memory.steps, memory.cuts, settings.floor, image, memory.walks,
+    this->Observer, byRays, lines, skips ? &index.bricks(geometry.principalAxis()) : nullptr };
   if (lines)
   {
     if (!memory.chains)
     {
       memory.chains = makeChains();
     }
-    memory.chains->project(frame);
+    memory.chains->project(context);
     return used;
   }
-  this->mode(settings.quality, geometry.isPerspective()).project(frame);
+  this->mode(settings.quality, geometry.isPerspective()).project(context);
   if (!byRays && !this->stopped())
   {
-    learn(index.experience(
+    learn(index.statistics(
             geometry.principalAxis(), static_cast<int>(settings.quality), !memory.cuts.none()),
-      used, frame.count);
+      used, context.count);
   }
   return used;
 }

@@ -7,7 +7,7 @@
 #define splattingProject_h
 
 #include "Clipping/Cuts.h"
-#include "Common/Watch.h"
+#include "Common/ProgressObserver.h"
 #include "Kernels/Kernels.h"
 #include "Projection/ShearImage.h"
 #include "Sampling/Footprint.h"
@@ -157,13 +157,16 @@ public:
    *
    * @param other  of the same type and size as the projected volume
    */
-  void carry(const VoxelArray& other, const ShearWarp& geometry, const ProjectionSettings& settings,
-    const ShearImage& projected, ShearImage& image);
+  void takeAtWinners(const VoxelArray& other, const ShearWarp& geometry,
+    const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image);
 
   /// Called with the share that is done, 0 to 1, while chains are made.
   void setProgress(const std::function<void(double)>& progress) { this->Progress = progress; }
   /// Asked by the thread that called project() whether to go on; while chains are made, with 0.
-  void setWatch(const Watch::Callback& callback) { this->Observer.setCallback(callback); }
+  void setObserver(const ProgressObserver::Callback& callback)
+  {
+    this->Observer.setCallback(callback);
+  }
   /// Whether the last projection was given up.
   bool stopped() const { return this->Observer.stopped(); }
 
@@ -180,7 +183,7 @@ private:
   struct Scratch;
   std::unique_ptr<Scratch> Memory;
   std::function<void(double)> Progress;
-  Watch Observer;
+  ProgressObserver Observer;
 };
 }
 

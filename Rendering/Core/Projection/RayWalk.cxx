@@ -22,21 +22,20 @@ template <class T, class P>
 class RayWalk
 {
 public:
-  using Layers = SliceSampler<T, P>;
   using A = Accumulator<T>;
 
-  RayWalk(const Frame& frame, const Layers& layers)
-    : Shared(frame),
-      Stack(layers),
-      Settings(frame.settings),
-      State(frame.space.rays),
-      Base(layers.base())
+  RayWalk(const ProjectionContext& context, const SliceSampler<T, P>& sampler)
+    : Context(context),
+      Sampler(sampler),
+      Settings(context.settings),
+      State(context.space.rays),
+      Base(sampler.base())
   {
   }
 
   void open(int v0, int v1) const
   {
-    ShearImage& image = this->Shared.image;
+    ShearImage& image = this->Context.image;
     const std::size_t begin = std::size_t(v0) * image.width, end = std::size_t(v1) * image.width;
     if (this->Settings.findsWinners())
     {
@@ -69,21 +68,21 @@ public:
   bool isReversed() const
   {
     return (this->Settings.reduction == Reduction::Local || this->Settings.findsWinners()) &&
-      this->Shared.geometry.reversed();
+      this->Context.geometry.reversed();
   }
 
   void walk(const Span& slices, int v0, int v1, RayScratch& scratch) const
   {
-    const Span some = common(slices, slicesOf(this->Shared.sliceGeometry, v0, v1));
-    scratch.mask.resize(this->Shared.image.width);
-    scratch.widened.resize(this->Shared.image.width * sizeof(A));
-    this->Stack.forSamples(some, this->isReversed(), v0, v1, { 0, this->Shared.image.width },
-      scratch.patch,
+    const Span some = common(slices, slicesOf(this->Context.sliceGeometry, v0, v1));
+    scratch.mask.resize(this->Context.image.width);
+    scratch.widened.resize(this->Context.image.width * sizeof(A));
+    this->Sampler.forSamples(some, this->isReversed(), v0, v1, { 0, this->Context.image.width },
+      scratch.loaded,
       [&](int step, int v, const Span& pixels, const P* samples, const unsigned char* present)
       {
-        const bool isCut = !this->Shared.cuts.none();
+        const bool isCut = !this->Context.cuts.none();
         const int k = step / StepsPerSlice;
-        if (!isCut || this->Shared.cuts.findMask(k, v, pixels, scratch.mask.data()))
+        if (!isCut || this->Context.cuts.findMask(k, v, pixels, scratch.mask.data()))
         {
           if (isCut)
           {
@@ -108,7 +107,7 @@ public:
     }
     else
     {
-      this->Stack.finish(v0, v1);
+      this->Sampler.finish(v0, v1);
     }
   }
 
@@ -116,8 +115,8 @@ private:
   template <class Q>
   void fill(int v0, int v1, Q none) const
   {
-    ShearImage& image = this->Shared.image;
-    const Q empty = image.special ? std::numeric_limits<Q>::quiet_NaN() : none;
+    ShearImage& image = this->Context.image;
+    const Q empty = image.nonFinite ? std::numeric_limits<Q>::quiet_NaN() : none;
     std::fill(image.row<Q>(v0), image.row<Q>(v1 - 1) + image.width, empty);
   }
 
@@ -141,8 +140,8 @@ private:
   template <class Q>
   void noteBeside(const Row& row, const P* samples, RayScratch& scratch) const
   {
-    const RayLoops<Q>& loops = this->Shared.kernels;
-    ShearImage& image = this->Shared.image;
+    const RayLoops<Q>& loops = this->Context.kernels;
+    ShearImage& image = this->Context.image;
     Q* const pixels = image.row<Q>(row.v) + row.pixels.begin;
     scratch.before.resize(image.width * sizeof(Q));
     Q* const before = reinterpret_cast<Q*>(scratch.before.data());
@@ -166,9 +165,9 @@ private:
     const int v = row.v;
     const Span& pixels = row.pixels;
     const unsigned char* const mask = row.mask;
-    const RayLoops<P>& loops = this->Shared.kernels;
-    const WorksheetLoops<A>& computing = this->Shared.kernels;
-    ShearImage& image = this->Shared.image;
+    const RayLoops<P>& loops = this->Context.kernels;
+    const WorksheetLoops<A>& computing = this->Context.kernels;
+    ShearImage& image = this->Context.image;
     const std::ptrdiff_t n = pixels.end - pixels.begin;
     const std::size_t at = std::size_t(v) * image.width + pixels.begin;
     const ProjectionSettings& s = this->Settings;
@@ -205,7 +204,7 @@ private:
     else
     {
       A* const out = reinterpret_cast<A*>(scratch.widened.data());
-      const VoxelLoops<P>& loops = this->Shared.kernels;
+      const VoxelLoops<P>& loops = this->Context.kernels;
       loops.widen(samples, 0, out, 0, A(0), n, 1, 0);
       return out;
     }
@@ -245,17 +244,17 @@ private:
 
   Shade<A> shadeOf(int k, int v, const Span& pixels) const
   {
-    const double low = this->Shared.range.low;
+    const double low = this->Context.range.low;
     return { std::isfinite(low) ? static_cast<A>(low) - this->Base : A(0),
       static_cast<A>(this->Settings.ambient), static_cast<A>(this->Settings.changeRate),
-      this->Shared.image.special ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>(), k,
-      this->Shared.geometry.reversed(), this->State.crossed.first(v) + pixels.begin,
+      this->Context.image.nonFinite ? std::numeric_limits<A>::quiet_NaN() : leastValue<A>(), k,
+      this->Context.geometry.reversed(), this->State.crossed.first(v) + pixels.begin,
       this->State.crossed.last(v) + pixels.begin };
   }
 
   void divide(int v0, int v1) const
   {
-    ShearImage& image = this->Shared.image;
+    ShearImage& image = this->Context.image;
     const double base = this->Base;
     for (int v = v0; v < v1; ++v)
     {
@@ -274,20 +273,20 @@ private:
   /// no sample, and the pixel shows the lowest voxel, as that of a global maximum does.
   void addBase(int v0, int v1) const
   {
-    const WorksheetLoops<A>& loops = this->Shared.kernels;
-    ShearImage& image = this->Shared.image;
+    const WorksheetLoops<A>& loops = this->Context.kernels;
+    ShearImage& image = this->Context.image;
     A* const begin = image.row<A>(v0);
     const std::ptrdiff_t count = std::ptrdiff_t(v1 - v0) * image.width;
     loops.finish(begin, this->Base, leastValue<A>(), greatestValue<A>(), count);
     // Pixels of a piece wait for the others' samples.
-    if (&this->Shared.geometry == &this->Shared.whole && !image.special)
+    if (&this->Context.geometry == &this->Context.whole && !image.nonFinite)
     {
-      std::replace(begin, begin + count, leastValue<A>(), static_cast<A>(this->Shared.range.low));
+      std::replace(begin, begin + count, leastValue<A>(), static_cast<A>(this->Context.range.low));
     }
   }
 
-  const Frame& Shared;
-  const Layers& Stack;
+  const ProjectionContext& Context;
+  const SliceSampler<T, P>& Sampler;
   const ProjectionSettings& Settings;
   RayState& State;
   A Base;
@@ -310,34 +309,35 @@ void openState(const ShearImage& image, Reduction reduction, RayState& state)
 }
 
 template <class T, class P>
-void walkRays(Frame& frame, const SliceSampler<T, P>& sampler)
+void walkRays(ProjectionContext& context, const SliceSampler<T, P>& sampler)
 {
-  const Reduction reduction = frame.settings.reduction;
-  openState(frame.image, reduction, frame.space.rays);
-  const RayWalk<T, P> walk(frame, sampler);
-  forSlices(frame, sampler.traits().beyond, walk.isReversed(), {},
+  const Reduction reduction = context.settings.reduction;
+  openState(context.image, reduction, context.space.rays);
+  const RayWalk<T, P> walk(context, sampler);
+  forSlices(context, sampler.traits().beyond, walk.isReversed(), {},
     [&](const Span& slices, bool isFirst, bool isLast)
     {
-      forBands(frame.image.height, bandHeight(frame.image.height), frame.watch,
+      forBands(context.image.height, bandHeight(context.image.height), context.observer,
         [&](int v0, int v1)
         {
           if (isFirst)
           {
             walk.open(v0, v1);
           }
-          walk.walk(slices, v0, v1, frame.space.rayBands.Local());
+          walk.walk(slices, v0, v1, context.space.rayBands.Local());
           if (isLast)
           {
             walk.close(v0, v1);
-            computesWith(reduction) ? closeRows<Accumulator<T>>(frame.image, v0, v1)
-                                    : closeRows<P>(frame.image, v0, v1);
+            computesWith(reduction) ? closeRows<Accumulator<T>>(context.image, v0, v1)
+                                    : closeRows<P>(context.image, v0, v1);
           }
         });
     });
 }
 
-#define VOXELS(T) template void walkRays(Frame&, const SliceSampler<T, T>&);
-#define WORKSHEETS(T) template void walkRays(Frame&, const SliceSampler<T, Accumulator<T>>&);
+#define VOXELS(T) template void walkRays(ProjectionContext&, const SliceSampler<T, T>&);
+#define WORKSHEETS(T)                                                                              \
+  template void walkRays(ProjectionContext&, const SliceSampler<T, Accumulator<T>>&);
 SPLATTING_TYPES(VOXELS)
 SPLATTING_INTEGERS(WORKSHEETS) // others are of their voxels' type
 }

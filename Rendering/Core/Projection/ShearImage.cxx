@@ -40,7 +40,7 @@ void begin(const ShearImage& part, int phases, ShearImage& whole)
   const std::size_t bytes = std::size_t(whole.width) * whole.height * sizeOf(part.type);
   whole.bytes.resize(std::max(whole.bytes.size(), bytes));
   whole.winners.resize(part.winners.empty() ? 0 : std::size_t(whole.width) * whole.height);
-  whole.special = false;
+  whole.nonFinite = false;
 }
 
 /// The pixels of a row that see the volume are neighbours, whatever phase they belong to.
@@ -97,6 +97,6 @@ void interleave(const ShearImage& part, int phases, const glm::ivec2& phase, She
   {
     scatter(part, part.winners.data(), phases, phase, whole.winners.data(), whole.width);
   }
-  whole.special = whole.special || part.special;
+  whole.nonFinite = whole.nonFinite || part.nonFinite;
 }
 }

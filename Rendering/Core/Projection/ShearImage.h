@@ -34,7 +34,7 @@ struct ShearImage
   std::vector<std::int32_t> winners;
   bool keepsWinners() const { return !this->winners.empty(); }
   /// NaN pixels have no sample, infinities occur.
-  bool special = false;
+  bool nonFinite = false;
 
   template <class T>
   T* row(int v)

@@ -57,9 +57,9 @@ struct BandTiles
 constexpr int DenseHeight = 4 * TileHeight;
 
 /// The layers of slices that a band of rows meets.
-inline Span layersOf(const Frame& frame, const Span& some, int v0, int v1)
+inline Span layersOf(const ProjectionContext& context, const Span& some, int v0, int v1)
 {
-  const Span slices = common(some, slicesOf(frame.sliceGeometry, v0, v1));
+  const Span slices = common(some, slicesOf(context.sliceGeometry, v0, v1));
   const int begin = slices.begin / BrickDepth;
   return { begin, slices.empty() ? begin : (slices.end - 1) / BrickDepth + 1 };
 }
@@ -69,17 +69,17 @@ class TileBounds
 {
 public:
   /// @param range  of layers, which will be asked for
-  TileBounds(const Frame& frame, const SliceSampler<T, P>& sampler, const BandTiles& tiles,
-    const Span& range, BandScratch& scratch)
-    : Shared(frame),
-      Stack(sampler),
+  TileBounds(const ProjectionContext& context, const SliceSampler<T, P>& sampler,
+    const BandTiles& tiles, const Span& range, BandScratch& scratch)
+    : Context(context),
+      Sampler(sampler),
       Space(scratch),
       Band(tiles),
       Tiles(tiles.tiles()),
       Groups(tiles.groups())
   {
     // Worksheets also weigh voxels of the layers before and behind.
-    const int layers = (frame.geometry.size().z + BrickDepth - 1) / BrickDepth;
+    const int layers = (context.geometry.size().z + BrickDepth - 1) / BrickDepth;
     const int beyond = sampler.traits().beyond;
     this->Known = { std::max(range.begin - beyond, 0), std::min(range.end + beyond, layers) };
   }
@@ -95,23 +95,23 @@ public:
     {
       for (int g = 0; g < this->Groups; ++g)
       {
-        this->Stack.traits().perspective
+        this->Sampler.traits().perspective
           ? this->takeOwnBricks(bricks, z, g, this->voxelBounds(z, g))
           : this->takeBricks(bricks, z, g, this->voxelBounds(z, g));
       }
     }
-    if (this->Stack.traits().beyond == 0) // voxels as they are
+    if (this->Sampler.traits().beyond == 0) // voxels as they are
     {
       this->Space.bounds.swap(this->Space.voxelBounds);
     }
     else if constexpr (std::is_same_v<P, Accumulator<T>>)
     {
       this->Space.bounds.resize(count * sizeof(P));
-      const VoxelLoops<T>& loops = this->Shared.kernels;
+      const VoxelLoops<T>& loops = this->Context.kernels;
       if (count > 0)
       {
         loops.widen(this->voxelBounds(this->Known.begin, 0), 0, this->bounds(this->Known.begin, 0),
-          0, this->Stack.base(), count, 1, 0);
+          0, this->Sampler.base(), count, 1, 0);
       }
       this->blendBounds();
     }
@@ -140,10 +140,10 @@ private:
   /// Beyond the ends of rows of bricks others are read: that makes some bounds higher, not wrong.
   void takeBricks(const BrickMaxima& bricks, int z, int group, T* out)
   {
-    const Window window = this->Stack.window(z);
+    const Window window = this->Sampler.window(z);
     // Where worksheets read beyond the volume they repeat its outermost voxels.
     const int bottom = this->Band.firstRow(group), top = this->Band.endRow(group) - 1;
-    const int last = this->Shared.geometry.size().y - 1;
+    const int last = this->Context.geometry.size().y - 1;
     const int low = std::clamp(bottom + window.jMin, 0, last) / BrickHeight;
     const int high = std::clamp(top + window.jMax, 0, last) / BrickHeight;
     const bool meets = top + window.jMax >= -Beside && bottom + window.jMin <= last + Beside;
@@ -167,7 +167,7 @@ private:
         rows[count++] = bricks.row<T>(j, z) + b + tiles.begin;
       }
     }
-    const VoxelLoops<T>& loops = this->Shared.kernels;
+    const VoxelLoops<T>& loops = this->Context.kernels;
     loops.largest(rows, count, out + tiles.begin, tiles.end - tiles.begin);
     std::fill(out + tiles.end, out + this->Tiles, leastValue<T>());
     // The next tiles can see outermost voxels, too, that are repeated for them.
@@ -184,10 +184,10 @@ private:
   /// The same in perspective, where each tile has a window of its own.
   void takeOwnBricks(const BrickMaxima& bricks, int z, int group, T* out)
   {
-    const glm::ivec3& size = this->Shared.geometry.size();
+    const glm::ivec3& size = this->Context.geometry.size();
     std::fill(out, out + this->Tiles, leastValue<T>());
     const int v0 = this->Band.firstRow(group);
-    const Span rows = this->Stack.rowsOf(z, { v0, this->Band.endRow(group) });
+    const Span rows = this->Sampler.rowsOf(z, { v0, this->Band.endRow(group) });
     if (rows.end <= -Beside || rows.begin >= size.y + Beside || rows.empty())
     {
       return;
@@ -202,7 +202,7 @@ private:
     }
     this->Space.brickRow.resize(bricks.count.x * sizeof(T) + BrickMaxima::Padding);
     T* const row = reinterpret_cast<T*>(this->Space.brickRow.data());
-    const VoxelLoops<T>& loops = this->Shared.kernels;
+    const VoxelLoops<T>& loops = this->Context.kernels;
     loops.largest(all, high - low + 1, row, bricks.count.x);
     const std::vector<Span>& windows = this->tileWindows(z);
     for (int t = 0; t < this->Tiles; ++t)
@@ -223,10 +223,10 @@ private:
     {
       this->WindowsOf = z;
       windows.resize(this->Tiles);
-      const int size = this->Shared.geometry.size().x;
+      const int size = this->Context.geometry.size().x;
       for (int t = 0; t < this->Tiles; ++t)
       {
-        const Span voxels = this->Stack.columnsOf(z, { t * TileWidth, (t + 1) * TileWidth });
+        const Span voxels = this->Sampler.columnsOf(z, { t * TileWidth, (t + 1) * TileWidth });
         windows[t] = voxels.empty() || voxels.end <= -Beside || voxels.begin >= size + Beside
           ? Span{}
           : Span{ std::clamp(voxels.begin, 0, size - 1) / BrickWidth,
@@ -245,9 +245,9 @@ private:
   /// Worksheets also weigh voxels of the layers before and behind.
   void blendBounds()
   {
-    const WorksheetLoops<P>& loops = this->Shared.kernels;
+    const WorksheetLoops<P>& loops = this->Context.kernels;
     const int row = this->Groups * this->Tiles; // of one layer
-    const P slack = this->Stack.slack(), magnitude = this->Stack.magnitude();
+    const P slack = this->Sampler.slack(), magnitude = this->Sampler.magnitude();
     // In place: the layer behind is still as it was, the one before is kept.
     this->Space.voxelBounds.resize(std::size_t(2) * row * sizeof(P));
     P* before = reinterpret_cast<P*>(this->Space.voxelBounds.data());
@@ -258,13 +258,13 @@ private:
       std::copy(own, own + row, kept);
       const bool hasBefore = z > this->Known.begin, hasAfter = z + 1 < this->Known.end;
       const P *const front = hasBefore ? before : kept, *const back = hasAfter ? own + row : kept;
-      if (this->Shared.range.special)
+      if (this->Context.range.nonFinite)
       {
         this->takeLargest(own, front, back, row);
       }
       else
       {
-        loops.bound(own, front, back, this->Stack.share(z), slack, magnitude, row);
+        loops.bound(own, front, back, this->Sampler.share(z), slack, magnitude, row);
       }
       std::swap(before, kept);
     }
@@ -273,7 +273,7 @@ private:
   /// Where voxels are NaN others weigh more, and a layer's neighbours may be all that counts.
   void takeLargest(P* own, const P* before, const P* after, int count) const
   {
-    const P slack = this->Stack.slack(), magnitude = this->Stack.magnitude();
+    const P slack = this->Sampler.slack(), magnitude = this->Sampler.magnitude();
     for (int t = 0; t < count; ++t)
     {
       const P most = std::max({ own[t], before[t], after[t] });
@@ -281,8 +281,8 @@ private:
     }
   }
 
-  const Frame& Shared;
-  const SliceSampler<T, P>& Stack;
+  const ProjectionContext& Context;
+  const SliceSampler<T, P>& Sampler;
   BandScratch& Space;
   const BandTiles& Band;
   const int Tiles, Groups;

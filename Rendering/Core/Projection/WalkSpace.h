@@ -8,7 +8,7 @@
 
 #include "Clipping/Cuts.h"
 #include "Clipping/RayIntervals.h"
-#include "Projection/Frame.h"
+#include "Projection/ProjectionContext.h"
 #include "Projection/TileRuns.h"
 #include "Sampling/SliceSampler.h"
 
@@ -50,7 +50,7 @@ private:
 /// What a thread needs to walk a band.
 struct BandScratch
 {
-  Patch patch;
+  LoadedVoxels loaded;
   std::vector<unsigned char> voxelBounds, bounds, minima, flags;
   std::vector<int> order;
   std::vector<double> scores;
@@ -67,7 +67,7 @@ struct BandScratch
 /// And to walk rays.
 struct RayScratch
 {
-  Patch patch;
+  LoadedVoxels loaded;
   std::vector<unsigned char> mask, widened, before;
 };
 
@@ -96,10 +96,11 @@ struct Progress
   double from = 0.0, to = 1.0;
 };
 
-/// Calls body(slices, isFirst, isLast) with Frame::slices set: for all slices, or, where these
-/// would need a copy that there is no memory for, for some at a time, from the last on if reversed.
+/// Calls body(slices, isFirst, isLast) with ProjectionContext::slices set: for all slices, or,
+/// where these would need a copy that there is no memory for, for some at a time, from the last on
+/// if reversed.
 /// @param beyond  slices beside them that are read, too
-void forSlices(Frame& frame, int beyond, bool reversed, const Progress& progress,
+void forSlices(ProjectionContext& context, int beyond, bool reversed, const Progress& progress,
   const std::function<void(const Span& slices, bool isFirst, bool isLast)>& body);
 
 template <class P>

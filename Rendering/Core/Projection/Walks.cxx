@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Common/Watch.h"
+#include "Common/ProgressObserver.h"
 #include "Projection/WalkSpace.h"
 #include "Sampling/SliceSampler.h"
 
@@ -22,49 +22,50 @@ int bandHeight(int rows)
   return std::clamp(share / TileHeight * TileHeight, 2 * TileHeight, 8 * TileHeight);
 }
 
-void forBands(int height, int rows, Watch& watch, const std::function<void(int v0, int v1)>& body)
+void forBands(
+  int height, int rows, ProgressObserver& observer, const std::function<void(int v0, int v1)>& body)
 {
   const int bands = (height + rows - 1) / rows;
-  watch.begin(bands);
+  observer.begin(bands);
   vtkSMPTools::For(0, bands, 1,
     [&](vtkIdType first, vtkIdType last)
     {
-      for (vtkIdType b = first; b < last && !watch.stopped(); ++b)
+      for (vtkIdType b = first; b < last && !observer.stopped(); ++b)
       {
         const int v0 = static_cast<int>(b) * rows;
         body(v0, std::min(v0 + rows, height));
-        watch.bandDone();
+        observer.bandDone();
       }
     });
-  watch.ask();
+  observer.ask();
 }
 
-void forSlices(Frame& frame, int beyond, bool reversed, const Progress& progress,
+void forSlices(ProjectionContext& context, int beyond, bool reversed, const Progress& progress,
   const std::function<void(const Span& slices, bool isFirst, bool isLast)>& body)
 {
-  const int axis = frame.geometry.principalAxis(), depth = frame.geometry.size().z;
+  const int axis = context.geometry.principalAxis(), depth = context.geometry.size().z;
   const double share = progress.to - progress.from;
-  frame.watch.setPart(progress.from, progress.to);
-  if (frame.lines) // chains hold the voxels
+  context.observer.setPart(progress.from, progress.to);
+  if (context.lines) // chains hold the voxels
   {
     body(Span{ 0, depth }, true, true);
     return;
   }
-  if (frame.index.hasSlices(axis))
+  if (context.index.hasSlices(axis))
   {
-    frame.slices = frame.index.slices(axis);
+    context.slices = context.index.slices(axis);
     body(Span{ 0, depth }, true, true);
     return;
   }
   const int chunks = (depth + ChunkDepth - 1) / ChunkDepth;
-  for (int c = 0; c < chunks && !frame.watch.stopped(); ++c)
+  for (int c = 0; c < chunks && !context.observer.stopped(); ++c)
   {
     const int first = (reversed ? chunks - 1 - c : c) * ChunkDepth;
     const Span slices{ first, std::min(first + ChunkDepth, depth) };
-    frame.watch.setPart(
+    context.observer.setPart(
       progress.from + share * c / chunks, progress.from + share * (c + 1) / chunks);
-    frame.slices = frame.index.someSlices(
-      std::max(slices.begin - beyond, 0), std::min(slices.end + beyond, depth), frame.space.chunk);
+    context.slices = context.index.someSlices(std::max(slices.begin - beyond, 0),
+      std::min(slices.end + beyond, depth), context.space.chunk);
     body(slices, c == 0, c == chunks - 1);
   }
 }

@@ -40,24 +40,24 @@ template <class T, class P>
 class WinnerWalk
 {
 public:
-  WinnerWalk(
-    const Frame& frame, const SliceSampler<T, P>& sampler, BandScratch& scratch, int v0, int v1)
-    : Shared(frame),
-      Stack(sampler),
+  WinnerWalk(const ProjectionContext& context, const SliceSampler<T, P>& sampler,
+    BandScratch& scratch, int v0, int v1)
+    : Context(context),
+      Sampler(sampler),
       Scratch(scratch),
-      Limits{ reinterpret_cast<P*>(frame.space.limits.data()), frame.image.width },
-      Band{ v0, v1, frame.image.width, frame.bricks ? TileHeight : DenseHeight },
+      Limits{ reinterpret_cast<P*>(context.space.limits.data()), context.image.width },
+      Band{ v0, v1, context.image.width, context.bricks ? TileHeight : DenseHeight },
       Tiles(this->Band.tiles()),
-      Reversed(frame.geometry.reversed())
+      Reversed(context.geometry.reversed())
   {
   }
 
   /// No pixel has a winner yet, and those without samples never will.
   void open()
   {
-    const ShearImage& image = this->Shared.image;
-    const P floor = this->Stack.floor();
-    const std::int32_t atFloor = this->Shared.range.special ? -1 : AtFloor;
+    const ShearImage& image = this->Context.image;
+    const P floor = this->Sampler.floor();
+    const std::int32_t atFloor = this->Context.range.nonFinite ? -1 : AtFloor;
     for (int v = this->Band.v0; v < this->Band.v1; ++v)
     {
       const P* const row = image.row<P>(v);
@@ -72,15 +72,15 @@ public:
 
   void walk(const Span& slices)
   {
-    const Span layers = layersOf(this->Shared, slices, this->Band.v0, this->Band.v1);
-    TileBounds<T, P> bounds(this->Shared, this->Stack, this->Band, layers, this->Scratch);
-    if (this->Shared.bricks)
+    const Span layers = layersOf(this->Context, slices, this->Band.v0, this->Band.v1);
+    TileBounds<T, P> bounds(this->Context, this->Sampler, this->Band, layers, this->Scratch);
+    if (this->Context.bricks)
     {
-      bounds.find(*this->Shared.bricks);
+      bounds.find(*this->Context.bricks);
     }
-    if (!this->Shared.cuts.none())
+    if (!this->Context.cuts.none())
     {
-      this->Scratch.shares.reset(this->Shared.cuts, this->Shared.kernels, this->Band.v0,
+      this->Scratch.shares.reset(this->Context.cuts, this->Context.kernels, this->Band.v0,
         this->Band.v1, this->Band.width, this->Band.height);
     }
     this->Scratch.minima.resize(this->Band.count() * sizeof(P));
@@ -95,7 +95,7 @@ public:
       const int z = this->Reversed ? layers.end - 1 - n : layers.begin + n;
       for (int g = 0; g < this->Band.groups(); ++g)
       {
-        this->walkGroup(z, g, this->Shared.bricks ? bounds.bounds(z, g) : nullptr);
+        this->walkGroup(z, g, this->Context.bricks ? bounds.bounds(z, g) : nullptr);
       }
     }
     for (int v = this->Band.v0; v < this->Band.v1; ++v)
@@ -119,23 +119,23 @@ private:
 
   std::int32_t* winner(int u, int v) const
   {
-    return this->Shared.image.winners.data() + std::ptrdiff_t(v) * this->Band.width + u;
+    return this->Context.image.winners.data() + std::ptrdiff_t(v) * this->Band.width + u;
   }
-  Span slicesIn(int z) const { return slicesOfLayer(z, this->Shared.geometry.size()); }
+  Span slicesIn(int z) const { return slicesOfLayer(z, this->Context.geometry.size()); }
   P* minimaOf(int group)
   {
     return reinterpret_cast<P*>(this->Scratch.minima.data()) + std::ptrdiff_t(group) * this->Tiles;
   }
   void findMinima(int group)
   {
-    this->Band.template findMinima<P>(this->Shared.kernels,
+    this->Band.template findMinima<P>(this->Context.kernels,
       this->Limits.at(0, this->Band.firstRow(group)), group, this->minimaOf(group));
   }
 
   /// The tiles of a group whose pixels a layer may have samples for.
   void walkGroup(int z, int group, const P* bounds)
   {
-    const TileLoops<P>& loops = this->Shared.kernels;
+    const TileLoops<P>& loops = this->Context.kernels;
     std::vector<unsigned char>& flags = this->Scratch.flags;
     const P* const minima = this->minimaOf(group);
     if (bounds)
@@ -148,12 +148,12 @@ private:
         [](P least) { return static_cast<unsigned char>(least < Nothing); });
     }
     const unsigned char* const shares =
-      this->Shared.cuts.none() ? nullptr : this->Scratch.shares.find(this->slicesIn(z), group);
+      this->Context.cuts.none() ? nullptr : this->Scratch.shares.find(this->slicesIn(z), group);
     for (int t = 0; shares && t < this->Tiles; ++t)
     {
       flags[t] = static_cast<unsigned char>(flags[t] & (shares[t] != NoSamples));
     }
-    findTileRuns(flags.data(), this->Tiles, this->Stack.traits().runUnit, this->Band.width,
+    findTileRuns(flags.data(), this->Tiles, this->Sampler.traits().runUnit, this->Band.width,
       this->Scratch.runs);
     const Span rows{ this->Band.firstRow(group), this->Band.endRow(group) };
     if (!this->Scratch.runs.empty() &&
@@ -180,11 +180,11 @@ private:
   {
     // Voxels are told apart afterwards.
     const int count = slices.end - slices.begin;
-    const int apart = this->Stack.traits().beyond > 0 || isCut ? count : 1;
+    const int apart = this->Sampler.traits().beyond > 0 || isCut ? count : 1;
     const PixelRows<P> copies =
       this->Scratch.copies.copy(this->Limits, rows.begin, rows.end, this->Scratch.runs, apart);
-    this->Stack.splat(
-      slices, rows.begin, rows.end, this->Scratch.runs, copies, this->Scratch.patch);
+    this->Sampler.splat(
+      slices, rows.begin, rows.end, this->Scratch.runs, copies, this->Scratch.loaded);
     bool any = false;
     for (int n = 0; n < apart; ++n)
     {
@@ -204,7 +204,7 @@ private:
   /// The pixels of a row that some slices have lifted.
   bool findInRow(const Span& slices, int v, const Span& run, const P* lifted, bool isCut)
   {
-    const TileLoops<P>& loops = this->Shared.kernels;
+    const TileLoops<P>& loops = this->Context.kernels;
     const std::ptrdiff_t count = loops.exceed(
       lifted, this->Limits.at(run.begin, v), this->Scratch.found.data(), run.end - run.begin);
     bool any = false;
@@ -214,7 +214,7 @@ private:
       P& limit = *this->Limits.at(u, v);
       if (!isCut || this->counts(u, v, slices.begin))
       {
-        *this->winner(u, v) = this->Stack.firstAbove(u, v, slices, limit);
+        *this->winner(u, v) = this->Sampler.firstAbove(u, v, slices, limit);
         limit = Nothing;
         any = true;
       }
@@ -225,7 +225,7 @@ private:
   /// Those of a row whose rays cross slice k.
   Span pixels(int v, int k) const
   {
-    const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+    const SliceGeometry& slice = this->Context.sliceGeometry[k];
     return v >= slice.vBegin && v < slice.vEnd ? slice.span(v) : Span{};
   }
   bool crosses(int u, int v, int k) const
@@ -236,7 +236,7 @@ private:
   bool counts(int u, int v, int k) const
   {
     unsigned char mask;
-    return this->Shared.cuts.findMask(k, v, { u, u + 1 }, &mask) && mask;
+    return this->Context.cuts.findMask(k, v, { u, u + 1 }, &mask) && mask;
   }
 
   /// The first samples of a row's rays whose pixels are the floor: nearly always where they enter
@@ -267,7 +267,7 @@ private:
   /// The first step of a ray that enters the volume in slice k.
   int firstStep(int u, int v, int k, const Span& slices) const
   {
-    const RayIntervals& intervals = this->Shared.cuts.source().intervals;
+    const RayIntervals& intervals = this->Context.cuts.source().intervals;
     if (!intervals.empty())
     {
       k = this->Reversed ? std::min<int>(k, intervals.last(v)[u])
@@ -276,7 +276,7 @@ private:
     for (; k >= slices.begin && k < slices.end; k += this->Reversed ? -1 : 1)
     {
       const int sample =
-        this->crosses(u, v, k) && this->counts(u, v, k) ? this->Stack.firstSample(u, v, k) : -1;
+        this->crosses(u, v, k) && this->counts(u, v, k) ? this->Sampler.firstSample(u, v, k) : -1;
       if (sample >= 0)
       {
         return StepsPerSlice * k + sample;
@@ -285,8 +285,8 @@ private:
     return AtFloor;
   }
 
-  const Frame& Shared;
-  const SliceSampler<T, P>& Stack;
+  const ProjectionContext& Context;
+  const SliceSampler<T, P>& Sampler;
   BandScratch& Scratch;
   const PixelRows<P> Limits; // of all pixels
   const BandTiles Band;
@@ -296,16 +296,16 @@ private:
 }
 
 template <class T, class P>
-void findWinners(Frame& frame, const SliceSampler<T, P>& sampler)
+void findWinners(ProjectionContext& context, const SliceSampler<T, P>& sampler)
 {
-  frame.space.limits.resize(frame.image.winners.size() * sizeof(P));
-  forSlices(frame, sampler.traits().beyond, frame.geometry.reversed(), { 0.5, 1.0 },
+  context.space.limits.resize(context.image.winners.size() * sizeof(P));
+  forSlices(context, sampler.traits().beyond, context.geometry.reversed(), { 0.5, 1.0 },
     [&](const Span& slices, bool isFirst, bool isLast)
     {
-      forBands(frame.image.height, bandHeight(frame.image.height), frame.watch,
+      forBands(context.image.height, bandHeight(context.image.height), context.observer,
         [&](int v0, int v1)
         {
-          WinnerWalk<T, P> band(frame, sampler, frame.space.bands.Local(), v0, v1);
+          WinnerWalk<T, P> band(context, sampler, context.space.bands.Local(), v0, v1);
           if (isFirst)
           {
             band.open();
@@ -314,19 +314,20 @@ void findWinners(Frame& frame, const SliceSampler<T, P>& sampler)
           if (isLast)
           {
             band.close();
-            if (frame.range.special)
+            if (context.range.nonFinite)
             {
-              dropEmpty<P>(frame.image, v0, v1);
+              dropEmpty<P>(context.image, v0, v1);
             }
             sampler.finish(v0, v1);
-            closeRows<P>(frame.image, v0, v1);
+            closeRows<P>(context.image, v0, v1);
           }
         });
     });
 }
 
-#define VOXELS(T) template void findWinners(Frame&, const SliceSampler<T, T>&);
-#define WORKSHEETS(T) template void findWinners(Frame&, const SliceSampler<T, Accumulator<T>>&);
+#define VOXELS(T) template void findWinners(ProjectionContext&, const SliceSampler<T, T>&);
+#define WORKSHEETS(T)                                                                              \
+  template void findWinners(ProjectionContext&, const SliceSampler<T, Accumulator<T>>&);
 SPLATTING_TYPES(VOXELS)
 SPLATTING_INTEGERS(WORKSHEETS) // others are of their voxels' type
 }

@@ -7,8 +7,8 @@
 #ifndef splattingFieldOnRay_h
 #define splattingFieldOnRay_h
 
-#include "Sampling/Carry.h"
 #include "Sampling/ExactPieces.h"
+#include "Sampling/ValuesAtWinners.h"
 
 #include <algorithm>
 #include <array>
@@ -224,20 +224,20 @@ private:
     return this->Reversed ? value >= best.value : value > best.value;
   }
 
-  template <bool Special>
+  template <bool NonFinite>
   static double mix(double a, double b, double t)
   {
-    if (Special)
+    if (NonFinite)
     {
       // What does not count may be no number.
       return t <= 0.0 ? a : t >= 1.0 ? b : a + t * (b - a);
     }
     return a + t * (b - a);
   }
-  template <bool Special>
+  template <bool NonFinite>
   static double valueAt(const glm::dvec3& p, const std::array<double, 8>& c)
   {
-    const auto mixed = mix<Special>;
+    const auto mixed = mix<NonFinite>;
     const double near = mixed(mixed(c[0], c[1], p.x), mixed(c[2], c[3], p.x), p.y);
     const double far = mixed(mixed(c[4], c[5], p.x), mixed(c[6], c[7], p.x), p.y);
     return mixed(near, far, p.z);
@@ -245,7 +245,7 @@ private:
 
   /// Both ends of a cubic and its extrema in between.
   /// @param limit  the largest corner, which rounding must not exceed
-  template <bool Special>
+  template <bool NonFinite>
   void takeCubic(const Walk& walk, double end, const std::array<double, 8>& corners, double limit,
     Extremum& best) const
   {
@@ -264,9 +264,9 @@ private:
     double f[4]; // at equal distances
     for (int n = 0; n < 4; ++n)
     {
-      f[n] = valueAt<Special>(n == 3 ? to : from + (to - from) * (n / 3.0), corners);
+      f[n] = valueAt<NonFinite>(n == 3 ? to : from + (to - from) * (n / 3.0), corners);
       // Cells with NaN are left out, faces that they share with others, too.
-      if (Special && f[n] != f[n])
+      if (NonFinite && f[n] != f[n])
       {
         return;
       }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sampling/ParallelWorksheets.h"
 
-#include "Sampling/Carry.h"
+#include "Sampling/ValuesAtWinners.h"
 
 #include <memory>
 #include <tuple>
@@ -16,24 +16,24 @@ namespace
 class WorksheetsMode : public ProjectionMode
 {
 public:
-  void project(Frame& frame) override
+  void project(ProjectionContext& context) override
   {
-    dispatch(frame.index.volume().type,
+    dispatch(context.index.volume().type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
         using A = Accumulator<T>;
         auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Footprints);
         auto& reach = std::get<WorksheetReach<A>>(this->Reach);
-        findFootprints(frame.geometry, worksheetKernel(frame.settings),
-          frame.settings.footprintSampling, weightBits<T>, this->Table, footprints);
-        findReach(frame.sliceGeometry, footprints, reach);
-        walk(
-          frame, ParallelWorksheets<T>(frame, footprints, reach, worksheetDepth(frame.settings)));
+        findFootprints(context.geometry, worksheetKernel(context.settings),
+          context.settings.footprintSampling, weightBits<T>, this->Table, footprints);
+        findReach(context.sliceGeometry, footprints, reach);
+        walk(context,
+          ParallelWorksheets<T>(context, footprints, reach, worksheetDepth(context.settings)));
       });
   }
 
-  void carry(const Carrying& c) const override
+  void takeAtWinners(const AtWinners& c) const override
   {
     dispatch(c.other.type,
       [&](auto* null)
@@ -41,11 +41,11 @@ public:
         using T = std::remove_pointer_t<decltype(null)>;
         using A = Accumulator<T>;
         const auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Footprints);
-        carryValues<T>(c,
+        fillAtWinners<T>(c,
           [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
           {
             const int k = step / StepsPerSlice;
-            return carriedAverage<T>(voxels, footprints[k], u, v, k);
+            return averageAtWinner<T>(voxels, footprints[k], u, v, k);
           });
       });
   }

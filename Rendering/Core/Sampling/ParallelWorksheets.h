@@ -13,15 +13,15 @@ namespace splatting
 {
 /// In parallel views all pixels have the footprints of their slices.
 template <class T>
-class ParallelWorksheets : public WorksheetLayers<T>
+class ParallelWorksheets : public WorksheetSampler<T>
 {
 public:
-  using typename WorksheetLayers<T>::A;
-  using typename WorksheetLayers<T>::Target;
+  using typename WorksheetSampler<T>::A;
+  using typename WorksheetSampler<T>::Target;
 
-  ParallelWorksheets(const Frame& frame, const std::vector<SliceFootprint<A>>& footprints,
-    const WorksheetReach<A>& reach, int depth)
-    : WorksheetLayers<T>(frame, false, reach, depth),
+  ParallelWorksheets(const ProjectionContext& context,
+    const std::vector<SliceFootprint<A>>& footprints, const WorksheetReach<A>& reach, int depth)
+    : WorksheetSampler<T>(context, false, reach, depth),
       Footprints(footprints)
   {
   }
@@ -33,39 +33,39 @@ public:
   /// voxels are exact. Where voxels are NaN, sums of weights are divided by.
   A slack() const override
   {
-    const int operations = this->Shared.range.special ? 180 : 90;
+    const int operations = this->Context.range.nonFinite ? 180 : 90;
     return sizeof(T) == 1 ? A(0) : operations * std::numeric_limits<A>::epsilon() / 2;
   }
 
 protected:
-  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
+  LoadedVoxels::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
   {
     const Window& window = this->Reach.slices[s];
-    const glm::ivec3& size = this->Shared.geometry.size();
+    const glm::ivec3& size = this->Context.geometry.size();
     const Span i = common(
       { columns.begin + window.iMin, columns.end + window.iMax }, { -Beside, size.x + Beside });
     const Span j = common({ v0 + window.jMin, v1 + window.jMax }, { -Beside, size.y + Beside });
     return { s, i.begin, j.begin, std::max(i.end - i.begin, 0), std::max(j.end - j.begin, 0) };
   }
 
-  void splatRows(
-    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  void splatRows(int k, int first, int end, const Span& span, const Target& target,
+    LoadedVoxels& loaded) const override
   {
-    const WorksheetLoops<A>& loops = this->Shared.kernels;
-    loops.splat(this->splatOf(k, first, end, span, target, patch));
+    const WorksheetLoops<A>& loops = this->Context.kernels;
+    loops.splat(this->splatOf(k, first, end, span, target, loaded));
   }
 
   Splat<A> splatOf(
-    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const
+    int k, int first, int end, const Span& span, const Target& target, LoadedVoxels& loaded) const
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];
     Splat<A> splat = this->splatInto<A>(target, first, end, span);
-    splat.sourceStride = patch.rowLength;
+    splat.sourceStride = loaded.rowLength;
     splat.partCount = footprint.partCount;
     for (int p = 0; p < splat.partCount; ++p)
     {
       const FootprintPart<A>& part = footprint.parts[p];
-      splat.parts[p] = { this->voxel(patch, k, part.slice, span.begin + part.di, first + part.dj),
+      splat.parts[p] = { this->voxel(loaded, k, part.slice, span.begin + part.di, first + part.dj),
         part.weights.data(), part.rows, part.columns };
     }
     return splat;
@@ -84,16 +84,16 @@ protected:
   }
 
   bool splatOwn(int k, int step, int first, int end, const Span& span, const Target& target,
-    Patch& patch) const override
+    LoadedVoxels& loaded) const override
   {
-    const VoxelLoops<T>& loops = this->Shared.kernels;
-    if (this->Depth > 0 || !loops.splatVoxels || this->Shared.range.special ||
+    const VoxelLoops<T>& loops = this->Context.kernels;
+    if (this->Depth > 0 || !loops.splatVoxels || this->Context.range.nonFinite ||
       this->Footprints[k].partCount != 1)
     {
       return false; // copies are used for several slices, or are not worse
     }
     // Pixels whose footprints lie in the volume.
-    const glm::ivec3& size = this->Shared.geometry.size();
+    const glm::ivec3& size = this->Context.geometry.size();
     const SliceFootprint<A>& footprint = this->Footprints[k];
     const FootprintPart<A>& part = footprint.parts[0];
     const int di = part.di - footprint.nearest.x, dj = part.dj - footprint.nearest.y;
@@ -105,25 +105,25 @@ protected:
       return false;
     }
     Splat<A, T> splat = this->template splatInto<T>(target, rows.begin, rows.end, columns);
-    splat.sourceStride = this->Shared.slices.rowStride;
+    splat.sourceStride = this->Context.slices.rowStride;
     splat.base = this->Base;
-    splat.ahead = k + step >= 0 && k + step < size.z ? step * this->Shared.slices.sliceStride : 0;
+    splat.ahead = k + step >= 0 && k + step < size.z ? step * this->Context.slices.sliceStride : 0;
     splat.partCount = 1;
-    splat.parts[0] = { this->Shared.template voxelRow<T>(rows.begin + dj, k) + columns.begin + di,
+    splat.parts[0] = { this->Context.template voxelRow<T>(rows.begin + dj, k) + columns.begin + di,
       part.weights.data(), part.rows, part.columns };
     loops.splatVoxels(splat);
-    this->splatRim(k, first, rows.begin, span, target, patch);
-    this->splatRim(k, rows.end, end, span, target, patch);
+    this->splatRim(k, first, rows.begin, span, target, loaded);
+    this->splatRim(k, rows.end, end, span, target, loaded);
     const int least = std::min(RimWidth, span.end - span.begin);
     if (columns.begin > span.begin)
     {
       this->splatRim(k, rows.begin, rows.end,
-        { span.begin, std::max(columns.begin, span.begin + least) }, target, patch);
+        { span.begin, std::max(columns.begin, span.begin + least) }, target, loaded);
     }
     if (columns.end < span.end)
     {
       this->splatRim(k, rows.begin, rows.end, { std::min(columns.end, span.end - least), span.end },
-        target, patch);
+        target, loaded);
     }
     return true;
   }
@@ -133,25 +133,25 @@ private:
   static constexpr int LeastOwn = 64, RimWidth = 16;
 
   /// By a copy of what footprints read beyond the volume, too.
-  void splatRim(
-    int k, int first, int end, const Span& columns, const Target& target, Patch& patch) const
+  void splatRim(int k, int first, int end, const Span& columns, const Target& target,
+    LoadedVoxels& loaded) const
   {
     if (first < end)
     {
-      const Span rows = patch.rows, pixels = patch.pixels;
-      this->open(first, end, columns, patch);
-      this->load(k, 0, patch);
-      this->splatRows(k, first, end, columns, target, patch);
-      this->open(rows.begin, rows.end, pixels, patch);
+      const Span rows = loaded.rows, pixels = loaded.pixels;
+      this->open(first, end, columns, loaded);
+      this->load(k, 0, loaded);
+      this->splatRows(k, first, end, columns, target, loaded);
+      this->open(rows.begin, rows.end, pixels, loaded);
     }
   }
 
-  /// The voxel of slice k + c that is nearest to pixel (u, v) of slice k, in the patch.
-  const A* voxel(Patch& patch, int k, int c, int u, int v) const
+  /// The voxel of slice k + c that is nearest to pixel (u, v) of slice k, of those that are loaded.
+  const A* voxel(LoadedVoxels& loaded, int k, int c, int u, int v) const
   {
     const glm::ivec2& nearest = this->Footprints[k].nearest;
-    return patch.voxel<A>(
-      u - nearest.x, v - nearest.y, std::clamp(k + c, 0, this->Shared.geometry.size().z - 1));
+    return loaded.voxel<A>(
+      u - nearest.x, v - nearest.y, std::clamp(k + c, 0, this->Context.geometry.size().z - 1));
   }
 
 protected:

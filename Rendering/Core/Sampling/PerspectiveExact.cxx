@@ -16,7 +16,7 @@ namespace splatting
 {
 namespace
 {
-/// What the layers of an image read, as far as WorksheetLayers asks for it.
+/// What the layers of an image read, as far as WorksheetSampler asks for it.
 template <class A>
 void findExactReach(const ShearWarp& geometry, WorksheetReach<A>& reach)
 {
@@ -30,22 +30,22 @@ void findExactReach(const ShearWarp& geometry, WorksheetReach<A>& reach)
 }
 
 /**
- * Exact mode in perspective views: as ExactWorksheets, but each pixel's ray runs through the cells
+ * Exact mode in perspective views: as ParallelExact, but each pixel's ray runs through the cells
  * in its own way.
  */
 template <class T>
-class PerspectiveExact : public WorksheetLayers<T>
+class PerspectiveExact : public WorksheetSampler<T>
 {
 public:
-  using typename WorksheetLayers<T>::A;
-  using typename WorksheetLayers<T>::Target;
+  using typename WorksheetSampler<T>::A;
+  using typename WorksheetSampler<T>::Target;
 
-  PerspectiveExact(const Frame& frame, const FanCells<A>& columns, const FanCells<A>& rows,
-    const WorksheetReach<A>& reach)
-    : WorksheetLayers<T>(frame, true, reach, 1),
+  PerspectiveExact(const ProjectionContext& context, const FanCells<A>& columns,
+    const FanCells<A>& rows, const WorksheetReach<A>& reach)
+    : WorksheetSampler<T>(context, true, reach, 1),
       Columns(columns),
       Rows(rows),
-      Depths(frame.whole, 2),
+      Depths(context.whole, 2),
       Slack(ExactBoxSlack<A> * this->largestVoxel())
   {
   }
@@ -64,7 +64,7 @@ public:
   A slack() const override { return 60 * std::numeric_limits<A>::epsilon() / 2; }
 
 protected:
-  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
+  LoadedVoxels::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
   {
     const Span readers = this->readers({ s, s + 1 });
     const Span i = this->Columns.voxels(readers, columns);
@@ -72,33 +72,33 @@ protected:
     return { s, i.begin, j.begin, std::max(i.end - i.begin, 0), std::max(j.end - j.begin, 0) };
   }
 
-  void splatRows(
-    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  void splatRows(int k, int first, int end, const Span& span, const Target& target,
+    LoadedVoxels& loaded) const override
   {
-    this->raise(k, first, end, span, target, false, patch);
+    this->raise(k, first, end, span, target, false, loaded);
   }
-  void splatSpecialRows(
-    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  void splatNonFiniteRows(int k, int first, int end, const Span& span, const Target& target,
+    LoadedVoxels& loaded) const override
   {
-    this->raise(k, first, end, span, target, true, patch);
+    this->raise(k, first, end, span, target, true, loaded);
   }
 
 private:
-  void raise(int k, int first, int end, const Span& span, const Target& target, bool special,
-    Patch& patch) const
+  void raise(int k, int first, int end, const Span& span, const Target& target, bool nonFinite,
+    LoadedVoxels& loaded) const
   {
-    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    const WorksheetLoops<A>& loops = this->Context.kernels;
     const FanCellArrays<A> rows = this->Rows.slice(k);
-    const int slice = k + this->Shared.geometry.first().z;
-    const glm::dvec2 faces = this->Shared.whole.faces(slice);
+    const int slice = k + this->Context.geometry.first().z;
+    const glm::dvec2 faces = this->Context.whole.faces(slice);
     // Rays that touch the field have next to nothing of it.
     constexpr A shortest = A(1e-3);
     FanCubicRow<A> row;
     row.pixels = span;
     row.columns = this->Columns.slice(k);
-    row.special = special;
+    row.nonFinite = nonFinite;
     row.shortest = shortest;
-    row.sourceStride = patch.rowLength;
+    row.sourceStride = loaded.rowLength;
     for (int v = first; v < end; ++v)
     {
       row.image = target.at(0, v);
@@ -109,34 +109,34 @@ private:
       row.boxesEnd = rows.boxesEnd[v];
       row.fieldNear = std::max(rows.fieldNear[v], this->nearest());
       row.fieldFar = std::min(rows.fieldFar[v], this->farthest());
-      this->findParts(k, v, faces - double(slice), rows, patch, row);
+      this->findParts(k, v, faces - double(slice), rows, loaded, row);
       if (row.count > 0)
       {
-        this->findBox(k, v, rows, patch, row);
+        this->findBox(k, v, rows, loaded, row);
         loops.raiseFanCubics(row);
       }
     }
   }
 
-  const glm::ivec3& size() const { return this->Shared.geometry.size(); }
+  const glm::ivec3& size() const { return this->Context.geometry.size(); }
   /// The slices whose worksheets read some slices.
   static Span readers(const Span& slices) { return { slices.begin - 1, slices.end + 1 }; }
 
   /// The depths of the field before the eye.
   A nearest() const
   {
-    const Span& slices = this->Shared.whole.slices();
-    return static_cast<A>(std::max(this->Depths.begin, this->Shared.whole.faces(slices.begin).x));
+    const Span& slices = this->Context.whole.slices();
+    return static_cast<A>(std::max(this->Depths.begin, this->Context.whole.faces(slices.begin).x));
   }
   A farthest() const
   {
-    const Span& slices = this->Shared.whole.slices();
-    return static_cast<A>(std::min(this->Depths.end, this->Shared.whole.faces(slices.end - 1).y));
+    const Span& slices = this->Context.whole.slices();
+    return static_cast<A>(std::min(this->Depths.end, this->Context.whole.faces(slices.end - 1).y));
   }
 
   /// Cuts the path of a row's rays in the slice's middle and where they leave a row of cells.
-  void findParts(int k, int v, const glm::dvec2& faces, const FanCellArrays<A>& rows, Patch& patch,
-    FanCubicRow<A>& row) const
+  void findParts(int k, int v, const glm::dvec2& faces, const FanCellArrays<A>& rows,
+    LoadedVoxels& loaded, FanCubicRow<A>& row) const
   {
     const A from = static_cast<A>(faces.x), to = static_cast<A>(faces.y);
     const A crossing = rows.crossing[v];
@@ -163,17 +163,18 @@ private:
       part.z = static_cast<A>(k - low);
       for (int r = 0; r < 4; ++r)
       {
-        part.rows[r] = patch.template voxel<A>(0, j + r % 2, std::clamp(low + r / 2, 0, last));
+        part.rows[r] = loaded.template voxel<A>(0, j + r % 2, std::clamp(low + r / 2, 0, last));
       }
     }
   }
 
   /// What the row's rays pass between the ends of its parts.
-  void findBox(int k, int v, const FanCellArrays<A>& rows, Patch& patch, FanCubicRow<A>& row) const
+  void findBox(
+    int k, int v, const FanCellArrays<A>& rows, LoadedVoxels& loaded, FanCubicRow<A>& row) const
   {
     const int last = this->size().z - 1;
     const auto firstOf = [&](int slice)
-    { return patch.template voxel<A>(0, rows.cell[v], std::clamp(slice, 0, last)); };
+    { return loaded.template voxel<A>(0, rows.cell[v], std::clamp(slice, 0, last)); };
     row.box = { firstOf(k - 1), firstOf(k), firstOf(k + 1), {}, {}, this->Slack };
     const auto share = [](A x) { return std::clamp(x, A(0), A(1)); };
     const A near = rows.at[v] + rows.slope[v] * row.parts[0].from;
@@ -192,19 +193,19 @@ private:
 class PerspectiveExactMode : public ProjectionMode
 {
 public:
-  void project(Frame& frame) override
+  void project(ProjectionContext& context) override
   {
-    dispatch(frame.index.volume().type,
+    dispatch(context.index.volume().type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
         using A = Accumulator<T>;
         auto& cells = std::get<std::array<FanCells<A>, 2>>(this->Cells);
         auto& reach = std::get<WorksheetReach<A>>(this->Reach);
-        cells[0].find(frame.whole, frame.geometry, 0);
-        cells[1].find(frame.whole, frame.geometry, 1);
-        findExactReach(frame.geometry, reach);
-        walk(frame, PerspectiveExact<T>(frame, cells[0], cells[1], reach));
+        cells[0].find(context.whole, context.geometry, 0);
+        cells[1].find(context.whole, context.geometry, 1);
+        findExactReach(context.geometry, reach);
+        walk(context, PerspectiveExact<T>(context, cells[0], cells[1], reach));
       });
   }
 

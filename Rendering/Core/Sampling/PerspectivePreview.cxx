@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Sampling/Carry.h"
 #include "Sampling/SliceSampler.h"
+#include "Sampling/ValuesAtWinners.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -29,13 +29,13 @@ public:
   /// @param windows  of the columns
   /// @param none     work space
   PerspectivePreview(
-    const Frame& frame, const FanWindows& windows, std::vector<unsigned char>& none)
+    const ProjectionContext& context, const FanWindows& windows, std::vector<unsigned char>& none)
     : SliceSampler<T, T>({ true, 0, RunUnit }),
-      Shared(frame),
+      Context(context),
       Windows(windows)
   {
     // A row without voxels, and a register of them.
-    const std::size_t count = std::max<std::size_t>(frame.geometry.size().x, 64);
+    const std::size_t count = std::max<std::size_t>(context.geometry.size().x, 64);
     none.resize(count * sizeof(T));
     this->None = reinterpret_cast<T*>(none.data());
     std::fill_n(reinterpret_cast<T*>(none.data()), count, leastValue<T>());
@@ -43,48 +43,48 @@ public:
 
   Span columnsOf(int z, const Span& pixels) const override
   {
-    return this->Shared.steps.columns.voxels(this->slices(z), pixels);
+    return this->Context.steps.columns.voxels(this->slices(z), pixels);
   }
   Span rowsOf(int z, const Span& pixels) const override
   {
-    return this->Shared.steps.rows.voxels(this->slices(z), pixels);
+    return this->Context.steps.rows.voxels(this->slices(z), pixels);
   }
 
   void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
-    const PixelRows<T>& pixels, Patch& patch) const override
+    const PixelRows<T>& pixels, LoadedVoxels& loaded) const override
   {
-    const Span some = common(slices, this->Shared.geometry.slices());
-    const VoxelLoops<T>& loops = this->Shared.kernels;
+    const Span some = common(slices, this->Context.geometry.slices());
+    const VoxelLoops<T>& loops = this->Context.kernels;
     // Two slices at a time: the image is read and written once.
     const int step = pixels.sliceStride != 0 ? 1 : 2;
     for (int k = some.begin; k < some.end; k += step)
     {
       const int last = std::min(k + step, some.end) - 1;
-      const Span rows = this->findRuns(k, last, { v0, v1 }, runs, patch.runs);
-      if (!rows.empty() && !patch.runs.empty())
+      const Span rows = this->findRuns(k, last, { v0, v1 }, runs, loaded.runs);
+      if (!rows.empty() && !loaded.runs.empty())
       {
-        loops.cross(this->crossingOf(k, last, rows, patch.runs, pixels.slice(k - slices.begin)));
+        loops.cross(this->crossingOf(k, last, rows, loaded.runs, pixels.slice(k - slices.begin)));
       }
     }
   }
 
-  void splatAll(
-    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const override
+  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
+    LoadedVoxels& loaded) const override
   {
     for (int z = layers.begin; z < layers.end; ++z)
     {
-      this->splat(slicesOfLayer(z, this->Shared.geometry.size()), v0, v1, all,
-        pixelsOf<T>(this->Shared.image), patch);
+      this->splat(slicesOfLayer(z, this->Context.geometry.size()), v0, v1, all,
+        pixelsOf<T>(this->Context.image), loaded);
     }
   }
 
   int firstAbove(int u, int v, const Span& slices, T limit) const override
   {
-    const Span some = common(slices, this->Shared.geometry.slices());
+    const Span some = common(slices, this->Context.geometry.slices());
     for (int n = 0; n < some.end - some.begin; ++n)
     {
-      const int k = this->Shared.geometry.reversed() ? some.end - 1 - n : some.begin + n;
-      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+      const int k = this->Context.geometry.reversed() ? some.end - 1 - n : some.begin + n;
+      const SliceGeometry& slice = this->Context.sliceGeometry[k];
       const Span pixels = v >= slice.vBegin && v < slice.vEnd ? slice.span(v) : Span{};
       const int step = u >= pixels.begin && u < pixels.end
         ? this->firstVoxel(u, v, k, [=](T voxel) { return voxel > limit; })
@@ -102,47 +102,47 @@ public:
   }
 
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
-    Patch& patch, const Samples& f) const override
+    LoadedVoxels& loaded, const Samples& f) const override
   {
-    const Span some = common(slices, this->Shared.geometry.slices());
+    const Span some = common(slices, this->Context.geometry.slices());
     for (int n = 0; n < some.end - some.begin; ++n)
     {
       const int k = reversed ? some.end - 1 - n : some.begin + n;
-      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+      const SliceGeometry& slice = this->Context.sliceGeometry[k];
       for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
       {
         const Span pixels = common(columns, slice.span(v));
         for (int t = 0; t < StepsPerSlice && !pixels.empty(); ++t)
         {
           const int step = reversed ? StepsPerSlice - 1 - t : t;
-          if (this->findStep(k, v, step, pixels, patch))
+          if (this->findStep(k, v, step, pixels, loaded))
           {
             f(StepsPerSlice * k + step, v, pixels,
-              reinterpret_cast<const T*>(patch.worksheet.data()), patch.present.data());
+              reinterpret_cast<const T*>(loaded.worksheet.data()), loaded.present.data());
           }
         }
       }
     }
   }
 
-  T floor() const override { return previewFloor<T>(this->Shared); }
+  T floor() const override { return previewFloor<T>(this->Context); }
   void finish(int, int) const override {}
 
 private:
   Span slices(int z) const
   {
-    return common(slicesOfLayer(z, this->Shared.geometry.size()), this->Shared.geometry.slices());
+    return common(slicesOfLayer(z, this->Context.geometry.size()), this->Context.geometry.slices());
   }
 
   template <class Wanted>
   int firstVoxel(int u, int v, int k, Wanted&& isWanted) const
   {
-    const glm::ivec3& size = this->Shared.geometry.size();
-    return firstOnPath(this->Shared.steps.path(u, v, k), this->Shared.geometry.reversed(),
+    const glm::ivec3& size = this->Context.geometry.size();
+    return firstOnPath(this->Context.steps.path(u, v, k), this->Context.geometry.reversed(),
       [&](int i, int j)
       {
         return i >= 0 && i < size.x && j >= 0 && j < size.y &&
-          isWanted(this->Shared.template voxelRow<T>(j, k)[i]);
+          isWanted(this->Context.template voxelRow<T>(j, k)[i]);
       });
   }
 
@@ -150,15 +150,15 @@ private:
   Span unitsOf(const Span& pixels) const
   {
     return { pixels.begin / RunUnit * RunUnit,
-      std::min((pixels.end + RunUnit - 1) / RunUnit * RunUnit, this->Shared.image.width) };
+      std::min((pixels.end + RunUnit - 1) / RunUnit * RunUnit, this->Context.image.width) };
   }
 
   /// The rows that two slices cover, and in these the pixels, in whole registers.
   Span findRuns(int near, int far, const Span& rows, const std::vector<Span>& runs,
     std::vector<Span>& covered) const
   {
-    const SliceGeometry& a = this->Shared.sliceGeometry[near];
-    const SliceGeometry& b = this->Shared.sliceGeometry[far];
+    const SliceGeometry& a = this->Context.sliceGeometry[near];
+    const SliceGeometry& b = this->Context.sliceGeometry[far];
     const Span registers =
       this->unitsOf({ std::min(a.inner.begin, b.inner.begin), std::max(a.inner.end, b.inner.end) });
     covered.clear();
@@ -175,11 +175,11 @@ private:
 
   CrossedSlice<T> sliceOf(int k, int v0) const
   {
-    const PerspectiveSteps& steps = this->Shared.steps;
+    const PerspectiveSteps& steps = this->Context.steps;
     const FanSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
     const FanWindows::Picks entry = this->Windows.entering(k), exit = this->Windows.leaving(k);
     CrossedSlice<T> s;
-    s.voxels = this->Shared.template voxelRow<T>(0, k);
+    s.voxels = this->Context.template voxelRow<T>(0, k);
     s.firstRow = rows.first + v0;
     s.lastRow = rows.last + v0;
     s.rowTime = rows.time + v0;
@@ -204,31 +204,31 @@ private:
     c.count = next - k + 1;
     c.slices[0] = this->sliceOf(k, rows.begin);
     c.slices[1] = this->sliceOf(next, rows.begin);
-    c.rowStride = this->Shared.slices.rowStride;
-    c.ahead = 2 * (next - k) * this->Shared.slices.sliceStride;
-    c.columns = this->Shared.geometry.size().x;
-    c.rows = this->Shared.geometry.size().y;
+    c.rowStride = this->Context.slices.rowStride;
+    c.ahead = 2 * (next - k) * this->Context.slices.sliceStride;
+    c.columns = this->Context.geometry.size().x;
+    c.rows = this->Context.geometry.size().y;
     c.none = this->None;
     c.runs = runs.data();
     c.runCount = static_cast<int>(runs.size());
     return c;
   }
 
-  /// One step of the rays of some pixels, into patch.worksheet and patch.present. Whether there is
-  /// any.
-  bool findStep(int k, int v, int step, const Span& pixels, Patch& patch) const
+  /// One step of the rays of some pixels, into loaded.worksheet and loaded.present. Whether there
+  /// is any.
+  bool findStep(int k, int v, int step, const Span& pixels, LoadedVoxels& loaded) const
   {
-    const glm::ivec3& size = this->Shared.geometry.size();
-    const FanSteps::Slice columns = this->Shared.steps.columns.slice(k);
-    const FanSteps::Slice rows = this->Shared.steps.rows.slice(k);
+    const glm::ivec3& size = this->Context.geometry.size();
+    const FanSteps::Slice columns = this->Context.steps.columns.slice(k);
+    const FanSteps::Slice rows = this->Context.steps.rows.slice(k);
     const int count = pixels.end - pixels.begin;
-    patch.worksheet.resize(std::size_t(this->Shared.image.width) * sizeof(T));
-    patch.present.resize(this->Shared.image.width);
-    T* const out = reinterpret_cast<T*>(patch.worksheet.data());
+    loaded.worksheet.resize(std::size_t(this->Context.image.width) * sizeof(T));
+    loaded.present.resize(this->Context.image.width);
+    T* const out = reinterpret_cast<T*>(loaded.worksheet.data());
     const int j0 = rows.first[v], j1 = rows.last[v];
     const bool inside[2] = { j0 >= 0 && j0 < size.y, j1 >= 0 && j1 < size.y };
-    const T* const first = this->Shared.template voxelRow<T>(inside[0] ? j0 : 0, k);
-    const T* const last = this->Shared.template voxelRow<T>(inside[1] ? j1 : 0, k);
+    const T* const first = this->Context.template voxelRow<T>(inside[0] ? j0 : 0, k);
+    const T* const last = this->Context.template voxelRow<T>(inside[1] ? j1 : 0, k);
     unsigned any = 0;
     for (int x = 0; x < count; ++x)
     {
@@ -245,13 +245,13 @@ private:
       const int i = takesLast ? i1 : i0;
       const bool has = exists && inside[takesNext] && i >= 0 && i < size.x;
       out[x] = has ? (takesNext ? last : first)[i] : T(0);
-      patch.present[x] = has;
+      loaded.present[x] = has;
       any |= has;
     }
     return any != 0;
   }
 
-  const Frame& Shared;
+  const ProjectionContext& Context;
   const FanWindows& Windows;
   const T* None;
 };
@@ -259,27 +259,27 @@ private:
 class PerspectivePreviewMode : public ProjectionMode
 {
 public:
-  void project(Frame& frame) override
+  void project(ProjectionContext& context) override
   {
-    dispatch(frame.index.volume().type,
+    dispatch(context.index.volume().type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
-        const VoxelLoops<T>& loops = frame.kernels;
-        this->Windows.find(frame.steps.columns, loops.group, sizeof(T));
-        walk(frame, PerspectivePreview<T>(frame, this->Windows, this->None));
+        const VoxelLoops<T>& loops = context.kernels;
+        this->Windows.find(context.steps.columns, loops.group, sizeof(T));
+        walk(context, PerspectivePreview<T>(context, this->Windows, this->None));
       });
   }
 
-  void carry(const Carrying& c) const override
+  void takeAtWinners(const AtWinners& c) const override
   {
     dispatch(c.other.type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
-        carryValues<T>(c,
+        fillAtWinners<T>(c,
           [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
-          { return carriedVoxel(voxels, c.geometry, u, v, step); });
+          { return voxelAtWinner(voxels, c.geometry, u, v, step); });
       });
   }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Sampling/Carry.h"
 #include "Sampling/PerspectiveFootprints.h"
+#include "Sampling/ValuesAtWinners.h"
 #include "Sampling/Worksheets.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace splatting
 {
 namespace
 {
-/// What the layers of an image read, as far as WorksheetLayers asks for it.
+/// What the layers of an image read, as far as WorksheetSampler asks for it.
 template <class A>
 void findReach(
   const ShearWarp& geometry, const PerspectiveFootprints<A>& footprints, WorksheetReach<A>& reach)
@@ -45,15 +45,15 @@ void findReach(
  * image's rows then weigh.
  */
 template <class T>
-class PerspectiveWorksheets : public WorksheetLayers<T>
+class PerspectiveWorksheets : public WorksheetSampler<T>
 {
 public:
   using A = Accumulator<T>;
 
   /// @param depth  how many slices beyond its own a footprint reads
-  PerspectiveWorksheets(const Frame& frame, const PerspectiveFootprints<A>& footprints,
-    const WorksheetReach<A>& reach, int depth)
-    : WorksheetLayers<T>(frame, true, reach, depth),
+  PerspectiveWorksheets(const ProjectionContext& context,
+    const PerspectiveFootprints<A>& footprints, const WorksheetReach<A>& reach, int depth)
+    : WorksheetSampler<T>(context, true, reach, depth),
       Own(footprints)
   {
     // Rows of voxels that two pieces need are widened, blended and weighed twice.
@@ -72,20 +72,20 @@ public:
   /// As in ParallelWorksheets, of up to 3 + 5 + 15 products and sums and the weights' own rounding.
   A slack() const override
   {
-    return (this->Shared.range.special ? 2 : 1) * 60 * std::numeric_limits<A>::epsilon() / 2;
+    return (this->Context.range.nonFinite ? 2 : 1) * 60 * std::numeric_limits<A>::epsilon() / 2;
   }
 
 private:
-  using typename WorksheetLayers<T>::Target;
+  using typename WorksheetSampler<T>::Target;
 
-  Span slicesOf(int z) const { return slicesOfLayer(z, this->Shared.geometry.size()); }
+  Span slicesOf(int z) const { return slicesOfLayer(z, this->Context.geometry.size()); }
   /// The slices whose worksheets read some slices.
   Span readers(const Span& slices) const
   {
     return { slices.begin - this->Depth, slices.end + this->Depth };
   }
 
-  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
+  LoadedVoxels::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
   {
     const Span readers = this->readers({ s, s + 1 });
     const Span i = this->Own.columns.voxels(readers, columns);
@@ -93,12 +93,12 @@ private:
     return { s, i.begin, j.begin, std::max(i.end - i.begin, 0), std::max(j.end - j.begin, 0) };
   }
 
-  void splatRows(
-    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  void splatRows(int k, int first, int end, const Span& span, const Target& target,
+    LoadedVoxels& loaded) const override
   {
     Span voxelRows[MostParts];
-    this->resampleRows(k, { first, end }, span, patch, voxelRows);
-    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    this->resampleRows(k, { first, end }, span, loaded, voxelRows);
+    const WorksheetLoops<A>& loops = this->Context.kernels;
     typename FanFootprints<A>::Part parts[MostParts];
     A shares[MostParts];
     const A* resampled[MostParts];
@@ -106,7 +106,7 @@ private:
     {
       parts[q] = this->Own.rows.part(k, q);
       shares[q] = this->Depth > 0 ? A(1) : this->Own.share(k, q)[1];
-      resampled[q] = patch.template resampled<A>(q, 0) + (span.begin - alignedDown(span.begin));
+      resampled[q] = loaded.template resampled<A>(q, 0) + (span.begin - alignedDown(span.begin));
     }
     for (int v = first; v < end; ++v)
     {
@@ -116,9 +116,9 @@ private:
       for (int q = 0; q < this->Own.parts; ++q)
       {
         const typename FanFootprints<A>::Part& part = parts[q];
-        const A* row = resampled[q] + (part.first[v] - voxelRows[q].begin) * patch.resampledLength;
+        const A* row = resampled[q] + (part.first[v] - voxelRows[q].begin) * loaded.resampledLength;
         const A* weight = part.weights + v;
-        for (int t = 0; t < part.taps; ++t, row += patch.resampledLength, weight += part.stride)
+        for (int t = 0; t < part.taps; ++t, row += loaded.resampledLength, weight += part.stride)
         {
           rows[count] = row;
           weights[count++] = shares[q] * *weight;
@@ -136,9 +136,10 @@ private:
   static int alignedDown(int u) { return u / Unit * Unit; }
 
   /// Weighs the rows of voxels that some rows of pixels need into rows of pixels, for each part.
-  void resampleRows(int k, const Span& rows, const Span& span, Patch& patch, Span* voxelRows) const
+  void resampleRows(
+    int k, const Span& rows, const Span& span, LoadedVoxels& loaded, Span* voxelRows) const
   {
-    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    const WorksheetLoops<A>& loops = this->Context.kernels;
     const int begin = alignedDown(span.begin), length = alignedDown(span.end - begin + Unit - 1);
     int most = 0;
     for (int q = 0; q < this->Own.parts; ++q)
@@ -146,7 +147,7 @@ private:
       voxelRows[q] = this->Own.rows.voxels(k, q, rows);
       most = std::max(most, voxelRows[q].end - voxelRows[q].begin);
     }
-    patch.template resizeResampled<A>(this->Own.parts, most, length);
+    loaded.template resizeResampled<A>(this->Own.parts, most, length);
     for (int q = 0; q < this->Own.parts; ++q)
     {
       const auto part = this->Own.columns.part(k, q);
@@ -157,27 +158,28 @@ private:
       resampling.stride = part.stride;
       resampling.taps = part.taps;
       resampling.rows = voxelRows[q].end - voxelRows[q].begin;
-      resampling.out = patch.template resampled<A>(q, 0) - begin;
-      resampling.outStride = patch.resampledLength;
-      this->findVoxels(k, q, voxelRows[q], patch, resampling);
+      resampling.out = loaded.template resampled<A>(q, 0) - begin;
+      resampling.outStride = loaded.resampledLength;
+      this->findVoxels(k, q, voxelRows[q], loaded, resampling);
       loops.resample(resampling, span.begin, span.end);
     }
   }
 
   /// The voxels of some rows: of slice k, or, in part q, by share of the slices around it.
-  void findVoxels(int k, int q, const Span& rows, Patch& patch, Resampling<A>& resampling) const
+  void findVoxels(
+    int k, int q, const Span& rows, LoadedVoxels& loaded, Resampling<A>& resampling) const
   {
     if (this->Depth == 0)
     {
-      resampling.voxels = patch.template voxel<A>(0, rows.begin, k); // for shares see splatRows()
-      resampling.voxelStride = patch.rowLength;
+      resampling.voxels = loaded.template voxel<A>(0, rows.begin, k); // for shares see splatRows()
+      resampling.voxelStride = loaded.rowLength;
       return;
     }
-    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    const WorksheetLoops<A>& loops = this->Context.kernels;
     const std::array<A, 3>& shares = this->Own.share(k, q);
-    const int last = this->Shared.geometry.size().z - 1;
+    const int last = this->Context.geometry.size().z - 1;
     // All sheets that are read together have these columns.
-    const Patch::Sheet& own = patch.sheet(k);
+    const LoadedVoxels::Sheet& own = loaded.sheet(k);
     Span columns{ own.i, own.i + own.columns };
     int slices[3];
     A weights[3];
@@ -187,19 +189,19 @@ private:
       if (shares[c + 1] != 0)
       {
         slices[count] = std::clamp(k + c, 0, last);
-        const Patch::Sheet& sheet = patch.sheet(slices[count]);
+        const LoadedVoxels::Sheet& sheet = loaded.sheet(slices[count]);
         columns = common(columns, { sheet.i, sheet.i + sheet.columns });
         weights[count++] = shares[c + 1];
       }
     }
     const int n = columns.end - columns.begin;
-    A* const out = patch.template blended<A>(rows.end - rows.begin, n);
+    A* const out = loaded.template blended<A>(rows.end - rows.begin, n);
     for (int j = rows.begin; j < rows.end; ++j)
     {
       const A* sources[3];
       for (int c = 0; c < count; ++c)
       {
-        sources[c] = patch.template voxel<A>(columns.begin, j, slices[c]);
+        sources[c] = loaded.template voxel<A>(columns.begin, j, slices[c]);
       }
       loops.blend(sources, weights, count, out + std::ptrdiff_t(j - rows.begin) * n, n);
     }
@@ -213,31 +215,33 @@ private:
 class PerspectiveWorksheetsMode : public ProjectionMode
 {
 public:
-  void project(Frame& frame) override
+  void project(ProjectionContext& context) override
   {
-    dispatch(frame.index.volume().type,
+    dispatch(context.index.volume().type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
         using A = Accumulator<T>;
         auto& own = std::get<PerspectiveFootprints<A>>(this->Footprints);
         auto& reach = std::get<WorksheetReach<A>>(this->Reach);
-        own.find(frame.whole, frame.geometry, worksheetKernel(frame.settings), frame.kernels);
-        findReach(frame.geometry, own, reach);
-        walk(frame, PerspectiveWorksheets<T>(frame, own, reach, worksheetDepth(frame.settings)));
+        own.find(
+          context.whole, context.geometry, worksheetKernel(context.settings), context.kernels);
+        findReach(context.geometry, own, reach);
+        walk(
+          context, PerspectiveWorksheets<T>(context, own, reach, worksheetDepth(context.settings)));
       });
   }
 
-  void carry(const Carrying& c) const override
+  void takeAtWinners(const AtWinners& c) const override
   {
     dispatch(c.other.type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
         const auto& own = std::get<PerspectiveFootprints<Accumulator<T>>>(this->Footprints);
-        carryValues<T>(c,
+        fillAtWinners<T>(c,
           [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
-          { return carriedAverage<T>(voxels, own, u, v, step / StepsPerSlice); });
+          { return averageAtWinner<T>(voxels, own, u, v, step / StepsPerSlice); });
       });
   }
 

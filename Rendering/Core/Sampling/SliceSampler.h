@@ -12,9 +12,9 @@
 #define splattingSliceSampler_h
 
 #include "Clipping/Cuts.h"
-#include "Projection/Frame.h"
 #include "Projection/Project.h"
-#include "Sampling/Patch.h"
+#include "Projection/ProjectionContext.h"
+#include "Sampling/LoadedVoxels.h"
 
 #include <cstdint>
 #include <functional>
@@ -96,12 +96,12 @@ public:
   /// Takes the samples of some slices of a layer into pixels of some rows and runs of columns, and
   /// perhaps into pixels of these rows beside the runs. Not NaN or infinite ones into slices apart.
   virtual void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
-    const PixelRows<P>& pixels, Patch& patch) const = 0;
+    const PixelRows<P>& pixels, LoadedVoxels& loaded) const = 0;
 
   /// The same for all pixels of some of the image's rows, which are one run, and all slices of some
   /// layers, in the order that suits memory.
-  virtual void splatAll(
-    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const = 0;
+  virtual void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
+    LoadedVoxels& loaded) const = 0;
 
   /// The first step of a pixel's ray in some slices of a layer, from the viewer on, whose sample is
   /// above a limit, as one is. Where samples reach beyond their slices it is asked for one slice.
@@ -120,7 +120,7 @@ public:
   /// Tells all samples of some slices and of pixels in some rows and columns, in the order of the
   /// rays if they come from the first slice, or else reversed.
   virtual void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
-    Patch& patch, const Samples& f) const = 0;
+    LoadedVoxels& loaded, const Samples& f) const = 0;
 
   /// From samples to the image's scalars, for some rows, when all slices have been taken.
   virtual void finish(int v0, int v1) const = 0;
@@ -129,27 +129,28 @@ private:
   SamplerTraits Traits;
 };
 
-/// Projects by a sampler, as the frame says: see BandWalk and RayWalk.
+/// Projects by a sampler, as the context says: see BandWalk and RayWalk.
 template <class T, class P>
-void walkBands(Frame& frame, const SliceSampler<T, P>& sampler);
+void walkBands(ProjectionContext& context, const SliceSampler<T, P>& sampler);
 /// After walkBands(), before SliceSampler::finish(): see WinnerWalk.
 template <class T, class P>
-void findWinners(Frame& frame, const SliceSampler<T, P>& sampler);
+void findWinners(ProjectionContext& context, const SliceSampler<T, P>& sampler);
 template <class T, class P>
-void walkRays(Frame& frame, const SliceSampler<T, P>& sampler);
+void walkRays(ProjectionContext& context, const SliceSampler<T, P>& sampler);
 template <class T, class P>
-void walk(Frame& frame, const SliceSampler<T, P>& sampler)
+void walk(ProjectionContext& context, const SliceSampler<T, P>& sampler)
 {
-  frame.byRays ? walkRays(frame, sampler) : walkBands(frame, sampler);
+  context.byRays ? walkRays(context, sampler) : walkBands(context, sampler);
 }
 
-/// Calls body(v0, v1) for bands of so many rows, in parallel, until the watch stops them.
-void forBands(int height, int rows, Watch& watch, const std::function<void(int v0, int v1)>& body);
+/// Calls body(v0, v1) for bands of so many rows, in parallel, until the observer stops them.
+void forBands(int height, int rows, ProgressObserver& observer,
+  const std::function<void(int v0, int v1)>& body);
 /// Rows of a band: many, for long streams through memory, but enough bands for all threads.
 int bandHeight(int rows);
 
 /// What another volume has where a projection found its winners.
-struct Carrying
+struct AtWinners
 {
   const VoxelArray& other;
   const ShearWarp& geometry;
@@ -163,10 +164,10 @@ class ProjectionMode
 {
 public:
   virtual ~ProjectionMode() = default;
-  /// Walks a sampler for the type of the frame's voxels.
-  virtual void project(Frame& frame) = 0;
+  /// Walks a sampler for the type of the voxels.
+  virtual void project(ProjectionContext& context) = 0;
   /// After project(). Only for modes whose samples are voxels or averages.
-  virtual void carry(const Carrying&) const {}
+  virtual void takeAtWinners(const AtWinners&) const {}
 };
 std::unique_ptr<ProjectionMode> makePreview();
 std::unique_ptr<ProjectionMode> makePerspectivePreview();

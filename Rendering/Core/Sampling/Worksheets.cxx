@@ -150,7 +150,7 @@ template void findReach(const std::vector<SliceGeometry>&,
 
 template <class T>
 template <class F>
-void WorksheetLayers<T>::forPieces(int v0, int v1, const Span& columns, F&& f) const
+void WorksheetSampler<T>::forPieces(int v0, int v1, const Span& columns, F&& f) const
 {
   for (int v = v0; v < v1; v += this->PieceHeight)
   {
@@ -164,16 +164,16 @@ void WorksheetLayers<T>::forPieces(int v0, int v1, const Span& columns, F&& f) c
 
 template <class T>
 template <class F>
-void WorksheetLayers<T>::forRows(int k, int v0, int v1, const Span& columns, F&& f) const
+void WorksheetSampler<T>::forRows(int k, int v0, int v1, const Span& columns, F&& f) const
 {
-  const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+  const SliceGeometry& slice = this->Context.sliceGeometry[k];
   const int end = std::min(v1, slice.vEnd);
   int first = std::max(v0, slice.vBegin);
   while (first < end)
   {
-    const Span span = common(columns, this->Shared.pixels(first, k));
+    const Span span = common(columns, this->Context.pixels(first, k));
     int v = first + 1;
-    while (v < end && same(span, common(columns, this->Shared.pixels(v, k))))
+    while (v < end && same(span, common(columns, this->Context.pixels(v, k))))
     {
       ++v;
     }
@@ -186,52 +186,52 @@ void WorksheetLayers<T>::forRows(int k, int v0, int v1, const Span& columns, F&&
 }
 
 template <class T>
-void WorksheetLayers<T>::splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
-  const Target& pixels, Patch& patch) const
+void WorksheetSampler<T>::splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
+  const Target& pixels, LoadedVoxels& loaded) const
 {
   for (const Span& run : runs)
   {
-    this->splatPieces(slices, v0, v1, run, pixels, patch);
+    this->splatPieces(slices, v0, v1, run, pixels, loaded);
   }
 }
 
 template <class T>
-void WorksheetLayers<T>::splatPieces(
-  const Span& slices, int v0, int v1, const Span& run, const Target& target, Patch& patch) const
+void WorksheetSampler<T>::splatPieces(const Span& slices, int v0, int v1, const Span& run,
+  const Target& target, LoadedVoxels& loaded) const
 {
   this->forPieces(v0, v1, run,
     [&](int first, int last, const Span& columns)
     {
-      this->open(first, last, columns, patch);
-      this->splatPiece(slices, first, last, columns, target, patch);
+      this->open(first, last, columns, loaded);
+      this->splatPiece(slices, first, last, columns, target, loaded);
     });
 }
 
 template <class T>
-void WorksheetLayers<T>::open(int v0, int v1, const Span& columns, Patch& patch) const
+void WorksheetSampler<T>::open(int v0, int v1, const Span& columns, LoadedVoxels& loaded) const
 {
-  patch.resize<A>(columns.end - columns.begin + this->Reach.columns, v1 - v0 + this->Reach.rows,
-    this->Shared.range.special ? this->parts() : 1);
-  patch.rows = { v0, v1 };
-  patch.pixels = columns;
+  loaded.resize<A>(columns.end - columns.begin + this->Reach.columns, v1 - v0 + this->Reach.rows,
+    this->Context.range.nonFinite ? this->parts() : 1);
+  loaded.rows = { v0, v1 };
+  loaded.pixels = columns;
 }
 
 template <class T>
-void WorksheetLayers<T>::forSamples(const Span& slices, bool reversed, int v0, int v1,
-  const Span& columns, Patch& patch, const Samples& f) const
+void WorksheetSampler<T>::forSamples(const Span& slices, bool reversed, int v0, int v1,
+  const Span& columns, LoadedVoxels& loaded, const Samples& f) const
 {
   this->forPieces(v0, v1, columns,
     [&](int first, int last, const Span& piece)
     {
-      this->open(first, last, piece, patch);
-      const Target worksheet = this->worksheetFor(first, last, piece, patch);
+      this->open(first, last, piece, loaded);
+      const Target worksheet = this->worksheetFor(first, last, piece, loaded);
       for (int n = 0; n < slices.end - slices.begin; ++n)
       {
         const int k = reversed ? slices.end - 1 - n : slices.begin + n;
         this->forRows(k, first, last, piece,
           [&](int begin, int end, const Span& span)
           {
-            this->sample(k, reversed ? -1 : 1, begin, end, span, worksheet, patch);
+            this->sample(k, reversed ? -1 : 1, begin, end, span, worksheet, loaded);
             for (int v = begin; v < end; ++v)
             {
               f(StepsPerSlice * k, v, span, worksheet.at(span.begin, v), nullptr);
@@ -242,68 +242,68 @@ void WorksheetLayers<T>::forSamples(const Span& slices, bool reversed, int v0, i
 }
 
 template <class T>
-void WorksheetLayers<T>::splatAll(
-  const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const
+void WorksheetSampler<T>::splatAll(
+  const Span& layers, int v0, int v1, const std::vector<Span>& all, LoadedVoxels& loaded) const
 {
   const Span slices{ layers.begin * BrickDepth,
-    std::min(layers.end * BrickDepth, this->Shared.geometry.size().z) };
-  this->splatPieces(slices, v0, v1, all.front(), pixelsOf<A>(this->Shared.image), patch);
+    std::min(layers.end * BrickDepth, this->Context.geometry.size().z) };
+  this->splatPieces(slices, v0, v1, all.front(), pixelsOf<A>(this->Context.image), loaded);
 }
 
 template <class T>
-void WorksheetLayers<T>::finish(int v0, int v1) const
+void WorksheetSampler<T>::finish(int v0, int v1) const
 {
-  const WorksheetLoops<A>& loops = this->Shared.kernels;
+  const WorksheetLoops<A>& loops = this->Context.kernels;
   for (int v = v0; v < v1; ++v)
   {
-    const Span& span = this->Shared.image.spans[v];
+    const Span& span = this->Context.image.spans[v];
     if (!span.empty())
     {
-      loops.finish(this->Shared.image.template row<A>(v) + span.begin, this->Base,
-        static_cast<A>(this->Shared.range.low), static_cast<A>(this->Shared.range.high),
+      loops.finish(this->Context.image.template row<A>(v) + span.begin, this->Base,
+        static_cast<A>(this->Context.range.low), static_cast<A>(this->Context.range.high),
         span.end - span.begin);
     }
   }
 }
 
 template <class T>
-auto WorksheetLayers<T>::worksheetFor(int v0, int v1, const Span& columns, Patch& patch) const
-  -> Target
+auto WorksheetSampler<T>::worksheetFor(
+  int v0, int v1, const Span& columns, LoadedVoxels& loaded) const -> Target
 {
   const std::ptrdiff_t stride = columns.end - columns.begin;
-  patch.worksheet.resize((v1 - v0) * stride * sizeof(A));
-  A* const first = reinterpret_cast<A*>(patch.worksheet.data());
+  loaded.worksheet.resize((v1 - v0) * stride * sizeof(A));
+  A* const first = reinterpret_cast<A*>(loaded.worksheet.data());
   return { first - v0 * stride - columns.begin, stride };
 }
 
 template <class T>
-void WorksheetLayers<T>::splatOne(
-  int k, int step, int first, int end, const Span& span, const Target& target, Patch& patch) const
+void WorksheetSampler<T>::splatOne(int k, int step, int first, int end, const Span& span,
+  const Target& target, LoadedVoxels& loaded) const
 {
-  if (!this->splatOwn(k, step, first, end, span, target, patch))
+  if (!this->splatOwn(k, step, first, end, span, target, loaded))
   {
-    this->load(k, step, patch);
-    this->isFinite(k, patch) ? this->splatRows(k, first, end, span, target, patch)
-                             : this->splatSpecialRows(k, first, end, span, target, patch);
+    this->load(k, step, loaded);
+    this->isFinite(k, loaded) ? this->splatRows(k, first, end, span, target, loaded)
+                              : this->splatNonFiniteRows(k, first, end, span, target, loaded);
   }
 }
 
 template <class T>
-void WorksheetLayers<T>::splatSpecialRows(
-  int k, int first, int end, const Span& span, const Target& target, Patch& patch) const
+void WorksheetSampler<T>::splatNonFiniteRows(
+  int k, int first, int end, const Span& span, const Target& target, LoadedVoxels& loaded) const
 {
-  this->separate(k, patch);
+  this->separate(k, loaded);
   const std::ptrdiff_t width = span.end - span.begin, size = (end - first) * width;
-  patch.averages.resize(std::max(patch.averages.size(), this->parts() * size * sizeof(A)));
-  A* const worksheets = reinterpret_cast<A*>(patch.averages.data());
+  loaded.averages.resize(std::max(loaded.averages.size(), this->parts() * size * sizeof(A)));
+  A* const worksheets = reinterpret_cast<A*>(loaded.averages.data());
   std::fill_n(worksheets, this->parts() * size, leastValue<A>());
-  for (patch.part = 0; patch.part < this->parts(); ++patch.part)
+  for (loaded.part = 0; loaded.part < this->parts(); ++loaded.part)
   {
-    const Target part{ worksheets + patch.part * size - first * width - span.begin, width };
-    this->splatRows(k, first, end, span, part, patch);
+    const Target part{ worksheets + loaded.part * size - first * width - span.begin, width };
+    this->splatRows(k, first, end, span, part, loaded);
   }
-  patch.part = 0;
-  const WorksheetLoops<A>& loops = this->Shared.kernels;
+  loaded.part = 0;
+  const WorksheetLoops<A>& loops = this->Context.kernels;
   for (int v = first; v < end; ++v)
   {
     const A* const row = worksheets + (v - first) * width;
@@ -316,24 +316,24 @@ void WorksheetLayers<T>::splatSpecialRows(
 }
 
 template <class T>
-bool WorksheetLayers<T>::isFinite(int k, Patch& patch) const
+bool WorksheetSampler<T>::isFinite(int k, LoadedVoxels& loaded) const
 {
   bool finite = true;
   const Span sheets = this->sheetsOf(k);
-  for (int s = sheets.begin; this->Shared.range.special && s < sheets.end; ++s)
+  for (int s = sheets.begin; this->Context.range.nonFinite && s < sheets.end; ++s)
   {
-    finite = finite && patch.sheet(s).finite;
+    finite = finite && loaded.sheet(s).finite;
   }
   return finite;
 }
 
 template <class T>
-bool WorksheetLayers<T>::isFinite(const Patch::Sheet& sheet, Patch& patch) const
+bool WorksheetSampler<T>::isFinite(const LoadedVoxels::Sheet& sheet, LoadedVoxels& loaded) const
 {
-  const WorksheetLoops<A>& loops = this->Shared.kernels;
-  for (int j = sheet.j; this->Shared.range.special && j < sheet.j + sheet.rows; ++j)
+  const WorksheetLoops<A>& loops = this->Context.kernels;
+  for (int j = sheet.j; this->Context.range.nonFinite && j < sheet.j + sheet.rows; ++j)
   {
-    if (!loops.allFinite(patch.voxel<A>(sheet.i, j, sheet.slice), sheet.columns))
+    if (!loops.allFinite(loaded.voxel<A>(sheet.i, j, sheet.slice), sheet.columns))
     {
       return false;
     }
@@ -342,125 +342,125 @@ bool WorksheetLayers<T>::isFinite(const Patch::Sheet& sheet, Patch& patch) const
 }
 
 template <class T>
-void WorksheetLayers<T>::separate(int k, Patch& patch) const
+void WorksheetSampler<T>::separate(int k, LoadedVoxels& loaded) const
 {
-  const WorksheetLoops<A>& loops = this->Shared.kernels;
+  const WorksheetLoops<A>& loops = this->Context.kernels;
   const Span sheets = this->sheetsOf(k);
   for (int s = sheets.begin; s < sheets.end; ++s)
   {
-    Patch::Sheet& sheet = patch.sheet(s);
+    LoadedVoxels::Sheet& sheet = loaded.sheet(s);
     for (int j = sheet.j; !sheet.separated && j < sheet.j + sheet.rows; ++j)
     {
-      A* rows[Patch::MostParts] = {};
-      for (patch.part = 0; patch.part < this->parts(); ++patch.part)
+      A* rows[LoadedVoxels::MostParts] = {};
+      for (loaded.part = 0; loaded.part < this->parts(); ++loaded.part)
       {
-        rows[patch.part] = patch.voxel<A>(sheet.i, j, s);
+        rows[loaded.part] = loaded.voxel<A>(sheet.i, j, s);
       }
       loops.separate(rows[0], rows[1], rows[2], rows[3], sheet.columns);
     }
     sheet.separated = true;
   }
-  patch.part = 0;
+  loaded.part = 0;
 }
 
 template <class T>
-void WorksheetLayers<T>::sample(int k, int step, int first, int end, const Span& span,
-  const Target& worksheet, Patch& patch) const
+void WorksheetSampler<T>::sample(int k, int step, int first, int end, const Span& span,
+  const Target& worksheet, LoadedVoxels& loaded) const
 {
   const A none = leastValue<A>(), nan = std::numeric_limits<A>::quiet_NaN();
-  const bool special = this->Shared.range.special;
-  if (special)
+  const bool nonFinite = this->Context.range.nonFinite;
+  if (nonFinite)
   {
-    this->load(k, step, patch);
+    this->load(k, step, loaded);
   }
-  const bool finite = this->isFinite(k, patch);
+  const bool finite = this->isFinite(k, loaded);
   for (int v = first; v < end; ++v)
   {
     std::fill(worksheet.at(span.begin, v), worksheet.at(span.end, v), finite ? none : nan);
   }
-  this->splatOne(k, step, first, end, span, worksheet, patch);
-  for (int v = first; special && finite && v < end; ++v)
+  this->splatOne(k, step, first, end, span, worksheet, loaded);
+  for (int v = first; nonFinite && finite && v < end; ++v)
   {
     std::replace(worksheet.at(span.begin, v), worksheet.at(span.end, v), none, nan);
   }
 }
 
 template <class T>
-void WorksheetLayers<T>::splatPiece(
-  const Span& slices, int v0, int v1, const Span& columns, const Target& target, Patch& patch) const
+void WorksheetSampler<T>::splatPiece(const Span& slices, int v0, int v1, const Span& columns,
+  const Target& target, LoadedVoxels& loaded) const
 {
   for (int k = slices.begin; k < slices.end; ++k)
   {
     const int step = k + 1 < slices.end ? 1 : 0;
     this->forRows(k, v0, v1, columns,
       [&](int first, int end, const Span& span)
-      { this->splatOne(k, step, first, end, span, target.slice(k - slices.begin), patch); });
+      { this->splatOne(k, step, first, end, span, target.slice(k - slices.begin), loaded); });
   }
 }
 
 template <class T>
-void WorksheetLayers<T>::load(int k, int step, Patch& patch) const
+void WorksheetSampler<T>::load(int k, int step, LoadedVoxels& loaded) const
 {
-  const int last = this->Shared.geometry.size().z - 1;
+  const int last = this->Context.geometry.size().z - 1;
   const Span sheets = this->sheetsOf(k);
   for (int s = sheets.begin; s < sheets.end; ++s)
   {
-    if (patch.sheet(s).slice != s)
+    if (loaded.sheet(s).slice != s)
     {
       const bool exists = s + step >= 0 && s + step <= last;
-      patch.ahead = exists ? step * this->Shared.slices.sliceStride : 0;
-      patch.sheet(s) = this->sheetOf(s, patch.rows.begin, patch.rows.end, patch.pixels);
-      this->loadSheet(patch.sheet(s), patch);
-      patch.sheet(s).finite = this->isFinite(patch.sheet(s), patch);
+      loaded.ahead = exists ? step * this->Context.slices.sliceStride : 0;
+      loaded.sheet(s) = this->sheetOf(s, loaded.rows.begin, loaded.rows.end, loaded.pixels);
+      this->loadSheet(loaded.sheet(s), loaded);
+      loaded.sheet(s).finite = this->isFinite(loaded.sheet(s), loaded);
     }
   }
 }
 
 template <class T>
-void WorksheetLayers<T>::loadSheet(const Patch::Sheet& sheet, Patch& patch) const
+void WorksheetSampler<T>::loadSheet(const LoadedVoxels::Sheet& sheet, LoadedVoxels& loaded) const
 {
   // Rows inside the volume go together, those beyond repeat the outermost.
-  const int height = this->Shared.geometry.size().y;
+  const int height = this->Context.geometry.size().y;
   const int end = sheet.j + sheet.rows;
   const int low = std::clamp(0, sheet.j, end), high = std::clamp(height, low, end);
   for (int j = sheet.j; j < low; ++j)
   {
-    this->loadRows(sheet, j, 0, 1, patch);
+    this->loadRows(sheet, j, 0, 1, loaded);
   }
   if (low < high)
   {
-    this->loadRows(sheet, low, low, high - low, patch);
+    this->loadRows(sheet, low, low, high - low, loaded);
   }
   for (int j = high; j < end; ++j)
   {
-    this->loadRows(sheet, j, height - 1, 1, patch);
+    this->loadRows(sheet, j, height - 1, 1, loaded);
   }
 }
 
 template <class T>
-void WorksheetLayers<T>::loadRows(
-  const Patch::Sheet& sheet, int to, int from, int rows, Patch& patch) const
+void WorksheetSampler<T>::loadRows(
+  const LoadedVoxels::Sheet& sheet, int to, int from, int rows, LoadedVoxels& loaded) const
 {
-  const int width = this->Shared.geometry.size().x;
-  const VoxelLoops<T>& loops = this->Shared.kernels;
+  const int width = this->Context.geometry.size().x;
+  const VoxelLoops<T>& loops = this->Context.kernels;
   const int begin = std::clamp(-sheet.i, 0, sheet.columns);
   const int end = std::clamp(width - sheet.i, begin, sheet.columns);
-  const T* voxels = this->Shared.template voxelRow<T>(from, sheet.slice);
-  A* out = patch.voxel<A>(sheet.i, to, sheet.slice);
+  const T* voxels = this->Context.template voxelRow<T>(from, sheet.slice);
+  A* out = loaded.voxel<A>(sheet.i, to, sheet.slice);
   if (begin < end)
   {
-    loops.widen(voxels + sheet.i + begin, this->Shared.slices.rowStride, out + begin,
-      patch.rowLength, this->Base, end - begin, rows, patch.ahead);
+    loops.widen(voxels + sheet.i + begin, this->Context.slices.rowStride, out + begin,
+      loaded.rowLength, this->Base, end - begin, rows, loaded.ahead);
   }
   for (int r = 0; r < rows && (begin > 0 || end < sheet.columns); ++r)
   {
     std::fill(out, out + begin, static_cast<A>(voxels[0]) - this->Base);
     std::fill(out + end, out + sheet.columns, static_cast<A>(voxels[width - 1]) - this->Base);
-    voxels += this->Shared.slices.rowStride;
-    out += patch.rowLength;
+    voxels += this->Context.slices.rowStride;
+    out += loaded.rowLength;
   }
 }
 
-#define WORKSHEETS(T) template class WorksheetLayers<T>;
+#define WORKSHEETS(T) template class WorksheetSampler<T>;
 SPLATTING_TYPES(WORKSHEETS)
 }

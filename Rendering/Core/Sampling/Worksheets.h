@@ -8,9 +8,9 @@
 #define splattingWorksheets_h
 
 #include "Clipping/Cuts.h"
-#include "Projection/Frame.h"
+#include "Projection/ProjectionContext.h"
 #include "Sampling/Footprint.h"
-#include "Sampling/Patch.h"
+#include "Sampling/LoadedVoxels.h"
 #include "Sampling/SliceSampler.h"
 
 #include <cmath>
@@ -79,9 +79,9 @@ inline int worksheetDepth(const ProjectionSettings& settings)
 }
 
 /// What the worksheets of all projections share: how layers, pieces and rows are walked, and how
-/// voxels come into the patch.
+/// voxels are loaded.
 template <class T>
-class WorksheetLayers : public SliceSampler<T, Accumulator<T>>
+class WorksheetSampler : public SliceSampler<T, Accumulator<T>>
 {
 public:
   using A = Accumulator<T>;
@@ -89,12 +89,13 @@ public:
   using Target = PixelRows<A>; ///< where worksheets go
 
   /// @param depth  how many slices beyond its own a footprint reads
-  WorksheetLayers(const Frame& frame, bool perspective, const WorksheetReach<A>& reach, int depth)
+  WorksheetSampler(
+    const ProjectionContext& context, bool perspective, const WorksheetReach<A>& reach, int depth)
     : SliceSampler<T, A>({ perspective, 1, RunUnit }),
-      Shared(frame),
+      Context(context),
       Reach(reach),
       Depth(depth),
-      Base(baseOf(frame.range))
+      Base(baseOf(context.range))
   {
   }
 
@@ -106,25 +107,25 @@ public:
 
   A magnitude() const override
   {
-    return std::abs(static_cast<A>(this->Shared.range.low) - this->Base);
+    return std::abs(static_cast<A>(this->Context.range.low) - this->Base);
   }
 
   void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
-    const Target& pixels, Patch& patch) const override;
+    const Target& pixels, LoadedVoxels& loaded) const override;
   /// Piece by piece, so that voxels are widened once.
-  void splatAll(
-    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch& patch) const override;
+  void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
+    LoadedVoxels& loaded) const override;
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
-    Patch& patch, const Samples& f) const override;
+    LoadedVoxels& loaded, const Samples& f) const override;
 
   A floor() const override
   {
-    if (this->Shared.range.special)
+    if (this->Context.range.nonFinite)
     {
       return leastValue<A>(); // as in previewFloor()
     }
     const double floor =
-      std::clamp(this->Shared.floor, this->Shared.range.low, this->Shared.range.high);
+      std::clamp(this->Context.floor, this->Context.range.low, this->Context.range.high);
     return static_cast<A>(floor) - this->Base;
   }
 
@@ -136,37 +137,37 @@ protected:
   A largestVoxel() const
   {
     return std::max(
-      this->magnitude(), std::abs(static_cast<A>(this->Shared.range.high) - this->Base));
+      this->magnitude(), std::abs(static_cast<A>(this->Context.range.high) - this->Base));
   }
 
   /// Room for the voxels of some rows and columns of pixels.
-  void open(int v0, int v1, const Span& columns, Patch& patch) const;
+  void open(int v0, int v1, const Span& columns, LoadedVoxels& loaded) const;
 
-  /// Widens the voxels that worksheet k reads, as far as the patch does not have them.
+  /// Widens the voxels that worksheet k reads, as far as they are not loaded.
   /// @param step  to the worksheet that comes next, 0 if none does
-  void load(int k, int step, Patch& patch) const;
+  void load(int k, int step, LoadedVoxels& loaded) const;
 
   /// The voxels of slice s that worksheets need for some pixels.
-  virtual Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const = 0;
+  virtual LoadedVoxels::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const = 0;
 
-  virtual void loadSheet(const Patch::Sheet& sheet, Patch& patch) const;
+  virtual void loadSheet(const LoadedVoxels::Sheet& sheet, LoadedVoxels& loaded) const;
 
   /// Does the same as load() and splatRows() from the volume's own voxels, as far as these are all
   /// that counts. False if that does not pay.
-  virtual bool splatOwn(int, int, int, int, const Span&, const Target&, Patch&) const
+  virtual bool splatOwn(int, int, int, int, const Span&, const Target&, LoadedVoxels&) const
   {
     return false;
   }
 
   /// Raises pixels of some rows to the worksheet of slice k, whose voxels have been loaded and are
   /// finite.
-  virtual void splatRows(
-    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const = 0;
+  virtual void splatRows(int k, int first, int end, const Span& span, const Target& target,
+    LoadedVoxels& loaded) const = 0;
 
   /// The same where some are not. NaN is left out of averages: the worksheet of the others, divided
   /// by that of their weights. Pixels that are NaN have no sample yet.
-  virtual void splatSpecialRows(
-    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const;
+  virtual void splatNonFiniteRows(
+    int k, int first, int end, const Span& span, const Target& target, LoadedVoxels& loaded) const;
 
   /// What the weights of a pixel add up to at least.
   virtual A wholeWeight() const { return 1; }
@@ -185,35 +186,35 @@ private:
   Span sheetsOf(int k) const
   {
     return { std::max(k - this->Depth, 0),
-      std::min(k + this->Depth, this->Shared.geometry.size().z - 1) + 1 };
+      std::min(k + this->Depth, this->Context.geometry.size().z - 1) + 1 };
   }
-  bool isFinite(int k, Patch& patch) const;
-  bool isFinite(const Patch::Sheet& sheet, Patch& patch) const;
+  bool isFinite(int k, LoadedVoxels& loaded) const;
+  bool isFinite(const LoadedVoxels::Sheet& sheet, LoadedVoxels& loaded) const;
   /// Voxels, which of them are finite, and, if there are infinities, which are positive or
   /// negative.
-  int parts() const { return this->Shared.range.hasInfinities() ? 4 : 2; }
+  int parts() const { return this->Context.range.hasInfinities() ? 4 : 2; }
   /// Makes the parts of the sheets that worksheet k reads.
-  void separate(int k, Patch& patch) const;
+  void separate(int k, LoadedVoxels& loaded) const;
 
   /// Room for one worksheet.
-  Target worksheetFor(int v0, int v1, const Span& columns, Patch& patch) const;
+  Target worksheetFor(int v0, int v1, const Span& columns, LoadedVoxels& loaded) const;
 
-  /// Calls f for pieces of the image whose patch stays in the cache.
+  /// Calls f for pieces of the image whose voxels stay in the cache.
   template <class F>
   void forPieces(int v0, int v1, const Span& columns, F&& f) const;
 
   /// Makes the worksheet of slice k for pixels of some rows. Pixels without a sample get the least
   /// value or, if the volume has NaN, NaN.
   void sample(int k, int step, int first, int end, const Span& span, const Target& worksheet,
-    Patch& patch) const;
+    LoadedVoxels& loaded) const;
   /// Raises pixels of some rows to the worksheet of slice k.
   /// @param step  to the worksheet that comes next, 0 if none does
   void splatOne(int k, int step, int first, int end, const Span& span, const Target& target,
-    Patch& patch) const;
-  void splatPieces(
-    const Span& slices, int v0, int v1, const Span& run, const Target& target, Patch& patch) const;
+    LoadedVoxels& loaded) const;
+  void splatPieces(const Span& slices, int v0, int v1, const Span& run, const Target& target,
+    LoadedVoxels& loaded) const;
   void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const Target& target,
-    Patch& patch) const;
+    LoadedVoxels& loaded) const;
 
   /// Calls f(first, end, span) for rows that slice k covers in the same columns: nearly always all
   /// of them at once.
@@ -221,10 +222,11 @@ private:
   void forRows(int k, int v0, int v1, const Span& columns, F&& f) const;
 
   /// Fills rows of a sheet, from `to` on, with the volume's rows from `from` on.
-  void loadRows(const Patch::Sheet& sheet, int to, int from, int rows, Patch& patch) const;
+  void loadRows(
+    const LoadedVoxels::Sheet& sheet, int to, int from, int rows, LoadedVoxels& loaded) const;
 
 protected:
-  const Frame& Shared;
+  const ProjectionContext& Context;
   const WorksheetReach<A>& Reach;
   int Depth;
   int PieceWidth = 1024, PieceHeight = 16; ///< pixels; for the second-level cache

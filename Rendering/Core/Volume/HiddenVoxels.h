@@ -6,7 +6,7 @@
 #ifndef splattingHiddenVoxels_h
 #define splattingHiddenVoxels_h
 
-#include "Projection/Frame.h"
+#include "Projection/ProjectionContext.h"
 
 #include <vtkSMPTools.h>
 
@@ -17,7 +17,7 @@ class HiddenVoxels
 {
 public:
   HiddenVoxels(const Slices& slices, const glm::ivec3& size)
-    : Stack(slices),
+    : Source(slices),
       Size(size),
       Flags(std::size_t(size.x) * size.y * size.z, 0)
   {
@@ -66,8 +66,8 @@ private:
       this->forRows(
         [&](int j)
         {
-          const T* const values = static_cast<const T*>(this->Stack.voxels) +
-            j * this->Stack.rowStride + k * this->Stack.sliceStride;
+          const T* const values = static_cast<const T*>(this->Source.voxels) +
+            j * this->Source.rowStride + k * this->Source.sliceStride;
           const T* const guards = guard.data() + std::ptrdiff_t(j) * width;
           T* const covers = cover.data() + std::ptrdiff_t(j) * width;
           unsigned char* const flags = this->Flags.data() + this->place(j, k);
@@ -102,7 +102,7 @@ private:
     }
   }
 
-  const Slices& Stack;
+  const Slices& Source;
   glm::ivec3 Size;
   std::vector<unsigned char> Flags;
 };

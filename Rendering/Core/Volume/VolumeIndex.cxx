@@ -85,7 +85,7 @@ template <class T>
 struct Extremes
 {
   T low = highest<T>(), high = lowest<T>();
-  bool special = false;
+  bool nonFinite = false;
 };
 
 /// Looks at all voxels once, for their range and, if asked, for the bricks along all axes. These
@@ -124,7 +124,7 @@ public:
       const Extremes<T>& part = scratch.extremes;
       all.low = std::min(all.low, part.low);
       all.high = std::max(all.high, part.high);
-      all.special = all.special || part.special;
+      all.nonFinite = all.nonFinite || part.nonFinite;
     }
     return all;
   }
@@ -210,7 +210,7 @@ private:
         rows[count++] = voxels + (std::ptrdiff_t(k) * size.y + j) * size.x;
       }
       loops.survey(rows, count, size.x, scratch.columns.data(), scratch.extremes.low,
-        scratch.extremes.special);
+        scratch.extremes.nonFinite);
     }
     cubes.resize(this->Count.x);
     loops.largestOfFour(scratch.columns.data(), cubes.data(), this->Count.x);
@@ -235,7 +235,7 @@ void VolumeIndex::survey()
   const bool fits = this->brickSize() <= this->Budget;
   const Extremes<T> extremes = Survey<T>(this->Volume, fits ? this->Bricks.data() : nullptr)();
   this->ValueRange = { static_cast<double>(extremes.low), static_cast<double>(extremes.high),
-    extremes.special };
+    extremes.nonFinite };
   // Walks of volumes with infinities leave nothing out.
   this->BricksMade = fits && !this->ValueRange.hasInfinities();
   if (!this->BricksMade)

@@ -79,7 +79,7 @@ struct BrickMaxima
 };
 
 /// Which accelerations have been worth their while, for Acceleration::Auto.
-struct Experience
+struct SkipStatistics
 {
   double share = 0.0;  ///< of the tiles that bricks did not leave out, the last time
   int framesSince = 0; ///< frames without bricks since then
@@ -116,7 +116,7 @@ public:
   struct Range
   {
     double low = 0.0, high = 0.0; ///< of all voxels but NaN; low > high if there are none
-    bool special = false;         ///< whether there are NaN or infinities
+    bool nonFinite = false;       ///< whether there are NaN or infinities
 
     bool hasInfinities() const
     {
@@ -143,9 +143,9 @@ public:
     int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress = {});
 
   /// A cut volume is another one: much of it may be hidden or left out.
-  Experience& experience(int principalAxis, int quality, bool isCut)
+  SkipStatistics& statistics(int principalAxis, int quality, bool isCut)
   {
-    return this->Experiences[isCut][principalAxis][quality];
+    return this->Statistics[isCut][principalAxis][quality];
   }
 
   /// Bytes held besides the volume.
@@ -172,7 +172,7 @@ private:
   bool Exceeded = false;
   double Seconds = 0.0;
   // Of the whole and of the cut volume, axes and qualities.
-  std::array<std::array<std::array<Experience, 4>, 3>, 2> Experiences;
+  std::array<std::array<std::array<SkipStatistics, 4>, 3>, 2> Statistics;
 };
 }
 

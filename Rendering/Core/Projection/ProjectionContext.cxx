@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Projection/Frame.h"
+#include "Projection/ProjectionContext.h"
 
 #include "Clipping/Cuts.h"
 #include "Projection/WalkSpace.h"

@@ -32,7 +32,7 @@ Projected projectAndCarry(const reference::Volume<T>& volume, const reference::V
   splatting::Projector projector;
   Projected result;
   projector.project(index, geometry, settings, cutsBy(geometry, {}, cropping), result.image);
-  projector.carry({ other.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(other.size) },
+  projector.takeAtWinners({ other.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(other.size) },
     geometry, settings, result.image, result.carried);
   return result;
 }
@@ -167,7 +167,7 @@ void testItself(Checks& check)
 }
 }
 
-int TestCarry(int, char*[])
+int TestValuesAtWinners(int, char*[])
 {
   Checks check;
   testPreview(check);

@@ -3,8 +3,8 @@
 //
 // Each reason for a missing frame is told once, as long as some view has it: against a list of what
 // each view lacks.
-#include "Complaints.h"
 #include "CoreTesting.h"
+#include "ReportedProblems.h"
 
 #include "vtkNew.h"
 #include "vtkRenderer.h"
@@ -23,7 +23,7 @@ using namespace splatting;
 
 void testScene(Checks& check, reference::Random& random)
 {
-  Complaints complaints;
+  ReportedProblems reported;
   std::array<vtkSmartPointer<vtkVolume>, 3> volumes;
   const std::array<vtkNew<vtkRenderer>, 2> renderers;
   std::map<std::pair<int, int>, std::string> lacks;
@@ -43,17 +43,17 @@ void testScene(Checks& check, reference::Random& random)
     {
       isKnown = isKnown || lacked == problem;
     }
-    check(complaints.Update(renderers[r], volumes[v], problem) == !isKnown, "step ", step, ": '",
+    check(reported.Update(renderers[r], volumes[v], problem) == !isKnown, "step ", step, ": '",
       problem, isKnown ? "' is told again" : "' is not told");
     lacks[{ r, v }] = problem;
   }
 }
 }
 
-int TestComplaints(int, char*[])
+int TestReportedProblems(int, char*[])
 {
   Checks check;
   reference::forScenes(
-    "complaints", 200, [&](int, reference::Random& random) { testScene(check, random); });
+    "problems", 200, [&](int, reference::Random& random) { testScene(check, random); });
   return check.result();
 }

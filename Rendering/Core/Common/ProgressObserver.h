@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef splattingWatch_h
-#define splattingWatch_h
+#ifndef splattingProgressObserver_h
+#define splattingProgressObserver_h
 
 #include <atomic>
 #include <functional>
@@ -14,7 +14,7 @@ namespace splatting
  * wants it is asked, between its own bands of rows; the others see a flag. A thread pool that does
  * not employ that thread leaves it to the end of the bands.
  */
-class Watch
+class ProgressObserver
 {
 public:
   /// Told the share that is done, 0 to 1, never less than before; returns whether to go on.

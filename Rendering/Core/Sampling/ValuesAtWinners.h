@@ -4,8 +4,8 @@
  * What a volume has where the projection of another one found its winners. For dependent
  * components: colours go with the opacity that won.
  */
-#ifndef splattingCarry_h
-#define splattingCarry_h
+#ifndef splattingValuesAtWinners_h
+#define splattingValuesAtWinners_h
 
 #include "Sampling/PerspectiveFootprints.h"
 #include "Sampling/SliceSampler.h"
@@ -55,7 +55,7 @@ private:
 };
 
 template <class T>
-T carriedVoxel(const PermutedVoxels<T>& voxels, const RayPath& path, int u, int v, int step)
+T voxelAtWinner(const PermutedVoxels<T>& voxels, const RayPath& path, int u, int v, int step)
 {
   const int t = step % StepsPerSlice;
   return voxels.at(u + path.di[t], v + path.dj[t], step / StepsPerSlice);
@@ -63,7 +63,7 @@ T carriedVoxel(const PermutedVoxels<T>& voxels, const RayPath& path, int u, int 
 
 /// The same where each ray has a path of its own.
 template <class T>
-T carriedVoxel(const PermutedVoxels<T>& voxels, const ShearWarp& geometry, int u, int v, int step)
+T voxelAtWinner(const PermutedVoxels<T>& voxels, const ShearWarp& geometry, int u, int v, int step)
 {
   const int t = step % StepsPerSlice, k = step / StepsPerSlice;
   const RayPath path = geometry.voxelsOnRay(u, v, k);
@@ -71,7 +71,7 @@ T carriedVoxel(const PermutedVoxels<T>& voxels, const ShearWarp& geometry, int u
 }
 
 template <class T>
-Accumulator<T> carriedAverage(const PermutedVoxels<T>& voxels,
+Accumulator<T> averageAtWinner(const PermutedVoxels<T>& voxels,
   const PerspectiveFootprints<Accumulator<T>>& footprints, int u, int v, int k)
 {
   double sum = 0.0, weight = 0.0;
@@ -90,7 +90,7 @@ Accumulator<T> carriedAverage(const PermutedVoxels<T>& voxels,
 
 /// NaN aside, as in worksheets; NaN if there is nothing else.
 template <class T>
-Accumulator<T> carriedAverage(const PermutedVoxels<T>& voxels,
+Accumulator<T> averageAtWinner(const PermutedVoxels<T>& voxels,
   const SliceFootprint<Accumulator<T>>& footprint, int u, int v, int k)
 {
   double sum = 0.0, weight = 0.0;
@@ -111,7 +111,7 @@ Accumulator<T> carriedAverage(const PermutedVoxels<T>& voxels,
 
 /// Fills an image with valueAt(voxels, u, v, step) of the other volume, where there is a winner.
 template <class T, class F>
-void carryValues(const Carrying& c, const F& valueAt)
+void fillAtWinners(const AtWinners& c, const F& valueAt)
 {
   using A = Accumulator<T>;
   const PermutedVoxels<T> voxels(c.other, c.geometry);

@@ -59,17 +59,17 @@ void findReach(const std::vector<ExactPath<A>>& paths, const std::vector<ExactBo
  * half a slice before its middle to half a slice behind.
  */
 template <class T>
-class ExactWorksheets : public WorksheetLayers<T>
+class ParallelExact : public WorksheetSampler<T>
 {
 public:
-  using typename WorksheetLayers<T>::A;
-  using typename WorksheetLayers<T>::Target;
+  using typename WorksheetSampler<T>::A;
+  using typename WorksheetSampler<T>::Target;
 
   /// @param field  of each row the pixels that see the field, see findFieldSpans()
-  ExactWorksheets(const Frame& frame, const std::vector<ExactPath<A>>& paths,
+  ParallelExact(const ProjectionContext& context, const std::vector<ExactPath<A>>& paths,
     const std::vector<ExactBox<A>>& boxes, const std::vector<Span>& field,
     const WorksheetReach<A>& reach)
-    : WorksheetLayers<T>(frame, false, reach, 1),
+    : WorksheetSampler<T>(context, false, reach, 1),
       Paths(paths),
       Boxes(boxes),
       Field(field),
@@ -83,7 +83,7 @@ public:
   A slack() const override { return 24 * std::numeric_limits<A>::epsilon() / 2; }
 
 protected:
-  Patch::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
+  LoadedVoxels::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
   {
     const Window& window = this->Reach.slices[s];
     return { s, columns.begin + window.iMin, v0 + window.jMin,
@@ -91,20 +91,20 @@ protected:
       v1 - v0 + window.jMax - window.jMin };
   }
 
-  void splatRows(
-    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  void splatRows(int k, int first, int end, const Span& span, const Target& target,
+    LoadedVoxels& loaded) const override
   {
-    this->raise(k, first, end, span, target, false, patch);
+    this->raise(k, first, end, span, target, false, loaded);
   }
-  void splatSpecialRows(
-    int k, int first, int end, const Span& span, const Target& target, Patch& patch) const override
+  void splatNonFiniteRows(int k, int first, int end, const Span& span, const Target& target,
+    LoadedVoxels& loaded) const override
   {
-    this->raise(k, first, end, span, target, true, patch);
+    this->raise(k, first, end, span, target, true, loaded);
   }
 
 private:
-  void raise(int k, int first, int end, const Span& span, const Target& target, bool special,
-    Patch& patch) const
+  void raise(int k, int first, int end, const Span& span, const Target& target, bool nonFinite,
+    LoadedVoxels& loaded) const
   {
     Cubics<A> cubics;
     cubics.image = target.at(0, 0);
@@ -112,26 +112,26 @@ private:
     cubics.columns = span;
     cubics.rows = { first, end };
     cubics.field = this->Field.data();
-    cubics.sourceStride = patch.rowLength;
-    cubics.special = special;
+    cubics.sourceStride = loaded.rowLength;
+    cubics.nonFinite = nonFinite;
     const ExactBox<A>& box = this->Boxes[k];
     const auto firstOf = [&](int slice)
-    { return this->voxel(box.columns.cell, box.rows.cell, slice, patch); };
+    { return this->voxel(box.columns.cell, box.rows.cell, slice, loaded); };
     cubics.box = { firstOf(k - 1), firstOf(k), firstOf(k + 1), box.columns, box.rows, this->Slack };
     cubics.count = 0;
     for (const ExactPiece<A>& piece : this->Paths[k])
     {
-      cubics.pieces[cubics.count++] = { this->voxel(piece.di, piece.dj, k + piece.dk, patch),
-        this->voxel(piece.di, piece.dj, k + piece.dk + 1, patch), piece.weights.data(),
+      cubics.pieces[cubics.count++] = { this->voxel(piece.di, piece.dj, k + piece.dk, loaded),
+        this->voxel(piece.di, piece.dj, k + piece.dk + 1, loaded), piece.weights.data(),
         piece.curved, piece.inField.data(), piece.inBoxes.data() };
     }
-    const WorksheetLoops<A>& loops = this->Shared.kernels;
+    const WorksheetLoops<A>& loops = this->Context.kernels;
     loops.raiseCubics(cubics);
   }
 
-  const A* voxel(int i, int j, int slice, Patch& patch) const
+  const A* voxel(int i, int j, int slice, LoadedVoxels& loaded) const
   {
-    return patch.voxel<A>(i, j, std::clamp(slice, 0, this->Shared.geometry.size().z - 1));
+    return loaded.voxel<A>(i, j, std::clamp(slice, 0, this->Context.geometry.size().z - 1));
   }
   const std::vector<ExactPath<A>>& Paths;
   const std::vector<ExactBox<A>>& Boxes;
@@ -142,9 +142,9 @@ private:
 class ExactMode : public ProjectionMode
 {
 public:
-  void project(Frame& frame) override
+  void project(ProjectionContext& context) override
   {
-    dispatch(frame.index.volume().type,
+    dispatch(context.index.volume().type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
@@ -152,11 +152,11 @@ public:
         auto& paths = std::get<std::vector<ExactPath<A>>>(this->Paths);
         auto& reach = std::get<WorksheetReach<A>>(this->Reach);
         auto& boxes = std::get<std::vector<ExactBox<A>>>(this->Boxes);
-        findExactPaths(frame.whole, frame.geometry, paths);
-        findExactBoxes(frame.whole, frame.geometry, boxes);
-        findFieldSpans(frame.whole, this->Field);
+        findExactPaths(context.whole, context.geometry, paths);
+        findExactBoxes(context.whole, context.geometry, boxes);
+        findFieldSpans(context.whole, this->Field);
         findReach(paths, boxes, reach);
-        walk(frame, ExactWorksheets<T>(frame, paths, boxes, this->Field, reach));
+        walk(context, ParallelExact<T>(context, paths, boxes, this->Field, reach));
       });
   }
 

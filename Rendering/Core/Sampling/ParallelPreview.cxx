@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Sampling/Carry.h"
 #include "Sampling/SliceSampler.h"
+#include "Sampling/ValuesAtWinners.h"
 
 #include <algorithm>
 #include <array>
@@ -45,15 +45,15 @@ static_assert(MostRows == StepsPerSlice * BrickDepth);
  * loaded and stored once for all of them.
  */
 template <class T>
-class PreviewLayers : public SliceSampler<T, T>
+class ParallelPreview : public SliceSampler<T, T>
 {
 public:
   using typename SliceSampler<T, T>::Samples;
 
   /// `storage` outlives this, and is kept for the next frame.
-  PreviewLayers(const Frame& frame, std::vector<PreviewLayer>& storage)
+  ParallelPreview(const ProjectionContext& context, std::vector<PreviewLayer>& storage)
     : SliceSampler<T, T>({ false, 0, TileWidth }),
-      Shared(frame),
+      Context(context),
       Layers(storage)
   {
     this->findLayers(storage);
@@ -62,7 +62,7 @@ public:
   Window window(int layer) const override { return this->Layers[layer].window; }
 
   void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
-    const PixelRows<T>& pixels, Patch&) const override
+    const PixelRows<T>& pixels, LoadedVoxels&) const override
   {
     const int step = pixels.sliceStride != 0 ? 1 : slices.end - slices.begin;
     for (int k = slices.begin; k < slices.end; k += step)
@@ -74,14 +74,14 @@ public:
   int firstAbove(int u, int v, const Span& slices, T limit) const override
   {
     const Layer& layer = this->Layers[slices.begin / BrickDepth];
-    const glm::ivec3& size = this->Shared.geometry.size();
+    const glm::ivec3& size = this->Context.geometry.size();
     for (int n = 0; n < layer.tapCount; ++n)
     {
-      const bool reversed = this->Shared.geometry.reversed();
+      const bool reversed = this->Context.geometry.reversed();
       const Layer::Tap& tap = layer.taps[reversed ? layer.tapCount - 1 - n : n];
       const int i = u + tap.di, j = v + tap.dj;
       if (tap.k >= slices.begin && tap.k < slices.end && i >= 0 && i < size.x && j >= 0 &&
-        j<size.y&& this->Shared.template voxelRow<T>(j, tap.k)[i]> limit)
+        j<size.y&& this->Context.template voxelRow<T>(j, tap.k)[i]> limit)
       {
         return StepsPerSlice * tap.k + tap.t;
       }
@@ -91,14 +91,14 @@ public:
 
   int firstSample(int u, int v, int k) const override
   {
-    const glm::ivec3& size = this->Shared.geometry.size();
-    return firstOnPath(this->Shared.sliceGeometry[k].path, this->Shared.geometry.reversed(),
+    const glm::ivec3& size = this->Context.geometry.size();
+    return firstOnPath(this->Context.sliceGeometry[k].path, this->Context.geometry.reversed(),
       [&](int di, int dj)
       { return u + di >= 0 && u + di < size.x && v + dj >= 0 && v + dj < size.y; });
   }
 
-  void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns, Patch&,
-    const Samples& f) const override
+  void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
+    LoadedVoxels&, const Samples& f) const override
   {
     this->forRows(slices, reversed, v0, v1, columns,
       [&](int k, int v, const Span& span)
@@ -112,10 +112,10 @@ public:
   /// In the order of memory: slice after slice, or, where rows of all slices lie side by side, a
   /// few rows through all of them.
   void splatAll(
-    const Span& layers, int v0, int v1, const std::vector<Span>& all, Patch&) const override
+    const Span& layers, int v0, int v1, const std::vector<Span>& all, LoadedVoxels&) const override
   {
-    const PixelRows<T> image = pixelsOf<T>(this->Shared.image);
-    const Slices& slices = this->Shared.slices;
+    const PixelRows<T> image = pixelsOf<T>(this->Context.image);
+    const Slices& slices = this->Context.slices;
     const bool slicesFirst = slices.rowStride <= slices.sliceStride;
     const int height = slicesFirst ? v1 - v0 : 2 * BrickHeight;
     Reading reading;
@@ -135,7 +135,7 @@ public:
     }
   }
 
-  T floor() const override { return previewFloor<T>(this->Shared); }
+  T floor() const override { return previewFloor<T>(this->Context); }
 
   void finish(int, int) const override {}
 
@@ -168,13 +168,13 @@ private:
   Span plainRows(const Layer& layer, int v0, int v1) const
   {
     const int first = layer.rimsFit ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
-    const int last = this->Shared.geometry.size().y - 1 - layer.window.jMax;
+    const int last = this->Context.geometry.size().y - 1 - layer.window.jMax;
     return { first, std::clamp(last, first, v1) };
   }
 
   void findLayers(std::vector<Layer>& layers) const
   {
-    const int depth = this->Shared.geometry.size().z;
+    const int depth = this->Context.geometry.size().z;
     layers.resize((depth + BrickDepth - 1) / BrickDepth);
     for (Layer& layer : layers)
     {
@@ -184,8 +184,8 @@ private:
     for (int k = 0; k < depth; ++k)
     {
       Layer& layer = layers[k / BrickDepth];
-      layer.slices = slicesOfLayer(k / BrickDepth, this->Shared.geometry.size());
-      const RayPath& path = this->Shared.sliceGeometry[k].path;
+      layer.slices = slicesOfLayer(k / BrickDepth, this->Context.geometry.size());
+      const RayPath& path = this->Context.sliceGeometry[k].path;
       for (int t = 0; t < path.count; ++t)
       {
         layer.taps[layer.tapCount++] = { k, t, path.di[t], path.dj[t] };
@@ -200,9 +200,9 @@ private:
 
   void findRims(Layer& layer) const
   {
-    const ShearImage& image = this->Shared.image;
-    const int width = this->Shared.geometry.size().x;
-    const VoxelLoops<T>& loops = this->Shared.kernels;
+    const ShearImage& image = this->Context.image;
+    const int width = this->Context.geometry.size().x;
+    const VoxelLoops<T>& loops = this->Context.kernels;
     const int lanes = static_cast<int>(loops.lanes);
     const Span any{ -layer.window.iMax, width - layer.window.iMin };
     layer.valid = { -layer.window.iMin, width - layer.window.iMax };
@@ -254,7 +254,7 @@ private:
     sweep.image = pixels.at(0, v0);
     sweep.height = rows.end - v0;
     sweep.count = endTap - firstTap;
-    const Slices& slices = this->Shared.slices;
+    const Slices& slices = this->Context.slices;
     sweep.rowStride = slices.rowStride;
     sweep.ahead = slicesAhead != 0            ? this->distance(layer.taps[firstTap], slicesAhead)
       : slices.rowStride > slices.sliceStride ? slices.rowStride
@@ -262,7 +262,7 @@ private:
     for (int t = firstTap; t < endTap; ++t)
     {
       const Layer::Tap& tap = layer.taps[t];
-      sweep.rows[t - firstTap] = this->Shared.template voxelRow<T>(v0 + tap.dj, tap.k) + tap.di;
+      sweep.rows[t - firstTap] = this->Context.template voxelRow<T>(v0 + tap.dj, tap.k) + tap.di;
     }
     sweep.runs = runs.data();
     sweep.runCount = static_cast<int>(runs.size());
@@ -270,7 +270,7 @@ private:
     const Layer::Tap& one = layer.taps[firstTap];
     const bool shiftAlike = std::all_of(layer.taps.begin() + firstTap, layer.taps.begin() + endTap,
       [&](const Layer::Tap& tap) { return tap.di == one.di; });
-    const Span sees{ -one.di, this->Shared.geometry.size().x - one.di };
+    const Span sees{ -one.di, this->Context.geometry.size().x - one.di };
     sweep.valid = shiftAlike ? sees : layer.valid;
     sweep.rimCount = 0;
     if (!shiftAlike)
@@ -284,17 +284,17 @@ private:
         sweep.rims[sweep.rimCount++] = rimOf(layer.right, firstTap);
       }
     }
-    const VoxelLoops<T>& loops = this->Shared.kernels;
+    const VoxelLoops<T>& loops = this->Context.kernels;
     loops.sweep(sweep);
   }
 
   /// From a row of voxels to the one that the same pixels see first in another slice.
   std::ptrdiff_t distance(const Layer::Tap& tap, int slices) const
   {
-    const int last = this->Shared.geometry.size().z - 1, k = std::clamp(tap.k + slices, 0, last);
-    const RayPath& path = this->Shared.sliceGeometry[k].path;
-    return (k - tap.k) * this->Shared.slices.sliceStride +
-      (path.dj[0] - tap.dj) * this->Shared.slices.rowStride + path.di[0] - tap.di;
+    const int last = this->Context.geometry.size().z - 1, k = std::clamp(tap.k + slices, 0, last);
+    const RayPath& path = this->Context.sliceGeometry[k].path;
+    return (k - tap.k) * this->Context.slices.sliceStride +
+      (path.dj[0] - tap.dj) * this->Context.slices.rowStride + path.di[0] - tap.di;
   }
 
   static Rim rimOf(const Layer::Ends& ends, int firstTap)
@@ -315,7 +315,7 @@ private:
 
   void splatRow(int k, int v, const Span& span, T* row) const
   {
-    const VoxelLoops<T>& loops = this->Shared.kernels;
+    const VoxelLoops<T>& loops = this->Context.kernels;
     this->forVoxels(k, v, span, false,
       [&](int, const Span& pixels, const T* voxels)
       { loops.maximum(row + pixels.begin, &voxels, 1, pixels.end - pixels.begin); });
@@ -328,7 +328,7 @@ private:
     for (int n = 0; n < slices.end - slices.begin && v0 < v1; ++n)
     {
       const int k = reversed ? slices.end - 1 - n : slices.begin + n;
-      const SliceGeometry& slice = this->Shared.sliceGeometry[k];
+      const SliceGeometry& slice = this->Context.sliceGeometry[k];
       for (int v = std::max(v0, slice.vBegin); v < std::min(v1, slice.vEnd); ++v)
       {
         const Span span = common(columns, slice.span(v));
@@ -344,8 +344,8 @@ private:
   template <class F>
   void forVoxels(int k, int v, const Span& span, bool reversed, F&& f) const
   {
-    const RayPath& path = this->Shared.sliceGeometry[k].path;
-    const glm::ivec3& size = this->Shared.geometry.size();
+    const RayPath& path = this->Context.sliceGeometry[k].path;
+    const glm::ivec3& size = this->Context.geometry.size();
     for (int n = 0; n < path.count; ++n)
     {
       const int t = reversed ? path.count - 1 - n : n;
@@ -353,37 +353,37 @@ private:
       const Span pixels = common(span, { -path.di[t], size.x - path.di[t] });
       if (j >= 0 && j < size.y && !pixels.empty())
       {
-        f(t, pixels, this->Shared.template voxelRow<T>(j, k) + path.di[t] + pixels.begin);
+        f(t, pixels, this->Context.template voxelRow<T>(j, k) + path.di[t] + pixels.begin);
       }
     }
   }
 
-  const Frame& Shared;
+  const ProjectionContext& Context;
   const std::vector<Layer>& Layers;
 };
 
 class PreviewMode : public ProjectionMode
 {
 public:
-  void project(Frame& frame) override
+  void project(ProjectionContext& context) override
   {
-    dispatch(frame.index.volume().type,
+    dispatch(context.index.volume().type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
-        walk(frame, PreviewLayers<T>(frame, this->Layers));
+        walk(context, ParallelPreview<T>(context, this->Layers));
       });
   }
 
-  void carry(const Carrying& c) const override
+  void takeAtWinners(const AtWinners& c) const override
   {
     dispatch(c.other.type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
-        carryValues<T>(c,
+        fillAtWinners<T>(c,
           [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
-          { return carriedVoxel(voxels, c.slices[step / StepsPerSlice].path, u, v, step); });
+          { return voxelAtWinner(voxels, c.slices[step / StepsPerSlice].path, u, v, step); });
       });
   }
 

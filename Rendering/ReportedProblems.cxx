@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Complaints.h"
+#include "ReportedProblems.h"
 
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
@@ -9,14 +9,14 @@
 
 namespace splatting
 {
-bool Complaints::Update(vtkRenderer* renderer, vtkVolume* volume, const std::string& problem)
+bool ReportedProblems::Update(vtkRenderer* renderer, vtkVolume* volume, const std::string& problem)
 {
   const auto drop = [this](const auto& isOver)
   { this->All.erase(std::remove_if(this->All.begin(), this->All.end(), isOver), this->All.end()); };
-  drop([](const Complaint& c) { return !c.renderer || !c.volume; });
+  drop([](const Report& c) { return !c.renderer || !c.volume; });
   const bool isKnown = std::any_of(
-    this->All.begin(), this->All.end(), [&](const Complaint& c) { return c.problem == problem; });
-  drop([&](const Complaint& c) { return c.renderer == renderer && c.volume == volume; });
+    this->All.begin(), this->All.end(), [&](const Report& c) { return c.problem == problem; });
+  drop([&](const Report& c) { return c.renderer == renderer && c.volume == volume; });
   if (problem.empty())
   {
     return false;

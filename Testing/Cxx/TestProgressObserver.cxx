@@ -38,7 +38,7 @@ struct Scene
     const std::thread::id thread = std::this_thread::get_id();
     int asked = 0;
     double last = 0.0;
-    this->projector.setWatch(
+    this->projector.setObserver(
       [&](double share)
       {
         check(std::this_thread::get_id() == thread, "another thread asks");
@@ -74,7 +74,7 @@ void testStops(const splatting::ProjectionSettings& settings, Checks& check)
 }
 
 //------------------------------------------------------------------------------
-int TestWatch(int, char*[])
+int TestProgressObserver(int, char*[])
 {
   Checks check;
   const std::string usual = vtkSMPTools::GetBackend();

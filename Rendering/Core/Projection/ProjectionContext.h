@@ -3,8 +3,8 @@
 /**
  * What all parts of one projection share.
  */
-#ifndef splattingFrame_h
-#define splattingFrame_h
+#ifndef splattingProjectionContext_h
+#define splattingProjectionContext_h
 
 #include "Geometry/FanSteps.h"
 #include "Kernels/Kernels.h"
@@ -66,7 +66,7 @@ private:
 };
 
 class CutMap;
-class Watch;
+class ProgressObserver;
 struct OutlineSpace;
 struct ProjectionSettings;
 struct WalkSpace;
@@ -112,7 +112,7 @@ struct TileCount
 };
 
 /// One projection of a volume, whatever the type of its voxels.
-struct Frame
+struct ProjectionContext
 {
   VolumeIndex& index;
   const ProjectionSettings& settings;
@@ -126,7 +126,7 @@ struct Frame
   double floor; // as in ProjectionSettings
   ShearImage& image;
   WalkSpace& space;
-  Watch& watch;
+  ProgressObserver& observer;
   /// How it is walked: all samples, ray by ray; or along chains; or with bricks; or densely.
   bool byRays;
   const LineIndex* lines;
@@ -210,16 +210,16 @@ T roundedDown(double x)
 
 /// What pixels of a preview start from: no voxel is less.
 template <class T>
-T previewFloor(const Frame& frame)
+T previewFloor(const ProjectionContext& context)
 {
-  if (frame.range.special)
+  if (context.range.nonFinite)
   {
     return leastValue<T>(); // which tells pixels without a sample: see dropEmpty()
   }
   // The range's double need not be a 64-bit integer's exact value.
   constexpr bool exact = !std::numeric_limits<T>::is_integer || sizeof(T) < 8;
-  const T low = exact ? static_cast<T>(frame.range.low) : leastValue<T>();
-  return std::max(low, roundedDown<T>(frame.floor));
+  const T low = exact ? static_cast<T>(context.range.low) : leastValue<T>();
+  return std::max(low, roundedDown<T>(context.floor));
 }
 
 /// Sets rows to "no sample": pixels that no ray's sample will reach to the greatest value, so that
@@ -265,7 +265,7 @@ void dropEmpty(ShearImage& image, int v0, int v1)
 template <class P>
 void closeRows(ShearImage& image, int v0, int v1)
 {
-  const P empty = image.special ? std::numeric_limits<P>::quiet_NaN() : leastValue<P>();
+  const P empty = image.nonFinite ? std::numeric_limits<P>::quiet_NaN() : leastValue<P>();
   for (int v = v0; v < v1; ++v)
   {
     P* const row = image.row<P>(v);

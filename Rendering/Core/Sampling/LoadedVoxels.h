@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef splattingPatch_h
-#define splattingPatch_h
+#ifndef splattingLoadedVoxels_h
+#define splattingLoadedVoxels_h
 
 #include "Volume/VolumeIndex.h"
 
@@ -14,7 +14,7 @@ namespace splatting
 {
 /// Voxels widened to the accumulator's type: a rectangle from each of the up to three slices that a
 /// worksheet reads. What footprints read beyond the volume repeats its outermost voxels.
-struct Patch
+struct LoadedVoxels
 {
   /// Bytes behind the last voxel, so that loops can read whole registers.
   static constexpr std::size_t Padding = 128;
@@ -25,7 +25,7 @@ struct Patch
     int i = 0, j = 0; // the first voxel
     int columns = 0, rows = 0;
     bool finite = true;     ///< whether there are neither NaN nor infinities
-    bool separated = false; ///< whether the other parts are there, see WorksheetLayers
+    bool separated = false; ///< whether the other parts are there, see WorksheetSampler
   };
   /// The voxels; where some are not finite, also which are, and which are infinite.
   static constexpr int MostParts = 4;
