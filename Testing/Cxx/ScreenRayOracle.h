@@ -294,35 +294,6 @@ Limits limitsWithNaN(const Scene<T>& scene, const reference::Volume<double>& fie
   return { limits.low - change, limits.high + change };
 }
 
-/// How much of the ray of a point between pixels is in the field.
-inline double lengthAt(const splatting::ShearWarp& geometry, const glm::dvec2& p)
-{
-  reference::FieldRay ray = rayOf(geometry, 0, 0);
-  const glm::ivec2 last = geometry.rayCount() - 1;
-  const reference::FieldRay other = rayOf(geometry, last.x, last.y);
-  for (int a = 0; a < 2; ++a)
-  {
-    const double share = p[a] / std::max(last[a], 1);
-    ray.at[a] += share * (other.at[a] - ray.at[a]);
-    ray.slope[a] += share * (other.slope[a] - ray.slope[a]);
-  }
-  const auto depths = depthsOf(geometry, ray);
-  return depths[1] - depths[0];
-}
-
-/// Whether a square of pixels, or more if it is to be sure, reaches beyond the field. Its outline
-/// is convex.
-inline bool reachesOut(const splatting::ShearWarp& geometry, const glm::dvec2& p, double width)
-{
-  bool out = false;
-  for (int n = 0; n < 4; ++n)
-  {
-    const glm::dvec2 corner(n & 1 ? width : -width, n & 2 ? width : -width);
-    out = out || lengthAt(geometry, p + corner) < 0.0;
-  }
-  return out;
-}
-
 /// How a pixel lies to the rays that it may be interpolated between.
 enum Place
 {
@@ -385,14 +356,12 @@ inline Place placeOf(
     shortest = std::min(shortest, length);
     longest = std::max(longest, length);
   }
-  const double share = shortest / longest, own = lengthAt(*geometry, p);
-  if (shortest > 0.0 && (share > 0.501 || own > 3.001 || !reachesOut(*geometry, p, 2.01)))
+  const double share = shortest / longest;
+  if (shortest > 0.0 && share > 0.501)
   {
     return Inside;
   }
-  return shortest <= 0.0 || (share < 0.499 && own < 2.999 && reachesOut(*geometry, p, 1.99))
-    ? AtRim
-    : Unclear;
+  return shortest <= 0.0 || share < 0.499 ? AtRim : Unclear;
 }
 
 /// What a ray has from the slice before to the slice behind each of the winners that it lies

@@ -281,12 +281,11 @@ bool findOnRay(const Oracle& oracle, const reference::FieldRay& ray, const Ways&
     oracle.volume.size, ray, reference::FieldDomain::Centres, -0.5, oracle.grid.size[2] - 0.5);
   const double own = depths[1] - depths[0];
   const double share = ways.shortest / ways.longest;
-  if (!ways.certain ||
-    (ways.shortest >= 0.0 && (std::abs(own - 3.0) <= 1e-5 || std::abs(share - 0.5) <= 1e-5)))
+  if (!ways.certain || (ways.shortest >= 0.0 && std::abs(share - 0.5) <= 1e-5))
   {
     return false;
   }
-  if (ways.shortest < 0.0 || (own < 3.0 && share < 0.5))
+  if (ways.shortest < 0.0 || share < 0.5)
   {
     value = own > 1e-5 ? reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]) : 0.0;
     return own > 1e-5;

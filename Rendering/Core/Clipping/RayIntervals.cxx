@@ -19,7 +19,8 @@ namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Rounding = DepthLimits::Rounding;
-constexpr double Before = DepthLimits::Before, Beyond = DepthLimits::Beyond;
+// Planes cut before the volume, too: what is between two rays is cut between their depths.
+constexpr double Before = -DepthLimits::Beyond, Beyond = DepthLimits::Beyond;
 
 /// The half-spaces as RowDepths::cut() and cutFan() take them.
 std::vector<glm::dvec4> asSeen(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces)

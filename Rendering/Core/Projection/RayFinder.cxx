@@ -4,25 +4,16 @@
 
 namespace splatting
 {
-std::vector<Span> findFieldSpans(const ShearImage& image, const ShearWarp& geometry)
+std::vector<glm::dvec2> depthsOf(const Fan& rays, const ShearWarp& geometry, int axis)
 {
-  std::vector<Span> spans(geometry.rayCount().y);
-  for (int v = 0; v < geometry.rayCount().y; ++v)
+  const FieldRange sides(geometry, axis);
+  const glm::dvec2 all = depthsOfField(geometry);
+  std::vector<glm::dvec2> depths;
+  for (int n = 0; n < geometry.rayCount()[axis]; ++n)
   {
-    const auto misses = [&](int u)
-    {
-      const glm::dvec2 depths = depthsInField(geometry, rayOfPixel(geometry, u, v));
-      return depths.y <= depths.x;
-    };
-    Span& span = spans[v];
-    span = common(image.spans[v], { 0, geometry.rayCount().x });
-    for (; !span.empty() && misses(span.begin); ++span.begin)
-    {
-    }
-    for (; !span.empty() && misses(span.end - 1); --span.end)
-    {
-    }
+    depths.push_back(
+      commonDepths(all, depthsBetween(sides, rays.at[n], rays.slope[n], geometry.reference())));
   }
-  return spans;
+  return depths;
 }
 }

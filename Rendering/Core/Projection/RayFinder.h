@@ -50,8 +50,9 @@ struct ScreenPixel
   }
 };
 
-/// For each row of an image the pixels that see the field.
-std::vector<Span> findFieldSpans(const ShearImage& image, const ShearWarp& geometry);
+/// The depths at which each column (axis 0) or row (1) of an image's rays is in the field, as far
+/// as that side of it is concerned.
+std::vector<glm::dvec2> depthsOf(const Fan& rays, const ShearWarp& geometry, int axis);
 
 /// Calls f(u, v, weight) for the pixels of an image that a point is interpolated between.
 template <class F>
@@ -87,7 +88,8 @@ public:
       Geometry(geometry),
       Removed(cuts),
       Scene(source.depth),
-      Seen(findFieldSpans(image, geometry)),
+      Columns(depthsOf(geometry.columns(), geometry, 0)),
+      Rows(depthsOf(geometry.rows(), geometry, 1)),
       Part(partOf(geometry, source)),
       First(Part.first()),
       Last(geometry.size() - 1),
@@ -171,31 +173,32 @@ private:
     return part;
   }
 
-  /// Whether one of the four rays misses the field or, where the way through it is short, is in it
-  /// for less than half as long as another.
-  /// @param way  of the pixel's own ray through the field
-  bool isAtRim(const glm::dvec2& pixel, double way) const
+  /// Whether one of the four rays misses the field, or is in it for less than half as long as
+  /// another.
+  bool isAtRim(const glm::dvec2& pixel) const
   {
-    bool misses = false;
-    forWeightedPixels(pixel, [&](int u, int v, double) { misses = misses || !this->sees(u, v); });
-    if (misses || way >= ShortWay)
-    {
-      return misses;
-    }
     double shortest = std::numeric_limits<double>::infinity(), longest = 0.0;
     forWeightedPixels(pixel,
       [&](int u, int v, double)
       {
-        const glm::dvec2 depths = depthsInField(this->Geometry, rayOfPixel(this->Geometry, u, v));
-        shortest = std::min(shortest, depths.y - depths.x);
-        longest = std::max(longest, depths.y - depths.x);
+        const double way = this->wayOf(u, v);
+        shortest = std::min(shortest, way);
+        longest = std::max(longest, way);
       });
-    return shortest < 0.5 * longest;
+    return !(shortest > 0.0 && shortest >= 0.5 * longest);
   }
-  bool sees(int u, int v) const
+  /// How much of an image's ray is in the field; none if the ray has no pixel.
+  double wayOf(int u, int v) const
   {
-    return v >= 0 && v < static_cast<int>(this->Seen.size()) && u >= this->Seen[v].begin &&
-      u < this->Seen[v].end;
+    const bool exists = v >= 0 && v < static_cast<int>(this->Rows.size()) &&
+      u >= this->Image.spans[v].begin && u < this->Image.spans[v].end &&
+      u < static_cast<int>(this->Columns.size());
+    if (!exists)
+    {
+      return 0.0;
+    }
+    const glm::dvec2 depths = commonDepths(this->Columns[u], this->Rows[v]);
+    return depths.y - depths.x;
   }
 
   /// Calls f(ray, depths) for the parts of the ray that are looked at: from the slice before to the
@@ -221,12 +224,12 @@ private:
     {
       all = 0.5 * (all.x + all.y) + glm::dvec2(-0.5, 0.5) * Touch;
     }
-    const bool isAtRim = this->isAtRim(pixel.shear, field.y - field.x);
+    const bool isAtRim = this->isAtRim(pixel.shear);
     std::array<int, 4> slices;
     const int count = isAtRim ? 0 : this->findWinners(pixel.shear, slices);
     if (isAtRim ||
       std::any_of(slices.begin(), slices.begin() + count,
-        [&](int k) { return k + 1 < all.x || k - 1 > all.y; }))
+        [&](int k) { return k + 1 < all.x || k - 1 > all.y || !this->isShownAbout(ray, k, all); }))
     {
       f(ray, all);
       return;
@@ -277,14 +280,15 @@ private:
     {
       return all;
     }
-    glm::dvec2 shown = all, sum(0.0), least(all.y), most(all.x);
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    glm::dvec2 shown = all, sum(0.0), least(infinite), most(-infinite);
     double heaviest = 0.0, weights = 0.0;
     forWeightedPixels(pixel,
       [&](int u, int v, double weight)
       {
         if (this->Image.covers(u, v))
         {
-          const glm::dvec2 own = glm::clamp(intervals.depths(u, v), all.x, all.y);
+          const glm::dvec2 own = intervals.depths(u, v);
           shown = weight > heaviest ? own : shown;
           heaviest = std::max(heaviest, weight);
           least = glm::min(least, own);
@@ -297,7 +301,7 @@ private:
     {
       shown[a] = most[a] - least[a] <= Together ? sum[a] / weights : shown[a];
     }
-    return shown;
+    return glm::clamp(shown, all.x, all.y);
   }
 
   /// Of depths that are at least -1, which is faster than std::floor().
@@ -308,6 +312,17 @@ private:
   {
     return !this->Removed.cropping.cuts() ||
       splatting::isShown(this->Removed.cropping, this->Geometry, { ray(0, k), ray(1, k) }, k);
+  }
+
+  /// Whether it shows something between slices k - 1 and k + 1, of what is between some depths.
+  bool isShownAbout(const FieldRay& ray, int k, const glm::dvec2& depths) const
+  {
+    bool shown = false;
+    for (int n = k - 1; n <= k + 1; ++n)
+    {
+      shown = shown || (n + 0.5 > depths.x && n - 0.5 < depths.y && this->isShown(ray, n));
+    }
+    return shown;
   }
 
   /// Narrows depths between slices k and k + 1 to the halves that belong to samples that count.
@@ -336,8 +351,6 @@ private:
     return (std::clamp(index, 0, this->Last[axis]) - this->First[axis]) * this->Voxels.stride(axis);
   }
 
-  /// Ways through the field of which a few voxels are all there is.
-  static constexpr double ShortWay = 3.0;
   /// Slices between the depths at which neighbours are cut if it is by the same thing.
   static constexpr double Together = 3.0;
   /// Pixels on the outline may miss the field by rounding.
@@ -347,7 +360,7 @@ private:
   const ShearWarp& Geometry;
   const Cuts& Removed;
   const SceneDepth* Scene;
-  std::vector<Span> Seen;
+  std::vector<glm::dvec2> Columns, Rows; // the depths at which their rays may be in the field
   ShearWarp Part;
   glm::ivec3 First, Last; // voxels, of the part and of the volume
   Box Interior;

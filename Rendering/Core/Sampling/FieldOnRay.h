@@ -53,27 +53,45 @@ inline FieldRay rayThrough(const ShearWarp& geometry, const glm::dvec2& pixel)
   return ray;
 }
 
-/// The depths at which a ray is in the field, before the eye; the second is less if it misses it.
-inline glm::dvec2 depthsInField(const ShearWarp& geometry, const FieldRay& ray)
+/// The depths of the field before the eye.
+inline glm::dvec2 depthsOfField(const ShearWarp& geometry)
 {
   const Span& slices = geometry.slices();
   const FieldRange range(geometry, 2);
-  double near = std::max(range.begin, geometry.faces(slices.begin).x);
-  double far = std::min(range.end, geometry.faces(slices.end - 1).y);
+  return { std::max(range.begin, geometry.faces(slices.begin).x),
+    std::min(range.end, geometry.faces(slices.end - 1).y) };
+}
+
+/// The depths at which a ray, of which one coordinate is given, is between two sides of the field;
+/// the second is less if it never is.
+inline glm::dvec2 depthsBetween(const FieldRange& sides, double at, double slope, double start)
+{
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  if (slope == 0.0)
+  {
+    return sides.begin <= at && at <= sides.end ? glm::dvec2(-infinite, infinite)
+                                                : glm::dvec2(0.0, -1.0);
+  }
+  const double p = start + (sides.begin - at) / slope, q = start + (sides.end - at) / slope;
+  return { std::min(p, q), std::max(p, q) };
+}
+
+/// Depths that are in both; the second is less if none is.
+inline glm::dvec2 commonDepths(const glm::dvec2& a, const glm::dvec2& b)
+{
+  return { std::max(a.x, b.x), std::min(a.y, b.y) };
+}
+
+/// The depths at which a ray is in the field, before the eye; the second is less if it misses it.
+inline glm::dvec2 depthsInField(const ShearWarp& geometry, const FieldRay& ray)
+{
+  glm::dvec2 depths = depthsOfField(geometry);
   for (int a = 0; a < 2; ++a)
   {
-    const FieldRange sides(geometry, a);
-    if (ray.slope[a] == 0.0)
-    {
-      far = sides.begin <= ray.at[a] && ray.at[a] <= sides.end ? far : near - 1.0;
-      continue;
-    }
-    const double p = ray.start + (sides.begin - ray.at[a]) / ray.slope[a];
-    const double q = ray.start + (sides.end - ray.at[a]) / ray.slope[a];
-    near = std::max(near, std::min(p, q));
-    far = std::min(far, std::max(p, q));
+    depths = commonDepths(
+      depths, depthsBetween(FieldRange(geometry, a), ray.at[a], ray.slope[a], ray.start));
   }
-  return { near, far };
+  return depths;
 }
 
 /// A value that the field has, and where.
