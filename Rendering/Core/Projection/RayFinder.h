@@ -6,8 +6,8 @@
  * A shear image has one ray, or a few, for each voxel, and the screen's rays lie between them. What
  * is interpolated between the values of four rays need not be anything that the field has. But
  * where they have their maxima, the ray between them nearly always has its own. So it looks in the
- * slices of these maxima, and in the slices beside them. At the field's rim, where the four rays
- * are in the field over very different lengths, it looks in all slices.
+ * slices of these maxima, and in the slices beside them. At the field's rim, where one of the
+ * four rays is in the field for less than half as long as another, it looks in all slices.
  */
 #ifndef splattingRayFinder_h
 #define splattingRayFinder_h
