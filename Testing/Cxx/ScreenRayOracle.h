@@ -397,9 +397,9 @@ double besideWinners(const Scene<T>& scene, const Shown<T>& shown,
     const int winner =
       weight > 0.0 ? image.winners[std::size_t(v) * image.width + u] / splatting::StepsPerSlice : 0;
     const double from = std::max(seen[0], winner - 1.0), to = std::min(seen[1], winner + 1.0);
-    if (weight > 0.0 && (winner + 1 < seen[0] || winner - 1 > seen[1]))
+    if (weight > 0.0 && (winner < seen[0] || winner > seen[1]))
     {
-      // What cuts the ray leaves nothing of that: all is looked at.
+      // The ray does not meet the middle of a winner's slice, or not any more: all is looked at.
       return reference::fieldMaximum(field, ray.line, seen[0], seen[1]);
     }
     if (weight > 0.0 && from < to)

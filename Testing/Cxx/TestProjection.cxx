@@ -294,14 +294,16 @@ bool findOnRay(const Oracle& oracle, const reference::FieldRay& ray, const Ways&
   for (const int winner : winners)
   {
     const double from = std::max(depths[0], winner - 1.0), to = std::min(depths[1], winner + 1.0);
-    if (winner == NoWinner || std::abs(to - from) <= 1e-5)
+    if (winner == NoWinner || std::abs(winner - depths[0]) <= 1e-5 ||
+      std::abs(winner - depths[1]) <= 1e-5)
     {
       return false;
     }
-    // Where the ray is in the field in other slices than a winner's, it looks at all of it.
+    // Where the ray does not meet the middle of a winner's slice, it looks at all of it.
     value = std::max(value,
-      from < to ? reference::fieldMaximum(oracle.volume, ray, from, to)
-                : reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]));
+      winner >= depths[0] && winner <= depths[1]
+        ? reference::fieldMaximum(oracle.volume, ray, from, to)
+        : reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]));
   }
   return true;
 }
@@ -320,8 +322,9 @@ void expectOwnRay(const Oracle& oracle, const Rays& rays, const glm::dvec3& poin
     ray.slope[a] = rays.direction[ray.axes[a]] / rays.direction[ray.axes[2]];
   }
   expected.certain = expected.certain && findOnRay(oracle, ray, ways, winners, expected.value);
+  // Shears are rounded by 2^-25 a slice at most, from the middle of the stack on.
   const double way =
-    0x1p-23 * *std::max_element(oracle.volume.size.begin(), oracle.volume.size.end());
+    0x1p-25 * *std::max_element(oracle.volume.size.begin(), oracle.volume.size.end());
   for (int n = 0; n < 4 && expected.certain; ++n)
   {
     reference::FieldRay displaced = ray;

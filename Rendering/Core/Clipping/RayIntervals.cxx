@@ -19,8 +19,10 @@ namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Rounding = DepthLimits::Rounding;
-// Planes cut before the volume, too: what is between two rays is cut between their depths.
-constexpr double Before = -DepthLimits::Beyond, Beyond = DepthLimits::Beyond;
+constexpr double Before = DepthLimits::Before, Beyond = DepthLimits::Beyond;
+// How far outside the volume it matters where rays are cut, see RayFinder::shownDepths(): a ray
+// between two that are cut inside and outside is cut between their depths.
+constexpr double Outside = 4.0;
 
 /// The half-spaces as RowDepths::cut() and cutFan() take them.
 std::vector<glm::dvec4> asSeen(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces)
@@ -124,7 +126,7 @@ public:
     if (geometry.isPerspective())
     {
       double& eye = geometry.reversed() ? this->Ends.y : this->Ends.x;
-      eye = std::clamp(geometry.eye().z, Before, Beyond);
+      eye = std::clamp(geometry.eye().z, -Outside, Beyond);
     }
   }
 
@@ -179,7 +181,7 @@ private:
     }
   }
 
-  glm::dvec2 Ends{ Before, Beyond }, All{ 0.0 };
+  glm::dvec2 Ends{ -Outside, Beyond }, All{ 0.0 };
   std::vector<glm::dvec2> Columns, Rows;
 };
 }
@@ -244,7 +246,8 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
           const std::size_t first = std::size_t(v) * this->Width + u;
           for (int x = 0; x < count; ++x)
           {
-            this->Depths[first + x] = glm::vec2(depths.near[x], depths.far[x]);
+            this->Depths[first + x] = glm::vec2(glm::clamp(
+              glm::dvec2(depths.near[x], depths.far[x]), -Outside, slices.end + Outside));
           }
           if (depth)
           {

@@ -4,8 +4,9 @@
 
 namespace splatting
 {
-std::vector<glm::dvec2> depthsOf(const Fan& rays, const ShearWarp& geometry, int axis)
+std::vector<glm::dvec2> depthsOf(const ShearWarp& geometry, int axis)
 {
+  const Fan& rays = axis == 0 ? geometry.columns() : geometry.rows();
   const FieldRange sides(geometry, axis);
   const glm::dvec2 all = depthsOfField(geometry);
   std::vector<glm::dvec2> depths;

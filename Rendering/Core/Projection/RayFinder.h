@@ -52,7 +52,7 @@ struct ScreenPixel
 
 /// The depths at which each column (axis 0) or row (1) of an image's rays is in the field, as far
 /// as that side of it is concerned.
-std::vector<glm::dvec2> depthsOf(const Fan& rays, const ShearWarp& geometry, int axis);
+std::vector<glm::dvec2> depthsOf(const ShearWarp& geometry, int axis);
 
 /// Calls f(u, v, weight) for the pixels of an image that a point is interpolated between.
 template <class F>
@@ -88,8 +88,8 @@ public:
       Geometry(geometry),
       Removed(cuts),
       Scene(source.depth),
-      Columns(depthsOf(geometry.columns(), geometry, 0)),
-      Rows(depthsOf(geometry.rows(), geometry, 1)),
+      Columns(depthsOf(geometry, 0)),
+      Rows(depthsOf(geometry, 1)),
       Part(partOf(geometry, source)),
       First(Part.first()),
       Last(geometry.size() - 1),
@@ -203,7 +203,7 @@ private:
 
   /// Calls f(ray, depths) for the parts of the ray that are looked at: from the slice before to the
   /// slice behind the winners of the four rays around it, or all of it at the field's rim and where
-  /// what cuts it leaves nothing of that.
+  /// it does not meet the middle of a winner's slice, or that is cut away.
   template <class F>
   void forWays(const ScreenPixel& pixel, F&& f) const
   {
@@ -229,7 +229,7 @@ private:
     const int count = isAtRim ? 0 : this->findWinners(pixel.shear, slices);
     if (isAtRim ||
       std::any_of(slices.begin(), slices.begin() + count,
-        [&](int k) { return k + 1 < all.x || k - 1 > all.y || !this->isShownAbout(ray, k, all); }))
+        [&](int k) { return k < all.x || k > all.y || !this->isShown(ray, k); }))
     {
       f(ray, all);
       return;
@@ -312,17 +312,6 @@ private:
   {
     return !this->Removed.cropping.cuts() ||
       splatting::isShown(this->Removed.cropping, this->Geometry, { ray(0, k), ray(1, k) }, k);
-  }
-
-  /// Whether it shows something between slices k - 1 and k + 1, of what is between some depths.
-  bool isShownAbout(const FieldRay& ray, int k, const glm::dvec2& depths) const
-  {
-    bool shown = false;
-    for (int n = k - 1; n <= k + 1; ++n)
-    {
-      shown = shown || (n + 0.5 > depths.x && n - 0.5 < depths.y && this->isShown(ray, n));
-    }
-    return shown;
   }
 
   /// Narrows depths between slices k and k + 1 to the halves that belong to samples that count.
