@@ -19,7 +19,7 @@ namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Rounding = DepthLimits::Rounding;
-constexpr double Before = DepthLimits::Before, Beyond = DepthLimits::Beyond;
+constexpr double Beyond = DepthLimits::Beyond;
 // How far outside the volume it matters where rays are cut, see RayFinder::shownDepths(): a ray
 // between two that are cut inside and outside is cut between their depths.
 constexpr double Outside = 4.0;
