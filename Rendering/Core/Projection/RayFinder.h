@@ -190,10 +190,7 @@ private:
   /// How much of an image's ray is in the field; none if the ray has no pixel.
   double wayOf(int u, int v) const
   {
-    const bool exists = v >= 0 && v < static_cast<int>(this->Rows.size()) &&
-      u >= this->Image.spans[v].begin && u < this->Image.spans[v].end &&
-      u < static_cast<int>(this->Columns.size());
-    if (!exists)
+    if (!this->Image.meetsVolume(u, v) || u >= static_cast<int>(this->Columns.size()))
     {
       return 0.0;
     }
