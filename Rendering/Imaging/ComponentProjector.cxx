@@ -441,8 +441,12 @@ void ComponentProjector::FindScreenRays(const std::vector<ShearWarp>& geometries
     {
       continue;
     }
-    channel.Rays.find(channel.Images, geometries, { channel.Index.volume(), first, &cuts, depth },
-      view.viewport, channel.Settings.instructionSet);
+    const bool skips = channel.Settings.acceleration != Acceleration::Dense &&
+      channel.Index.volume().voxels && channel.Index.hasBricks();
+    const RaySource source{ channel.Index.volume(), first, &cuts, depth,
+      skips ? &channel.Index : nullptr };
+    channel.Rays.find(
+      channel.Images, geometries, source, view.viewport, channel.Settings.instructionSet);
     if (this->Ranks && channel.Rays.values().width > 0)
     {
       this->Ranks->Reduce(channel.Rays.values(), geometries.front(), Reduction::Maximum);

@@ -48,6 +48,7 @@ struct Shown
   std::vector<splatting::ShearImage> images;
   std::vector<splatting::Cuts> cuts;
   splatting::ProjectionSettings settings;
+  bool isSameWithoutBricks = true;
 };
 
 template <class T>
@@ -71,9 +72,12 @@ Shown<T> pictureOf(const Scene<T>& scene, reference::Random& random)
   const glm::ivec2& viewport = scene.view.viewport;
   const A none = std::numeric_limits<A>::quiet_NaN();
   shown.pixels.assign(std::size_t(viewport.x) * viewport.y, none);
-  splatting::ScreenRays rays;
-  rays.find(images, scene.images, { index.volume(), glm::ivec3(0), &cuts }, viewport,
-    settings.instructionSet);
+  splatting::RaySource source{ index.volume(), glm::ivec3(0), &cuts };
+  splatting::ScreenRays plain, rays;
+  plain.find(images, scene.images, source, viewport, settings.instructionSet);
+  source.index = index.hasBricks() ? &index : nullptr;
+  rays.find(images, scene.images, source, viewport, settings.instructionSet);
+  shown.isSameWithoutBricks = plain.values().bytes == rays.values().bytes;
   splatting::Warper().warpScalars(images, scene.images, settings.reduction, viewport,
     settings.instructionSet, none, shown.pixels.data(), rays);
   return shown;

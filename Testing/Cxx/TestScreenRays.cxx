@@ -32,6 +32,7 @@ void comparePixels(Checks& check, const Scene<T>& scene, reference::Random& rand
     field.voxels.begin(), field.voxels.end(), [](double voxel) { return std::isnan(voxel); });
   const glm::dvec3 steps = stepsOf(field);
   const Shown<T> picture = pictureOf(scene, random);
+  check(picture.isSameWithoutBricks, "bricks change what screen rays find");
   const bool perspective = !splatting::isParallel(scene.view);
   const double rounding = 4.0 * perspectiveExactBound<T>(low, high) + 1e-9 * (high - low);
   // The eye is rounded to 2^-10 voxels along each axis, slopes to 2^-24.

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace splatting
 {
@@ -36,27 +38,27 @@ public:
   {
     this->Values = values;
     this->Count = count;
+    this->Whole.clear();
     std::fill_n(values, count, Least);
   }
 
-  /// Looks along the ray of one of them.
+  /// Looks near the winners around one of them.
   void find(int pixel, const ScreenPixel& onScreen)
   {
-    this->Finder.forParts(onScreen,
-      [&](const FieldRay& ray, int k, const glm::dvec2& depths)
-      {
-        this->Pixels[this->Parts.count] = pixel;
-        this->Finder.add(ray, k, depths, this->Parts);
-        if (this->Parts.count == this->Parts.most)
-        {
-          this->take();
-        }
-      });
+    if (this->Finder.forPartsAtWinners(onScreen, this->adding(pixel)))
+    {
+      this->Whole.push_back({ pixel, onScreen });
+    }
   }
 
-  /// Pixels without a part get NaN.
+  /// Looks along the whole rays of some, where there may be more. Pixels without a part get NaN.
   void finish()
   {
+    this->take();
+    for (const auto& [pixel, onScreen] : this->Whole)
+    {
+      this->Finder.forPartsAbove(this->Values[pixel], onScreen, this->adding(pixel));
+    }
     this->take();
     std::replace(
       this->Values, this->Values + this->Count, Least, std::numeric_limits<A>::quiet_NaN());
@@ -65,8 +67,23 @@ public:
 private:
   static constexpr A Least = -std::numeric_limits<A>::infinity();
 
+  /// Adds parts of a pixel's ray.
+  auto adding(int pixel)
+  {
+    return [this, pixel](const FieldRay& ray, int k, const glm::dvec2& depths)
+    {
+      this->Pixels[this->Parts.count] = pixel;
+      this->Finder.add(ray, k, depths, this->Parts);
+      if (this->Parts.count == this->Parts.most)
+      {
+        this->take();
+      }
+    };
+  }
+
   void take()
   {
+    this->Finder.load(this->Parts);
     this->Loops.findLargest(this->Parts);
     for (int n = 0; n < this->Parts.count; ++n)
     {
@@ -80,6 +97,7 @@ private:
   const WorksheetLoops<A>& Loops;
   A* Values = nullptr;
   int Count = 0;
+  std::vector<std::pair<int, ScreenPixel>> Whole; // pixels whose rays are looked along
   FieldParts<A> Parts{};
   std::array<int, FieldParts<A>::most> Pixels;
 };

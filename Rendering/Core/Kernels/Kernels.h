@@ -380,6 +380,7 @@ struct FieldParts
 {
   static constexpr int most = 128;
   int count = 0;
+  int first[3][most]; ///< column, row and slice of the lowest voxel
   /// Where rays are at the first of the two slices, from the lowest column and row of voxels that
   /// the part needs, and what they move by up to the second.
   A x[most], y[most], dx[most], dy[most];

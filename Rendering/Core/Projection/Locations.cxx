@@ -78,7 +78,7 @@ double extremumOf(
   const PermutedVoxels<T>& voxels, const ShearWarp& geometry, int u, int v, int k, bool least)
 {
   const FieldRay ray = rayOfPixel(geometry, u, v);
-  const glm::dvec2 depths = depthsInField(geometry, ray), faces = geometry.faces(k);
+  const glm::dvec2 depths = FieldBox(geometry).depths(ray), faces = geometry.faces(k);
   Extremum best{ static_cast<double>(k) };
   FieldOnRay<T>(voxels, geometry, glm::ivec3(0))
     .take(

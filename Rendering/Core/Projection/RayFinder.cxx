@@ -7,13 +7,11 @@ namespace splatting
 std::vector<glm::dvec2> depthsOf(const ShearWarp& geometry, int axis)
 {
   const Fan& rays = axis == 0 ? geometry.columns() : geometry.rows();
-  const FieldRange sides(geometry, axis);
-  const glm::dvec2 all = depthsOfField(geometry);
+  const FieldBox box(geometry);
   std::vector<glm::dvec2> depths;
   for (int n = 0; n < geometry.rayCount()[axis]; ++n)
   {
-    depths.push_back(
-      commonDepths(all, depthsBetween(sides, rays.at[n], rays.slope[n], geometry.reference())));
+    depths.push_back(box.depths(axis, rays.at[n], rays.slope[n]));
   }
   return depths;
 }

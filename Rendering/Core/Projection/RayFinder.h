@@ -7,7 +7,8 @@
  * is interpolated between the values of four rays need not be anything that the field has. But
  * where they have their maxima, the ray between them nearly always has its own. So it looks in the
  * slices of these maxima, and in the slices beside them. At the field's rim, where one of the
- * four rays is in the field for less than half as long as another, it looks in all slices.
+ * four rays is in the field for less than half as long as another, and where it does not meet the
+ * middle of a maximum's slice, it looks in all slices that can have more.
  */
 #ifndef splattingRayFinder_h
 #define splattingRayFinder_h
@@ -18,6 +19,7 @@
 #include "Projection/Piece.h"
 #include "Projection/ShearImage.h"
 #include "Sampling/FieldOnRay.h"
+#include "Volume/VolumeIndex.h"
 
 #include <algorithm>
 #include <array>
@@ -35,40 +37,47 @@ struct RaySource
   glm::ivec3 first{ 0 };                   ///< the piece's first voxel
   const std::vector<Cuts>* cuts = nullptr; ///< of each image
   const SceneDepth* depth = nullptr;       ///< of what else is in the scene, if there is anything
+  VolumeIndex* index = nullptr;            ///< whose bricks tell which slices can be left out
 };
 
 /// A pixel of the screen, and where it lies between a shear image's.
 struct ScreenPixel
 {
   glm::ivec2 screen;
-  glm::dvec2 shear;
+  glm::ivec2 low;   ///< the first of the four pixels around it
+  glm::dvec2 share; ///< of the way to the next column and row
 
   ScreenPixel(const ShearWarp& geometry, const glm::ivec2& pixel) : screen(pixel)
   {
     const glm::dvec3 homogeneous = geometry.screenToShear() * glm::dvec3(glm::dvec2(pixel), 1.0);
-    this->shear = glm::dvec2(homogeneous) / homogeneous.z;
+    const glm::dvec2 shear = glm::dvec2(homogeneous) / homogeneous.z;
+    for (int a = 0; a < 2; ++a)
+    {
+      this->low[a] = static_cast<int>(shear[a]) - (shear[a] < 0.0);
+      this->share[a] = shear[a] - this->low[a];
+    }
+  }
+
+  /// Calls f(u, v, weight) for the pixels that it is interpolated between.
+  template <class F>
+  void forNeighbours(F&& f) const
+  {
+    for (int n = 0; n < 4; ++n)
+    {
+      const int i = n & 1, j = n >> 1;
+      const double weight =
+        (i ? this->share.x : 1.0 - this->share.x) * (j ? this->share.y : 1.0 - this->share.y);
+      if (weight > 0.0)
+      {
+        f(this->low.x + i, this->low.y + j, weight);
+      }
+    }
   }
 };
 
 /// The depths at which each column (axis 0) or row (1) of an image's rays is in the field, as far
 /// as that side of it is concerned.
 std::vector<glm::dvec2> depthsOf(const ShearWarp& geometry, int axis);
-
-/// Calls f(u, v, weight) for the pixels of an image that a point is interpolated between.
-template <class F>
-void forWeightedPixels(const glm::dvec2& pixel, F&& f)
-{
-  const glm::dvec2 low = glm::floor(pixel), share = pixel - low;
-  for (int n = 0; n < 4; ++n)
-  {
-    const int i = n & 1, j = n >> 1;
-    const double weight = (i ? share.x : 1.0 - share.x) * (j ? share.y : 1.0 - share.y);
-    if (weight > 0.0)
-    {
-      f(static_cast<int>(low.x) + i, static_cast<int>(low.y) + j, weight);
-    }
-  }
-}
 
 /**
  * Finds the maxima along the rays of one image's screen pixels.
@@ -88,6 +97,7 @@ public:
       Geometry(geometry),
       Removed(cuts),
       Scene(source.depth),
+      Extent(geometry),
       Columns(depthsOf(geometry, 0)),
       Rows(depthsOf(geometry, 1)),
       Part(partOf(geometry, source)),
@@ -97,6 +107,7 @@ public:
         geometry.size(), glm::ivec3(reachOf(Quality::Exact).layers()))),
       Selects(cuts.cropping.cuts() || this->Interior.begin != glm::ivec3(0) ||
         this->Interior.end != geometry.size()),
+      Bricks(source.index ? &source.index->bricks(geometry.principalAxis()) : nullptr),
       Voxels(source.volume, this->Part),
       Field(this->Voxels, geometry, this->Part.first())
   {
@@ -106,31 +117,40 @@ public:
   Extremum find(const ScreenPixel& pixel) const
   {
     Extremum best{ 0.0 };
-    this->forWays(pixel,
-      [&](const FieldRay& ray, const glm::dvec2& depths)
-      {
-        this->Field.take(
-          ray, depths, false, [&](int k) { return this->isShown(ray, k); }, best);
-      });
+    const Way way = this->wayOf(pixel);
+    const auto take = [&](const glm::dvec2& depths)
+    {
+      this->Field.take(
+        way.ray, depths, false, [&](int k) { return this->isShown(way.ray, k); }, best);
+    };
+    way.isWhole ? take(way.shown) : way.forWinners(take);
     return best;
   }
 
-  /// Calls f(ray, k, depths) for the parts of the same ray, each between slices k and k + 1.
+  /// Calls f(ray, k, depths) for the parts of the same ray that are near winners, each between
+  /// slices k and k + 1. Returns whether the others have to be looked at, too.
   template <class F>
-  void forParts(const ScreenPixel& pixel, F&& f) const
+  bool forPartsAtWinners(const ScreenPixel& pixel, F&& f) const
   {
-    this->forWays(pixel,
-      [&](const FieldRay& ray, const glm::dvec2& depths)
+    const Way way = this->wayOf(pixel);
+    way.forWinners([&](const glm::dvec2& depths) { this->forParts(way.ray, depths, f); });
+    return way.isWhole;
+  }
+
+  /// The same for all parts that can have more than a value.
+  template <class F>
+  void forPartsAbove(Accumulator<T> value, const ScreenPixel& pixel, F&& f) const
+  {
+    const Way way = this->wayOf(pixel);
+    for (glm::dvec2 some = way.shown; some.x < way.shown.y; some.x = some.y)
+    {
+      const int layer = floorOf(some.x + BrickDepth) / BrickDepth; // the next one
+      some.y = std::min<double>(way.shown.y, layer * BrickDepth);
+      if (!this->Bricks || this->boundOf(way.ray, some) > value)
       {
-        for (int k = floorOf(depths.x); k < depths.y; ++k)
-        {
-          glm::dvec2 some(std::max<double>(depths.x, k), std::min<double>(depths.y, k + 1));
-          if (!this->Selects || this->narrow(ray, k, some))
-          {
-            f(ray, k, some);
-          }
-        }
-      });
+        this->forParts(way.ray, some, f);
+      }
+    }
   }
 
   /// Adds such a part to those that are looked at together.
@@ -142,24 +162,42 @@ public:
     const glm::dvec2 at(ray(0, k), ray(1, k));
     const glm::dvec2 from = depths - double(k);
     const glm::dvec2 low = glm::min(at + from.x * ray.slope, at + from.y * ray.slope);
-    const int i = floorOf(low.x), j = floorOf(low.y);
-    parts.x[n] = static_cast<A>(at.x - i);
-    parts.y[n] = static_cast<A>(at.y - j);
+    const glm::ivec3 first(floorOf(low.x), floorOf(low.y), k);
+    for (int a = 0; a < 3; ++a)
+    {
+      parts.first[a][n] = first[a];
+    }
+    parts.x[n] = static_cast<A>(at.x - first.x);
+    parts.y[n] = static_cast<A>(at.y - first.y);
     parts.dx[n] = static_cast<A>(ray.slope.x);
     parts.dy[n] = static_cast<A>(ray.slope.y);
     parts.from[n] = static_cast<A>(from.x);
     parts.to[n] = static_cast<A>(from.y);
-    const T* const voxels = this->Voxels.pointer(0, 0, 0);
-    const std::array<std::ptrdiff_t, 3> columns{ this->place(0, i), this->place(0, i + 1),
-      this->place(0, i + 2) };
-    for (int z = 0; z < 2; ++z)
+  }
+
+  /// Gives parts their voxels. A loop of its own, because nothing in it has to be waited for: the
+  /// memory that several parts need is fetched at the same time.
+  void load(FieldParts<Accumulator<T>>& parts) const
+  {
+    for (int n = 0; n < parts.count; ++n)
     {
-      for (int y = 0; y < 3; ++y)
+      std::array<std::array<std::ptrdiff_t, 3>, 3> places;
+      for (int a = 0; a < 3; ++a)
       {
-        const T* const row = voxels + this->place(2, k + z) + this->place(1, j + y);
-        for (int x = 0; x < 3; ++x)
+        for (int m = 0; m < 3; ++m)
         {
-          parts.voxels[z][y][x][n] = static_cast<A>(row[columns[x]]);
+          places[a][m] = this->place(a, parts.first[a][n] + m);
+        }
+      }
+      for (int z = 0; z < 2; ++z)
+      {
+        for (int y = 0; y < 3; ++y)
+        {
+          const T* const row = this->Voxels.pointer(0, 0, 0) + (places[2][z] + places[1][y]);
+          for (int x = 0; x < 3; ++x)
+          {
+            parts.voxels[z][y][x][n] = static_cast<Accumulator<T>>(row[places[0][x]]);
+          }
         }
       }
     }
@@ -175,20 +213,20 @@ private:
 
   /// Whether one of the four rays misses the field, or is in it for less than half as long as
   /// another.
-  bool isAtRim(const glm::dvec2& pixel) const
+  bool isAtRim(const ScreenPixel& pixel) const
   {
     double shortest = std::numeric_limits<double>::infinity(), longest = 0.0;
-    forWeightedPixels(pixel,
+    pixel.forNeighbours(
       [&](int u, int v, double)
       {
-        const double way = this->wayOf(u, v);
-        shortest = std::min(shortest, way);
-        longest = std::max(longest, way);
+        const double length = this->lengthInField(u, v);
+        shortest = std::min(shortest, length);
+        longest = std::max(longest, length);
       });
     return !(shortest > 0.0 && shortest >= 0.5 * longest);
   }
   /// How much of an image's ray is in the field; none if the ray has no pixel.
-  double wayOf(int u, int v) const
+  double lengthInField(int u, int v) const
   {
     if (!this->Image.meetsVolume(u, v) || u >= static_cast<int>(this->Columns.size()))
     {
@@ -198,77 +236,86 @@ private:
     return depths.y - depths.x;
   }
 
-  /// Calls f(ray, depths) for the parts of the ray that are looked at: from the slice before to the
-  /// slice behind the winners of the four rays around it, or all of it at the field's rim and where
-  /// it does not meet the middle of a winner's slice, or that is cut away.
-  template <class F>
-  void forWays(const ScreenPixel& pixel, F&& f) const
+  /// Where along a ray may be looked.
+  struct Way
   {
-    const FieldRay ray = rayThrough(this->Geometry, pixel.shear);
-    const glm::dvec2 field = depthsInField(this->Geometry, ray);
+    explicit Way(const FieldRay& r) : ray(r) {}
+
+    FieldRay ray;
+    glm::dvec2 shown{ 0.0, -1.0 }; ///< where it is in the field and not cut away
+    std::array<int, 4> winners;    ///< slices of those of the four rays around it, in order
+    int count = 0;
+    bool isWhole = false; ///< whether to look along all of it, else near winners
+
+    /// Calls f(depths) from the slice before to the slice behind each winner.
+    template <class F>
+    void forWinners(F&& f) const
+    {
+      for (int n = 0; n < this->count;)
+      {
+        glm::dvec2 some(this->winners[n] - 1, this->winners[n] + 1);
+        while (++n < this->count && this->winners[n] - 1 <= some.y)
+        {
+          some.y = this->winners[n] + 1;
+        }
+        f(commonDepths(this->shown, some));
+      }
+    }
+  };
+
+  Way wayOf(const ScreenPixel& pixel) const
+  {
+    Way way(rayBetween(this->Geometry, pixel.low, pixel.share));
+    const glm::dvec2 field = this->Extent.depths(way.ray);
     if (!(field.x < field.y + Touch))
     {
-      return;
+      return way;
     }
-    glm::dvec2 all = this->shownDepths(pixel.shear);
+    glm::dvec2 shown = this->shownDepths(pixel);
     if (this->Scene)
     {
-      this->Scene->endRay(this->Geometry, pixel.screen, ray.at, ray.slope, all.x, all.y);
+      this->Scene->endRay(
+        this->Geometry, pixel.screen, way.ray.at, way.ray.slope, shown.x, shown.y);
     }
-    all = { std::max(field.x, all.x), std::min(field.y, all.y) };
+    way.shown = commonDepths(field, shown);
     // What is thinner than rounding is looked at as well.
-    if (std::abs(all.y - all.x) < Touch)
+    if (std::abs(way.shown.y - way.shown.x) < Touch)
     {
-      all = 0.5 * (all.x + all.y) + glm::dvec2(-0.5, 0.5) * Touch;
+      way.shown = 0.5 * (way.shown.x + way.shown.y) + glm::dvec2(-0.5, 0.5) * Touch;
     }
-    const bool isAtRim = this->isAtRim(pixel.shear);
-    std::array<int, 4> slices;
-    const int count = isAtRim ? 0 : this->findWinners(pixel.shear, slices);
-    if (isAtRim ||
-      std::any_of(slices.begin(), slices.begin() + count,
-        [&](int k) { return k < all.x || k > all.y || !this->isShown(ray, k); }))
-    {
-      f(ray, all);
-      return;
-    }
-    for (int n = 0; n < count;)
-    {
-      glm::dvec2 some(slices[n] - 1, slices[n] + 1);
-      while (++n < count && slices[n] - 1 <= some.y)
-      {
-        some.y = slices[n] + 1;
-      }
-      f(ray, glm::dvec2(std::max(all.x, some.x), std::min(all.y, some.y)));
-    }
+    this->findWinners(pixel, way);
+    way.isWhole = this->isAtRim(pixel) ||
+      std::any_of(way.winners.begin(), way.winners.begin() + way.count,
+        [&](int k) { return k < way.shown.x || k > way.shown.y || !this->isShown(way.ray, k); });
+    return way;
   }
 
-  /// The slices of the four rays' winners in ascending order, and how many they are.
-  int findWinners(const glm::dvec2& pixel, std::array<int, 4>& slices) const
+  void findWinners(const ScreenPixel& pixel, Way& way) const
   {
-    int count = 0;
-    forWeightedPixels(pixel,
+    pixel.forNeighbours(
       [&](int u, int v, double)
       {
-        const std::int32_t step =
-          this->Image.winners[static_cast<std::size_t>(v) * this->Image.width + u];
+        // Beside the image there is none.
+        const std::int32_t step = this->Image.meetsVolume(u, v)
+          ? this->Image.winners[static_cast<std::size_t>(v) * this->Image.width + u]
+          : -1;
         if (step < 0)
         {
           return;
         }
         const int k = step / StepsPerSlice;
-        int n = count++;
-        for (; n > 0 && slices[n - 1] > k; --n)
+        int n = way.count++;
+        for (; n > 0 && way.winners[n - 1] > k; --n)
         {
-          slices[n] = slices[n - 1];
+          way.winners[n] = way.winners[n - 1];
         }
-        slices[n] = k;
+        way.winners[n] = k;
       });
-    return count;
   }
 
   /// Where the ray is cut: as the four rays that have samples are in the mean, where they are cut
   /// at nearly the same depth, else as the nearest of them.
-  glm::dvec2 shownDepths(const glm::dvec2& pixel) const
+  glm::dvec2 shownDepths(const ScreenPixel& pixel) const
   {
     const Span& slices = this->Geometry.slices();
     const glm::dvec2 all(slices.begin - 0.5, slices.end - 0.5);
@@ -280,7 +327,7 @@ private:
     constexpr double infinite = std::numeric_limits<double>::infinity();
     glm::dvec2 shown = all, sum(0.0), least(infinite), most(-infinite);
     double heaviest = 0.0, weights = 0.0;
-    forWeightedPixels(pixel,
+    pixel.forNeighbours(
       [&](int u, int v, double weight)
       {
         if (this->Image.covers(u, v))
@@ -299,6 +346,44 @@ private:
       shown[a] = most[a] - least[a] <= Together ? sum[a] / weights : shown[a];
     }
     return glm::clamp(shown, all.x, all.y);
+  }
+
+  /// Calls f(ray, k, depths) for the parts of a ray between depths.
+  template <class F>
+  void forParts(const FieldRay& ray, const glm::dvec2& depths, F&& f) const
+  {
+    for (int k = floorOf(depths.x); k < depths.y; ++k)
+    {
+      glm::dvec2 some(std::max<double>(depths.x, k), std::min<double>(depths.y, k + 1));
+      if (!this->Selects || this->narrow(ray, k, some))
+      {
+        f(ray, k, some);
+      }
+    }
+  }
+
+  /// The largest voxel of the bricks that a ray meets between depths; no part has more.
+  T boundOf(const FieldRay& ray, const glm::dvec2& depths) const
+  {
+    constexpr int widths[3] = { BrickWidth, BrickHeight, BrickDepth };
+    glm::ivec3 low, high;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double p = ray(a, depths.x), q = ray(a, depths.y);
+      const int last = this->Part.size()[a] - 1;
+      low[a] = std::clamp(floorOf(std::min(p, q)) - this->First[a], 0, last) / widths[a];
+      high[a] = std::clamp(floorOf(std::max(p, q)) + 1 - this->First[a], 0, last) / widths[a];
+    }
+    T bound = this->Bricks->row<T>(low.y, low.z)[low.x];
+    for (int k = low.z; k <= high.z; ++k)
+    {
+      for (int j = low.y; j <= high.y; ++j)
+      {
+        const T* const row = this->Bricks->row<T>(j, k);
+        bound = std::max(bound, *std::max_element(row + low.x, row + high.x + 1));
+      }
+    }
+    return bound;
   }
 
   /// Of depths that are at least -1, which is faster than std::floor().
@@ -346,11 +431,13 @@ private:
   const ShearWarp& Geometry;
   const Cuts& Removed;
   const SceneDepth* Scene;
+  FieldBox Extent;
   std::vector<glm::dvec2> Columns, Rows; // the depths at which their rays may be in the field
   ShearWarp Part;
   glm::ivec3 First, Last; // voxels, of the part and of the volume
   Box Interior;
   bool Selects; // whether cropping or being a piece leaves out some
+  const BrickMaxima* Bricks;
   PermutedVoxels<T> Voxels;
   FieldOnRay<T> Field;
 };

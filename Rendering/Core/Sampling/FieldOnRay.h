@@ -36,8 +36,11 @@ inline FieldRay rayOfPixel(const ShearWarp& geometry, int u, int v)
     geometry.reference() };
 }
 
-/// The ray of a point between pixels.
-inline FieldRay rayThrough(const ShearWarp& geometry, const glm::dvec2& pixel)
+/// The ray of a point between four pixels.
+/// @param low    the first of them
+/// @param share  of the way to the next column and row, 0 to 1
+inline FieldRay rayBetween(
+  const ShearWarp& geometry, const glm::ivec2& low, const glm::dvec2& share)
 {
   FieldRay ray;
   ray.start = geometry.reference();
@@ -45,35 +48,13 @@ inline FieldRay rayThrough(const ShearWarp& geometry, const glm::dvec2& pixel)
   {
     const Fan& fan = a == 0 ? geometry.columns() : geometry.rows();
     const int last = geometry.rayCount()[a] - 1;
-    const int n = std::clamp(static_cast<int>(std::floor(pixel[a])), 0, std::max(last - 1, 0));
-    const int next = std::min(n + 1, last);
-    ray.at[a] = fan.at[n] + (pixel[a] - n) * (fan.at[next] - fan.at[n]);
-    ray.slope[a] = fan.slope[n] + (pixel[a] - n) * (fan.slope[next] - fan.slope[n]);
+    // Beyond the image rays go on as between its last two pixels.
+    const int n = std::clamp(low[a], 0, std::max(last - 1, 0)), next = std::min(n + 1, last);
+    const double way = low[a] - n + share[a];
+    ray.at[a] = fan.at[n] + way * (fan.at[next] - fan.at[n]);
+    ray.slope[a] = fan.slope[n] + way * (fan.slope[next] - fan.slope[n]);
   }
   return ray;
-}
-
-/// The depths of the field before the eye.
-inline glm::dvec2 depthsOfField(const ShearWarp& geometry)
-{
-  const Span& slices = geometry.slices();
-  const FieldRange range(geometry, 2);
-  return { std::max(range.begin, geometry.faces(slices.begin).x),
-    std::min(range.end, geometry.faces(slices.end - 1).y) };
-}
-
-/// The depths at which a ray, of which one coordinate is given, is between two sides of the field;
-/// the second is less if it never is.
-inline glm::dvec2 depthsBetween(const FieldRange& sides, double at, double slope, double start)
-{
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  if (slope == 0.0)
-  {
-    return sides.begin <= at && at <= sides.end ? glm::dvec2(-infinite, infinite)
-                                                : glm::dvec2(0.0, -1.0);
-  }
-  const double p = start + (sides.begin - at) / slope, q = start + (sides.end - at) / slope;
-  return { std::min(p, q), std::max(p, q) };
 }
 
 /// Depths that are in both; the second is less if none is.
@@ -82,17 +63,44 @@ inline glm::dvec2 commonDepths(const glm::dvec2& a, const glm::dvec2& b)
   return { std::max(a.x, b.x), std::min(a.y, b.y) };
 }
 
-/// The depths at which a ray is in the field, before the eye; the second is less if it misses it.
-inline glm::dvec2 depthsInField(const ShearWarp& geometry, const FieldRay& ray)
+/// Where rays are in the field, before the eye.
+class FieldBox
 {
-  glm::dvec2 depths = depthsOfField(geometry);
-  for (int a = 0; a < 2; ++a)
+public:
+  explicit FieldBox(const ShearWarp& geometry)
+    : Start(geometry.reference()),
+      Sides{ FieldRange(geometry, 0), FieldRange(geometry, 1) }
   {
-    depths = commonDepths(
-      depths, depthsBetween(FieldRange(geometry, a), ray.at[a], ray.slope[a], ray.start));
+    const Span& slices = geometry.slices();
+    const FieldRange range(geometry, 2);
+    this->Depths = { std::max(range.begin, geometry.faces(slices.begin).x),
+      std::min(range.end, geometry.faces(slices.end - 1).y) };
   }
-  return depths;
-}
+
+  /// The depths at which a ray is in it as far as one of the ray's coordinates tells; the second is
+  /// less if it never is.
+  glm::dvec2 depths(int axis, double at, double slope) const
+  {
+    const FieldRange& sides = this->Sides[axis];
+    if (slope == 0.0)
+    {
+      return sides.begin <= at && at <= sides.end ? this->Depths : glm::dvec2(0.0, -1.0);
+    }
+    const double p = this->Start + (sides.begin - at) / slope;
+    const double q = this->Start + (sides.end - at) / slope;
+    return commonDepths(this->Depths, { std::min(p, q), std::max(p, q) });
+  }
+  glm::dvec2 depths(const FieldRay& ray) const
+  {
+    return commonDepths(
+      this->depths(0, ray.at.x, ray.slope.x), this->depths(1, ray.at.y, ray.slope.y));
+  }
+
+private:
+  double Start;
+  std::array<FieldRange, 2> Sides;
+  glm::dvec2 Depths;
+};
 
 /// A value that the field has, and where.
 struct Extremum
