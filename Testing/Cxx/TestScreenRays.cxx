@@ -7,6 +7,7 @@
 #include "ScreenRayOracle.h"
 #include "WideViews.h"
 
+#include <algorithm>
 #include <iostream>
 #include <string>
 
@@ -114,12 +115,28 @@ splatting::Cropping anyCropping(const std::array<int, 3>& size, reference::Rando
   return cropping;
 }
 
+/// Leaves few voxels above the lowest, so that bricks rule most of a ray out.
+template <class T>
+void thinOut(reference::Volume<T>& volume, reference::Random& random)
+{
+  const T lowest = *std::min_element(volume.voxels.begin(), volume.voxels.end());
+  for (T& voxel : volume.voxels)
+  {
+    const int kept = random.uniform(0, 15);
+    voxel = kept ? lowest : voxel;
+  }
+}
+
 /// A view and cuts of a volume of noise.
 template <class T>
 Scene<T> anyScene(const std::array<int, 3>& size, bool perspective, reference::Random& random)
 {
   Scene<T> scene;
   scene.volume = wholeRangeNoise<T>(size, random);
+  if (random.uniform(0, 1))
+  {
+    thinOut(scene.volume, random);
+  }
   scene.view = magnified(perspective ? randomPerspective(size, random) : randomView(size, random));
   scene.view.showsBoxes = random.uniform(0, 2) == 0;
   if (random.uniform(0, 3) == 0)
