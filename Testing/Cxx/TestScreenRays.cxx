@@ -122,8 +122,8 @@ void thinOut(reference::Volume<T>& volume, reference::Random& random)
   const T lowest = *std::min_element(volume.voxels.begin(), volume.voxels.end());
   for (T& voxel : volume.voxels)
   {
-    const int kept = random.uniform(0, 15);
-    voxel = kept ? lowest : voxel;
+    const bool isKept = random.uniform(0, 15) == 0;
+    voxel = isKept ? voxel : lowest;
   }
 }
 

@@ -38,27 +38,28 @@ public:
   {
     this->Values = values;
     this->Count = count;
-    this->Whole.clear();
     std::fill_n(values, count, Least);
   }
 
-  /// Looks near the winners around one of them.
+  /// Looks near the winners around one of them, and along the whole ray where that is not enough.
   void find(int pixel, const ScreenPixel& onScreen)
   {
-    if (this->Finder.forPartsAtWinners(onScreen, this->adding(pixel)))
+    const Way way = this->Finder.wayOf(onScreen);
+    this->Finder.forPartsAtWinners(way, this->adding(pixel));
+    if (way.isWhole)
     {
-      this->Whole.push_back({ pixel, onScreen });
+      this->Whole[this->WholeCount++] = { pixel, way };
+      if (this->WholeCount == static_cast<int>(this->Whole.size()))
+      {
+        this->lookAlongWhole();
+      }
     }
   }
 
-  /// Looks along the whole rays of some, where there may be more. Pixels without a part get NaN.
+  /// Pixels without a part get NaN.
   void finish()
   {
-    this->take();
-    for (const auto& [pixel, onScreen] : this->Whole)
-    {
-      this->Finder.forPartsAbove(this->Values[pixel], onScreen, this->adding(pixel));
-    }
+    this->lookAlongWhole();
     this->take();
     std::replace(
       this->Values, this->Values + this->Count, Least, std::numeric_limits<A>::quiet_NaN());
@@ -81,6 +82,18 @@ private:
     };
   }
 
+  /// Looks along whole rays, where they can have more than near their winners.
+  void lookAlongWhole()
+  {
+    this->take();
+    for (int n = 0; n < this->WholeCount; ++n)
+    {
+      const auto& [pixel, way] = this->Whole[n];
+      this->Finder.forPartsAbove(this->Values[pixel], way, this->adding(pixel));
+    }
+    this->WholeCount = 0;
+  }
+
   void take()
   {
     this->Finder.load(this->Parts);
@@ -97,7 +110,8 @@ private:
   const WorksheetLoops<A>& Loops;
   A* Values = nullptr;
   int Count = 0;
-  std::vector<std::pair<int, ScreenPixel>> Whole; // pixels whose rays are looked along
+  std::array<std::pair<int, Way>, 64> Whole; // pixels whose whole rays are to be looked along
+  int WholeCount = 0;
   FieldParts<A> Parts{};
   std::array<int, FieldParts<A>::most> Pixels;
 };

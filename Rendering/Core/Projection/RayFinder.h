@@ -53,7 +53,7 @@ struct ScreenPixel
     const glm::dvec2 shear = glm::dvec2(homogeneous) / homogeneous.z;
     for (int a = 0; a < 2; ++a)
     {
-      this->low[a] = static_cast<int>(shear[a]) - (shear[a] < 0.0);
+      this->low[a] = floorOf(shear[a]);
       this->share[a] = shear[a] - this->low[a];
     }
   }
@@ -78,6 +78,31 @@ struct ScreenPixel
 /// The depths at which each column (axis 0) or row (1) of an image's rays is in the field, as far
 /// as that side of it is concerned.
 std::vector<glm::dvec2> depthsOf(const ShearWarp& geometry, int axis);
+
+/// Where to look along a ray.
+struct Way
+{
+  FieldRay ray;
+  glm::dvec2 shown{ 0.0, -1.0 }; ///< where it is in the field and not cut away
+  std::array<int, 4> winners;    ///< slices of those of the four rays around it, in order
+  int count = 0;
+  bool isWhole = false; ///< whether to look along all of it, else near winners
+
+  /// Calls f(depths) from the slice before to the slice behind each winner.
+  template <class F>
+  void forWinners(F&& f) const
+  {
+    for (int n = 0; n < this->count;)
+    {
+      glm::dvec2 some(this->winners[n] - 1, this->winners[n] + 1);
+      while (++n < this->count && this->winners[n] - 1 <= some.y)
+      {
+        some.y = this->winners[n] + 1;
+      }
+      f(commonDepths(this->shown, some));
+    }
+  }
+};
 
 /**
  * Finds the maxima along the rays of one image's screen pixels.
@@ -127,21 +152,47 @@ public:
     return best;
   }
 
-  /// Calls f(ray, k, depths) for the parts of the same ray that are near winners, each between
-  /// slices k and k + 1. Returns whether the others have to be looked at, too.
-  template <class F>
-  bool forPartsAtWinners(const ScreenPixel& pixel, F&& f) const
+  /// Where to look along a pixel's ray.
+  Way wayOf(const ScreenPixel& pixel) const
   {
-    const Way way = this->wayOf(pixel);
-    way.forWinners([&](const glm::dvec2& depths) { this->forParts(way.ray, depths, f); });
-    return way.isWhole;
+    Way way;
+    way.ray = rayBetween(this->Geometry, pixel.low, pixel.share);
+    const glm::dvec2 field = this->Extent.depths(way.ray);
+    if (!(field.x < field.y + Touch))
+    {
+      return way;
+    }
+    glm::dvec2 shown = this->shownDepths(pixel);
+    if (this->Scene)
+    {
+      this->Scene->endRay(
+        this->Geometry, pixel.screen, way.ray.at, way.ray.slope, shown.x, shown.y);
+    }
+    way.shown = commonDepths(field, shown);
+    // What is thinner than rounding is looked at as well.
+    if (std::abs(way.shown.y - way.shown.x) < Touch)
+    {
+      way.shown = 0.5 * (way.shown.x + way.shown.y) + glm::dvec2(-0.5, 0.5) * Touch;
+    }
+    this->findWinners(pixel, way);
+    way.isWhole = this->isAtRim(pixel) ||
+      std::any_of(way.winners.begin(), way.winners.begin() + way.count,
+        [&](int k) { return k < way.shown.x || k > way.shown.y || !this->isShown(way.ray, k); });
+    return way;
   }
 
-  /// The same for all parts that can have more than a value.
+  /// Calls f(ray, k, depths) for the parts of a ray that are near winners, each between slices k
+  /// and k + 1.
   template <class F>
-  void forPartsAbove(Accumulator<T> value, const ScreenPixel& pixel, F&& f) const
+  void forPartsAtWinners(const Way& way, F&& f) const
   {
-    const Way way = this->wayOf(pixel);
+    way.forWinners([&](const glm::dvec2& depths) { this->forParts(way.ray, depths, f); });
+  }
+
+  /// The same for all its parts that can have more than a value.
+  template <class F>
+  void forPartsAbove(Accumulator<T> value, const Way& way, F&& f) const
+  {
     for (glm::dvec2 some = way.shown; some.x < way.shown.y; some.x = some.y)
     {
       const int layer = floorOf(some.x + BrickDepth) / BrickDepth; // the next one
@@ -234,60 +285,6 @@ private:
     }
     const glm::dvec2 depths = commonDepths(this->Columns[u], this->Rows[v]);
     return depths.y - depths.x;
-  }
-
-  /// Where along a ray may be looked.
-  struct Way
-  {
-    explicit Way(const FieldRay& r) : ray(r) {}
-
-    FieldRay ray;
-    glm::dvec2 shown{ 0.0, -1.0 }; ///< where it is in the field and not cut away
-    std::array<int, 4> winners;    ///< slices of those of the four rays around it, in order
-    int count = 0;
-    bool isWhole = false; ///< whether to look along all of it, else near winners
-
-    /// Calls f(depths) from the slice before to the slice behind each winner.
-    template <class F>
-    void forWinners(F&& f) const
-    {
-      for (int n = 0; n < this->count;)
-      {
-        glm::dvec2 some(this->winners[n] - 1, this->winners[n] + 1);
-        while (++n < this->count && this->winners[n] - 1 <= some.y)
-        {
-          some.y = this->winners[n] + 1;
-        }
-        f(commonDepths(this->shown, some));
-      }
-    }
-  };
-
-  Way wayOf(const ScreenPixel& pixel) const
-  {
-    Way way(rayBetween(this->Geometry, pixel.low, pixel.share));
-    const glm::dvec2 field = this->Extent.depths(way.ray);
-    if (!(field.x < field.y + Touch))
-    {
-      return way;
-    }
-    glm::dvec2 shown = this->shownDepths(pixel);
-    if (this->Scene)
-    {
-      this->Scene->endRay(
-        this->Geometry, pixel.screen, way.ray.at, way.ray.slope, shown.x, shown.y);
-    }
-    way.shown = commonDepths(field, shown);
-    // What is thinner than rounding is looked at as well.
-    if (std::abs(way.shown.y - way.shown.x) < Touch)
-    {
-      way.shown = 0.5 * (way.shown.x + way.shown.y) + glm::dvec2(-0.5, 0.5) * Touch;
-    }
-    this->findWinners(pixel, way);
-    way.isWhole = this->isAtRim(pixel) ||
-      std::any_of(way.winners.begin(), way.winners.begin() + way.count,
-        [&](int k) { return k < way.shown.x || k > way.shown.y || !this->isShown(way.ray, k); });
-    return way;
   }
 
   void findWinners(const ScreenPixel& pixel, Way& way) const
@@ -385,9 +382,6 @@ private:
     }
     return bound;
   }
-
-  /// Of depths that are at least -1, which is faster than std::floor().
-  static int floorOf(double x) { return static_cast<int>(x + 1.0) - 1; }
 
   /// Whether cropping shows the sample in slice k.
   bool isShown(const FieldRay& ray, int k) const

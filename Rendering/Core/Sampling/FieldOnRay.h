@@ -17,6 +17,13 @@
 
 namespace splatting
 {
+/// std::floor(), which is a call where the instruction set of the build has none.
+inline int floorOf(double x)
+{
+  const int n = static_cast<int>(x);
+  return n - (x < n);
+}
+
 /// A ray passes at + slope (z - start) at depth z, in index space with the axes permuted.
 struct FieldRay
 {
