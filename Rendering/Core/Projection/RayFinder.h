@@ -371,12 +371,12 @@ private:
       low[a] = std::clamp(floorOf(std::min(p, q)) - this->First[a], 0, last) / widths[a];
       high[a] = std::clamp(floorOf(std::max(p, q)) + 1 - this->First[a], 0, last) / widths[a];
     }
-    T bound = this->Bricks->row<T>(low.y, low.z)[low.x];
+    T bound = this->Bricks->template row<T>(low.y, low.z)[low.x];
     for (int k = low.z; k <= high.z; ++k)
     {
       for (int j = low.y; j <= high.y; ++j)
       {
-        const T* const row = this->Bricks->row<T>(j, k);
+        const T* const row = this->Bricks->template row<T>(j, k);
         bound = std::max(bound, *std::max_element(row + low.x, row + high.x + 1));
       }
     }
