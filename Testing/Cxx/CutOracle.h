@@ -496,15 +496,28 @@ inline void compareRay(const Oracle& oracle, const RayIntervals& intervals, int 
     " to ", last(expected), ": inside from ", stretch.begin, " to ", stretch.end);
 }
 
-/// Whether a ray meets a box, but not a narrower one: it has next to nothing in the box, and
-/// rounding decides in which slice.
+/// Whether a ray passes so near to an edge of a box that rounding decides which of its faces the
+/// ray meets: it is in a wider box where it is beyond two faces of a narrower one.
+/// @param wide, narrow  the half-spaces of both boxes, in the same order
 inline bool meetsEdge(const Oracle& oracle, int u, int v, const std::vector<glm::dvec4>& wide,
   const std::vector<glm::dvec4>& narrow)
 {
   const glm::dvec3 from = oracle.point(u, v, 0.0);
   const glm::dvec3 step = oracle.point(u, v, 1.0) - from;
-  const Stretch outer = inside(wide, from, step), inner = inside(narrow, from, step);
-  return outer.begin <= outer.end && !(inner.begin <= inner.end);
+  const Stretch outer = inside(wide, from, step);
+  for (std::size_t i = 0; i < narrow.size(); ++i)
+  {
+    for (std::size_t j = i + 1; j < narrow.size(); ++j)
+    {
+      Stretch both = inside({ -narrow[i], -narrow[j] }, from, step);
+      both.narrow(outer);
+      if (both.begin <= both.end)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 /// Calls f with each ray of an image that meets the volume, and the slices that it crosses.
