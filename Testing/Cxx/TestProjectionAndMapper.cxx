@@ -126,14 +126,19 @@ void chooseAtRandom(
   mapper->SetRecordLocations(mapper->GetBlendMode() != vtkVolumeMapper::AVERAGE_INTENSITY_BLEND);
 }
 
-/// The largest difference between pixels that both images have.
+/// The largest difference between pixels; infinite where one image alone has a pixel.
 double largestDifference(vtkImageData* a, vtkImageData* b)
 {
   double largest = 0.0;
   vtkUnsignedCharArray *const p = a->GetPointGhostArray(), *const q = b->GetPointGhostArray();
   for (vtkIdType n = 0; n < a->GetNumberOfPoints(); ++n)
   {
-    if ((!p || p->GetValue(n) == 0) && (!q || q->GetValue(n) == 0))
+    const bool isFirst = !p || p->GetValue(n) == 0, isSecond = !q || q->GetValue(n) == 0;
+    if (isFirst != isSecond)
+    {
+      return VTK_DOUBLE_MAX;
+    }
+    if (isFirst)
     {
       const double difference = std::abs(a->GetPointData()->GetScalars()->GetComponent(n, 0) -
         b->GetPointData()->GetScalars()->GetComponent(n, 0));
