@@ -26,9 +26,7 @@ class RowOfValues
 public:
   using A = Accumulator<T>;
 
-  RowOfValues(const RayFinder<T>& finder, const WorksheetLoops<A>& loops)
-    : Finder(finder),
-      Loops(loops)
+  RowOfValues(const RayFinder<T>& finder, const Kernels& loops) : Finder(finder), Loops(loops)
   {
     this->Parts.nonFinite = std::is_floating_point_v<T>;
   }
@@ -96,23 +94,25 @@ private:
 
   void take()
   {
-    this->Finder.load(this->Parts);
-    this->Loops.findLargest(this->Parts);
+    this->Finder.findLargest(this->Parts, this->Voxels, this->Loops);
     for (int n = 0; n < this->Parts.count; ++n)
     {
+      // Not std::max(), which branches: that takes longer than all else here.
       A& value = this->Values[this->Pixels[n]];
-      value = std::max(value, this->Parts.largest[n]);
+      const A largest = this->Parts.largest[n], before = value;
+      value = largest > before ? largest : before;
     }
     this->Parts.count = 0;
   }
 
   const RayFinder<T>& Finder;
-  const WorksheetLoops<A>& Loops;
+  const Kernels& Loops;
   A* Values = nullptr;
   int Count = 0;
   std::array<std::pair<int, Way>, 64> Whole; // pixels whose whole rays are to be looked along
   int WholeCount = 0;
   FieldParts<A> Parts{};
+  VoxelsOfParts<T> Voxels{};
   std::array<int, FieldParts<A>::most> Pixels;
 };
 }

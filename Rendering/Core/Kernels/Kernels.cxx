@@ -10,6 +10,7 @@
 #include "Kernels/DepthKernels.h"
 #include "Kernels/ExactFanKernels.h"
 #include "Kernels/FanKernels.h"
+#include "Kernels/PartKernels.h"
 #include "Kernels/RayKernels.h"
 #include "Kernels/Registers.h"
 #include "Kernels/ResamplingKernels.h"
@@ -344,8 +345,8 @@ constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::note)>(&note<P>) };
 template <class A>
 constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>, &resample<A>,
-  &blend<A>, &raiseBlend<A>, &splat<A, A>, &raiseCubics<A>, &raiseFanCubics<A>, &findLargest<A>,
-  &raiseAverages<A>, &allFinite<A>, &separate<A>,
+  &blend<A>, &raiseBlend<A>, &splat<A, A>, &raiseCubics<A>, &raiseFanCubics<A>, &placeParts<A>,
+  &findLargest<A>, &raiseAverages<A>, &allFinite<A>, &separate<A>,
   static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
   static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
   &interpolateProjective<A>, &lookUp<A> };

@@ -379,15 +379,19 @@ template <class A>
 struct FieldParts
 {
   static constexpr int most = 128;
+  static constexpr int beyond = 2; ///< columns and rows beside the volume that parts may need
+
   int count = 0;
-  int first[3][most]; ///< column, row and slice of the lowest voxel
+  bool nonFinite; ///< whether voxels may be NaN or infinite
+  /// Rays, as in FieldRay, and the depths between which they are looked at.
+  double at[2][most], slope[2][most], begin[most], end[most];
+  std::int32_t first[3][most]; ///< column, row and slice of the lowest voxel; the slice is given
   /// Where rays are at the first of the two slices, from the lowest column and row of voxels that
   /// the part needs, and what they move by up to the second.
-  A x[most], y[most], dx[most], dy[most];
+  A place[2][most], way[2][most];
   A from[most], to[most];  ///< the part, 0 to 1
   A voxels[2][3][3][most]; ///< slice, row, column
   A largest[most];         ///< what the part has
-  bool nonFinite;          ///< whether voxels may be NaN or infinite
 };
 
 /// Worksheets from voxels of which some are not finite.
@@ -425,6 +429,9 @@ struct WorksheetLoops
   void (*raiseCubics)(const Cubics<A>& cubics);
   /// The same in perspective views, for a row of pixels, each of which has cubics of its own.
   void (*raiseFanCubics)(const FanCubicRow<A>& row);
+  /// Tells from rays which voxels parts need, and where parts are among them: the volume ends with
+  /// column last[0] and row last[1], rays are at their places at depth `start`.
+  void (*placeParts)(FieldParts<A>& parts, double start, const std::int32_t last[2]);
   /// Finds the largest value of each part; cells with a corner that is not finite are left out.
   void (*findLargest)(FieldParts<A>& parts);
   /// Pixels become the larger of themselves and the averages.

@@ -104,6 +104,10 @@ struct Way
   }
 };
 
+/// The voxels of parts as FieldParts has them, but of their own type.
+template <class T>
+using VoxelsOfParts = std::array<T, 18 * FieldParts<Accumulator<T>>::most>;
+
 /**
  * Finds the maxima along the rays of one image's screen pixels.
  *
@@ -136,6 +140,7 @@ public:
       Voxels(source.volume, this->Part),
       Field(this->Voxels, geometry, this->Part.first())
   {
+    this->findPlaces();
   }
 
   /// The maximum on a pixel's ray; minus infinity if it meets no sample.
@@ -208,50 +213,29 @@ public:
   void add(
     const FieldRay& ray, int k, const glm::dvec2& depths, FieldParts<Accumulator<T>>& parts) const
   {
-    using A = Accumulator<T>;
     const int n = parts.count++;
-    const glm::dvec2 at(ray(0, k), ray(1, k));
-    const glm::dvec2 from = depths - double(k);
-    const glm::dvec2 low = glm::min(at + from.x * ray.slope, at + from.y * ray.slope);
-    const glm::ivec3 first(floorOf(low.x), floorOf(low.y), k);
-    for (int a = 0; a < 3; ++a)
+    for (int a = 0; a < 2; ++a)
     {
-      parts.first[a][n] = first[a];
+      parts.at[a][n] = ray.at[a];
+      parts.slope[a][n] = ray.slope[a];
     }
-    parts.x[n] = static_cast<A>(at.x - first.x);
-    parts.y[n] = static_cast<A>(at.y - first.y);
-    parts.dx[n] = static_cast<A>(ray.slope.x);
-    parts.dy[n] = static_cast<A>(ray.slope.y);
-    parts.from[n] = static_cast<A>(from.x);
-    parts.to[n] = static_cast<A>(from.y);
+    parts.begin[n] = depths.x;
+    parts.end[n] = depths.y;
+    parts.first[2][n] = k;
   }
 
-  /// Gives parts their voxels. A loop of its own, because nothing in it has to be waited for: the
-  /// memory that several parts need is fetched at the same time.
-  void load(FieldParts<Accumulator<T>>& parts) const
+  /// Finds the largest value of each part.
+  /// @param voxels  room for those that the parts need
+  void findLargest(
+    FieldParts<Accumulator<T>>& parts, VoxelsOfParts<T>& voxels, const Kernels& kernels) const
   {
-    for (int n = 0; n < parts.count; ++n)
-    {
-      std::array<std::array<std::ptrdiff_t, 3>, 3> places;
-      for (int a = 0; a < 3; ++a)
-      {
-        for (int m = 0; m < 3; ++m)
-        {
-          places[a][m] = this->place(a, parts.first[a][n] + m);
-        }
-      }
-      for (int z = 0; z < 2; ++z)
-      {
-        for (int y = 0; y < 3; ++y)
-        {
-          const T* const row = this->Voxels.pointer(0, 0, 0) + (places[2][z] + places[1][y]);
-          for (int x = 0; x < 3; ++x)
-          {
-            parts.voxels[z][y][x][n] = static_cast<Accumulator<T>>(row[places[0][x]]);
-          }
-        }
-      }
-    }
+    const WorksheetLoops<Accumulator<T>>& along = kernels;
+    const VoxelLoops<T>& widening = kernels;
+    const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(voxels.size());
+    along.placeParts(parts, this->Geometry.reference(), &this->Last.x);
+    this->load(parts, voxels);
+    widening.widen(voxels.data(), 0, parts.voxels[0][0][0], 0, 0, count, 1, 0);
+    along.findLargest(parts);
   }
 
 private:
@@ -409,13 +393,49 @@ private:
     return depths.x < depths.y;
   }
 
-  /// How far the voxels with an index along an axis lie from the part's first ones. Beyond the
-  /// volume its outermost voxels are repeated.
-  std::ptrdiff_t place(int axis, int index) const
+  /// Fetches the voxels that parts need. A loop of its own, because nothing in it has to be waited
+  /// for: the memory that several parts need is fetched at the same time.
+  void load(const FieldParts<Accumulator<T>>& parts, VoxelsOfParts<T>& voxels) const
   {
-    return (std::clamp(index, 0, this->Last[axis]) - this->First[axis]) * this->Voxels.stride(axis);
+    constexpr int most = FieldParts<Accumulator<T>>::most;
+    const T* const origin = this->Voxels.pointer(0, 0, 0);
+    for (int n = 0; n < parts.count; ++n)
+    {
+      const std::ptrdiff_t* places[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        places[a] = this->Places[a].data() + (parts.first[a][n] + Beyond);
+      }
+      T* to = voxels.data() + n;
+      for (int z = 0; z < 2; ++z)
+      {
+        for (int y = 0; y < 3; ++y)
+        {
+          const T* const row = origin + (places[2][z] + places[1][y]);
+          for (int x = 0; x < 3; ++x, to += most)
+          {
+            *to = row[places[0][x]];
+          }
+        }
+      }
+    }
   }
 
+  /// How far voxels lie from the part's first ones, by their indices along an axis. Beyond the
+  /// volume its outermost voxels are repeated.
+  void findPlaces()
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      for (int n = -Beyond; n <= this->Last[a] + Beyond; ++n)
+      {
+        this->Places[a].push_back(
+          (std::clamp(n, 0, this->Last[a]) - this->First[a]) * this->Voxels.stride(a));
+      }
+    }
+  }
+
+  static constexpr int Beyond = FieldParts<Accumulator<T>>::beyond;
   /// Slices between the depths at which neighbours are cut if it is by the same thing.
   static constexpr double Together = 3.0;
   /// Pixels on the outline may miss the field by rounding.
@@ -434,6 +454,7 @@ private:
   const BrickMaxima* Bricks;
   PermutedVoxels<T> Voxels;
   FieldOnRay<T> Field;
+  std::array<std::vector<std::ptrdiff_t>, 3> Places;
 };
 }
 
