@@ -146,7 +146,7 @@ struct FanCubicLoop : Lanes<A, R>
     const R first = between(a, b, clampedShare(begin));
     const R last = end > one ? larger(b, between(b, c, clampedShare(end - one)))
                              : between(a, b, clampedShare(end));
-    return anyOf(larger(first, last) + this->row.box.slack > loadFrom(this->row.image + x));
+    return anyLarger(larger(first, last) + this->row.box.slack, loadFrom(this->row.image + x));
   }
 
   inline void run(std::ptrdiff_t x) const
@@ -188,7 +188,7 @@ struct FanCubicLoop : Lanes<A, R>
           most = larger(voxels[n][t], most);
         }
       }
-      if (!anyOf(most > best))
+      if (!anyLarger(most, best))
       {
         continue;
       }
@@ -223,26 +223,33 @@ struct FanCubicLoop : Lanes<A, R>
   }
 };
 
+constexpr std::ptrdiff_t MostAtOnce = 256; ///< pixels of a row
+
 /// Some pixels: a register or more.
 template <class A>
 inline void raiseAboveBoxes(const FanCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
 {
   const FanCubicLoop<A, Pack<A>, false> loop(row);
   const FanColumns<A> columns(row, begin, end);
+  // All are asked before the first is raised, so that no answer is waited for.
+  std::ptrdiff_t found[MostAtOnce / width<A>];
+  int count = 0;
   for (std::ptrdiff_t x = begin; x < end; x += width<A>)
   {
     const std::ptrdiff_t at = x + width<A> <= end ? x : end - width<A>;
-    if (!columns.known() || loop.canRaise(columns, at))
-    {
-      loop.run(at);
-    }
+    found[count] = at;
+    count += !columns.known() || loop.canRaise(columns, at);
+  }
+  for (int n = 0; n < count; ++n)
+  {
+    loop.run(found[n]);
   }
 }
 
 template <class A, bool NonFinite>
 inline void raiseFanCubicRow(const FanCubicRow<A>& row)
 {
-  constexpr std::ptrdiff_t w = width<A>, most = NonFinite ? w : 256; // at a time
+  constexpr std::ptrdiff_t w = width<A>, most = NonFinite ? w : MostAtOnce;
   const std::ptrdiff_t begin = row.pixels.begin, end = row.pixels.end;
   for (std::ptrdiff_t x = begin; end - begin < w && x < end; ++x)
   {

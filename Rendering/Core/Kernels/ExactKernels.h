@@ -116,7 +116,7 @@ inline R largestOnWay(const R (&corners)[8], const R (&from)[3], const R (&to)[3
     between(far1[0], far1[1], to[2]) };
   R raised = larger(b[3], larger(b[0], best));
   const R inner = larger(b[1], b[2]);
-  if (anyOf(inner > raised))
+  if (anyLarger(inner, raised))
   {
     raised = larger(peakOf<A>(b, inner, raised), raised);
   }
@@ -385,7 +385,7 @@ struct CubicLoop : Lanes<A, R>
       const CubicPiece<A>& piece = this->cubics.pieces[p];
       this->loadCorners(piece, at, corners);
       const R most = Lanes<A, R>::template largestOf<NonFinite>(corners);
-      if (!anyOf(most > best))
+      if (!anyLarger(most, best))
       {
         follows = false;
         continue;
@@ -399,7 +399,7 @@ struct CubicLoop : Lanes<A, R>
         b[1] = combine(piece.weights + 8, corners);
         b[2] = combine(piece.weights + 16, corners);
         const R inner = larger(b[1], b[2]);
-        if (anyOf(inner > raised))
+        if (anyLarger(inner, raised))
         {
           raised = larger(peakOf<A>(b, inner, raised), raised);
         }
@@ -433,7 +433,7 @@ struct CubicLoop : Lanes<A, R>
     for (std::ptrdiff_t v = rows.begin; v < rows.end; ++v)
     {
       const R most = boxes.take() + this->cubics.box.slack;
-      if (anyOf(most > loadFrom(this->cubics.image + v * this->cubics.imageStride + x)))
+      if (anyLarger(most, loadFrom(this->cubics.image + v * this->cubics.imageStride + x)))
       {
         this->allCount(x, v) ? this->template run<false>(x, v) : this->template run<true>(x, v);
       }

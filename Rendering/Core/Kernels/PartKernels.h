@@ -112,7 +112,7 @@ private:
 
   inline R take(M upperColumn, M upperRow, R from, R to, R best) const
   {
-    if (!anyOf(from < to))
+    if (!anyLarger(to, from))
     {
       return best;
     }
