@@ -25,8 +25,7 @@ VOLUMES = {
     "aorta-int16": "aorta CTA, 128×128×256 int16",
     "lidc0314-int16": "chest CT, 512×512×275 int16",
 }
-PAPERS_MODES = ["preview", "standard", "high"]
-MODES = PAPERS_MODES + ["exact"]
+MODES = ["preview", "standard", "high", "exact"]
 RAY_CASTERS = ["raycast-nearest", "raycast-linear"]
 _V, _M = f"({'|'.join(VOLUMES)})", f"({'|'.join(MODES)})"
 _FRAMES = f"frame/{_V}/(300|1024)/({'|'.join(MODES + RAY_CASTERS)})"
@@ -113,17 +112,17 @@ class Tables:
         rows = []
         for volume, title in VOLUMES.items():
             row = [title, number(self.get(f"floor/{volume}"))]
-            for mode in PAPERS_MODES:
+            for mode in MODES:
                 value = self.get(f"projection/{volume}/{mode}")
                 across = self.get(f"projection/{volume}/{mode}", "perspective")
                 row.append(f"{number(value)} ({times(across, value)})")
             rows.append(row + [number(self.get(f"index/{volume}"))])
-        return table(["volume", "floor", *PAPERS_MODES, "index"], rows)
+        return table(["volume", "floor", *MODES, "index"], rows)
 
     def prices(self):
         rows = []
         for volume, title in VOLUMES.items():
-            for mode in PAPERS_MODES:
+            for mode in MODES:
                 plain = self.get(f"projection/{volume}/{mode}")
                 uncut = self.get(f"cut/{volume}/{mode}/none")
                 cells = [times(self.get(f"cut/{volume}/{mode}/{cut}"), uncut) for cut in ("plane", "box")]
