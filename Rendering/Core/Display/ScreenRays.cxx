@@ -97,7 +97,7 @@ private:
     this->Finder.findLargest(this->Parts, this->Voxels, this->Loops);
     for (int n = 0; n < this->Parts.count; ++n)
     {
-      // Not std::max(), which branches: that takes longer than all else here.
+      // Not std::max(), which compilers make a branch of that is often predicted wrongly.
       A& value = this->Values[this->Pixels[n]];
       const A largest = this->Parts.largest[n], before = value;
       value = largest > before ? largest : before;

@@ -422,11 +422,12 @@ private:
   }
 
   /// How far voxels lie from the part's first ones, by their indices along an axis. Beyond the
-  /// volume its outermost voxels are repeated.
+  /// volume its outermost voxels are repeated. A table, since each part asks for nine of them.
   void findPlaces()
   {
     for (int a = 0; a < 3; ++a)
     {
+      this->Places[a].reserve(this->Last[a] + 2 * Beyond + 1);
       for (int n = -Beyond; n <= this->Last[a] + Beyond; ++n)
       {
         this->Places[a].push_back(
