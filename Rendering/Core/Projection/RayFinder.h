@@ -104,9 +104,11 @@ struct Way
   }
 };
 
+constexpr int VoxelsOfPart = 2 * 3 * 3; ///< slices, rows, columns
+
 /// The voxels of parts as FieldParts has them, but of their own type.
 template <class T>
-using VoxelsOfParts = std::array<T, 18 * FieldParts<Accumulator<T>>::most>;
+using VoxelsOfParts = std::array<T, VoxelsOfPart * FieldParts<Accumulator<T>>::most>;
 
 /**
  * Finds the maxima along the rays of one image's screen pixels.
@@ -231,10 +233,11 @@ public:
   {
     const WorksheetLoops<Accumulator<T>>& along = kernels;
     const VoxelLoops<T>& widening = kernels;
-    const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(voxels.size());
+    constexpr int most = FieldParts<Accumulator<T>>::most;
     along.placeParts(parts, this->Geometry.reference(), &this->Last.x);
     this->load(parts, voxels);
-    widening.widen(voxels.data(), 0, parts.voxels[0][0][0], 0, 0, count, 1, 0);
+    widening.widen(
+      voxels.data(), most, parts.voxels[0][0][0], most, 0, parts.count, VoxelsOfPart, 0);
     along.findLargest(parts);
   }
 
