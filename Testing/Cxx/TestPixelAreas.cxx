@@ -557,7 +557,7 @@ void testLocations(Checks& check)
       }
       samples.add(isSample);
     });
-  check(samples.areEnough(0.1), "pixels show samples themselves in only ", samples);
+  check(samples.areEnough(0.9), "pixels show samples themselves in only ", samples);
 }
 }
 
