@@ -451,8 +451,9 @@ struct WorksheetLoops
   /// image[x] = clamp(image[x] + base, low, high); NaN stays.
   void (*finish)(A* image, A base, A low, A high, std::ptrdiff_t n);
   /// What a worksheet can reach where it weighs its own voxels by 1 - `share` and its neighbours',
-  /// on one side or the other, by `share`, enlarged by `slack` times the magnitude:
-  /// own[t] = own[t] + share * max(0, max(before[t], after[t]) - own[t]) + slack * (...).
+  /// on one side or the other, by `share`, enlarged for rounding:
+  /// value = own[t] + share * max(0, max(before[t], after[t]) - own[t]),
+  /// own[t] = value + slack * max(|value|, magnitude).
   void (*bound)(
     A* own, const A* before, const A* after, A share, A slack, A magnitude, std::ptrdiff_t n);
   /// out[x] = image interpolated bilinearly at start + x step, which must lie between pixels that

@@ -81,11 +81,18 @@ public:
   virtual Span columnsOf(int, const Span&) const { return {}; }
   virtual Span rowsOf(int, const Span&) const { return {}; }
 
-  /// How it bounds, if a layer reads beyond its own slices: how much of a sample the voxels of a
-  /// layer's neighbours can weigh, and how far rounding can take samples beyond their largest
-  /// voxel: by slack() times the larger of that and magnitude().
+  /// How far samples of a layer can be above the layer's own voxels in a tile, of which bricks know
+  /// the largest. Asked only where a layer reads beyond its own slices; TileBounds puts together
+  ///   value = own + share * max(0, neighbours - own),
+  ///   bound = value + slack * max(|value|, magnitude),
+  /// where `own` and `neighbours` are the largest voxels of the layer, and of the two beside it.
+  /// Bounds that are too high cost time, one that is too low loses samples.
+  /// The most that voxels of the layers beside it weigh in any sample of a layer, 0 to 1.
   virtual P share(int) const { return 0; }
+  /// How far rounding can take a sample, as a share of the numbers that are added up.
   virtual P slack() const { return 0; }
+  /// How large these numbers can be where the bound is small: less base(), as samples are. A sum
+  /// near 0 may have voxels far below 0 in it.
   virtual P magnitude() const { return 0; }
 
   /// What is subtracted from voxels.
