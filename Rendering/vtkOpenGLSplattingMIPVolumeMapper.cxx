@@ -156,14 +156,14 @@ Parts opaqueParts(const unsigned char* rgba, const int size[2])
 }
 
 /// A viewport of the window, and a picture in it.
-struct Place
+struct DrawArea
 {
   int corner[2], viewport[2]; // pixels of the window
   int origin[2], size[2];     // of the viewport
 };
 
 /// Whether copied pixels arrive as drawn ones do: only there, at their places, and as they are.
-bool takesCopies(vtkOpenGLRenderWindow* window, Place& place)
+bool takesCopies(vtkOpenGLRenderWindow* window, DrawArea& area)
 {
   vtkOpenGLState* const state = window->GetState();
   int samples = 0, second = GL_NONE, viewport[4] = {}, scissor[4] = {};
@@ -175,13 +175,13 @@ bool takesCopies(vtkOpenGLRenderWindow* window, Place& place)
   state->vtkglGetIntegerv(GL_SCISSOR_BOX, scissor);
   const bool cuts =
     state->GetEnumState(GL_SCISSOR_TEST) && !std::equal(viewport, viewport + 4, scissor);
-  std::copy(viewport, viewport + 2, place.corner);
-  return std::equal(viewport + 2, viewport + 4, place.viewport) && samples == 0 &&
+  std::copy(viewport, viewport + 2, area.corner);
+  return std::equal(viewport + 2, viewport + 4, area.viewport) && samples == 0 &&
     second == GL_NONE && std::all_of(mask, mask + 4, [](unsigned char m) { return m != 0; }) &&
     !cuts && !state->GetEnumState(GL_STENCIL_TEST) && !window->GetUseSRGBColorSpace();
 }
 
-void draw(vtkTextureObject* texture, const Rectangle& part, const Place& place)
+void draw(vtkTextureObject* texture, const Rectangle& part, const DrawArea& area)
 {
   if (part.empty())
   {
@@ -191,10 +191,10 @@ void draw(vtkTextureObject* texture, const Rectangle& part, const Place& place)
   float t[2][2], c[2][2]; // of the texture and of the viewport; low and high
   for (int a = 0; a < 2; ++a)
   {
-    t[0][a] = float(low[a]) / place.size[a];
-    t[1][a] = float(high[a]) / place.size[a];
-    c[0][a] = 2.0f * (place.origin[a] + low[a]) / place.viewport[a] - 1.0f;
-    c[1][a] = 2.0f * (place.origin[a] + high[a]) / place.viewport[a] - 1.0f;
+    t[0][a] = float(low[a]) / area.size[a];
+    t[1][a] = float(high[a]) / area.size[a];
+    c[0][a] = 2.0f * (area.origin[a] + low[a]) / area.viewport[a] - 1.0f;
+    c[1][a] = 2.0f * (area.origin[a] + high[a]) / area.viewport[a] - 1.0f;
   }
   float texels[] = { t[0][0], t[0][1], t[1][0], t[0][1], t[1][0], t[1][1], t[0][0], t[1][1] };
   float corners[] = { c[0][0], c[0][1], 0, c[1][0], c[0][1], 0, c[1][0], c[1][1], 0, c[0][0],
@@ -203,26 +203,26 @@ void draw(vtkTextureObject* texture, const Rectangle& part, const Place& place)
 }
 
 /// All but some parts.
-void drawBeside(vtkTextureObject* texture, const Parts& parts, const Place& place)
+void drawBeside(vtkTextureObject* texture, const Parts& parts, const DrawArea& area)
 {
-  const int width = place.size[0];
+  const int width = area.size[0];
   int row = 0;
   for (const Rectangle& part : parts)
   {
     if (!part.empty())
     {
-      draw(texture, { 0, row, width, part.y0 }, place);
-      draw(texture, { 0, part.y0, part.x0, part.y1 }, place);
-      draw(texture, { part.x1, part.y0, width, part.y1 }, place);
+      draw(texture, { 0, row, width, part.y0 }, area);
+      draw(texture, { 0, part.y0, part.x0, part.y1 }, area);
+      draw(texture, { part.x1, part.y0, width, part.y1 }, area);
       row = part.y1;
     }
   }
-  draw(texture, { 0, row, width, place.size[1] }, place);
+  draw(texture, { 0, row, width, area.size[1] }, area);
 }
 
 /// Copies parts by a framebuffer object that is used for nothing else.
 void copy(vtkTextureObject* texture, vtkOpenGLFramebufferObject* buffer, const Parts& parts,
-  const Place& place)
+  const DrawArea& area)
 {
   vtkOpenGLState* const state = texture->GetContext()->GetState();
   state->PushReadFramebufferBinding();
@@ -230,7 +230,7 @@ void copy(vtkTextureObject* texture, vtkOpenGLFramebufferObject* buffer, const P
   buffer->Bind(GL_READ_FRAMEBUFFER);
   buffer->AddColorAttachment(0, texture);
   buffer->ActivateReadBuffer(0);
-  const int x = place.corner[0] + place.origin[0], y = place.corner[1] + place.origin[1];
+  const int x = area.corner[0] + area.origin[0], y = area.corner[1] + area.origin[1];
   for (const Rectangle& part : parts)
   {
     if (!part.empty())
@@ -279,19 +279,19 @@ void vtkOpenGLSplattingMIPVolumeMapper::DisplayImage(
   state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
 
   // In the current viewport, which is the renderer's, not the whole window.
-  Place place;
+  DrawArea area;
   ren->GetTiledSizeAndOrigin(
-    &place.viewport[0], &place.viewport[1], &place.corner[0], &place.corner[1]);
-  std::copy(origin, origin + 2, place.origin);
-  std::copy(size, size + 2, place.size);
-  const Parts opaque = takesCopies(window, place) ? opaqueParts(rgba, size) : Parts{};
+    &area.viewport[0], &area.viewport[1], &area.corner[0], &area.corner[1]);
+  std::copy(origin, origin + 2, area.origin);
+  std::copy(size, size + 2, area.size);
+  const Parts opaque = takesCopies(window, area) ? opaqueParts(rgba, size) : Parts{};
   this->Texture->Activate();
-  drawBeside(this->Texture, opaque, place);
+  drawBeside(this->Texture, opaque, area);
   this->Texture->Deactivate();
   if (std::any_of(
         opaque.begin(), opaque.end(), [](const Rectangle& part) { return !part.empty(); }))
   {
-    copy(this->Texture, this->TextureBuffer, opaque, place);
+    copy(this->Texture, this->TextureBuffer, opaque, area);
   }
 }
 

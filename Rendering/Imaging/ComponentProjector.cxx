@@ -237,18 +237,18 @@ bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
 
 // One image of all channels: what is taken at winners needs the projector as the projection has
 // left it.
-bool ComponentProjector::ProjectPart(std::size_t n, Place place, const ShearWarp& geometry,
+bool ComponentProjector::ProjectPart(std::size_t n, ImageOf imageOf, const ShearWarp& geometry,
   const ProjectionSettings& settings, const Cuts& cuts)
 {
   if (!this->TakesAtWinners(settings))
   {
     return std::all_of(this->Channels.begin(), this->Channels.end(),
       [&](Channel& channel)
-      { return this->ProjectChannel(channel, place(channel, n), geometry, settings, cuts); });
+      { return this->ProjectChannel(channel, imageOf(channel, n), geometry, settings, cuts); });
   }
   Channel& last = this->Channels.back();
-  const ShearImage& winners = place(last, n);
-  if (!this->ProjectChannel(last, place(last, n), geometry, settings, cuts))
+  const ShearImage& winners = imageOf(last, n);
+  if (!this->ProjectChannel(last, imageOf(last, n), geometry, settings, cuts))
   {
     return false;
   }
@@ -259,7 +259,7 @@ bool ComponentProjector::ProjectPart(std::size_t n, Place place, const ShearWarp
       channel.Settings = last.Settings;
       channel.Used = last.Used;
       this->Projector.takeAtWinners(
-        channel.Index.volume(), geometry, last.Settings, winners, place(channel, n));
+        channel.Index.volume(), geometry, last.Settings, winners, imageOf(channel, n));
     }
   }
   return true;
@@ -285,11 +285,11 @@ bool ComponentProjector::ProjectImage(
   const int phases = geometry.phases();
   if (phases == 1)
   {
-    const Place whole = [](Channel& channel, std::size_t image) -> ShearImage&
+    const ImageOf whole = [](Channel& channel, std::size_t image) -> ShearImage&
     { return channel.Images[image]; };
     return this->ProjectPart(n, whole, geometry, settings, cuts);
   }
-  const Place part = [](Channel& channel, std::size_t) -> ShearImage& { return channel.Phase; };
+  const ImageOf part = [](Channel& channel, std::size_t) -> ShearImage& { return channel.Phase; };
   for (int p = 0; p < phases * phases; ++p)
   {
     const glm::ivec2 phase(p % phases, p / phases);

@@ -169,8 +169,8 @@ private:
   bool ProjectImage(
     std::size_t n, const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts);
   /// Where a channel's image belongs.
-  using Place = ShearImage& (*)(Channel&, std::size_t n);
-  bool ProjectPart(std::size_t n, Place place, const ShearWarp& geometry,
+  using ImageOf = ShearImage& (*)(Channel&, std::size_t n);
+  bool ProjectPart(std::size_t n, ImageOf imageOf, const ShearWarp& geometry,
     const ProjectionSettings& settings, const Cuts& cuts);
   bool ProjectChannel(Channel& channel, ShearImage& image, const ShearWarp& geometry,
     const ProjectionSettings& settings, const Cuts& cuts);

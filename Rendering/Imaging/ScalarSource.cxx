@@ -245,7 +245,7 @@ std::string ScalarSource::Examine(vtkDataSet* input, const ScalarChoice& choice)
   }
   if (problem.empty())
   {
-    problem = describeGrid(input, key.cells, this->Place);
+    problem = describeGrid(input, key.cells, this->Layout);
   }
   this->Examined = problem.empty() ? key : Key{};
   return problem;
@@ -352,7 +352,7 @@ std::vector<StridedVoxels> ScalarSource::ChosenComponents()
 VoxelArray ScalarSource::MakeVolume(
   StridedVoxels voxels, const std::vector<unsigned char>& hidden, Copy& copy) const
 {
-  const std::ptrdiff_t given = count(this->Place.dimensions);
+  const std::ptrdiff_t given = count(this->Layout.dimensions);
   if (!hidden.empty())
   {
     const ScalarType type = averageType(voxels.type);
@@ -360,14 +360,14 @@ VoxelArray ScalarSource::MakeVolume(
     hide(voxels, hidden.data(), given, shown);
     voxels = { shown, type, 1 };
   }
-  if (this->Place.resampled)
+  if (this->Layout.resampled)
   {
-    const bool cells = this->Place.grid.cells;
+    const bool cells = this->Layout.grid.cells;
     const ScalarType type = cells ? voxels.type : averageType(voxels.type);
     Copy even;
-    void* const resampled = even.Allocate(count(this->Place.grid.dimensions), type);
+    void* const resampled = even.Allocate(count(this->Layout.grid.dimensions), type);
     (cells ? resampleCells : resamplePoints)(
-      voxels, this->Place.dimensions, this->Place.axes, resampled);
+      voxels, this->Layout.dimensions, this->Layout.axes, resampled);
     copy = std::move(even);
     voxels = { resampled, type, 1 };
   }
@@ -377,7 +377,7 @@ VoxelArray ScalarSource::MakeVolume(
     gather(voxels, given, gathered);
     voxels = { gathered, voxels.type, 1 };
   }
-  return { voxels.voxels, voxels.type, this->Place.grid.dimensions };
+  return { voxels.voxels, voxels.type, this->Layout.grid.dimensions };
 }
 
 void ScalarSource::Update()
@@ -398,7 +398,7 @@ void ScalarSource::Update()
   Copy lengths;
   if (this->IsMagnitude())
   {
-    const std::ptrdiff_t voxels = count(this->Place.dimensions);
+    const std::ptrdiff_t voxels = count(this->Layout.dimensions);
     const ScalarType type = averageType(components.front().type);
     magnitude(components, voxels, lengths.Allocate(voxels, type));
     components = { { lengths.bytes.get(), type, 1 } };
@@ -448,7 +448,7 @@ bool ScalarSource::IsInputArray() const
 {
   const bool isPart = this->Examined.vectorMode == ScalarChoice::Component &&
     this->Examined.scalars->GetNumberOfComponents() > 1;
-  return !isPart && !this->IsMagnitude() && !this->Place.resampled &&
+  return !isPart && !this->IsMagnitude() && !this->Layout.resampled &&
     this->Examined.scalars->HasStandardMemoryLayout() &&
     findBlanked(this->Examined.input, this->Examined.cells, this->Examined.mask).empty() &&
     !hasNaN(this->Examined.scalars);
@@ -461,7 +461,7 @@ vtkSmartPointer<vtkDataArray> ScalarSource::InterleavedVolumes() const
   const auto array = vtkSmartPointer<vtkDataArray>::Take(
     vtkDataArray::CreateDataArray(this->VtkTypeOf(this->Volumes.front().type)));
   array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(count(this->Place.grid.dimensions));
+  array->SetNumberOfTuples(count(this->Layout.grid.dimensions));
   bool found = false;
   for (int c = 0; c < components; ++c)
   {
@@ -488,7 +488,7 @@ vtkImageData* ScalarSource::Image()
 // Without scalars if there is nothing to see, so that this, too, is found once.
 void ScalarSource::MakeImage()
 {
-  const VolumeGrid& grid = this->Place.grid;
+  const VolumeGrid& grid = this->Layout.grid;
   const glm::ivec3 last = grid.dimensions - 1;
   glm::ivec3 first(0);
   this->StandIn = vtkSmartPointer<vtkImageData>::New();

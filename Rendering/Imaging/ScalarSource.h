@@ -63,11 +63,11 @@ public:
   /// What to say where copies, or what is made of them, do not fit.
   static const char* const NoMemory;
 
-  const VolumeGrid& Grid() const { return this->Place.grid; }
+  const VolumeGrid& Grid() const { return this->Layout.grid; }
   /// The array that is projected, or has the components that are.
   vtkDataArray* Scalars() const { return this->Examined.scalars; }
   /// Whether small cells of a rectilinear grid may be missing, because the grid got larger steps.
-  bool IsCoarse() const { return this->Place.coarse; }
+  bool IsCoarse() const { return this->Layout.coarse; }
   /// What is projected: 1 to 4.
   int Components() const { return this->NumberOfComponents; }
   /// Whether the components are one sample's colour and opacity.
@@ -141,7 +141,7 @@ private:
   Key Examined; // what passed the gate
   Key Volumed;  // what the volumes were made of
   Key Imaged;   // what the image was made of
-  GridOfDataSet Place;
+  GridOfDataSet Layout;
   int NumberOfComponents = 1;
   bool Dependent = false;
   int VtkType = VTK_VOID;

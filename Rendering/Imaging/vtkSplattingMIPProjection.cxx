@@ -60,7 +60,7 @@ public:
   ComponentProjector Components;
   ProjectionProperties Properties; // of the last Update()
   TurnOfViews Turn;
-  splatting::Locator::Arrays Places;                      // of locations, in the output
+  splatting::Locator::Arrays Locations;                   // of locations, in the output
   std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last view and the one before
   std::vector<splatting::Cuts> Cuts, CutsBefore;          // likewise
   int ViewsDone = 0;
@@ -268,7 +268,7 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
   output->GetPointData()->GetScalars()->SetName(scalars->GetName());
   if (this->Properties.RecordLocations)
   {
-    this->Places = addLocationArrays(output);
+    this->Locations = addLocationArrays(output);
   }
   return true;
 }
@@ -355,7 +355,7 @@ void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, i
   camera->GetDirectionOfProjection(&located.direction.x);
   const glm::ivec2& size = this->Turn.Size();
   const std::ptrdiff_t first = std::ptrdiff_t(n) * size.x * size.y;
-  splatting::Locator::Arrays places = this->Places;
+  splatting::Locator::Arrays places = this->Locations;
   places.voxels += 3 * first;
   places.depths += first;
   places.positions += 3 * first;

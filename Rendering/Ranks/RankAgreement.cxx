@@ -335,10 +335,10 @@ bool RankAgreement::IsCovered(const std::vector<RankReport>& reports) const
     if (!report.isEmpty())
     {
       interiors.push_back(
-        interiorOf(this->BoxOf(report), this->Place.grid.dimensions, glm::ivec3(report.layers)));
+        interiorOf(this->BoxOf(report), this->Layout.grid.dimensions, glm::ivec3(report.layers)));
     }
   }
-  return cover(interiors, this->Place.grid.dimensions);
+  return cover(interiors, this->Layout.grid.dimensions);
 }
 
 std::string RankAgreement::AgreeOnGrid(const RankReport& own)
@@ -361,7 +361,7 @@ std::string RankAgreement::Agree(const RankReport& own)
     return problem;
   }
   this->SetWhole(reports);
-  problem = describeGrid(this->Image, this->All.cells != 0, this->Place);
+  problem = describeGrid(this->Image, this->All.cells != 0, this->Layout);
   if (problem.empty() && !this->IsCovered(reports))
   {
     problem = "The ranks' pieces do not cover the image: each needs " + std::to_string(own.layers) +

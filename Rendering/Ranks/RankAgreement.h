@@ -72,7 +72,7 @@ public:
 
   /// The grid of the whole; without scalars. nullptr before it is known.
   vtkImageData* Whole() const { return this->Image; }
-  const VolumeGrid& Grid() const { return this->Place.grid; }
+  const VolumeGrid& Grid() const { return this->Layout.grid; }
   /// Types, components and the ranges of the whole.
   const RankReport& Common() const { return this->All; }
   /// Where this rank's voxels begin.
@@ -100,7 +100,7 @@ private:
 
   vtkMultiProcessController* Controller = nullptr; // only if there are several ranks
   RankReport All;
-  GridOfDataSet Place;
+  GridOfDataSet Layout;
   glm::ivec3 FirstVoxel{ 0 };
   vtkSmartPointer<vtkImageData> Image;
   void ReduceWinners(ShearImage& image, const ShearWarp& geometry);

@@ -12,7 +12,7 @@ namespace splatting
 void SceneCuts::Find(const View& view, const std::vector<ShearWarp>& images, vtkRenderer* renderer,
   vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
 {
-  placePicture(images, view.viewport, this->Place);
+  placePicture(images, view.viewport, this->Area);
   this->Seen = renderer->GetSelector() ? this->RememberScene(view, renderer, volume, intermixes)
                                        : this->LookAtScene(renderer, volume, intermixes, readDepth);
   if (this->Seen)
@@ -46,7 +46,7 @@ SceneCuts::Scene* SceneCuts::RememberScene(
     [&](const Scene& s)
     {
       return s.renderer == renderer && s.volume == volume && s.indexToClip == view.indexToClip &&
-        s.depth.isOf(this->Place.origin, this->Place.size);
+        s.depth.isOf(this->Area.origin, this->Area.size);
     });
   return intermixes && scene != this->Scenes.end() ? &*scene : nullptr;
 }
@@ -57,7 +57,7 @@ SceneCuts::Scene* SceneCuts::LookAtScene(
 {
   Scene& scene = this->SceneOf(renderer, volume);
   scene.depth.clear();
-  const glm::ivec2& size = this->Place.size;
+  const glm::ivec2& size = this->Area.size;
   // Renderers that keep the depths of a lower layer have something to intermix with, too. Render
   // passes do not count what they render.
   const bool hasDepths = renderer->GetNumberOfPropsRendered() > 0 ||
@@ -66,9 +66,9 @@ SceneCuts::Scene* SceneCuts::LookAtScene(
   {
     return nullptr;
   }
-  float* const depths = scene.depth.allocate(this->Place.origin, size);
+  float* const depths = scene.depth.allocate(this->Area.origin, size);
   const float* const end = depths + std::size_t(size.x) * size.y;
-  if (!readDepth(&this->Place.origin.x, &size.x, depths) ||
+  if (!readDepth(&this->Area.origin.x, &size.x, depths) ||
     std::all_of<const float*>(depths, end, [](float depth) { return depth >= 1.0f; }))
   {
     scene.depth.clear();

@@ -76,7 +76,7 @@ private:
   std::vector<Scene> Scenes;
   Scene* Seen = nullptr; // in the present frame, if there is anything
   vtkTypeInt64 Frame = 0;
-  Picture Place; // where the volume will be seen
+  Picture Area; // where the volume will be seen
 };
 }
 

@@ -434,11 +434,11 @@ inline bool meets(const splatting::ShearWarp& image, int u, int v, double margin
   double near = image.faces(image.slices().begin).x, far = image.faces(image.slices().end - 1).y;
   for (int a = 0; a < 2; ++a)
   {
-    const splatting::Fan& fan = a == 0 ? image.columns() : image.rows();
+    const splatting::AxisRays& rays = a == 0 ? image.columns() : image.rows();
     const int n = a == 0 ? u : v;
-    const double low = -0.5 - margin - fan.at[n];
-    const double high = image.size()[a] - 0.5 + margin - fan.at[n];
-    const double first = low / fan.slope[n], second = high / fan.slope[n];
+    const double low = -0.5 - margin - rays.at[n];
+    const double high = image.size()[a] - 0.5 + margin - rays.at[n];
+    const double first = low / rays.slope[n], second = high / rays.slope[n];
     near = std::max(near, image.reference() + std::min(first, second));
     far = std::min(far, image.reference() + std::max(first, second));
   }

@@ -233,7 +233,7 @@ splatting::View wideView(int size, const glm::dvec3& eye, const glm::dvec3& dire
 }
 
 /// What pixels read of some slices is from the first to the last voxel of all of them.
-void compareVoxels(Checks& check, const splatting::FanFootprints<float>& footprints, int parts,
+void compareVoxels(Checks& check, const splatting::AxisFootprints<float>& footprints, int parts,
   const splatting::Span& slices, const splatting::Span& pixels)
 {
   splatting::Span read{ std::numeric_limits<int>::max(), std::numeric_limits<int>::min() };

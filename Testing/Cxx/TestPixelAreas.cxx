@@ -97,10 +97,10 @@ bool isShown(const splatting::ShearWarp& geometry, int u, int v)
   double near = last.z > 0.0 ? 0.0 : -0.5, far = last.z > 0.0 ? last.z : 0.5;
   for (int a = 0; a < 2; ++a)
   {
-    const splatting::Fan& fan = a == 0 ? geometry.columns() : geometry.rows();
+    const splatting::AxisRays& rays = a == 0 ? geometry.columns() : geometry.rows();
     const int n = a == 0 ? u : v;
-    const double first = (1e-6 - fan.at[n]) / fan.slope[n];
-    const double second = (last[a] - 1e-6 - fan.at[n]) / fan.slope[n];
+    const double first = (1e-6 - rays.at[n]) / rays.slope[n];
+    const double second = (last[a] - 1e-6 - rays.at[n]) / rays.slope[n];
     near = std::max(near, geometry.reference() + std::min(first, second));
     far = std::min(far, geometry.reference() + std::max(first, second));
   }

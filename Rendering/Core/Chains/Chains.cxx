@@ -7,33 +7,32 @@
 #include <vtkSMPTools.h>
 
 #include <memory>
-#include <tuple>
-#include <type_traits>
 #include <vector>
 
 namespace splatting
 {
 namespace
 {
-class ChainsMode : public ProjectionMode
+template <class A>
+class ChainSpace
 {
 public:
-  void project(ProjectionContext& context) override
+  template <class T>
+  void project(ProjectionContext& context)
   {
-    dispatch(context.index.volume().type,
-      [&](auto* null)
-      {
-        using T = std::remove_pointer_t<decltype(null)>;
-        context.settings.quality == Quality::Preview ? this->preview<T>(context)
-                                                     : this->splat<T>(context);
-      });
+    context.settings.quality == Quality::Preview ? this->preview<T>(context)
+                                                 : this->splat<T>(context);
+  }
+  template <class T>
+  void takeAtWinners(const AtWinners&) const
+  {
   }
 
 private:
   template <class T>
   void preview(ProjectionContext& context)
   {
-    const LinePreview<T> preview(context, *context.lines, this->Reaches);
+    const LinePreview<T> preview(context, *context.lines, this->Paths);
     // All bands look through sorted chains: there must be no more bands than threads.
     const int height = context.image.height, threads = vtkSMPTools::GetEstimatedNumberOfThreads();
     const int rows = context.lines->encoding().order == LineOrder::Lines
@@ -51,27 +50,20 @@ private:
   template <class T>
   void splat(ProjectionContext& context)
   {
-    using A = Accumulator<T>;
-    auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Footprints);
-    auto& reach = std::get<WorksheetReach<A>>(this->Reach);
-    findFootprints(context.geometry, worksheetKernel(context.settings),
-      context.settings.footprintSampling, weightBits<T>, this->Table, footprints);
-    findReach(context.sliceGeometry, footprints, reach);
+    this->Space.template find<T>(context);
     walk(context,
-      LineWorksheets<T>(
-        context, footprints, reach, worksheetDepth(context.settings), *context.lines));
+      LineWorksheets<T>(context, this->Space.footprints, this->Space.reach,
+        worksheetDepth(context.settings), *context.lines));
   }
 
-  std::vector<LineReach> Reaches;
+  std::vector<PathRows> Paths;
   vtkSMPThreadLocal<LineScratch> Scratch;
-  GeneralTable Table;
-  std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> Footprints;
-  std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
+  WorksheetSpace<A> Space;
 };
 }
 
 std::unique_ptr<ProjectionMode> makeChains()
 {
-  return std::make_unique<ChainsMode>();
+  return std::make_unique<TypedMode<ChainSpace>>();
 }
 }

@@ -16,7 +16,7 @@ namespace splatting
 {
 /// The pixels that see voxels of one slice: voxel (i, j) is seen from row j - dj, there by the
 /// pixels i - iMax to i - iMin.
-struct LineReach
+struct PathRows
 {
   struct Row
   {
@@ -26,24 +26,24 @@ struct LineReach
   int count = 0;
 };
 
-inline LineReach reachOf(const RayPath& path)
+inline PathRows rowsOf(const RayPath& path)
 {
-  LineReach reach;
+  PathRows found;
   for (int t = 0; t < path.count; ++t)
   {
-    LineReach::Row* const end = reach.rows.data() + reach.count;
-    LineReach::Row* const row = std::find_if(
-      reach.rows.data(), end, [&](const LineReach::Row& r) { return r.dj == path.dj[t]; });
+    PathRows::Row* const end = found.rows.data() + found.count;
+    PathRows::Row* const row = std::find_if(
+      found.rows.data(), end, [&](const PathRows::Row& r) { return r.dj == path.dj[t]; });
     if (row == end)
     {
       *row = { path.dj[t], path.di[t], path.di[t] };
-      ++reach.count;
+      ++found.count;
     }
     // The voxels of a path are neighbours: there is none between the first and the last of a row.
     row->iMin = std::min(row->iMin, path.di[t]);
     row->iMax = std::max(row->iMax, path.di[t]);
   }
-  return reach;
+  return found;
 }
 
 /// A thread's work space: per pixel of a band, the next one of its row that has no value yet.
@@ -55,16 +55,16 @@ class LinePreview
 public:
   /// @param storage  outlives this, and is kept for the next frame
   LinePreview(
-    const ProjectionContext& context, const LineIndex& index, std::vector<LineReach>& storage)
+    const ProjectionContext& context, const LineIndex& index, std::vector<PathRows>& storage)
     : Context(context),
       Index(index),
       Floor(previewFloor<T>(context)),
-      Reaches(storage)
+      Paths(storage)
   {
     storage.clear();
     for (const SliceGeometry& slice : context.sliceGeometry)
     {
-      storage.push_back(reachOf(slice.path));
+      storage.push_back(rowsOf(slice.path));
     }
   }
 
@@ -100,10 +100,10 @@ private:
   template <class Raise>
   void forPixels(int begin, int end, int j, int k, int v0, int v1, Raise&& raise) const
   {
-    const LineReach& reach = this->Reaches[k];
-    for (int r = 0; r < reach.count; ++r)
+    const PathRows& path = this->Paths[k];
+    for (int r = 0; r < path.count; ++r)
     {
-      const LineReach::Row& row = reach.rows[r];
+      const PathRows::Row& row = path.rows[r];
       const int v = j - row.dj;
       if (v >= v0 && v < v1)
       {
@@ -117,10 +117,10 @@ private:
     const Span slices = slicesOf(this->Context.sliceGeometry, v0, v1);
     for (int k = slices.begin; k < slices.end; ++k)
     {
-      const LineReach& reach = this->Reaches[k];
-      for (int r = 0; r < reach.count; ++r)
+      const PathRows& path = this->Paths[k];
+      for (int r = 0; r < path.count; ++r)
       {
-        const LineReach::Row& row = reach.rows[r];
+        const PathRows::Row& row = path.rows[r];
         const int end = std::min(v1, this->Context.geometry.size().y - row.dj);
         for (int v = std::max(v0, -row.dj); v < end; ++v)
         {
@@ -130,10 +130,10 @@ private:
     }
   }
 
-  void splatRow(const LineReach::Row& reach, int v, int k) const
+  void splatRow(const PathRows::Row& path, int v, int k) const
   {
     const Span pixels = this->Context.pixels(v, k);
-    const LineRow<T> chains = this->Index.template row<T>(v + reach.dj, k);
+    const LineRow<T> chains = this->Index.template row<T>(v + path.dj, k);
     T* const image = this->row(v);
     int begin = 0;
     for (std::ptrdiff_t c = 0; c < chains.count; ++c)
@@ -141,7 +141,7 @@ private:
       const int end = begin + chains.last[c] + 1;
       if (chains.values[c] > this->Floor)
       {
-        raise(image, common({ begin - reach.iMax, end - reach.iMin }, pixels), chains.values[c]);
+        raise(image, common({ begin - path.iMax, end - path.iMin }, pixels), chains.values[c]);
       }
       begin = end;
     }
@@ -190,11 +190,11 @@ private:
   /// A slice's chains above a value.
   void splatSortedSlice(int k, int v0, int v1, T least) const
   {
-    const LineReach& reach = this->Reaches[k];
-    const auto byOffset = [](const LineReach::Row& a, const LineReach::Row& b)
+    const PathRows& path = this->Paths[k];
+    const auto byOffset = [](const PathRows::Row& a, const PathRows::Row& b)
     { return a.dj < b.dj; };
     const auto offsets =
-      std::minmax_element(reach.rows.begin(), reach.rows.begin() + reach.count, byOffset);
+      std::minmax_element(path.rows.begin(), path.rows.begin() + path.count, byOffset);
     const int jBegin = v0 + offsets.first->dj, jEnd = v1 + offsets.second->dj;
     for (std::size_t r = this->Index.runsOf(k); r < this->Index.runsOf(k + 1); ++r)
     {
@@ -289,7 +289,7 @@ private:
   const ProjectionContext& Context;
   const LineIndex& Index;
   T Floor;
-  const std::vector<LineReach>& Reaches;
+  const std::vector<PathRows>& Paths;
 };
 }
 

@@ -141,9 +141,9 @@ private:
     return std::sqrt(nearest > 0.0 ? std::min(most, seen / (nearest * nearest)) : most);
   }
 
-  double slope(const Fan& fan, int n) const
+  double slope(const AxisRays& rays, int n) const
   {
-    return this->Geometry.isPerspective() ? fan.slope[n] : 0.0;
+    return this->Geometry.isPerspective() ? rays.slope[n] : 0.0;
   }
 
   /// The columns (a = 0) or rows (1) of pixels from corner to corner, out of so many.
@@ -201,7 +201,7 @@ private:
   /// The pixels of row v that the triangle covers, out of some columns.
   Span pixels(const Side (&sides)[3], int v, const Span& some) const
   {
-    const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
+    const AxisRays &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
     const int last = this->Geometry.rayCount().x - 1;
     double low = some.begin, high = some.end - 1.0;
     for (const Side& s : sides)
@@ -234,7 +234,7 @@ private:
 
   void cover(int v, const Span& pixels, double* near, double* far) const
   {
-    const Fan &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
+    const AxisRays &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
     const glm::dvec3 &a = this->Corners[0], &n = this->Normal;
     const double depth = a.z - this->Geometry.reference();
     const double rest = n.y * (rows.at[v] + this->slope(rows, v) * depth - a.y);
@@ -310,8 +310,8 @@ const SurfaceDepths& ClosedSurface::project(const ShearWarp& geometry)
 
 void ClosedSurface::permute(const std::array<int, 3>& axes)
 {
-  this->Places.resize(this->Points.size());
-  std::transform(this->Points.begin(), this->Points.end(), this->Places.begin(),
+  this->Positions.resize(this->Points.size());
+  std::transform(this->Points.begin(), this->Points.end(), this->Positions.begin(),
     [&](const glm::dvec3& p) { return glm::dvec3(p[axes[0]], p[axes[1]], p[axes[2]]); });
 }
 
@@ -321,7 +321,8 @@ void ClosedSurface::findRows(const ShearWarp& geometry)
   std::transform(this->Triangles.begin(), this->Triangles.end(), this->Rows.begin(),
     [&](const glm::ivec3& t)
     {
-      const Triangle triangle(geometry, this->Places[t[0]], this->Places[t[1]], this->Places[t[2]]);
+      const Triangle triangle(
+        geometry, this->Positions[t[0]], this->Positions[t[1]], this->Positions[t[2]]);
       const Span rows = triangle.rows();
       return rows.empty() || triangle.isUnseen() ? Span{} : rows;
     });
@@ -346,8 +347,8 @@ void ClosedSurface::findDepths(SurfaceDepths& depths) const
         if (first < last)
         {
           const glm::ivec3& corners = this->Triangles[t];
-          const Triangle triangle(
-            geometry, this->Places[corners[0]], this->Places[corners[1]], this->Places[corners[2]]);
+          const Triangle triangle(geometry, this->Positions[corners[0]],
+            this->Positions[corners[1]], this->Positions[corners[2]]);
           triangle.cover({ first, last }, { depths.Near.data(), depths.Far.data() });
         }
       }
@@ -363,8 +364,8 @@ glm::dvec2 ClosedSurface::beginning(const ShearWarp& geometry) const
   for (std::size_t t = 0; geometry.isPerspective() && t < this->Triangles.size(); ++t)
   {
     const glm::ivec3& corners = this->Triangles[t];
-    isInside ^= isMet(this->Places[corners[0]] - eye, this->Places[corners[1]] - eye,
-      this->Places[corners[2]] - eye, geometry.reversed());
+    isInside ^= isMet(this->Positions[corners[0]] - eye, this->Positions[corners[1]] - eye,
+      this->Positions[corners[2]] - eye, geometry.reversed());
   }
   if (isInside)
   {

@@ -64,8 +64,8 @@ private:
 
   std::vector<glm::dvec3> Points;
   std::vector<glm::ivec3> Triangles;
-  std::vector<glm::dvec3> Places; // the points in the order of the image's axes
-  std::vector<Span> Rows;         // that each triangle may have pixels in
+  std::vector<glm::dvec3> Positions; // the points in the order of the image's axes
+  std::vector<Span> Rows;            // that each triangle may have pixels in
   /// Of perspective images by their direction; of parallel ones the first.
   std::array<SurfaceDepths, 6> Projections;
 };

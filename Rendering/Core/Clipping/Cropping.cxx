@@ -28,13 +28,13 @@ std::array<int, 2> boundaries(const glm::dvec2& planes, double shift)
 }
 
 /// The same for the rays of a perspective image at `depth` from the reference: the first of them.
-std::array<int, 2> boundaries(const glm::dvec2& planes, const Fan& fan, double depth)
+std::array<int, 2> boundaries(const glm::dvec2& planes, const AxisRays& rays, double depth)
 {
   const auto countBefore = [&](auto isBefore)
   {
-    const auto end = std::partition_point(fan.at.begin(), fan.at.end(),
-      [&](const double& at) { return isBefore(at + fan.slope[&at - fan.at.data()] * depth); });
-    return static_cast<int>(end - fan.at.begin());
+    const auto end = std::partition_point(rays.at.begin(), rays.at.end(),
+      [&](const double& at) { return isBefore(at + rays.slope[&at - rays.at.data()] * depth); });
+    return static_cast<int>(end - rays.at.begin());
   };
   const glm::dvec2 p = widened(planes);
   const int begin = countBefore([&](double x) { return x < p[0]; });

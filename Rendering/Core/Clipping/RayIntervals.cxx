@@ -24,7 +24,7 @@ constexpr double Beyond = DepthLimits::Beyond;
 // between two that are cut inside and outside is cut between their depths.
 constexpr double Outside = 4.0;
 
-/// The half-spaces as RowDepths::cut() and cutFan() take them.
+/// The half-spaces as RowDepths::cut() and cutPerspective() take them.
 std::vector<glm::dvec4> asSeen(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces)
 {
   const std::array<int, 3>& axes = geometry.axes();
@@ -69,7 +69,7 @@ struct RowDepths
   }
 
   /// By a half-space of (i, j, k), for the rays of a perspective image.
-  void cutFan(const glm::dvec4 h, const ShearWarp& geometry, int u0, int v, int count)
+  void cutPerspective(const glm::dvec4 h, const ShearWarp& geometry, int u0, int v, int count)
   {
     // (h.x slope + rest) (z - reference) + h.x at + start >= 0
     const double* const at = geometry.columns().at.data() + u0;
@@ -118,10 +118,10 @@ struct RowDepths
 };
 
 /// Where rays begin and end, and where they enter and leave the voxels' boxes.
-class Reach
+class RayExtents
 {
 public:
-  explicit Reach(const ShearWarp& geometry)
+  explicit RayExtents(const ShearWarp& geometry)
   {
     if (geometry.isPerspective())
     {
@@ -162,12 +162,12 @@ public:
 
 private:
   /// Between which depths the rays of each column (or row) are in the volume's.
-  static void find(const Fan& fan, double reference, int size, std::vector<glm::dvec2>& reach)
+  static void find(const AxisRays& rays, double reference, int size, std::vector<glm::dvec2>& reach)
   {
-    reach.resize(fan.at.size());
+    reach.resize(rays.at.size());
     for (std::size_t n = 0; n < reach.size(); ++n)
     {
-      const double low = -0.5 - fan.at[n], high = size - 0.5 - fan.at[n], slope = fan.slope[n];
+      const double low = -0.5 - rays.at[n], high = size - 0.5 - rays.at[n], slope = rays.slope[n];
       if (std::abs(slope) > 1e-14)
       {
         reach[n] = reference +
@@ -207,10 +207,10 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
   this->First.resize(pixels);
   this->Last.resize(pixels);
   this->Depths.resize(pixels);
-  Reach reach(geometry);
+  RayExtents extents(geometry);
   if (surface || depth)
   {
-    reach.findVolume(geometry);
+    extents.findVolume(geometry);
   }
   const CutLoops& loops = kernelsFor(set);
   const Span slices = geometry.slices();
@@ -227,12 +227,12 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
         for (int u = 0; u < this->Width; u += RowDepths::Most)
         {
           const int count = std::min(RowDepths::Most, this->Width - u);
-          depths.reset(reach.ends().x, reach.ends().y, count);
+          depths.reset(extents.ends().x, extents.ends().y, count);
           for (const glm::dvec4& h : planes)
           {
             if (geometry.isPerspective())
             {
-              depths.cutFan(h, geometry, u, v, count);
+              depths.cutPerspective(h, geometry, u, v, count);
             }
             else
             {
@@ -256,7 +256,7 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
           if (surface || depth)
           {
             // Half-spaces that cut nothing are not there in the first place.
-            reach.openWhole(u, v, count, depths);
+            extents.openWhole(u, v, count, depths);
           }
           lost |= loops.slicesBetween(depths.near, depths.far, slices.begin, slices.end,
             &this->First[first], &this->Last[first], count);

@@ -19,7 +19,7 @@ namespace splatting
 {
 namespace
 {
-/// Values of rows of pixels from parts of their rays, some of which are looked at together.
+/// Values of rows of pixels from segments of their rays, some of which are looked at together.
 template <class T>
 class RowOfValues
 {
@@ -28,7 +28,7 @@ public:
 
   RowOfValues(const RayFinder<T>& finder, const Kernels& loops) : Finder(finder), Loops(loops)
   {
-    this->Parts.nonFinite = std::is_floating_point_v<T>;
+    this->Segments.nonFinite = std::is_floating_point_v<T>;
   }
 
   /// To be called for each row.
@@ -54,7 +54,7 @@ public:
     }
   }
 
-  /// Pixels without a part get NaN.
+  /// Pixels without a segment get NaN.
   void finish()
   {
     this->lookAlongWhole();
@@ -66,14 +66,14 @@ public:
 private:
   static constexpr A Least = -std::numeric_limits<A>::infinity();
 
-  /// Adds parts of a pixel's ray.
+  /// Adds segments of a pixel's ray.
   auto adding(int pixel)
   {
     return [this, pixel](const FieldRay& ray, int k, const glm::dvec2& depths)
     {
-      this->Pixels[this->Parts.count] = pixel;
-      this->Finder.add(ray, k, depths, this->Parts);
-      if (this->Parts.count == this->Parts.most)
+      this->Pixels[this->Segments.count] = pixel;
+      this->Finder.add(ray, k, depths, this->Segments);
+      if (this->Segments.count == this->Segments.most)
       {
         this->take();
       }
@@ -94,15 +94,15 @@ private:
 
   void take()
   {
-    this->Finder.findLargest(this->Parts, this->Voxels, this->Loops);
-    for (int n = 0; n < this->Parts.count; ++n)
+    this->Finder.findLargest(this->Segments, this->Voxels, this->Loops);
+    for (int n = 0; n < this->Segments.count; ++n)
     {
       // Not std::max(), which compilers make a branch of that is often predicted wrongly.
       A& value = this->Values[this->Pixels[n]];
-      const A largest = this->Parts.largest[n], before = value;
+      const A largest = this->Segments.largest[n], before = value;
       value = largest > before ? largest : before;
     }
-    this->Parts.count = 0;
+    this->Segments.count = 0;
   }
 
   const RayFinder<T>& Finder;
@@ -111,9 +111,9 @@ private:
   int Count = 0;
   std::array<std::pair<int, Way>, 64> Whole; // pixels whose whole rays are to be looked along
   int WholeCount = 0;
-  FieldParts<A> Parts{};
-  VoxelsOfParts<T> Voxels{};
-  std::array<int, FieldParts<A>::most> Pixels;
+  FieldSegments<A> Segments{};
+  VoxelsOfSegments<T> Voxels{};
+  std::array<int, FieldSegments<A>::most> Pixels;
 };
 }
 

@@ -95,7 +95,7 @@ ShearWarp::ShearWarp(const View& view, int sampling, Meets meets)
   this->Reversed = deeper * direction[this->Axes[2]] < 0.0;
   this->computeWarp(rowX, rowY);
   this->refine(sampling == Automatic ? neededSampling(this->screenWidth({})) : sampling);
-  this->setParallelFans();
+  this->setParallelRays();
   this->Valid = true;
 }
 
@@ -158,20 +158,20 @@ void ShearWarp::permute(int principalAxis, const glm::ivec3& dimensions)
   this->Middle = 0.5 * (this->Size.z - 1);
 }
 
-void ShearWarp::setParallelFans()
+void ShearWarp::setParallelRays()
 {
   this->Reference = this->Middle;
   this->DepthRange = { -0.5, this->Size.z - 0.5 };
   this->SlicesSeen = { 0, this->Size.z };
   for (int a = 0; a < 2; ++a)
   {
-    Fan& fan = a == 0 ? this->Columns : this->Rows;
-    fan.at.resize(this->ImageSize[a]);
+    AxisRays& rays = a == 0 ? this->Columns : this->Rows;
+    rays.at.resize(this->ImageSize[a]);
     for (int n = 0; n < this->ImageSize[a]; ++n)
     {
-      fan.at[n] = n * this->Pitch + this->Offset[a] - this->Margin[a];
+      rays.at[n] = n * this->Pitch + this->Offset[a] - this->Margin[a];
     }
-    fan.slope.assign(this->ImageSize[a], -this->Shear[a]);
+    rays.slope.assign(this->ImageSize[a], -this->Shear[a]);
   }
 }
 
@@ -237,8 +237,8 @@ bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays&
     const glm::dvec2 middle = 0.5 * glm::dvec2(this->RayCount - 1);
     this->placeRays(view, directions, farthest, neededSampling(this->screenWidth(middle)));
   }
-  this->setFan(0, this->Columns);
-  this->setFan(1, this->Rows);
+  this->setPerspectiveRays(0, this->Columns);
+  this->setPerspectiveRays(1, this->Rows);
   this->Valid = true;
   return true;
 }
@@ -322,20 +322,21 @@ bool ShearWarp::placeImage(const View& view, const glm::dmat3& directions)
   return true;
 }
 
-void ShearWarp::setFan(int a, Fan& fan) const
+void ShearWarp::setPerspectiveRays(int a, AxisRays& rays) const
 {
   const double sign = this->Reversed ? -1.0 : 1.0;
   const double start = this->Eye[a] + (this->Eye.z - this->Reference) * sign;
   constexpr double outside = 1e6;
-  fan.at.assign(this->ImageSize[a], this->Size[a] + outside);
-  fan.slope.assign(this->ImageSize[a], 0.0);
-  fan.steepest = 0.0;
+  rays.at.assign(this->ImageSize[a], this->Size[a] + outside);
+  rays.slope.assign(this->ImageSize[a], 0.0);
+  rays.steepest = 0.0;
   for (int n = 0; n < this->RayCount[a]; ++n)
   {
     const double step = static_cast<double>(this->First[a] + n);
-    fan.slope[n] = sign * quantised(2.0 * step / static_cast<double>(this->Steps) - 1.0, SlopeBits);
-    fan.at[n] = quantised(start + step * this->Pitch, PositionBits);
-    fan.steepest = std::max(fan.steepest, std::abs(fan.slope[n]));
+    rays.slope[n] =
+      sign * quantised(2.0 * step / static_cast<double>(this->Steps) - 1.0, SlopeBits);
+    rays.at[n] = quantised(start + step * this->Pitch, PositionBits);
+    rays.steepest = std::max(rays.steepest, std::abs(rays.slope[n]));
   }
 }
 
@@ -398,7 +399,7 @@ void ShearWarp::takePhase(const glm::ivec2& phase, ShearWarp& part) const
   part.RayCount /= count;
   part.Pitch = 1.0;
   part.Offset = glm::dvec2(phase) * this->Pitch;
-  part.setParallelFans();
+  part.setParallelRays();
   const glm::dvec3 first(phase, 0.0);
   part.ShearToScreen = this->ShearToScreen * scaled(count);
   part.ShearToScreen[2] += this->ShearToScreen * first;
@@ -413,16 +414,16 @@ void ShearWarp::takePixel(const glm::ivec2& pixel, ShearWarp& part) const
   if (!this->Perspective)
   {
     part.Margin -= pixel;
-    part.setParallelFans();
+    part.setParallelRays();
     return;
   }
   for (int a = 0; a < 2; ++a)
   {
-    Fan& fan = a == 0 ? part.Columns : part.Rows;
-    const double steepest = fan.steepest;
+    AxisRays& rays = a == 0 ? part.Columns : part.Rows;
+    const double steepest = rays.steepest;
     part.First[a] += pixel[a];
-    part.setFan(a, fan);
-    fan.steepest = steepest;
+    part.setPerspectiveRays(a, rays);
+    rays.steepest = steepest;
   }
 }
 
@@ -481,7 +482,7 @@ glm::dvec4 ShearWarp::inPixels(const glm::dvec4& halfSpace) const
 
 bool ShearWarp::sameShear(const ShearWarp& other) const
 {
-  // Fans hold the shears.
+  // The rays hold the shears.
   return this->Valid == other.Valid && this->Met == other.Met && this->Axes == other.Axes &&
     this->Size == other.Size && this->PixelSize == other.PixelSize &&
     this->Reference == other.Reference && this->DepthRange == other.DepthRange &&

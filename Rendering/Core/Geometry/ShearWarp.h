@@ -27,11 +27,11 @@ namespace splatting
  * The rays of the columns (or of the rows) of a shear image, in one coordinate: that of pixel n
  * passes at[n] + slope[n] (z - ShearWarp::reference()) at depth z.
  */
-struct Fan
+struct AxisRays
 {
   std::vector<double> at, slope;
 
-  bool operator==(const Fan& other) const
+  bool operator==(const AxisRays& other) const
   {
     return this->at == other.at && this->slope == other.slope;
   }
@@ -128,10 +128,10 @@ public:
   const glm::ivec2& rayCount() const { return this->RayCount; }
 
   bool isPerspective() const { return this->Perspective; }
-  const Fan& columns() const { return this->Columns; }
-  const Fan& rows() const { return this->Rows; }
-  /// The depth that fans start from: the middle of parallel views, where perspective ones are
-  /// farthest from the eye.
+  const AxisRays& columns() const { return this->Columns; }
+  const AxisRays& rows() const { return this->Rows; }
+  /// The depth at which pixels' rays are at AxisRays::at: the middle of parallel views, in
+  /// perspective where the volume is farthest from the eye.
   double reference() const { return this->Reference; }
   /// Voxels from one pixel to the next at that depth.
   double pitch() const { return this->Pitch; }
@@ -235,7 +235,7 @@ private:
   void permute(int principalAxis, const glm::ivec3& dimensions);
   void computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY);
   void refine(int sampling);
-  void setParallelFans();
+  void setParallelRays();
   double screenWidth(const glm::dvec2& pixel) const;
 
   /// The rays of a perspective view: through the eye, of viewport pixel (x, y) along
@@ -249,7 +249,7 @@ private:
   bool lookAlong(int axis, bool reversed, const View& view, const Rays& rays, int sampling);
   bool placeRays(const View& view, const glm::dmat3& directions, double farthest, int sampling);
   bool placeImage(const View& view, const glm::dmat3& directions);
-  void setFan(int a, Fan& fan) const;
+  void setPerspectiveRays(int a, AxisRays& rays) const;
   glm::dmat3 directionToPixel() const;
 
   bool Valid = false;
@@ -272,7 +272,7 @@ private:
   double Reference = 0.0, Pitch = 1.0, PixelSize = 1.0;
   glm::dvec2 DepthRange{ 0.0 }; // of the volume, as far as it lies before the eye
   Span SlicesSeen;
-  Fan Columns, Rows;
+  AxisRays Columns, Rows;
   glm::dmat3 ScreenToShear{ 1.0 };
   glm::dmat3 ShearToScreen{ 1.0 };
 };

@@ -279,10 +279,10 @@ struct CubicLoop : Lanes<A, R>
 
   explicit CubicLoop(const Cubics<A>& own) : cubics(own) {}
 
-  inline void loadCorners(const CubicPiece<A>& piece, std::ptrdiff_t at, R (&corners)[8]) const
+  inline void loadCorners(const CubicSegment<A>& segment, std::ptrdiff_t at, R (&corners)[8]) const
   {
-    const A* const rows[4] = { piece.low + at, piece.low + at + this->cubics.sourceStride,
-      piece.high + at, piece.high + at + this->cubics.sourceStride };
+    const A* const rows[4] = { segment.low + at, segment.low + at + this->cubics.sourceStride,
+      segment.high + at, segment.high + at + this->cubics.sourceStride };
 #pragma GCC unroll 8
     for (int n = 0; n < 8; ++n)
     {
@@ -301,13 +301,13 @@ struct CubicLoop : Lanes<A, R>
     return sum;
   }
 
-  /// The field at the start of piece p as the end of the one before has it or, where that has NaN,
-  /// as its own cell has it.
+  /// The field at the start of segment p as the end of the one before has it or, where that has
+  /// NaN, as its own cell has it.
   inline R numberOf(R start, int p, const R (&corners)[8]) const
   {
     if constexpr (NonFinite)
     {
-      return start == start ? start : combine(this->cubics.pieces[p].weights, corners);
+      return start == start ? start : combine(this->cubics.segments[p].weights, corners);
     }
     else
     {
@@ -317,26 +317,26 @@ struct CubicLoop : Lanes<A, R>
     }
   }
 
-  /// The field at the start of piece p, which is the end of the one before.
+  /// The field at the start of segment p, which is the end of the one before.
   inline R startOf(int p, const R (&corners)[8], std::ptrdiff_t at) const
   {
     if (p == 0)
     {
-      return combine(this->cubics.pieces[0].weights, corners);
+      return combine(this->cubics.segments[0].weights, corners);
     }
-    const CubicPiece<A>& before = this->cubics.pieces[p - 1];
+    const CubicSegment<A>& before = this->cubics.segments[p - 1];
     R others[8];
     this->loadCorners(before, at, others);
     return this->numberOf(combine(before.weights + 24, others), p, corners);
   }
 
-  /// The pixels from (x, v) on that a piece counts for.
-  inline M counting(const CubicPiece<A>& piece, std::ptrdiff_t x, std::ptrdiff_t v) const
+  /// The pixels from (x, v) on that a segment counts for.
+  inline M counting(const CubicSegment<A>& segment, std::ptrdiff_t x, std::ptrdiff_t v) const
   {
     const auto inRow = [=](const Span* pixels)
     { return v >= pixels[1].begin && v < pixels[1].end ? pixels[0] : Span{}; };
-    const Span field = this->cubics.field[v], own = inRow(piece.inField),
-               boxes = inRow(piece.inBoxes);
+    const Span field = this->cubics.field[v], own = inRow(segment.inField),
+               boxes = inRow(segment.inBoxes);
     M lane;
     if constexpr (std::is_same_v<R, A>)
     {
@@ -357,7 +357,7 @@ struct CubicLoop : Lanes<A, R>
     }
   }
 
-  /// Whether all pieces count for all of a register's pixels, which see the field.
+  /// Whether all segments count for all of a register's pixels, which see the field.
   inline bool allCount(std::ptrdiff_t x, std::ptrdiff_t v) const
   {
     const auto inSpan = [](const Span& span, std::ptrdiff_t begin, std::ptrdiff_t end)
@@ -365,7 +365,7 @@ struct CubicLoop : Lanes<A, R>
     bool all = inSpan(this->cubics.field[v], x, x + width<A>);
     for (int p = 0; p < this->cubics.count; ++p)
     {
-      const Span* const pixels = this->cubics.pieces[p].inField;
+      const Span* const pixels = this->cubics.segments[p].inField;
       all = all && inSpan(pixels[0], x, x + width<A>) && inSpan(pixels[1], v, v + 1);
     }
     return all;
@@ -379,11 +379,11 @@ struct CubicLoop : Lanes<A, R>
     const R before = loadFrom(pixels);
     R best = Lanes<A, R>::template opened<NonFinite>(before);
     R b[4], corners[8];
-    bool follows = false; // whether b[3] is where this piece starts
+    bool follows = false; // whether b[3] is where this segment starts
     for (int p = 0; p < this->cubics.count; ++p)
     {
-      const CubicPiece<A>& piece = this->cubics.pieces[p];
-      this->loadCorners(piece, at, corners);
+      const CubicSegment<A>& segment = this->cubics.segments[p];
+      this->loadCorners(segment, at, corners);
       const R most = Lanes<A, R>::template largestOf<NonFinite>(corners);
       if (!anyLarger(most, best))
       {
@@ -391,13 +391,13 @@ struct CubicLoop : Lanes<A, R>
         continue;
       }
       b[0] = follows ? this->numberOf(b[3], p, corners) : this->startOf(p, corners, at);
-      b[3] = combine(piece.weights + 24, corners);
+      b[3] = combine(segment.weights + 24, corners);
       follows = true;
       R raised = larger(b[3], larger(b[0], best));
-      if (piece.curved)
+      if (segment.curved)
       {
-        b[1] = combine(piece.weights + 8, corners);
-        b[2] = combine(piece.weights + 16, corners);
+        b[1] = combine(segment.weights + 8, corners);
+        b[2] = combine(segment.weights + 16, corners);
         const R inner = larger(b[1], b[2]);
         if (anyLarger(inner, raised))
         {
@@ -407,7 +407,7 @@ struct CubicLoop : Lanes<A, R>
       raised = Lanes<A, R>::limitedTo(raised, most, best);
       if constexpr (Masked)
       {
-        raised = this->counting(piece, x, v) ? raised : best;
+        raised = this->counting(segment, x, v) ? raised : best;
       }
       best = raised;
     }

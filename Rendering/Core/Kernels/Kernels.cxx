@@ -8,12 +8,12 @@
 // anonymous namespace, but the table.
 #include "Kernels/Kernels.h"
 #include "Kernels/DepthKernels.h"
-#include "Kernels/ExactFanKernels.h"
-#include "Kernels/FanKernels.h"
-#include "Kernels/PartKernels.h"
+#include "Kernels/PerspectiveExactKernels.h"
+#include "Kernels/PerspectiveKernels.h"
 #include "Kernels/RayKernels.h"
 #include "Kernels/Registers.h"
 #include "Kernels/ResamplingKernels.h"
+#include "Kernels/SegmentKernels.h"
 #include "Kernels/SplatKernels.h"
 #include "Kernels/SweepKernels.h"
 
@@ -228,10 +228,10 @@ void bound(A* __restrict own, const A* __restrict before, const A* __restrict af
   }
 }
 
-/// What places on the screen mix into, `chunk` of them at a time: each its pixel and the three
+/// What points on the screen mix, `chunk` of them at a time: each its pixel and the three
 /// beyond it along u and v.
 template <class A>
-struct Places
+struct BilinearTaps
 {
   static constexpr std::int32_t chunk = 64;
   std::int32_t at[chunk];
@@ -272,19 +272,19 @@ template <class A>
 void interpolate(const A* __restrict image, std::ptrdiff_t stride, const double start[2],
   const double step[2], A* __restrict out, std::ptrdiff_t n)
 {
-  // In steps that each vectorise: places, then the four neighbours, then their mixture.
+  // In steps that each vectorise: points, then the four neighbours, then their mixture.
   const double u0 = start[0], v0 = start[1], du = step[0], dv = step[1];
   const std::int32_t rowLength = static_cast<std::int32_t>(stride);
-  Places<A> places;
-  for (std::int32_t begin = 0; begin < n; begin += places.chunk)
+  BilinearTaps<A> taps;
+  for (std::int32_t begin = 0; begin < n; begin += taps.chunk)
   {
     const std::int32_t left = static_cast<std::int32_t>(n) - begin;
-    const std::int32_t count = left < places.chunk ? left : places.chunk;
+    const std::int32_t count = left < taps.chunk ? left : taps.chunk;
     for (std::int32_t x = 0; x < count; ++x)
     {
-      places.set(x, u0 + (begin + x) * du, v0 + (begin + x) * dv, rowLength);
+      taps.set(x, u0 + (begin + x) * du, v0 + (begin + x) * dv, rowLength);
     }
-    places.mix(image, rowLength, out + begin, count);
+    taps.mix(image, rowLength, out + begin, count);
   }
 }
 
@@ -295,17 +295,17 @@ void interpolateProjective(const A* __restrict image, std::ptrdiff_t stride, con
   const double u0 = start[0], v0 = start[1], w0 = start[2];
   const double du = step[0], dv = step[1], dw = step[2];
   const std::int32_t rowLength = static_cast<std::int32_t>(stride);
-  Places<A> places;
-  for (std::int32_t begin = 0; begin < n; begin += places.chunk)
+  BilinearTaps<A> taps;
+  for (std::int32_t begin = 0; begin < n; begin += taps.chunk)
   {
     const std::int32_t left = static_cast<std::int32_t>(n) - begin;
-    const std::int32_t count = left < places.chunk ? left : places.chunk;
+    const std::int32_t count = left < taps.chunk ? left : taps.chunk;
     for (std::int32_t x = 0; x < count; ++x)
     {
       const double perW = 1.0 / (w0 + (begin + x) * dw);
-      places.set(x, (u0 + (begin + x) * du) * perW, (v0 + (begin + x) * dv) * perW, rowLength);
+      taps.set(x, (u0 + (begin + x) * du) * perW, (v0 + (begin + x) * dv) * perW, rowLength);
     }
-    places.mix(image, rowLength, out + begin, count);
+    taps.mix(image, rowLength, out + begin, count);
   }
 }
 
@@ -344,9 +344,9 @@ constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::climb)>(&climb<P>),
   static_cast<decltype(RayLoops<P>::note)>(&note<P>) };
 template <class A>
-constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &fanWeights<A>, &resample<A>,
-  &blend<A>, &raiseBlend<A>, &splat<A, A>, &raiseCubics<A>, &raiseFanCubics<A>, &placeParts<A>,
-  &findLargest<A>, &raiseAverages<A>, &allFinite<A>, &separate<A>,
+constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &axisWeights<A>, &resample<A>,
+  &blend<A>, &raiseBlend<A>, &splat<A, A>, &raiseCubics<A>, &raisePerspectiveCubics<A>,
+  &placeSegments<A>, &findLargest<A>, &raiseAverages<A>, &allFinite<A>, &separate<A>,
   static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
   static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
   &interpolateProjective<A>, &lookUp<A> };

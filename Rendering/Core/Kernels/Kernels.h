@@ -66,7 +66,7 @@ struct Sweep
   int rimCount;
 };
 
-/// What the rays of a perspective image do in one slice; see FanSteps and FanWindows for the
+/// What the rays of a perspective image do in one slice; see AxisSteps and AxisPicks for the
 /// arrays, which begin with the first column and the first row.
 template <class T>
 struct CrossedSlice
@@ -240,9 +240,9 @@ struct CutLoops
 };
 
 /// Loops over the rays of perspective images.
-struct FanLoops
+struct PerspectiveLoops
 {
-  /// Voxels in which rays enter and leave a slice, as in FanSteps::Slice: rays are at
+  /// Voxels in which rays enter and leave a slice, as in AxisSteps::Slice: rays are at
   /// at[x] + slope[x] from there and at at[x] + slope[x] to here.
   void (*steps)(const double* at, const double* slope, double from, double to, std::int32_t size,
     std::int32_t* first, std::int32_t* last, double* time, std::int16_t* tick, std::ptrdiff_t n);
@@ -252,9 +252,9 @@ struct FanLoops
 template <class A>
 using LaneOf = std::conditional_t<sizeof(A) == 4, std::int32_t, std::int64_t>;
 
-/// The weights of the pixels of a fan in a part of a slice; see FanFootprints.
+/// The weights of the pixels of an image axis in a part of a slice; see AxisFootprints.
 template <class A>
-struct FanWeights
+struct AxisWeights
 {
   int shape;      ///< of the kernel, a Reconstruction
   double support; ///< its half-width
@@ -285,15 +285,15 @@ struct Resampling
   int taps;
 };
 
-/// Most pieces of a ray's path in a slice: cut in its middle, and twice along i and j.
-constexpr int MostPieces = 6;
+/// Most segments of a ray's path in a slice: cut in its middle, and twice along i and j.
+constexpr int MostSegments = 6;
 
-/// A piece of the path of all rays in a slice, as in ExactPieces.h.
+/// A segment of the path of all rays in a slice, as in ExactSegments.h.
 template <class A>
-struct CubicPiece
+struct CubicSegment
 {
   const A *low, *high;           ///< the first voxel of pixel (0, 0)'s cell in its two slices
-  const A* weights;              ///< as in ExactPiece
+  const A* weights;              ///< as in ExactSegment
   bool curved;                   ///< likewise
   const Span *inField, *inBoxes; ///< the columns and rows of pixels that it counts for, likewise
 };
@@ -307,8 +307,8 @@ struct BoxSide
   bool crosses; ///< whether the end lies behind the voxel that follows
 };
 
-/// A box around the part of rays' paths that lies half a slice to either side of a slice, and the
-/// first voxels that it reads in the slice before, in this one and in the next.
+/// A box around the segment of rays' paths that lies half a slice to either side of a slice, and
+/// the first voxels that it reads in the slice before, in this one and in the next.
 template <class A>
 struct PathBox
 {
@@ -318,7 +318,7 @@ struct PathBox
   A slack;
 };
 
-/// A rectangle of pixels in one slice, and the pieces of their path.
+/// A rectangle of pixels in one slice, and the segments of their path.
 template <class A>
 struct Cubics
 {
@@ -327,15 +327,15 @@ struct Cubics
   Span columns, rows;          ///< the pixels that are raised
   const Span* field;           ///< for row 0: the columns that see the field, others see boxes
   std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
-  CubicPiece<A> pieces[MostPieces];
+  CubicSegment<A> segments[MostSegments];
   int count;
   PathBox<A> box; ///< of pixel (0, 0)
   bool nonFinite; ///< whether there are NaN or infinities, which boxes know nothing of
 };
 
-/// What FanCells knows of all columns (or rows) in a slice, depths relative to its middle.
+/// What AxisCells knows of all columns (or rows) in a slice, depths relative to its middle.
 template <class A>
-struct FanCellArrays
+struct AxisCellArrays
 {
   const std::int32_t* cell;       ///< the lower of the cells that the ray is in
   const A *at, *slope;            ///< its place in that cell: at + slope z
@@ -347,7 +347,7 @@ struct FanCellArrays
 
 /// The depths in a slice in which rays stay in one row of cells and on one side of its middle.
 template <class A>
-struct FanCubicPart
+struct PerspectiveCubicSegment
 {
   A from, to;
   /// Column 0 of the cell's rows of voxels: two of the lower slice, then two of the upper one.
@@ -357,15 +357,15 @@ struct FanCubicPart
 
 /// One row of pixels in one slice of a perspective image.
 template <class A>
-struct FanCubicRow
+struct PerspectiveCubicRow
 {
   A* image;    ///< pixel 0, which need not exist
   Span pixels; ///< those that are raised
-  FanCellArrays<A> columns;
+  AxisCellArrays<A> columns;
   A slope; ///< of the row
-  FanCubicPart<A> parts[3];
+  PerspectiveCubicSegment<A> segments[3];
   int count;
-  A fieldBegin, fieldEnd, boxesBegin, boxesEnd; ///< of the row, as in FanCellArrays
+  A fieldBegin, fieldEnd, boxesBegin, boxesEnd; ///< of the row, as in AxisCellArrays
   A fieldNear, fieldFar;
   A shortest;                  ///< way through the field that counts as seeing it
   PathBox<A> box;              ///< of voxel column 0; its columns are each pixel's own
@@ -373,13 +373,13 @@ struct FanCubicRow
   bool nonFinite;              ///< as in Cubics
 };
 
-/// Parts of rays between two slices, no longer than a voxel in any direction, and the voxels
+/// Segments of rays between two slices, no longer than a voxel in any direction, and the voxels
 /// around.
 template <class A>
-struct FieldParts
+struct FieldSegments
 {
   static constexpr int most = 128;
-  static constexpr int beyond = 2; ///< columns and rows beside the volume that parts may need
+  static constexpr int beyond = 2; ///< columns and rows beside the volume that segments may need
 
   int count = 0;
   bool nonFinite; ///< whether voxels may be NaN or infinite
@@ -387,11 +387,11 @@ struct FieldParts
   double at[2][most], slope[2][most], begin[most], end[most];
   std::int32_t first[3][most]; ///< column, row and slice of the lowest voxel; the slice is given
   /// Where rays are at the first of the two slices, from the lowest column and row of voxels that
-  /// the part needs, and what they move by up to the second.
+  /// the segment needs, and what they move by up to the second.
   A place[2][most], way[2][most];
-  A from[most], to[most];  ///< the part, 0 to 1
+  A from[most], to[most];  ///< the segment, 0 to 1
   A voxels[2][3][3][most]; ///< slice, row, column
-  A largest[most];         ///< what the part has
+  A largest[most];         ///< what the segment has
 };
 
 /// Worksheets from voxels of which some are not finite.
@@ -413,7 +413,7 @@ struct WorksheetLoops
 {
   /// Pixels of a perspective image that pick their voxels from as many.
   int group;
-  void (*fanWeights)(const FanWeights<A>& weights, std::ptrdiff_t n);
+  void (*axisWeights)(const AxisWeights<A>& weights, std::ptrdiff_t n);
   /// out[x] = the sum of taps times voxels, for all rows and x from begin to end, in whole
   /// registers, as voxels and weights are read.
   void (*resample)(const Resampling<A>& rows, std::ptrdiff_t begin, std::ptrdiff_t end);
@@ -428,12 +428,12 @@ struct WorksheetLoops
   /// NaN coefficient is left out but for its ends.
   void (*raiseCubics)(const Cubics<A>& cubics);
   /// The same in perspective views, for a row of pixels, each of which has cubics of its own.
-  void (*raiseFanCubics)(const FanCubicRow<A>& row);
-  /// Tells from rays which voxels parts need, and where parts are among them: the volume ends with
-  /// column last[0] and row last[1], rays are at their places at depth `start`.
-  void (*placeParts)(FieldParts<A>& parts, double start, const std::int32_t last[2]);
-  /// Finds the largest value of each part; cells with a corner that is not finite are left out.
-  void (*findLargest)(FieldParts<A>& parts);
+  void (*raisePerspectiveCubics)(const PerspectiveCubicRow<A>& row);
+  /// Tells from rays which voxels segments need, and where segments are among them: the volume ends
+  /// with column last[0] and row last[1], rays are at their places at depth `start`.
+  void (*placeSegments)(FieldSegments<A>& segments, double start, const std::int32_t last[2]);
+  /// Finds the largest value of each segment; cells with a corner that is not finite are left out.
+  void (*findLargest)(FieldSegments<A>& segments);
   /// Pixels become the larger of themselves and the averages.
   void (*raiseAverages)(const Averages<A>& averages, std::ptrdiff_t n);
   /// Whether there are neither NaN nor infinities.
@@ -470,7 +470,7 @@ struct WorksheetLoops
 
 struct Kernels
   : CutLoops
-  , FanLoops
+  , PerspectiveLoops
   , VoxelLoops<std::int8_t>
   , VoxelLoops<std::uint8_t>
   , VoxelLoops<std::int16_t>

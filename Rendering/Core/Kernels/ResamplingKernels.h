@@ -7,7 +7,7 @@
 #ifndef splattingResamplingKernels_h
 #define splattingResamplingKernels_h
 
-#include "Kernels/FanKernels.h"
+#include "Kernels/PerspectiveKernels.h"
 
 namespace splatting
 {
@@ -48,7 +48,7 @@ inline double positive(double x)
 /// Where some pixels lie from the first voxel that they weigh, and how far their points spread
 /// along the ray. Returns how far from ray to ray.
 template <class A>
-inline double placePixels(const FanWeights<A>& w, std::ptrdiff_t begin, std::ptrdiff_t count,
+inline double placePixels(const AxisWeights<A>& w, std::ptrdiff_t begin, std::ptrdiff_t count,
   double* __restrict place, double* __restrict spread)
 {
   // What spreads over nothing would be divided by it. These widen what a pixel sees by no more than
@@ -72,7 +72,7 @@ inline double placePixels(const FanWeights<A>& w, std::ptrdiff_t begin, std::ptr
 
 /// Weights as PerspectiveFootprints.h has them.
 template <class A>
-inline void weighBells(const FanWeights<A>& w, std::ptrdiff_t n)
+inline void weighBells(const AxisWeights<A>& w, std::ptrdiff_t n)
 {
   const TwiceBell twice{ w.support };
   constexpr std::ptrdiff_t chunk = 64;
@@ -111,7 +111,7 @@ inline void weighBells(const FanWeights<A>& w, std::ptrdiff_t n)
 /// A voxel that is a box weighs as much of the pixel's points as lie in it: the difference of the
 /// shares that lie below its ends.
 template <class A>
-inline void weighBoxes(const FanWeights<A>& w, std::ptrdiff_t n)
+inline void weighBoxes(const AxisWeights<A>& w, std::ptrdiff_t n)
 {
   constexpr std::ptrdiff_t chunk = 64;
   for (std::ptrdiff_t begin = 0; begin < n; begin += chunk)
@@ -146,7 +146,7 @@ inline void weighBoxes(const FanWeights<A>& w, std::ptrdiff_t n)
 
 /// The same for hats, the second differences of what lies below a voxel's centre, times how far.
 template <class A>
-inline void weighHats(const FanWeights<A>& w, std::ptrdiff_t n)
+inline void weighHats(const AxisWeights<A>& w, std::ptrdiff_t n)
 {
   constexpr std::ptrdiff_t chunk = 64;
   for (std::ptrdiff_t begin = 0; begin < n; begin += chunk)
@@ -181,7 +181,7 @@ inline void weighHats(const FanWeights<A>& w, std::ptrdiff_t n)
 }
 
 template <class A>
-void fanWeights(const FanWeights<A>& w, std::ptrdiff_t n)
+void axisWeights(const AxisWeights<A>& w, std::ptrdiff_t n)
 {
   switch (w.shape)
   {

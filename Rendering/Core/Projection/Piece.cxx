@@ -19,13 +19,13 @@ namespace
 constexpr double Infinite = std::numeric_limits<double>::infinity();
 
 /// The pixels whose rays are in [low, high] at a depth from the reference.
-Span pixelsWithin(const Fan& fan, int count, double depth, double low, double high)
+Span pixelsWithin(const AxisRays& rays, int count, double depth, double low, double high)
 {
   const auto countBefore = [&](auto isBefore)
   {
-    const auto end = std::partition_point(fan.at.begin(), fan.at.begin() + count,
-      [&](const double& at) { return isBefore(at + fan.slope[&at - fan.at.data()] * depth); });
-    return static_cast<int>(end - fan.at.begin());
+    const auto end = std::partition_point(rays.at.begin(), rays.at.begin() + count,
+      [&](const double& at) { return isBefore(at + rays.slope[&at - rays.at.data()] * depth); });
+    return static_cast<int>(end - rays.at.begin());
   };
   return { countBefore([=](double x) { return x < low; }),
     countBefore([=](double x) { return x <= high; }) };

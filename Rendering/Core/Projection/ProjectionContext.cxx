@@ -31,7 +31,7 @@ void findParallelSlice(const ShearWarp& geometry, int k, SliceGeometry& slice)
 }
 
 /// The pixels of a row whose rays only enter the slice, or only leave it, in a row of voxels.
-Span rimOf(const FanSteps::Slice& columns, const Span& reach, int size, bool enters, double time)
+Span rimOf(const AxisSteps::Slice& columns, const Span& reach, int size, bool enters, double time)
 {
   const auto meets = [&](int u)
   {
@@ -58,14 +58,14 @@ Span rimOf(const FanSteps::Slice& columns, const Span& reach, int size, bool ent
 void findPerspectiveSlice(
   const ShearWarp& geometry, const PerspectiveSteps& steps, int k, SliceGeometry& slice)
 {
-  const FanSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
-  const Span& some = steps.rows.reach(k).some;
-  const Span& all = steps.rows.reach(k).all;
+  const AxisSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
+  const Span& some = steps.rows.covered(k).some;
+  const Span& all = steps.rows.covered(k).all;
   slice.vBegin = some.begin;
   slice.vEnd = some.end;
   slice.innerBegin = all.empty() ? some.end : all.begin;
   slice.innerEnd = all.empty() ? some.end : all.end;
-  slice.inner = steps.columns.reach(k).some;
+  slice.inner = steps.columns.covered(k).some;
   const auto rim = [&](int v)
   {
     const bool enters = rows.first[v] >= 0 && rows.first[v] < geometry.size().y;
@@ -248,7 +248,7 @@ private:
 
 RayPath PerspectiveSteps::path(int u, int v, int k) const
 {
-  const FanSteps::Slice i = this->columns.slice(k), j = this->rows.slice(k);
+  const AxisSteps::Slice i = this->columns.slice(k), j = this->rows.slice(k);
   const int i0 = i.first[u], i1 = i.last[u], j0 = j.first[v], j1 = j.last[v];
   RayPath path;
   const auto add = [&](int column, int row)
@@ -281,7 +281,7 @@ std::vector<SliceGeometry>& findSlices(
       findParallelSlice(geometry, k, slice);
     }
     else if (k >= geometry.slices().begin && k < geometry.slices().end &&
-      !steps.columns.reach(k).some.empty() && !steps.rows.reach(k).some.empty())
+      !steps.columns.covered(k).some.empty() && !steps.rows.covered(k).some.empty())
     {
       findPerspectiveSlice(geometry, steps, k, slice);
     }

@@ -6,7 +6,7 @@
 #ifndef splattingProjectionContext_h
 #define splattingProjectionContext_h
 
-#include "Geometry/FanSteps.h"
+#include "Geometry/AxisSteps.h"
 #include "Kernels/Kernels.h"
 #include "Projection/ShearImage.h"
 #include "Volume/VolumeIndex.h"
@@ -40,7 +40,7 @@ struct SliceGeometry
 /// How the rays of a perspective image run through the volume.
 struct PerspectiveSteps
 {
-  FanSteps columns, rows;
+  AxisSteps columns, rows;
 
   /// The voxels of one pixel's ray in slice k; those outside the volume may be closer than they
   /// are.
@@ -151,7 +151,7 @@ struct ProjectionContext
 constexpr int Beside = 4;
 
 /// The voxels that the pixels of a layer read, relative to the pixel.
-struct Window
+struct VoxelWindow
 {
   int iMin = std::numeric_limits<int>::max(), iMax = std::numeric_limits<int>::lowest();
   int jMin = std::numeric_limits<int>::max(), jMax = std::numeric_limits<int>::lowest();

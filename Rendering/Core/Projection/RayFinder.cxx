@@ -6,7 +6,7 @@ namespace splatting
 {
 std::vector<glm::dvec2> depthsOf(const ShearWarp& geometry, int axis)
 {
-  const Fan& rays = axis == 0 ? geometry.columns() : geometry.rows();
+  const AxisRays& rays = axis == 0 ? geometry.columns() : geometry.rows();
   const FieldBox box(geometry);
   std::vector<glm::dvec2> depths;
   for (int n = 0; n < geometry.rayCount()[axis]; ++n)

@@ -104,11 +104,11 @@ struct Way
   }
 };
 
-constexpr int VoxelsOfPart = 2 * 3 * 3; ///< slices, rows, columns
+constexpr int VoxelsOfSegment = 2 * 3 * 3; ///< slices, rows, columns
 
-/// The voxels of parts as FieldParts has them, but of their own type.
+/// The voxels of segments as FieldSegments has them, but of their own type.
 template <class T>
-using VoxelsOfParts = std::array<T, VoxelsOfPart * FieldParts<Accumulator<T>>::most>;
+using VoxelsOfSegments = std::array<T, VoxelsOfSegment * FieldSegments<Accumulator<T>>::most>;
 
 /**
  * Finds the maxima along the rays of one image's screen pixels.
@@ -142,7 +142,7 @@ public:
       Voxels(source.volume, this->Part),
       Field(this->Voxels, geometry, this->Part.first())
   {
-    this->findPlaces();
+    this->findOffsets();
   }
 
   /// The maximum on a pixel's ray; minus infinity if it meets no sample.
@@ -188,15 +188,15 @@ public:
     return way;
   }
 
-  /// Calls f(ray, k, depths) for the parts of a ray that are near winners, each between slices k
+  /// Calls f(ray, k, depths) for the segments of a ray that are near winners, each between slices k
   /// and k + 1.
   template <class F>
   void forPartsAtWinners(const Way& way, F&& f) const
   {
-    way.forWinners([&](const glm::dvec2& depths) { this->forParts(way.ray, depths, f); });
+    way.forWinners([&](const glm::dvec2& depths) { this->forSegments(way.ray, depths, f); });
   }
 
-  /// The same for all its parts that can have more than a value.
+  /// The same for all its segments that can have more than a value.
   template <class F>
   void forPartsAbove(Accumulator<T> value, const Way& way, F&& f) const
   {
@@ -206,39 +206,39 @@ public:
       some.y = std::min<double>(way.shown.y, layer * BrickDepth);
       if (!this->Bricks || this->boundOf(way.ray, some) > value)
       {
-        this->forParts(way.ray, some, f);
+        this->forSegments(way.ray, some, f);
       }
     }
   }
 
-  /// Adds such a part to those that are looked at together.
-  void add(
-    const FieldRay& ray, int k, const glm::dvec2& depths, FieldParts<Accumulator<T>>& parts) const
+  /// Adds such a segment to those that are looked at together.
+  void add(const FieldRay& ray, int k, const glm::dvec2& depths,
+    FieldSegments<Accumulator<T>>& segments) const
   {
-    const int n = parts.count++;
+    const int n = segments.count++;
     for (int a = 0; a < 2; ++a)
     {
-      parts.at[a][n] = ray.at[a];
-      parts.slope[a][n] = ray.slope[a];
+      segments.at[a][n] = ray.at[a];
+      segments.slope[a][n] = ray.slope[a];
     }
-    parts.begin[n] = depths.x;
-    parts.end[n] = depths.y;
-    parts.first[2][n] = k;
+    segments.begin[n] = depths.x;
+    segments.end[n] = depths.y;
+    segments.first[2][n] = k;
   }
 
-  /// Finds the largest value of each part.
-  /// @param voxels  room for those that the parts need
-  void findLargest(
-    FieldParts<Accumulator<T>>& parts, VoxelsOfParts<T>& voxels, const Kernels& kernels) const
+  /// Finds the largest value of each segment.
+  /// @param voxels  room for those that the segments need
+  void findLargest(FieldSegments<Accumulator<T>>& segments, VoxelsOfSegments<T>& voxels,
+    const Kernels& kernels) const
   {
     const WorksheetLoops<Accumulator<T>>& along = kernels;
     const VoxelLoops<T>& widening = kernels;
-    constexpr int most = FieldParts<Accumulator<T>>::most;
-    along.placeParts(parts, this->Geometry.reference(), &this->Last.x);
-    this->load(parts, voxels);
+    constexpr int most = FieldSegments<Accumulator<T>>::most;
+    along.placeSegments(segments, this->Geometry.reference(), &this->Last.x);
+    this->load(segments, voxels);
     widening.widen(
-      voxels.data(), most, parts.voxels[0][0][0], most, 0, parts.count, VoxelsOfPart, 0);
-    along.findLargest(parts);
+      voxels.data(), most, segments.voxels[0][0][0], most, 0, segments.count, VoxelsOfSegment, 0);
+    along.findLargest(segments);
   }
 
 private:
@@ -332,9 +332,9 @@ private:
     return glm::clamp(shown, all.x, all.y);
   }
 
-  /// Calls f(ray, k, depths) for the parts of a ray between depths.
+  /// Calls f(ray, k, depths) for the segments of a ray between depths.
   template <class F>
-  void forParts(const FieldRay& ray, const glm::dvec2& depths, F&& f) const
+  void forSegments(const FieldRay& ray, const glm::dvec2& depths, F&& f) const
   {
     for (int k = floorOf(depths.x); k < depths.y; ++k)
     {
@@ -346,7 +346,7 @@ private:
     }
   }
 
-  /// The largest voxel of the bricks that a ray meets between depths; no part has more.
+  /// The largest voxel of the bricks that a ray meets between depths; no segment has more.
   T boundOf(const FieldRay& ray, const glm::dvec2& depths) const
   {
     constexpr int widths[3] = { BrickWidth, BrickHeight, BrickDepth };
@@ -396,18 +396,18 @@ private:
     return depths.x < depths.y;
   }
 
-  /// Fetches the voxels that parts need. A loop of its own, because nothing in it has to be waited
-  /// for: the memory that several parts need is fetched at the same time.
-  void load(const FieldParts<Accumulator<T>>& parts, VoxelsOfParts<T>& voxels) const
+  /// Fetches the voxels that segments need. A loop of its own, because nothing in it has to be
+  /// waited for: the memory that several segments need is fetched at the same time.
+  void load(const FieldSegments<Accumulator<T>>& segments, VoxelsOfSegments<T>& voxels) const
   {
-    constexpr int most = FieldParts<Accumulator<T>>::most;
+    constexpr int most = FieldSegments<Accumulator<T>>::most;
     const T* const origin = this->Voxels.pointer(0, 0, 0);
-    for (int n = 0; n < parts.count; ++n)
+    for (int n = 0; n < segments.count; ++n)
     {
       const std::ptrdiff_t* places[3];
       for (int a = 0; a < 3; ++a)
       {
-        places[a] = this->Places[a].data() + (parts.first[a][n] + Beyond);
+        places[a] = this->Offsets[a].data() + (segments.first[a][n] + Beyond);
       }
       T* to = voxels.data() + n;
       for (int z = 0; z < 2; ++z)
@@ -424,22 +424,22 @@ private:
     }
   }
 
-  /// How far voxels lie from the part's first ones, by their indices along an axis. Beyond the
-  /// volume its outermost voxels are repeated. A table, since each part asks for nine of them.
-  void findPlaces()
+  /// How far voxels lie from the segment's first ones, by their indices along an axis. Beyond the
+  /// volume its outermost voxels are repeated. A table, since each segment asks for nine of them.
+  void findOffsets()
   {
     for (int a = 0; a < 3; ++a)
     {
-      this->Places[a].reserve(this->Last[a] + 2 * Beyond + 1);
+      this->Offsets[a].reserve(this->Last[a] + 2 * Beyond + 1);
       for (int n = -Beyond; n <= this->Last[a] + Beyond; ++n)
       {
-        this->Places[a].push_back(
+        this->Offsets[a].push_back(
           (std::clamp(n, 0, this->Last[a]) - this->First[a]) * this->Voxels.stride(a));
       }
     }
   }
 
-  static constexpr int Beyond = FieldParts<Accumulator<T>>::beyond;
+  static constexpr int Beyond = FieldSegments<Accumulator<T>>::beyond;
   /// Slices between the depths at which neighbours are cut if it is by the same thing.
   static constexpr double Together = 3.0;
   /// Pixels on the outline may miss the field by rounding.
@@ -458,7 +458,7 @@ private:
   const BrickMaxima* Bricks;
   PermutedVoxels<T> Voxels;
   FieldOnRay<T> Field;
-  std::array<std::vector<std::ptrdiff_t>, 3> Places;
+  std::array<std::vector<std::ptrdiff_t>, 3> Offsets;
 };
 }
 

@@ -140,7 +140,7 @@ private:
   /// Beyond the ends of rows of bricks others are read: that makes some bounds higher, not wrong.
   void takeBricks(const BrickMaxima& bricks, int z, int group, T* out)
   {
-    const Window window = this->Sampler.window(z);
+    const VoxelWindow window = this->Sampler.window(z);
     // Where worksheets read beyond the volume they repeat its outermost voxels.
     const int bottom = this->Band.firstRow(group), top = this->Band.endRow(group) - 1;
     const int last = this->Context.geometry.size().y - 1;

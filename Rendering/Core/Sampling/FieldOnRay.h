@@ -7,7 +7,7 @@
 #ifndef splattingFieldOnRay_h
 #define splattingFieldOnRay_h
 
-#include "Sampling/ExactPieces.h"
+#include "Sampling/ExactSegments.h"
 #include "Sampling/ValuesAtWinners.h"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ struct FieldRay
 
 inline FieldRay rayOfPixel(const ShearWarp& geometry, int u, int v)
 {
-  const Fan &columns = geometry.columns(), &rows = geometry.rows();
+  const AxisRays &columns = geometry.columns(), &rows = geometry.rows();
   return { { columns.at[u], rows.at[v] }, { columns.slope[u], rows.slope[v] },
     geometry.reference() };
 }
@@ -53,13 +53,13 @@ inline FieldRay rayBetween(
   ray.start = geometry.reference();
   for (int a = 0; a < 2; ++a)
   {
-    const Fan& fan = a == 0 ? geometry.columns() : geometry.rows();
+    const AxisRays& rays = a == 0 ? geometry.columns() : geometry.rows();
     const int last = geometry.rayCount()[a] - 1;
     // Beyond the image rays go on as between its last two pixels.
     const int n = std::clamp(low[a], 0, std::max(last - 1, 0)), next = std::min(n + 1, last);
     const double way = low[a] - n + share[a];
-    ray.at[a] = fan.at[n] + way * (fan.at[next] - fan.at[n]);
-    ray.slope[a] = fan.slope[n] + way * (fan.slope[next] - fan.slope[n]);
+    ray.at[a] = rays.at[n] + way * (rays.at[next] - rays.at[n]);
+    ray.slope[a] = rays.slope[n] + way * (rays.slope[next] - rays.slope[n]);
   }
   return ray;
 }
@@ -156,7 +156,7 @@ public:
       {
         if (isCounted)
         {
-          this->takePiece(walk, end, least, best);
+          this->takeSegment(walk, end, least, best);
         }
         walk.depth = end;
       }
@@ -219,7 +219,7 @@ private:
   }
 
   /// The part of a ray in one cell.
-  void takePiece(const Walk& walk, double end, bool least, Extremum& best) const
+  void takeSegment(const Walk& walk, double end, bool least, Extremum& best) const
   {
     const std::array<Axis, 3>& axes = walk.axes;
     const T* const voxels = this->Voxels.pointer(0, 0, 0);

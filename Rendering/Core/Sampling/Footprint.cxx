@@ -52,20 +52,20 @@ const Quadrature& ruleFor(const Kernel& kernel)
   return kernel.shape == Reconstruction::CosineBell ? Gauss10 : Gauss3;
 }
 
-/// Sorted places where a piecewise smooth function of z has kinks, with both ends of the range.
+/// Sorted depths at which a piecewise smooth function of z has kinks, with both ends of the range.
 class Breaks
 {
 public:
   Breaks(double from, double to) : From(from), To(to)
   {
-    this->Places[0] = from;
-    this->Places[1] = to;
+    this->Depths[0] = from;
+    this->Depths[1] = to;
   }
   void add(double z)
   {
     if (z > this->From && z < this->To)
     {
-      this->Places[this->Count++] = z;
+      this->Depths[this->Count++] = z;
     }
   }
   /// z where (a - shear z) equals `kink` modulo 1: all voxels of a row are kinked together.
@@ -82,25 +82,25 @@ public:
       this->add((a - n - kink) / shear);
     }
   }
-  /// Calls f(begin, end) for each smooth piece.
+  /// Calls f(begin, end) for each interval between them.
   template <class F>
-  void forEachPiece(F&& f)
+  void forIntervals(F&& f)
   {
-    std::sort(this->Places.begin(), this->Places.begin() + this->Count);
+    std::sort(this->Depths.begin(), this->Depths.begin() + this->Count);
     // Kinks that coincide but for rounding have nothing between them.
     constexpr double least = 1e-14;
     for (int p = 1; p < this->Count; ++p)
     {
-      if (this->Places[p] - this->Places[p - 1] > least)
+      if (this->Depths[p] - this->Depths[p - 1] > least)
       {
-        f(this->Places[p - 1], this->Places[p]);
+        f(this->Depths[p - 1], this->Depths[p]);
       }
     }
   }
 
 private:
   double From, To;
-  std::array<double, 32> Places; // 2 ends, 5 of h, at most 2 for each of 12 periodic ones
+  std::array<double, 32> Depths; // 2 ends, 5 of h, at most 2 for each of 12 periodic ones
   int Count = 2;
 };
 
@@ -245,7 +245,7 @@ WeightTable closedFormWeights(
       }
     }
   };
-  breaks.forEachPiece(
+  breaks.forIntervals(
     [&](double begin, double end) { integrate(ruleFor(kernel), begin, end, add); });
   normalise(weights);
   return weights;
@@ -320,7 +320,7 @@ double GeneralTable::entry(const Kernel& kernel, int part, const glm::dvec2& p) 
   double sum = 0.0;
   const auto add = [&](double z, double share)
   { sum += share * kernel(z) * kernel(p.x - this->Shear.x * z) * kernel(p.y - this->Shear.y * z); };
-  breaks.forEachPiece(
+  breaks.forIntervals(
     [&](double begin, double end)
     {
       const double z = 0.5 * (begin + end);

@@ -1,14 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Sampling/ExactPieces.h"
+#include "Sampling/ExactSegments.h"
 #include "Sampling/Worksheets.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <memory>
-#include <tuple>
-#include <type_traits>
 #include <vector>
 
 namespace splatting
@@ -24,19 +22,19 @@ void findReach(const std::vector<ExactPath<A>>& paths, const std::vector<ExactBo
   reach.layers.assign((count + BrickDepth - 1) / BrickDepth, {});
   for (int k = 0; k < count; ++k)
   {
-    for (const ExactPiece<A>& piece : paths[k])
+    for (const ExactSegment<A>& segment : paths[k])
     {
-      for (int s : { k + piece.dk, k + piece.dk + 1 })
+      for (int s : { k + segment.dk, k + segment.dk + 1 })
       {
-        Window& window = reach.slices[std::clamp(s, 0, count - 1)];
-        window.add(piece.di, piece.dj);
-        window.add(piece.di + 1, piece.dj + 1);
+        VoxelWindow& window = reach.slices[std::clamp(s, 0, count - 1)];
+        window.add(segment.di, segment.dj);
+        window.add(segment.di + 1, segment.dj + 1);
       }
     }
     const BoxSide<A>&columns = boxes[k].columns, &rows = boxes[k].rows;
     for (int s = k - 1; s <= k + 1; ++s)
     {
-      Window& window = reach.slices[std::clamp(s, 0, count - 1)];
+      VoxelWindow& window = reach.slices[std::clamp(s, 0, count - 1)];
       window.add(columns.cell, rows.cell);
       window.add(columns.cell + 1 + columns.crosses, rows.cell + 1 + rows.crosses);
     }
@@ -44,7 +42,7 @@ void findReach(const std::vector<ExactPath<A>>& paths, const std::vector<ExactBo
   reach.columns = reach.rows = 0;
   for (int s = 0; s < count; ++s)
   {
-    const Window& window = reach.slices[s];
+    const VoxelWindow& window = reach.slices[s];
     typename WorksheetReach<A>::Layer& layer = reach.layers[s / BrickDepth];
     layer.window.add(window.iMin, window.jMin);
     layer.window.add(window.iMax, window.jMax);
@@ -77,7 +75,7 @@ public:
   {
   }
 
-  Window window(int layer) const override { return this->Reach.layers[layer].window; }
+  VoxelWindow window(int layer) const override { return this->Reach.layers[layer].window; }
 
   /// As in ParallelWorksheets, of 8 products and sums and the weights' own rounding.
   A slack() const override { return 24 * std::numeric_limits<A>::epsilon() / 2; }
@@ -85,7 +83,7 @@ public:
 protected:
   LoadedVoxels::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
   {
-    const Window& window = this->Reach.slices[s];
+    const VoxelWindow& window = this->Reach.slices[s];
     return { s, columns.begin + window.iMin, v0 + window.jMin,
       columns.end - columns.begin + window.iMax - window.iMin,
       v1 - v0 + window.jMax - window.jMin };
@@ -94,18 +92,6 @@ protected:
   void splatRows(int k, int first, int end, const Span& span, const Target& target,
     LoadedVoxels& loaded) const override
   {
-    this->raise(k, first, end, span, target, false, loaded);
-  }
-  void splatNonFiniteRows(int k, int first, int end, const Span& span, const Target& target,
-    LoadedVoxels& loaded) const override
-  {
-    this->raise(k, first, end, span, target, true, loaded);
-  }
-
-private:
-  void raise(int k, int first, int end, const Span& span, const Target& target, bool nonFinite,
-    LoadedVoxels& loaded) const
-  {
     Cubics<A> cubics;
     cubics.image = target.at(0, 0);
     cubics.imageStride = target.stride;
@@ -113,22 +99,29 @@ private:
     cubics.rows = { first, end };
     cubics.field = this->Field.data();
     cubics.sourceStride = loaded.rowLength;
-    cubics.nonFinite = nonFinite;
+    cubics.nonFinite = !this->isFinite(k, loaded);
     const ExactBox<A>& box = this->Boxes[k];
     const auto firstOf = [&](int slice)
     { return this->voxel(box.columns.cell, box.rows.cell, slice, loaded); };
     cubics.box = { firstOf(k - 1), firstOf(k), firstOf(k + 1), box.columns, box.rows, this->Slack };
     cubics.count = 0;
-    for (const ExactPiece<A>& piece : this->Paths[k])
+    for (const ExactSegment<A>& segment : this->Paths[k])
     {
-      cubics.pieces[cubics.count++] = { this->voxel(piece.di, piece.dj, k + piece.dk, loaded),
-        this->voxel(piece.di, piece.dj, k + piece.dk + 1, loaded), piece.weights.data(),
-        piece.curved, piece.inField.data(), piece.inBoxes.data() };
+      cubics.segments[cubics.count++] = { this->voxel(
+                                            segment.di, segment.dj, k + segment.dk, loaded),
+        this->voxel(segment.di, segment.dj, k + segment.dk + 1, loaded), segment.weights.data(),
+        segment.curved, segment.inField.data(), segment.inBoxes.data() };
     }
     const WorksheetLoops<A>& loops = this->Context.kernels;
     loops.raiseCubics(cubics);
   }
+  void splatNonFiniteRows(int k, int first, int end, const Span& span, const Target& target,
+    LoadedVoxels& loaded) const override
+  {
+    this->splatRows(k, first, end, span, target, loaded);
+  }
 
+private:
   const A* voxel(int i, int j, int slice, LoadedVoxels& loaded) const
   {
     return loaded.voxel<A>(i, j, std::clamp(slice, 0, this->Context.geometry.size().z - 1));
@@ -139,37 +132,34 @@ private:
   A Slack; ///< see ExactBoxSlack
 };
 
-class ExactMode : public ProjectionMode
+template <class A>
+class ExactSpace
 {
 public:
-  void project(ProjectionContext& context) override
+  template <class T>
+  void project(ProjectionContext& context)
   {
-    dispatch(context.index.volume().type,
-      [&](auto* null)
-      {
-        using T = std::remove_pointer_t<decltype(null)>;
-        using A = Accumulator<T>;
-        auto& paths = std::get<std::vector<ExactPath<A>>>(this->Paths);
-        auto& reach = std::get<WorksheetReach<A>>(this->Reach);
-        auto& boxes = std::get<std::vector<ExactBox<A>>>(this->Boxes);
-        findExactPaths(context.whole, context.geometry, paths);
-        findExactBoxes(context.whole, context.geometry, boxes);
-        findFieldSpans(context.whole, this->Field);
-        findReach(paths, boxes, reach);
-        walk(context, ParallelExact<T>(context, paths, boxes, this->Field, reach));
-      });
+    findExactPaths(context.whole, context.geometry, this->Paths);
+    findExactBoxes(context.whole, context.geometry, this->Boxes);
+    findFieldSpans(context.whole, this->Field);
+    findReach(this->Paths, this->Boxes, this->Reach);
+    walk(context, ParallelExact<T>(context, this->Paths, this->Boxes, this->Field, this->Reach));
+  }
+  template <class T>
+  void takeAtWinners(const AtWinners&) const
+  {
   }
 
 private:
-  std::tuple<std::vector<ExactPath<float>>, std::vector<ExactPath<double>>> Paths;
-  std::tuple<std::vector<ExactBox<float>>, std::vector<ExactBox<double>>> Boxes;
+  std::vector<ExactPath<A>> Paths;
+  std::vector<ExactBox<A>> Boxes;
   std::vector<Span> Field;
-  std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
+  WorksheetReach<A> Reach;
 };
 }
 
 std::unique_ptr<ProjectionMode> makeExact()
 {
-  return std::make_unique<ExactMode>();
+  return std::make_unique<TypedMode<ExactSpace>>();
 }
 }

@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <limits>
 #include <memory>
-#include <type_traits>
 #include <vector>
 
 namespace splatting
@@ -32,7 +31,7 @@ struct PreviewLayer
   Span slices;
   std::array<Tap, MostRows> taps;
   int tapCount = 0;
-  Window window;
+  VoxelWindow window;
   Span valid; ///< the pixels that see voxels along all paths
   Ends left, right;
   bool rimsFit = false; ///< whether a register holds a rim
@@ -59,7 +58,7 @@ public:
     this->findLayers(storage);
   }
 
-  Window window(int layer) const override { return this->Layers[layer].window; }
+  VoxelWindow window(int layer) const override { return this->Layers[layer].window; }
 
   void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
     const PixelRows<T>& pixels, LoadedVoxels&) const override
@@ -362,29 +361,21 @@ private:
   const std::vector<Layer>& Layers;
 };
 
-class PreviewMode : public ProjectionMode
+template <class A>
+class PreviewSpace
 {
 public:
-  void project(ProjectionContext& context) override
+  template <class T>
+  void project(ProjectionContext& context)
   {
-    dispatch(context.index.volume().type,
-      [&](auto* null)
-      {
-        using T = std::remove_pointer_t<decltype(null)>;
-        walk(context, ParallelPreview<T>(context, this->Layers));
-      });
+    walk(context, ParallelPreview<T>(context, this->Layers));
   }
-
-  void takeAtWinners(const AtWinners& c) const override
+  template <class T>
+  void takeAtWinners(const AtWinners& winners) const
   {
-    dispatch(c.other.type,
-      [&](auto* null)
-      {
-        using T = std::remove_pointer_t<decltype(null)>;
-        fillAtWinners<T>(c,
-          [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
-          { return voxelAtWinner(voxels, c.slices[step / StepsPerSlice].path, u, v, step); });
-      });
+    fillAtWinners<T>(winners,
+      [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
+      { return voxelAtWinner(voxels, winners.slices[step / StepsPerSlice].path, u, v, step); });
   }
 
 private:
@@ -394,6 +385,6 @@ private:
 
 std::unique_ptr<ProjectionMode> makePreview()
 {
-  return std::make_unique<PreviewMode>();
+  return std::make_unique<TypedMode<PreviewSpace>>();
 }
 }

@@ -5,60 +5,41 @@
 #include "Sampling/ValuesAtWinners.h"
 
 #include <memory>
-#include <tuple>
-#include <type_traits>
-#include <vector>
 
 namespace splatting
 {
 namespace
 {
-class WorksheetsMode : public ProjectionMode
+template <class A>
+class ParallelWorksheetSpace
 {
 public:
-  void project(ProjectionContext& context) override
+  template <class T>
+  void project(ProjectionContext& context)
   {
-    dispatch(context.index.volume().type,
-      [&](auto* null)
-      {
-        using T = std::remove_pointer_t<decltype(null)>;
-        using A = Accumulator<T>;
-        auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Footprints);
-        auto& reach = std::get<WorksheetReach<A>>(this->Reach);
-        findFootprints(context.geometry, worksheetKernel(context.settings),
-          context.settings.footprintSampling, weightBits<T>, this->Table, footprints);
-        findReach(context.sliceGeometry, footprints, reach);
-        walk(context,
-          ParallelWorksheets<T>(context, footprints, reach, worksheetDepth(context.settings)));
-      });
+    this->Space.template find<T>(context);
+    walk(context,
+      ParallelWorksheets<T>(
+        context, this->Space.footprints, this->Space.reach, worksheetDepth(context.settings)));
   }
-
-  void takeAtWinners(const AtWinners& c) const override
+  template <class T>
+  void takeAtWinners(const AtWinners& winners) const
   {
-    dispatch(c.other.type,
-      [&](auto* null)
+    fillAtWinners<T>(winners,
+      [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
       {
-        using T = std::remove_pointer_t<decltype(null)>;
-        using A = Accumulator<T>;
-        const auto& footprints = std::get<std::vector<SliceFootprint<A>>>(this->Footprints);
-        fillAtWinners<T>(c,
-          [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
-          {
-            const int k = step / StepsPerSlice;
-            return averageAtWinner<T>(voxels, footprints[k], u, v, k);
-          });
+        const int k = step / StepsPerSlice;
+        return averageAtWinner<T>(voxels, this->Space.footprints[k], u, v, k);
       });
   }
 
 private:
-  GeneralTable Table;
-  std::tuple<std::vector<SliceFootprint<float>>, std::vector<SliceFootprint<double>>> Footprints;
-  std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
+  WorksheetSpace<A> Space;
 };
 }
 
 std::unique_ptr<ProjectionMode> makeWorksheets()
 {
-  return std::make_unique<WorksheetsMode>();
+  return std::make_unique<TypedMode<ParallelWorksheetSpace>>();
 }
 }

@@ -26,7 +26,7 @@ public:
   {
   }
 
-  Window window(int layer) const override { return this->Reach.layers[layer].window; }
+  VoxelWindow window(int layer) const override { return this->Reach.layers[layer].window; }
 
   /// Rounding can take a worksheet beyond its largest voxel by slack() times the larger of that and
   /// magnitude(): 75 products and sums, and a few operations for the bound itself. Sums of 8-bit
@@ -40,7 +40,7 @@ public:
 protected:
   LoadedVoxels::Sheet sheetOf(int s, int v0, int v1, const Span& columns) const override
   {
-    const Window& window = this->Reach.slices[s];
+    const VoxelWindow& window = this->Reach.slices[s];
     const glm::ivec3& size = this->Context.geometry.size();
     const Span i = common(
       { columns.begin + window.iMin, columns.end + window.iMax }, { -Beside, size.x + Beside });
@@ -156,6 +156,23 @@ private:
 
 protected:
   const std::vector<SliceFootprint<A>>& Footprints;
+};
+
+/// What a parallel view's worksheets weigh and read.
+template <class A>
+struct WorksheetSpace
+{
+  template <class T>
+  void find(const ProjectionContext& context)
+  {
+    findFootprints(context.geometry, worksheetKernel(context.settings),
+      context.settings.footprintSampling, weightBits<T>, this->table, this->footprints);
+    findReach(context.sliceGeometry, this->footprints, this->reach);
+  }
+
+  GeneralTable table;
+  std::vector<SliceFootprint<A>> footprints;
+  WorksheetReach<A> reach;
 };
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Sampling/ExactPieces.h"
-#include "Sampling/FanCells.h"
+#include "Sampling/AxisCells.h"
+#include "Sampling/ExactSegments.h"
 #include "Sampling/Worksheets.h"
 
 #include <algorithm>
@@ -9,8 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <tuple>
-#include <type_traits>
 
 namespace splatting
 {
@@ -40,8 +38,8 @@ public:
   using typename WorksheetSampler<T>::A;
   using typename WorksheetSampler<T>::Target;
 
-  PerspectiveExact(const ProjectionContext& context, const FanCells<A>& columns,
-    const FanCells<A>& rows, const WorksheetReach<A>& reach)
+  PerspectiveExact(const ProjectionContext& context, const AxisCells<A>& columns,
+    const AxisCells<A>& rows, const WorksheetReach<A>& reach)
     : WorksheetSampler<T>(context, true, reach, 1),
       Columns(columns),
       Rows(rows),
@@ -75,28 +73,16 @@ protected:
   void splatRows(int k, int first, int end, const Span& span, const Target& target,
     LoadedVoxels& loaded) const override
   {
-    this->raise(k, first, end, span, target, false, loaded);
-  }
-  void splatNonFiniteRows(int k, int first, int end, const Span& span, const Target& target,
-    LoadedVoxels& loaded) const override
-  {
-    this->raise(k, first, end, span, target, true, loaded);
-  }
-
-private:
-  void raise(int k, int first, int end, const Span& span, const Target& target, bool nonFinite,
-    LoadedVoxels& loaded) const
-  {
     const WorksheetLoops<A>& loops = this->Context.kernels;
-    const FanCellArrays<A> rows = this->Rows.slice(k);
+    const AxisCellArrays<A> rows = this->Rows.slice(k);
     const int slice = k + this->Context.geometry.first().z;
     const glm::dvec2 faces = this->Context.whole.faces(slice);
     // Rays that touch the field have next to nothing of it.
     constexpr A shortest = A(1e-3);
-    FanCubicRow<A> row;
+    PerspectiveCubicRow<A> row;
     row.pixels = span;
     row.columns = this->Columns.slice(k);
-    row.nonFinite = nonFinite;
+    row.nonFinite = !this->isFinite(k, loaded);
     row.shortest = shortest;
     row.sourceStride = loaded.rowLength;
     for (int v = first; v < end; ++v)
@@ -109,15 +95,21 @@ private:
       row.boxesEnd = rows.boxesEnd[v];
       row.fieldNear = std::max(rows.fieldNear[v], this->nearest());
       row.fieldFar = std::min(rows.fieldFar[v], this->farthest());
-      this->findParts(k, v, faces - double(slice), rows, loaded, row);
+      this->findSegments(k, v, faces - double(slice), rows, loaded, row);
       if (row.count > 0)
       {
         this->findBox(k, v, rows, loaded, row);
-        loops.raiseFanCubics(row);
+        loops.raisePerspectiveCubics(row);
       }
     }
   }
+  void splatNonFiniteRows(int k, int first, int end, const Span& span, const Target& target,
+    LoadedVoxels& loaded) const override
+  {
+    this->splatRows(k, first, end, span, target, loaded);
+  }
 
+private:
   const glm::ivec3& size() const { return this->Context.geometry.size(); }
   /// The slices whose worksheets read some slices.
   static Span readers(const Span& slices) { return { slices.begin - 1, slices.end + 1 }; }
@@ -135,8 +127,8 @@ private:
   }
 
   /// Cuts the path of a row's rays in the slice's middle and where they leave a row of cells.
-  void findParts(int k, int v, const glm::dvec2& faces, const FanCellArrays<A>& rows,
-    LoadedVoxels& loaded, FanCubicRow<A>& row) const
+  void findSegments(int k, int v, const glm::dvec2& faces, const AxisCellArrays<A>& rows,
+    LoadedVoxels& loaded, PerspectiveCubicRow<A>& row) const
   {
     const A from = static_cast<A>(faces.x), to = static_cast<A>(faces.y);
     const A crossing = rows.crossing[v];
@@ -153,70 +145,68 @@ private:
       {
         continue;
       }
-      FanCubicPart<A>& part = row.parts[row.count++];
-      part.from = cuts[n];
-      part.to = cuts[n + 1];
-      const bool isBefore = crosses && part.to <= crossing;
+      PerspectiveCubicSegment<A>& segment = row.segments[row.count++];
+      segment.from = cuts[n];
+      segment.to = cuts[n + 1];
+      const bool isBefore = crosses && segment.to <= crossing;
       const int upper = crosses && (isBefore ? falls : !falls);
-      const int j = rows.cell[v] + upper, low = part.to <= A(0) ? k - 1 : k;
-      part.y = rows.at[v] - static_cast<A>(upper);
-      part.z = static_cast<A>(k - low);
+      const int j = rows.cell[v] + upper, low = segment.to <= A(0) ? k - 1 : k;
+      segment.y = rows.at[v] - static_cast<A>(upper);
+      segment.z = static_cast<A>(k - low);
       for (int r = 0; r < 4; ++r)
       {
-        part.rows[r] = loaded.template voxel<A>(0, j + r % 2, std::clamp(low + r / 2, 0, last));
+        segment.rows[r] = loaded.template voxel<A>(0, j + r % 2, std::clamp(low + r / 2, 0, last));
       }
     }
   }
 
-  /// What the row's rays pass between the ends of its parts.
-  void findBox(
-    int k, int v, const FanCellArrays<A>& rows, LoadedVoxels& loaded, FanCubicRow<A>& row) const
+  /// What the row's rays pass between the ends of its segments.
+  void findBox(int k, int v, const AxisCellArrays<A>& rows, LoadedVoxels& loaded,
+    PerspectiveCubicRow<A>& row) const
   {
     const int last = this->size().z - 1;
     const auto firstOf = [&](int slice)
     { return loaded.template voxel<A>(0, rows.cell[v], std::clamp(slice, 0, last)); };
     row.box = { firstOf(k - 1), firstOf(k), firstOf(k + 1), {}, {}, this->Slack };
     const auto share = [](A x) { return std::clamp(x, A(0), A(1)); };
-    const A near = rows.at[v] + rows.slope[v] * row.parts[0].from;
-    const A far = rows.at[v] + rows.slope[v] * row.parts[row.count - 1].to;
+    const A near = rows.at[v] + rows.slope[v] * row.segments[0].from;
+    const A far = rows.at[v] + rows.slope[v] * row.segments[row.count - 1].to;
     const bool crosses = std::max(near, far) > A(1);
     row.box.rows = { 0, share(std::min(near, far)),
       share(std::max(near, far) - static_cast<A>(crosses)), crosses };
   }
 
-  const FanCells<A>& Columns;
-  const FanCells<A>& Rows;
+  const AxisCells<A>& Columns;
+  const AxisCells<A>& Rows;
   FieldRange Depths;
   A Slack; ///< of boxes
 };
 
-class PerspectiveExactMode : public ProjectionMode
+template <class A>
+class PerspectiveExactSpace
 {
 public:
-  void project(ProjectionContext& context) override
+  template <class T>
+  void project(ProjectionContext& context)
   {
-    dispatch(context.index.volume().type,
-      [&](auto* null)
-      {
-        using T = std::remove_pointer_t<decltype(null)>;
-        using A = Accumulator<T>;
-        auto& cells = std::get<std::array<FanCells<A>, 2>>(this->Cells);
-        auto& reach = std::get<WorksheetReach<A>>(this->Reach);
-        cells[0].find(context.whole, context.geometry, 0);
-        cells[1].find(context.whole, context.geometry, 1);
-        findExactReach(context.geometry, reach);
-        walk(context, PerspectiveExact<T>(context, cells[0], cells[1], reach));
-      });
+    this->Columns.find(context.whole, context.geometry, 0);
+    this->Rows.find(context.whole, context.geometry, 1);
+    findExactReach(context.geometry, this->Reach);
+    walk(context, PerspectiveExact<T>(context, this->Columns, this->Rows, this->Reach));
+  }
+  template <class T>
+  void takeAtWinners(const AtWinners&) const
+  {
   }
 
 private:
-  std::tuple<std::array<FanCells<float>, 2>, std::array<FanCells<double>, 2>> Cells;
-  std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
+  AxisCells<A> Columns, Rows;
+  WorksheetReach<A> Reach;
 };
 }
 
 std::unique_ptr<ProjectionMode> makePerspectiveExact()
 {
-  return std::make_unique<PerspectiveExactMode>();
+  return std::make_unique<TypedMode<PerspectiveExactSpace>>();
 }
 }

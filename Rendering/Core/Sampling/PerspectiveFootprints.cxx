@@ -56,7 +56,7 @@ int partsOf(const ShearWarp& geometry, const Kernel& kernel)
 }
 
 template <class A>
-void FanFootprints<A>::find(const ShearWarp& whole, const ShearWarp& geometry, int a,
+void AxisFootprints<A>::find(const ShearWarp& whole, const ShearWarp& geometry, int a,
   const Kernel& kernel, int parts, const WorksheetLoops<A>& loops)
 {
   constexpr int unit = 64;
@@ -90,19 +90,19 @@ void FanFootprints<A>::find(const ShearWarp& whole, const ShearWarp& geometry, i
 }
 
 template <class A>
-void FanFootprints<A>::findPart(const ShearWarp& whole, const ShearWarp& geometry, int a, int k,
+void AxisFootprints<A>::findPart(const ShearWarp& whole, const ShearWarp& geometry, int a, int k,
   int q, const Kernel& kernel, const WorksheetLoops<A>& loops)
 {
-  const Fan& fan = a == 0 ? whole.columns() : whole.rows();
+  const AxisRays& rays = a == 0 ? whole.columns() : whole.rows();
   const int firstVoxel = geometry.first()[a];
   const glm::dvec2 depths = depthsOf(whole, k + geometry.first().z, q, this->Parts);
   const double middle = 0.5 * (depths.x + depths.y);
   const double share = (middle - whole.eye().z) / (whole.reference() - whole.eye().z);
-  FanWeights<A> weights;
+  AxisWeights<A> weights;
   weights.shape = static_cast<int>(kernel.shape);
   weights.support = kernel.support();
-  weights.at = fan.at.data();
-  weights.slope = fan.slope.data();
+  weights.at = rays.at.data();
+  weights.slope = rays.slope.data();
   weights.depth = middle - whole.reference();
   weights.thickness = depths.y - depths.x;
   weights.pitch = whole.pitch() * share;
@@ -114,7 +114,7 @@ void FanFootprints<A>::findPart(const ShearWarp& whole, const ShearWarp& geometr
   weights.first = &this->First[n * this->Padded];
   weights.weights = &this->Weights[n * this->Room * this->Padded];
   weights.stride = this->Padded;
-  loops.fanWeights(weights, this->Count);
+  loops.axisWeights(weights, this->Count);
   for (int p = 0; p < this->Count; ++p)
   {
     weights.first[p] -= firstVoxel;
@@ -141,7 +141,7 @@ void FanFootprints<A>::findPart(const ShearWarp& whole, const ShearWarp& geometr
 }
 
 template <class A>
-typename FanFootprints<A>::Part FanFootprints<A>::part(int k, int q) const
+typename AxisFootprints<A>::Part AxisFootprints<A>::part(int k, int q) const
 {
   const std::size_t n = this->at(k, q);
   return { &this->First[n * this->Padded], &this->Weights[n * this->Room * this->Padded],
@@ -150,7 +150,7 @@ typename FanFootprints<A>::Part FanFootprints<A>::part(int k, int q) const
 }
 
 template <class A>
-Span FanFootprints<A>::voxels(int k, int q, const Span& pixels) const
+Span AxisFootprints<A>::voxels(int k, int q, const Span& pixels) const
 {
   const std::size_t n = this->at(k, q);
   const std::int32_t* const first = &this->First[n * this->Padded];
@@ -165,7 +165,7 @@ Span FanFootprints<A>::voxels(int k, int q, const Span& pixels) const
 }
 
 template <class A>
-Span FanFootprints<A>::voxels(const Span& slices, const Span& pixels) const
+Span AxisFootprints<A>::voxels(const Span& slices, const Span& pixels) const
 {
   Span all{ this->Size + Margin, -Margin };
   const Span own{ pixels.begin, std::min(pixels.end, this->Count) };
@@ -211,8 +211,8 @@ void PerspectiveFootprints<A>::find(
   }
 }
 
-template class FanFootprints<float>;
-template class FanFootprints<double>;
+template class AxisFootprints<float>;
+template class AxisFootprints<double>;
 template struct PerspectiveFootprints<float>;
 template struct PerspectiveFootprints<double>;
 }

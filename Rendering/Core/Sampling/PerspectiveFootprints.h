@@ -40,7 +40,7 @@ int partsOf(const ShearWarp& geometry, const Kernel& kernel);
  * The weights of the columns (or the rows) of an image, for all parts of all slices.
  */
 template <class A>
-class FanFootprints
+class AxisFootprints
 {
 public:
   /// @param whole     the image's geometry: weights do not depend on where a part of it begins
@@ -57,7 +57,7 @@ public:
     const A* weights;
     std::ptrdiff_t stride;
     int taps;
-    /// The first voxels as places in a group's register: see FanWindows::Picks.
+    /// The first voxels as places in a group's register: see AxisPicks::Picks.
     const std::int32_t* base;
     const void* lanes;
   };
@@ -98,12 +98,12 @@ private:
 template <class A>
 struct PerspectiveFootprints
 {
-  FanFootprints<A> columns, rows;
+  AxisFootprints<A> columns, rows;
   int parts = 1;
   /// For each slice and part, how much of a voxel of slices k - 1, k and k + 1 counts.
   std::vector<std::array<A, 3>> depth;
 
-  /// As FanFootprints::find().
+  /// As AxisFootprints::find().
   void find(const ShearWarp& whole, const ShearWarp& geometry, const Kernel& kernel,
     const Kernels& kernels);
   const std::array<A, 3>& share(int k, int q) const { return this->depth[k * this->parts + q]; }
@@ -115,7 +115,8 @@ struct PerspectiveFootprints
   {
     for (int q = 0; q < this->parts; ++q)
     {
-      const typename FanFootprints<A>::Part x = this->columns.part(k, q), y = this->rows.part(k, q);
+      const typename AxisFootprints<A>::Part x = this->columns.part(k, q),
+                                             y = this->rows.part(k, q);
       for (int c = 0; c < 3; ++c)
       {
         const A share = this->share(k, q)[c];

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <type_traits>
 #include <vector>
 
 namespace splatting
@@ -29,10 +28,10 @@ public:
   /// @param windows  of the columns
   /// @param none     work space
   PerspectivePreview(
-    const ProjectionContext& context, const FanWindows& windows, std::vector<unsigned char>& none)
+    const ProjectionContext& context, const AxisPicks& picks, std::vector<unsigned char>& none)
     : SliceSampler<T, T>({ true, 0, RunUnit }),
       Context(context),
-      Windows(windows)
+      Picks(picks)
   {
     // A row without voxels, and a register of them.
     const std::size_t count = std::max<std::size_t>(context.geometry.size().x, 64);
@@ -176,8 +175,8 @@ private:
   CrossedSlice<T> sliceOf(int k, int v0) const
   {
     const PerspectiveSteps& steps = this->Context.steps;
-    const FanSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
-    const FanWindows::Picks entry = this->Windows.entering(k), exit = this->Windows.leaving(k);
+    const AxisSteps::Slice columns = steps.columns.slice(k), rows = steps.rows.slice(k);
+    const AxisPicks::Picks entry = this->Picks.entering(k), exit = this->Picks.leaving(k);
     CrossedSlice<T> s;
     s.voxels = this->Context.template voxelRow<T>(0, k);
     s.firstRow = rows.first + v0;
@@ -219,8 +218,8 @@ private:
   bool findStep(int k, int v, int step, const Span& pixels, LoadedVoxels& loaded) const
   {
     const glm::ivec3& size = this->Context.geometry.size();
-    const FanSteps::Slice columns = this->Context.steps.columns.slice(k);
-    const FanSteps::Slice rows = this->Context.steps.rows.slice(k);
+    const AxisSteps::Slice columns = this->Context.steps.columns.slice(k);
+    const AxisSteps::Slice rows = this->Context.steps.rows.slice(k);
     const int count = pixels.end - pixels.begin;
     loaded.worksheet.resize(std::size_t(this->Context.image.width) * sizeof(T));
     loaded.present.resize(this->Context.image.width);
@@ -252,45 +251,37 @@ private:
   }
 
   const ProjectionContext& Context;
-  const FanWindows& Windows;
+  const AxisPicks& Picks;
   const T* None;
 };
 
-class PerspectivePreviewMode : public ProjectionMode
+template <class A>
+class PerspectivePreviewSpace
 {
 public:
-  void project(ProjectionContext& context) override
+  template <class T>
+  void project(ProjectionContext& context)
   {
-    dispatch(context.index.volume().type,
-      [&](auto* null)
-      {
-        using T = std::remove_pointer_t<decltype(null)>;
-        const VoxelLoops<T>& loops = context.kernels;
-        this->Windows.find(context.steps.columns, loops.group, sizeof(T));
-        walk(context, PerspectivePreview<T>(context, this->Windows, this->None));
-      });
+    const VoxelLoops<T>& loops = context.kernels;
+    this->Picks.find(context.steps.columns, loops.group, sizeof(T));
+    walk(context, PerspectivePreview<T>(context, this->Picks, this->None));
   }
-
-  void takeAtWinners(const AtWinners& c) const override
+  template <class T>
+  void takeAtWinners(const AtWinners& winners) const
   {
-    dispatch(c.other.type,
-      [&](auto* null)
-      {
-        using T = std::remove_pointer_t<decltype(null)>;
-        fillAtWinners<T>(c,
-          [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
-          { return voxelAtWinner(voxels, c.geometry, u, v, step); });
-      });
+    fillAtWinners<T>(winners,
+      [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
+      { return voxelAtWinner(voxels, winners.geometry, u, v, step); });
   }
 
 private:
-  FanWindows Windows;
+  AxisPicks Picks;
   std::vector<unsigned char> None;
 };
 }
 
 std::unique_ptr<ProjectionMode> makePerspectivePreview()
 {
-  return std::make_unique<PerspectivePreviewMode>();
+  return std::make_unique<TypedMode<PerspectivePreviewSpace>>();
 }
 }

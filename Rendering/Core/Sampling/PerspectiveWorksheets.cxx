@@ -9,8 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <tuple>
-#include <type_traits>
 
 namespace splatting
 {
@@ -56,8 +54,8 @@ public:
     : WorksheetSampler<T>(context, true, reach, depth),
       Own(footprints)
   {
-    // Rows of voxels that two pieces need are widened, blended and weighed twice.
-    this->PieceHeight = 32;
+    // Rows of voxels that two blocks need are widened, blended and weighed twice.
+    this->BlockHeight = 32;
   }
 
   Span columnsOf(int z, const Span& pixels) const override
@@ -99,7 +97,7 @@ private:
     Span voxelRows[MostParts];
     this->resampleRows(k, { first, end }, span, loaded, voxelRows);
     const WorksheetLoops<A>& loops = this->Context.kernels;
-    typename FanFootprints<A>::Part parts[MostParts];
+    typename AxisFootprints<A>::Part parts[MostParts];
     A shares[MostParts];
     const A* resampled[MostParts];
     for (int q = 0; q < this->Own.parts; ++q)
@@ -115,7 +113,7 @@ private:
       int count = 0;
       for (int q = 0; q < this->Own.parts; ++q)
       {
-        const typename FanFootprints<A>::Part& part = parts[q];
+        const typename AxisFootprints<A>::Part& part = parts[q];
         const A* row = resampled[q] + (part.first[v] - voxelRows[q].begin) * loaded.resampledLength;
         const A* weight = part.weights + v;
         for (int t = 0; t < part.taps; ++t, row += loaded.resampledLength, weight += part.stride)
@@ -212,47 +210,36 @@ private:
   const PerspectiveFootprints<A>& Own;
 };
 
-class PerspectiveWorksheetsMode : public ProjectionMode
+template <class A>
+class PerspectiveWorksheetSpace
 {
 public:
-  void project(ProjectionContext& context) override
+  template <class T>
+  void project(ProjectionContext& context)
   {
-    dispatch(context.index.volume().type,
-      [&](auto* null)
-      {
-        using T = std::remove_pointer_t<decltype(null)>;
-        using A = Accumulator<T>;
-        auto& own = std::get<PerspectiveFootprints<A>>(this->Footprints);
-        auto& reach = std::get<WorksheetReach<A>>(this->Reach);
-        own.find(
-          context.whole, context.geometry, worksheetKernel(context.settings), context.kernels);
-        findReach(context.geometry, own, reach);
-        walk(
-          context, PerspectiveWorksheets<T>(context, own, reach, worksheetDepth(context.settings)));
-      });
+    this->Footprints.find(
+      context.whole, context.geometry, worksheetKernel(context.settings), context.kernels);
+    findReach(context.geometry, this->Footprints, this->Reach);
+    walk(context,
+      PerspectiveWorksheets<T>(
+        context, this->Footprints, this->Reach, worksheetDepth(context.settings)));
   }
-
-  void takeAtWinners(const AtWinners& c) const override
+  template <class T>
+  void takeAtWinners(const AtWinners& winners) const
   {
-    dispatch(c.other.type,
-      [&](auto* null)
-      {
-        using T = std::remove_pointer_t<decltype(null)>;
-        const auto& own = std::get<PerspectiveFootprints<Accumulator<T>>>(this->Footprints);
-        fillAtWinners<T>(c,
-          [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
-          { return averageAtWinner<T>(voxels, own, u, v, step / StepsPerSlice); });
-      });
+    fillAtWinners<T>(winners,
+      [&](const PermutedVoxels<T>& voxels, int u, int v, int step)
+      { return averageAtWinner<T>(voxels, this->Footprints, u, v, step / StepsPerSlice); });
   }
 
 private:
-  std::tuple<PerspectiveFootprints<float>, PerspectiveFootprints<double>> Footprints;
-  std::tuple<WorksheetReach<float>, WorksheetReach<double>> Reach;
+  PerspectiveFootprints<A> Footprints;
+  WorksheetReach<A> Reach;
 };
 }
 
 std::unique_ptr<ProjectionMode> makePerspectiveWorksheets()
 {
-  return std::make_unique<PerspectiveWorksheetsMode>();
+  return std::make_unique<TypedMode<PerspectiveWorksheetSpace>>();
 }
 }

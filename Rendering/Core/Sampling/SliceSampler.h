@@ -19,6 +19,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
 // For explicit instantiations: f of each type of voxels.
@@ -75,7 +77,7 @@ public:
   const SamplerTraits& traits() const { return this->Traits; }
 
   /// How far it reads: the voxels that the pixels of a layer read, relative to the pixel.
-  virtual Window window(int) const { return {}; }
+  virtual VoxelWindow window(int) const { return {}; }
   /// In perspective the voxels of a layer that some columns (or rows) of pixels read, from first to
   /// last; they may lie outside the volume.
   virtual Span columnsOf(int, const Span&) const { return {}; }
@@ -174,7 +176,36 @@ public:
   /// Walks a sampler for the type of the voxels.
   virtual void project(ProjectionContext& context) = 0;
   /// After project(). Only for modes whose samples are voxels or averages.
-  virtual void takeAtWinners(const AtWinners&) const {}
+  virtual void takeAtWinners(const AtWinners&) const = 0;
+};
+
+/// The mode that a Space is: what it keeps, A being Accumulator<T>, and how it projects voxels of
+/// type T, as ProjectionMode does.
+template <template <class A> class Space>
+class TypedMode : public ProjectionMode
+{
+public:
+  void project(ProjectionContext& context) override
+  {
+    dispatch(context.index.volume().type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        std::get<Space<Accumulator<T>>>(this->Spaces).template project<T>(context);
+      });
+  }
+  void takeAtWinners(const AtWinners& winners) const override
+  {
+    dispatch(winners.other.type,
+      [&](auto* null)
+      {
+        using T = std::remove_pointer_t<decltype(null)>;
+        std::get<Space<Accumulator<T>>>(this->Spaces).template takeAtWinners<T>(winners);
+      });
+  }
+
+private:
+  std::tuple<Space<float>, Space<double>> Spaces;
 };
 std::unique_ptr<ProjectionMode> makePreview();
 std::unique_ptr<ProjectionMode> makePerspectivePreview();

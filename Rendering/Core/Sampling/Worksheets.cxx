@@ -131,7 +131,7 @@ void findReach(const std::vector<SliceGeometry>& slices,
   reach.columns = reach.rows = 0;
   for (int s = 0; s < count; ++s)
   {
-    const Window& window = reach.slices[s];
+    const VoxelWindow& window = reach.slices[s];
     reach.layers[s / BrickDepth].window.add(window.iMin, window.jMin);
     reach.layers[s / BrickDepth].window.add(window.iMax, window.jMax);
     reach.columns = std::max(reach.columns, window.iMax - window.iMin);
@@ -150,14 +150,14 @@ template void findReach(const std::vector<SliceGeometry>&,
 
 template <class T>
 template <class F>
-void WorksheetSampler<T>::forPieces(int v0, int v1, const Span& columns, F&& f) const
+void WorksheetSampler<T>::forBlocks(int v0, int v1, const Span& columns, F&& f) const
 {
-  for (int v = v0; v < v1; v += this->PieceHeight)
+  for (int v = v0; v < v1; v += this->BlockHeight)
   {
-    for (int u = columns.begin; u < columns.end; u += this->PieceWidth)
+    for (int u = columns.begin; u < columns.end; u += this->BlockWidth)
     {
-      f(v, std::min(v + this->PieceHeight, v1),
-        Span{ u, std::min(u + this->PieceWidth, columns.end) });
+      f(v, std::min(v + this->BlockHeight, v1),
+        Span{ u, std::min(u + this->BlockWidth, columns.end) });
     }
   }
 }
@@ -191,19 +191,19 @@ void WorksheetSampler<T>::splat(const Span& slices, int v0, int v1, const std::v
 {
   for (const Span& run : runs)
   {
-    this->splatPieces(slices, v0, v1, run, pixels, loaded);
+    this->splatBlocks(slices, v0, v1, run, pixels, loaded);
   }
 }
 
 template <class T>
-void WorksheetSampler<T>::splatPieces(const Span& slices, int v0, int v1, const Span& run,
+void WorksheetSampler<T>::splatBlocks(const Span& slices, int v0, int v1, const Span& run,
   const Target& target, LoadedVoxels& loaded) const
 {
-  this->forPieces(v0, v1, run,
+  this->forBlocks(v0, v1, run,
     [&](int first, int last, const Span& columns)
     {
       this->open(first, last, columns, loaded);
-      this->splatPiece(slices, first, last, columns, target, loaded);
+      this->splatBlock(slices, first, last, columns, target, loaded);
     });
 }
 
@@ -220,15 +220,15 @@ template <class T>
 void WorksheetSampler<T>::forSamples(const Span& slices, bool reversed, int v0, int v1,
   const Span& columns, LoadedVoxels& loaded, const Samples& f) const
 {
-  this->forPieces(v0, v1, columns,
-    [&](int first, int last, const Span& piece)
+  this->forBlocks(v0, v1, columns,
+    [&](int first, int last, const Span& block)
     {
-      this->open(first, last, piece, loaded);
-      const Target worksheet = this->worksheetFor(first, last, piece, loaded);
+      this->open(first, last, block, loaded);
+      const Target worksheet = this->worksheetFor(first, last, block, loaded);
       for (int n = 0; n < slices.end - slices.begin; ++n)
       {
         const int k = reversed ? slices.end - 1 - n : slices.begin + n;
-        this->forRows(k, first, last, piece,
+        this->forRows(k, first, last, block,
           [&](int begin, int end, const Span& span)
           {
             this->sample(k, reversed ? -1 : 1, begin, end, span, worksheet, loaded);
@@ -247,7 +247,7 @@ void WorksheetSampler<T>::splatAll(
 {
   const Span slices{ layers.begin * BrickDepth,
     std::min(layers.end * BrickDepth, this->Context.geometry.size().z) };
-  this->splatPieces(slices, v0, v1, all.front(), pixelsOf<A>(this->Context.image), loaded);
+  this->splatBlocks(slices, v0, v1, all.front(), pixelsOf<A>(this->Context.image), loaded);
 }
 
 template <class T>
@@ -386,7 +386,7 @@ void WorksheetSampler<T>::sample(int k, int step, int first, int end, const Span
 }
 
 template <class T>
-void WorksheetSampler<T>::splatPiece(const Span& slices, int v0, int v1, const Span& columns,
+void WorksheetSampler<T>::splatBlock(const Span& slices, int v0, int v1, const Span& columns,
   const Target& target, LoadedVoxels& loaded) const
 {
   for (int k = slices.begin; k < slices.end; ++k)

@@ -56,12 +56,12 @@ struct WorksheetReach
 {
   struct Layer
   {
-    Window window; ///< of the layer's own voxels, by all worksheets that read them
-    A share = 0;   ///< how much of a worksheet its neighbours' voxels can weigh
+    VoxelWindow window; ///< of the layer's own voxels, by all worksheets that read them
+    A share = 0;        ///< how much of a worksheet its neighbours' voxels can weigh
   };
   std::vector<Layer> layers;
-  std::vector<Window> slices; ///< the same for each slice's voxels
-  int columns = 0, rows = 0;  ///< the largest of the slices' windows
+  std::vector<VoxelWindow> slices; ///< the same for each slice's voxels
+  int columns = 0, rows = 0;       ///< the largest of the slices' windows
 };
 
 template <class A>
@@ -78,7 +78,7 @@ inline int worksheetDepth(const ProjectionSettings& settings)
   return settings.quality == Quality::Standard ? 0 : 1;
 }
 
-/// What the worksheets of all projections share: how layers, pieces and rows are walked, and how
+/// What the worksheets of all projections share: how layers, blocks and rows are walked, and how
 /// voxels are loaded.
 template <class T>
 class WorksheetSampler : public SliceSampler<T, Accumulator<T>>
@@ -112,7 +112,7 @@ public:
 
   void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
     const Target& pixels, LoadedVoxels& loaded) const override;
-  /// Piece by piece, so that voxels are widened once.
+  /// Block by block, so that voxels are widened once.
   void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
     LoadedVoxels& loaded) const override;
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
@@ -169,6 +169,9 @@ protected:
   virtual void splatNonFiniteRows(
     int k, int first, int end, const Span& span, const Target& target, LoadedVoxels& loaded) const;
 
+  /// Whether the voxels that worksheet k reads are, which have been loaded.
+  bool isFinite(int k, LoadedVoxels& loaded) const;
+
   /// What the weights of a pixel add up to at least.
   virtual A wholeWeight() const { return 1; }
 
@@ -188,7 +191,6 @@ private:
     return { std::max(k - this->Depth, 0),
       std::min(k + this->Depth, this->Context.geometry.size().z - 1) + 1 };
   }
-  bool isFinite(int k, LoadedVoxels& loaded) const;
   bool isFinite(const LoadedVoxels::Sheet& sheet, LoadedVoxels& loaded) const;
   /// Voxels, which of them are finite, and, if there are infinities, which are positive or
   /// negative.
@@ -199,9 +201,9 @@ private:
   /// Room for one worksheet.
   Target worksheetFor(int v0, int v1, const Span& columns, LoadedVoxels& loaded) const;
 
-  /// Calls f for pieces of the image whose voxels stay in the cache.
+  /// Calls f for blocks of the image whose voxels stay in the cache.
   template <class F>
-  void forPieces(int v0, int v1, const Span& columns, F&& f) const;
+  void forBlocks(int v0, int v1, const Span& columns, F&& f) const;
 
   /// Makes the worksheet of slice k for pixels of some rows. Pixels without a sample get the least
   /// value or, if the volume has NaN, NaN.
@@ -211,9 +213,9 @@ private:
   /// @param step  to the worksheet that comes next, 0 if none does
   void splatOne(int k, int step, int first, int end, const Span& span, const Target& target,
     LoadedVoxels& loaded) const;
-  void splatPieces(const Span& slices, int v0, int v1, const Span& run, const Target& target,
+  void splatBlocks(const Span& slices, int v0, int v1, const Span& run, const Target& target,
     LoadedVoxels& loaded) const;
-  void splatPiece(const Span& slices, int v0, int v1, const Span& columns, const Target& target,
+  void splatBlock(const Span& slices, int v0, int v1, const Span& columns, const Target& target,
     LoadedVoxels& loaded) const;
 
   /// Calls f(first, end, span) for rows that slice k covers in the same columns: nearly always all
@@ -229,7 +231,7 @@ protected:
   const ProjectionContext& Context;
   const WorksheetReach<A>& Reach;
   int Depth;
-  int PieceWidth = 1024, PieceHeight = 16; ///< pixels; for the second-level cache
+  int BlockWidth = 1024, BlockHeight = 16; ///< pixels; for the second-level cache
   A Base;
 };
 }

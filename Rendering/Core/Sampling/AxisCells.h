@@ -4,8 +4,8 @@
  * Exact mode in perspective views: which cells between voxels the rays of an image's columns (or
  * rows) are in, slice by slice.
  */
-#ifndef splattingFanCells_h
-#define splattingFanCells_h
+#ifndef splattingAxisCells_h
+#define splattingAxisCells_h
 
 #include "Geometry/ShearWarp.h"
 #include "Kernels/Kernels.h"
@@ -17,7 +17,7 @@
 namespace splatting
 {
 template <class A>
-class FanCells
+class AxisCells
 {
 public:
   /// @param whole  the image's geometry: where rays are in their cells does not depend on parts
@@ -25,7 +25,7 @@ public:
   /// @param a      0 for columns, 1 for rows
   void find(const ShearWarp& whole, const ShearWarp& part, int a);
 
-  FanCellArrays<A> slice(int k) const;
+  AxisCellArrays<A> slice(int k) const;
 
   /// The voxels of the cells that some pixels are in, in some slices, from first to last; they may
   /// lie outside the volume.

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The loops over parts of the screen's rays: placeParts and findLargest of WorksheetLoops. For
- * Kernels.cxx only, which is compiled for several instruction sets and says why all of this is in
- * an anonymous namespace.
+ * The loops over segments of the screen's rays: placeSegments and findLargest of WorksheetLoops.
+ * For Kernels.cxx only, which is compiled for several instruction sets and says why all of this is
+ * in an anonymous namespace.
  */
-#ifndef splattingPartKernels_h
-#define splattingPartKernels_h
+#ifndef splattingSegmentKernels_h
+#define splattingSegmentKernels_h
 
 #include "Kernels/ExactKernels.h"
 
@@ -16,7 +16,7 @@ namespace splatting
 {
 namespace
 {
-/// One side, column or row, of the voxels that parts need.
+/// One side, column or row, of the voxels that segments need.
 template <class A>
 inline void placeSide(const double* __restrict at, const double* __restrict slope,
   const double* __restrict begin, const double* __restrict end,
@@ -32,44 +32,44 @@ inline void placeSide(const double* __restrict at, const double* __restrict slop
     const double low = to < from ? to : from;
     const std::int32_t whole = static_cast<std::int32_t>(low);
     const std::int32_t floor = whole - (low < static_cast<double>(whole));
-    first[p] = smaller(larger(floor, -FieldParts<A>::beyond), last);
+    first[p] = smaller(larger(floor, -FieldSegments<A>::beyond), last);
     x[p] = static_cast<A>(place - static_cast<double>(first[p]));
     dx[p] = static_cast<A>(slope[p]);
   }
 }
 
 template <class A>
-void placeParts(FieldParts<A>& parts, double start, const std::int32_t last[2])
+void placeSegments(FieldSegments<A>& segments, double start, const std::int32_t last[2])
 {
   for (int a = 0; a < 2; ++a)
   {
-    placeSide(parts.at[a], parts.slope[a], parts.begin, parts.end, parts.first[2], start, last[a],
-      parts.first[a], parts.place[a], parts.way[a], parts.count);
+    placeSide(segments.at[a], segments.slope[a], segments.begin, segments.end, segments.first[2],
+      start, last[a], segments.first[a], segments.place[a], segments.way[a], segments.count);
   }
-  for (std::ptrdiff_t p = 0; p < parts.count; ++p)
+  for (std::ptrdiff_t p = 0; p < segments.count; ++p)
   {
-    const double k = static_cast<double>(parts.first[2][p]);
-    parts.from[p] = static_cast<A>(parts.begin[p] - k);
-    parts.to[p] = static_cast<A>(parts.end[p] - k);
+    const double k = static_cast<double>(segments.first[2][p]);
+    segments.from[p] = static_cast<A>(segments.begin[p] - k);
+    segments.to[p] = static_cast<A>(segments.end[p] - k);
   }
 }
 
-/// The field along a register of parts of rays.
+/// The field along a register of segments of rays.
 template <class A, bool NonFinite>
-class PartLoop
+class SegmentLoop
 {
 public:
   using R = Pack<A>;
   using L = Lanes<A, R>;
   using M = typename L::M;
 
-  PartLoop(const FieldParts<A>& parts, std::ptrdiff_t n)
-    : Parts(parts),
+  SegmentLoop(const FieldSegments<A>& segments, std::ptrdiff_t n)
+    : Segments(segments),
       At(n),
-      From(L::loadFrom(parts.from + n)),
-      To(L::loadFrom(parts.to + n)),
-      X(parts.place[0] + n, parts.way[0] + n, From, To),
-      Y(parts.place[1] + n, parts.way[1] + n, From, To)
+      From(L::loadFrom(segments.from + n)),
+      To(L::loadFrom(segments.to + n)),
+      X(segments.place[0] + n, segments.way[0] + n, From, To),
+      Y(segments.place[1] + n, segments.way[1] + n, From, To)
   {
   }
 
@@ -87,7 +87,8 @@ public:
   }
 
 private:
-  /// Columns or rows of cells: whether a part is in the upper of two, before and behind a change.
+  /// Columns or rows of cells: whether a segment is in the upper of two, before and behind a
+  /// change.
   struct Side
   {
     R at, way, change;
@@ -124,7 +125,7 @@ private:
 #pragma GCC unroll 3
       for (int x = 0; x < 3; ++x)
       {
-        const auto& voxels = this->Parts.voxels[z];
+        const auto& voxels = this->Segments.voxels[z];
         const R middle = L::loadFrom(voxels[1][x] + this->At);
         rows[0][x] = upperRow ? middle : L::loadFrom(voxels[0][x] + this->At);
         rows[1][x] = upperRow ? L::loadFrom(voxels[2][x] + this->At) : middle;
@@ -158,21 +159,21 @@ private:
     return counts ? larger(smaller(found, most), best) : best;
   }
 
-  const FieldParts<A>& Parts;
+  const FieldSegments<A>& Segments;
   const std::ptrdiff_t At;
   const R From, To;
   const Side X, Y;
 };
 
 template <class A>
-void findLargest(FieldParts<A>& parts)
+void findLargest(FieldSegments<A>& segments)
 {
   // Beyond the last one there is room, and something.
-  for (std::ptrdiff_t n = 0; n < parts.count; n += width<A>)
+  for (std::ptrdiff_t n = 0; n < segments.count; n += width<A>)
   {
-    store<A>(parts.largest + n,
-      parts.nonFinite ? PartLoop<A, true>(parts, n).largest()
-                      : PartLoop<A, false>(parts, n).largest());
+    store<A>(segments.largest + n,
+      segments.nonFinite ? SegmentLoop<A, true>(segments, n).largest()
+                         : SegmentLoop<A, false>(segments, n).largest());
   }
 }
 }

@@ -4,8 +4,8 @@
  * Which voxels the rays of a perspective image meet: in one slice all rows of pixels share what the
  * columns do, and all columns what the rows do.
  */
-#ifndef splattingFanSteps_h
-#define splattingFanSteps_h
+#ifndef splattingAxisSteps_h
+#define splattingAxisSteps_h
 
 #include "Geometry/ShearWarp.h"
 #include "Kernels/Kernels.h"
@@ -16,13 +16,13 @@
 namespace splatting
 {
 /**
- * The steps of a fan from voxel to voxel, in all slices that an image sees.
+ * The steps of the rays of columns (or of rows) from voxel to voxel, in all slices that an image sees.
  */
-class FanSteps
+class AxisSteps
 {
 public:
   /// @param a  0 for columns, 1 for rows
-  void find(const ShearWarp& geometry, int a, const FanLoops& loops);
+  void find(const ShearWarp& geometry, int a, const PerspectiveLoops& loops);
 
   /// What the rays do in slice k, one element per pixel and some more that are outside the volume.
   struct Slice
@@ -46,21 +46,21 @@ public:
   Span voxels(const Span& slices, const Span& pixels) const;
 
   /// The pixels that enter or leave slice k in the volume, and those that do both.
-  struct Reach
+  struct Covered
   {
     Span some, all;
   };
-  const Reach& reach(int k) const { return this->Reaches[k - this->Slices.begin]; }
+  const Covered& covered(int k) const { return this->Covers[k - this->Slices.begin]; }
 
 private:
-  friend class FanWindows;
+  friend class AxisPicks;
   Span Slices;
   int Count = 0, Size = 0;
   std::ptrdiff_t Padded = 0;
   std::vector<std::int32_t> First, Last;
   std::vector<double> Time;
   std::vector<std::int16_t> Tick;
-  std::vector<Reach> Reaches;
+  std::vector<Covered> Covers;
   std::vector<unsigned char> Ascends; // of each slice, whether its pixels' voxels do
 };
 
@@ -69,12 +69,12 @@ private:
  * pixels are no wider than voxels, so that a group of pixels meets no more voxels than it has
  * pixels.
  */
-class FanWindows
+class AxisPicks
 {
 public:
   /// @param group  pixels that pick from one register, see VoxelLoops::group
   /// @param bytes  of a voxel
-  void find(const FanSteps& steps, int group, int bytes);
+  void find(const AxisSteps& steps, int group, int bytes);
 
   /// Where a group of pixels picks from, for all groups, and which of these voxels each pixel
   /// takes: integers as wide as voxels, negative for pixels outside the volume.
@@ -88,7 +88,7 @@ public:
 
 private:
   template <class Lane>
-  void fill(const std::int32_t* voxels, std::size_t row, const FanSteps& steps);
+  void fill(const std::int32_t* voxels, std::size_t row, const AxisSteps& steps);
   Picks picks(int k, int end) const
   {
     const std::size_t row = 2 * std::size_t(k - this->First) + end;

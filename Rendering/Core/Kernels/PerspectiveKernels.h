@@ -4,8 +4,8 @@
  * The rays of perspective images and the voxels that they cross. For Kernels.cxx only, which says
  * why all of this is in an anonymous namespace.
  */
-#ifndef splattingFanKernels_h
-#define splattingFanKernels_h
+#ifndef splattingPerspectiveKernels_h
+#define splattingPerspectiveKernels_h
 
 #include "Kernels/Kernels.h"
 #include "Kernels/PickKernels.h"

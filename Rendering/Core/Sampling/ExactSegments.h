@@ -6,8 +6,8 @@
  * cells of a slice alike, so that the Bernstein coefficients of these cubics are sums of voxels
  * with the same weights for all pixels.
  */
-#ifndef splattingExactPieces_h
-#define splattingExactPieces_h
+#ifndef splattingExactSegments_h
+#define splattingExactSegments_h
 
 #include "Geometry/ShearWarp.h"
 #include "Kernels/Kernels.h"
@@ -41,23 +41,23 @@ template <class A>
 constexpr A ExactShare = A(0.5);
 
 /**
- * A piece of the rays' path through slice k, half a slice to either side of its middle, in one
+ * A segment of the rays' path through slice k, half a slice to either side of its middle, in one
  * cell.
  */
 template <class A>
-struct ExactPiece
+struct ExactSegment
 {
   int di, dj, dk; ///< the cell's first voxel, relative to pixel and slice
   /// Of Bernstein coefficient b for the cell's voxels, along i first: weights[8 b + n].
   std::array<A, 32> weights;
   bool curved; ///< whether the cubic is more than a line
-  /// The pixels for which the piece lies in the field, and those for which it lies in voxels'
+  /// The pixels for which the segment lies in the field, and those for which it lies in voxels'
   /// boxes.
   std::array<Span, 2> inField, inBoxes; ///< columns and rows
 };
 
 template <class A>
-using ExactPath = std::vector<ExactPiece<A>>; ///< one after the other, by ascending depth
+using ExactPath = std::vector<ExactSegment<A>>; ///< one after the other, by ascending depth
 
 /// A box around what the path through a slice passes.
 template <class A>

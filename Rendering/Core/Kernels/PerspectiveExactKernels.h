@@ -4,8 +4,8 @@
  * The loops of exact mode in perspective. For Kernels.cxx only, which says why all of this is in an
  * anonymous namespace.
  */
-#ifndef splattingExactFanKernels_h
-#define splattingExactFanKernels_h
+#ifndef splattingPerspectiveExactKernels_h
+#define splattingPerspectiveExactKernels_h
 
 #include "Kernels/ExactKernels.h"
 
@@ -18,10 +18,10 @@ namespace
 /// Columns of voxels under a row of pixels in perspective, and what the field is at most where the
 /// row's rays pass them.
 template <class A>
-class FanColumns
+class PerspectiveColumns
 {
 public:
-  FanColumns(const FanCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
+  PerspectiveColumns(const PerspectiveCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
     : First(row.columns.cell[begin] - 1),
       Count(row.columns.cell[end - 1] + 4 - First)
   {
@@ -41,7 +41,7 @@ public:
 private:
   static constexpr std::ptrdiff_t Room = 512;
 
-  static inline Pack<A> largest(const FanCubicRow<A>& row, std::ptrdiff_t at)
+  static inline Pack<A> largest(const PerspectiveCubicRow<A>& row, std::ptrdiff_t at)
   {
     const PathBox<A>& box = row.box;
     const Pack<A> a = largestAt<A, Pack<A>>(box, at);
@@ -57,16 +57,16 @@ private:
 /// The cubics of a perspective view: each pixel has a place of its own in the cells, that of a row
 /// of cells goes for all.
 template <class A, class R, bool NonFinite>
-struct FanCubicLoop : Lanes<A, R>
+struct PerspectiveCubicLoop : Lanes<A, R>
 {
   using typename Lanes<A, R>::M;
   using typename Lanes<A, R>::I;
   using Lanes<A, R>::all;
   using Lanes<A, R>::loadFrom;
   static constexpr bool single = Lanes<A, R>::single;
-  const FanCubicRow<A>& row;
+  const PerspectiveCubicRow<A>& row;
 
-  explicit FanCubicLoop(const FanCubicRow<A>& own) : row(own) {}
+  explicit PerspectiveCubicLoop(const PerspectiveCubicRow<A>& own) : row(own) {}
 
   static inline R clampedShare(R x) { return smaller(larger(x, all(A(0))), all(A(1))); }
 
@@ -118,13 +118,13 @@ struct FanCubicLoop : Lanes<A, R>
   };
 
   /// The largest of the cubics from one depth to another.
-  inline R largestFrom(const FanCubicPart<A>& part, const R (&corners)[8], R x, R slope, R from,
-    R to, R best, M counts) const
+  inline R largestFrom(const PerspectiveCubicSegment<A>& segment, const R (&corners)[8], R x,
+    R slope, R from, R to, R best, M counts) const
   {
     const R x0 = clampedShare(x + slope * from), x1 = clampedShare(x + slope * to);
-    const R y0 = clampedShare(part.y + this->row.slope * from),
-            y1 = clampedShare(part.y + this->row.slope * to);
-    const R z0 = clampedShare(part.z + from), z1 = clampedShare(part.z + to);
+    const R y0 = clampedShare(segment.y + this->row.slope * from),
+            y1 = clampedShare(segment.y + this->row.slope * to);
+    const R z0 = clampedShare(segment.z + from), z1 = clampedShare(segment.z + to);
     const R raised = largestOnWay<A>(corners, { x0, y0, z0 }, { x1, y1, z1 }, best);
     const R limited =
       Lanes<A, R>::limitedTo(raised, Lanes<A, R>::template largestOf<NonFinite>(corners), best);
@@ -132,12 +132,12 @@ struct FanCubicLoop : Lanes<A, R>
   }
 
   /// Whether a sample can be above its pixel: whether the largest value in its box is.
-  inline bool canRaise(const FanColumns<A>& columns, std::ptrdiff_t x) const
+  inline bool canRaise(const PerspectiveColumns<A>& columns, std::ptrdiff_t x) const
   {
     const R one = all(A(1));
     const R at = loadFrom(this->row.columns.at + x), slope = loadFrom(this->row.columns.slope + x);
-    const R near = at + slope * this->row.parts[0].from;
-    const R far = at + slope * this->row.parts[this->row.count - 1].to;
+    const R near = at + slope * this->row.segments[0].from;
+    const R far = at + slope * this->row.segments[this->row.count - 1].to;
     const R begin = smaller(near, far), end = larger(near, far);
     const Cells cells(this->row.columns.cell + x);
     const A* const voxels = columns.from(cells.least);
@@ -151,7 +151,7 @@ struct FanCubicLoop : Lanes<A, R>
 
   inline void run(std::ptrdiff_t x) const
   {
-    const FanCellArrays<A>& c = this->row.columns;
+    const AxisCellArrays<A>& c = this->row.columns;
     const R before = loadFrom(this->row.image + x);
     R best = Lanes<A, R>::template opened<NonFinite>(before);
     // Rays beside the field see boxes.
@@ -170,8 +170,8 @@ struct FanCubicLoop : Lanes<A, R>
     const M falls = (slope < zero) & (crossing < one);
     for (int p = 0; p < this->row.count; ++p)
     {
-      const FanCubicPart<A>& part = this->row.parts[p];
-      const R from = larger(begin, all(part.from)), to = smaller(end, all(part.to));
+      const PerspectiveCubicSegment<A>& segment = this->row.segments[p];
+      const R from = larger(begin, all(segment.from)), to = smaller(end, all(segment.to));
       const R change = larger(from, smaller(crossing, to));
       const M first = from < change, second = change < to;
       if (!anyOf(first | second))
@@ -184,7 +184,7 @@ struct FanCubicLoop : Lanes<A, R>
       {
         for (int t = 0; t < 3; ++t)
         {
-          voxels[n][t] = cells.pick(part.rows[n] + t);
+          voxels[n][t] = cells.pick(segment.rows[n] + t);
           most = larger(voxels[n][t], most);
         }
       }
@@ -198,13 +198,13 @@ struct FanCubicLoop : Lanes<A, R>
       {
         choose(voxels, falls, corners);
         const R start = at - (falls ? one : zero);
-        best = this->largestFrom(part, corners, start, slope, from, change, best, first);
+        best = this->largestFrom(segment, corners, start, slope, from, change, best, first);
       }
       if (anyOf(second))
       {
         choose(voxels, slope > zero, corners);
         const R start = at - (slope > zero ? one : zero);
-        best = this->largestFrom(part, corners, start, slope, change, to, best, second);
+        best = this->largestFrom(segment, corners, start, slope, change, to, best, second);
       }
       best = smaller(best, atMost); // as in parallel views
     }
@@ -227,10 +227,11 @@ constexpr std::ptrdiff_t MostAtOnce = 256; ///< pixels of a row
 
 /// Some pixels: a register or more.
 template <class A>
-inline void raiseAboveBoxes(const FanCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
+inline void raiseAboveBoxes(
+  const PerspectiveCubicRow<A>& row, std::ptrdiff_t begin, std::ptrdiff_t end)
 {
-  const FanCubicLoop<A, Pack<A>, false> loop(row);
-  const FanColumns<A> columns(row, begin, end);
+  const PerspectiveCubicLoop<A, Pack<A>, false> loop(row);
+  const PerspectiveColumns<A> columns(row, begin, end);
   // All are asked before the first is raised, so that no answer is waited for.
   std::ptrdiff_t found[MostAtOnce / width<A>];
   int count = 0;
@@ -247,13 +248,13 @@ inline void raiseAboveBoxes(const FanCubicRow<A>& row, std::ptrdiff_t begin, std
 }
 
 template <class A, bool NonFinite>
-inline void raiseFanCubicRow(const FanCubicRow<A>& row)
+inline void raisePerspectiveCubicRow(const PerspectiveCubicRow<A>& row)
 {
   constexpr std::ptrdiff_t w = width<A>, most = NonFinite ? w : MostAtOnce;
   const std::ptrdiff_t begin = row.pixels.begin, end = row.pixels.end;
   for (std::ptrdiff_t x = begin; end - begin < w && x < end; ++x)
   {
-    FanCubicLoop<A, A, NonFinite>(row).run(x);
+    PerspectiveCubicLoop<A, A, NonFinite>(row).run(x);
   }
   for (std::ptrdiff_t x = begin; end - begin >= w && x < end; x += most)
   {
@@ -261,7 +262,7 @@ inline void raiseFanCubicRow(const FanCubicRow<A>& row)
     const std::ptrdiff_t first = last - x >= w ? x : last - w;
     if constexpr (NonFinite)
     {
-      FanCubicLoop<A, Pack<A>, true>(row).run(first);
+      PerspectiveCubicLoop<A, Pack<A>, true>(row).run(first);
     }
     else
     {
@@ -271,9 +272,9 @@ inline void raiseFanCubicRow(const FanCubicRow<A>& row)
 }
 
 template <class A>
-void raiseFanCubics(const FanCubicRow<A>& row)
+void raisePerspectiveCubics(const PerspectiveCubicRow<A>& row)
 {
-  row.nonFinite ? raiseFanCubicRow<A, true>(row) : raiseFanCubicRow<A, false>(row);
+  row.nonFinite ? raisePerspectiveCubicRow<A, true>(row) : raisePerspectiveCubicRow<A, false>(row);
 }
 }
 }

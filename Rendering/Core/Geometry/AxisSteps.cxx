@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Geometry/FanSteps.h"
+#include "Geometry/AxisSteps.h"
 
 #include <vtkSMPTools.h>
 
@@ -25,9 +25,9 @@ Span pixelsThat(int count, F&& f)
 }
 }
 
-void FanSteps::find(const ShearWarp& geometry, int a, const FanLoops& loops)
+void AxisSteps::find(const ShearWarp& geometry, int a, const PerspectiveLoops& loops)
 {
-  const Fan& fan = a == 0 ? geometry.columns() : geometry.rows();
+  const AxisRays& rays = a == 0 ? geometry.columns() : geometry.rows();
   const int size = geometry.size()[a];
   // Whole registers of any voxel type.
   constexpr int unit = 64;
@@ -41,7 +41,7 @@ void FanSteps::find(const ShearWarp& geometry, int a, const FanLoops& loops)
   this->Last.resize(steps);
   this->Time.resize(steps);
   this->Tick.resize(steps);
-  this->Reaches.resize(slices);
+  this->Covers.resize(slices);
   this->Ascends.resize(slices);
   vtkSMPTools::For(0, slices, 8,
     [&](vtkIdType begin, vtkIdType end)
@@ -53,7 +53,7 @@ void FanSteps::find(const ShearWarp& geometry, int a, const FanLoops& loops)
         const std::size_t at = n * this->Padded;
         std::int32_t* const first = &this->First[at];
         std::int32_t* const last = &this->Last[at];
-        loops.steps(fan.at.data(), fan.slope.data(), faces.x, faces.y, size, first, last,
+        loops.steps(rays.at.data(), rays.slope.data(), faces.x, faces.y, size, first, last,
           &this->Time[at], &this->Tick[at], this->Count);
         std::fill(first + this->Count, first + this->Padded, size);
         std::fill(last + this->Count, last + this->Padded, size);
@@ -62,15 +62,15 @@ void FanSteps::find(const ShearWarp& geometry, int a, const FanLoops& loops)
         this->Ascends[n] =
           std::is_sorted(first, first + this->Count) && std::is_sorted(last, last + this->Count);
         const auto inside = [size](int voxel) { return voxel >= 0 && voxel < size; };
-        this->Reaches[n].some =
+        this->Covers[n].some =
           pixelsThat(this->Count, [&](int p) { return inside(first[p]) || inside(last[p]); });
-        this->Reaches[n].all =
+        this->Covers[n].all =
           pixelsThat(this->Count, [&](int p) { return inside(first[p]) && inside(last[p]); });
       }
     });
 }
 
-Span FanSteps::voxels(const Span& slices, const Span& pixels) const
+Span AxisSteps::voxels(const Span& slices, const Span& pixels) const
 {
   Span all{ this->Size, 0 };
   const int p = pixels.begin, q = std::min(pixels.end, this->Count) - 1;
@@ -85,7 +85,7 @@ Span FanSteps::voxels(const Span& slices, const Span& pixels) const
   return all;
 }
 
-void FanWindows::find(const FanSteps& steps, int group, int bytes)
+void AxisPicks::find(const AxisSteps& steps, int group, int bytes)
 {
   this->First = steps.Slices.begin;
   this->Group = group;
@@ -120,7 +120,7 @@ void FanWindows::find(const FanSteps& steps, int group, int bytes)
 }
 
 template <class Lane>
-void FanWindows::fill(const std::int32_t* voxels, std::size_t row, const FanSteps& steps)
+void AxisPicks::fill(const std::int32_t* voxels, std::size_t row, const AxisSteps& steps)
 {
   Lane* const lanes = reinterpret_cast<Lane*>(this->Lanes.data()) + row * steps.Padded;
   const std::int32_t size = steps.Size;

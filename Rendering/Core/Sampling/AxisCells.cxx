@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Sampling/FanCells.h"
+#include "Sampling/AxisCells.h"
 
-#include "Sampling/ExactPieces.h"
+#include "Sampling/ExactSegments.h"
 
 #include <vtkSMPTools.h>
 
@@ -19,7 +19,7 @@ constexpr int Margin = 4;
 }
 
 template <class A>
-typename FanCells<A>::Depths FanCells<A>::depthsIn(
+typename AxisCells<A>::Depths AxisCells<A>::depthsIn(
   double begin, double end, double at, double slope, double reference)
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -32,10 +32,10 @@ typename FanCells<A>::Depths FanCells<A>::depthsIn(
 }
 
 template <class A>
-void FanCells<A>::find(const ShearWarp& whole, const ShearWarp& part, int a)
+void AxisCells<A>::find(const ShearWarp& whole, const ShearWarp& part, int a)
 {
   constexpr std::size_t unit = 64;
-  const Fan& fan = a == 0 ? whole.columns() : whole.rows();
+  const AxisRays& rays = a == 0 ? whole.columns() : whole.rows();
   this->Slices = part.slices();
   this->Count = whole.rayCount()[a];
   this->Size = part.size()[a];
@@ -51,7 +51,7 @@ void FanCells<A>::find(const ShearWarp& whole, const ShearWarp& part, int a)
   const FieldRange range(whole, a);
   for (int n = 0; n < this->Count; ++n)
   {
-    const double at = fan.at[n], slope = fan.slope[n];
+    const double at = rays.at[n], slope = rays.slope[n];
     this->Field[n] = depthsIn(range.begin, range.end, at, slope, whole.reference());
     this->Boxes[n] = depthsIn(-0.5, whole.size()[a] - 0.5, at, slope, whole.reference());
     this->Slopes[n] = static_cast<A>(slope);
@@ -69,9 +69,9 @@ void FanCells<A>::find(const ShearWarp& whole, const ShearWarp& part, int a)
 }
 
 template <class A>
-void FanCells<A>::findSlice(const ShearWarp& whole, const ShearWarp& part, int a, int k)
+void AxisCells<A>::findSlice(const ShearWarp& whole, const ShearWarp& part, int a, int k)
 {
-  const Fan& fan = a == 0 ? whole.columns() : whole.rows();
+  const AxisRays& rays = a == 0 ? whole.columns() : whole.rows();
   const int slice = k + part.first().z, firstVoxel = part.first()[a];
   const glm::dvec2 faces = whole.faces(slice) - whole.reference();
   std::int32_t* const cells = &this->Cells[std::size_t(k - this->Slices.begin) * this->Padded];
@@ -79,7 +79,7 @@ void FanCells<A>::findSlice(const ShearWarp& whole, const ShearWarp& part, int a
   { return static_cast<A>(std::clamp(depth - slice, -1.0, 1.0)); };
   for (int n = 0; n < this->Count; ++n)
   {
-    const double at = fan.at[n], slope = fan.slope[n];
+    const double at = rays.at[n], slope = rays.slope[n];
     const double p = at + slope * faces.x, q = at + slope * faces.y;
     const double low = std::min(p, q), high = std::max(p, q), cell = std::floor(low);
     const double middle = at + slope * (slice - whole.reference());
@@ -105,7 +105,7 @@ void FanCells<A>::findSlice(const ShearWarp& whole, const ShearWarp& part, int a
 }
 
 template <class A>
-FanCellArrays<A> FanCells<A>::slice(int k) const
+AxisCellArrays<A> AxisCells<A>::slice(int k) const
 {
   const std::size_t n = k - this->Slices.begin;
   const A* const values = &this->Values[n * ArrayCount * this->Padded];
@@ -116,7 +116,7 @@ FanCellArrays<A> FanCells<A>::slice(int k) const
 }
 
 template <class A>
-Span FanCells<A>::voxels(const Span& slices, const Span& pixels) const
+Span AxisCells<A>::voxels(const Span& slices, const Span& pixels) const
 {
   Span all{ this->Size + Margin, -Margin };
   const int first = pixels.begin, last = std::min(pixels.end, this->Count) - 1;
@@ -131,6 +131,6 @@ Span FanCells<A>::voxels(const Span& slices, const Span& pixels) const
   return all;
 }
 
-template class FanCells<float>;
-template class FanCells<double>;
+template class AxisCells<float>;
+template class AxisCells<double>;
 }

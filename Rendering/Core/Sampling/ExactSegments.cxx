@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Sampling/ExactPieces.h"
+#include "Sampling/ExactSegments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,32 +71,32 @@ BoxSide<A> sideBetween(double from, double to)
 }
 
 template <class A>
-ExactPiece<A> pieceBetween(
+ExactSegment<A> segmentBetween(
   const ShearWarp& geometry, int k, const glm::dvec3& from, const glm::dvec3& to)
 {
   const glm::dvec3 middle = 0.5 * (from + to), cell = glm::floor(middle);
-  ExactPiece<A> piece;
-  piece.di = static_cast<int>(cell.x);
-  piece.dj = static_cast<int>(cell.y);
-  piece.dk = static_cast<int>(cell.z) - k;
+  ExactSegment<A> segment;
+  segment.di = static_cast<int>(cell.x);
+  segment.dj = static_cast<int>(cell.y);
+  segment.dk = static_cast<int>(cell.z) - k;
   const auto weights = coefficients(glm::clamp(from - cell, glm::dvec3(0.0), glm::dvec3(1.0)),
     glm::clamp(to - cell, glm::dvec3(0.0), glm::dvec3(1.0)));
   for (int b = 0; b < 4; ++b)
   {
-    std::transform(weights[b].begin(), weights[b].end(), piece.weights.begin() + 8 * b,
+    std::transform(weights[b].begin(), weights[b].end(), segment.weights.begin() + 8 * b,
       [](double weight) { return static_cast<A>(weight); });
   }
   // Along one axis the field is a line between two voxels.
-  piece.curved = from.x != to.x || from.y != to.y;
+  segment.curved = from.x != to.x || from.y != to.y;
   const FieldRange depths(geometry, 2);
   const bool inField = depths.begin <= middle.z && middle.z <= depths.end;
   for (int a = 0; a < 2; ++a)
   {
     const FieldRange range(geometry, a);
-    piece.inField[a] = inField ? pixelsIn(range.begin, range.end, middle[a]) : Span{};
-    piece.inBoxes[a] = pixelsIn(-0.5, geometry.size()[a] - 0.5, middle[a]);
+    segment.inField[a] = inField ? pixelsIn(range.begin, range.end, middle[a]) : Span{};
+    segment.inBoxes[a] = pixelsIn(-0.5, geometry.size()[a] - 0.5, middle[a]);
   }
-  return piece;
+  return segment;
 }
 }
 
@@ -143,7 +143,7 @@ void findExactPaths(
     {
       const glm::dvec3 way = to - from;
       paths[own].push_back(
-        pieceBetween<A>(geometry, k, from + cuts[n] * way, from + cuts[n + 1] * way));
+        segmentBetween<A>(geometry, k, from + cuts[n] * way, from + cuts[n + 1] * way));
       paths[own].back().di -= first.x;
       paths[own].back().dj -= first.y;
     }
@@ -177,7 +177,7 @@ void findFieldSpans(const ShearWarp& geometry, std::vector<Span>& spans)
     {
       continue;
     }
-    // A ray that only touches the field has no piece in it.
+    // A ray that only touches the field has no segment in it.
     const double x = -geometry.position(0.0).x;
     const double low = x + std::min(slope.x * near, slope.x * far);
     const double high = x + std::max(slope.x * near, slope.x * far);
