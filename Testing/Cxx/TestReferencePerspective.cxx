@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The oracle of perspective projections itself: by hand, by brute force, where rays become
-// parallel, and how far averages of parts are from what a pixel sees.
+// The oracle of perspective projections itself: by hand, and how far averages of parts are from
+// what a pixel sees.
 #include "CoreTesting.h"
 
 #include <algorithm>
@@ -78,73 +78,6 @@ void testTraversalByHand(Checks& check)
   rays.at[0] = { 0.5, 0.5, 0.5 };
   rays.slope[0] = { 0.0, 0.0, 0.0 };
   check(reference::crossedVoxels(rays, 0, 0) == Voxels{ { 1, 0, 0 } }, "a ray within a face");
-}
-
-/// Where the ray is in a voxel, in floating point.
-double lengthInVoxel(const PerspectiveRays& rays, int u, int v, const std::array<int, 3>& ijk)
-{
-  const auto faces = rays.faces(ijk[2], ijk[2]);
-  double low = faces[0], high = faces[1];
-  const int pixel[2] = { u, v };
-  for (int a = 0; a < 2; ++a)
-  {
-    const double slope = rays.slope[a][pixel[a]], at = rays.at[a][pixel[a]];
-    if (slope == 0.0)
-    {
-      high = at >= ijk[a] - 0.5 && at < ijk[a] + 0.5 ? high : low;
-    }
-    else
-    {
-      const double p = rays.start + (ijk[a] - 0.5 - at) / slope;
-      const double q = rays.start + (ijk[a] + 0.5 - at) / slope;
-      low = std::max(low, std::min(p, q));
-      high = std::min(high, std::max(p, q));
-    }
-  }
-  return high - low;
-}
-
-/// Every voxel by itself: is the ray in it over some length?
-void testTraversalByBruteForce(Checks& check)
-{
-  Sightings crossing;
-  reference::forScenes("traversals", 300,
-    [&](int, reference::Random& random)
-    {
-      std::vector<splatting::ShearWarp> images;
-      int crossed = 0;
-      const auto size = randomSize(random, 6);
-      splatting::ShearWarp::factorise(randomPerspective(size, random), images);
-      for (const splatting::ShearWarp& image : images)
-      {
-        const PerspectiveRays rays = referenceRays(image);
-        const int u = random.uniform(0, image.rayCount().x - 1);
-        const int v = random.uniform(0, image.rayCount().y - 1);
-        const auto found = reference::crossedVoxels(rays, u, v);
-        std::array<int, 3> ijk, voxel;
-        for (ijk[2] = 0; ijk[2] < rays.size[2]; ++ijk[2])
-        {
-          for (ijk[1] = 0; ijk[1] < rays.size[1]; ++ijk[1])
-          {
-            for (ijk[0] = 0; ijk[0] < rays.size[0]; ++ijk[0])
-            {
-              for (int a = 0; a < 3; ++a)
-              {
-                voxel[rays.axes[a]] = ijk[a];
-              }
-              const double length = rays.sees(ijk[2]) ? lengthInVoxel(rays, u, v, ijk) : 0.0;
-              const bool isCrossed = std::find(found.begin(), found.end(), voxel) != found.end();
-              crossed += isCrossed;
-              // Slopes near 0 magnify what is rounded.
-              check(std::abs(length) < 1e-6 || isCrossed == (length > 0.0), "a voxel that is ",
-                length, " long on the ray is ", isCrossed ? "" : "not ", "crossed");
-            }
-          }
-        }
-      }
-      crossing.add(crossed > 0);
-    });
-  check(crossing.areEnough(0.2), "voxels are crossed in only ", crossing);
 }
 
 /// Voxel (i, j, k) = f(i, j, k).
@@ -240,168 +173,6 @@ void testBoxByHand(Checks& check)
   check(left.value == 16.0 && std::abs(left.weight - 0.125) < 1e-13, "NaN is left out");
 }
 
-/// The mean of h for voxels about the nearest one, by many points of a part.
-struct PointMeans
-{
-  static constexpr int Reach = 4, Count = 2 * Reach + 1;
-  int first = 0;
-  std::array<double, Count> mean{};
-
-  PointMeans(const Kernel& h, double centre, double path, double width)
-    : first(static_cast<int>(std::round(centre)) - Reach)
-  {
-    constexpr int points = 4096;
-    for (int p = 0; p < points; ++p)
-    {
-      // Points that fill the square evenly, by the plastic number.
-      const double a = 0.75487766624669276 * p, b = 0.56984029099805327 * p;
-      const double x =
-        centre + path * (a - std::floor(a) - 0.5) + width * (b - std::floor(b) - 0.5);
-      for (int n = 0; n < Count; ++n)
-      {
-        this->mean[n] += h(x - this->first - n) / points;
-      }
-    }
-  }
-};
-
-/// What the definition says, point by point.
-double bruteForceAverage(const reference::Volume<double>& volume, const PerspectiveRays& rays,
-  const Kernel& kernel, int u, int v, int slice)
-{
-  const int parts = reference::partsPerSlice(rays, kernel);
-  const auto faces = rays.faces(slice, slice);
-  const double t = (faces[1] - faces[0]) / parts;
-  double average = 0.0;
-  for (int q = 0; q < parts; ++q)
-  {
-    const double z = faces[0] + (q + 0.5) * t, w = rays.spacing(z);
-    const PointMeans means[3] = { { kernel, rays.position(0, u, z), rays.slope[0][u] * t, w },
-      { kernel, rays.position(1, v, z), rays.slope[1][v] * t, w }, { kernel, z, t, 0.0 } };
-    double sum = 0.0, weight = 0.0;
-    constexpr int Count = PointMeans::Count;
-    for (int n = 0; n < Count * Count * Count; ++n)
-    {
-      const int number[3] = { n % Count, n / Count % Count, n / Count / Count };
-      std::array<int, 3> voxel;
-      double product = 1.0;
-      for (int a = 0; a < 3; ++a)
-      {
-        product *= means[a].mean[number[a]];
-        voxel[rays.axes[a]] = std::clamp(means[a].first + number[a], 0, rays.size[a] - 1);
-      }
-      sum += product * volume.at(voxel);
-      weight += product;
-    }
-    average += sum / weight / parts;
-  }
-  return average;
-}
-
-void testAveragesByBruteForce(Checks& check)
-{
-  Sightings comparing;
-  reference::forScenes("averages", 80,
-    [&](int, reference::Random& random)
-    {
-      std::vector<splatting::ShearWarp> images;
-      int compared = 0;
-      const auto size = randomSize(random, 5);
-      const auto volume = wholeRangeNoise<double>(size, random);
-      splatting::ShearWarp::factorise(randomPerspective(size, random), images);
-      for (const Kernel& kernel :
-        { Box, Hat, Bell, Kernel{ Kernel::CosineBell, 0.6 }, Kernel{ Kernel::CosineBell, 1.5 } })
-      {
-        for (const splatting::ShearWarp& image : images)
-        {
-          const PerspectiveRays rays = referenceRays(image);
-          const auto samples = reference::slabSamples(volume, rays, kernel);
-          const int u = random.uniform(0, image.rayCount().x - 1);
-          const int v = random.uniform(0, image.rayCount().y - 1);
-          for (const auto& sample : samples[std::size_t(v) * rays.width() + u])
-          {
-            const double expected = bruteForceAverage(volume, rays, kernel, u, v, sample.slice);
-            // Voxels are in [-1, 1]; the points' discrepancy is about log(N) / N.
-            check(std::abs(expected - sample.value) < 0.01, "an average is ", sample.value,
-              ", not ", expected, ", kernel ", int(kernel.shape), ", radius ", kernel.radius);
-            ++compared;
-          }
-        }
-      }
-      comparing.add(compared > 0);
-    });
-  check(comparing.areEnough(0.2), "averages are compared in only ", comparing);
-}
-
-/// The sample of a slice, or none.
-const reference::Sample<double>* find(
-  const std::vector<reference::Sample<double>>& samples, int slice)
-{
-  const auto found = std::find_if(samples.begin(), samples.end(),
-    [slice](const reference::Sample<double>& sample) { return sample.slice == slice; });
-  return found == samples.end() ? nullptr : &*found;
-}
-
-/// Rays from an eye that goes away become those of a parallel view, and so do averages. Where a
-/// window moves by d and its width by e, weights change by as much as lostByParts() says.
-void testFarEyes(Checks& check)
-{
-  reference::forScenes("far eyes", 120,
-    [&](int n, reference::Random& random)
-    {
-      const std::array<int, 3> size = randomSize(random, 6);
-      auto volume = reference::uniformNoise<double>(size, random.bits(), 0.0, 1.0);
-      reference::ShearView view;
-      for (double& shear : view.shear)
-      {
-        shear = std::ldexp(random.uniform(-(1 << 14), 1 << 14), -14);
-      }
-      const auto grid = reference::makeShearGrid(size, view);
-      Pencil pencil;
-      pencil.slope = { -view.shear[0], -view.shear[1] };
-      pencil.depth = grid.middle;
-      pencil.margin = grid.margin;
-      pencil.pixels = { grid.width, grid.height };
-      const double turns[] = { 0.0, 0x1p-18, 0x1p-12, 0x1p-8 };
-      pencil.turn = turns[n % 4];
-      const PerspectiveRays rays = raysOf(size, pencil);
-      const Kernel& kernel = kernels[n % 3];
-      const auto parallel = reference::slabSamples(volume, view, kernel);
-      const auto exact = reference::frustumSamples(volume, rays, kernel);
-      const auto parts = reference::slabSamples(volume, rays, kernel);
-      const double reach = 0.5 * size[2] * pencil.turn, width = 1.0 - reach;
-      const double moves = kernel.shape == Kernel::Nearest ? 2.0 / width
-        : kernel.shape == Kernel::Trilinear                ? 2.0
-                                                           : 3.15;
-      const double widens = kernel.shape == Kernel::Nearest ? 1.0 / width : 0.25 * moves;
-      for (int v = 0; v < grid.height; ++v)
-      {
-        for (int u = 0; u < grid.width; ++u)
-        {
-          const std::size_t pixel = std::size_t(v) * grid.width + u;
-          check(pencil.turn > 0.0 ||
-              reference::crossedVoxels(rays, u, v) == reference::crossedVoxels(size, view, u, v),
-            "parallel rays cross other voxels");
-          const double offAxis = std::abs(u - grid.margin[0]) + std::abs(v - grid.margin[1]);
-          const double turned = 0.5 * reach * (moves * offAxis + 2.0 * widens) + 1e-11;
-          for (const auto& sample : parallel[pixel])
-          {
-            const auto* const e = find(exact[pixel], sample.slice);
-            const auto* const p = find(parts[pixel], sample.slice);
-            check(pencil.turn > 0.0 || (e && p), "no sample of slice ", sample.slice);
-            const double ofExact = e ? e->value : sample.value;
-            const double ofParts = p ? p->value : sample.value;
-            check(std::abs(ofExact - sample.value) <= turned, "eye ", rays.eye, ": ", ofExact,
-              ", not ", sample.value, ", kernel ", int(kernel.shape));
-            check(std::abs(ofParts - sample.value) <=
-                turned + reference::lostByParts(rays, kernel, u, v, sample.slice),
-              "parts, eye ", rays.eye, ": ", ofParts, ", not ", sample.value);
-          }
-        }
-      }
-    });
-}
-
 /// Cutting slices into parts costs no more than lostByParts() says.
 void testParts(Checks& check)
 {
@@ -450,11 +221,8 @@ int TestReferencePerspective(int, char*[])
 {
   Checks check;
   testTraversalByHand(check);
-  testTraversalByBruteForce(check);
   testAveragesOfProducts(check);
   testBoxByHand(check);
-  testAveragesByBruteForce(check);
-  testFarEyes(check);
   testParts(check);
   return check.result();
 }

@@ -138,70 +138,86 @@ private:
   void warpSpan(
     const WarpSource<A>& source, const glm::dvec3& start, int y, const Span& row, Pixel* out) const
   {
-    const glm::dmat3& m = source.geometry.screenToShear();
-    const glm::dvec3 first = m * start, step = m[0];
-    const auto warpPoints = [&](int begin, int end)
+    const glm::dvec3 first = source.geometry.screenToShear() * start;
+    const Span inside = source.inside.cut(row, start);
+    if (inside.empty())
     {
-      for (int x = begin; x < end; ++x)
-      {
-        const A at = source.valueAt(first + double(x) * step);
-        const A* const own =
-          source.rays.empty() ? &at : source.rays.template values<A>(source.number, x, y);
-        putValues(this->To, *own == *own && std::isfinite(at) ? own : &at, out + x, 1);
-      }
-    };
-    const Span plain = source.hasHoles() ? Span{} : source.inside.cut(row, start);
-    if (plain.empty())
-    {
-      warpPoints(row.begin, row.end);
+      this->warpPoints(source, first, y, row, out);
       return;
     }
-    warpPoints(row.begin, plain.begin);
-    if (source.rays.empty())
-    {
-      this->warpInside(source, first + double(plain.begin) * step, step, out + plain.begin,
-        plain.end - plain.begin);
-    }
-    else
-    {
-      this->warpRays(source, first, y, plain, out);
-    }
-    warpPoints(plain.end, row.end);
+    this->warpPoints(source, first, y, { row.begin, inside.begin }, out);
+    this->warpInside(source, first, y, inside, out);
+    this->warpPoints(source, first, y, { inside.end, row.end }, out);
   }
 
-  /// Where all four neighbours of all points are samples.
-  void warpInside(const WarpSource<A>& source, const glm::dvec3& start, const glm::dvec3& step,
-    Pixel* out, int n) const
+  /// Where neighbours may lie outside the volume.
+  void warpPoints(
+    const WarpSource<A>& source, const glm::dvec3& first, int y, const Span& row, Pixel* out) const
   {
-    A values[Chunk];
+    this->forChunks(source, y, row, true, out,
+      [&](int begin, int count, const A* own, A* values)
+      {
+        for (int n = 0; n < count; ++n)
+        {
+          values[n] = pointAt(source, first, begin + n);
+          values[n] = own && isOwn(own[n]) && std::isfinite(values[n]) ? own[n] : values[n];
+        }
+      });
+  }
+
+  /// Where all four neighbours are pixels of the volume. Where one has no sample, or is infinite,
+  /// interpolation gives no finite value.
+  void warpInside(
+    const WarpSource<A>& source, const glm::dvec3& first, int y, const Span& row, Pixel* out) const
+  {
     const WorksheetLoops<A>& loops = this->To.loops;
     const auto interpolate =
       source.geometry.isPerspective() ? loops.interpolateProjective : loops.interpolate;
-    for (int x = 0; x < n; x += Chunk)
-    {
-      const int count = std::min(Chunk, n - x);
-      const glm::dvec3 p = start + double(x) * step;
-      interpolate(source.pixels, source.image.width, &p.x, &step.x, values, count);
-      this->To.put(values, out + x, count);
-    }
+    const glm::dvec3& step = source.geometry.screenToShear()[0];
+    this->forChunks(source, y, row, source.hasHoles(), out,
+      [&](int begin, int count, const A* own, A* values)
+      {
+        const bool isNeeded = !own || source.hasHoles() || !std::all_of(own, own + count, isOwn);
+        if (isNeeded)
+        {
+          const glm::dvec3 p = first + double(begin) * step;
+          interpolate(source.pixels, source.image.width, &p.x, &step.x, values, count);
+        }
+        for (int n = 0; source.hasHoles() && n < count; ++n)
+        {
+          values[n] = std::isfinite(values[n]) ? values[n] : pointAt(source, first, begin + n);
+        }
+        for (int n = 0; own && n < count; ++n)
+        {
+          const bool isShown = !source.hasHoles() || std::isfinite(values[n]);
+          values[n] = isOwn(own[n]) && isShown ? own[n] : values[n];
+        }
+      });
   }
 
-  /// The same where the screen's rays have values of their own, but for a few.
-  void warpRays(
-    const WarpSource<A>& source, const glm::dvec3& first, int y, const Span& row, Pixel* out) const
+  /// Calls find(begin, count, own, values) for some pixels at a time. Where the screen's rays have
+  /// found something it is `own`; NaN where one has not.
+  /// @param mayBeEmpty  whether values can be NaN
+  template <class F>
+  void forChunks(const WarpSource<A>& source, int y, const Span& row, bool mayBeEmpty, Pixel* out,
+    F&& find) const
   {
     A values[Chunk];
-    const glm::dvec3& step = source.geometry.screenToShear()[0];
     for (int begin = row.begin; begin < row.end; begin += Chunk)
     {
       const int count = std::min(Chunk, row.end - begin);
-      const A* const own = source.rays.template values<A>(source.number, begin, y);
-      for (int n = 0; n < count; ++n)
-      {
-        values[n] = own[n] == own[n] ? own[n] : source.valueAt(first + double(begin + n) * step);
-      }
-      this->To.put(values, out + begin, count);
+      find(begin, count,
+        source.rays.empty() ? nullptr : source.rays.template values<A>(source.number, begin, y),
+        values);
+      mayBeEmpty ? putValues(this->To, values, out + begin, count)
+                 : this->To.put(values, out + begin, count);
     }
+  }
+
+  static bool isOwn(A value) { return value == value; }
+  static A pointAt(const WarpSource<A>& source, const glm::dvec3& first, int x)
+  {
+    return source.valueAt(first + double(x) * source.geometry.screenToShear()[0]);
   }
 
   const std::vector<WarpSource<A>>& Images;
@@ -209,38 +225,47 @@ private:
   AreaRows<A> Areas;
 };
 
-/// The pixels of an image in the accumulator's type, `widened` being a place for them.
+/// The pixels of an image in the accumulator's type, NaN where cuts have left no sample; `copied`
+/// being a place for them.
 template <class T>
-const Accumulator<T>* widenedPixels(
-  const ShearImage& image, const VoxelLoops<T>& loops, std::vector<unsigned char>& widened)
+const Accumulator<T>* samplesOf(
+  const ShearImage& image, const VoxelLoops<T>& loops, std::vector<unsigned char>& copied)
 {
   using A = Accumulator<T>;
   if constexpr (std::is_same_v<T, A>)
   {
-    return image.row<T>(0);
+    if (image.mask.empty())
+    {
+      return image.row<T>(0);
+    }
   }
-  else
+  const std::size_t count = std::size_t(image.width) * image.height;
+  copied.resize(count * sizeof(A));
+  A* const pixels = reinterpret_cast<A*>(copied.data());
+  loops.widen(image.row<T>(0), 0, pixels, 0, A(0), static_cast<std::ptrdiff_t>(count), 1, 0);
+  for (int v = 0; !image.mask.empty() && v < image.height; ++v)
   {
-    const std::size_t count = std::size_t(image.width) * image.height;
-    widened.resize(count * sizeof(A));
-    A* const pixels = reinterpret_cast<A*>(widened.data());
-    loops.widen(image.row<T>(0), 0, pixels, 0, A(0), static_cast<std::ptrdiff_t>(count), 1, 0);
-    return pixels;
+    A* const row = pixels + std::ptrdiff_t(v) * image.width;
+    for (int u = 0; u < image.width; ++u)
+    {
+      row[u] = image.covers(u, v) ? row[u] : std::numeric_limits<A>::quiet_NaN();
+    }
   }
+  return pixels;
 }
 
-/// Warps images of voxels of type T, which are widened in `widened`.
+/// Warps images of voxels of type T, which are copied to `copied` where that is needed.
 template <class T, class Sink>
 void warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   Reduction reduction, const Kernels& kernels, const Sink& sink,
-  std::vector<std::vector<unsigned char>>& widened, const Picture& place,
+  std::vector<std::vector<unsigned char>>& copied, const Picture& place,
   typename Sink::Pixel* pixels, std::ptrdiff_t stride, const ScreenRays& rays)
 {
   using A = Accumulator<T>;
   std::vector<WarpSource<A>> sources;
   for (std::size_t n = 0; n < geometries.size(); ++n)
   {
-    const A* const own = widenedPixels<T>(images[n], kernels, widened[n]);
+    const A* const own = samplesOf<T>(images[n], kernels, copied[n]);
     sources.emplace_back(images[n], own, geometries[n], rays, n);
   }
   RowWarp<A, Sink>(sources, reduction, sink).warp(place, pixels, stride);
@@ -257,14 +282,14 @@ void Warper::warp(const std::vector<ShearImage>& images, const std::vector<Shear
   {
     return;
   }
-  this->Widened.resize(std::max(this->Widened.size(), geometries.size()));
+  this->Copied.resize(std::max(this->Copied.size(), geometries.size()));
   const Kernels& kernels = kernelsFor(instructionSet);
   dispatch(images.front().type,
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
       const ColorSink<Accumulator<T>> sink(kernels, table);
-      warpImages<T>(images, geometries, reduction, kernels, sink, this->Widened, picture,
+      warpImages<T>(images, geometries, reduction, kernels, sink, this->Copied, picture,
         picture.pixels.data(), picture.size.x, rays);
     });
 }
@@ -308,7 +333,7 @@ void Warper::warpScalars(const std::vector<ShearImage>& images,
   {
     return;
   }
-  this->Widened.resize(std::max(this->Widened.size(), geometries.size()));
+  this->Copied.resize(std::max(this->Copied.size(), geometries.size()));
   const Kernels& kernels = kernelsFor(instructionSet);
   dispatch(images.front().type,
     [&](auto* null)
@@ -318,8 +343,8 @@ void Warper::warpScalars(const std::vector<ShearImage>& images,
       const ScalarSink<A> sink{ kernels, static_cast<A>(background) };
       A* const first =
         static_cast<A*>(scalars) + std::ptrdiff_t(place.origin.y) * viewport.x + place.origin.x;
-      warpImages<T>(images, geometries, reduction, kernels, sink, this->Widened, place, first,
-        viewport.x, rays);
+      warpImages<T>(
+        images, geometries, reduction, kernels, sink, this->Copied, place, first, viewport.x, rays);
     });
 }
 }

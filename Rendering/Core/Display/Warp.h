@@ -67,8 +67,8 @@ public:
     double background, void* scalars, const ScreenRays& rays = {});
 
 private:
-  /// Preview images in the accumulator's type.
-  std::vector<std::vector<unsigned char>> Widened;
+  /// Images in the accumulator's type, where they are not as they are.
+  std::vector<std::vector<unsigned char>> Copied;
 };
 }
 
