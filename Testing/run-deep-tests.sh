@@ -91,8 +91,8 @@ build_sanitized() {
 }
 
 part_sanitizers() {
-  build_sanitized sanitizers address,undefined vtkRenderingSplattingMIPCoreCxxTests \
-    vtkImagingSplattingMIPCxxTests vtkRenderingSplattingMIPCxxTests
+  build_sanitized sanitizers address,undefined SplattingMIPCoreTests vtkImagingSplattingMIPCxxTests \
+    SplattingMIPMapperTests
   # Where there is no memory for an output, it is asked for in vain.
   local -x ASAN_OPTIONS=allocator_may_return_null=1
   local -x SPLATTINGMIP_TEST_SCENES=5
@@ -102,7 +102,7 @@ part_sanitizers() {
 }
 
 part_threads() {
-  build_sanitized threads thread vtkRenderingSplattingMIPCoreCxxTests vtkImagingSplattingMIPCxxTests
+  build_sanitized threads thread SplattingMIPCoreTests vtkImagingSplattingMIPCxxTests
   local -x TSAN_OPTIONS="halt_on_error=1 allocator_may_return_null=1"
   TSAN_OPTIONS+=" suppressions=$testing_dir/thread-sanitizer.txt"
   local -x SPLATTINGMIP_TEST_SCENES=5

@@ -4,7 +4,7 @@
 #define Interaction_h
 
 #include "Options.h"
-#include "VolumeReader.h"
+#include "Reading/VolumeReader.h"
 
 /**
  * Shows a volume in a window until the user closes it.

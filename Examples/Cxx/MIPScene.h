@@ -5,8 +5,8 @@
 
 #include "Look.h"
 #include "ProjectionSettings.h"
+#include "Reading/VolumeReader.h"
 #include "View.h"
-#include "VolumeReader.h"
 
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkNew.h"

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Options.h"
 
-#include "PictureSeries.h"
-#include "Reading.h"
-#include "ValueFile.h"
+#include "Reading/Reading.h"
+#include "Writing/PictureSeries.h"
+#include "Writing/ValueFile.h"
 
 #include "vtkSplattingMIPProjection.h"
 #include "vtkVersion.h"

@@ -4,10 +4,10 @@
 #define Options_h
 
 #include "Look.h"
-#include "Mask.h"
 #include "ProjectionSettings.h"
+#include "Reading/Mask.h"
+#include "Reading/VolumeReader.h"
 #include "View.h"
-#include "VolumeReader.h"
 
 #include <CLI/CLI.hpp>
 

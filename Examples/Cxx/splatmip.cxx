@@ -5,16 +5,16 @@
 // picture of the volume that it carries. Stills and turns come from vtkSplattingMIPProjection,
 // which needs no display; windows show what vtkSplattingMIPVolumeMapper draws.
 #include "Comparison.h"
-#include "DepthCoding.h"
 #include "Interaction.h"
 #include "MIPScene.h"
-#include "Mask.h"
 #include "Options.h"
-#include "Picture.h"
-#include "PictureSeries.h"
 #include "Projector.h"
-#include "ValueFile.h"
-#include "VolumeReader.h"
+#include "Reading/Mask.h"
+#include "Reading/VolumeReader.h"
+#include "Writing/DepthCoding.h"
+#include "Writing/Picture.h"
+#include "Writing/PictureSeries.h"
+#include "Writing/ValueFile.h"
 
 #include "vtkImageAppend.h"
 #include "vtkSMPTools.h"

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ComponentProjector.h"
 
+#include "Input/ScalarSource.h"
 #include "PieceExchange.h"
 #include "Projection/Piece.h"
-#include "ScalarSource.h"
 #include "Volume/VoxelCopies.h"
 
 #include "vtkDataSetAttributes.h"

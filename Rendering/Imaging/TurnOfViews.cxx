@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TurnOfViews.h"
 
-#include "WorldView.h"
+#include "Input/WorldView.h"
 
 #include "vtkCamera.h"
 #include "vtkDoubleArray.h"

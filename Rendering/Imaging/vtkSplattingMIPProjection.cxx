@@ -3,12 +3,12 @@
 #include "vtkSplattingMIPProjection.h"
 
 #include "ComponentProjector.h"
+#include "Input/ScalarSource.h"
+#include "Input/WorldView.h"
 #include "LocationArrays.h"
 #include "ProjectionProperties.h"
 #include "PropertyMethods.h"
-#include "ScalarSource.h"
 #include "TurnOfViews.h"
-#include "WorldView.h"
 
 #include "vtkAbstractMapper.h"
 #include "vtkCamera.h"

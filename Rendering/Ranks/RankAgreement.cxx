@@ -3,8 +3,8 @@
 #include "Ranks/RankAgreement.h"
 
 #include "ComponentProjector.h"
+#include "Input/ScalarSource.h"
 #include "MapperProperties.h"
-#include "ScalarSource.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include "vtkCamera.h"

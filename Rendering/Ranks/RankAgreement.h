@@ -3,9 +3,9 @@
 #ifndef RankAgreement_h
 #define RankAgreement_h
 
+#include "Input/VolumeGrid.h"
 #include "PieceExchange.h"
 #include "Projection/Piece.h"
-#include "VolumeGrid.h"
 
 #include "vtkSmartPointer.h"
 

@@ -5,8 +5,8 @@
 
 #include "Common/RenderTimes.h"
 #include "ComponentProjector.h"
+#include "Input/ScalarSource.h"
 #include "Ranks/RankAgreement.h"
-#include "ScalarSource.h"
 #include "Scene/SceneCuts.h"
 
 #include "vtkSmartPointer.h"

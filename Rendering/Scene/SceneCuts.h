@@ -3,9 +3,9 @@
 #ifndef SceneCuts_h
 #define SceneCuts_h
 
-#include "BoundingSurface.h"
 #include "Clipping/Cuts.h"
 #include "Clipping/SceneDepth.h"
+#include "Input/BoundingSurface.h"
 
 #include "vtkType.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scene/ViewOfVolume.h"
 
-#include "WorldView.h"
+#include "Input/WorldView.h"
 
 #include "vtkCamera.h"
 #include "vtkMatrix4x4.h"

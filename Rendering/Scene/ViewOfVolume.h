@@ -7,7 +7,7 @@
 #define ViewOfVolume_h
 
 #include "Geometry/View.h"
-#include "VolumeGrid.h"
+#include "Input/VolumeGrid.h"
 
 class vtkRenderer;
 class vtkVolume;

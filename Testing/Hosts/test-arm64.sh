@@ -32,7 +32,7 @@ cmake -S "$source_dir" -B "$build_dir" -G Ninja -Wno-dev \
   -DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY \
   -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY \
   -DSPLATTINGMIP_WRAP_PYTHON=OFF -DSPLATTINGMIP_BUILD_EXAMPLES=OFF
-cmake --build "$build_dir" --target vtkRenderingSplattingMIPCoreCxxTests splatmip-checksums
+cmake --build "$build_dir" --target SplattingMIPCoreTests splatmip-checksums
 SPLATTINGMIP_TEST_SCENES=${SPLATTINGMIP_TEST_SCENES:-2} \
   ctest --test-dir "$build_dir" -j2 --output-on-failure --timeout 3600 -L core "$@"
 

@@ -1,0 +1,432 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Reading/DICOMFrames.h"
+
+#include "ProgressLine.h"
+#include "Reading/Reading.h"
+
+#include "vtkDICOMItem.h"
+#include "vtkDICOMMetaData.h"
+#include "vtkDICOMSequence.h"
+#include "vtkDataArray.h"
+#include "vtkInformation.h"
+#include "vtkMath.h"
+#include "vtkPointData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace
+{
+/// What tells frames at the same place apart, the more telling first.
+const struct
+{
+  vtkDICOMTag Tag;
+  const char* Name;
+} TimeTags[] = { { DC::TemporalPositionIdentifier, "temporal position" },
+  { DC::TemporalPositionIndex, "temporal position" }, { DC::TriggerTime, "trigger time" },
+  { DC::NominalCardiacTriggerDelayTime, "trigger delay" }, { DC::EchoTime, "echo time" },
+  { DC::EffectiveEchoTime, "echo time" }, { DC::DiffusionBValue, "b value" },
+  { DC::AcquisitionNumber, "acquisition" }, { DC::AcquisitionTime, "acquisition time" },
+  { DC::ContentTime, "time" }, { DC::ImageType, "image type" }, { DC::SOPInstanceUID, "object" } };
+
+vtkDICOMValue Get(const DICOMFile& file, int frame, vtkDICOMTag tag)
+{
+  return file.Reader->GetMetaData()->Get(0, frame, tag);
+}
+
+/**
+ * As many numbers as asked for, or none.
+ */
+std::vector<double> GetNumbers(const DICOMFile& file, int frame, vtkDICOMTag tag, std::size_t count)
+{
+  const vtkDICOMValue value = Get(file, frame, tag);
+  if (value.GetNumberOfValues() != count)
+  {
+    return {};
+  }
+  std::vector<double> numbers(count);
+  value.GetValues(numbers.data(), count);
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })
+    ? numbers
+    : std::vector<double>();
+}
+
+int GetNumberOfFrames(const DICOMFile& file)
+{
+  return std::max(1, Get(file, 0, DC::NumberOfFrames).AsInt());
+}
+
+double GetLength(const DICOMFile& file, vtkDICOMTag tag)
+{
+  const double length = std::fabs(Get(file, 0, tag).AsDouble());
+  return std::isfinite(length) ? length : 0.0;
+}
+
+std::unique_ptr<DICOMFile> OpenFile(const std::string& path, const QuietReading& quiet)
+{
+  auto file = std::make_unique<DICOMFile>();
+  file->Path = path;
+  file->Reader = vtkSmartPointer<vtkDICOMReader>::New();
+  file->Reader->SetFileName(path.c_str());
+  file->Reader->SortingOff();
+  file->Reader->SetMemoryRowOrderToFileNative();
+  file->Reader->UpdateInformation();
+  vtkDICOMMetaData* const elements = file->Reader->GetMetaData();
+  // zeros after the pixels look like elements of group 0
+  if (HasFailed(file->Reader.Get(), quiet) || elements->Begin() == elements->End() ||
+    elements->Begin()->GetTag().GetGroup() == 0)
+  {
+    RefuseDamaged(path, quiet);
+  }
+  if (elements->Has(DC::DoseGridScaling))
+  {
+    file->Reader->SetOutputScalarType(
+      elements->Get(DC::BitsAllocated).AsInt() > 16 ? VTK_DOUBLE : VTK_FLOAT);
+    file->Reader->UpdateInformation();
+  }
+  vtkInformation* const info = file->Reader->GetOutputInformation(0);
+  file->ScalarType = vtkImageData::GetScalarType(info);
+  file->Components = vtkImageData::GetNumberOfScalarComponents(info);
+  const double spacing = GetLength(*file, DC::SpacingBetweenSlices);
+  const double thickness = GetLength(*file, DC::SliceThickness);
+  file->Thickness = spacing > 0.0 ? spacing : thickness > 0.0 ? thickness : 1.0;
+  return file;
+}
+
+/**
+ * Whether two files have the same bytes.
+ */
+bool AreSame(const std::string& a, const std::string& b)
+{
+  std::ifstream first(a, std::ios::binary), second(b, std::ios::binary);
+  using Bytes = std::istreambuf_iterator<char>;
+  return std::equal(Bytes(first), Bytes(), Bytes(second), Bytes());
+}
+
+/**
+ * How far the frames of a file lie from the position that it gives for all, or nothing if it does
+ * not say: doses, and nuclear medicine.
+ */
+std::vector<Vector3> FindOffsets(const DICOMFile& file, const Vector3& normal)
+{
+  const auto count = static_cast<std::size_t>(GetNumberOfFrames(file));
+  std::vector<Vector3> offsets;
+  std::vector<double> heights = GetNumbers(file, 0, DC::GridFrameOffsetVector, count);
+  Vector3 direction = normal;
+  if (!heights.empty() && heights[0] != 0.0) // not offsets, but the patient's z
+  {
+    const double first = heights[0];
+    std::for_each(heights.begin(), heights.end(), [first](double& height) { height -= first; });
+    direction = { 0.0, 0.0, 1.0 };
+  }
+  if (heights.empty())
+  {
+    heights = GetNumbers(file, 0, DC::SliceVector, count);
+    const double step = Get(file, 0, DC::SpacingBetweenSlices).AsDouble(); // may be negative
+    heights = step == 0.0 ? std::vector<double>() : heights;
+    std::for_each(
+      heights.begin(), heights.end(), [step](double& height) { height = (height - 1.0) * step; });
+  }
+  for (const double height : heights)
+  {
+    offsets.push_back({ height * direction[0], height * direction[1], height * direction[2] });
+  }
+  return offsets;
+}
+
+/**
+ * Position and orientation of a frame; in nuclear medicine they are those of the detector.
+ */
+std::vector<double> GetPlaneNumbers(const DICOMFile& file, int frame, vtkDICOMTag tag, int count)
+{
+  std::vector<double> numbers = GetNumbers(file, frame, tag, count);
+  const vtkDICOMSequence detectors = Get(file, frame, DC::DetectorInformationSequence);
+  if (numbers.empty() && detectors.GetNumberOfItems() > 0)
+  {
+    const vtkDICOMValue value = detectors.Get(0, tag);
+    if (value.GetNumberOfValues() == static_cast<std::size_t>(count))
+    {
+      numbers.resize(count);
+      value.GetValues(numbers.data(), count);
+    }
+  }
+  return numbers;
+}
+
+SlicePlane FindPlane(const DICOMFile& file, int frame)
+{
+  SlicePlane plane;
+  const int count = GetNumberOfFrames(file);
+  plane.Name = file.Path + (count > 1 ? ", frame " + std::to_string(frame + 1) : "");
+  const auto position = GetPlaneNumbers(file, frame, DC::ImagePositionPatient, 3);
+  const auto axes = GetPlaneNumbers(file, frame, DC::ImageOrientationPatient, 6);
+  const auto spacing = GetNumbers(file, frame, DC::PixelSpacing, 2);
+  if (position.empty() || axes.empty())
+  {
+    Refuse(plane.Name,
+      "this picture has no position in the patient, as films and screenshots have none, so that "
+      "it is no part of a volume; give a CT or MR series, or choose another one.");
+  }
+  if (spacing.empty() || !(spacing[0] > 0.0) || !(spacing[1] > 0.0))
+  {
+    Refuse(plane.Name,
+      "this slice does not say how large its pixels are (PixelSpacing); export the series again.");
+  }
+  std::copy_n(position.begin(), 3, plane.Position.begin());
+  std::copy_n(axes.begin(), 3, plane.Row.begin());
+  std::copy_n(axes.begin() + 3, 3, plane.Column.begin());
+  const double lengths[2] = { vtkMath::Normalize(plane.Row.data()),
+    vtkMath::Normalize(plane.Column.data()) };
+  if (!(std::fabs(lengths[0] - 1.0) < 0.01 && std::fabs(lengths[1] - 1.0) < 0.01 &&
+        std::fabs(vtkMath::Dot(plane.Row.data(), plane.Column.data())) < 0.01))
+  {
+    Refuse(plane.Name,
+      "this slice has rows and columns that are not at right angles (ImageOrientationPatient); "
+      "export the series again.");
+  }
+  plane.Spacing = { spacing[1], spacing[0] }; // DICOM gives the distance of rows first
+  plane.Size = { static_cast<std::size_t>(Get(file, 0, DC::Columns).AsUnsignedInt()),
+    static_cast<std::size_t>(Get(file, 0, DC::Rows).AsUnsignedInt()) };
+  return plane;
+}
+
+/**
+ * Of frames that share the position of their file, as those of a film do.
+ */
+void CheckFrames(const DICOMFile& file, const std::vector<Vector3>& offsets)
+{
+  const int count = GetNumberOfFrames(file);
+  const vtkDICOMValue groups = Get(file, 0, DC::PerFrameFunctionalGroupsSequence);
+  const bool isPlaced = groups.GetNumberOfValues() == static_cast<std::size_t>(count);
+  if (count > 1 && offsets.empty() && !isPlaced)
+  {
+    Refuse(file.Path,
+      "it does not say where its " + std::to_string(count) +
+        " frames lie, as a film does not, so that they are no volume; give a CT or MR series, or "
+        "choose another one.");
+  }
+}
+
+/**
+ * The frames at a place by what a tag says of them, if that tells them apart.
+ */
+std::map<std::string, std::size_t> SortByTag(
+  const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& place, vtkDICOMTag tag)
+{
+  std::map<std::string, std::size_t> sorted;
+  for (const std::size_t i : place)
+  {
+    const vtkDICOMValue value = Get(*frames[i].File, frames[i].Number, tag);
+    if (value.IsValid())
+    {
+      sorted.emplace(value.AsString(), i);
+    }
+  }
+  return sorted.size() == place.size() ? sorted : std::map<std::string, std::size_t>();
+}
+
+std::set<std::string> GetKeys(const std::map<std::string, std::size_t>& sorted)
+{
+  std::set<std::string> keys;
+  for (const auto& entry : sorted)
+  {
+    keys.insert(entry.first);
+  }
+  return keys;
+}
+
+/**
+ * What all frames have at the places of a stack, in the order of numbers where they are numbers, or
+ * nothing if places differ.
+ */
+std::vector<std::string> FindKeys(const std::vector<DICOMFrame>& frames,
+  const std::vector<std::vector<std::size_t>>& places, vtkDICOMTag tag)
+{
+  const auto keys = GetKeys(SortByTag(frames, places[0], tag));
+  for (const auto& place : places)
+  {
+    if (GetKeys(SortByTag(frames, place, tag)) != keys)
+    {
+      return {};
+    }
+  }
+  std::vector<std::string> sorted(keys.begin(), keys.end());
+  std::stable_sort(sorted.begin(), sorted.end(),
+    [](const std::string& a, const std::string& b)
+    { return std::atof(a.c_str()) < std::atof(b.c_str()); });
+  return sorted;
+}
+
+/**
+ * Refuse places with different numbers of frames.
+ */
+void CheckCounts(
+  const std::vector<DICOMFrame>& frames, const std::vector<std::vector<std::size_t>>& places)
+{
+  std::map<std::size_t, std::size_t> counts;
+  for (const auto& place : places)
+  {
+    ++counts[place.size()];
+  }
+  const std::size_t usual = std::max_element(counts.begin(), counts.end(),
+    [](const auto& a, const auto& b) {
+      return a.second < b.second;
+    })->first;
+  for (const auto& place : places)
+  {
+    if (place.size() == usual)
+    {
+      continue;
+    }
+    const SlicePlane& plane = frames[place[0]].Plane;
+    std::ostringstream text;
+    text << "there are " << place.size() << (place.size() == 1 ? " slice" : " slices") << " at ("
+         << plane.Position[0] << ", " << plane.Position[1] << ", " << plane.Position[2] << ") mm"
+         << (place.size() > 1 ? ", another is " + frames[place[1]].Plane.Name : "") << ", and "
+         << usual << " at most other places; move what does not belong to the volume out of the "
+         << "folder, or choose another series.";
+    Refuse(plane.Name, text.str());
+  }
+}
+}
+
+std::vector<std::unique_ptr<DICOMFile>> OpenFiles(
+  const std::vector<std::string>& paths, const QuietReading& quiet, std::vector<std::string>& notes)
+{
+  std::vector<std::unique_ptr<DICOMFile>> files;
+  std::map<std::string, std::string> first; // the path by what the object is called
+  std::string copy;
+  ProgressLine line("reading headers");
+  for (std::size_t i = 0; i < paths.size(); ++i)
+  {
+    line.Show(double(i) / double(paths.size()));
+    auto file = OpenFile(paths[i], quiet);
+    const auto known = first.emplace(Get(*file, 0, DC::SOPInstanceUID).AsString(), paths[i]).first;
+    if (known->second != paths[i] && AreSame(known->second, paths[i]))
+    {
+      copy = paths[i];
+      continue;
+    }
+    files.push_back(std::move(file));
+  }
+  if (!copy.empty())
+  {
+    notes.push_back(std::to_string(paths.size() - files.size()) +
+      " files are copies of others and were left out, such as " + copy);
+  }
+  return files;
+}
+
+std::vector<DICOMFrame> FindFrames(const std::vector<std::unique_ptr<DICOMFile>>& files)
+{
+  std::vector<DICOMFrame> frames;
+  for (const auto& file : files)
+  {
+    if (file->Components != files.front()->Components)
+    {
+      Refuse(file->Path,
+        "this picture has " + std::to_string(file->Components) + " values per pixel, and " +
+          files.front()->Path + " has " + std::to_string(files.front()->Components) +
+          "; move what does not belong to the volume out of the folder.");
+    }
+    std::vector<Vector3> offsets;
+    for (int number = 0; number < GetNumberOfFrames(*file); ++number)
+    {
+      SlicePlane plane = FindPlane(*file, number);
+      if (number == 0)
+      {
+        Vector3 normal;
+        vtkMath::Cross(plane.Row.data(), plane.Column.data(), normal.data());
+        offsets = FindOffsets(*file, normal);
+        CheckFrames(*file, offsets);
+      }
+      for (int axis = 0; axis < 3 && !offsets.empty(); ++axis)
+      {
+        plane.Position[axis] += offsets[number][axis];
+      }
+      frames.push_back({ file.get(), number, plane });
+    }
+  }
+  return frames;
+}
+
+std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
+  const std::vector<std::vector<std::size_t>>& places, int number, std::vector<std::string>& notes)
+{
+  CheckCounts(frames, places);
+  const std::size_t count = places[0].size();
+  CheckFrame(frames[0].File->Path, number, static_cast<int>(count));
+  std::vector<std::size_t> order;
+  const std::size_t chosen = number > 0 ? static_cast<std::size_t>(number) - 1 : 0;
+  for (const auto& [tag, name] : TimeTags)
+  {
+    const auto keys = count > 1 ? FindKeys(frames, places, tag) : std::vector<std::string>();
+    for (const auto& place : places)
+    {
+      if (keys.size() == count)
+      {
+        order.push_back(SortByTag(frames, place, tag)[keys[chosen]]);
+      }
+    }
+    if (!order.empty())
+    {
+      notes.push_back("volume " + std::to_string(chosen + 1) + " of " + std::to_string(count) +
+        " (--frame chooses), " + name + " " + keys[chosen]);
+      return order;
+    }
+  }
+  for (const auto& place : places)
+  {
+    order.push_back(place[0]);
+  }
+  if (count > 1)
+  {
+    Refuse(frames[places[0][0]].Plane.Name,
+      "there are " + std::to_string(count) + " slices at each place, here also " +
+        frames[places[0][1]].Plane.Name +
+        ", and nothing says which belong together; move one set out of the folder.");
+  }
+  return order;
+}
+
+vtkImageData* ReadPixels(DICOMFile& file, const QuietReading& quiet)
+{
+  file.Reader->Update();
+  vtkImageData* const image = file.Reader->GetOutput();
+  if (HasFailed(file.Reader.Get(), quiet) || image->GetNumberOfPoints() < 1)
+  {
+    RefuseDamaged(file.Path, quiet);
+  }
+  const double scale = Get(file, 0, DC::DoseGridScaling).AsDouble();
+  vtkDataArray* const values = image->GetPointData()->GetScalars();
+  for (vtkIdType i = 0; scale != 0.0 && i < values->GetNumberOfTuples(); ++i)
+  {
+    values->SetComponent(i, 0, scale * values->GetComponent(i, 0));
+  }
+  return image;
+}
+
+void FindWindow(const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& order,
+  double& window, double& level)
+{
+  std::set<std::pair<double, double>> found;
+  for (const std::size_t i : order)
+  {
+    found.emplace(Get(*frames[i].File, frames[i].Number, DC::WindowWidth).AsDouble(),
+      Get(*frames[i].File, frames[i].Number, DC::WindowCenter).AsDouble());
+  }
+  const auto [width, center] = *found.begin();
+  if (found.size() == 1 && width > 0.0 && std::isfinite(width) && std::isfinite(center))
+  {
+    window = width;
+    level = center;
+  }
+}

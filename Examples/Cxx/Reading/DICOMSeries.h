@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DICOMSeries_h
+#define DICOMSeries_h
+
+#include "Reading/QuietReading.h"
+
+#include <string>
+#include <vector>
+
+/**
+ * The files of one series: of a folder, what lies in its folders too, of a DICOMDIR, or of a file,
+ * with those beside it. By its number from 1 on; 0 takes the file's own, or the one with most
+ * bytes. Notes become a list of all series where there are more. Throws std::runtime_error with one
+ * sentence.
+ */
+std::vector<std::string> ChooseSeries(
+  const std::string& path, int number, const QuietReading& quiet, std::vector<std::string>& notes);
+
+/**
+ * Whether a file looks like DICOM's, whatever its name is.
+ */
+bool IsDICOMFile(const std::string& path);
+
+#endif

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Writing/Picture.h"
+
+#include "vtkCamera.h"
+#include "vtkMath.h"
+#include "vtkNew.h"
+#include "vtkStdString.h"
+#include "vtkTextProperty.h"
+#include "vtkTextRenderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+namespace
+{
+/**
+ * A text in one slice. Where: 0 is at the left and the bottom, 1 at the right and the top.
+ */
+void DrawText(vtkImageData* slices, int slice, const std::string& text, double x, double y)
+{
+  const int* const size = slices->GetDimensions();
+  const int components = slices->GetNumberOfScalarComponents();
+  vtkNew<vtkTextProperty> style;
+  style->SetFontSize(std::max(8, size[1] / 32));
+  vtkNew<vtkImageData> letters;
+  int used[2] = { 0, 0 };
+  if (text.empty() || !vtkTextRenderer::GetInstance()->RenderString(style, text, letters, used, 72))
+  {
+    return;
+  }
+  int extent[6];
+  letters->GetExtent(extent);
+  const int margin = size[1] / 100 + 1;
+  const int left = margin + static_cast<int>(std::lround(x * (size[0] - used[0] - 2 * margin)));
+  const int bottom = margin + static_cast<int>(std::lround(y * (size[1] - used[1] - 2 * margin)));
+  for (int row = std::max(0, -bottom); row < used[1] && bottom + row < size[1]; ++row)
+  {
+    for (int column = std::max(0, -left); column < used[0] && left + column < size[0]; ++column)
+    {
+      const auto* const ink = static_cast<unsigned char*>(
+        letters->GetScalarPointer(extent[0] + column, extent[2] + row, 0));
+      auto* const pixel =
+        static_cast<unsigned char*>(slices->GetScalarPointer(left + column, bottom + row, slice));
+      for (int n = 0; n < components; ++n)
+      {
+        pixel[n] = static_cast<unsigned char>(ink[3] + (255 - ink[3]) * pixel[n] / 255);
+      }
+    }
+  }
+}
+
+/**
+ * The patient's sides that a direction points to, the nearest first.
+ */
+std::string NameDirection(const double direction[3])
+{
+  const char* const names[3] = { "RL", "AP", "FH" };
+  const double least = std::sin(vtkMath::RadiansFromDegrees(15.0));
+  std::vector<std::pair<double, char>> sides;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (std::fabs(direction[axis]) > least)
+    {
+      sides.emplace_back(-std::fabs(direction[axis]), names[axis][direction[axis] > 0.0]);
+    }
+  }
+  std::stable_sort(
+    sides.begin(), sides.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string text;
+  for (const auto& side : sides)
+  {
+    text += side.second;
+  }
+  return text;
+}
+}
+
+void DrawLabel(vtkImageData* slices, const std::string& text)
+{
+  for (int slice = 0; slice < slices->GetDimensions()[2]; ++slice)
+  {
+    DrawText(slices, slice, text, 0.0, 1.0);
+  }
+}
+
+void DrawSides(vtkImageData* slices, vtkSplattingMIPProjection* projection)
+{
+  vtkNew<vtkCamera> camera;
+  for (int slice = 0; slice < slices->GetDimensions()[2]; ++slice)
+  {
+    if (!projection->GetViewCamera(slice, camera))
+    {
+      continue;
+    }
+    double up[3], away[3], right[3];
+    camera->OrthogonalizeViewUp();
+    camera->GetViewUp(up);
+    camera->GetDirectionOfProjection(away);
+    vtkMath::Cross(away, up, right);
+    const double left[3] = { -right[0], -right[1], -right[2] };
+    const double down[3] = { -up[0], -up[1], -up[2] };
+    DrawText(slices, slice, NameDirection(right), 1.0, 0.5);
+    DrawText(slices, slice, NameDirection(left), 0.0, 0.5);
+    DrawText(slices, slice, NameDirection(up), 0.5, 1.0);
+    DrawText(slices, slice, NameDirection(down), 0.5, 0.0);
+  }
+}
+
+void DrawScaleBar(vtkImageData* slices, double millimetersPerPixel)
+{
+  const int* const size = slices->GetDimensions();
+  const double most = 0.25 * size[0] * millimetersPerPixel;
+  const double power = std::pow(10.0, std::floor(std::log10(most)));
+  const double length = power * (most >= 5.0 * power ? 5.0 : most >= 2.0 * power ? 2.0 : 1.0);
+  const int pixels = static_cast<int>(std::lround(length / millimetersPerPixel));
+  const int margin = size[1] / 100 + 1;
+  const int thickness = std::max(1, size[1] / 200);
+  char text[32];
+  std::snprintf(text, sizeof(text), "%g mm", length);
+  for (int slice = 0; slice < size[2]; ++slice)
+  {
+    for (int row = margin; row < margin + thickness; ++row)
+    {
+      auto* const end =
+        static_cast<unsigned char*>(slices->GetScalarPointer(size[0] - margin, row, slice));
+      const int bytes = pixels * slices->GetNumberOfScalarComponents();
+      std::fill(end - bytes, end, static_cast<unsigned char>(255));
+    }
+    DrawText(slices, slice, text, 1.0, 3.0 * (margin + thickness) / size[1]);
+  }
+}
