@@ -368,6 +368,27 @@ inline Place placeOf(
   return shortest <= 0.0 || share < 0.499 ? AtRim : Unclear;
 }
 
+/// How much of a pixel inside lies in pixels of the shear image that have no sample.
+template <class T>
+double lostOf(const Scene<T>& scene, const Shown<T>& shown, const ScreenRay& ray, int x, int y)
+{
+  const std::size_t number = imageOf(scene.images, ray);
+  const splatting::ShearImage& image = shown.images[number];
+  const glm::dvec3 point = scene.images[number].screenToShear() * glm::dvec3(x, y, 1.0);
+  const glm::dvec2 p = glm::dvec2(point) / point.z;
+  double lost = 0.0;
+  for (int n = 0; n < 4; ++n)
+  {
+    const int u = static_cast<int>(std::floor(p.x)) + n % 2;
+    const int v = static_cast<int>(std::floor(p.y)) + n / 2;
+    const double weight = (1.0 - std::abs(p.x - u)) * (1.0 - std::abs(p.y - v));
+    const bool has =
+      weight <= 0.0 || (image.covers(u, v) && image.row<T>(v)[u] == image.row<T>(v)[u]);
+    lost += has ? 0.0 : weight;
+  }
+  return lost;
+}
+
 /// What a ray has from the slice before to the slice behind each of the winners that it lies
 /// between, if the field begins and ends so much further out.
 template <class T>

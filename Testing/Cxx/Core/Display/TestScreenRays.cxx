@@ -20,6 +20,7 @@ struct Worst
   double rim = 0.0, inside = 0.0; ///< beyond what is surely there, of the range
   double definition = 0.0;        ///< from what is beside winners, of the range
   long atRim = 0, within = 0, defined = 0;
+  long kept = 0, ended = 0; ///< beside pixels of the shear image without a sample
 };
 
 /// Compares pixels of a picture; of fields with NaN those at the rim.
@@ -46,9 +47,16 @@ void comparePixels(Checks& check, const Scene<T>& scene, reference::Random& rand
     {
       const double shown = double(picture.pixels[std::size_t(y) * scene.view.viewport.x + x]);
       const ScreenRay ray = screenRay(scene.view, x, y);
-      const Place place = shown == shown ? placeOf(scene.images, ray, x, y) : Unclear;
+      const Place place = placeOf(scene.images, ray, x, y);
+      const double without = place == Inside ? lostOf(scene, picture, ray, x, y) : 0.5;
+      if (std::abs(without - 0.5) > 1e-6)
+      {
+        check((shown == shown) == (without < 0.5), "pixel ", x, " ", y, " is ", shown, ", where ",
+          without, " of it have no sample");
+        (without < 0.5 ? worst.kept : worst.ended) += without > 0.0;
+      }
       // Brute force takes its time: some of them.
-      if (place == Unclear || (hasNaN && place == Inside) ||
+      if (shown != shown || place == Unclear || (hasNaN && place == Inside) ||
         random.uniform(0, place == AtRim ? 3 : 31))
       {
         continue;
@@ -187,7 +195,8 @@ void testType(Checks& check, Sightings& seen, Sightings& seenWithNaN)
             << " pixels inside, " << worst.inside << " beyond, " << worst.definition
             << " at most from what is beside winners in " << worst.defined
             << "; with hidden voxels " << worstWithNaN.atRim << " pixels at the rim, "
-            << worstWithNaN.rim << " beyond" << std::endl;
+            << worstWithNaN.rim << " beyond; beside cuts and NaN " << worst.kept + worstWithNaN.kept
+            << " shown, " << worst.ended + worstWithNaN.ended << " not" << std::endl;
 }
 }
 
