@@ -37,7 +37,7 @@ struct MapperProperties : ProjectionProperties
   vtkSmartPointer<vtkScalarsToColors> DepthCodingColors;
   vtkSmartPointer<vtkMultiProcessController> Controller;
 
-  /// As in ProjectionProperties; ...
+  /// As in ProjectionProperties, the mapper's own properties after the shared ones.
   template <class Visitor>
   void visit(Visitor&& visitor) const
   {
@@ -58,7 +58,7 @@ struct MapperProperties : ProjectionProperties
     this->ProjectionProperties::visitIndifferent(visitor);
     visitor("DisplayOnRootOnly", this->DisplayOnRootOnly);
   }
-  /// ... of objects the addresses.
+  /// Calls visitor(name, address) for each property that is an object.
   template <class Visitor>
   void visitObjects(Visitor&& visitor) const
   {
@@ -75,8 +75,8 @@ struct MapperProperties : ProjectionProperties
   }
 };
 
-/// As of ProjectionProperties, and of what else a mapper has: its planes, and the slice of a
-/// property.
+/// As for ProjectionProperties; looks at the mapper's clipping planes, too, and in blend mode
+/// SLICE at the property's slice function.
 const char* faultOf(
   const MapperProperties& properties, vtkPlaneCollection* planes, vtkVolumeProperty* property);
 

@@ -133,15 +133,15 @@ public:
    * found analytically, cell by cell [Sakas et al. 1995]: no sample distance can miss it, and
    * nothing is averaged. The interpolated volume ends at the centres of the outermost voxels (at
    * the ends of their boxes for cell data); a cell with a NaN voxel is left out. For maxima of all
-   * MaximumTypes; minima, averages and dependent components are those of HIGH. Where it is the
-   * global maximum, a pixel of the screen looks along a ray of its own, in the slices in which the
-   * rays of the shear image around it have their maxima and in those beside them: it shows a value
-   * that the field has there, hardly ever less than the largest. Planes, slabs, surfaces and
+   * MaximumTypes; minima, averages and dependent components are those of HIGH. For MaximumType
+   * GLOBAL each pixel of the screen looks along a ray of its own, in the slices where the shear
+   * image's rays around it have their maxima and in those beside them. It shows a value that the
+   * volume has on that ray, hardly ever less than the largest. Planes, slabs, surfaces and
    * geometry then cut rays where they are, not between slices. A shear image costs two to four
    * times HIGH's, and the screen's rays about 0.2 microseconds of a core each. Where all of the
-   * volume is seen in pixels that are wider than voxels, it takes of each slice the voxel that a
-   * ray passes nearest to: the field is nowhere larger than at voxels, so that no maximum is lost,
-   * and that is the fastest of all.
+   * volume is seen in pixels wider than voxels, a ray takes only the voxel of each slice that it
+   * passes nearest to. The interpolated volume is nowhere larger than at voxels, so no maximum is
+   * lost, and this is the fastest of all.
    *
    * In an overview, where pixels are wider than voxels in some direction, a pixel shows the largest
    * value over its area (of minima the least, of averages the average), in all modes. Else it shows
@@ -166,13 +166,13 @@ public:
    * Whether a faster quality mode takes the place of QualityMode where frames were measured to take
    * longer than the volume's allocated render time, which follows from the render window's desired
    * update rate; interactor styles change that during interaction. Each mode is timed, for each
-   * renderer and volume, by frames that project (but the first one, and less what is made once per
-   * data set): EXACT gives way to HIGH, HIGH to STANDARD, STANDARD to PREVIEW, and back once a
-   * better mode is expected to take no more than 80 % of the time. A mode that was not measured yet
-   * is taken to fit. So the first frame, and a still one with its hours to spare, is in
-   * QualityMode. A shear image in a better mode (up to QualityMode) that shows the view already is
-   * kept. The picture's resolution is never reduced. GetQualityModeUsed() tells. Off: always
-   * QualityMode. Views that are ray cast ignore it. Default on.
+   * renderer and volume, by frames that project, without the first one and without what is made
+   * once per data set. EXACT gives way to HIGH, HIGH to STANDARD, STANDARD to PREVIEW, and back
+   * once a better mode is expected to take no more than 80 % of the time. A mode that was not
+   * measured yet is taken to fit. So the first frame is in QualityMode, and so is a still one,
+   * which is allowed hours. A shear image in a better mode (up to QualityMode) that shows the view
+   * already is kept. The picture's resolution is never reduced. GetQualityModeUsed() tells. Off:
+   * always QualityMode. Views that are ray cast ignore it. Default on.
    */
   virtual void SetAutoAdjustSampleDistances(vtkTypeBool);
   virtual vtkTypeBool GetAutoAdjustSampleDistances();
@@ -215,8 +215,8 @@ public:
   ///@{
   /**
    * The radius r of the cosine bell in voxels, default 1, clamped to [0.5, 1.5] (a wider bell would
-   * leave the 5x5 weights). r = 1 sums to one by itself, other radii are normalised. Below 0.501,
-   * FootprintSampling 1 is as 2: the bell would end before a lone sub-pixel's centre.
+   * need more than 5x5 weights). r = 1 sums to one by itself, other radii are normalised. Below
+   * 0.501, FootprintSampling 1 is as 2: the bell would end before a lone sub-pixel's centre.
    */
   virtual void SetKernelRadius(double);
   virtual double GetKernelRadius();
@@ -232,13 +232,13 @@ public:
    *
    * GLOBAL: the largest of all.
    * DEPTH_SHADED: each sample is dimmed by its depth before the maximum is taken (DMIP) [Bruckner,
-   * "Performing Maximum Intensity Projection with the Visualization Toolkit", Program 4.3]: the
-   * n-th slice of the N that the ray crosses inside planes and slab, n = 0 being the nearest to the
-   * viewer, by ambient + (1 - n / N) changeRate. Samples count from the lowest scalar of the volume
-   * here, so that Hounsfield units are dimmed like bytes. The shear image is float (double for 32-
-   * and 64-bit integers and double) in all modes.
-   * LOCAL: the first local maximum, seen from the viewer, that is no less than
-   * LocalMaximumThreshold, and where there is none the largest of all [Sato et al. 1998].
+   * "Performing Maximum Intensity Projection with the Visualization Toolkit", Program 4.3]: a
+   * sample in the n-th of the N slices that the ray crosses inside planes and slab (n = 0 is the
+   * nearest to the viewer) is multiplied by ambient + (1 - n / N) changeRate. Samples count from
+   * the lowest scalar of the volume here, so that Hounsfield units are dimmed like bytes. The shear
+   * image is float (double for 32- and 64-bit integers and double) in all modes. LOCAL: the first
+   * local maximum, seen from the viewer, that is no less than LocalMaximumThreshold, and where
+   * there is none the largest of all [Sato et al. 1998].
    *
    * DEPTH_SHADED and LOCAL depend on the side that the viewer is on. They, and the blend modes
    * MINIMUM_INTENSITY and AVERAGE_INTENSITY, look at every sample: Acceleration has no effect.
@@ -255,9 +255,10 @@ public:
 
   ///@{
   /**
-   * Of depth shading: what is left of a sample at the far end of the ray, and what is added to that
-   * at the near end. Defaults 0.3 and 0.7: from everything to 30 %. Ambient 1 and change rate 0
-   * give the plain maximum. Magnitudes that sum to no more than a million.
+   * Factors of DEPTH_SHADED: the ambient is what is left of a sample at the far end of the ray, the
+   * change rate is what is added to that at the near end. Defaults 0.3 and 0.7: from 30 % to
+   * everything. 1 and 0 give the plain maximum. Their magnitudes must not sum to more than a
+   * million.
    */
   virtual void SetDepthShadingAmbient(double);
   virtual double GetDepthShadingAmbient();
@@ -313,8 +314,8 @@ public:
    * successor of vtkProjectedPolyDataRayBounder); nullptr, the default, for none. Each ray is cut
    * to the part between its first and its last crossing with the surface, to which hollows and
    * holes on the ray's way belong; rays that miss it show nothing. Polygons and strips count, in
-   * any orientation. Rays that cross a surface that is not closed once show nothing; a warning says
-   * that it is open.
+   * any orientation. If the surface is not closed, rays that cross it only once show nothing; a
+   * warning says that it is open.
    *
    * The surface is drawn in software once for each view direction, about a millisecond for ten
    * thousand triangles, and only triangulated again when it is modified.
@@ -387,14 +388,14 @@ public:
    * modes use LINES. SORTED_VOLUME: in mode PREVIEW, the chains of all slices from high to low
    * values; a pixel that has a value is done [CS98, footnote 2]. The other modes use LINES.
    *
-   * AUTO takes BRICKS, unless the last frame that used them along this principal axis in this
-   * mode, with cut rays or without, still had to splat more than a share of the tiles: 30 % in
-   * PREVIEW, 40 % in STANDARD (in perspective 50 %), 60 % in HIGH and EXACT, and ten less where
-   * AVX-512 computes faster (30 % in STANDARD of parallel views, 50 % in HIGH and EXACT). Then it
-   * takes DENSE for 32 frames, but in HIGH and EXACT for fewer, in proportion, the nearer the share
-   * was to the limit (from there, 0 frames, to all tiles, as in noise everywhere), and tries BRICKS
-   * again. It never takes chains, which are slower on all data that we measured
-   * (splatmip-paper reports it), but need less memory than the volume.
+   * AUTO takes BRICKS, unless their last frame along this principal axis, in this mode and with or
+   * without cuts as now, still had to splat more than a limit of the tiles: 30 % in PREVIEW, 40 %
+   * in STANDARD (50 % in perspective), 60 % in HIGH and EXACT. With AVX-512 the limit is 30 % in
+   * STANDARD of parallel views, and 50 % in HIGH and EXACT. Above the limit AUTO takes DENSE for 32
+   * frames, then tries BRICKS again. In HIGH and EXACT it waits fewer frames the nearer the share
+   * was to the limit: from 0 there to 32 if all tiles were splatted. It never takes chains, which
+   * are slower on all data that we measured (splatmip-paper reports it), but need less memory than
+   * the volume.
    *
    * Where rays are cut, in perspective and where voxels are NaN or hidden, BRICKS take the place of
    * chains. Volumes with infinity are walked densely, as are all when IndexMemoryBudget has no room
@@ -444,11 +445,11 @@ public:
 
   ///@{
   /**
-   * Do not tell values apart below the window: scalars, from the lowest one up, that all have the
-   * colour and opacity of the lowest one. What cannot rise above them is left out. The shear image
-   * is the larger of the window's lower end and what it would be otherwise; since the picture
-   * interpolates between its pixels, edges against the background become brighter by up to half a
-   * pixel. MaximumType GLOBAL only. Default off.
+   * Do not tell apart scalars below the window, that is those, from the lowest one up, that all
+   * have its colour and opacity. What cannot rise above them is left out. No pixel of the shear
+   * image is then below the window's lower end; since the picture interpolates between its pixels,
+   * edges against the background become brighter by up to half a pixel. MaximumType GLOBAL only.
+   * Default off.
    */
   virtual void SetCullBelowWindow(bool);
   virtual bool GetCullBelowWindow();
@@ -472,8 +473,8 @@ public:
   /**
    * Find out where the samples lie that the picture shows, for GetLocations(). Default off;
    * DepthCoding and WriteDepth need it and do it by themselves. Projections take two to three times
-   * as long, previews four to six times, and 4 bytes for each pixel of the shear image, and as
-   * many again as the pixel has.
+   * as long, previews four to six times. Each pixel of the shear image takes 4 bytes more, and its
+   * own size once again.
    *
    * The sample of a ray is the one that its value comes from; of equal ones the nearest to the
    * viewer, whatever the acceleration and the number of threads. In mode PREVIEW it is a voxel, in

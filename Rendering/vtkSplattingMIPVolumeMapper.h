@@ -27,8 +27,9 @@
  * Other blend modes are passed, with the same settings but slab and bounding surface, to an
  * internal vtkFixedPointVolumeRayCastMapper (COMPOSITE) or vtkGPUVolumeRayCastMapper (the others);
  * a warning says so once. Hidden voxels and NaN have the lowest value there, and cells end at their
- * centres. They get a copy of the volume's property, in which gray functions are RGB functions of
- * the same values: VTK's GPU mapper knows no others, and would put one into the property for good.
+ * centres. The ray casters get a copy of the volume's property, in which gray functions are RGB
+ * functions of the same values: VTK's GPU mapper knows no others, and would put one into the
+ * property for good.
  *
  * Which scalars: those that ScalarMode, SelectScalarArray and VectorMode choose. Of 1 to 4
  * independent components (vtkVolumeProperty::IndependentComponents) each has a maximum of its own;
@@ -62,9 +63,9 @@
  * points of the copy are lowered by the interpolation.
  *
  * A slice counts for a ray if the ray crosses it (voxels being boxes) and, where the ray is cut, if
- * the point where it crosses the middle of the slice is left. Where a cut leaves less than a slice,
- * the nearest one counts. Footprints that stick out of the volume repeat its outermost voxels;
- * those beside a plane read beyond it.
+ * the point where it crosses the middle of the slice is not cut away. If the cuts leave less than a
+ * slice, the nearest one counts. Footprints that stick out of the volume repeat its outermost
+ * voxels; those beside a clipping plane also read the voxels behind it.
  *
  * The picture ends where VTK's ray casters end it, at the outermost points (GetBounds()): voxel
  * centres for point scalars, the sides of voxels for cell scalars. An axis with one voxel is as
@@ -94,10 +95,10 @@
  * n 2^-17 (max-min) for 8 bits, n 2^-24 (max-min) + (n+1) 2^-24 max|v| for 16 bits and float, and
  * the same with 2^-48 and 2^-53 for double. In perspective slices are cut into up to three parts,
  * whose weights are products of one for the column, one for the row and one for the slice and are
- * rounded likewise, for all types; that x and y grow together along a ray within a part is left
- * out, a covariance of no more than 0.01 square voxels. Exact maxima have up to 24 roundings of
- * max|v| (of (max-min) for integers of up to 32 bits), in perspective up to 80. No step depends on
- * the number of threads or on the instruction set: the same input gives the same bits.
+ * rounded likewise, for all types. Within a part they do not know that x and y grow together along
+ * a ray: a covariance of at most 0.021 square voxels is lost. Exact maxima have up to 24 roundings
+ * of max|v| (of (max-min) for integers of up to 32 bits), in perspective up to 80. No step depends
+ * on the number of threads or on the instruction set: the same input gives the same bits.
  *
  * NaN voxels are no samples: they never win and, in a worksheet, the average is taken over the
  * other voxels. Infinities are ordinary values. A ray without a sample is transparent.
@@ -108,15 +109,16 @@
  * Memory. The mapper holds the largest voxel of every brick of 8x4x4 for each axis (3/128 of the
  * volume), a transposed copy of the volume once its first (fastest) image axis was the principal
  * one, chains of voxels where SetAcceleration asks for them, all of this for each component, and a
- * copy of scalars that are not stored voxel after voxel, hidden or resampled; GetIndexMemorySize()
- * counts all, SetIndexMemoryBudget() limits all but the last (components have equal shares). Work
- * space comes on top: per component the shear image; the picture (two with several components);
- * footprints (about 3 kB a slice); for each thread some rows of voxels and the bounds of a band of
- * tiles; per pixel of the shear image up to 9 bytes where rays are cut, 12 for averages, 5 for
- * depth shading and local maxima, 4 for dependent components, 16 for a bounding surface; per pixel
- * of the screen 4 for depths. Where all this does not fit into the machine's memory, an error says
- * so, nothing is drawn, and what the mapper holds is given back; the next frame tries again. (With
- * several ranks std::bad_alloc goes on to the caller as well, for the others wait.)
+ * copy of the scalars if they are not stored voxel after voxel, if some are hidden, or if they are
+ * resampled. GetIndexMemorySize() counts all, SetIndexMemoryBudget() limits all but that copy
+ * (components have equal shares). Work space comes on top: per component the shear image; the
+ * picture (two with several components); footprints (about 3 kB a slice); for each thread some rows
+ * of voxels and the bounds of a band of tiles; per pixel of the shear image up to 9 bytes where
+ * rays are cut, 12 for averages, 5 for depth shading and local maxima, 4 for dependent components,
+ * 16 for a bounding surface; per pixel of the screen 4 for depths. Where all this does not fit into
+ * the machine's memory, an error says so, nothing is drawn, and what the mapper holds is given
+ * back; the next frame tries again. (With several ranks std::bad_alloc goes on to the caller as
+ * well, for the others wait.)
  *
  * An axis has at most 16384 voxels: walks number the slices along a ray in 16 bits.
  *
@@ -155,9 +157,9 @@ public:
   int GetAccelerationUsed();
 
   /**
-   * Where the samples of the last render lie: point arrays for the pixels of the renderer's part of
-   * the window, whose pixels the image's extent (and, with origin 0 and spacing 1, its coordinates)
-   * count; of a tiled window that of the last tile.
+   * Where the samples of the last render lie, as point arrays with one point for each pixel of the
+   * renderer's viewport. Extent and coordinates (origin 0, spacing 1) are pixels of the window; of
+   * a tiled window, those of the last tile.
    * - "Voxel", three ints: the image's i, j, k relative to its first voxel. In PREVIEW the voxel
    *   that wins; in STANDARD and HIGH the voxel of the slice that adds most to the average: largest
    *   weight times its height above the lowest scalar (for minima below the highest).
@@ -177,8 +179,8 @@ public:
   ///@{
   /**
    * What a pixel of the window shows: the sample of the shear pixel nearest to it, in EXACT what
-   * its own ray finds, as RecordLocations finds it, which need not be on: one ray is looked along,
-   * in about a millisecond. (x, y) are display coordinates, as
+   * its own ray finds; the same as GetLocations() tells. RecordLocations need not be on: without it
+   * one ray is looked along, in about a millisecond. (x, y) are display coordinates, as
    * vtkRenderWindowInteractor::GetEventPosition() gives them.
    *
    * - PickWorldPosition(): the point of the world to measure from. It lies on the pixel's ray,
@@ -207,18 +209,18 @@ public:
    * coordinates are voxel indices, relative to the volume's first voxel, on the volume's middle
    * slice along the principal axis: the ray of pixel (u, v) at origin + spacing * (u, v) crosses
    * slice k there at that point minus GetShear() * (k - (slices-1)/2). In perspective it is the
-   * largest of the shear images, and the coordinates are voxel indices half a slice beyond the
-   * slice that is farthest from the eye; pixels are a little less than that apart, and the last
-   * columns of a row may be none of the view's rays. Pixels whose ray meets no sample of any
-   * component are marked hidden in the ghost array. Axes: for principal axis 2 the image's x and y
-   * are the volume's first and second axis, for 1 first and third, for 0 second and third. Costs a
-   * copy of the shear image; the caller must not change it.
+   * largest of the view's shear images. Coordinates are then voxel indices where the volume is
+   * farthest from the eye, half a slice beyond the farthest slice; the spacing is a little less
+   * than 1 / ShearImageSampling, and the last columns may belong to no ray of the view. Pixels
+   * whose ray meets no sample of any component are marked hidden in the ghost array. Axes: for
+   * principal axis 2 the image's x and y are the volume's first and second axis, for 1 first and
+   * third, for 0 second and third. Costs a copy of the shear image; the caller must not change it.
    */
   vtkImageData* GetShearImage();
 
   /**
-   * The image axis (0, 1 or 2) along which the last render projected, in perspective for
-   * GetShearImage(); -1 before.
+   * The image axis (0, 1 or 2) along which the last render projected, in perspective that of
+   * GetShearImage(); -1 before the first render.
    */
   int GetPrincipalAxis();
 
@@ -226,8 +228,8 @@ public:
   /**
    * The shears of the last render, in pixels per slice: slice k is moved by shear * k along the
    * shear image's x and y. At most 1 in magnitude; rounded to multiples of 2^-24 so that equal
-   * views have equal bits. In perspective rays differ; those of the image's middle pixel, in
-   * voxels.
+   * views have equal bits. In perspective, where rays differ: the slopes of the middle
+   * pixel's ray, in voxels per slice.
    */
   void GetShear(double shear[2]);
   double* GetShear() VTK_SIZEHINT(2);
@@ -273,7 +275,7 @@ public:
   ///@{
   /**
    * The ranks among which the image is distributed. nullptr (the default), or a controller with one
-   * rank: the input is all of it.
+   * rank: the input is the whole volume.
    *
    * With several ranks each one has a mapper with the same settings, a renderer with the same
    * camera and size, and as input its piece of one vtkImageData: the extent says where, origin,
@@ -295,10 +297,11 @@ public:
    * IntermixIntersectingGeometry be off. Of locations, voxels in modes other than PREVIEW are those
    * that rays pass in the middle of the slice, as are points in EXACT.
    *
-   * A frame costs three reductions of a few bytes and a gathering of some 700 from each rank; if it
-   * projects, a reduction of each shear image as well, with 1 to 8 bytes a pixel in preview, 4 (8
-   * for 32- and 64-bit integers and double) in the other modes, 4 more where locations
-   * are wanted, and the memory of one more shear image.
+   * A frame costs three or four reductions of 4 bytes and a gathering of about 500 bytes from each
+   * rank. If it projects, each shear image is reduced as well: 1 to 8 bytes a pixel in preview, 4
+   * (8 for 32- and 64-bit integers and double) in the other modes, 4 more for locations and exact
+   * maxima, and the memory of one more shear image. For exact maxima, what the screen's rays find
+   * takes another 4 (8) bytes for each pixel of the picture.
    */
   virtual void SetController(vtkMultiProcessController*);
   virtual vtkMultiProcessController* GetController();
@@ -356,8 +359,9 @@ protected:
     vtkRenderer* ren, const int origin[2], const int size[2], const unsigned char* rgba);
 
   /**
-   * Write depths, from 0 to 1, where they are less than what is there; above 1 there is none. The
-   * same order as in DisplayImage. The rendering backend's subclass does it.
+   * Write depths, from 0 (near) to 1 (far), where they are less than what the depth buffer has.
+   * Values above 1 are not written. The same order as in DisplayImage(). The rendering backend's
+   * subclass does it.
    */
   virtual void DisplayDepths(
     vtkRenderer* ren, const int origin[2], const int size[2], const float* depths);

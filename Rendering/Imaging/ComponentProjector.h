@@ -61,8 +61,8 @@ public:
   /// whole. Must outlive its use.
   void SetRanks(PieceExchange* ranks);
 
-  /// Every component gets the same share. A change gives up what is there; returns whether it is
-  /// one.
+  /// Every component gets the same share. A change gives up what is there; returns whether it has
+  /// changed.
   bool SetBudget(std::size_t bytes);
   bool ExceedsBudget() const;
   /// Bytes and seconds of all indices.
@@ -73,7 +73,8 @@ public:
   void UpdateColors(
     vtkVolumeProperty* property, const FinalColor& finalColor, const ProjectionSettings& settings);
 
-  /// Values at or below the window are not told apart; needs the colours.
+  /// Whether scalars at or below the window are told apart: see CullBelowWindow. Needs
+  /// UpdateColors().
   void SetCullBelowWindow(bool cull) { this->Cull = cull; }
 
   /**
@@ -100,8 +101,8 @@ public:
   void FindScreenRays(const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts,
     const SceneDepth* depth, const View& view);
 
-  /// Of the last such view, of the component that is located: what a pixel of the viewport shows;
-  /// NaN if it does not show what its own ray finds.
+  /// What the own ray of a viewport's pixel has found in the last FindScreenRays(), for the
+  /// component that is located; NaN if the pixel does not show that.
   double ValueOnOwnRay(std::size_t image, const glm::ivec2& pixel) const;
 
   /// The picture of the images in a view with these geometries.
@@ -116,8 +117,8 @@ public:
   void WarpScalars(
     const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars);
 
-  /// The largest image, all components of it, and which pixels have no sample in its ghost array.
-  /// There must be images.
+  /// The largest image, with all components. Its ghost array hides pixels without a sample. There
+  /// must be images.
   vtkSmartPointer<vtkImageData> MakeShearImage(
     const std::vector<ShearWarp>& geometries, const ScalarSource& source) const;
 
@@ -136,7 +137,8 @@ public:
   const ProjectionSettings& Settings() const { return this->Channels.front().Settings; }
   Acceleration Used() const { return this->Channels.front().Used; }
 
-  /// Part of all components that the projection of one is, from the share of that.
+  /// From the share that is done of the projection in progress to the share of all components' and
+  /// images'.
   double ShareOfAll(double done) const;
 
   splatting::Projector& GetProjector() { return this->Projector; }

@@ -149,7 +149,7 @@ T clamped(T value, T least, T most)
     splatting::change(this, this->Properties->Name, vtkSmartPointer<Type>(object));                \
   }
 
-/// Those of ProjectionProperties, but what mappers inherit.
+/// The methods of ProjectionProperties, without the properties that mappers inherit.
 #define splattingProjectionMethods(Class)                                                          \
   splattingClampMethods(Class, int, QualityMode, PREVIEW, EXACT);                                  \
   splattingClampMethods(Class, int, Kernel, TRILINEAR, COSINE_BELL);                               \

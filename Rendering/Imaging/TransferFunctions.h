@@ -39,20 +39,19 @@ struct ScalarRange
 
 /**
  * The colour and opacity functions of one of a property's components, as a table; opacities are
- * multiplied by the weight. Integers get sixteen entries per grey level, as far as 65536 go, other
- * values all of those.
+ * multiplied by the weight. Integers get sixteen entries per grey level, at most 65536 in all;
+ * other values get 65536.
  */
 ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
   const ScalarRange& range, const FinalColor& finalColor);
 
-/**
- * Of dependent components, whose functions are those of the first one: the colours without opacity,
- * the opacities (white, premultiplied), and, for unsigned char as red (0), green (1) or blue (2),
- * the primary colour itself.
- */
+// Tables for dependent components, whose functions are those of the first one.
+/// The colours, with opacity 1.
 ColorTable tabulateOpaque(
   vtkVolumeProperty* property, const ScalarRange& range, const FinalColor& finalColor);
+/// The opacities, as premultiplied white.
 ColorTable tabulateOpacity(vtkVolumeProperty* property, const ScalarRange& range);
+/// Unsigned char as shades of red (0), green (1) or blue (2).
 ColorTable tabulatePrimary(int primary, const FinalColor& finalColor);
 }
 

@@ -24,11 +24,11 @@
  * those of the plane through the focal point across the view, in which perspective views, too, have
  * their scale; of a parallel view with a Slab, of the plane in the slab's middle. x goes right, y
  * up and z to the viewer; a slice is as thick as the Slab, else 1. So a slab can be laid over the
- * volume, measured in and written. VTK's XML keeps all of it. vtkNIFTIImageWriter wants it as a
- * form: the direction matrix D, and in the last column origin - D * origin; x and y negated where
- * the world is DICOM's. VTK 9.1's vtkMetaImageWriter and image filters drop directions. Of a turn
- * the first view lies right; the array "ViewAngle" of the field data has the degrees by which each
- * slice's view is turned.
+ * volume, measured in and written. VTK's XML keeps all of it. vtkNIFTIImageWriter needs it as a
+ * matrix (SetQFormMatrix()): the direction matrix D, and in the last column origin - D * origin;
+ * the rows of x and y negated where the world is DICOM's. VTK 9.1's vtkMetaImageWriter and image
+ * filters drop directions. Of a turn the first view lies right; the array "ViewAngle" of the field
+ * data has the degrees by which each slice's view is turned.
  *
  * Rays are parallel, or those of a perspective Camera. They end with the volume: a camera's
  * clipping range means nothing here. Slab and Cropping leave out parts of the volume.
@@ -434,7 +434,7 @@ public:
 
   /**
    * Sets a camera to that of a view of the last Update(), 0 to NumberOfViews - 1, for what is to be
-   * drawn over its slice; its parallel scale or view angle is half the height of the slice. False,
+   * drawn over its slice; its parallel scale or view angle is that of the slice's height. False,
    * and the camera stays as it is, if there is no such view.
    */
   bool GetViewCamera(int view, vtkCamera* camera);

@@ -39,7 +39,7 @@ struct RankReport
   {
     double low, high, nonFinite;
   } ranges[MostComponents] = {};
-  std::uint64_t view = 0; ///< a number for view and settings
+  std::uint64_t view = 0; ///< a hash of view and settings
 
   bool isEmpty() const;
   void setProblem(const std::string& sentence);
@@ -111,7 +111,7 @@ private:
 
 /**
  * What a rank reports of its mapper's input: where it lies, and what is wrong with it, or would be
- * with several ranks. Scalars are added by who knows them.
+ * with several ranks. describeScalars() adds the scalars.
  */
 RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& problem);
 
@@ -119,7 +119,7 @@ RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& prob
 void describeScalars(
   ComponentProjector& components, const ScalarSource& source, RankReport& report);
 
-/// A number for how a mapper sees a volume, which all ranks must have in common.
+/// A hash of how a mapper sees a volume, which all ranks must have in common.
 std::uint64_t viewNumber(
   vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume);
 

@@ -40,7 +40,7 @@ public:
     return this->Ranks.AreMany() ? this->Ranks.Grid() : this->Source.Grid();
   }
 
-  /// Between these a frame is rendered. It took so many seconds.
+  /// To be called before and after a frame is rendered, which took so many seconds.
   void BeginFrame();
   void EndFrame(vtkRenderer* renderer, vtkVolume* volume, double seconds);
 
@@ -64,7 +64,7 @@ public:
 
   /// The largest image; nullptr if there is none.
   const ShearWarp* MainImage() const;
-  /// The same for VTK's users.
+  /// The same as vtkSplattingMIPVolumeMapper::GetShearImage() gives it.
   vtkImageData* ShearImage();
 
   /// As the mapper's methods of these names.

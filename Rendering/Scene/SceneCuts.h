@@ -42,7 +42,7 @@ public:
 
   /// Whether that is what it was when it was last kept.
   bool AreKept() const { return this->Present == this->Kept; }
-  /// The present cuts are those of a projection. They are no longer to be had.
+  /// Keeps the present cuts as those of a projection. Get() has no meaning until the next Find().
   void Keep() { std::swap(this->Present, this->Kept); }
   /// Those that were kept.
   const std::vector<Cuts>& OfProjection() const { return this->Kept; }
@@ -62,7 +62,7 @@ private:
     glm::dmat4 indexToClip{ 0.0 };
     SceneDepth depth{};
   };
-  /// A scene that others were rendered so often after is given up.
+  /// A scene that was not rendered in so many frames is forgotten.
   static constexpr vtkTypeInt64 FramesKept = 64;
 
   Scene* RememberScene(

@@ -27,8 +27,8 @@ struct VolumeGrid;
 
 /**
  * Arrays "Voxel" (three ints, -1 for none), "Depth" (float, NaN for none) and "Position" (three
- * doubles, NaN for none) for the pixels of an image with this extent, which shows a viewport whose
- * lower left pixel is the extent's. Free of OpenGL.
+ * doubles, NaN for none) for the pixels of a viewport, as an image with this extent, whose first
+ * pixel is the viewport's lower left one. Free of OpenGL.
  *
  * @param locator  nullptr: there are no samples
  */
@@ -54,9 +54,9 @@ public:
   {
   }
 
-  /// Nothing has been rendered.
+  /// Forgets the frame: nothing has been rendered.
   void Forget();
-  /// How a frame has seen the volume.
+  /// Remembers how a frame has seen the volume.
   void Remember(const View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer);
 
   /// What a pixel of the window shows: point of the world, voxel and value. False if the picture
@@ -73,7 +73,8 @@ public:
 
   /// Gives each pixel of a picture its depth's colour, as bright as the picture is.
   void ColorByDepth(Picture& picture, vtkScalarsToColors* colors, const double range[2]);
-  /// From 0 to 1, of the pixels of a picture that are no less opaque than this; else 2.
+  /// For each pixel of a picture its depth, 0 to 1, if it is at least this opaque and has a sample;
+  /// else 2.
   const std::vector<float>& ClipDepths(const Picture& picture, double opacity);
 
 private:

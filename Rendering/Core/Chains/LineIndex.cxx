@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Chains/LineIndex.h"
 
+#include "Chains/InvisibleVoxels.h"
 #include "Chains/LineEncoder.h"
-#include "Volume/HiddenVoxels.h"
 
 #include <vtkSMPTools.h>
 
@@ -87,8 +87,8 @@ public:
   {
     if (index.Encoding.eliminate)
     {
-      this->Hidden.reset(new HiddenVoxels<T>(slices, size));
-      index.HiddenCount = this->Hidden->count();
+      this->Invisible.reset(new InvisibleVoxels<T>(slices, size));
+      index.InvisibleCount = this->Invisible->count();
     }
   }
 
@@ -215,21 +215,21 @@ private:
       slice.startRow(j);
       this->encodeRow(static_cast<const T*>(this->Source.voxels) + j * this->Source.rowStride +
           k * this->Source.sliceStride,
-        this->Hidden ? this->Hidden->row(j, k) : nullptr, slice);
+        this->Invisible ? this->Invisible->row(j, k) : nullptr, slice);
     }
     slice.finish(k);
   }
 
   template <class Encoded>
-  void encodeRow(const T* row, const unsigned char* hidden, Encoded& slice) const
+  void encodeRow(const T* row, const unsigned char* invisible, Encoded& slice) const
   {
     const int width = this->Size.x;
     for (int i = 0; i < width;)
     {
-      const int end = hidden
-        ? static_cast<int>(std::find(hidden + i, hidden + width, !hidden[i]) - hidden)
+      const int end = invisible
+        ? static_cast<int>(std::find(invisible + i, invisible + width, !invisible[i]) - invisible)
         : width;
-      if (hidden && hidden[i])
+      if (invisible && invisible[i])
       {
         slice.add(leastValue<T>(), i, end);
         i = end;
@@ -278,7 +278,7 @@ private:
   const Slices& Source;
   glm::ivec3 Size;
   Tolerance<T> Limit;
-  std::unique_ptr<HiddenVoxels<T>> Hidden;
+  std::unique_ptr<InvisibleVoxels<T>> Invisible;
 };
 
 LineIndex::LineIndex(ScalarType type, const Slices& slices, const glm::ivec3& size,

@@ -94,7 +94,7 @@ struct VolumeChain
   std::uint16_t i, j, last, k;
 };
 
-/// Chains with the same value, in the order of k, j and i.
+/// Chains with the same value, in the order of k, j and i (no run of pixels).
 template <class T, class Chain>
 struct ChainRun
 {
@@ -127,8 +127,8 @@ public:
   }
   const LineEncoding& encoding() const { return this->Encoding; }
   std::size_t chainCount() const;
-  /// Voxels that were left out.
-  std::size_t hiddenCount() const { return this->HiddenCount; }
+  /// Invisible voxels that were left out.
+  std::size_t invisibleCount() const { return this->InvisibleCount; }
   std::size_t memorySize() const;
 
   /// LineOrder::Lines: a row of a slice.
@@ -165,7 +165,7 @@ private:
   LineEncoding Encoding;
   bool Made = false;
   int Height = 0;
-  std::size_t HiddenCount = 0;
+  std::size_t InvisibleCount = 0;
   std::vector<unsigned char> Values;    // of chains or, if sorted, of runs
   std::vector<std::size_t> SliceStarts; // each slice's first chain or run
   std::vector<std::uint32_t> RowStarts; // each row's first chain in its slice

@@ -47,13 +47,16 @@ public:
     ClosedSurface* surface = nullptr, const SceneDepth* depth = nullptr,
     InstructionSet set = bestInstructionSet());
 
-  /// The slices that each pixel's ray crosses, of those in other intervals, if these are not empty.
+  /// Sets these to the slices that each pixel's ray crosses, limited to `within` unless that is
+  /// empty.
   void findCrossed(const CrossedSlices& crossed, int width, int height, const RayIntervals& within);
 
-  /// Those of the pixels of one phase, of others' that are not empty: see ShearWarp::takePhase().
+  /// Sets these to the intervals of one phase's pixels, of a whole that is not empty: see
+  /// ShearWarp::takePhase().
   void takePhase(const RayIntervals& whole, int phases, const glm::ivec2& phase);
 
-  /// That of one pixel, in a row of which the others have no slices: see ShearWarp::takePixel().
+  /// Sets these to the interval of one pixel, in a row of which the others have no slices: see
+  /// ShearWarp::takePixel().
   void takePixel(const RayIntervals& whole, const glm::ivec2& pixel, int width);
 
   /// The same intervals with slices counted from another one.

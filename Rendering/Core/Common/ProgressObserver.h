@@ -11,8 +11,8 @@ namespace splatting
 {
 /**
  * Tells whoever wants a projection how far it is, and asks whether to go on. Only the thread that
- * wants it is asked, between its own bands of rows; the others see a flag. A thread pool that does
- * not employ that thread leaves it to the end of the bands.
+ * wants it is asked, between its own bands of rows; the others see a flag. If a
+ * thread pool gives that thread no bands, it is asked when all are done.
  */
 class ProgressObserver
 {
@@ -32,14 +32,15 @@ public:
     this->ask();
   }
 
-  /// What follows is the part of the work from one share to another; all, if there is one part.
+  /// What follows is this part of the whole work, from one share to another. Without a call it is
+  /// all.
   void setPart(double from, double to)
   {
     this->From = from;
     this->To = to;
   }
 
-  /// So many bands follow, which are this part.
+  /// This part consists of the so many bands that follow.
   void begin(int bands)
   {
     this->Done = 0;
@@ -53,8 +54,8 @@ public:
     this->ask();
   }
 
-  /// Asks, if this is the thread to ask. The callback may start parallel work of its own, in which
-  /// this thread may come by bands; it is not asked within itself.
+  /// Asks, if this is the thread to ask. The callback may start parallel work, in which this
+  /// thread may finish bands of this projection; it is not asked again from within.
   bool ask()
   {
     if (this->Told && std::this_thread::get_id() == this->Owner && !this->Asking)

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What rows of the screen's pixels show that are wider than the shear images': see PixelArea.h.
+ * What the screen's pixels show, row by row, where they are wider than the shear images': see
+ * PixelArea.h.
  */
 #ifndef splattingAreaRows_h
 #define splattingAreaRows_h

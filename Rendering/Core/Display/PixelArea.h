@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What a screen pixel shows that is wider than the shear image's: not the value at its centre, but
- * the largest one (of minima the least, of averages the average) over its area.
+ * What a pixel of the screen shows where it is wider than those of the shear image: not the value
+ * at its centre, but the largest one (of minima the least, of averages the average) over its area.
  *
  * The shear image is interpolated bilinearly between its samples. Its extremum is sought among the
  * samples in the area and where the area's outline meets the lines between samples, and its
@@ -36,7 +36,7 @@ struct PixelArea
   const glm::dvec2* end() const { return this->corners.data() + this->count; }
 };
 
-/// Of the area of the viewport pixel (x, y) what lies in the image or no more than a sample beside
+/// The part of the viewport pixel (x, y)'s area that lies in the image or at most a sample beside
 /// it. In perspective views the rest may reach behind the eye.
 inline PixelArea areaOf(const ShearWarp& geometry, double x, double y)
 {

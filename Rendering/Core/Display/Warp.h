@@ -45,7 +45,7 @@ public:
    *
    * Where the geometries show areas, pixels have the extremum or the average of their areas, see
    * PixelArea.h, and the picture ends where areas no longer meet the volume.
-   * @param images      all of one type; those behind the last geometry are left alone
+   * @param images      all of one type; those beyond the number of geometries are left alone
    * @param geometries  as ShearWarp::factorise() gives them
    * @param rays        of the view's screen: their values take the place of what is interpolated
    */
@@ -58,8 +58,8 @@ public:
     const ColorTable& table, InstructionSet instructionSet, Picture& picture);
 
   /**
-   * The same as scalars, to a whole viewport's, row after row from the bottom. Pixels that would be
-   * transparent are left alone or get the background.
+   * The same as scalars, into those of a whole viewport, row after row from the bottom. Transparent
+   * pixels of the picture get the background; those outside the picture are left alone.
    * @param scalars  of type averageType() of the images' type
    */
   void warpScalars(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
@@ -67,7 +67,7 @@ public:
     double background, void* scalars, const ScreenRays& rays = {});
 
 private:
-  /// Images in the accumulator's type, where they are not as they are.
+  /// Images converted to the accumulator's type, where they are of another or have holes.
   std::vector<std::vector<unsigned char>> Copied;
 };
 }

@@ -16,7 +16,8 @@
 namespace splatting
 {
 /**
- * The steps of the rays of columns (or of rows) from voxel to voxel, in all slices that an image sees.
+ * The steps of rays from voxel to voxel, of an image's columns or of its rows, in all slices that
+ * it sees.
  */
 class AxisSteps
 {

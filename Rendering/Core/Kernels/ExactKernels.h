@@ -63,8 +63,8 @@ inline R squareRoot(R x)
 }
 #endif
 
-/// The largest value of cubics between their ends where that is a local maximum, else `none`. No
-/// more than their largest coefficient, or rounding would tell which pixels looked.
+/// The peak of cubics between their ends, if they have one there, else `none`. Limited to their
+/// largest coefficient: whether a peak is looked for must not change a pixel by rounding.
 template <class A, class R>
 inline R peakOf(const R (&b)[4], R inner, R none)
 {
@@ -164,7 +164,7 @@ struct Lanes
       store<A>(p, value);
     }
   }
-  /// Less than all if one of them is NaN: such cells are left out.
+  /// The largest corner; minus infinity if one is NaN, so that such cells are left out.
   template <bool NonFinite>
   static inline R largestOf(const R (&corners)[8])
   {
@@ -182,14 +182,14 @@ struct Lanes
     }
   }
 
-  /// Rounding can take sums beyond the largest corner. Where that is no more than the best so far a
-  /// pixel may have been left out, and must not change if it is not.
+  /// Limits a raised pixel to the largest corner, which rounding can exceed. A pixel whose best is
+  /// no less may be skipped, so it must not change if it is not skipped.
   static inline R limitedTo(R raised, R most, R best)
   {
     return larger(smaller(raised, most), best);
   }
 
-  /// What pixels start from: those without a sample, if there are, from less than all.
+  /// What pixels start from: minus infinity if they are NaN, which means without a sample.
   template <bool NonFinite>
   static inline R opened(R before)
   {

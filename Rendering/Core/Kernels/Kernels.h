@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The innermost loops: one row segment in, one row segment out. Kernels.cxx is compiled once per
- * instruction set and chosen from at run time. Each loop does the same IEEE operations in the same
- * order whatever the vector width (no fused multiply-add, no reassociation), so every instruction
- * set gives the same bits.
+ * The innermost loops: one run of voxels in, one run of pixels out. Kernels.cxx is compiled once
+ * per instruction set and chosen from at run time. Each loop does the same IEEE operations in the
+ * same order whatever the vector width (no fused multiply-add, no reassociation), so every
+ * instruction set gives the same bits.
  */
 #ifndef splattingKernels_h
 #define splattingKernels_h
@@ -30,7 +30,7 @@ enum class InstructionSet
 /// Most rows of voxels that a row of pixels meets at a time: three in each of four slices.
 constexpr int MostRows = 12;
 
-/// Half-open range of pixels.
+/// Half-open range of integers: pixels, voxels, slices, ...
 struct Span
 {
   int begin = 0;
@@ -128,7 +128,7 @@ struct VoxelLoops
 {
   /// Elements of a register.
   std::ptrdiff_t lanes;
-  /// Pixels of a perspective image that pick their voxels from as many.
+  /// How many neighbouring pixels of a perspective image pick from one group of as many voxels.
   int group;
   /// image[x] = max(image[x], rows[0..count)[x]); NaN never wins.
   void (*maximum)(T* image, const T* const* rows, int count, std::ptrdiff_t n);
@@ -242,8 +242,8 @@ struct CutLoops
 /// Loops over the rays of perspective images.
 struct PerspectiveLoops
 {
-  /// Voxels in which rays enter and leave a slice, as in AxisSteps::Slice: rays are at
-  /// at[x] + slope[x] from there and at at[x] + slope[x] to here.
+  /// The voxels in which rays enter and leave a slice, as in AxisSteps::Slice: ray x enters at
+  /// at[x] + slope[x] * from and leaves at at[x] + slope[x] * to.
   void (*steps)(const double* at, const double* slope, double from, double to, std::int32_t size,
     std::int32_t* first, std::int32_t* last, double* time, std::int16_t* tick, std::ptrdiff_t n);
 };
@@ -411,7 +411,7 @@ struct Averages
 template <class A>
 struct WorksheetLoops
 {
-  /// Pixels of a perspective image that pick their voxels from as many.
+  /// How many neighbouring pixels of a perspective image pick from one group of as many voxels.
   int group;
   void (*axisWeights)(const AxisWeights<A>& weights, std::ptrdiff_t n);
   /// out[x] = the sum of taps times voxels, for all rows and x from begin to end, in whole
@@ -512,7 +512,7 @@ InstructionSet bestInstructionSet();
 /// The loops for a set; a set that processor or build lack gives the best one below it.
 const Kernels& kernelsFor(InstructionSet set);
 
-/// "baseline", "AVX2" or "AVX-512".
+/// "baseline", "AVX2", "AVX-512" or "AVX-512 VBMI".
 const char* nameOf(InstructionSet set);
 }
 

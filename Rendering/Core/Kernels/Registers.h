@@ -252,8 +252,9 @@ inline P smaller(P a, P b)
   return a < b ? a : b;
 }
 
-/// Calls block.run<V>(x) for blocks of V registers that cover [0, n), the last one overlapping the
-/// one before (a maximum may be taken twice), and single(x) for each x if n is too short for one.
+/// Calls block.run<V>(x) for groups of V registers that cover [0, n). The last group overlaps the
+/// one before (a maximum may be taken twice). If n is too short for a register, calls single(x) for
+/// each x.
 template <class T, class Block, class Single>
 inline void blocks(std::ptrdiff_t n, Block&& block, Single&& single)
 {

@@ -3,15 +3,16 @@
 /**
  * Where the samples lie that a projection shows: from winners to voxels, depths and points.
  *
- * A sample is the slice (in preview the voxel) that a pixel's value comes from. Its point is where
- * the ray of the screen pixel (where pixels show areas, of the shear pixel) crosses the middle of
- * that slice; in exact mode it is that of the largest value on that ray, as RayFinder finds it, or
- * where that finds none, and of other reductions, the depth of the field's extremum in the slice on
- * the ray of the nearest shear pixel. Its voxel is, in preview, the one that wins; in standard and
- * high the one of the slice that adds most to the average: the largest weight times its distance
- * from the volume's lowest value (of minima, from the highest); in exact mode the nearest to the
- * point. Without voxels, in all but preview, it is the one that the ray passes in the middle of the
- * slice, which takes the place of the extremum.
+ * A sample is the slice (in preview the voxel) that a pixel's value comes from. Its point lies on
+ * the ray of the screen pixel (in overviews of the shear pixel), in the middle of that slice. In
+ * exact mode it lies where that ray has its largest value, as RayFinder finds it. If RayFinder
+ * finds none, and for other reductions, it lies at the depth of the field's extremum in the slice,
+ * on the ray of the nearest shear pixel.
+ *
+ * Its voxel is, in preview, the one that wins; in standard and high the one of the slice that adds
+ * most to the average: the largest weight times its distance from the volume's lowest value (of
+ * minima, from the highest); in exact mode the one nearest to the point. If only a piece of the
+ * volume is here, all modes but preview take the middle of the slice, and the voxel nearest to it.
  */
 #ifndef splattingLocations_h
 #define splattingLocations_h

@@ -60,17 +60,17 @@ Box interiorOf(const Box& piece, const glm::ivec3& whole, const glm::ivec3& laye
 bool cover(const std::vector<Box>& boxes, const glm::ivec3& whole);
 
 /**
- * Leaves the slices' pixels to a part of a volume for which its worksheets have all voxels: those
- * whose rays, in the middle of the slice, are nearest to a voxel of the part's interior.
+ * Keeps of the slices only the pixels whose worksheets need no voxels beyond the part: those whose
+ * rays, in the middle of the slice, are nearest to a voxel of the part's interior.
  */
 void keepInterior(const ShearWarp& whole, const ShearWarp& part, Quality quality,
   std::vector<SliceGeometry>& slices);
 
 /**
- * Makes the pixels of a piece's image numbers of which the maximum (for Reduction::Minimum the
- * minimum) is that of the samples: pixels without a sample get the least (the greatest), and
- * floating-point numbers become integers in the same order, of which no number's is the least or
- * the greatest. In place.
+ * Turns the pixels of a piece's image into numbers that ranks can reduce by maximum (for
+ * Reduction::Minimum by minimum). Pixels without a sample become the least (the greatest) number.
+ * Floating-point samples become integers in the same order, none of which is the least or the
+ * greatest. In place.
  * @return  the type of these numbers
  */
 ScalarType encode(ShearImage& image, Reduction reduction);

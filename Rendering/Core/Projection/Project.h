@@ -50,7 +50,7 @@ enum class Reduction
   Local        ///< the first local maximum, from the viewer, at or above a threshold
 };
 
-/// Whether samples are computed with, so that the image's scalars are of type Accumulator<T>.
+/// Whether samples enter arithmetic, so that the image's scalars are of type Accumulator<T>.
 inline bool computesWith(Reduction reduction)
 {
   return reduction == Reduction::Mean || reduction == Reduction::DepthShaded;
@@ -141,7 +141,7 @@ public:
    * of, along the volume's axes. If they are a piece of it, the image holds the samples that can be
    * computed from the piece alone: see Piece.h. Chains are not walked.
    * @return what has been used: never Auto, and Dense where there is no memory for what was asked.
-   *         If stopped() the image is none.
+   *         If stopped(), the image has no meaning.
    */
   Acceleration project(VolumeIndex& index, const ShearWarp& geometry,
     const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image,

@@ -42,8 +42,8 @@ struct PerspectiveSteps
 {
   AxisSteps columns, rows;
 
-  /// The voxels of one pixel's ray in slice k; those outside the volume may be closer than they
-  /// are.
+  /// The voxels of one pixel's ray in slice k. Those outside the volume may be given as nearer to
+  /// it than they are.
   RayPath path(int u, int v, int k) const;
 };
 
@@ -222,8 +222,8 @@ T previewFloor(const ProjectionContext& context)
   return std::max(low, roundedDown<T>(context.floor));
 }
 
-/// Sets rows to "no sample": pixels that no ray's sample will reach to the greatest value, so that
-/// a tile's least value is that of the others; these to the floor, above which samples count.
+/// Sets rows to "no sample": pixels that no sample can reach to the greatest value, so that they do
+/// not lower a tile's least value; all others to the floor, above which samples count.
 template <class P>
 void openRows(ShearImage& image, P floor, int v0, int v1)
 {

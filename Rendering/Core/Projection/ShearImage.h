@@ -27,7 +27,7 @@ struct ShearImage
   /// miss an edge of the volume by no more than they are rounded by can be among them if such rays
   /// beside them hit it.
   std::vector<Span> spans;
-  /// If half-spaces cut the volume: per pixel, whether a sample is left. Else empty.
+  /// If anything cuts the volume, see Cuts: per pixel, whether a sample is left. Else empty.
   std::vector<unsigned char> mask;
   /// If asked for: per pixel the step of the ray that its value comes from, StepsPerSlice * slice,
   /// in preview plus the voxel's number in RayPath; -1 without a sample. Else empty.

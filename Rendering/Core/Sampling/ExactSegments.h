@@ -36,7 +36,8 @@ struct FieldRange
   double begin, end;
 };
 
-/// Half of what a worksheet weighs where its slice ends are its neighbour's voxels.
+/// The most that a neighbouring slice's voxels weigh in an exact sample: half, where the slice
+/// ends.
 template <class A>
 constexpr A ExactShare = A(0.5);
 
@@ -66,10 +67,11 @@ struct ExactBox
   BoxSide<A> columns, rows;
 };
 
-/// How far rounding can take a sample, or the largest value of a box, beyond what they are, for
-/// voxels up to 1. A sample has 9 roundings of eight products and their sum (in perspective 60, see
-/// PerspectiveExact::slack()) and 12 of a cubic between its ends, a box 1 of a mean and 7 along
-/// each side, and in perspective places have 4, which count twice. Else they are known to 1e-9.
+/// How far rounding can lift a sample above, or push a box's largest value below, what they would
+/// be exactly, for voxels up to 1. A sample has 9 roundings of eight products and their sum (in
+/// perspective 60, see PerspectiveExact::slack()) and 12 of a cubic between its ends, a box 1 of a
+/// mean and 7 along each side, and in perspective places have 4, which count twice. Else they are
+/// known to 1e-9.
 template <class A>
 constexpr A ExactBoxSlack = 95 * std::numeric_limits<A>::epsilon() / 2 + A(4e-9);
 

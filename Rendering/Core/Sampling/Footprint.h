@@ -70,9 +70,9 @@ WeightTable closedFormWeights(
 
 /**
  * The paper's way: a general table of the sheared voxel's thickness, weighted by h, at the
- * mid-points of sub-pixels, N x N for each pixel, made once per view: a table that is set again to
- * what it is of stays as it is. A slice's weights are sums over the sub-pixels that fall into a
- * pixel. Each pixel has weight, however narrow the kernel.
+ * mid-points of sub-pixels, N x N for each pixel, made once per view: set() does nothing if
+ * its arguments are those of the last call. A slice's weights are sums over the sub-pixels that
+ * fall into a pixel. Each pixel has weight, however narrow the kernel.
  */
 class GeneralTable
 {

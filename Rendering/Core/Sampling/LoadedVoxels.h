@@ -27,16 +27,19 @@ struct LoadedVoxels
     bool finite = true;     ///< whether there are neither NaN nor infinities
     bool separated = false; ///< whether the other parts are there, see WorksheetSampler
   };
-  /// The voxels; where some are not finite, also which are, and which are infinite.
+  /// Part 0: the voxels. If some are not finite, part 1 flags the finite ones and, with infinities,
+  /// parts 2 and 3 the positive and the negative ones.
   static constexpr int MostParts = 4;
   std::array<std::vector<unsigned char>, MostParts> bytes;
-  int part = 0;                         ///< which of them voxel() tells
+  int part = 0;                         ///< which voxel() points into
   std::vector<std::uint16_t> runEnds;   ///< of walks along chains only
   std::vector<unsigned char> worksheet; ///< of walks that look at each sample only
   std::vector<unsigned char> averages;  ///< worksheets of parts
-  std::vector<unsigned char> present;   ///< which of its pixels have one, in perspective previews
-  std::vector<Span> runs;               ///< of perspective previews: what a slice covers of others
-  Span rows, pixels;                    ///< of the image, that it has the voxels for
+  std::vector<unsigned char>
+    present; ///< which pixels of `worksheet` have a sample, in perspective previews
+  std::vector<Span>
+    runs;            ///< of perspective previews: the asked runs, as far as a slice covers them
+  Span rows, pixels; ///< of the image, that it has the voxels for
   std::ptrdiff_t ahead = 0; ///< to voxels that will be needed after those that are loaded
   std::ptrdiff_t rowLength = 0;
   std::ptrdiff_t sheetLength = 0;

@@ -30,7 +30,7 @@ public:
 
   /// Rounding can take a worksheet beyond its largest voxel by slack() times the larger of that and
   /// magnitude(): 75 products and sums, and a few operations for the bound itself. Sums of 8-bit
-  /// voxels are exact. Where voxels are NaN, sums of weights are divided by.
+  /// voxels are exact. Where voxels are NaN, sums are also divided by sums of weights.
   A slack() const override
   {
     const int operations = this->Context.range.nonFinite ? 180 : 90;
@@ -129,10 +129,11 @@ protected:
   }
 
 private:
-  /// Pixels that are worth a rim beside them, and those of a rim: a register of floats, at most.
+  /// As few pixels inside the volume make rims beside them worthwhile; and the pixels of a rim, at
+  /// most a register of floats.
   static constexpr int LeastOwn = 64, RimWidth = 16;
 
-  /// By a copy of what footprints read beyond the volume, too.
+  /// Splats pixels at the rim by a copy of voxels, since footprints there read beyond the volume.
   void splatRim(int k, int first, int end, const Span& columns, const Target& target,
     LoadedVoxels& loaded) const
   {

@@ -83,12 +83,13 @@ public:
   virtual Span columnsOf(int, const Span&) const { return {}; }
   virtual Span rowsOf(int, const Span&) const { return {}; }
 
-  /// How far samples of a layer can be above the layer's own voxels in a tile, of which bricks know
-  /// the largest. Asked only where a layer reads beyond its own slices; TileBounds puts together
-  ///   value = own + share * max(0, neighbours - own),
-  ///   bound = value + slack * max(|value|, magnitude),
-  /// where `own` and `neighbours` are the largest voxels of the layer, and of the two beside it.
-  /// Bounds that are too high cost time, one that is too low loses samples.
+  // How far samples of a layer can be above the largest of its voxels that bricks know in a tile.
+  // Asked only where a layer reads beyond its own slices. TileBounds computes
+  //   value = own + share * max(0, neighbours - own),
+  //   bound = value + slack * max(|value|, magnitude),
+  // where `own` and `neighbours` are the largest voxels of the layer, and of the two beside it.
+  // Bounds that are too high cost time, one that is too low loses samples.
+
   /// The most that voxels of the layers beside it weigh in any sample of a layer, 0 to 1.
   virtual P share(int) const { return 0; }
   /// How far rounding can take a sample, as a share of the numbers that are added up.
@@ -103,7 +104,8 @@ public:
   virtual P floor() const = 0;
 
   /// Takes the samples of some slices of a layer into pixels of some rows and runs of columns, and
-  /// perhaps into pixels of these rows beside the runs. Not NaN or infinite ones into slices apart.
+  /// perhaps into pixels of these rows beside the runs. NaN is no sample; volumes with
+  /// infinities go by forSamples().
   virtual void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
     const PixelRows<P>& pixels, LoadedVoxels& loaded) const = 0;
 
@@ -112,15 +114,16 @@ public:
   virtual void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
     LoadedVoxels& loaded) const = 0;
 
-  /// The first step of a pixel's ray in some slices of a layer, from the viewer on, whose sample is
-  /// above a limit, as one is. Where samples reach beyond their slices it is asked for one slice.
-  virtual int firstAbove(int, int, const Span& slices, P) const
+  /// The first step of the ray of pixel (u, v), from the viewer on, whose sample in some slices of
+  /// a layer is above the limit; there is one. Where samples reach beyond their slices it is asked
+  /// for one slice at a time.
+  virtual int firstAbove(int /*u*/, int /*v*/, const Span& slices, P /*limit*/) const
   {
     return StepsPerSlice * slices.begin;
   }
-  /// The number of the first sample in slice k, which the pixel's ray crosses, among the slice's;
-  /// -1 if there is none.
-  virtual int firstSample(int, int, int) const { return 0; }
+  /// The number of the first sample of pixel (u, v) in slice k, which its ray crosses, among the
+  /// steps of that slice; -1 if there is none.
+  virtual int firstSample(int /*u*/, int /*v*/, int /*k*/) const { return 0; }
 
   /// Samples of one step of the rays in a row of pixels, steps as in ShearImage::winners; and which
   /// of the pixels have that step, or nullptr if all do. A worksheet that is none is NaN.

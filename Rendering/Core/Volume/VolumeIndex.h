@@ -94,7 +94,7 @@ public:
   const VoxelArray& volume() const { return this->Volume; }
 
   /// Bytes that may be held besides the volume. What would exceed them is not made; a
-  /// change gives up all that is there. Returns whether it is one.
+  /// change gives up all that is there. Returns whether it has changed.
   bool setBudget(std::size_t bytes);
   /// Whether something was not made for want of memory.
   bool exceedsBudget() const { return this->Exceeded; }
@@ -136,13 +136,14 @@ public:
 
   /**
    * The chains along an axis, or nullptr if the budget has no room for them or if `progress` gave
-   * them up. Made on first use and again when the encoding changes; those of rows with all voxels
-   * are kept beside others. Not for volumes with NaN or infinities.
+   * them up. Made on first use and again when the encoding changes; those of plain
+   * rows with all voxels are kept beside those of the last other encoding. Not for volumes with NaN
+   * or infinities.
    */
   const LineIndex* lines(
     int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress = {});
 
-  /// A cut volume is another one: much of it may be hidden or left out.
+  /// Cut volumes have statistics of their own: much of them may be left out.
   SkipStatistics& statistics(int principalAxis, int quality, bool isCut)
   {
     return this->Statistics[isCut][principalAxis][quality];

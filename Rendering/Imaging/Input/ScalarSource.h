@@ -68,7 +68,7 @@ public:
   vtkDataArray* Scalars() const { return this->Examined.scalars; }
   /// Whether small cells of a rectilinear grid may be missing, because the grid got larger steps.
   bool IsCoarse() const { return this->Layout.coarse; }
-  /// What is projected: 1 to 4.
+  /// How many components are projected: 1 to 4.
   int Components() const { return this->NumberOfComponents; }
   /// Whether the components are one sample's colour and opacity.
   bool AreDependent() const { return this->Dependent; }
@@ -79,13 +79,13 @@ public:
   vtkIdType Version() const { return this->NumberOfUpdates; }
   /// Valid after Update(), as long as the input.
   const VoxelArray& Volume(int component) const { return this->Volumes[component]; }
-  /// There is no volume here, but perhaps elsewhere, of this type.
+  /// For a rank that holds nothing: no volume here; those of others have this type of VTK.
   void Clear(int vtkType);
   /// VTK's name for the type of a volume, or of what is projected from it.
   int VtkTypeOf(ScalarType type) const;
   /// VTK_FLOAT or VTK_DOUBLE, whichever holds averages of scalars of a VTK type.
   static int AverageVtkType(int vtkType);
-  /// Of the scalars that the volumes are made of.
+  /// VTK's type of the scalars that the volumes are made of.
   int GetVtkType() const { return this->VtkType; }
 
   /**

@@ -67,7 +67,7 @@ Cost MeasureCost(const PaperVolume& volume, Acceleration acceleration, bool elim
   Cost cost;
   cost.Build = 1e3 * (index.time() - before);
   cost.Chains = lines.chainCount();
-  cost.Hidden = lines.hiddenCount();
+  cost.Hidden = lines.invisibleCount();
   cost.Bytes = index.memorySize() - held;
   splatting::ProjectionSettings settings;
   settings.quality = splatting::Quality::Preview;

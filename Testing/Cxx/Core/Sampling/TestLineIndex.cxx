@@ -259,17 +259,17 @@ void testElimination(Checks& check)
           "a voxel that can be seen is missing; axis ", geometry.principalAxis(), ", shear ",
           geometry.shear().x, " ", geometry.shear().y, ", acceleration ", int(acceleration));
       }
-      const auto hidden = makeLines(volume, { LineOrder::Lines, 0.0, true }).hiddenCount();
+      const auto hidden = makeLines(volume, { LineOrder::Lines, 0.0, true }).invisibleCount();
       hiding.add(hidden > volume.voxels.size() / 10);
     });
   check(hiding.areEnough(0.1), "a tenth of the voxels is eliminated in only ", hiding);
 }
 
 /// Where it is known which voxels are hidden.
-void testHiddenCount(Checks& check)
+void testInvisibleCount(Checks& check)
 {
   const auto countOf = [](const reference::Volume<std::int16_t>& volume) {
-    return makeLines(volume, { LineOrder::Lines, 0.0, true }).hiddenCount();
+    return makeLines(volume, { LineOrder::Lines, 0.0, true }).invisibleCount();
   };
   // Of equal voxels the highest slice hides the others, but for the outermost of each slice.
   reference::Volume<std::int16_t> volume({ 7, 6, 5 }, 3);
@@ -435,7 +435,7 @@ int TestLineIndex(int, char*[])
   testOddValues<float>(check);
   testOddValues<double>(check);
   testElimination(check);
-  testHiddenCount(check);
+  testInvisibleCount(check);
   testRenewal(check);
   testThreads(check);
   return check.result();

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The voxels that cannot change a preview along one axis; see LineEncoding.
+ * The voxels that no ray of a preview along one axis can show; see LineEncoding.
  */
-#ifndef splattingHiddenVoxels_h
-#define splattingHiddenVoxels_h
+#ifndef splattingInvisibleVoxels_h
+#define splattingInvisibleVoxels_h
 
 #include "Projection/ProjectionContext.h"
 
@@ -13,10 +13,10 @@
 namespace splatting
 {
 template <class T>
-class HiddenVoxels
+class InvisibleVoxels
 {
 public:
-  HiddenVoxels(const Slices& slices, const glm::ivec3& size)
+  InvisibleVoxels(const Slices& slices, const glm::ivec3& size)
     : Source(slices),
       Size(size),
       Flags(std::size_t(size.x) * size.y * size.z, 0)
