@@ -198,20 +198,9 @@ void testSearch(stage::Checks& check)
   check(wrong == 0, std::to_string(wrong) + " pixels have other colours than a search gives.");
 }
 
-void testDepthBuffer(stage::Checks& check, double viewAngle)
+/// The buffer itself, beside the positions of samples.
+void testBuffer(Scene& scene, const std::string& what, stage::Checks& check)
 {
-  Scene scene;
-  vtkNew<vtkPiecewiseFunction> opacity;
-  opacity->AddPoint(0.0, 0.0);
-  opacity->AddPoint(200.0, 1.0);
-  scene.stage.property->SetScalarOpacity(opacity);
-  scene.mapper->WriteDepthOn();
-  scene.mapper->RecordLocationsOn();
-  scene.look(viewAngle);
-  scene.stage.renderer->SetViewport(0.0, 0.0, 1.0, 1.0);
-  const std::string what = " at view angle " + std::to_string(viewAngle);
-
-  // The buffer itself.
   scene.stage.window->Render();
   std::vector<float> buffer(std::size_t(Size) * Size);
   scene.stage.window->GetZbufferData(0, 0, Size - 1, Size - 1, buffer.data());
@@ -238,44 +227,72 @@ void testDepthBuffer(stage::Checks& check, double viewAngle)
     check(buffer[pixel[1] * Size + pixel[0]] < 1.0f, "Boxes have depths" + what);
   }
   check(buffer[20 * Size + Size / 2] == 1.0f, "The background has none" + what);
+}
 
-  // Later geometry: a layer above, which keeps depths.
-  vtkNew<vtkRenderer> later;
-  later->SetLayer(1);
-  later->PreserveDepthBufferOn();
-  later->SetActiveCamera(scene.stage.renderer->GetActiveCamera());
-  scene.stage.window->SetNumberOfLayers(2);
-  scene.stage.window->AddRenderer(later);
-  vtkNew<vtkSphereSource> source;
-  source->SetRadius(3.0);
-  vtkNew<vtkPolyDataMapper> polyMapper;
-  polyMapper->SetInputConnection(source->GetOutputPort());
+/// Later geometry: a green sphere in a layer above, which keeps depths.
+struct LaterSphere
+{
+  Scene& scene;
+  vtkNew<vtkRenderer> renderer;
   vtkNew<vtkActor> actor;
-  actor->SetMapper(polyMapper);
-  actor->GetProperty()->SetColor(0.0, 1.0, 0.0);
-  actor->GetProperty()->LightingOff();
-  later->AddActor(actor);
-  const Rgb green = { 0, 255, 0 }, white = { 255, 255, 255 };
-  const auto colorWithSphere = [&](int n, double z)
+
+  explicit LaterSphere(Scene& below) : scene(below)
   {
-    // On the ray of the box's middle.
-    const double* const eye = scene.stage.renderer->GetActiveCamera()->GetPosition();
+    this->renderer->SetLayer(1);
+    this->renderer->PreserveDepthBufferOn();
+    this->renderer->SetActiveCamera(this->scene.stage.renderer->GetActiveCamera());
+    this->scene.stage.window->SetNumberOfLayers(2);
+    this->scene.stage.window->AddRenderer(this->renderer);
+    vtkNew<vtkSphereSource> source;
+    source->SetRadius(3.0);
+    vtkNew<vtkPolyDataMapper> polyMapper;
+    polyMapper->SetInputConnection(source->GetOutputPort());
+    this->actor->SetMapper(polyMapper);
+    this->actor->GetProperty()->SetColor(0.0, 1.0, 0.0);
+    this->actor->GetProperty()->LightingOff();
+    this->renderer->AddActor(this->actor);
+  }
+
+  /// In the middle of box n, after the sphere is moved to z on the ray there.
+  Rgb colorOfBox(int n, double z)
+  {
+    const double* const eye = this->scene.stage.renderer->GetActiveCamera()->GetPosition();
+    const bool isPerspective = this->scene.stage.viewAngle > 0.0;
     const double x = 8.0 + 16.0 * n,
-                 t = viewAngle > 0.0 ? (z - eye[2]) / (scene.depths[n] - eye[2]) : 1.0;
-    actor->SetPosition(eye[0] + t * (x - eye[0]), eye[1] + t * (24.0 - eye[1]), z);
-    if (viewAngle <= 0.0)
+                 t = isPerspective ? (z - eye[2]) / (this->scene.depths[n] - eye[2]) : 1.0;
+    this->actor->SetPosition(eye[0] + t * (x - eye[0]), eye[1] + t * (24.0 - eye[1]), z);
+    if (!isPerspective)
     {
-      actor->SetPosition(x, 24.0, z);
+      this->actor->SetPosition(x, 24.0, z);
     }
-    return scene.colorAt(scene.stage.pixels(), scene.pixelOf(n));
-  };
+    return this->scene.colorAt(this->scene.stage.pixels(), this->scene.pixelOf(n));
+  }
+};
+
+void testDepthBuffer(stage::Checks& check, double viewAngle)
+{
+  Scene scene;
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.0);
+  opacity->AddPoint(200.0, 1.0);
+  scene.stage.property->SetScalarOpacity(opacity);
+  scene.mapper->WriteDepthOn();
+  scene.mapper->RecordLocationsOn();
+  scene.look(viewAngle);
+  scene.stage.renderer->SetViewport(0.0, 0.0, 1.0, 1.0);
+  const std::string what = " at view angle " + std::to_string(viewAngle);
+  testBuffer(scene, what, check);
+
+  LaterSphere sphere(scene);
+  const Rgb green = { 0, 255, 0 }, white = { 255, 255, 255 };
   for (int n = 0; n < 3; ++n)
   {
-    check(isNear(colorWithSphere(n, scene.depths[n] - 5.0), green, 0), "Before it is seen" + what);
     check(
-      isNear(colorWithSphere(n, scene.depths[n] + 5.0), white, 0), "Behind it is hidden" + what);
+      isNear(sphere.colorOfBox(n, scene.depths[n] - 5.0), green, 0), "Before it is seen" + what);
+    check(
+      isNear(sphere.colorOfBox(n, scene.depths[n] + 5.0), white, 0), "Behind it is hidden" + what);
   }
-  actor->SetPosition(24.0, 40.0, 45.0);
+  sphere.actor->SetPosition(24.0, 40.0, 45.0);
   check(isNear(scene.colorAt(scene.stage.pixels(), scene.pixelOf(24.0, 40.0, 45.0)), green, 0),
     "Beside vessels nothing is hidden" + what);
   scene.mapper->SetWriteDepthOpacity(1.0);
@@ -284,13 +301,14 @@ void testDepthBuffer(stage::Checks& check, double viewAngle)
   opacity->AddPoint(0.0, 0.0);
   opacity->AddPoint(200.0, 0.6);
   scene.stage.property->SetScalarOpacity(opacity);
-  check(isNear(colorWithSphere(1, scene.depths[1] + 5.0), green, 0),
+  check(isNear(sphere.colorOfBox(1, scene.depths[1] + 5.0), green, 0),
     "What is not opaque enough hides nothing" + what);
   scene.mapper->SetWriteDepthOpacity(0.5);
-  check(!isNear(colorWithSphere(1, scene.depths[1] + 5.0), green, 0),
+  check(!isNear(sphere.colorOfBox(1, scene.depths[1] + 5.0), green, 0),
     "What is opaque enough hides" + what);
   scene.mapper->WriteDepthOff();
-  check(isNear(colorWithSphere(1, scene.depths[1] + 5.0), green, 0), "It can be turned off" + what);
+  check(
+    isNear(sphere.colorOfBox(1, scene.depths[1] + 5.0), green, 0), "It can be turned off" + what);
 }
 
 /// Geometry that is there before keeps its depth.

@@ -249,7 +249,8 @@ void clip(Mapper* mapper)
   mapper->CullBelowWindowOn();
 }
 
-std::vector<Way> ways()
+/// Ways to show all of the volume.
+std::vector<Way> waysOfAll()
 {
   return {
     { "preview", [](Mapper* m) { m->SetQualityModeToPreview(); }, 0 },
@@ -285,6 +286,13 @@ std::vector<Way> ways()
         m->SetMaximumTypeToDepthShaded();
       },
       2 },
+  };
+}
+
+/// Ways to show a part of it.
+std::vector<Way> waysOfParts()
+{
+  return {
     { "exact, depth-shaded and cropped", // so that rays are left slices without a sample
       [](Mapper* m)
       {
@@ -323,6 +331,14 @@ std::vector<Way> ways()
       },
       2 },
   };
+}
+
+std::vector<Way> ways()
+{
+  std::vector<Way> all = waysOfAll();
+  const std::vector<Way> parts = waysOfParts();
+  all.insert(all.end(), parts.begin(), parts.end());
+  return all;
 }
 
 /// All modes, views and ways to cut the image: the pictures are those of one rank.
@@ -451,6 +467,22 @@ void testCulling(Ranks& ranks)
   }
 }
 
+/// What several ranks do not project is refused, and then all is as before.
+void testRefusals(Ranks& ranks, Scene& many, const std::vector<unsigned char>& expected)
+{
+  many.mapper->SetBlendModeToAverageIntensity();
+  many.render();
+  ranks.check(many.lastError.find("maxima and minima only") != std::string::npos,
+    "averages are not refused but: " + many.lastError);
+  many.mapper->SetBlendModeToMaximumIntensity();
+  many.mapper->SetMaximumTypeToLocal();
+  many.render();
+  ranks.check(many.lastError.find("local maxima") != std::string::npos,
+    "local maxima are not refused but: " + many.lastError);
+  many.mapper->SetMaximumTypeToGlobal();
+  ranks.check(many.render() == expected, "after refusals the picture differs");
+}
+
 /// What is wrong on one rank is told by all, and all are well again when it is mended.
 void testProblems(Ranks& ranks)
 {
@@ -498,17 +530,7 @@ void testProblems(Ranks& ranks)
   wrong("another camera", "in different ways");
   many.mapper->SetInputDataObject(vtkSmartPointer<vtkImageData>::New());
   wrong("ranks with nothing", "No rank has any voxels");
-  many.mapper->SetBlendModeToAverageIntensity();
-  many.render();
-  ranks.check(many.lastError.find("maxima and minima only") != std::string::npos,
-    "averages are not refused but: " + many.lastError);
-  many.mapper->SetBlendModeToMaximumIntensity();
-  many.mapper->SetMaximumTypeToLocal();
-  many.render();
-  ranks.check(many.lastError.find("local maxima") != std::string::npos,
-    "local maxima are not refused but: " + many.lastError);
-  many.mapper->SetMaximumTypeToGlobal();
-  ranks.check(many.render() == expected, "after refusals the picture differs");
+  testRefusals(ranks, many, expected);
   // One rank by itself again.
   many.mapper->SetController(nullptr);
   many.mapper->SetInputDataObject(whole);

@@ -184,6 +184,52 @@ private:
   glm::dvec2 Ends{ -Outside, Beyond }, All{ 0.0 };
   std::vector<glm::dvec2> Columns, Rows;
 };
+/// What cuts the rays of an image.
+struct Cutting
+{
+  /// The depths between which some pixels of a row are seen; `unhidden` gets these before the depth
+  /// buffer ends rays.
+  void find(int u, int v, int count, RowDepths& depths, glm::vec2* unhidden) const
+  {
+    depths.reset(this->extents.ends().x, this->extents.ends().y, count);
+    for (const glm::dvec4& h : this->planes)
+    {
+      if (this->geometry.isPerspective())
+      {
+        depths.cutPerspective(h, this->geometry, u, v, count);
+      }
+      else
+      {
+        depths.cut(this->loops, h, u, v, count);
+      }
+    }
+    if (this->hull)
+    {
+      depths.cut(this->hull->near(v) + u, this->hull->far(v) + u, count);
+    }
+    const double end = this->geometry.slices().end + Outside;
+    for (int x = 0; x < count; ++x)
+    {
+      unhidden[x] = glm::vec2(glm::clamp(glm::dvec2(depths.near[x], depths.far[x]), -Outside, end));
+    }
+    if (this->depth)
+    {
+      this->depth->endRays(this->geometry, u, v, count, depths.near, depths.far);
+    }
+    if (this->hull || this->depth)
+    {
+      // Half-spaces that cut nothing are not there in the first place.
+      this->extents.openWhole(u, v, count, depths);
+    }
+  }
+
+  const ShearWarp& geometry;
+  const CutLoops& loops;
+  std::vector<glm::dvec4> planes;
+  const SurfaceDepths* hull;
+  const SceneDepth* depth;
+  RayExtents extents;
+};
 }
 
 void RayIntervals::clear()
@@ -207,15 +253,14 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
   this->First.resize(pixels);
   this->Last.resize(pixels);
   this->Depths.resize(pixels);
-  RayExtents extents(geometry);
-  if (surface || depth)
-  {
-    extents.findVolume(geometry);
-  }
   const CutLoops& loops = kernelsFor(set);
   const Span slices = geometry.slices();
-  const std::vector<glm::dvec4> planes = asSeen(geometry, halfSpaces);
-  const SurfaceDepths* const hull = surface ? &surface->project(geometry) : nullptr;
+  Cutting cutting{ geometry, loops, asSeen(geometry, halfSpaces),
+    surface ? &surface->project(geometry) : nullptr, depth, RayExtents(geometry) };
+  if (surface || depth)
+  {
+    cutting.extents.findVolume(geometry);
+  }
   std::atomic<bool> isCut(false);
   vtkSMPTools::For(0, geometry.height(), 16,
     [&](vtkIdType begin, vtkIdType end)
@@ -227,37 +272,8 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
         for (int u = 0; u < this->Width; u += RowDepths::Most)
         {
           const int count = std::min(RowDepths::Most, this->Width - u);
-          depths.reset(extents.ends().x, extents.ends().y, count);
-          for (const glm::dvec4& h : planes)
-          {
-            if (geometry.isPerspective())
-            {
-              depths.cutPerspective(h, geometry, u, v, count);
-            }
-            else
-            {
-              depths.cut(loops, h, u, v, count);
-            }
-          }
-          if (hull)
-          {
-            depths.cut(hull->near(v) + u, hull->far(v) + u, count);
-          }
           const std::size_t first = std::size_t(v) * this->Width + u;
-          for (int x = 0; x < count; ++x)
-          {
-            this->Depths[first + x] = glm::vec2(glm::clamp(
-              glm::dvec2(depths.near[x], depths.far[x]), -Outside, slices.end + Outside));
-          }
-          if (depth)
-          {
-            depth->endRays(geometry, u, v, count, depths.near, depths.far);
-          }
-          if (surface || depth)
-          {
-            // Half-spaces that cut nothing are not there in the first place.
-            extents.openWhole(u, v, count, depths);
-          }
+          cutting.find(u, v, count, depths, &this->Depths[first]);
           lost |= loops.slicesBetween(depths.near, depths.far, slices.begin, slices.end,
             &this->First[first], &this->Last[first], count);
         }

@@ -179,15 +179,7 @@ struct PerspectiveCubicLoop : Lanes<A, R>
         continue;
       }
       R voxels[4][3];
-      R most = all(-std::numeric_limits<A>::infinity());
-      for (int n = 0; n < 4; ++n)
-      {
-        for (int t = 0; t < 3; ++t)
-        {
-          voxels[n][t] = cells.pick(segment.rows[n] + t);
-          most = larger(voxels[n][t], most);
-        }
-      }
+      const R most = pick(cells, segment.rows, voxels);
       if (!anyLarger(most, best))
       {
         continue;
@@ -209,6 +201,21 @@ struct PerspectiveCubicLoop : Lanes<A, R>
       best = smaller(best, atMost); // as in parallel views
     }
     Lanes<A, R>::template close<NonFinite>(this->row.image + x, before, best);
+  }
+
+  /// The voxels of both cells; returns the largest.
+  static inline R pick(const Cells& cells, const A* const (&rows)[4], R (&voxels)[4][3])
+  {
+    R most = all(-std::numeric_limits<A>::infinity());
+    for (int n = 0; n < 4; ++n)
+    {
+      for (int t = 0; t < 3; ++t)
+      {
+        voxels[n][t] = cells.pick(rows[n] + t);
+        most = larger(voxels[n][t], most);
+      }
+    }
+    return most;
   }
 
   /// The voxels of the upper or the lower cell.

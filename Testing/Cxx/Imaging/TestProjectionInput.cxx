@@ -51,7 +51,8 @@ void testRefusal(Checks& check, const std::string& word, const Change& spoil, co
   check(projectiontesting::sameScalars(filter->GetOutput(), before), word, ": not as before");
 }
 
-void testSettings(Checks& check)
+/// Settings of the picture and of where it is seen from.
+void testViewSettings(Checks& check)
 {
   testRefusal(
     check, "OutputSize", [](Filter* f) { f->SetOutputSize(0, 10); },
@@ -91,6 +92,11 @@ void testSettings(Checks& check)
       f->SetFocalPoint(0.0, INFINITY, 0.0);
     },
     [](Filter* f) { f->CenterOnVolumeOn(); });
+}
+
+/// Settings of which samples count.
+void testSampleSettings(Checks& check)
+{
   testRefusal(
     check, "SlabThickness",
     [](Filter* f)
@@ -250,7 +256,8 @@ void testExtremes(Checks& check)
 int TestProjectionInput(int, char*[])
 {
   Checks check;
-  testSettings(check);
+  testViewSettings(check);
+  testSampleSettings(check);
   testCameras(check);
   testInputs(check);
   testArrays(check);

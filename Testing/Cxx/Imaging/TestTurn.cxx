@@ -173,7 +173,11 @@ void testGeometry(Checks& check)
   turn->Update();
   check(turn->GetOutput()->GetSpacing()[1] == 3.1 && turn->GetOutput()->GetSpacing()[0] == 3.1,
     "a camera's scale is half the height");
-  // A lone voxel right of the middle wanders over the picture as its place says.
+}
+
+/// A lone voxel right of the middle wanders over the picture as its place says.
+void testLoneVoxel(Checks& check)
+{
   const int size = 21;
   reference::Volume<float> volume({ size, size, size });
   volume.at(15, 10, 10) = 1.0f;
@@ -305,15 +309,10 @@ void testReuse(Checks& check)
   check(filter->GetOutput()->GetMTime() > time, "a camera that moves is noticed");
 }
 
-/// Independent components are what each is by itself; magnitudes and names are kept.
-void testComponents(Checks& check)
+/// An image with the scalars of two images as its components, and another array.
+vtkSmartPointer<vtkImageData> withBoth(vtkImageData* one, vtkImageData* two)
 {
-  reference::Random random(10);
-  const auto one = projectiontesting::imageOf(
-    reference::uniformNoise<std::uint8_t>({ 13, 11, 12 }, random.bits()));
-  const auto two = projectiontesting::imageOf(
-    reference::uniformNoise<std::uint8_t>({ 13, 11, 12 }, random.bits()));
-  vtkNew<vtkImageData> both;
+  auto both = vtkSmartPointer<vtkImageData>::New();
   both->CopyStructure(one);
   both->AllocateScalars(VTK_UNSIGNED_CHAR, 2);
   vtkDataArray* const scalars = both->GetPointData()->GetScalars();
@@ -325,6 +324,39 @@ void testComponents(Checks& check)
   other->SetNumberOfTuples(both->GetNumberOfPoints());
   other->Fill(3.5);
   both->GetPointData()->AddArray(other);
+  return both;
+}
+
+/// Cells are voxels about their centres: those of one less along each axis.
+void compareCells(Checks& check, vtkImageData* points)
+{
+  const auto cells = vtkSmartPointer<vtkImageData>::New();
+  cells->SetDimensions(14, 12, 13);
+  cells->SetOrigin(-0.5, -0.5, -0.5);
+  cells->GetCellData()->SetScalars(points->GetPointData()->GetScalars());
+  const auto ofCells = projectiontesting::projectionOf(cells);
+  const auto ofPoints = projectiontesting::projectionOf(points);
+  for (const auto& each : { ofCells, ofPoints })
+  {
+    each->SetQualityModeToHigh(); // the field of cells ends elsewhere
+    each->SetViewDirection(0.2, -0.3, 1.0);
+    each->SetOutputSize(9, 8);
+    each->SetOutputSpacing(1.0, 1.0);
+    each->Update();
+  }
+  check(projectiontesting::sameScalars(ofCells->GetOutput(), ofPoints->GetOutput()),
+    "cells are voxels");
+}
+
+/// Independent components are what each is by itself; magnitudes and names are kept.
+void testComponents(Checks& check)
+{
+  reference::Random random(10);
+  const auto one = projectiontesting::imageOf(
+    reference::uniformNoise<std::uint8_t>({ 13, 11, 12 }, random.bits()));
+  const auto two = projectiontesting::imageOf(
+    reference::uniformNoise<std::uint8_t>({ 13, 11, 12 }, random.bits()));
+  const auto both = withBoth(one, two);
   const auto filter = projectiontesting::projectionOf(both);
   filter->SetViewDirection(0.3, 1.0, -0.2);
   filter->SetBackgroundValue(-1.0);
@@ -360,23 +392,7 @@ void testComponents(Checks& check)
   check(filter->GetOutput()->GetScalarComponentAsDouble(10, 11, 0, 0) == 3.5 &&
       filter->GetOutput()->GetNumberOfScalarComponents() == 1,
     "the array to process is projected");
-  // Cells are voxels about their centres: those of one less along each axis.
-  const auto cells = vtkSmartPointer<vtkImageData>::New();
-  cells->SetDimensions(14, 12, 13);
-  cells->SetOrigin(-0.5, -0.5, -0.5);
-  cells->GetCellData()->SetScalars(one->GetPointData()->GetScalars());
-  const auto ofCells = projectiontesting::projectionOf(cells);
-  const auto ofPoints = projectiontesting::projectionOf(one);
-  for (const auto& each : { ofCells, ofPoints })
-  {
-    each->SetQualityModeToHigh(); // the field of cells ends elsewhere
-    each->SetViewDirection(0.2, -0.3, 1.0);
-    each->SetOutputSize(9, 8);
-    each->SetOutputSpacing(1.0, 1.0);
-    each->Update();
-  }
-  check(projectiontesting::sameScalars(ofCells->GetOutput(), ofPoints->GetOutput()),
-    "cells are voxels");
+  compareCells(check, one);
 }
 }
 
@@ -386,6 +402,7 @@ int TestTurn(int, char*[])
   testViews(check);
   testPerspective(check);
   testGeometry(check);
+  testLoneVoxel(check);
   testProgress(check);
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
   testAbortUpstream(check);

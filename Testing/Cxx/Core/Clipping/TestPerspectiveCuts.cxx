@@ -99,67 +99,112 @@ bool isWithin(const glm::dvec3& p, const glm::dvec3& low, const glm::dvec3& high
   return glm::all(glm::lessThan(low, p)) && glm::all(glm::lessThan(p, high));
 }
 
+/// Where the rays of an image come from, axes not permuted.
+glm::dvec3 eyeOf(const ShearWarp& image)
+{
+  glm::dvec3 eye;
+  for (int a = 0; a < 3; ++a)
+  {
+    eye[image.axes()[a]] = image.eye()[a];
+  }
+  return eye;
+}
+
+/// More than rounding moves rays and the eye by.
+constexpr double BoxMargin = 1e-4;
+
+/// A view that a box cuts: as planes and as a surface, and a wider and a narrower one as planes.
+struct BoxScenes
+{
+  glm::dvec3 low, high;
+  Scene planes, mesh, wide, narrow;
+};
+
 /// Half of the boxes have their corners at voxels' corners; some hold the eye, which is at such
 /// places, too.
+BoxScenes anyBox(int n, Random& random)
+{
+  BoxScenes box;
+  View& view = box.planes.view;
+  view = coretesting::randomPerspective(coretesting::randomSize(random, 20), random);
+  box.mesh.view = box.wide.view = box.narrow.view = view;
+  box.low = randomPoint(random, view.dimensions);
+  if (n % 3 == 0)
+  {
+    const glm::dvec4 eye = glm::inverse(view.indexToClip)[2];
+    box.low = glm::dvec3(eye) / eye.w - random.uniform(0.1, 5.0);
+  }
+  box.high = box.low + glm::abs(randomVector(random)) * 20.0;
+  if (n % 2)
+  {
+    box.low = glm::floor(box.low) + 0.5;
+    box.high = glm::floor(box.high) + 1.5;
+  }
+  view.halfSpaces = halfSpacesOfBox(box.low, box.high);
+  box.wide.view.halfSpaces = halfSpacesOfBox(box.low - BoxMargin, box.high + BoxMargin);
+  box.narrow.view.halfSpaces = halfSpacesOfBox(box.low + BoxMargin, box.high - BoxMargin);
+  box.mesh.mesh = boxOfTriangles(random, box.low, box.high, random.uniform(1, 5));
+  return box;
+}
+
+/// What the core makes of the scenes of a box.
+struct FoundBox
+{
+  Found planes, mesh, wide, narrow;
+
+  explicit FoundBox(const BoxScenes& box)
+    : planes(box.planes),
+      mesh(box.mesh),
+      wide(box.wide),
+      narrow(box.narrow)
+  {
+  }
+};
+
+/// Compares all rays of one image, but for those that rounding decides on.
+void compareBox(
+  Checks& check, const BoxScenes& box, const FoundBox& found, std::size_t number, Counts& counts)
+{
+  const ShearWarp& image = found.planes.images[number];
+  const glm::dvec3 eye = eyeOf(image), low = box.low, high = box.high;
+  // For an eye on a face rounding decides whether the box holds it.
+  const bool isOnFace = isWithin(eye, low - BoxMargin, high + BoxMargin) &&
+    !isWithin(eye, low + BoxMargin, high - BoxMargin);
+  const Oracle oracle(box.planes, image);
+  forEachRay(oracle, image,
+    [&](int u, int v, const std::vector<int>& crossed)
+    {
+      const auto slicesOf = [&](const Found& one)
+      { return left(one.intervals[number], u, v, crossed); };
+      // Rays that meet an edge are for rounding to decide.
+      const bool isDoubtful = isOnFace || slicesOf(found.wide) != slicesOf(found.narrow) ||
+        meetsEdge(oracle, u, v, box.wide.view.halfSpaces, box.narrow.view.halfSpaces);
+      ++counts.rays;
+      counts.doubtful += isDoubtful;
+      check(isDoubtful || slicesOf(found.planes) == slicesOf(found.mesh), "A surface cuts pixel ",
+        u, ", ", v, " as planes do. Eye ", eye.x, " ", eye.y, " ", eye.z, ", box ", low.x, " ",
+        low.y, " ", low.z, " to ", high.x, " ", high.y, " ", high.z);
+    });
+}
+
 void testBoxes(Checks& check)
 {
   coretesting::Sightings cut, holding, sure;
   reference::forScenes("boxes", 400,
     [&](int n, Random& random)
     {
-      Scene planes, mesh, wide, narrow;
-      planes.view = coretesting::randomPerspective(coretesting::randomSize(random, 20), random);
-      mesh.view = wide.view = narrow.view = planes.view;
-      glm::dvec3 low = randomPoint(random, planes.view.dimensions);
-      if (n % 3 == 0)
-      {
-        const glm::dvec4 eye = glm::inverse(planes.view.indexToClip)[2];
-        low = glm::dvec3(eye) / eye.w - random.uniform(0.1, 5.0);
-      }
-      glm::dvec3 high = low + glm::abs(randomVector(random)) * 20.0;
-      if (n % 2)
-      {
-        low = glm::floor(low) + 0.5;
-        high = glm::floor(high) + 1.5;
-      }
-      planes.view.halfSpaces = halfSpacesOfBox(low, high);
-      const double width = 1e-4; // more than rounding moves rays and the eye by
-      wide.view.halfSpaces = halfSpacesOfBox(low - width, high + width);
-      narrow.view.halfSpaces = halfSpacesOfBox(low + width, high - width);
-      mesh.mesh = boxOfTriangles(random, low, high, random.uniform(1, 5));
-      const Found a(planes), b(mesh), c(wide), d(narrow);
-      cut.add(!a.cutsNothing());
+      const BoxScenes box = anyBox(n, random);
+      const FoundBox found(box);
+      cut.add(!found.planes.cutsNothing());
       bool isHolding = false;
-      int rays = 0, doubtful = 0;
-      for (std::size_t image = 0; image < a.images.size(); ++image)
+      Counts counts;
+      for (std::size_t image = 0; image < found.planes.images.size(); ++image)
       {
-        glm::dvec3 eye;
-        for (int m = 0; m < 3; ++m)
-        {
-          eye[a.images[image].axes()[m]] = a.images[image].eye()[m];
-        }
-        isHolding |= isWithin(eye, low, high);
-        // For an eye on a face rounding decides whether the box holds it.
-        const bool isOnFace =
-          isWithin(eye, low - width, high + width) && !isWithin(eye, low + width, high - width);
-        const Oracle oracle(planes, a.images[image]);
-        forEachRay(oracle, a.images[image],
-          [&](int u, int v, const std::vector<int>& crossed)
-          {
-            const auto slicesOf = [&](const Found& found)
-            { return left(found.intervals[image], u, v, crossed); };
-            // Rays that meet an edge are for rounding to decide.
-            const bool isDoubtful = isOnFace || slicesOf(c) != slicesOf(d) ||
-              meetsEdge(oracle, u, v, wide.view.halfSpaces, narrow.view.halfSpaces);
-            ++rays;
-            doubtful += isDoubtful;
-            check(isDoubtful || slicesOf(a) == slicesOf(b), "A surface cuts pixel ", u, ", ", v,
-              " as planes do. Eye ", eye.x, " ", eye.y, " ", eye.z, ", box ", low.x, " ", low.y,
-              " ", low.z, " to ", high.x, " ", high.y, " ", high.z);
-          });
+        isHolding |= isWithin(eyeOf(found.planes.images[image]), box.low, box.high);
+        compareBox(check, box, found, image, counts);
       }
       holding.add(isHolding);
-      sure.add(10 * doubtful <= rays);
+      sure.add(10 * counts.doubtful <= counts.rays);
     });
   std::cout << "boxes: " << cut << " are cut, " << holding << " have the eye inside, " << sure
             << " leave few rays out" << std::endl;
@@ -246,11 +291,7 @@ void testEyeAndCorners(Checks& check)
       ShearWarp::factorise(coretesting::randomPerspective({ 9, 12, 7 }, random), images);
       for (const ShearWarp& image : images)
       {
-        glm::dvec3 eye;
-        for (int a = 0; a < 3; ++a)
-        {
-          eye[image.axes()[a]] = image.eye()[a];
-        }
+        const glm::dvec3 eye = eyeOf(image);
         for (int place = -1; place < 6; ++place)
         {
           glm::dvec3 centre = eye;

@@ -307,31 +307,132 @@ splatting::View wideView(const std::array<int, 3>& size, const glm::dvec3& eye,
   return view;
 }
 
-/// Images of a smooth function of the ray's direction show that function, whatever the image.
-void testSeams(Checks& check)
+/// A smooth function of a ray's direction.
+struct SmoothFunction
 {
-  const glm::dvec3 slope(0.11, -0.13, 0.17);
-  const auto f = [&](const glm::dvec3& d) { return 0.5 + glm::dot(slope, glm::normalize(d)); };
-  const splatting::ColorTable table = countingTable(0.0, 1.0);
+  glm::dvec3 slope{ 0.11, -0.13, 0.17 };
+
+  double at(const glm::dvec3& d) const { return 0.5 + glm::dot(this->slope, glm::normalize(d)); }
+  /// How far it may be from what is interpolated between pixels that are such a step of slopes
+  /// apart.
+  double bound(double step) const
+  {
+    // Second derivatives of each component of a direction with regard to a slope are at most 1.
+    return step * step / 4.0 *
+      (std::abs(this->slope.x) + std::abs(this->slope.y) + std::abs(this->slope.z)) +
+      Misplaced * step + Rounded;
+  }
+};
+
+splatting::ShearImage smoothImage(const splatting::ShearWarp& geometry, const SmoothFunction& f)
+{
+  const auto atPixel = [&](int u, int v)
+  {
+    const double forwards = geometry.reversed() ? -1.0 : 1.0;
+    const glm::dvec3 d(
+      forwards * geometry.columns().slope[u], forwards * geometry.rows().slope[v], forwards);
+    glm::dvec3 direction;
+    for (int a = 0; a < 3; ++a)
+    {
+      direction[geometry.axes()[a]] = d[a];
+    }
+    return f.at(direction);
+  };
+  splatting::ShearImage image = imageOf(geometry, atPixel);
+  for (int v = 0; v < geometry.height(); ++v)
+  {
+    // Beside the volume, too: all points have four neighbours.
+    image.spans[v] = { 0, geometry.rayCount().x };
+    for (int u = 0; u < geometry.width(); ++u)
+    {
+      image.row<float>(v)[u] = static_cast<float>(atPixel(u, v));
+    }
+  }
+  return image;
+}
+
+/// Each of six places with each direction; half of the views are random.
+splatting::View seamView(int n, reference::Random& random)
+{
   const glm::dvec3 z(0.0, 0.0, 1.0);
   const std::array<int, 3> size{ 31, 27, 35 };
   // From the first five places, along these directions, one to five images show the volume.
   const glm::dvec3 eyes[] = { { -30.0, 13.0, 17.0 }, { -30.0, -20.0, 17.0 }, { -9.0, -9.0, -9.0 },
     { -3.0, 13.0, 17.0 }, { 15.0, 13.0, 17.0 }, { 7.3, 20.1, 11.9 } };
   const glm::dvec3 directions[] = { { 1.0, 0.0, 0.0 }, { 1.0, 1.0, 0.0 }, { 1.0, 1.0, 1.0 }, z, z };
+  const int place = n % 6, way = (n + n / 6) % 9;
+  const glm::dvec3 direction = n < 5 ? directions[n]
+    : way < 4                        ? directions[way]
+                                     : anyVector(random, -1.0, 1.0);
+  const glm::dvec3 up = direction == z ? glm::dvec3(0.0, 1.0, 0.0) : z;
+  return wideView(size, eyes[place], direction, up, random.uniform(0, 2) ? 65 : 129);
+}
+
+/// What a pixel's ray and those of its area's outline have.
+struct ShownOnOutline
+{
+  double largest;
+  bool isWhole; ///< all on the outline meet the volume
+};
+
+ShownOnOutline lookAround(
+  const Camera& camera, const Box& shown, const SmoothFunction& f, int x, int y)
+{
+  ShownOnOutline outline{ f.at(camera.direction(x, y)), true };
+  for (int side = 0; side < 64; ++side)
+  {
+    const double along = (side % 16) / 16.0 - 0.5;
+    const glm::dvec2 border[] = { { along, -0.5 }, { 0.5, along }, { -along, 0.5 },
+      { -0.5, -along } };
+    const glm::dvec3 d = camera.direction(x + border[side / 16].x, y + border[side / 16].y);
+    outline.largest = std::max(outline.largest, f.at(d));
+    outline.isWhole = outline.isWhole && meets(shown, camera.eye, d, -0.01);
+  }
+  return outline;
+}
+
+/// Compares all pixels with the function. Returns whether the volume is shown.
+bool compareWithFunction(Checks& check, const splatting::View& view,
+  const splatting::Picture& picture, const SmoothFunction& f, double bound)
+{
+  const Camera camera(view);
+  const Box shown = shownBox(view);
+  bool isShown = false;
+  for (int y = 0; y < view.viewport.y; ++y)
+  {
+    for (int x = 0; x < view.viewport.x; ++x)
+    {
+      const std::uint32_t color = colorAt(picture, x, y);
+      const glm::dvec3 ray = camera.direction(x, y);
+      isShown |= color != 0;
+      check(color != 0 || !meets(shown, camera.eye, ray, -0.01), "a gap at ", x, ", ", y);
+      const double value = (double(color) - 1.0) / 65535;
+      if (!splatting::isOverview(view))
+      {
+        const double off = value - f.at(ray);
+        check(color == 0 || std::abs(off) <= bound, "a seam: ", off, " at ", x, ", ", y,
+          ", not within ", bound);
+        continue;
+      }
+      // The largest on the outline: the function has no maximum within but where it is flat.
+      const auto [largest, isWhole] = lookAround(camera, shown, f, x, y);
+      check(!isWhole || std::abs(value - largest) <= bound + 1e-3, "a seam: ", value, " at ", x,
+        ", ", y, ", not ", largest, " within ", bound);
+    }
+  }
+  return isShown;
+}
+
+/// Images of a smooth function of the ray's direction show that function, whatever the image.
+void testSeams(Checks& check)
+{
+  const SmoothFunction f;
+  const splatting::ColorTable table = countingTable(0.0, 1.0);
   Sightings shown;
   reference::forScenes("seams", 54,
     [&](int n, reference::Random& random)
     {
-      // Each place with each direction; half of the views are random.
-      const int place = n % 6, way = (n + n / 6) % 9;
-      const glm::dvec3 direction = n < 5 ? directions[n]
-        : way < 4                        ? directions[way]
-                                         : anyVector(random, -1.0, 1.0);
-      const glm::dvec3 up = direction == z ? glm::dvec3(0.0, 1.0, 0.0) : z;
-      const splatting::View view =
-        wideView(size, eyes[place], direction, up, random.uniform(0, 2) ? 65 : 129);
-      bool isShown = false;
+      const splatting::View view = seamView(n, random);
       std::vector<splatting::ShearWarp> geometries;
       splatting::ShearWarp::factorise(view, geometries);
       check(n >= 5 || int(geometries.size()) == n + 1, "place ", n, " has ", geometries.size(),
@@ -340,73 +441,13 @@ void testSeams(Checks& check)
       double step = 0.0; // of slopes
       for (const splatting::ShearWarp& geometry : geometries)
       {
-        const auto atPixel = [&](int u, int v)
-        {
-          const double forwards = geometry.reversed() ? -1.0 : 1.0;
-          const glm::dvec3 d(
-            forwards * geometry.columns().slope[u], forwards * geometry.rows().slope[v], forwards);
-          glm::dvec3 direction;
-          for (int a = 0; a < 3; ++a)
-          {
-            direction[geometry.axes()[a]] = d[a];
-          }
-          return f(direction);
-        };
-        images.push_back(imageOf(geometry, atPixel));
-        for (int v = 0; v < geometry.height(); ++v)
-        {
-          // Beside the volume, too: all points have four neighbours.
-          images.back().spans[v] = { 0, geometry.rayCount().x };
-          for (int u = 0; u < geometry.width(); ++u)
-          {
-            images.back().row<float>(v)[u] = static_cast<float>(atPixel(u, v));
-          }
-        }
+        images.push_back(smoothImage(geometry, f));
         step = std::max(step, geometry.pitch() / std::abs(geometry.reference() - geometry.eye().z));
       }
       splatting::Picture picture;
       splatting::Warper().warp(images, geometries, splatting::Reduction::Maximum, table,
         view.viewport, splatting::bestInstructionSet(), picture);
-      const Camera camera(view);
-      // Second derivatives of each component of a direction with regard to a slope are at most 1.
-      const double bound =
-        step * step / 4.0 * (std::abs(slope.x) + std::abs(slope.y) + std::abs(slope.z)) +
-        Misplaced * step + Rounded;
-      for (int y = 0; y < view.viewport.y; ++y)
-      {
-        for (int x = 0; x < view.viewport.x; ++x)
-        {
-          const std::uint32_t color = colorAt(picture, x, y);
-          const glm::dvec3 ray = camera.direction(x, y);
-          isShown |= color != 0;
-          check(
-            color != 0 || !meets(shownBox(view), camera.eye, ray, -0.01), "a gap at ", x, ", ", y);
-          const double value = (double(color) - 1.0) / 65535;
-          if (!splatting::isOverview(view))
-          {
-            const double off = value - f(ray);
-            check(color == 0 || std::abs(off) <= bound, "a seam: ", off, " at ", x, ", ", y,
-              ", not within ", bound);
-            continue;
-          }
-          // The largest on the outline: the function has no maximum within but where it is flat.
-          double largest = f(ray);
-          bool isWhole = true;
-          for (int side = 0; side < 64; ++side)
-          {
-            const double along = (side % 16) / 16.0 - 0.5;
-            const glm::dvec2 border[] = { { along, -0.5 }, { 0.5, along }, { -along, 0.5 },
-              { -0.5, -along } };
-            const glm::dvec3 d = camera.direction(x + border[side / 16].x, y + border[side / 16].y);
-            largest = std::max(largest, f(d));
-            isWhole = isWhole && meets(shownBox(view), camera.eye, d, -0.01);
-          }
-          check(!isWhole || std::abs(value - largest) <= bound + 1e-3, "a seam: ", value, " at ", x,
-            ", ", y, ", not ", largest, " within ", bound);
-        }
-      }
-
-      shown.add(isShown);
+      shown.add(compareWithFunction(check, view, picture, f, f.bound(step)));
     });
   std::cout << "seams: the volume is shown in " << shown << std::endl;
   check(shown.areEnough(0.3), "the volume is shown in only ", shown);

@@ -348,6 +348,7 @@ struct PointMean
   bool isDense = true;   ///< none is farther from the next than a sample
   double sum = 0.0;
   int count = 0;
+  int images = 0; ///< that show some of them
 };
 
 /// Adds up what an image shows of so many points that are spread evenly over a pixel.
@@ -402,6 +403,24 @@ void addPoints(const splatting::ShearImage& image, const splatting::ShearWarp& g
   mean.isCertain = mean.isCertain && isMet == isSeen;
 }
 
+/// What a pixel's area shows of all images, at as many points as any of them wants.
+PointMean meanOf(const Images& images, const Geometries& geometries, int x, int y)
+{
+  glm::ivec2 points(1);
+  for (const splatting::ShearWarp& geometry : geometries)
+  {
+    points = glm::max(points, splatting::pointsOf(geometry, splatting::areaOf(geometry, x, y)));
+  }
+  PointMean mean;
+  for (std::size_t i = 0; i < geometries.size(); ++i)
+  {
+    const int before = mean.count;
+    addPoints(images[i], geometries[i], x, y, points, mean);
+    mean.images += mean.count > before;
+  }
+  return mean;
+}
+
 /// Averages are means of points that are spread evenly over areas, no farther apart than samples,
 /// whichever image shows them. Those of linear images are their values at pixels' centres.
 void testAverages(Checks& check)
@@ -433,26 +452,13 @@ void testAverages(Checks& check)
       {
         for (int x = 0; x < view.viewport.x; ++x)
         {
-          glm::ivec2 points(1);
-          for (const splatting::ShearWarp& geometry : geometries)
-          {
-            points =
-              glm::max(points, splatting::pointsOf(geometry, splatting::areaOf(geometry, x, y)));
-          }
-          PointMean expected;
-          int images = 0;
-          for (std::size_t i = 0; i < geometries.size(); ++i)
-          {
-            const int before = expected.count;
-            addPoints(rough[i], geometries[i], x, y, points, expected);
-            images += expected.count > before;
-          }
+          const PointMean expected = meanOf(rough, geometries, x, y);
           if (!expected.isCertain || expected.count == 0)
           {
             continue;
           }
           whole.add(expected.isWhole);
-          joint.add(images > 1);
+          joint.add(expected.images > 1);
           check(expected.isDense, "points are farther apart than samples");
           const std::size_t pixel = std::size_t(y) * view.viewport.x + x;
           const double mean = expected.sum / expected.count;

@@ -23,89 +23,167 @@ struct Worst
   long kept = 0, ended = 0; ///< beside pixels of the shear image without a sample
 };
 
+/// A pixel of a picture, and its ray.
+struct Pixel
+{
+  int x, y;
+  double shown;
+  ScreenRay ray;
+  Place place;
+};
+
 /// Compares pixels of a picture; of fields with NaN those at the rim.
+template <class T>
+class PictureComparison
+{
+public:
+  /// All but the random numbers must outlive its use.
+  PictureComparison(Checks& check, const Scene<T>& scene, reference::Random& random, Worst& worst)
+    : Check(check),
+      Source(scene),
+      Results(worst),
+      Field(reference::toDouble(scene.volume)),
+      Steps(stepsOf(this->Field)),
+      Picture(pictureOf(scene, random))
+  {
+    const glm::dvec2 range = rangeOfNumbers(this->Field);
+    this->Low = range[0];
+    this->High = range[1];
+    this->HasNaN = std::any_of(this->Field.voxels.begin(), this->Field.voxels.end(),
+      [](double voxel) { return std::isnan(voxel); });
+    check(this->Picture.isSameWithoutBricks, "bricks change what screen rays find");
+    this->Perspective = !splatting::isParallel(scene.view);
+    this->Rounding =
+      4.0 * perspectiveExactBound<T>(this->Low, this->High) + 1e-9 * (this->High - this->Low);
+    // The eye is rounded to 2^-10 voxels along each axis, slopes to 2^-24.
+    const double turn =
+      0x1p-24 * *std::max_element(scene.volume.size.begin(), scene.volume.size.end());
+    this->Exactly = (this->Perspective ? 0x1p-10 : 0.0) + 2.0 * turn + 1e-8;
+    for (const splatting::ShearWarp& image : scene.images)
+    {
+      this->Pitch = std::max(this->Pitch, image.pitch() * (1.0 + 1e-9));
+    }
+  }
+
+  void compare(int x, int y, reference::Random& random)
+  {
+    const int width = this->Source.view.viewport.x;
+    const double shown = double(this->Picture.pixels[std::size_t(y) * width + x]);
+    const ScreenRay ray = screenRay(this->Source.view, x, y);
+    const Pixel pixel{ x, y, shown, ray, placeOf(this->Source.images, ray, x, y) };
+    this->compareEnd(pixel);
+    // Brute force takes its time: some of them.
+    if (shown != shown || pixel.place == Unclear || (this->HasNaN && pixel.place == Inside) ||
+      random.uniform(0, pixel.place == AtRim ? 3 : 31))
+    {
+      return;
+    }
+    if (this->compareValue(pixel) && pixel.place == Inside &&
+      isCutClearly(this->Source, this->Picture, ray, x, y))
+    {
+      this->compareLocation(pixel);
+    }
+  }
+
+private:
+  /// Whether anything is shown where the picture ends beside rays without a sample.
+  void compareEnd(const Pixel& pixel)
+  {
+    const double without = pixel.place == Inside
+      ? lostOf(this->Source, this->Picture, pixel.ray, pixel.x, pixel.y)
+      : 0.5;
+    if (std::abs(without - 0.5) > 1e-6)
+    {
+      this->Check((pixel.shown == pixel.shown) == (without < 0.5), "pixel ", pixel.x, " ", pixel.y,
+        " is ", pixel.shown, ", where ", without, " of it have no sample");
+      (without < 0.5 ? this->Results.kept : this->Results.ended) += without > 0.0;
+    }
+  }
+
+  /// With what the ray surely has, and with what it may have. Returns false if nothing is sure.
+  bool compareValue(const Pixel& pixel)
+  {
+    const ScreenRay& ray = pixel.ray;
+    // The intervals are those of a ray beside the pixel's.
+    const Ways ways{ this->Exactly, this->Source.halfSpaces.empty() ? this->Exactly : this->Pitch };
+    const Limits limits = this->HasNaN
+      ? limitsWithNaN(this->Source, this->Field, this->Steps, ray, ways)
+      : limitsOf(this->Source, this->Field, this->Steps, ray, ways);
+    if (limits.low == -Infinite)
+    {
+      return false; // what is shown where a ray may have no sample is the warp's affair
+    }
+    const double above = pixel.shown - limits.high;
+    const double below = limits.low - this->mayLose(pixel) - pixel.shown;
+    const bool isAtRim = pixel.place == AtRim;
+    this->Check(above <= this->Rounding && below <= this->Rounding, "pixel ", pixel.x, " ", pixel.y,
+      isAtRim ? " at the rim" : " inside", " is ", pixel.shown, ", not from ", limits.low, " to ",
+      limits.high, ", axis ", ray.line.axes[2], ", slope ", ray.line.slope[0], " ",
+      ray.line.slope[1]);
+    double& most = isAtRim ? this->Results.rim : this->Results.inside;
+    most = std::max(most, std::max(above, below) / (this->High - this->Low));
+    ++(isAtRim ? this->Results.atRim : this->Results.within);
+    return true;
+  }
+
+  /// How much less than the ray has a pixel may show: at the rim nothing.
+  double mayLose(const Pixel& pixel) const
+  {
+    // Inside, a ray of the image is within a pixel of this one. So it has the maximum but for what
+    // the field changes by on that way, and where it has its own, this one has that but for the
+    // same. Of cut rays it may have lost the maximum's slice.
+    const auto& axes = pixel.ray.line.axes;
+    return pixel.place == AtRim ? 0.0
+      : this->Source.halfSpaces.empty() && !this->Source.cropping.cuts()
+      ? 2.0 * this->Pitch * (this->Steps[axes[0]] + this->Steps[axes[1]])
+      : this->High - this->Low;
+  }
+
+  /// With what the ray has beside winners, and with the field where the sample is said to be.
+  void compareLocation(const Pixel& pixel)
+  {
+    const ScreenRay& ray = pixel.ray;
+    const int x = pixel.x, y = pixel.y;
+    const double change =
+      this->Exactly * (this->Steps[ray.line.axes[0]] + this->Steps[ray.line.axes[1]]);
+    const auto beside = [&](double more)
+    { return besideWinners(this->Source, this->Picture, this->Field, ray, x, y, more); };
+    const double grown = beside(this->Exactly), shrunk = beside(-this->Exactly);
+    const double most = std::max(grown, shrunk), least = std::min(grown, shrunk);
+    const double error = std::max(pixel.shown - most, least - pixel.shown) - change;
+    this->Check(error <= this->Rounding, "pixel ", x, " ", y, " is ", pixel.shown, ", not from ",
+      least, " to ", most, " as beside winners");
+    // Nothing is said to be at the eye itself: see Locator::pointAt().
+    const double atEye = this->Perspective ? 2e-6 * this->Steps[ray.line.axes[2]] : 0.0;
+    const double found = atLocation(this->Source, this->Picture, this->Field, x, y);
+    this->Check(std::abs(pixel.shown - found) <= this->Rounding + change + atEye, "pixel ", x, " ",
+      y, " is ", pixel.shown, ", but ", found, " where it is said to be");
+    this->Results.definition = std::max(this->Results.definition, error / (this->High - this->Low));
+    ++this->Results.defined;
+  }
+
+  Checks& Check;
+  const Scene<T>& Source;
+  Worst& Results;
+  const reference::Volume<double> Field;
+  const glm::dvec3 Steps; // the most that neighbours along each axis differ by
+  const Shown<T> Picture;
+  double Low, High;
+  bool HasNaN, Perspective;
+  double Rounding;    // of values
+  double Exactly;     // how far rays may be displaced
+  double Pitch = 0.0; // the largest of all images
+};
+
 template <class T>
 void comparePixels(Checks& check, const Scene<T>& scene, reference::Random& random, Worst& worst)
 {
-  const auto field = reference::toDouble(scene.volume);
-  const glm::dvec2 range = rangeOfNumbers(field);
-  const double low = range[0], high = range[1];
-  const bool hasNaN = std::any_of(
-    field.voxels.begin(), field.voxels.end(), [](double voxel) { return std::isnan(voxel); });
-  const glm::dvec3 steps = stepsOf(field);
-  const Shown<T> picture = pictureOf(scene, random);
-  check(picture.isSameWithoutBricks, "bricks change what screen rays find");
-  const bool perspective = !splatting::isParallel(scene.view);
-  const double rounding = 4.0 * perspectiveExactBound<T>(low, high) + 1e-9 * (high - low);
-  // The eye is rounded to 2^-10 voxels along each axis, slopes to 2^-24.
-  const double turn =
-    0x1p-24 * *std::max_element(scene.volume.size.begin(), scene.volume.size.end());
-  const double exactly = (perspective ? 0x1p-10 : 0.0) + 2.0 * turn + 1e-8;
+  PictureComparison<T> comparison(check, scene, random, worst);
   for (int y = 0; y < scene.view.viewport.y; ++y)
   {
     for (int x = 0; x < scene.view.viewport.x; ++x)
     {
-      const double shown = double(picture.pixels[std::size_t(y) * scene.view.viewport.x + x]);
-      const ScreenRay ray = screenRay(scene.view, x, y);
-      const Place place = placeOf(scene.images, ray, x, y);
-      const double without = place == Inside ? lostOf(scene, picture, ray, x, y) : 0.5;
-      if (std::abs(without - 0.5) > 1e-6)
-      {
-        check((shown == shown) == (without < 0.5), "pixel ", x, " ", y, " is ", shown, ", where ",
-          without, " of it have no sample");
-        (without < 0.5 ? worst.kept : worst.ended) += without > 0.0;
-      }
-      // Brute force takes its time: some of them.
-      if (shown != shown || place == Unclear || (hasNaN && place == Inside) ||
-        random.uniform(0, place == AtRim ? 3 : 31))
-      {
-        continue;
-      }
-      double pitch = 0.0;
-      for (const splatting::ShearWarp& image : scene.images)
-      {
-        pitch = std::max(pitch, image.pitch() * (1.0 + 1e-9));
-      }
-      // The intervals are those of a ray beside the pixel's.
-      const Ways ways{ exactly, scene.halfSpaces.empty() ? exactly : pitch };
-      const Limits limits = hasNaN ? limitsWithNaN(scene, field, steps, ray, ways)
-                                   : limitsOf(scene, field, steps, ray, ways);
-      if (limits.low == -Infinite)
-      {
-        continue; // what is shown where a ray may have no sample is the warp's affair
-      }
-      // Inside, a ray of the image is within a pixel of this one. So it has the maximum but for
-      // what the field changes by on that way, and where it has its own, this one has that but for
-      // the same. Of cut rays it may have lost the maximum's slice.
-      const double lost = place == AtRim ? 0.0
-        : scene.halfSpaces.empty() && !scene.cropping.cuts()
-        ? 2.0 * pitch * (steps[ray.line.axes[0]] + steps[ray.line.axes[1]])
-        : high - low;
-      const double above = shown - limits.high, below = limits.low - lost - shown;
-      check(above <= rounding && below <= rounding, "pixel ", x, " ", y,
-        place == AtRim ? " at the rim" : " inside", " is ", shown, ", not from ", limits.low,
-        " to ", limits.high, ", axis ", ray.line.axes[2], ", slope ", ray.line.slope[0], " ",
-        ray.line.slope[1]);
-      (place == AtRim ? worst.rim : worst.inside) =
-        std::max(place == AtRim ? worst.rim : worst.inside, std::max(above, below) / (high - low));
-      ++(place == AtRim ? worst.atRim : worst.within);
-      if (place == Inside && isCutClearly(scene, picture, ray, x, y))
-      {
-        const double change = exactly * (steps[ray.line.axes[0]] + steps[ray.line.axes[1]]);
-        const double grown = besideWinners(scene, picture, field, ray, x, y, exactly);
-        const double shrunk = besideWinners(scene, picture, field, ray, x, y, -exactly);
-        const double most = std::max(grown, shrunk), least = std::min(grown, shrunk);
-        const double error = std::max(shown - most, least - shown) - change;
-        check(error <= rounding, "pixel ", x, " ", y, " is ", shown, ", not from ", least, " to ",
-          most, " as beside winners");
-        // Nothing is said to be at the eye itself: see Locator::pointAt().
-        const double atEye = perspective ? 2e-6 * steps[ray.line.axes[2]] : 0.0;
-        const double found = atLocation(scene, picture, field, x, y);
-        check(std::abs(shown - found) <= rounding + change + atEye, "pixel ", x, " ", y, " is ",
-          shown, ", but ", found, " where it is said to be");
-        worst.definition = std::max(worst.definition, error / (high - low));
-        ++worst.defined;
-      }
+      comparison.compare(x, y, random);
     }
   }
 }

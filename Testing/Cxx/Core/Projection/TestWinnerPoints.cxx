@@ -46,6 +46,38 @@ glm::dvec2 rayBound(const Scene& scene, const glm::dvec3& point, double w, const
   return bound;
 }
 
+/// What the arrays of a locator say of all pixels of a viewport, row by row.
+class PixelArrays
+{
+public:
+  PixelArrays(const splatting::Locator& locator, const glm::ivec2& viewport)
+    : Voxels(std::size_t(3) * viewport.x * viewport.y),
+      Positions(this->Voxels.size()),
+      ClipDepths(std::size_t(viewport.x) * viewport.y)
+  {
+    splatting::Locator::Arrays arrays;
+    arrays.voxels = this->Voxels.data();
+    arrays.positions = this->Positions.data();
+    arrays.clipDepths = this->ClipDepths.data();
+    locator.fill({ 0, 0 }, viewport, arrays);
+  }
+
+  glm::ivec3 voxel(std::size_t at) const
+  {
+    return { this->Voxels[3 * at], this->Voxels[3 * at + 1], this->Voxels[3 * at + 2] };
+  }
+  glm::dvec3 point(std::size_t at) const
+  {
+    return { this->Positions[3 * at], this->Positions[3 * at + 1], this->Positions[3 * at + 2] };
+  }
+  float clipDepth(std::size_t at) const { return this->ClipDepths[at]; }
+
+private:
+  std::vector<int> Voxels;
+  std::vector<double> Positions;
+  std::vector<float> ClipDepths;
+};
+
 /// Points lie on the rays of their pixels, in their slices, and next to their voxels.
 void testPoints(Checks& check, bool perspective)
 {
@@ -60,14 +92,7 @@ void testPoints(Checks& check, bool perspective)
       const auto images = projectScene(volume, scene, settings);
       const splatting::Locator locator(located(volume, scene, images, settings));
       const glm::ivec2& viewport = scene.view.viewport;
-      std::vector<int> voxels(std::size_t(3) * viewport.x * viewport.y);
-      std::vector<float> clipDepths(std::size_t(viewport.x) * viewport.y);
-      std::vector<double> positions(voxels.size());
-      splatting::Locator::Arrays arrays;
-      arrays.voxels = voxels.data();
-      arrays.positions = positions.data();
-      arrays.clipDepths = clipDepths.data();
-      locator.fill({ 0, 0 }, viewport, arrays);
+      const PixelArrays arrays(locator, viewport);
       // A square and its ray may be as far from the shear pixel's as half a pixel, and that half a
       // voxel and a slice's drift from the voxel; footprints of high reach two voxels more.
       const double reach = settings.quality == Quality::Preview ? 2.01 : 3.01;
@@ -76,8 +101,8 @@ void testPoints(Checks& check, bool perspective)
         for (int x = 0; x < viewport.x; ++x)
         {
           const std::size_t at = std::size_t(y) * viewport.x + x;
-          const glm::dvec3 point(positions[3 * at], positions[3 * at + 1], positions[3 * at + 2]);
-          const glm::ivec3 voxel(voxels[3 * at], voxels[3 * at + 1], voxels[3 * at + 2]);
+          const glm::dvec3 point = arrays.point(at);
+          const glm::ivec3 voxel = arrays.voxel(at);
           glm::dvec3 picked(0.0);
           splatting::ShearPixel nearest;
           splatting::findShearPixels(
@@ -100,8 +125,8 @@ void testPoints(Checks& check, bool perspective)
           // Points may be next to the eye, before any near plane.
           const double rounding = 1e-6 / std::min(std::abs(clip.w), 1.0);
           const double depth = 0.5 * clip.z / clip.w + 0.5;
-          check(std::abs(clipDepths[at] - depth) < rounding * std::max(1.0, std::abs(depth)),
-            "another depth: ", clipDepths[at], ", not ", depth);
+          check(std::abs(arrays.clipDepth(at) - depth) < rounding * std::max(1.0, std::abs(depth)),
+            "another depth: ", arrays.clipDepth(at), ", not ", depth);
           const glm::dvec3 way = glm::abs(point - glm::dvec3(voxel));
           check(std::max({ way.x, way.y, way.z }) <= reach, "pixel ", x, " ", y, ": the point is ",
             way.x, " ", way.y, " ", way.z, " from its voxel");

@@ -202,70 +202,130 @@ void testShare(Checks& check, const reference::Volume<T>& volume, const Scene& s
   }
 }
 
+/// A projection by averages.
+template <class T>
+struct AverageScene
+{
+  reference::Volume<T> volume;
+  Scene scene;
+  Mode mode;
+  splatting::ProjectionSettings settings;
+  std::vector<splatting::ShearImage> images;
+};
+
+template <class T>
+AverageScene<T> anyAverages(bool perspective, reference::Random& random)
+{
+  AverageScene<T> averages;
+  averages.volume = wholeRangeNoise<T>(randomSize(random, 9), random);
+  averages.scene = anyScene(averages.volume.size, perspective, random);
+  averages.mode = modes()[random.uniform(0, 2)];
+  splatting::ProjectionSettings& settings = averages.settings;
+  settings = settingsOf(averages.mode);
+  settings.reduction = random.uniform(0, 3) ? Reduction::Maximum : Reduction::Minimum;
+  settings.acceleration = anyAcceleration(random);
+  averages.images = projectScene(averages.volume, averages.scene, settings);
+  return averages;
+}
+
+/// The averages of all slices that the rays of an image cross, and how far others may be off.
+struct ExactAverages
+{
+  reference::RaySamples<double> rays;
+  double bound;
+};
+
+template <class T>
+ExactAverages exactAverages(const AverageScene<T>& averages, std::size_t m)
+{
+  const splatting::ShearWarp& geometry = averages.scene.images[m];
+  const Mode& mode = averages.mode;
+  const auto& voxels = averages.volume.voxels;
+  const auto range = std::minmax_element(voxels.begin(), voxels.end());
+  const double low = static_cast<double>(*range.first), high = static_cast<double>(*range.second);
+  const auto exact = reference::toDouble(averages.volume);
+  if (geometry.isPerspective())
+  {
+    const reference::PerspectiveRays rays = referenceRays(geometry);
+    return { reference::slabSamples(exact, rays, mode.reference),
+      perspectiveErrorBound<T>(rays, mode.reference, low, high) };
+  }
+  return { reference::slabSamples(exact, referenceView(geometry), mode.reference),
+    errorBound<T>(mode.quality, low, high) };
+}
+
+/// Whether the slices that win in an image have the extrema. Returns false if a ray has a sample
+/// and its pixel has none, or the other way round.
+template <class T>
+bool compareSlices(
+  Checks& check, const AverageScene<T>& averages, const ExactAverages& exact, std::size_t m)
+{
+  const splatting::ShearWarp& geometry = averages.scene.images[m];
+  const reference::RayCutter cutter = cutterOf(geometry, averages.volume.size, averages.scene);
+  const bool smallest = averages.settings.reduction == Reduction::Minimum;
+  for (int v = 0; v < geometry.rayCount().y; ++v)
+  {
+    for (int u = 0; u < geometry.rayCount().x; ++u)
+    {
+      const std::size_t at = std::size_t(v) * geometry.width() + u;
+      const auto& ray = exact.rays[at];
+      if (geometry.isPerspective() && ray.empty() && meets(geometry, u, v, GrazeWidth))
+      {
+        continue; // it may be counted to the volume or not, see ShearImage::spans
+      }
+      const int winner = reference::winnerOf(ray, cutter, u, v, geometry.reversed(), smallest);
+      const int step = averages.images[m].winners[at];
+      if (!check((winner >= 0) == (step >= 0), "averages: one has a sample"))
+      {
+        return false;
+      }
+      const auto own = std::find_if(ray.begin(), ray.end(),
+        [=](const auto& s) { return s.slice == step / splatting::StepsPerSlice; });
+      check(step < 0 ||
+          (own != ray.end() && std::abs(own->value - ray[winner].value) <= 2.0 * exact.bound),
+        "averages, pixel ", u, " ", v, ": slice ", step / splatting::StepsPerSlice,
+        " has not the extremum");
+    }
+  }
+  return true;
+}
+
+/// The voxel of the pixel in the middle of an image, if that has one.
+template <class T>
+void testMiddleShare(Checks& check, const AverageScene<T>& averages, double bound, std::size_t m)
+{
+  const splatting::ShearWarp& geometry = averages.scene.images[m];
+  const std::vector<splatting::ShearImage>& images = averages.images;
+  std::vector<glm::ivec3> voxels;
+  splatting::findVoxels(
+    located(averages.volume, averages.scene, images, averages.settings), m, voxels);
+  const int u = geometry.rayCount().x / 2, v = geometry.rayCount().y / 2;
+  const std::size_t at = std::size_t(v) * geometry.width() + u;
+  if (images[m].winners[at] >= 0)
+  {
+    testShare(check, averages.volume, averages.scene, averages.mode, bound, voxels[at], m, u, v,
+      images[m].winners[at] / splatting::StepsPerSlice);
+  }
+}
+
 template <class T>
 void testAverages(Checks& check, bool perspective)
 {
   reference::forScenes(seriesOf<T>(nameOf("averages", perspective)), 12,
     [&](int n, reference::Random& random)
     {
-      const auto volume = wholeRangeNoise<T>(randomSize(random, 9), random);
-      const Scene scene = anyScene(volume.size, perspective, random);
-      const Mode mode = modes()[random.uniform(0, 2)];
-      splatting::ProjectionSettings settings = settingsOf(mode);
-      settings.reduction = random.uniform(0, 3) ? Reduction::Maximum : Reduction::Minimum;
-      settings.acceleration = anyAcceleration(random);
-      const auto images = projectScene(volume, scene, settings);
-      const auto range = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
-      const double low = static_cast<double>(*range.first),
-                   high = static_cast<double>(*range.second);
-      for (std::size_t m = 0; m < images.size(); ++m)
+      const AverageScene<T> averages = anyAverages<T>(perspective, random);
+      const bool smallest = averages.settings.reduction == Reduction::Minimum;
+      for (std::size_t m = 0; m < averages.images.size(); ++m)
       {
-        const splatting::ShearWarp& geometry = scene.images[m];
-        const auto exact = reference::toDouble(volume);
-        const auto rays = perspective
-          ? reference::slabSamples(exact, referenceRays(geometry), mode.reference)
-          : reference::slabSamples(exact, referenceView(geometry), mode.reference);
-        const double bound = perspective
-          ? perspectiveErrorBound<T>(referenceRays(geometry), mode.reference, low, high)
-          : errorBound<T>(mode.quality, low, high);
-        const reference::RayCutter cutter = cutterOf(geometry, volume.size, scene);
-        const bool smallest = settings.reduction == Reduction::Minimum;
-        for (int v = 0; v < geometry.rayCount().y; ++v)
+        const ExactAverages exact = exactAverages(averages, m);
+        if (!compareSlices(check, averages, exact, m))
         {
-          for (int u = 0; u < geometry.rayCount().x; ++u)
-          {
-            const std::size_t at = std::size_t(v) * geometry.width() + u;
-            if (perspective && rays[at].empty() && meets(geometry, u, v, GrazeWidth))
-            {
-              continue; // it may be counted to the volume or not, see ShearImage::spans
-            }
-            const int winner =
-              reference::winnerOf(rays[at], cutter, u, v, geometry.reversed(), smallest);
-            const int step = images[m].winners[at];
-            if (!check((winner >= 0) == (step >= 0), "averages: one has a sample"))
-            {
-              return;
-            }
-            const auto own = std::find_if(rays[at].begin(), rays[at].end(),
-              [=](const auto& s) { return s.slice == step / splatting::StepsPerSlice; });
-            check(step < 0 ||
-                (own != rays[at].end() &&
-                  std::abs(own->value - rays[at][winner].value) <= 2.0 * bound),
-              "averages, pixel ", u, " ", v, ": slice ", step / splatting::StepsPerSlice,
-              " has not the extremum");
-          }
+          return;
         }
         if (!smallest && n < 4 && sizeof(T) == 1)
         {
-          std::vector<glm::ivec3> voxels;
-          splatting::findVoxels(located(volume, scene, images, settings), m, voxels);
-          const int u = geometry.rayCount().x / 2, v = geometry.rayCount().y / 2;
-          const std::size_t at = std::size_t(v) * geometry.width() + u;
-          if (images[m].winners[at] >= 0)
-          {
-            testShare(check, volume, scene, mode, bound, voxels[at], m, u, v,
-              images[m].winners[at] / splatting::StepsPerSlice);
-          }
+          testMiddleShare(check, averages, exact.bound, m);
         }
       }
     });

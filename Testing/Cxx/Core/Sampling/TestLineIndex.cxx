@@ -172,6 +172,28 @@ struct Savings
   Sightings bytes, pixels;
 };
 
+/// Compares chains that have a tolerance with exact ones. Returns whether those of all orders
+/// together take a tenth less memory.
+template <class T>
+bool savesMemory(Checks& check, const reference::Volume<T>& volume)
+{
+  std::size_t exactBytes = 0, roughBytes = 0;
+  for (LineOrder order : orders)
+  {
+    const auto exact = makeLines(volume, { order, 0.0, false });
+    const auto rough = makeLines(volume, { order, 60.0, false });
+    // Chains within a tolerance join exact ones, so there are no more of them. Sorted orders also
+    // hold each value that chains have: those half-way may be more than the exact ones.
+    check(rough.chainCount() <= exact.chainCount(), "a tolerance makes ", rough.chainCount(),
+      " chains of ", exact.chainCount());
+    check(order != LineOrder::Lines || rough.memorySize() <= exact.memorySize(),
+      "a tolerance costs memory");
+    exactBytes += exact.memorySize();
+    roughBytes += rough.memorySize();
+  }
+  return roughBytes < exactBytes * 9 / 10;
+}
+
 /// Pictures with delta encoding: within dv of the exact pixel; pixels at the top stay.
 template <class T>
 void testTolerance(Checks& check, Savings& savings)
@@ -180,7 +202,6 @@ void testTolerance(Checks& check, Savings& savings)
     [&](int, reference::Random& random)
     {
       int deviations = 0;
-      std::size_t exactBytes = 0, roughBytes = 0;
       const std::array<int, 3> size = anySize(random);
       const auto volume =
         random.uniform(0, 1) ? wholeRangeNoise<T>(size, random) : boxes<T>(size, 200, random);
@@ -220,20 +241,7 @@ void testTolerance(Checks& check, Savings& savings)
             }
           });
       }
-      for (LineOrder order : orders)
-      {
-        const auto exact = makeLines(volume, { order, 0.0, false });
-        const auto rough = makeLines(volume, { order, 60.0, false });
-        // Chains within a tolerance join exact ones, so there are no more of them. Sorted orders
-        // also hold each value that chains have: those half-way may be more than the exact ones.
-        check(rough.chainCount() <= exact.chainCount(), "a tolerance makes ", rough.chainCount(),
-          " chains of ", exact.chainCount());
-        check(order != LineOrder::Lines || rough.memorySize() <= exact.memorySize(),
-          "a tolerance costs memory");
-        exactBytes += exact.memorySize();
-        roughBytes += rough.memorySize();
-      }
-      savings.bytes.add(roughBytes < exactBytes * 9 / 10);
+      savings.bytes.add(savesMemory(check, volume));
       savings.pixels.add(deviations > 0);
     });
 }

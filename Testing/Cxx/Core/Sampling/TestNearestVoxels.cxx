@@ -18,6 +18,49 @@ using namespace coretesting;
 
 namespace
 {
+/// What the largest voxel may be that a ray meets: rays that pass between two may meet either.
+template <class T>
+struct NearestVoxels
+{
+  T least = std::numeric_limits<T>::lowest(), most = least;
+  bool isHit = false;  ///< a voxel is met in any case
+  bool isOpen = false; ///< the ray passes between voxels somewhere
+};
+
+template <class T>
+NearestVoxels<T> nearestVoxels(
+  const reference::Volume<T>& volume, const splatting::ShearWarp& geometry, int u, int v)
+{
+  NearestVoxels<T> nearest;
+  for (int k = geometry.slices().begin; k < geometry.slices().end; ++k)
+  {
+    const glm::dvec2 p = geometry.onRay(u, v, k);
+    const glm::dvec2 off = glm::abs(glm::fract(p) - 0.5);
+    const bool isTie = std::min(off.x, off.y) < 1e-9;
+    nearest.isOpen = nearest.isOpen || isTie;
+    for (int way = 0; way < (isTie ? 4 : 1); ++way)
+    {
+      const glm::dvec2 nudge(way % 2 ? 1e-6 : -1e-6, way / 2 ? 1e-6 : -1e-6);
+      glm::ivec3 voxel(glm::ivec2(glm::floor(p + 0.5 + (isTie ? nudge : glm::dvec2(0.0)))), k);
+      if (voxel.x < 0 || voxel.y < 0 || voxel.x >= geometry.size().x ||
+        voxel.y >= geometry.size().y)
+      {
+        continue;
+      }
+      std::array<int, 3> at;
+      for (int a = 0; a < 3; ++a)
+      {
+        at[geometry.axes()[a]] = voxel[a];
+      }
+      const T value = volume.at(at[0], at[1], at[2]);
+      nearest.most = std::max(nearest.most, value);
+      nearest.least = isTie ? nearest.least : std::max(nearest.least, value);
+      nearest.isHit = nearest.isHit || !isTie;
+    }
+  }
+  return nearest;
+}
+
 /// Of each slice a ray meets the voxel that it passes nearest to in the middle.
 template <class T>
 void testNearest(Checks& check)
@@ -47,45 +90,16 @@ void testNearest(Checks& check)
         {
           for (int u = 0; u < geometry.rayCount().x; ++u)
           {
-            // Rays that pass between two voxels may meet either.
-            T least = std::numeric_limits<T>::lowest(), most = least;
-            bool isHit = false, isOpen = false;
-            for (int k = geometry.slices().begin; k < geometry.slices().end; ++k)
+            const NearestVoxels<T> nearest = nearestVoxels(volume, geometry, u, v);
+            if (nearest.isHit || !nearest.isOpen)
             {
-              const glm::dvec2 p = geometry.onRay(u, v, k);
-              const glm::dvec2 off = glm::abs(glm::fract(p) - 0.5);
-              const bool isTie = std::min(off.x, off.y) < 1e-9;
-              isOpen = isOpen || isTie;
-              for (int way = 0; way < (isTie ? 4 : 1); ++way)
-              {
-                const glm::dvec2 nudge(way % 2 ? 1e-6 : -1e-6, way / 2 ? 1e-6 : -1e-6);
-                glm::ivec3 voxel(
-                  glm::ivec2(glm::floor(p + 0.5 + (isTie ? nudge : glm::dvec2(0.0)))), k);
-                if (voxel.x < 0 || voxel.y < 0 || voxel.x >= geometry.size().x ||
-                  voxel.y >= geometry.size().y)
-                {
-                  continue;
-                }
-                std::array<int, 3> at;
-                for (int a = 0; a < 3; ++a)
-                {
-                  at[geometry.axes()[a]] = voxel[a];
-                }
-                const T value = volume.at(at[0], at[1], at[2]);
-                most = std::max(most, value);
-                least = isTie ? least : std::max(least, value);
-                isHit = isHit || !isTie;
-              }
-            }
-            if (isHit || !isOpen)
-            {
-              check(found.isHit(u, v) == isHit, "a ray has a sample or not: ", u, ", ", v);
+              check(found.isHit(u, v) == nearest.isHit, "a ray has a sample or not: ", u, ", ", v);
             }
             if (found.isHit(u, v))
             {
-              check(found.at(u, v) >= least && found.at(u, v) <= most,
+              check(found.at(u, v) >= nearest.least && found.at(u, v) <= nearest.most,
                 "the nearest voxels are not met: ", double(found.at(u, v)), ", not ",
-                double(least));
+                double(nearest.least));
             }
           }
         }

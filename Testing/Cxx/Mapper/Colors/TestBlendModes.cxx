@@ -213,6 +213,36 @@ struct SlicesOfRay
   }
 };
 
+/// Averages over all slices that rays cross, from the ray caster's picture, which has those over
+/// the way between the outermost voxels' centres.
+struct ExpectedAverages
+{
+  reference::Image<double> gray;
+  std::vector<std::size_t> seen; // pixels that are not black
+  double slack = 0.0;            // what a slice more or less makes of them, all together
+
+  /// The ray caster shows a voxel of `white` as 255.
+  ExpectedAverages(const reference::Image<double>& picture, const stage::ScreenRays& rays,
+    const std::array<int, 3>& size, double white)
+    : gray(picture)
+  {
+    for (int y = 0; y < Height; ++y)
+    {
+      for (int x = 0; x < Width; ++x)
+      {
+        double& average = this->gray.at(x, y);
+        if (average > 0.0)
+        {
+          const SlicesOfRay slices(rays, size, x, y);
+          average *= white / 255.0 * slices.length / slices.count;
+          this->slack += average / slices.count;
+          this->seen.push_back(this->gray.index(x, y));
+        }
+      }
+    }
+  }
+};
+
 /**
  * The GPU's ray caster averages over the way between the outermost voxels' centres, where this
  * averages over all slices of which a ray crosses voxels. Nothing is near the border, so that both
@@ -236,52 +266,37 @@ void testAverageAgainstRayCaster(stage::Stage& stage, stage::Checks& check)
       rayCaster->SetBlendModeToAverageIntensity();
       stage.show(rayCaster);
       stage.look(directions[number], up, 0.85);
-      reference::Image<double> truth = stage.gray();
+      const reference::Image<double> theirs = stage.gray();
       stage.volume->SetMapper(nullptr);
       rayCaster->ReleaseGraphicsResources(stage.window);
       const auto mapper = stage::splatting(image);
       mapper->SetBlendModeToAverageIntensity();
       stage.show(mapper);
       const stage::ScreenRays rays(stage, image);
-      std::vector<std::size_t> seen;
-      double slack = 0.0;
-      for (int y = 0; y < Height; ++y)
-      {
-        for (int x = 0; x < Width; ++x)
-        {
-          double& gray = truth.at(x, y);
-          if (gray > 0.0)
-          {
-            const SlicesOfRay slices(rays, volume.size, x, y);
-            gray *= white / 255.0 * slices.length / slices.count;
-            slack += gray / slices.count;
-            seen.push_back(truth.index(x, y));
-          }
-        }
-      }
+      const ExpectedAverages truth(theirs, rays, volume.size, white);
       for (int mode : { Mapper::STANDARD, Mapper::HIGH })
       {
         mapper->SetQualityMode(mode);
         const reference::Image<double> picture = stage.gray();
-        const stage::Likeness likeness(truth, picture);
+        const stage::Likeness likeness(truth.gray, picture);
         const std::string what = std::string("Average, ") + mapper->GetQualityModeAsString();
         double difference = 0.0, mean = 0.0;
-        for (std::size_t pixel : seen)
+        for (std::size_t pixel : truth.seen)
         {
-          difference += (picture.value[pixel] - truth.value[pixel]) / seen.size();
-          mean += truth.value[pixel] / seen.size();
+          difference += (picture.value[pixel] - truth.gray.value[pixel]) / truth.seen.size();
+          mean += truth.gray.value[pixel] / truth.seen.size();
         }
-        const double most = 1.0 + slack / seen.size();
+        const double most = 1.0 + truth.slack / truth.seen.size();
         std::cout << what << ": " << likeness.text() << ", mean " << mean << ", off by "
                   << difference << " of at most " << most << std::endl;
         check(!mapper->GetLastRenderUsedRayCasting(), what + ": is splatted.");
-        check(seen.size() > 2000, what + ": there is something to see.");
+        check(truth.seen.size() > 2000, what + ": there is something to see.");
         check(std::abs(difference) < most, what + ": mean.");
         check(likeness.largestShift() < MostShift, what + ": shift.");
         if (stage.viewAngle <= 0.0)
         {
           compareWithDefinition(
-            stage, image, mapper, definition, false, picture, truth, random, what, check);
+            stage, image, mapper, definition, false, picture, truth.gray, random, what, check);
         }
       }
     });

@@ -183,6 +183,28 @@ void turnAtRandom(vtkVolume* volume, reference::Random& random)
   volume->SetPosition(place.data());
 }
 
+/// Sets the camera's planes as far before and behind the middle of the volume as it reaches, or
+/// nearer, and returns what they leave in index space.
+std::vector<std::array<double, 4>> clipAtRandom(stage::Stage& stage, vtkImageData* image,
+  const stage::Vector& direction, double reach, reference::Random& random)
+{
+  vtkCamera* const camera = stage.renderer->GetActiveCamera();
+  const double middle = camera->GetDistance();
+  double range[2];
+  range[0] = middle + reach * random.uniform(-1.0, 0.3);
+  range[1] = std::max(middle + reach * random.uniform(-0.3, 1.0), range[0] + 0.1);
+  camera->SetClippingRange(range);
+  stage::Vector near, far, backwards;
+  for (int a = 0; a < 3; ++a)
+  {
+    near[a] = camera->GetPosition()[a] + range[0] * direction[a];
+    far[a] = camera->GetPosition()[a] + range[1] * direction[a];
+    backwards[a] = -direction[a];
+  }
+  return { halfSpaceOf(stage.volume, image, near, direction),
+    halfSpaceOf(stage.volume, image, far, backwards) };
+}
+
 /// Whatever planes there are, the camera's among them, shear images of previews have the samples
 /// that they leave, and no others.
 void testSamples(stage::Checks& check)
@@ -211,23 +233,9 @@ void testSamples(stage::Checks& check)
       const stage::Vector direction = stage::anyDirection(random);
       const stage::Vector up = stage::anyDirection(random);
       stage.look(direction, up);
-      // As far before and behind the middle of the volume as it reaches, or nearer.
-      vtkCamera* const camera = stage.renderer->GetActiveCamera();
-      const double reach = 0.6 * stage.volume->GetLength(), middle = camera->GetDistance();
-      double range[2];
-      range[0] = middle + reach * random.uniform(-1.0, 0.3);
-      range[1] = std::max(middle + reach * random.uniform(-0.3, 1.0), range[0] + 0.1);
-      camera->SetClippingRange(range);
-      stage::Vector near, far, backwards;
-      for (int a = 0; a < 3; ++a)
-      {
-        near[a] = camera->GetPosition()[a] + range[0] * direction[a];
-        far[a] = camera->GetPosition()[a] + range[1] * direction[a];
-        backwards[a] = -direction[a];
-      }
-      std::vector<std::array<double, 4>> halfSpaces{ halfSpaceOf(
-                                                       stage.volume, image, near, direction),
-        halfSpaceOf(stage.volume, image, far, backwards) };
+      const double reach = 0.6 * stage.volume->GetLength();
+      std::vector<std::array<double, 4>> halfSpaces =
+        clipAtRandom(stage, image, direction, reach, random);
       for (int planes = random.uniform(0, 3); planes > 0; --planes)
       {
         stage::Vector origin = stage::anyDirection(random);

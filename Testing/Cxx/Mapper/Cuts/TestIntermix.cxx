@@ -390,6 +390,20 @@ struct Crowd
   }
 };
 
+/// A picture of twice the size, which vtkWindowToImageFilter renders in four tiles.
+stage::Pixels pictureInTiles(vtkRenderWindow* window)
+{
+  vtkNew<vtkWindowToImageFilter> filter;
+  filter->SetInput(window);
+  filter->SetScale(2);
+  filter->SetInputBufferTypeToRGB();
+  filter->ReadFrontBufferOff();
+  filter->Update();
+  auto* const bytes =
+    vtkUnsignedCharArray::SafeDownCast(filter->GetOutput()->GetPointData()->GetScalars());
+  return { bytes->GetPointer(0), bytes->GetPointer(0) + bytes->GetNumberOfValues() };
+}
+
 void testWindows(
   double viewAngle, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
 {
@@ -412,19 +426,10 @@ void testWindows(
     check(wrong <= 25 * most, "A viewport shows what a window does.");
   }
   {
-    // The filter renders a picture of twice the size in four tiles. Rays that are seen beside a
-    // tile end at the depth of its rim: at seams pixels may differ by a pixel of the shear image.
-    vtkNew<vtkWindowToImageFilter> filter;
+    // Rays that are seen beside a tile end at the depth of its rim: at seams pixels may differ by a
+    // pixel of the shear image.
     alone.stage.volume->VisibilityOn();
-    filter->SetInput(alone.stage.window);
-    filter->SetScale(2);
-    filter->SetInputBufferTypeToRGB();
-    filter->ReadFrontBufferOff();
-    filter->Update();
-    auto* const bytes =
-      vtkUnsignedCharArray::SafeDownCast(filter->GetOutput()->GetPointData()->GetScalars());
-    const stage::Pixels tiles(
-      bytes->GetPointer(0), bytes->GetPointer(0) + bytes->GetNumberOfValues());
+    const stage::Pixels tiles = pictureInTiles(alone.stage.window);
     Crowd large(2 * Width, 2 * Height, viewAngle, mapper, image);
     const stage::Pixels whole = large.stage.pixels();
     int wrong = 0;

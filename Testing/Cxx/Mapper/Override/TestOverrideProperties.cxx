@@ -137,7 +137,8 @@ vtkSmartPointer<vtkPlaneCollection> obliquePlane(vtkImageData* image)
   return planes;
 }
 
-std::vector<Change> changesOf(vtkImageData* image)
+/// Planes between voxels, half-way and nearer to one.
+std::array<double, 6> croppingPlanes(vtkImageData* image)
 {
   const double* const origin = image->GetOrigin();
   const double* const spacing = image->GetSpacing();
@@ -147,11 +148,20 @@ std::vector<Change> changesOf(vtkImageData* image)
     const int first = image->GetExtent()[2 * (p / 2)];
     planes[p] = origin[p / 2] + spacing[p / 2] * (first + (p % 2 ? 15.5 : 6.25));
   }
+  return planes;
+}
+
+/// In place of an undo: the next change goes on from this one.
+void nothing(vtkVolumeMapper*, Pair&) {}
+
+/// Which samples of a ray count, and which of them wins.
+std::vector<Change> changesOfRays(vtkImageData* image)
+{
+  const std::array<double, 6> planes = croppingPlanes(image);
   const auto clipping = obliquePlane(image);
   const auto inside = flags(Voxels, 1, 0.6, 10);
   inside->SetName("mask");
   const auto mask = plainImage(size, inside);
-  const auto nothing = [](vtkVolumeMapper*, Pair&) {};
   return {
     { "Minimum", [](auto* m, Pair&) { m->SetBlendModeToMinimumIntensity(); },
       [](auto* m, Pair&) { m->SetBlendModeToMaximumIntensity(); } },
@@ -173,6 +183,13 @@ std::vector<Change> changesOf(vtkImageData* image)
         onBoth([=](auto* mapper) { mapper->SetMaskInput(mask); })(m, pair);
       },
       onBoth([](auto* m) { m->SetMaskInput(nullptr); }) },
+  };
+}
+
+/// Of which array voxels are, how they are shown, and where.
+std::vector<Change> changesOfVoxels()
+{
+  return {
     { "Window and level",
       onBoth(
         [](auto* m)
@@ -207,6 +224,14 @@ std::vector<Change> changesOf(vtkImageData* image)
       },
       [](auto*, Pair& pair) { pair.stage.volume->SetUserMatrix(nullptr); } },
   };
+}
+
+std::vector<Change> changesOf(vtkImageData* image)
+{
+  std::vector<Change> changes = changesOfRays(image);
+  const std::vector<Change> others = changesOfVoxels();
+  changes.insert(changes.end(), others.begin(), others.end());
+  return changes;
 }
 
 void testChanges(stage::Checks& check)

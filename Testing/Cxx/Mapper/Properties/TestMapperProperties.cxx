@@ -19,12 +19,14 @@
 using coretesting::Checks;
 using namespace splatting;
 
-int TestMapperProperties(int, char*[])
+namespace
 {
-  Checks check;
-  vtkNew<vtkSplattingMIPVolumeMapper> mapper;
+using Mapper = vtkSplattingMIPVolumeMapper;
+
+/// What has no meaning is refused, and nothing else.
+void testRefusals(Mapper* mapper, Checks& check)
+{
   vtkNew<vtkVolumeProperty> property;
-  using Mapper = vtkSplattingMIPVolumeMapper;
   mapper->SetBlendModeToMaximumIntensity();
   const auto fault = [&]
   { return faultOf(mapper->ReadProperties(), mapper->GetClippingPlanes(), property); };
@@ -49,6 +51,11 @@ int TestMapperProperties(int, char*[])
   property->SetSliceFunction(plane);
   check(!fault(), "a slice is refused");
   mapper->SetBlendModeToMaximumIntensity();
+}
+
+/// What matters is passed on.
+void testSettings(Mapper* mapper, Checks& check)
+{
   const auto settings = [&](int mode)
   { return settingsOf(mapper->ReadProperties(), mode, coretesting::magnifiedView()); };
   const auto changes = [&](int mode, auto change)
@@ -79,5 +86,14 @@ int TestMapperProperties(int, char*[])
   check(settings(Mapper::HIGH).sampling == 1, "the shear image's sampling");
   mapper->SetShearImageSampling(4);
   check(settings(Mapper::HIGH).sampling == 4, "a finer sampling");
+}
+}
+
+int TestMapperProperties(int, char*[])
+{
+  Checks check;
+  vtkNew<Mapper> mapper;
+  testRefusals(mapper, check);
+  testSettings(mapper, check);
   return check.result();
 }

@@ -34,6 +34,31 @@ vtkSmartPointer<Mapper> noiseMapper(stage::Stage& stage)
   return mapper;
 }
 
+/// What has no meaning is told once in three frames that show nothing, and is forgotten once it is
+/// mended.
+void testMistake(stage::Stage& stage, const Change& change, stage::Checks& check)
+{
+  const auto mapper = noiseMapper(stage);
+  stage::Messages errors(mapper, vtkCommand::ErrorEvent);
+  change.set(mapper);
+  for (int frame = 0; frame < 3; ++frame)
+  {
+    stage.window->Render();
+  }
+  check(errors.texts.size() == 1 && errors.texts[0].find(change.name) != std::string::npos,
+    change.name + ": one sentence in three frames.");
+  check(mapper->GetNumberOfProjections() == 0, change.name + ": nothing is projected.");
+  mapper->SetKernelRadius(1.0);
+  mapper->SetLineTolerance(0.0);
+  mapper->CroppingOff();
+  mapper->SetMaximumTypeToGlobal();
+  mapper->SetBlendModeToMaximumIntensity();
+  mapper->RemoveAllClippingPlanes();
+  stage.window->Render();
+  check(errors.texts.size() == 1 && mapper->GetNumberOfProjections() == 1,
+    change.name + ": mended, the volume is shown.");
+}
+
 void testWithoutMeaning(stage::Stage& stage, stage::Checks& check)
 {
   const double planes[6] = { 1.0, NaN, 1.0, 2.0, 1.0, 2.0 };
@@ -79,25 +104,7 @@ void testWithoutMeaning(stage::Stage& stage, stage::Checks& check)
   };
   for (const Change& change : changes)
   {
-    const auto mapper = noiseMapper(stage);
-    stage::Messages errors(mapper, vtkCommand::ErrorEvent);
-    change.set(mapper);
-    for (int frame = 0; frame < 3; ++frame)
-    {
-      stage.window->Render();
-    }
-    check(errors.texts.size() == 1 && errors.texts[0].find(change.name) != std::string::npos,
-      change.name + ": one sentence in three frames.");
-    check(mapper->GetNumberOfProjections() == 0, change.name + ": nothing is projected.");
-    mapper->SetKernelRadius(1.0);
-    mapper->SetLineTolerance(0.0);
-    mapper->CroppingOff();
-    mapper->SetMaximumTypeToGlobal();
-    mapper->SetBlendModeToMaximumIntensity();
-    mapper->RemoveAllClippingPlanes();
-    stage.window->Render();
-    check(errors.texts.size() == 1 && mapper->GetNumberOfProjections() == 1,
-      change.name + ": mended, the volume is shown.");
+    testMistake(stage, change, check);
   }
 }
 

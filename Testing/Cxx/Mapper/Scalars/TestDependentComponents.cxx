@@ -225,6 +225,79 @@ private:
   int Size[2];
 };
 
+/// A picture of numbered voxels, and where it shows them.
+struct Overview
+{
+  static constexpr int Width = 60, Height = 50;
+  stage::Pixels pixels;
+  ScreenBoxes boxes;
+  vtkDataArray* scalars;
+
+  Overview(stage::Stage& stage, vtkImageData* image)
+    : pixels(stage.pixels()),
+      boxes(stage, image),
+      scalars(image->GetPointData()->GetScalars())
+  {
+  }
+
+  /// Which voxel a pixel shows; -1 for none.
+  vtkIdType voxelAt(int x, int y) const
+  {
+    const unsigned char* const rgb = &this->pixels[3 * (std::size_t(y) * Width + x)];
+    return vtkIdType(rgb[0] | rgb[1] << 8 | rgb[2] << 16) - 1;
+  }
+};
+
+/// Returns whether a pixel shows a voxel.
+bool testPixels(const Overview& overview, stage::Checks& check)
+{
+  bool isShown = false;
+  for (int y = 0; y < Overview::Height; ++y)
+  {
+    for (int x = 0; x < Overview::Width; ++x)
+    {
+      const vtkIdType voxel = overview.voxelAt(x, y);
+      if (voxel < 0 ||
+        !check(voxel < overview.scalars->GetNumberOfTuples(), "A pixel has a tuple."))
+      {
+        continue;
+      }
+      isShown = true;
+      const ScreenBoxes::Box box = overview.boxes.at(voxel, 1.5);
+      check(box.low[0] <= x + 0.5 && box.high[0] >= x - 0.5 && box.low[1] <= y + 0.5 &&
+          box.high[1] >= y - 0.5,
+        "A pixel has the tuple of a voxel that is near its area.");
+    }
+  }
+  return isShown;
+}
+
+/// Returns whether a voxel is wholly in a pixel.
+bool testVoxels(const Overview& overview, bool isMinimum, stage::Checks& check)
+{
+  bool isChosen = false;
+  for (vtkIdType voxel = 0; voxel < overview.scalars->GetNumberOfTuples(); ++voxel)
+  {
+    const ScreenBoxes::Box box = overview.boxes.at(voxel, 0.5);
+    const int x = static_cast<int>(std::lround(box.low[0]));
+    const int y = static_cast<int>(std::lround(box.low[1]));
+    if (x < 0 || y < 0 || x >= Overview::Width || y >= Overview::Height ||
+      box.high[0] > x + 0.4999 || box.high[1] > y + 0.4999 || box.low[0] < x - 0.4999 ||
+      box.low[1] < y - 0.4999)
+    {
+      continue;
+    }
+    isChosen = true;
+    const vtkIdType winner = overview.voxelAt(x, y);
+    const double own = overview.scalars->GetComponent(voxel, 3);
+    const double best = winner < 0 ? NAN : overview.scalars->GetComponent(winner, 3);
+    check(isMinimum ? best <= own : best >= own,
+      "A voxel of " + std::to_string(own) + " is lost in a pixel that shows one of " +
+        std::to_string(best) + ".");
+  }
+  return isChosen;
+}
+
 /// In overviews of previews a pixel has the tuple of a voxel in its area, or near it, and that of
 /// the largest last component there.
 ///
@@ -233,8 +306,7 @@ private:
 /// nearest to a voxel's middle is no more than half a voxel beside it.
 void testOverviews(stage::Checks& check)
 {
-  constexpr int width = 60, height = 50;
-  stage::Stage stage(width, height);
+  stage::Stage stage(Overview::Width, Overview::Height);
   stage.property->IndependentComponentsOff();
   coretesting::Sightings shown, chosen;
   reference::forScenes("overviews", 120,
@@ -242,7 +314,6 @@ void testOverviews(stage::Checks& check)
     {
       const Size size = anySize(random);
       const auto image = numberedVoxels(size, random);
-      vtkDataArray* const scalars = image->GetPointData()->GetScalars();
       const auto mapper = stage::splatting(image);
       mapper->SetQualityModeToPreview();
       const bool isMinimum = random.uniform(0, 2) == 0;
@@ -253,51 +324,10 @@ void testOverviews(stage::Checks& check)
       // Pixels so wide in the middle are wider than the longest edge of a voxel, 1.25, everywhere:
       // in perspective by diagonal / height tan(angle / 2) < 0.35 less in the nearest corner.
       const double pixel = random.uniform(1.7, 6.0);
-      lookAtRandom(stage, height * pixel / image->GetLength(), random);
-      const stage::Pixels pixels = stage.pixels();
-      const ScreenBoxes boxes(stage, image);
-      bool isShown = false, isChosen = false;
-      const auto voxelAt = [&](int x, int y)
-      {
-        const unsigned char* const rgb = &pixels[3 * (std::size_t(y) * width + x)];
-        return vtkIdType(rgb[0] | rgb[1] << 8 | rgb[2] << 16) - 1;
-      };
-      for (int y = 0; y < height; ++y)
-      {
-        for (int x = 0; x < width; ++x)
-        {
-          const vtkIdType voxel = voxelAt(x, y);
-          if (voxel < 0 || !check(voxel < scalars->GetNumberOfTuples(), "A pixel has a tuple."))
-          {
-            continue;
-          }
-          isShown = true;
-          const ScreenBoxes::Box box = boxes.at(voxel, 1.5);
-          check(box.low[0] <= x + 0.5 && box.high[0] >= x - 0.5 && box.low[1] <= y + 0.5 &&
-              box.high[1] >= y - 0.5,
-            "A pixel has the tuple of a voxel that is near its area.");
-        }
-      }
-      for (vtkIdType voxel = 0; voxel < scalars->GetNumberOfTuples(); ++voxel)
-      {
-        const ScreenBoxes::Box box = boxes.at(voxel, 0.5);
-        const int x = static_cast<int>(std::lround(box.low[0]));
-        const int y = static_cast<int>(std::lround(box.low[1]));
-        if (x < 0 || y < 0 || x >= width || y >= height || box.high[0] > x + 0.4999 ||
-          box.high[1] > y + 0.4999 || box.low[0] < x - 0.4999 || box.low[1] < y - 0.4999)
-        {
-          continue;
-        }
-        isChosen = true;
-        const vtkIdType winner = voxelAt(x, y);
-        const double own = scalars->GetComponent(voxel, 3);
-        const double best = winner < 0 ? NAN : scalars->GetComponent(winner, 3);
-        check(isMinimum ? best <= own : best >= own,
-          "A voxel of " + std::to_string(own) + " is lost in a pixel that shows one of " +
-            std::to_string(best) + ".");
-      }
-      shown.add(isShown);
-      chosen.add(isChosen);
+      lookAtRandom(stage, Overview::Height * pixel / image->GetLength(), random);
+      const Overview overview(stage, image);
+      shown.add(testPixels(overview, check));
+      chosen.add(testVoxels(overview, isMinimum, check));
     });
   check(shown.areEnough(0.5) && chosen.areEnough(0.3), "Overviews are seen.");
 }

@@ -99,6 +99,43 @@ struct Arrays
   vtkDataArray *voxels, *depths, *positions;
 };
 
+/// For voxels that are 0.5 wide and a window of so many rows: pixels lie on voxels, and are as
+/// wide.
+void putVoxelsOnPixels(stage::Stage& stage, vtkImageData* image, int height)
+{
+  // Half a pixel off the middle, as windows have an even number of pixels.
+  vtkCamera* const camera = stage.renderer->GetActiveCamera();
+  const Point corner = worldOf(stage, image, { 0.0, 0.0, 0.0 });
+  camera->SetParallelScale(0.5 * 0.5 * height);
+  Point focus, position;
+  camera->GetFocalPoint(focus.data());
+  camera->GetPosition(position.data());
+  for (int a = 0; a < 3; ++a)
+  {
+    const double onVoxel = corner[a] + 0.5 * std::floor((focus[a] - corner[a]) / 0.5) + 0.25;
+    position[a] += onVoxel - focus[a];
+    focus[a] = onVoxel;
+  }
+  camera->SetFocalPoint(focus.data());
+  camera->SetPosition(position.data());
+  stage.renderer->ResetCameraClippingRange();
+}
+
+/// The largest voxel of a line along an axis, of equal ones that nearest to the viewer.
+Voxel firstLargest(
+  const reference::Volume<std::uint8_t>& volume, const Voxel& at, int axis, bool backwards)
+{
+  Voxel best = at;
+  best[axis] = backwards ? volume.size[axis] - 1 : 0;
+  Voxel voxel = at;
+  for (int k = 0; k < volume.size[axis]; ++k)
+  {
+    voxel[axis] = backwards ? volume.size[axis] - 1 - k : k;
+    best = volume.at(voxel) > volume.at(best) ? voxel : best;
+  }
+  return best;
+}
+
 /// Pixels on voxels, rays along an axis: the search is one along a line of voxels, from the viewer.
 void testSearch(stage::Checks& check, int axis, bool backwards)
 {
@@ -118,22 +155,7 @@ void testSearch(stage::Checks& check, int axis, bool backwards)
   direction[axis] = backwards ? -1.0 : 1.0;
   up[(axis + 1) % 3] = 1.0;
   stage.look(direction, up);
-  // Half a pixel off the middle, as windows have an even number of pixels.
-  vtkCamera* const camera = stage.renderer->GetActiveCamera();
-  const Point corner = worldOf(stage, image, { 0.0, 0.0, 0.0 });
-  camera->SetParallelScale(0.5 * 0.5 * 48);
-  Point focus, position;
-  camera->GetFocalPoint(focus.data());
-  camera->GetPosition(position.data());
-  for (int a = 0; a < 3; ++a)
-  {
-    const double onVoxel = corner[a] + 0.5 * std::floor((focus[a] - corner[a]) / 0.5) + 0.25;
-    position[a] += onVoxel - focus[a];
-    focus[a] = onVoxel;
-  }
-  camera->SetFocalPoint(focus.data());
-  camera->SetPosition(position.data());
-  stage.renderer->ResetCameraClippingRange();
+  putVoxelsOnPixels(stage, image, 48);
   stage.window->Render();
   const Arrays arrays(mapper->GetLocations());
   int found = 0;
@@ -145,14 +167,7 @@ void testSearch(stage::Checks& check, int axis, bool backwards)
     {
       for (at[2] = 0; at[2] < (axis == 2 ? 1 : size[2]); ++at[2])
       {
-        Voxel best = at;
-        best[axis] = backwards ? size[axis] - 1 : 0;
-        Voxel voxel = at;
-        for (int k = 0; k < size[axis]; ++k)
-        {
-          voxel[axis] = backwards ? size[axis] - 1 - k : k;
-          best = volume.at(voxel) > volume.at(best) ? voxel : best;
-        }
+        const Voxel best = firstLargest(volume, at, axis, backwards);
         const Point world =
           worldOf(stage, image, { double(best[0]), double(best[1]), double(best[2]) });
         const Point shown = shownAt(stage, world);
@@ -252,6 +267,37 @@ bool isPicked(stage::Stage& stage, vtkImageData* image, vtkSplattingMIPVolumeMap
   return false;
 }
 
+/// Whether arrays and picks name the same places for many pixels of the viewport, on their rays.
+bool agree(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, const Arrays& arrays)
+{
+  int samples = 0;
+  bool consistent = true;
+  for (int y = 13; y < 260; y += 3)
+  {
+    for (int x = 30; x < 285; x += 3)
+    {
+      Point picked;
+      const bool has = mapper->PickWorldPosition(x, y, picked.data());
+      const vtkIdType n = arrays.at(x, y);
+      Point position;
+      arrays.positions->GetTuple(n, position.data());
+      const double depth = arrays.depths->GetComponent(n, 0);
+      if (!has)
+      {
+        consistent =
+          consistent && arrays.voxel(x, y)[0] == -1 && std::isnan(position[0]) && std::isnan(depth);
+        continue;
+      }
+      ++samples;
+      const Point shown = shownAt(stage, picked);
+      consistent = consistent && position == picked && std::abs(shown[0] - x) < 1e-3 &&
+        std::abs(shown[1] - y) < 1e-3 &&
+        std::abs(depth - depthOf(stage, picked)) < 1e-4 * std::abs(depth);
+    }
+  }
+  return consistent && samples > 500;
+}
+
 /// Bright voxels in noise, seen from anywhere: they are picked where they are seen.
 void testBrightVoxels(stage::Checks& check, int mode, double viewAngle, reference::Random& random)
 {
@@ -282,32 +328,7 @@ void testBrightVoxels(stage::Checks& check, int mode, double viewAngle, referenc
       what + ": bright voxel " + std::to_string(voxel[0]) + " " + std::to_string(voxel[1]) + " " +
         std::to_string(voxel[2]) + " is picked.");
   }
-  int samples = 0;
-  bool consistent = true;
-  for (int y = 13; y < 260; y += 3)
-  {
-    for (int x = 30; x < 285; x += 3)
-    {
-      Point picked;
-      const bool has = mapper->PickWorldPosition(x, y, picked.data());
-      const vtkIdType n = arrays.at(x, y);
-      Point position;
-      arrays.positions->GetTuple(n, position.data());
-      const double depth = arrays.depths->GetComponent(n, 0);
-      if (!has)
-      {
-        consistent =
-          consistent && arrays.voxel(x, y)[0] == -1 && std::isnan(position[0]) && std::isnan(depth);
-        continue;
-      }
-      ++samples;
-      const Point shown = shownAt(stage, picked);
-      consistent = consistent && position == picked && std::abs(shown[0] - x) < 1e-3 &&
-        std::abs(shown[1] - y) < 1e-3 &&
-        std::abs(depth - depthOf(stage, picked)) < 1e-4 * std::abs(depth);
-    }
-  }
-  check(consistent && samples > 500, what + ": arrays and picks agree, on the pixels' rays.");
+  check(agree(stage, mapper, arrays), what + ": arrays and picks agree, on the pixels' rays.");
   const int* const extent = arrays.image->GetExtent();
   check(extent[0] == 30 && extent[1] == 284 && extent[2] == 13 && extent[3] == 259,
     what + ": the extent is the viewport.");
