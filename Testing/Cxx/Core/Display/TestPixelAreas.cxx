@@ -175,21 +175,33 @@ splatting::View someView(int n, reference::Random& random)
   return reduced(n % 2 ? randomPerspective(size, random) : anyView(size, random));
 }
 
-void testExtrema(Checks& check)
+/// Calls f(n, view, geometries, random) for those of some views that are overviews, and counts
+/// them.
+template <class F>
+Sightings forOverviews(const char* series, int count, F&& f)
 {
-  Sightings wide;
-  reference::forScenes("extrema", 200,
+  Sightings overviews;
+  reference::forScenes(series, count,
     [&](int n, reference::Random& random)
     {
       const splatting::View view = someView(n, random);
       Geometries geometries;
       splatting::ShearWarp::factorise(view, geometries, n % 3 ? 1 : 2);
-      if (geometries.empty() || !geometries.front().isOverview())
+      const bool isOverview = !geometries.empty() && geometries.front().isOverview();
+      overviews.add(isOverview);
+      if (isOverview)
       {
-        wide.add(false);
-        return;
+        f(n, view, geometries, random);
       }
-      wide.add(true);
+    });
+  return overviews;
+}
+
+void testExtrema(Checks& check)
+{
+  const Sightings wide = forOverviews("extrema", 200,
+    [&](int n, const splatting::View& view, const Geometries& geometries, reference::Random& random)
+    {
       const Images images = noise(geometries, n % 4 == 0, random);
       Images mirrored = images;
       Scatter scatter(view.viewport);
@@ -288,16 +300,9 @@ bool showsPoint(
 void testNothingElse(Checks& check)
 {
   Sightings seen;
-  reference::forScenes("nothing else", 100,
-    [&](int n, reference::Random& random)
+  forOverviews("nothing else", 100,
+    [&](int, const splatting::View& view, const Geometries& geometries, reference::Random& random)
     {
-      const splatting::View view = someView(n, random);
-      Geometries geometries;
-      splatting::ShearWarp::factorise(view, geometries);
-      if (geometries.empty() || !geometries.front().isOverview())
-      {
-        return;
-      }
       // One bright sample: a pyramid as wide as two samples.
       Images images;
       for (const splatting::ShearWarp& geometry : geometries)
@@ -426,16 +431,9 @@ PointMean meanOf(const Images& images, const Geometries& geometries, int x, int 
 void testAverages(Checks& check)
 {
   Sightings whole, joint;
-  reference::forScenes("averages", 60,
-    [&](int n, reference::Random& random)
+  forOverviews("averages", 60,
+    [&](int n, const splatting::View& view, const Geometries& geometries, reference::Random& random)
     {
-      const splatting::View view = someView(n, random);
-      Geometries geometries;
-      splatting::ShearWarp::factorise(view, geometries);
-      if (geometries.empty() || !geometries.front().isOverview())
-      {
-        return;
-      }
       const double a = random.uniform(-1.0, 1.0);
       const double b = random.uniform(-1.0, 1.0);
       Images linear;
@@ -509,16 +507,9 @@ std::vector<float> largestSamples(
 void testLocations(Checks& check)
 {
   Sightings samples;
-  reference::forScenes("locations", 60,
-    [&](int n, reference::Random& random)
+  forOverviews("locations", 60,
+    [&](int n, const splatting::View& view, const Geometries& geometries, reference::Random& random)
     {
-      const splatting::View view = someView(n, random);
-      Geometries geometries;
-      splatting::ShearWarp::factorise(view, geometries);
-      if (geometries.empty() || !geometries.front().isOverview())
-      {
-        return;
-      }
       const Images images = noise(geometries, n % 4 == 0, random);
       const auto found =
         picture(images, geometries, splatting::Reduction::Maximum, view.viewport, random);
