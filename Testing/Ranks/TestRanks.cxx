@@ -5,8 +5,7 @@
 // of any size, and come to the same end where one of them has nothing, has something wrong, or does
 // not see its piece.
 #include "Volume.h"
-
-#include "vtkSplattingMIPVolumeMapper.h"
+#include "Ways.h"
 
 #include "vtkCamera.h"
 #include "vtkColorTransferFunction.h"
@@ -17,7 +16,6 @@
 #include "vtkMPIController.h"
 #include "vtkNew.h"
 #include "vtkPiecewiseFunction.h"
-#include "vtkPlane.h"
 #include "vtkPointData.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -30,7 +28,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <iostream>
 #include <limits>
 #include <string>
@@ -39,7 +36,6 @@
 namespace
 {
 using Extent = std::array<int, 6>;
-using Mapper = vtkSplattingMIPVolumeMapper;
 
 constexpr int Size[3] = { 41, 34, 29 }, First[3] = { -3, 5, 0 };
 constexpr int WindowSize = 120;
@@ -224,121 +220,6 @@ void look(Scene& scene, vtkImageData* whole, int view)
   camera->SetParallelScale(28.0);
   camera->SetViewAngle(view >= 10 ? 80.0 : 40.0);
   camera->SetClippingRange(0.5, 400.0);
-}
-
-struct Way
-{
-  std::string name;
-  std::function<void(Mapper*)> set;
-  int layers; ///< of ghosts
-};
-
-void crop(Mapper* mapper)
-{
-  mapper->CroppingOn();
-  mapper->SetCroppingRegionPlanes(6.0, 18.0, -8.0, 6.0, 12.0, 30.0);
-  mapper->SetCroppingRegionFlagsToInvertedCross();
-}
-
-void clip(Mapper* mapper)
-{
-  vtkNew<vtkPlane> plane;
-  plane->SetOrigin(5.0, -7.0, 20.0);
-  plane->SetNormal(0.5, 0.4, -0.7);
-  mapper->AddClippingPlane(plane);
-  mapper->CullBelowWindowOn();
-}
-
-/// Ways to show all of the volume.
-std::vector<Way> waysOfAll()
-{
-  return {
-    { "preview", [](Mapper* m) { m->SetQualityModeToPreview(); }, 0 },
-    { "standard", [](Mapper* m) { m->SetQualityModeToStandard(); }, 1 },
-    { "high", [](Mapper* m) { m->SetQualityModeToHigh(); }, 2 },
-    { "cosine bell",
-      [](Mapper* m)
-      {
-        m->SetQualityModeToHigh();
-        m->SetKernelToCosineBell();
-        m->SetKernelRadius(1.5);
-      },
-      2 },
-    { "exact", [](Mapper* m) { m->SetQualityModeToExact(); }, 2 },
-    { "standard, two pixels per voxel",
-      [](Mapper* m)
-      {
-        m->SetQualityModeToStandard();
-        m->SetShearImageSampling(2);
-      },
-      1 },
-    { "minimum",
-      [](Mapper* m)
-      {
-        m->SetQualityModeToStandard();
-        m->SetBlendModeToMinimumIntensity();
-      },
-      1 },
-    { "depth-shaded",
-      [](Mapper* m)
-      {
-        m->SetQualityModeToHigh();
-        m->SetMaximumTypeToDepthShaded();
-      },
-      2 },
-  };
-}
-
-/// Ways to show a part of it.
-std::vector<Way> waysOfParts()
-{
-  return {
-    { "exact, depth-shaded and cropped", // so that rays are left slices without a sample
-      [](Mapper* m)
-      {
-        m->SetQualityModeToExact();
-        m->SetMaximumTypeToDepthShaded();
-        m->SetDepthShadingAmbient(-0.2);
-        crop(m);
-      },
-      2 },
-    { "cropped",
-      [](Mapper* m)
-      {
-        m->SetQualityModeToStandard();
-        crop(m);
-      },
-      1 },
-    { "exact, cropped",
-      [](Mapper* m)
-      {
-        m->SetQualityModeToExact();
-        crop(m);
-      },
-      2 },
-    { "clipped",
-      [](Mapper* m)
-      {
-        m->SetQualityModeToHigh();
-        clip(m);
-      },
-      2 },
-    { "exact, clipped",
-      [](Mapper* m)
-      {
-        m->SetQualityModeToExact();
-        clip(m);
-      },
-      2 },
-  };
-}
-
-std::vector<Way> ways()
-{
-  std::vector<Way> all = waysOfAll();
-  const std::vector<Way> parts = waysOfParts();
-  all.insert(all.end(), parts.begin(), parts.end());
-  return all;
 }
 
 /// All modes, views and ways to cut the image: the pictures are those of one rank.
