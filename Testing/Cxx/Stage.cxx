@@ -302,6 +302,22 @@ void placeAtRandom(vtkImageData* image, reference::Random& random)
   image->SetOrigin(origin.data());
 }
 
+void chooseSamples(
+  vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, reference::Random& random)
+{
+  mapper->SetMaximumType(random.uniform(0, 2));
+  mapper->SetLocalMaximumThreshold(100.0);
+  mapper->SetSlab(random.uniform(0, 2) == 0);
+  mapper->SetSlabCenter(image->GetCenter());
+  mapper->SetSlabThickness(20.0);
+  mapper->SetCropping(random.uniform(0, 2) == 0);
+  mapper->SetCroppingRegionFlags(VTK_CROP_INVERTED_CROSS);
+  const double* const b = image->GetBounds();
+  mapper->SetCroppingRegionPlanes(0.7 * b[0] + 0.3 * b[1], 0.2 * b[0] + 0.8 * b[1],
+    0.6 * b[2] + 0.4 * b[3], 0.3 * b[2] + 0.7 * b[3], 0.6 * b[4] + 0.4 * b[5],
+    0.3 * b[4] + 0.7 * b[5]);
+}
+
 //------------------------------------------------------------------------------
 reference::Volume<std::uint8_t> blobsAndTubes(
   const std::array<int, 3>& size, int count, reference::Random& random)

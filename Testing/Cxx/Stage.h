@@ -140,6 +140,11 @@ vtkSmartPointer<vtkImageData> toImageData(const reference::Volume<std::uint8_t>&
  */
 void placeAtRandom(vtkImageData* image, reference::Random& random);
 
+/// Sets which samples of an image's rays a mapper takes, and which of them counts: maximum type,
+/// slab and cropping.
+void chooseSamples(
+  vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, reference::Random& random);
+
 /**
  * Blobs and tubes with soft rims and values up to 255 at random places, without symmetry, and
  * nothing within 5 voxels of the border, so that it does not matter where rays end. At least 32

@@ -85,17 +85,7 @@ void chooseAtRandom(
   mapper->SetShearImageSampling(random.uniform(0, 2));
   mapper->SetBlendMode(random.uniform(0, 2) ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
                                             : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
-  mapper->SetMaximumType(random.uniform(0, 2));
-  mapper->SetLocalMaximumThreshold(100.0);
-  mapper->SetSlab(random.uniform(0, 2) == 0);
-  mapper->SetSlabCenter(image->GetCenter());
-  mapper->SetSlabThickness(20.0);
-  mapper->SetCropping(random.uniform(0, 2) == 0);
-  mapper->SetCroppingRegionFlags(VTK_CROP_INVERTED_CROSS);
-  const double* const b = image->GetBounds();
-  mapper->SetCroppingRegionPlanes(0.7 * b[0] + 0.3 * b[1], 0.2 * b[0] + 0.8 * b[1],
-    0.6 * b[2] + 0.4 * b[3], 0.3 * b[2] + 0.7 * b[3], 0.6 * b[4] + 0.4 * b[5],
-    0.3 * b[4] + 0.7 * b[5]);
+  stage::chooseSamples(mapper, image, random);
   mapper->RemoveAllClippingPlanes();
   if (random.uniform(0, 1))
   {
