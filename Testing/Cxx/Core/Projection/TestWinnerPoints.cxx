@@ -78,6 +78,17 @@ private:
   std::vector<float> ClipDepths;
 };
 
+/// How far a point lies from the middle of the slice that a shear pixel's sample is of. It may be
+/// put before an eye that lies just there, see Locator::pointAt().
+double besideSlice(const std::vector<splatting::ShearImage>& images, const Scene& scene,
+  const splatting::ShearPixel& pixel, const glm::dvec3& point)
+{
+  const splatting::ShearImage& image = images[pixel.image];
+  const int winner = image.winners[std::size_t(pixel.v) * image.width + pixel.u];
+  const double slice = winner / splatting::StepsPerSlice;
+  return std::max(std::abs(point[scene.images[pixel.image].principalAxis()] - slice) - 1e-6, 0.0);
+}
+
 /// Points lie on the rays of their pixels, in their slices, and next to their voxels.
 void testPoints(Checks& check, bool perspective)
 {
@@ -122,6 +133,9 @@ void testPoints(Checks& check, bool perspective)
           check(picked == point && off.x <= bound.x && off.y <= bound.y,
             "the point is not on the ray of pixel ", x, " ", y, ": ", off.x, " ", off.y,
             " beside it, not ", bound.x, " ", bound.y);
+          check(settings.quality == Quality::Exact ||
+              besideSlice(images, scene, nearest, point) <= 1e-9,
+            "the point of pixel ", x, " ", y, " is beside its slice");
           // Points may be next to the eye, before any near plane.
           const double rounding = 1e-6 / std::min(std::abs(clip.w), 1.0);
           const double depth = 0.5 * clip.z / clip.w + 0.5;
