@@ -9,20 +9,23 @@
 
 #include "Kernels/ResamplingKernels.h"
 
+#include <math.h>
+
 #include <limits>
 
 namespace splatting
 {
 namespace
 {
-/// Correctly rounded, as IEEE 754 has it, whatever the instruction set.
+/// Correctly rounded, as IEEE 754 has it, whatever the instruction set. C's functions, because
+/// C++'s are inline: of those one copy, for any instruction set, would serve all.
 inline float squareRoot(float x)
 {
-  return __builtin_sqrtf(x);
+  return ::sqrtf(x);
 }
 inline double squareRoot(double x)
 {
-  return __builtin_sqrt(x);
+  return ::sqrt(x);
 }
 #if defined(__AVX512F__)
 inline Pack<float> squareRoot(Pack<float> x)
