@@ -291,6 +291,17 @@ void ClosedSurface::reset(std::vector<glm::dvec3> points, std::vector<glm::ivec3
   }
 }
 
+bool ClosedSurface::contains(const glm::dvec3& point) const
+{
+  bool isInside = false;
+  for (const glm::ivec3& t : this->Triangles)
+  {
+    isInside ^= isMet(this->Points[t[0]] - point, this->Points[t[1]] - point,
+      this->Points[t[2]] - point, false);
+  }
+  return isInside;
+}
+
 const SurfaceDepths& ClosedSurface::project(const ShearWarp& geometry)
 {
   const int direction =

@@ -52,6 +52,19 @@ public:
   /// Points in index space, with coordinates of at most 1e12, and three of them for each triangle.
   void reset(std::vector<glm::dvec3> points, std::vector<glm::ivec3> triangles);
 
+  /// Calls f(corners) for each triangle.
+  template <class F>
+  void forTriangles(F&& f) const
+  {
+    for (const glm::ivec3& t : this->Triangles)
+    {
+      f({ this->Points[t[0]], this->Points[t[1]], this->Points[t[2]] });
+    }
+  }
+
+  /// Whether a line from a point meets the surface an odd number of times.
+  bool contains(const glm::dvec3& point) const;
+
   /// Finds the depths, unless the last call for an image with this direction was for the same rays.
   /// They stay until the next call for one.
   const SurfaceDepths& project(const ShearWarp& geometry);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Clipping/SceneDepth.h"
 
+#include "Cells/PixelRays.h"
+
 #include <vtkSMPTools.h>
 
 #include <glm/geometric.hpp>
@@ -170,6 +172,28 @@ void SceneDepth::endRays(
     const glm::dvec2 slope(geometry.columns().slope[u + x], geometry.rows().slope[v]);
     this->endRay(
       geometry, pixel, geometry.onRay(u + x, v, geometry.reference()), slope, near[x], far[x]);
+  }
+}
+
+void SceneDepth::endRays(const PixelRays& rays, int x, int y, int count, double* far) const
+{
+  const int first = std::max(x, this->Origin.x);
+  const int last = std::min(x + count, this->Origin.x + this->Size.x);
+  if (this->empty() || y < this->Origin.y || y >= this->Origin.y + this->Size.y)
+  {
+    return;
+  }
+  for (int u = first; u < last; ++u)
+  {
+    const double depth = this->at({ u, y });
+    if (depth < 1.0)
+    {
+      // What is deeper than that, a half-space.
+      const glm::dvec4 deeper = this->ClipZ - (2.0 * depth - 1.0) * this->ClipW;
+      const double start = glm::dot(deeper, glm::dvec4(rays.start(u, y), 1.0));
+      const double speed = glm::dot(glm::dvec3(deeper), rays.direction(u, y));
+      far[u - x] = speed > 0.0 ? std::min(far[u - x], -start / speed) : far[u - x];
+    }
   }
 }
 

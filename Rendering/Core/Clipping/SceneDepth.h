@@ -14,6 +14,8 @@
 
 namespace splatting
 {
+class PixelRays;
+
 /**
  * Depths of other things in the scene, one per screen pixel, and where the volume lies among them.
  *
@@ -54,6 +56,9 @@ public:
   /// depth of one pixel of the viewport.
   void endRay(const ShearWarp& geometry, const glm::ivec2& pixel, const glm::dvec2& at,
     const glm::dvec2& slope, double& near, double& far) const;
+
+  /// Ends the rays of the pixels (x, y), (x + 1, y), ... of this view where other things lie.
+  void endRays(const PixelRays& rays, int x, int y, int count, double* far) const;
 
   /// Clears the pixels of a picture that are hidden.
   void hide(Picture& picture) const;

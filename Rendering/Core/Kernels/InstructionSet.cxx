@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Kernels/CellLoops.h"
 #include "Kernels/Kernels.h"
 
 #include <algorithm>
@@ -7,11 +8,14 @@
 namespace splatting
 {
 extern const Kernels kernelsBaseline;
+extern const CellKernels cellKernelsBaseline;
 #if defined(SPLATTING_HAS_AVX2)
 extern const Kernels kernelsAVX2;
+extern const CellKernels cellKernelsAVX2;
 #endif
 #if defined(SPLATTING_HAS_AVX512)
 extern const Kernels kernelsAVX512;
+extern const CellKernels cellKernelsAVX512;
 extern const Kernels kernelsAVX512VBMI;
 #endif
 
@@ -28,7 +32,7 @@ InstructionSet bestInstructionSet()
     }
 #endif
 #if defined(SPLATTING_HAS_AVX2)
-    if (__builtin_cpu_supports("avx2"))
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
     {
       return InstructionSet::AVX2;
     }
@@ -54,6 +58,24 @@ const Kernels& kernelsFor(InstructionSet set)
 #endif
     default:
       return kernelsBaseline;
+  }
+}
+
+const CellKernels& cellKernelsFor(InstructionSet set)
+{
+  switch (std::min(set, bestInstructionSet()))
+  {
+#if defined(SPLATTING_HAS_AVX512)
+    case InstructionSet::AVX512VBMI:
+    case InstructionSet::AVX512:
+      return cellKernelsAVX512;
+#endif
+#if defined(SPLATTING_HAS_AVX2)
+    case InstructionSet::AVX2:
+      return cellKernelsAVX2;
+#endif
+    default:
+      return cellKernelsBaseline;
   }
 }
 

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef splattingCellIndex_h
+#define splattingCellIndex_h
+
+#include "Kernels/CellLoops.h"
+#include "Volume/VolumeIndex.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace splatting
+{
+/// Cells along a brick's side, twice as many as along a block's.
+constexpr int BrickCells = 2 * BlockCells;
+
+/**
+ * A volume, or a piece of one, as cells.
+ *
+ * Along an axis cell c lies between voxels c - shift and c - shift + 1, which are clamped to the
+ * volume: where the field ends at the outermost voxels' sides (of cell scalars, and along axes with
+ * one voxel) there is a cell beyond each end, of which the inner half is in the field. Cells and
+ * bricks are counted in the whole volume, so that those of pieces are those of the whole.
+ */
+struct CellGrid
+{
+  VoxelArray voxels;     ///< of the piece
+  glm::ivec3 first{ 0 }; ///< where it begins in the whole
+  glm::ivec3 whole{ 0 }; ///< voxels of the whole
+  glm::ivec3 shift{ 0 };
+  glm::ivec3 begin{ 0 }, end{ 0 };    ///< the cells of the piece
+  glm::dvec3 low{ 0.0 }, high{ 0.0 }; ///< where the field of the whole ends
+  glm::ivec3 firstBrick{ 0 }, bricks{ 0 };
+
+  CellGrid() = default;
+  CellGrid(const VoxelArray& piece, const glm::ivec3& firstVoxel, const glm::ivec3& wholeSize,
+    bool showsBoxes);
+
+  bool operator==(const CellGrid& other) const
+  {
+    return this->voxels.voxels == other.voxels.voxels && this->voxels.type == other.voxels.type &&
+      this->voxels.dimensions == other.voxels.dimensions && this->first == other.first &&
+      this->whole == other.whole && this->shift == other.shift;
+  }
+  std::size_t brickCount() const
+  {
+    return std::size_t(this->bricks.x) * this->bricks.y * this->bricks.z;
+  }
+  /// The first cell of a brick.
+  glm::ivec3 brickCell(std::uint32_t brick) const;
+  /// The voxels of the piece between which an axis' cells [from, to) lie: first and last.
+  glm::ivec2 voxelsOf(int axis, int from, int to) const;
+};
+
+/**
+ * The largest voxel (of minima the least; NaN where all are hidden) of each brick of 8^3 cells and
+ * each of its eight blocks of 4^3, with the voxels of their far faces; of the volume's type.
+ */
+struct CellBounds
+{
+  std::vector<unsigned char> bricks, blocks;
+  /// Bricks with the largest values first. Those without a voxel are left out.
+  std::vector<std::uint32_t> order;
+
+  template <class T>
+  const T* brick() const
+  {
+    return reinterpret_cast<const T*>(this->bricks.data());
+  }
+  template <class T>
+  const T* block() const
+  {
+    return reinterpret_cast<const T*>(this->blocks.data());
+  }
+};
+
+/**
+ * What exact projections know of a volume: made on first need, kept until the data change. Takes
+ * about 1/64 of the volume's memory for maxima, and as much for minima.
+ */
+class CellIndex
+{
+public:
+  /// Forgets everything if anything has changed.
+  /// @param range  of the whole
+  void update(const CellGrid& grid, const VolumeIndex::Range& range);
+  /// The voxels have changed.
+  void clear();
+
+  const CellGrid& grid() const { return this->Grid; }
+  const VolumeIndex::Range& range() const { return this->Range; }
+  const CellBounds& bounds(bool minima);
+
+  std::size_t memorySize() const;
+  /// Seconds that making the bounds took.
+  double time() const { return this->Seconds; }
+
+private:
+  template <class T>
+  void make(bool minima, CellBounds& bounds) const;
+
+  CellGrid Grid;
+  VolumeIndex::Range Range;
+  CellBounds Bounds[2];
+  bool Made[2] = { false, false };
+  double Seconds = 0.0;
+};
+
+/// From voxels to the values of the kernels: see CellLoops.h. For minima these are negative voxels.
+template <class A>
+CellScale<A> scaleOf(const VolumeIndex::Range& range, bool minima);
+extern template CellScale<float> scaleOf<float>(const VolumeIndex::Range&, bool);
+extern template CellScale<double> scaleOf<double>(const VolumeIndex::Range&, bool);
+
+/// What a voxel that bounds() gives is as a value.
+template <class T>
+Accumulator<T> boundOf(T voxel, const CellScale<Accumulator<T>>& scale)
+{
+  using A = Accumulator<T>;
+  const A value = std::fma(scale.factor, static_cast<A>(voxel), scale.offset);
+  return value != value ? CellValue<A>::None
+                        : std::clamp(value, CellValue<A>::Lowest, CellValue<A>::Highest);
+}
+}
+
+#endif

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Where boxes of index space are seen.
+ */
+#ifndef splattingCellPlaces_h
+#define splattingCellPlaces_h
+
+#include "Cells/PixelRays.h"
+#include "Geometry/View.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace splatting
+{
+/// Middle and half the sides of a box.
+struct CellBox
+{
+  glm::dvec3 middle, half;
+
+  CellBox(const glm::dvec3& low, const glm::dvec3& high)
+    : middle(0.5 * (low + high)),
+      half(0.5 * (high - low))
+  {
+  }
+  glm::dvec3 low() const { return this->middle - this->half; }
+  glm::dvec3 high() const { return this->middle + this->half; }
+};
+
+/// Pixels, both ends included.
+struct PixelRectangle
+{
+  glm::ivec2 low{ 0 }, high{ -1 };
+
+  bool empty() const { return this->low.x > this->high.x || this->low.y > this->high.y; }
+};
+
+/// The pixels of the viewport that may see a box, and between which parameters of their rays.
+class SeenBox
+{
+public:
+  SeenBox(const PixelRays& rays, const CellBox& box) : Rays(rays), Box(box)
+  {
+    const glm::dmat3& m = rays.toPixel();
+    const glm::dvec3 q = m * (box.middle - rays.origin());
+    this->T = q.z;
+    this->Reach = this->reachOf(2, 0.0, 2);
+    if (!rays.isPerspective())
+    {
+      this->Pixel = glm::dvec2(q);
+      this->Spread = { this->reachOf(0, 0.0, 2), this->reachOf(1, 0.0, 2) };
+      return;
+    }
+    // Where the box may contain the eye, or what lies beside it, pixels have no bounds.
+    this->Near = !(this->T - this->Reach > 1e-3 * this->T);
+    if (!this->Near)
+    {
+      this->Pixel = glm::dvec2(q) / q.z;
+      this->Spread =
+        glm::dvec2(this->reachOf(0, this->Pixel.x, 2), this->reachOf(1, this->Pixel.y, 2)) /
+        (this->T - this->Reach);
+    }
+  }
+
+  /// Whether the box is so near to the eye that pixel() and spread() have no meaning.
+  bool isNear() const { return this->Near; }
+  const glm::dvec2& pixel() const { return this->Pixel; }
+  const glm::dvec2& spread() const { return this->Spread; }
+  /// The parameter of the middle, and how much more or less it is in the box.
+  double t() const { return this->T; }
+  double reach() const { return this->Reach; }
+
+  /// Those out of a rectangle.
+  PixelRectangle within(const PixelRectangle& pixels) const
+  {
+    constexpr double margin = 0.01;
+    if (this->Near)
+    {
+      return this->isBeside(pixels) ? PixelRectangle() : pixels;
+    }
+    const auto limited = [](double x) { return static_cast<int>(std::clamp(x, -1e6, 1e6)); };
+    const glm::dvec2 low = glm::ceil(this->Pixel - this->Spread - margin);
+    const glm::dvec2 high = glm::floor(this->Pixel + this->Spread + margin);
+    return { glm::max(pixels.low, glm::ivec2(limited(low.x), limited(low.y))),
+      glm::min(pixels.high, glm::ivec2(limited(high.x), limited(high.y))) };
+  }
+
+private:
+  /// How much row r, less `share` times another row, changes within the box.
+  double reachOf(int r, double share, int other) const
+  {
+    const glm::dmat3& m = this->Rays.toPixel();
+    double reach = 0.0;
+    for (int a = 0; a < 3; ++a)
+    {
+      reach += std::abs(m[a][r] - share * m[a][other]) * this->Box.half[a];
+    }
+    return reach;
+  }
+
+  /// Whether the box lies wholly behind the eye or on the outer side of a plane through the eye and
+  /// a side of the rectangle.
+  bool isBeside(const PixelRectangle& pixels) const
+  {
+    const glm::dvec3 q = this->Rays.toPixel() * (this->Box.middle - this->Rays.origin());
+    if (q.z + this->Reach < 0.0)
+    {
+      return true;
+    }
+    for (int a = 0; a < 2; ++a)
+    {
+      const double low = pixels.low[a] - 0.01, high = pixels.high[a] + 0.01;
+      if (q[a] - low * q.z + this->reachOf(a, low, 2) < 0.0 ||
+        high * q.z - q[a] + this->reachOf(a, high, 2) < 0.0)
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  const PixelRays& Rays;
+  const CellBox& Box;
+  bool Near = false;
+  double T, Reach;
+  glm::dvec2 Pixel{ 0.0 }, Spread{ 0.0 };
+};
+
+/**
+ * A box of the view's cropping regions, of which all is shown.
+ */
+struct ShownRegions
+{
+  std::vector<CellBox> boxes;
+
+  /// The parts of the field that cropping shows; neighbouring regions along x are one.
+  ShownRegions(const Cropping& cropping, const glm::dvec3& low, const glm::dvec3& high)
+  {
+    if (!cropping.cuts())
+    {
+      this->boxes.emplace_back(low, high);
+      return;
+    }
+    for (int n = 0; n < 9; ++n)
+    {
+      const int y = n % 3, z = n / 3;
+      for (int x = 0; x < 3; ++x)
+      {
+        int last = x;
+        if (!(cropping.flags >> (x + 3 * y + 9 * z) & 1))
+        {
+          continue;
+        }
+        while (last < 2 && cropping.flags >> (last + 1 + 3 * y + 9 * z) & 1)
+        {
+          ++last;
+        }
+        this->add(cropping, glm::ivec3(x, y, z), glm::ivec3(last, y, z), low, high);
+        x = last;
+      }
+    }
+  }
+
+private:
+  void add(const Cropping& cropping, const glm::ivec3& first, const glm::ivec3& last,
+    const glm::dvec3& low, const glm::dvec3& high)
+  {
+    glm::dvec3 from, to;
+    for (int a = 0; a < 3; ++a)
+    {
+      const glm::dvec2& planes = cropping.planes[a];
+      from[a] = first[a] == 0 ? low[a] : std::max(low[a], planes[first[a] - 1]);
+      to[a] = last[a] == 2 ? high[a] : std::min(high[a], planes[last[a]]);
+    }
+    if (from.x <= to.x && from.y <= to.y && from.z <= to.z)
+    {
+      this->boxes.emplace_back(from, to);
+    }
+  }
+};
+}
+
+#endif

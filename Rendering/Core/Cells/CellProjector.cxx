@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Cells/CellProjector.h"
+
+#include "Cells/LocalMaxima.h"
+#include "Cells/TileSplatter.h"
+
+#include <vtkSMPTools.h>
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+#include <numeric>
+#include <type_traits>
+
+namespace splatting
+{
+namespace
+{
+/// The rectangle of the viewport in which a box may be seen.
+PixelRectangle rectangleOf(
+  const PixelRays& rays, const CellBox& box, const PixelRectangle& viewport)
+{
+  return SeenBox(rays, box).within(viewport);
+}
+}
+
+struct CellProjector::Scratch
+{
+  /// The bricks that tiles see: of each chunk of bricks, for each tile.
+  static constexpr int Chunks = 16;
+  std::vector<std::vector<std::uint32_t>> seen[Chunks];
+  std::vector<int> tiles; // those with most bricks first
+  std::mutex mutex;
+  std::vector<std::unique_ptr<ScreenTile<float>>> floats;
+  std::vector<std::unique_ptr<ScreenTile<double>>> doubles;
+
+  std::vector<std::unique_ptr<ScreenTile<float>>>& pool(float*) { return this->floats; }
+  std::vector<std::unique_ptr<ScreenTile<double>>>& pool(double*) { return this->doubles; }
+
+  /// A tile for one thread.
+  template <class A>
+  std::unique_ptr<ScreenTile<A>> take()
+  {
+    const std::lock_guard<std::mutex> lock(this->mutex);
+    auto& tiles = this->pool(static_cast<A*>(nullptr));
+    if (tiles.empty())
+    {
+      return std::make_unique<ScreenTile<A>>();
+    }
+    std::unique_ptr<ScreenTile<A>> tile = std::move(tiles.back());
+    tiles.pop_back();
+    return tile;
+  }
+  template <class A>
+  void giveBack(std::unique_ptr<ScreenTile<A>> tile)
+  {
+    const std::lock_guard<std::mutex> lock(this->mutex);
+    this->pool(static_cast<A*>(nullptr)).push_back(std::move(tile));
+  }
+};
+
+namespace
+{
+/// Assigns bricks [first, last) of the order to tiles.
+template <class T>
+void assignBricks(const CellFrame<T>& frame, std::size_t first, std::size_t last,
+  std::vector<std::vector<std::uint32_t>>& tiles)
+{
+  tiles.resize(frame.tileCount());
+  for (std::vector<std::uint32_t>& bricks : tiles)
+  {
+    bricks.clear();
+  }
+  for (std::size_t n = first; n < last; ++n)
+  {
+    const std::uint32_t brick = frame.bounds.order[n];
+    const CellBox box = frame.boxOfBrick(brick);
+    if (!frame.isShown(box))
+    {
+      continue;
+    }
+    const SeenBox seen(frame.rays, box);
+    const PixelRectangle pixels = seen.within(frame.rectangle);
+    if (pixels.empty())
+    {
+      continue;
+    }
+    const glm::ivec2 from = (pixels.low - frame.rectangle.low) / ScreenTile<float>::Side;
+    const glm::ivec2 to = (pixels.high - frame.rectangle.low) / ScreenTile<float>::Side;
+    for (int y = from.y; y <= to.y; ++y)
+    {
+      for (int x = from.x; x <= to.x; ++x)
+      {
+        const int tile = y * frame.tiles.x + x;
+        if (!seen.isNear() || !seen.within(frame.pixelsOf(tile)).empty())
+        {
+          tiles[tile].push_back(brick);
+        }
+      }
+    }
+  }
+}
+}
+
+CellProjector::CellProjector() : Memory(new Scratch) {}
+
+CellProjector::~CellProjector() = default;
+
+bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
+  const RayEnds& ends, bool locate, ScreenScalars& screen)
+{
+  return this->project(index, view, settings, ends, locate, { { 0, 0 }, view.viewport }, screen);
+}
+
+bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
+  const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], ScreenScalars& screen)
+{
+  this->Observer.start();
+  if (!screen.rays.find(view))
+  {
+    return false;
+  }
+  const CellGrid& grid = index.grid();
+  const PixelRectangle wanted{ glm::max(within[0], glm::ivec2(0)),
+    glm::min(within[0] + within[1], view.viewport) - 1 };
+  const PixelRectangle rectangle = rectangleOf(screen.rays, CellBox(grid.low, grid.high), wanted);
+  screen.origin = rectangle.low;
+  screen.size = rectangle.empty() ? glm::ivec2(0) : rectangle.high - rectangle.low + 1;
+  return dispatch(grid.voxels.type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      using A = Accumulator<T>;
+      const std::size_t pixels = std::size_t(screen.size.x) * screen.size.y;
+      const bool locates = locate || settings.reduction == Reduction::Local;
+      screen.type = scalarTypeOf<A>();
+      screen.bytes.resize(pixels * sizeof(A));
+      screen.depths.resize(locates ? pixels : 0);
+      if (pixels == 0)
+      {
+        return !this->Observer.stopped();
+      }
+      const CellFrame<T> frame(index, view, settings, ends, locates, rectangle, screen.rays);
+      Scratch& memory = *this->Memory;
+      const std::size_t bricks = frame.bounds.order.size();
+      vtkSMPTools::For(0, Scratch::Chunks, 1,
+        [&](vtkIdType begin, vtkIdType end)
+        {
+          for (vtkIdType n = begin; n < end; ++n)
+          {
+            assignBricks(frame, bricks * n / Scratch::Chunks, bricks * (n + 1) / Scratch::Chunks,
+              memory.seen[n]);
+          }
+        });
+      memory.tiles.resize(frame.tileCount());
+      std::iota(memory.tiles.begin(), memory.tiles.end(), 0);
+      const auto cost = [&](int tile)
+      {
+        return std::accumulate(std::begin(memory.seen), std::end(memory.seen), std::size_t(0),
+          [&](std::size_t sum, const auto& seen) { return sum + seen[tile].size(); });
+      };
+      std::vector<std::size_t> costs;
+      for (int tile : memory.tiles)
+      {
+        costs.push_back(cost(tile));
+      }
+      std::stable_sort(memory.tiles.begin(), memory.tiles.end(),
+        [&](int a, int b) { return costs[a] > costs[b]; });
+      this->Observer.begin(static_cast<int>(memory.tiles.size()));
+      vtkSMPTools::For(0, static_cast<vtkIdType>(memory.tiles.size()), 1,
+        [&](vtkIdType begin, vtkIdType end)
+        {
+          std::unique_ptr<ScreenTile<A>> tile = memory.take<A>();
+          TileSplatter<T> splatter(frame, *tile);
+          for (vtkIdType n = begin; n < end && !this->Observer.stopped(); ++n)
+          {
+            splatter.open(memory.tiles[n]);
+            for (const auto& seen : memory.seen)
+            {
+              if (!splatter.splat(seen[memory.tiles[n]]))
+              {
+                break;
+              }
+            }
+            splatter.finish(screen);
+            this->Observer.bandDone();
+          }
+          memory.giveBack<A>(std::move(tile));
+        });
+      this->Observer.ask();
+      if (settings.reduction == Reduction::Local && !this->Observer.stopped())
+      {
+        findLocalMaxima<T>(frame, settings.threshold, screen);
+      }
+      return !this->Observer.stopped();
+    });
+}
+}

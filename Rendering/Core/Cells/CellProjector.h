@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Exact projections: cells are splatted onto the screen, those with the largest voxels first.
+ *
+ * A cell lies between eight voxels. In it the volume is interpolated trilinearly, so along a ray it
+ * is a cubic, whose maximum has a closed form [Sakas et al. 1995]. A pixel shows the largest of
+ * the maxima of the cells that its ray crosses. Their order does not matter.
+ */
+#ifndef splattingCellProjector_h
+#define splattingCellProjector_h
+
+#include "Cells/CellIndex.h"
+#include "Cells/ScreenScalars.h"
+#include "Common/ProgressObserver.h"
+#include "Geometry/View.h"
+#include "Projection/Project.h"
+
+#include <memory>
+
+namespace splatting
+{
+class ClosedSurface;
+class SceneDepth;
+
+/// What ends rays besides the half-spaces and the cropping of a view.
+struct RayEnds
+{
+  const ClosedSurface* surface = nullptr; ///< rays are cut to the hull of their part inside
+  const SceneDepth* depth = nullptr;      ///< placed in the view
+};
+
+/**
+ * Projects volumes by cells. Holds the threads' work space between frames.
+ *
+ * The screen is divided into tiles. A thread takes a tile at a time and owns its pixels. The value
+ * of a cell at a pixel depends on the cell and the pixel alone, and is never above the cell's
+ * largest voxel: the same bits for any number of threads, order and instruction set.
+ */
+class CellProjector
+{
+public:
+  CellProjector();
+  ~CellProjector();
+
+  /// A ray that crosses the field between its ends over less than this, in steps of t, has no
+  /// sample.
+  static constexpr double ShortestRay = 0x1p-20;
+
+  /**
+   * Sets the rectangle of the viewport that shows the view's volume, and what its pixels show.
+   * @param index     of the volume, or of a piece of it
+   * @param settings  quality and acceleration are ignored; not for Reduction::Mean
+   * @param locate    whether to find the depths of samples
+   * @param within    the rectangle of the viewport that is wanted: origin and size
+   * @return  false if the view has no meaning or the observer has stopped the projection
+   */
+  bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
+    const RayEnds& ends, bool locate, ScreenScalars& screen);
+  bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
+    const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], ScreenScalars& screen);
+
+  ProgressObserver& observer() { return this->Observer; }
+
+private:
+  struct Scratch;
+  std::unique_ptr<Scratch> Memory;
+  ProgressObserver Observer;
+};
+}
+
+#endif

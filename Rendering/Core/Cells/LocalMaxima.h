@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef splattingLocalMaxima_h
+#define splattingLocalMaxima_h
+
+#include "Cells/TileSplatter.h"
+
+namespace splatting
+{
+/**
+ * Replaces the maxima of rays by the first local maximum, from the viewer, at or above a threshold
+ * [Sato et al. 1998]; rays without one keep their maximum.
+ *
+ * A value is a local maximum if the field falls behind it, or if the ray ends. Falls by less than
+ * 2^-40 of the volume's range are rounding. Where parts of a ray are hidden, its field is that of
+ * the other parts, one behind the other.
+ * @param screen  of the frame's global maxima, with depths
+ */
+template <class T>
+void findLocalMaxima(const CellFrame<T>& frame, double threshold, ScreenScalars& screen);
+}
+
+#endif

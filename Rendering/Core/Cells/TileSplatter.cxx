@@ -1,0 +1,549 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Cells/TileSplatter.h"
+
+#include "Clipping/SceneDepth.h"
+
+#include <glm/gtc/matrix_access.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace splatting
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+/// Bricks between two looks at whether the tile is done.
+constexpr int ChecksEvery = 64;
+/// Directions below this do not change a coordinate within a block.
+constexpr double Flat = 1e-9;
+
+/// The least and the greatest value of h in a box.
+glm::dvec2 rangeOf(const glm::dvec4& h, const CellBox& box)
+{
+  const double middle = glm::dot(glm::dvec3(h), box.middle) + h.w;
+  const double reach = glm::dot(glm::abs(glm::dvec3(h)), box.half);
+  return { middle - reach, middle + reach };
+}
+
+bool overlap(const CellBox& a, const CellBox& b)
+{
+  return glm::all(glm::lessThanEqual(glm::abs(a.middle - b.middle), a.half + b.half));
+}
+
+bool contains(const CellBox& a, const CellBox& b)
+{
+  return glm::all(glm::lessThanEqual(glm::abs(a.middle - b.middle), a.half - b.half));
+}
+}
+
+template <class T>
+CellFrame<T>::CellFrame(CellIndex& index, const View& view, const ProjectionSettings& settings,
+  const RayEnds& ends, bool locate, const PixelRectangle& pixels, const PixelRays& pixelRays)
+  : grid(index.grid()),
+    bounds(index.bounds(settings.reduction == Reduction::Minimum)),
+    rays(pixelRays),
+    rectangle(pixels),
+    tiles((pixels.high - pixels.low) / ScreenTile<A>::Side + 1),
+    viewport(view.viewport),
+    kernels(cellKernelsFor(settings.instructionSet)),
+    scale(scaleOf<A>(index.range(), settings.reduction == Reduction::Minimum)),
+    lowest(-static_cast<double>(scale.offset) / static_cast<double>(scale.factor)),
+    highest(settings.reduction == Reduction::Minimum ? index.range().low : index.range().high),
+    halfSpaces(view.halfSpaces),
+    regions(view.cropping, grid.low, grid.high),
+    crops(view.cropping.cuts()),
+    depth(ends.depth),
+    minima(settings.reduction == Reduction::Minimum),
+    locates(locate),
+    shades(settings.reduction == Reduction::DepthShaded),
+    ambient(settings.ambient),
+    rate(settings.changeRate)
+{
+  if (ends.surface)
+  {
+    this->surface.find(*ends.surface, pixelRays, pixels.low, pixels.high - pixels.low + 1);
+  }
+  this->cutsAll = ends.surface || ends.depth;
+  const bool canDarken = this->shades && std::min(this->ambient, this->ambient + this->rate) < 0.0;
+  this->mayBeEmpty = this->scale.holes || this->crops || canDarken;
+}
+
+template <class T>
+PixelRectangle CellFrame<T>::pixelsOf(int tile) const
+{
+  const glm::ivec2 low = this->rectangle.low +
+    ScreenTile<A>::Side * glm::ivec2(tile % this->tiles.x, tile / this->tiles.x);
+  return { low, glm::min(low + ScreenTile<A>::Side - 1, this->rectangle.high) };
+}
+
+template <class T>
+CellBox CellFrame<T>::boxOfCells(const glm::ivec3& cell, int size) const
+{
+  const glm::ivec3 from = glm::max(cell, this->grid.begin);
+  const glm::ivec3 to = glm::min(cell + size, this->grid.end);
+  return { glm::max(glm::dvec3(from - this->grid.shift), this->grid.low),
+    glm::min(glm::dvec3(to - this->grid.shift), this->grid.high) };
+}
+
+template <class T>
+CellBox CellFrame<T>::boxOfBrick(std::uint32_t brick) const
+{
+  return this->boxOfCells(this->grid.brickCell(brick), BrickCells);
+}
+
+template <class T>
+bool CellFrame<T>::isShown(const CellBox& box) const
+{
+  for (const glm::dvec4& h : this->halfSpaces)
+  {
+    if (rangeOf(h, box).y < 0.0)
+    {
+      return false;
+    }
+  }
+  return !this->crops ||
+    std::any_of(this->regions.boxes.begin(), this->regions.boxes.end(),
+      [&](const CellBox& region) { return overlap(region, box); });
+}
+
+template <class T>
+void CellFrame<T>::findEnds(int x, int y, int count, double* near, double* far) const
+{
+  const bool perspective = this->rays.isPerspective();
+  std::fill_n(near, count, perspective ? 0.0 : -Infinity);
+  std::fill_n(far, count, Infinity);
+  const glm::dvec3 start = this->rays.start(x, y), forward = this->rays.direction(x, y);
+  const glm::dvec3& across = this->rays.across();
+  const auto step = [&](double change) { return perspective ? 0.0 : change; };
+  const auto turn = [&](double change) { return perspective ? change : 0.0; };
+  for (int a = 0; a < 3; ++a)
+  {
+    this->kernels.within(near, far, count, start[a], step(across[a]), forward[a], turn(across[a]),
+      this->grid.low[a], this->grid.high[a]);
+  }
+  for (const glm::dvec4& h : this->halfSpaces)
+  {
+    const glm::dvec3 normal(h);
+    const double change = glm::dot(normal, across);
+    this->kernels.before(near, far, count, glm::dot(normal, start) + h.w, step(change),
+      glm::dot(normal, forward), turn(change));
+  }
+  if (!this->surface.empty())
+  {
+    this->surface.cut(x, y, count, near, far);
+  }
+  if (this->depth)
+  {
+    this->depth->endRays(this->rays, x, y, count, far);
+  }
+}
+
+template <class T>
+TileSplatter<T>::TileSplatter(const CellFrame<T>& frame, ScreenTile<A>& tile)
+  : Frame(frame),
+    Tile(tile),
+    Loops(frame.kernels)
+{
+  CellBlock<A>& block = this->Block;
+  block.holes = frame.scale.holes;
+  block.perspective = frame.rays.isPerspective();
+  block.located = frame.locates;
+  block.tiesFrom = frame.mayBeEmpty ? CellValue<A>::None : std::numeric_limits<A>::denorm_min();
+  block.shaded = frame.shades;
+  block.ambient = static_cast<A>(frame.ambient);
+  block.rate = static_cast<A>(frame.rate);
+  block.mostFactor = 1;
+}
+
+template <class T>
+void TileSplatter<T>::open(int tile)
+{
+  const CellFrame<T>& f = this->Frame;
+  this->Pixels = f.pixelsOf(tile);
+  this->HasEnds = f.cutsAll || f.crops || f.shades || !f.halfSpaces.empty() ||
+    f.rays.isPerspective() || f.grid.shift != glm::ivec3(0);
+  this->FirstNear = this->FirstFar = Infinity;
+  this->LastNear = this->LastFar = -Infinity;
+  std::fill_n(this->Tile.values, this->Tile.Size, CellValue<A>::Outside);
+  std::fill_n(this->Tile.least, sizeof(this->Tile.least) / sizeof(A), CellValue<A>::Outside);
+  for (int y = this->Pixels.low.y; y <= this->Pixels.high.y; ++y)
+  {
+    this->openRow(y);
+  }
+  std::fill_n(this->Tile.changed, this->Tile.Patches, ~std::uint32_t(0));
+  this->Tile.firstChanged = 0;
+  this->Tile.lastChanged = this->Tile.Patches - 1;
+  this->Loops.refresh(this->Tile);
+  this->SinceCheck = 0;
+}
+
+template <class T>
+void TileSplatter<T>::openRow(int y)
+{
+  const CellFrame<T>& f = this->Frame;
+  double near[ScreenTile<A>::Side], far[ScreenTile<A>::Side];
+  const int count = this->Pixels.high.x - this->Pixels.low.x + 1;
+  f.findEnds(this->Pixels.low.x, y, count, near, far);
+  const A empty = f.mayBeEmpty ? CellValue<A>::None : A(0);
+  const std::ptrdiff_t row = std::ptrdiff_t(y - this->Pixels.low.y) * this->Tile.Stride;
+  for (int x = 0; x < count; ++x)
+  {
+    const bool crosses = far[x] - near[x] > CellProjector::ShortestRay;
+    this->Tile.values[row + x] = crosses ? empty : CellValue<A>::Outside;
+  }
+  for (int x = 0; x < count && f.locates; ++x)
+  {
+    this->Tile.depths[row + x] =
+      f.mayBeEmpty ? std::numeric_limits<A>::infinity() : static_cast<A>(near[x]);
+  }
+  for (int x = 0; x < count && this->HasEnds; ++x)
+  {
+    const A begin = static_cast<A>(near[x]), end = static_cast<A>(far[x]);
+    this->Tile.nears[row + x] = begin;
+    this->Tile.fars[row + x] = end;
+    this->Tile.nearRests[row + x] = static_cast<A>(near[x] - static_cast<double>(begin));
+    this->Tile.farRests[row + x] = static_cast<A>(far[x] - static_cast<double>(end));
+  }
+  for (int x = 0; x < count && f.shades; ++x)
+  {
+    if (this->Tile.values[row + x] != CellValue<A>::Outside)
+    {
+      this->FirstNear = std::min(this->FirstNear, near[x]);
+      this->LastNear = std::max(this->LastNear, near[x]);
+      this->FirstFar = std::min(this->FirstFar, far[x]);
+      this->LastFar = std::max(this->LastFar, far[x]);
+    }
+  }
+}
+
+// Of equal samples the nearest is sought among the bricks that reach a pixel's value, too.
+template <class T>
+bool TileSplatter<T>::reaches(A bound, A least, A factor) const
+{
+  bound = this->Frame.shades ? bound * factor : bound;
+  return bound > least || (this->Frame.locates && bound == least && bound >= this->Block.tiesFrom);
+}
+
+// The largest factor by which samples of a box are shaded.
+template <class T>
+typename TileSplatter<T>::A TileSplatter<T>::mostFactor(const SeenBox& seen) const
+{
+  const CellFrame<T>& f = this->Frame;
+  const auto share = [](double t, double near, double far)
+  { return far > near ? std::clamp((t - near) / (far - near), 0.0, 1.0) : -1.0; };
+  double first = share(seen.t() - seen.reach(), this->LastNear, this->LastFar);
+  double last = share(seen.t() + seen.reach(), this->FirstNear, this->FirstFar);
+  first = seen.isNear() || first < 0.0 ? 0.0 : first;
+  last = seen.isNear() || last < 0.0 ? 1.0 : last;
+  const double most = f.ambient + std::max((1.0 - first) * f.rate, (1.0 - last) * f.rate);
+  // No less than what rounding makes of it.
+  return static_cast<A>(std::max(most + 1e-5 * (std::abs(f.ambient) + std::abs(f.rate)), 0.0));
+}
+
+template <class T>
+bool TileSplatter<T>::splat(const std::vector<std::uint32_t>& bricks)
+{
+  for (const std::uint32_t brick : bricks)
+  {
+    if (!this->splatBrick(brick))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <class T>
+bool TileSplatter<T>::splatBrick(std::uint32_t brick)
+{
+  const CellFrame<T>& f = this->Frame;
+  const A bound = boundOf<T>(f.bounds.template brick<T>()[brick], f.scale);
+  if (++this->SinceCheck >= ChecksEvery)
+  {
+    // The order of bricks is right to within a thousandth of the range.
+    this->SinceCheck = 0;
+    const double rest = 1.0 + 0x1p-9;
+    const double factor = f.shades ? std::max({ f.ambient, f.ambient + f.rate, 0.0 }) : 1.0;
+    const double range = std::abs(static_cast<double>(f.scale.factor) * (f.highest - f.lowest));
+    const A most = static_cast<A>(
+      (static_cast<double>(bound) * rest + (std::isfinite(range) ? 0x1p-9 * range : 0.0)) * factor *
+      (1.0 + 1e-5));
+    const A least =
+      this->Loops.least(this->Tile, 0, ScreenTile<A>::Side - 1, 0, ScreenTile<A>::Side - 1);
+    if (std::isfinite(range) && most < least)
+    {
+      return false;
+    }
+  }
+  const CellBox box = f.boxOfBrick(brick);
+  const SeenBox seen(f.rays, box);
+  const PixelRectangle pixels = seen.within(this->Pixels);
+  if (pixels.empty())
+  {
+    return true;
+  }
+  const glm::ivec2 low = pixels.low - this->Pixels.low, high = pixels.high - this->Pixels.low;
+  const A factor = f.shades ? this->mostFactor(seen) : A(1);
+  if (!this->reaches(bound, this->Loops.least(this->Tile, low.x, high.x, low.y, high.y), factor))
+  {
+    return true;
+  }
+  // The blocks with the largest voxels first.
+  const T* const blocks = f.bounds.template block<T>() + 8 * std::size_t(brick);
+  A bounds[8];
+  int order[8], count = 0;
+  for (int b = 0; b < 8; ++b)
+  {
+    bounds[b] = boundOf<T>(blocks[b], f.scale);
+    int place = count++;
+    for (; place > 0 && bounds[order[place - 1]] < bounds[b]; --place)
+    {
+      order[place] = order[place - 1];
+    }
+    order[place] = b;
+  }
+  const glm::ivec3 cell = f.grid.brickCell(brick);
+  const bool isCut = f.cutsAll || this->isCutByHalfSpace(box);
+  for (int n = 0; n < count; ++n)
+  {
+    const int b = order[n];
+    this->splatBlock(cell + BlockCells * glm::ivec3(b & 1, b >> 1 & 1, b >> 2), bounds[b], isCut);
+  }
+  return true;
+}
+
+template <class T>
+bool TileSplatter<T>::isCutByHalfSpace(const CellBox& box) const
+{
+  return std::any_of(this->Frame.halfSpaces.begin(), this->Frame.halfSpaces.end(),
+    [&](const glm::dvec4& h) { return rangeOf(h, box).x < 0.0; });
+}
+
+template <class T>
+void TileSplatter<T>::splatBlock(const glm::ivec3& cell, A bound, bool isCut)
+{
+  const CellFrame<T>& f = this->Frame;
+  if (glm::any(glm::greaterThanEqual(cell, f.grid.end)) ||
+    glm::any(glm::lessThanEqual(cell + BlockCells, f.grid.begin)))
+  {
+    return;
+  }
+  const CellBox box = f.boxOfCells(cell, BlockCells);
+  const SeenBox seen(f.rays, box);
+  const PixelRectangle pixels = seen.within(this->Pixels);
+  if (pixels.empty())
+  {
+    return;
+  }
+  CellBlock<A>& block = this->Block;
+  const glm::ivec2 low = pixels.low - this->Pixels.low, high = pixels.high - this->Pixels.low;
+  block.least = this->Loops.least(this->Tile, low.x, high.x, low.y, high.y);
+  block.mostFactor = f.shades ? this->mostFactor(seen) : A(1);
+  if (!this->reaches(bound, block.least, block.mostFactor) || (isCut && !f.isShown(box)))
+  {
+    return;
+  }
+  block.columns[0] = low.x;
+  block.columns[1] = high.x;
+  block.rows[0] = low.y;
+  block.rows[1] = high.y;
+  this->load(cell);
+  const glm::dvec3 middle = glm::dvec3(cell - f.grid.shift) + 0.5 * BlockCells;
+  this->placeRays(seen, middle);
+  block.seen = nullptr;
+  if (seen.isNear())
+  {
+    this->findSeenCells(cell);
+    block.seen = this->Seen;
+  }
+  isCut = seen.isNear() || (isCut && (f.cutsAll || this->isCutByHalfSpace(box)));
+  // A cell's box, not only its part in the field.
+  const CellBox whole(middle - 0.5 * BlockCells, middle + 0.5 * BlockCells);
+  for (const CellBox& region : f.regions.boxes)
+  {
+    if (!overlap(region, box))
+    {
+      continue;
+    }
+    const bool isInside = contains(region, box) &&
+      contains(CellBox(f.grid.low, f.grid.high),
+        CellBox(glm::dvec3(glm::max(cell, f.grid.begin) - f.grid.shift),
+          glm::dvec3(glm::min(cell + BlockCells, f.grid.end) - f.grid.shift)));
+    block.cut = isCut || !isInside;
+    for (int a = 0; a < 3; ++a)
+    {
+      block.low[a] = static_cast<A>(std::max(region.low()[a], whole.low()[a] - 1.0) - middle[a]);
+      block.high[a] = static_cast<A>(std::min(region.high()[a], whole.high()[a] + 1.0) - middle[a]);
+    }
+    this->Loops.splat(this->Tile, block);
+  }
+}
+
+// The voxels of a block, and which of its cells there are.
+template <class T>
+bool TileSplatter<T>::load(const glm::ivec3& cell)
+{
+  const CellGrid& grid = this->Frame.grid;
+  const glm::ivec3& size = grid.voxels.dimensions;
+  const glm::ivec3 first = cell - grid.shift - grid.first;
+  std::ptrdiff_t x[5];
+  const T* rows[5][5];
+  for (int n = 0; n < 5; ++n)
+  {
+    x[n] = std::clamp(first.x + n, 0, size.x - 1);
+  }
+  for (int z = 0; z < 5; ++z)
+  {
+    const std::ptrdiff_t k = std::clamp(first.z + z, 0, size.z - 1);
+    for (int y = 0; y < 5; ++y)
+    {
+      const std::ptrdiff_t j = std::clamp(first.y + y, 0, size.y - 1);
+      rows[z][y] = static_cast<const T*>(grid.voxels.voxels) + (k * size.y + j) * size.x;
+    }
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    this->Block.begin[a] = std::max(grid.begin[a] - cell[a], 0);
+    this->Block.end[a] = std::min(grid.end[a] - cell[a], BlockCells);
+  }
+  static_cast<const BlockLoops<T>&>(this->Frame.kernels)
+    .load(rows, x, this->Frame.scale, this->Block);
+  return true;
+}
+
+// The rays of the pixels around one that sees the block's middle, from points beside that on.
+template <class T>
+void TileSplatter<T>::placeRays(const SeenBox& seen, const glm::dvec3& middle)
+{
+  const PixelRays& rays = this->Frame.rays;
+  CellBlock<A>& b = this->Block;
+  // Of the block, not of what the volume has of it: the same for all pieces.
+  const CellBox box(middle - 0.5 * BlockCells, middle + 0.5 * BlockCells);
+  const SeenBox whole(rays, box);
+  const bool perspective = rays.isPerspective(), near = whole.isNear();
+  const glm::ivec2 pixel = near ? this->Frame.viewport / 2 : glm::ivec2(glm::floor(whole.pixel()));
+  b.reference = near ? A(0) : static_cast<A>(whole.t());
+  const double t = static_cast<double>(b.reference);
+  const glm::dvec3 start = rays.point(pixel.x, pixel.y, t) - middle;
+  const glm::dvec3 forward = rays.direction(pixel.x, pixel.y);
+  b.x = pixel.x - this->Pixels.low.x;
+  b.y = pixel.y - this->Pixels.low.y;
+  const double scale = perspective ? t : 1.0;
+  for (int a = 0; a < 3; ++a)
+  {
+    b.start[a] = static_cast<A>(start[a]);
+    b.startAcross[a] = static_cast<A>(scale * rays.across()[a]);
+    b.startUp[a] = static_cast<A>(scale * rays.up()[a]);
+    b.forward[a] = static_cast<A>(forward[a]);
+    b.forwardAcross[a] = static_cast<A>(rays.across()[a]);
+    b.forwardUp[a] = static_cast<A>(rays.up()[a]);
+    b.flat[a] = std::abs(forward[a]) < Flat;
+    b.inverse[a] = b.flat[a] ? A(0) : static_cast<A>(1.0 / forward[a]);
+  }
+  if (seen.isNear())
+  {
+    return; // cells are placed one by one
+  }
+  const glm::dvec3 q = middle - rays.origin();
+  const glm::dmat3& m = rays.toPixel();
+  double size[2];
+  const auto place = [&](int r, A(&row)[3], A& rest)
+  {
+    const double share = perspective ? pixel[r] : 0.0;
+    const glm::dvec3 line = glm::row(m, r) - share * glm::row(m, 2);
+    const double middlePixel = glm::dot(line, q) - (perspective ? 0.0 : pixel[r]);
+    size[r] = std::abs(middlePixel);
+    for (int a = 0; a < 3; ++a)
+    {
+      row[a] = static_cast<A>(line[a]);
+      size[r] += 0.5 * BlockCells * std::abs(line[a]);
+    }
+    rest = static_cast<A>(middlePixel);
+  };
+  place(0, b.across, b.acrossStart);
+  place(1, b.up, b.upStart);
+  const double least = perspective ? seen.t() - seen.reach() : 1.0;
+  b.inverses[0] = static_cast<A>(1.0 / least);
+  b.inverses[1] = static_cast<A>(1.0 / (perspective ? seen.t() + seen.reach() : 1.0));
+  b.margin = static_cast<A>(2e-3 +
+    8.0 * static_cast<double>(std::numeric_limits<A>::epsilon()) *
+      (std::max(size[0], size[1]) / least + std::abs(b.x) + std::abs(b.y)));
+}
+
+// The pixels of cells near the eye.
+template <class T>
+void TileSplatter<T>::findSeenCells(const glm::ivec3& cell)
+{
+  const CellBlock<A>& b = this->Block;
+  const PixelRectangle block{ this->Pixels.low + glm::ivec2(b.columns[0], b.rows[0]),
+    this->Pixels.low + glm::ivec2(b.columns[1], b.rows[1]) };
+  for (int n = 0; n < 64; ++n)
+  {
+    const glm::dvec3 low(cell + glm::ivec3(n & 3, n >> 2 & 3, n >> 4) - this->Frame.grid.shift);
+    const CellBox box(low, low + 1.0);
+    const PixelRectangle pixels = SeenBox(this->Frame.rays, box).within(block);
+    this->Seen[n][0] = pixels.low.x - this->Pixels.low.x;
+    this->Seen[n][1] = pixels.high.x - this->Pixels.low.x;
+    this->Seen[n][2] = pixels.low.y - this->Pixels.low.y;
+    this->Seen[n][3] = pixels.high.y - this->Pixels.low.y;
+  }
+}
+
+template <class T>
+void TileSplatter<T>::finish(ScreenScalars& screen) const
+{
+  const CellFrame<T>& f = this->Frame;
+  const A back = A(1) / f.scale.factor;
+  const A lowest = static_cast<A>(f.lowest), highest = static_cast<A>(f.highest);
+  constexpr A none = std::numeric_limits<A>::quiet_NaN();
+  constexpr A infinite = std::numeric_limits<A>::infinity();
+  for (int y = this->Pixels.low.y; y <= this->Pixels.high.y; ++y)
+  {
+    const std::ptrdiff_t row = std::ptrdiff_t(y - this->Pixels.low.y) * this->Tile.Stride;
+    const int left = this->Pixels.low.x - screen.origin.x;
+    A* const out = screen.row<A>(y - screen.origin.y) + left;
+    float* const depths = f.locates
+      ? screen.depths.data() + std::ptrdiff_t(y - screen.origin.y) * screen.size.x + left
+      : nullptr;
+    for (int x = 0; x <= this->Pixels.high.x - this->Pixels.low.x; ++x)
+    {
+      const A value = this->Tile.values[row + x];
+      const A sense = f.minima ? -infinite : infinite;
+      const bool isEmpty = value == CellValue<A>::Outside || value == CellValue<A>::None;
+      A voxel = value * back + lowest;
+      if (!f.shades)
+      {
+        // Rounding must not lift it above the largest voxel.
+        voxel = f.minima ? std::max(voxel, highest) : std::min(voxel, highest);
+      }
+      out[x] = isEmpty                   ? none
+        : value >= CellValue<A>::Highest ? sense
+        : value <= CellValue<A>::Lowest  ? -sense
+                                         : voxel;
+      if (depths)
+      {
+        depths[x] = isEmpty ? std::numeric_limits<float>::quiet_NaN()
+                            : static_cast<float>(this->Tile.depths[row + x]);
+      }
+    }
+  }
+}
+
+#define SPLATTING_CELLS(T)                                                                         \
+  template struct CellFrame<T>;                                                                    \
+  template class TileSplatter<T>
+SPLATTING_CELLS(std::int8_t);
+SPLATTING_CELLS(std::uint8_t);
+SPLATTING_CELLS(std::int16_t);
+SPLATTING_CELLS(std::uint16_t);
+SPLATTING_CELLS(std::int32_t);
+SPLATTING_CELLS(std::uint32_t);
+SPLATTING_CELLS(std::int64_t);
+SPLATTING_CELLS(std::uint64_t);
+SPLATTING_CELLS(float);
+SPLATTING_CELLS(double);
+#undef SPLATTING_CELLS
+}

@@ -1,0 +1,748 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * A block of cells onto the pixels of a tile. For CellKernels.cxx only.
+ *
+ * Sixteen cells, those of a slice, are taken at a time: their largest corners, then the pixels that
+ * may see them, then the pairs of a cell and a pixel that is below the cell's largest corner. Pairs
+ * are collected until they fill a register; for these the cubics are computed. A pair's value
+ * depends on the pair alone.
+ */
+#ifndef splattingCellSplatter_h
+#define splattingCellSplatter_h
+
+#include "Kernels/CellLoops.h"
+#include "Kernels/CellRegisters.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace splatting
+{
+namespace
+{
+template <class A>
+SPLATTING_INLINE A fused(A a, A b, A c)
+{
+  if constexpr (sizeof(A) == sizeof(float))
+  {
+    return __builtin_fmaf(a, b, c);
+  }
+  else
+  {
+    return __builtin_fma(a, b, c);
+  }
+}
+
+template <class A>
+SPLATTING_INLINE typename Registers<A>::Mask firstLanes(int count)
+{
+  return static_cast<typename Registers<A>::Mask>(
+    count >= Registers<A>::N ? (1u << Registers<A>::N) - 1 : (1u << count) - 1);
+}
+
+/// The next larger number.
+template <class A>
+inline A nextAbove(A value)
+{
+  std::conditional_t<sizeof(A) == 4, std::int32_t, std::int64_t> bits;
+  if (value == 0 || !(value - value == 0))
+  {
+    return value == 0 ? std::numeric_limits<A>::denorm_min() : value;
+  }
+  std::memcpy(&bits, &value, sizeof bits);
+  bits += value > 0 ? 1 : -1;
+  std::memcpy(&value, &bits, sizeof bits);
+  return value;
+}
+
+/// Where rays run within a plane between cells, how far they may be beside it by rounding.
+template <class A>
+constexpr A BesideFace = sizeof(A) == sizeof(float) ? A(0x1p-21) : A(0x1p-48);
+
+/// 0, 1, 2, ...
+template <class A>
+alignas(64) constexpr A Ramp[16] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
+
+template <class A>
+SPLATTING_INLINE void markChanged(ScreenTile<A>& tile, int x, int y)
+{
+  const int row = y >> 2;
+  tile.changed[row] |= 1u << (x >> 2);
+  tile.firstChanged = row < tile.firstChanged ? row : tile.firstChanged;
+  tile.lastChanged = row > tile.lastChanged ? row : tile.lastChanged;
+}
+
+template <class A, bool Located>
+SPLATTING_INLINE void raise(ScreenTile<A>& tile, int x, int y, A value, A depth)
+{
+  const int at = y * tile.Stride + x;
+  A& now = tile.values[at];
+  if (value > now)
+  {
+    const bool bounds = now <= tile.least[(y >> 2) * tile.PatchStride + (x >> 2)];
+    now = value;
+    if (Located)
+    {
+      tile.depths[at] = depth;
+    }
+    if (bounds)
+    {
+      markChanged(tile, x, y);
+    }
+  }
+  else if (Located && value == now && depth < tile.depths[at])
+  {
+    tile.depths[at] = depth;
+  }
+}
+
+template <class A>
+void refresh(ScreenTile<A>& tile)
+{
+  for (int y = tile.firstChanged; y <= tile.lastChanged; ++y)
+  {
+    for (std::uint32_t patches = tile.changed[y]; patches; patches &= patches - 1)
+    {
+      const int x = __builtin_ctz(patches);
+      const A* const p = tile.values + 4 * y * tile.Stride + 4 * x;
+      A least[4];
+      for (int u = 0; u < 4; ++u)
+      {
+        const A *const a = p + u, *const b = a + 2 * tile.Stride;
+        const A m = a[0] < a[tile.Stride] ? a[0] : a[tile.Stride];
+        const A n = b[0] < b[tile.Stride] ? b[0] : b[tile.Stride];
+        least[u] = m < n ? m : n;
+      }
+      const A m = least[0] < least[1] ? least[0] : least[1];
+      const A n = least[2] < least[3] ? least[2] : least[3];
+      tile.least[y * tile.PatchStride + x] = m < n ? m : n;
+    }
+    tile.changed[y] = 0;
+  }
+  tile.firstChanged = tile.Patches;
+  tile.lastChanged = -1;
+}
+
+/**
+ * @tparam Cut      whether rays or the field end within the block
+ * @tparam Located  whether the parameters of the samples are wanted
+ * @tparam Shaded   whether samples are shaded by their depth; needs the ends of rays
+ */
+template <class A, bool Perspective, bool Cut, bool Located, bool Shaded>
+class CellSplatter
+{
+  using R = Registers<A>;
+  using V = typename R::Value;
+  using M = typename R::Mask;
+  using I = typename R::Index;
+  static constexpr int Cells = 16;
+
+public:
+  CellSplatter(ScreenTile<A>& tile, const CellBlock<A>& block) : Tile(tile), Block(block)
+  {
+    for (int n = 0; n < Cells; ++n)
+    {
+      const int x = n & 3, y = n >> 2;
+      this->Corner[0][n] = A(x - 2);
+      this->Corner[1][n] = A(y - 2);
+      this->Place[0][n] = block.start[0] - this->Corner[0][n];
+      this->Place[1][n] = block.start[1] - this->Corner[1][n];
+      const bool valid =
+        x >= block.begin[0] && x < block.end[0] && y >= block.begin[1] && y < block.end[1];
+      this->Valid[n] = valid ? CellValue<A>::Outside : CellValue<A>::None;
+      if (Cut)
+      {
+        for (int a = 0; a < 2; ++a)
+        {
+          const A low = block.low[a] - this->Corner[a][n],
+                  high = block.high[a] - this->Corner[a][n];
+          this->Low[a][n] = low > 0 ? low : A(0);
+          this->High[a][n] = high < 1 ? high : A(1);
+        }
+      }
+    }
+  }
+
+  void run()
+  {
+    V before[Groups];
+    this->findSliceMaxima(this->Block.begin[2], before);
+    for (int z = this->Block.begin[2]; z < this->Block.end[2]; ++z)
+    {
+      V after[Groups];
+      this->findSliceMaxima(z + 1, after);
+      M alive[Groups];
+      M any = 0;
+      for (int g = 0; g < Groups; ++g)
+      {
+        V top = R::larger(before[g], after[g]);
+        before[g] = after[g];
+        top = R::smaller(top, R::load(this->Valid + g * R::N));
+        R::store(this->Top + g * R::N, top);
+        alive[g] = this->mayRaise(top, this->Block.least);
+        any |= alive[g];
+      }
+      if (any)
+      {
+        this->splatSlice(z, alive);
+      }
+    }
+  }
+
+private:
+  static constexpr int Groups = Cells / R::N;
+
+  SPLATTING_INLINE M mayRaise(V top, A least) const
+  {
+    if (Shaded)
+    {
+      top = R::mul(top, R::set(this->Block.mostFactor));
+    }
+    return Located ? R::atLeast(top, R::set(least)) : R::above(top, R::set(least));
+  }
+
+  SPLATTING_INLINE void findSliceMaxima(int z, V maxima[]) const
+  {
+    const A *const left = this->Block.left[z], *const right = this->Block.right[z];
+    for (int g = 0; g < Groups; ++g)
+    {
+      const int n = g * R::N;
+      maxima[g] = R::larger(R::larger(R::load(left + n), R::load(right + n)),
+        R::larger(R::load(left + n + 4), R::load(right + n + 4)));
+    }
+  }
+
+  void splatSlice(int z, M alive[])
+  {
+    if (this->Block.seen)
+    {
+      this->takeSeen(z, alive);
+    }
+    else
+    {
+      this->findSeen(z, alive);
+    }
+    M any = 0;
+    for (int g = 0; g < Groups; ++g)
+    {
+      any |= alive[g];
+    }
+    if (!any)
+    {
+      return;
+    }
+    this->findPolynomials(z);
+    this->prepareSlice(z);
+    if (this->Block.holes)
+    {
+      this->splatCellsWithHoles(z, alive);
+    }
+    this->Pending = 0;
+    for (int g = 0; g < Groups; ++g)
+    {
+      alive[g] = this->listSmallCells(g, alive[g]);
+    }
+    for (int g = 0; g < Groups; ++g)
+    {
+      for (unsigned cells = alive[g]; cells; cells &= cells - 1)
+      {
+        this->listCell(g * R::N + __builtin_ctz(cells));
+      }
+    }
+    if (this->Pending > 0)
+    {
+      this->evaluate(this->Pairs, firstLanes<A>(this->Pending));
+    }
+    if (this->Tile.firstChanged <= this->Tile.lastChanged)
+    {
+      refresh(this->Tile);
+    }
+  }
+
+  /// The pixels that may see each cell.
+  void findSeen(int z, M alive[])
+  {
+    const CellBlock<A>& b = this->Block;
+    const V half = R::set(A(0.5)), margin = R::set(b.margin);
+    // Cells have sides of 1: half of what they extend to on the screen.
+    const A reachX = (std::fabs(b.across[0]) + std::fabs(b.across[1]) + std::fabs(b.across[2])) / 2;
+    const A reachY = (std::fabs(b.up[0]) + std::fabs(b.up[1]) + std::fabs(b.up[2])) / 2;
+    const A middle = A(z - 2) + A(0.5);
+    const V restX = R::set(fused(b.across[2], middle, b.acrossStart));
+    const V restY = R::set(fused(b.up[2], middle, b.upStart));
+    for (int g = 0; g < Groups; ++g)
+    {
+      if (!alive[g])
+      {
+        continue;
+      }
+      const int n = g * R::N;
+      const V cx = R::add(R::load(this->Corner[0] + n), half);
+      const V cy = R::add(R::load(this->Corner[1] + n), half);
+      V mx = R::fma(R::set(b.across[0]), cx, R::fma(R::set(b.across[1]), cy, restX));
+      V my = R::fma(R::set(b.up[0]), cx, R::fma(R::set(b.up[1]), cy, restY));
+      V x0 = R::sub(mx, R::set(reachX)), x1 = R::add(mx, R::set(reachX));
+      V y0 = R::sub(my, R::set(reachY)), y1 = R::add(my, R::set(reachY));
+      if (Perspective)
+      {
+        const V p = R::set(b.inverses[0]), q = R::set(b.inverses[1]);
+        x0 = R::smaller(R::mul(x0, p), R::mul(x0, q));
+        x1 = R::larger(R::mul(x1, p), R::mul(x1, q));
+        y0 = R::smaller(R::mul(y0, p), R::mul(y0, q));
+        y1 = R::larger(R::mul(y1, p), R::mul(y1, q));
+      }
+      const V atX = R::set(A(b.x)), atY = R::set(A(b.y));
+      x0 = R::larger(R::ceil(R::sub(R::add(x0, atX), margin)), R::set(A(b.columns[0])));
+      x1 = R::smaller(R::floor(R::add(R::add(x1, atX), margin)), R::set(A(b.columns[1])));
+      y0 = R::larger(R::ceil(R::sub(R::add(y0, atY), margin)), R::set(A(b.rows[0])));
+      y1 = R::smaller(R::floor(R::add(R::add(y1, atY), margin)), R::set(A(b.rows[1])));
+      alive[g] = static_cast<M>(alive[g] & R::atLeast(x1, x0) & R::atLeast(y1, y0));
+      R::store(this->X0 + n, x0);
+      R::store(this->X1 + n, x1);
+      R::store(this->Y0 + n, y0);
+      R::store(this->Y1 + n, y1);
+    }
+  }
+
+  void takeSeen(int z, M alive[])
+  {
+    for (int n = 0; n < Cells; ++n)
+    {
+      const std::int32_t* const seen = this->Block.seen[z * Cells + n];
+      this->X0[n] = A(seen[0]);
+      this->X1[n] = A(seen[1]);
+      this->Y0[n] = A(seen[2]);
+      this->Y1[n] = A(seen[3]);
+      if (seen[0] > seen[1] || seen[2] > seen[3])
+      {
+        alive[n / R::N] = static_cast<M>(alive[n / R::N] & ~(1u << n % R::N));
+      }
+    }
+  }
+
+  /// The field of each cell as a polynomial in x, y, z from its first corner.
+  void findPolynomials(int z)
+  {
+    const A *const l0 = this->Block.left[z], *const r0 = this->Block.right[z];
+    const A *const l1 = this->Block.left[z + 1], *const r1 = this->Block.right[z + 1];
+    for (int n = 0; n < Cells; n += R::N)
+    {
+      const V a000 = R::load(l0 + n), a100 = R::load(r0 + n);
+      const V a010 = R::load(l0 + n + 4), a110 = R::load(r0 + n + 4);
+      const V a001 = R::load(l1 + n), a101 = R::load(r1 + n);
+      const V a011 = R::load(l1 + n + 4), a111 = R::load(r1 + n + 4);
+      const V x = R::sub(a100, a000), y = R::sub(a010, a000), w = R::sub(a001, a000);
+      const V xy = R::sub(R::sub(a110, a100), y), xz = R::sub(R::sub(a101, a001), x);
+      const V yz = R::sub(R::sub(a011, a001), y);
+      const V xyz = R::sub(R::add(R::sub(R::sub(a111, a101), a011), a001), xy);
+      R::store(this->K[0] + n, a000);
+      R::store(this->K[1] + n, x);
+      R::store(this->K[2] + n, y);
+      R::store(this->K[3] + n, w);
+      R::store(this->K[4] + n, xy);
+      R::store(this->K[5] + n, xz);
+      R::store(this->K[6] + n, yz);
+      R::store(this->K[7] + n, xyz);
+    }
+  }
+
+  void prepareSlice(int z)
+  {
+    const A corner = A(z - 2);
+    this->PlaceZ = this->Block.start[2] - corner;
+    if (Cut)
+    {
+      const A low = this->Block.low[2] - corner, high = this->Block.high[2] - corner;
+      this->LowZ = low > 0 ? low : A(0);
+      this->HighZ = high < 1 ? high : A(1);
+    }
+    for (int n = 0; n < Cells; ++n)
+    {
+      A bound = Shaded ? this->Top[n] * this->Block.mostFactor : this->Top[n];
+      if (Located && bound >= this->Block.tiesFrom)
+      {
+        bound = nextAbove(bound);
+      }
+      this->Bound[n] = bound;
+    }
+  }
+
+  /// Cells that few pixels see: pixel after pixel of all cells at a time. Returns the other ones.
+  M listSmallCells(int g, M alive)
+  {
+    constexpr A most = A(6.5);
+    if (!alive)
+    {
+      return 0;
+    }
+    const int n = g * R::N;
+    const V one = R::set(1);
+    const V x0 = R::load(this->X0 + n), x1 = R::load(this->X1 + n), y1 = R::load(this->Y1 + n);
+    V x = x0, y = R::load(this->Y0 + n);
+    const V count = R::mul(R::add(R::sub(x1, x0), one), R::add(R::sub(y1, y), one));
+    M small = static_cast<M>(alive & R::above(R::set(most), count));
+    if (__builtin_popcount(small) < 4)
+    {
+      return alive;
+    }
+    const M others = static_cast<M>(alive & ~small);
+    const V bound = R::load(this->Bound + n), stride = R::set(A(this->Tile.Stride));
+    V lane = R::load(Ramp<A>);
+    lane = R::add(lane, R::set(A(n)));
+    do
+    {
+      const V value =
+        R::gather(this->Tile.values, R::fma(y, stride, x), small, R::set(CellValue<A>::Outside));
+      const M on = static_cast<M>(small & R::above(bound, value));
+      if (on)
+      {
+        const V id = R::fma(y, R::set(A(4096)), R::fma(x, R::set(A(16)), lane));
+        this->append(R::compress(this->Pairs + this->Pending, id, on));
+      }
+      x = R::add(x, one);
+      const M over = R::above(x, x1);
+      y = R::choose(over, R::add(y, one), y);
+      x = R::choose(over, x0, x);
+      small = static_cast<M>(small & R::atLeast(y1, y));
+    } while (small);
+    return others;
+  }
+
+  void listCell(int n)
+  {
+    const int x0 = static_cast<int>(this->X0[n]), y0 = static_cast<int>(this->Y0[n]);
+    const int width = static_cast<int>(this->X1[n]) - x0 + 1;
+    const V bound = R::set(this->Bound[n]);
+    for (int y = y0; y <= static_cast<int>(this->Y1[n]); ++y)
+    {
+      const A* const row = this->Tile.values + y * this->Tile.Stride + x0;
+      for (int x = 0; x < width; x += R::N)
+      {
+        const M on = static_cast<M>(R::above(bound, R::load(row + x)) & firstLanes<A>(width - x));
+        if (on)
+        {
+          this->append(
+            R::compress(this->Pairs + this->Pending, n | (x0 + x) << 4 | y << 12, 16, on));
+        }
+      }
+    }
+  }
+
+  SPLATTING_INLINE void append(int count)
+  {
+    this->Pending += count;
+    if (this->Pending >= R::N)
+    {
+      this->Pending -= R::N;
+      this->evaluate(this->Pairs + this->Pending, firstLanes<A>(R::N));
+    }
+  }
+
+  /// The part of rays within cells along one axis.
+  SPLATTING_INLINE void clip(int a, V o, V d, V low, V high, V& enter, V& leave, M& on) const
+  {
+    if (!Perspective && this->Block.flat[a])
+    {
+      const V beside = R::set(BesideFace<A>);
+      on = static_cast<M>(
+        on & R::atLeast(R::add(o, beside), low) & R::atLeast(R::add(high, beside), o));
+      return;
+    }
+    const V inverse = Perspective ? R::div(R::set(1), d) : R::set(this->Block.inverse[a]);
+    const V p = R::mul(R::sub(low, o), inverse), q = R::mul(R::sub(high, o), inverse);
+    enter = R::larger(enter, R::smaller(p, q));
+    leave = R::smaller(leave, R::larger(p, q));
+  }
+
+  /// Raises the pixels of some pairs, as many as a register has lanes.
+  void evaluate(const std::int32_t* pairs, M on)
+  {
+    const CellBlock<A>& b = this->Block;
+    const I id = R::loadIndex(pairs);
+    const V pixelX = R::part(id, 4, 0xff), pixelY = R::part(id, 12, 0xff);
+    const V at = R::fma(pixelY, R::set(A(this->Tile.Stride)), pixelX);
+    const V now = R::gather(this->Tile.values, at, on, R::set(CellValue<A>::Outside));
+    const V px = R::sub(pixelX, R::set(A(b.x))), py = R::sub(pixelY, R::set(A(b.y)));
+    V o[3], d[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      const V place = a == 2 ? R::set(this->PlaceZ) : R::pick(this->Place[a], id);
+      o[a] = R::fma(px, R::set(b.startAcross[a]), R::fma(py, R::set(b.startUp[a]), place));
+      d[a] = R::set(b.forward[a]);
+      if (Perspective)
+      {
+        d[a] = R::fma(px, R::set(b.forwardAcross[a]), R::fma(py, R::set(b.forwardUp[a]), d[a]));
+      }
+    }
+    V enter = R::set(-std::numeric_limits<A>::max()), leave = R::set(std::numeric_limits<A>::max());
+    V near = enter, far = leave;
+    if (Cut || Shaded)
+    {
+      const V zero = R::set(0), reference = R::set(b.reference);
+      near = R::add(R::sub(R::gather(this->Tile.nears, at, on, zero), reference),
+        R::gather(this->Tile.nearRests, at, on, zero));
+      far = R::add(R::sub(R::gather(this->Tile.fars, at, on, zero), reference),
+        R::gather(this->Tile.farRests, at, on, zero));
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      const V low = !Cut ? R::set(0) : a == 2 ? R::set(this->LowZ) : R::pick(this->Low[a], id);
+      const V high = !Cut ? R::set(1) : a == 2 ? R::set(this->HighZ) : R::pick(this->High[a], id);
+      this->clip(a, o[a], d[a], low, high, enter, leave, on);
+    }
+    if (Cut)
+    {
+      enter = R::larger(enter, near);
+      leave = R::smaller(leave, far);
+    }
+    on = static_cast<M>(on & R::above(leave, enter));
+    if (!on)
+    {
+      return;
+    }
+    V depth;
+    V value = this->largestOnRay(id, o, d, enter, leave, now, on, depth);
+    if (Shaded)
+    {
+      const V middle = R::fma(R::set(A(0.5)), R::sub(leave, enter), enter);
+      V share = R::div(R::sub(middle, near), R::sub(far, near));
+      share = R::smaller(R::larger(share, R::set(0)), R::set(1));
+      value = R::mul(value, R::fma(R::sub(R::set(1), share), R::set(b.rate), R::set(b.ambient)));
+    }
+    const M raised = static_cast<M>(on & (Located ? R::atLeast(value, now) : R::above(value, now)));
+    if (raised)
+    {
+      this->raisePixels(id, value, depth, raised);
+    }
+  }
+
+  /// The largest value on the parts of rays between enter and leave, and where it is.
+  SPLATTING_INLINE V largestOnRay(
+    I id, const V o[3], const V d[3], V enter, V leave, V now, M on, V& depth) const
+  {
+    const V k0 = R::pick(this->K[0], id), kx = R::pick(this->K[1], id);
+    const V ky = R::pick(this->K[2], id), kz = R::pick(this->K[3], id);
+    const V kxy = R::pick(this->K[4], id), kxz = R::pick(this->K[5], id);
+    const V kyz = R::pick(this->K[6], id), kxyz = R::pick(this->K[7], id);
+    const V top = R::pick(this->Top, id);
+    const V length = R::sub(leave, enter);
+    const V x = R::fma(d[0], enter, o[0]), y = R::fma(d[1], enter, o[1]);
+    const V z = R::fma(d[2], enter, o[2]);
+    const V ex = R::mul(d[0], length), ey = R::mul(d[1], length), ez = R::mul(d[2], length);
+    // Slopes of the field where the ray enters, and the cubic c0 + c1 s + c2 s^2 + c3 s^3.
+    const V gyz = R::fma(kxyz, x, kyz), gxz = R::fma(kxyz, y, kxz), gxy = R::fma(kxyz, z, kxy);
+    const V hy = R::fma(kxy, x, ky), hz = R::fma(kxz, x, kz);
+    const V gx = R::fma(kxy, y, R::fma(z, gxz, kx)), gy = R::fma(z, gyz, hy);
+    const V gz = R::fma(y, gyz, hz);
+    const V c0 = R::fma(x, kx, R::fma(y, hy, R::fma(z, gz, k0)));
+    const V c1 = R::fma(ex, gx, R::fma(ey, gy, R::mul(ez, gz)));
+    const V exy = R::mul(ex, ey);
+    const V c2 = R::fma(exy, gxy, R::fma(R::mul(ex, ez), gxz, R::mul(R::mul(ey, ez), gyz)));
+    const V c3 = R::mul(R::mul(exy, ez), kxyz);
+    // Its Bernstein coefficients: c0, inner1, inner2, end.
+    const V third = R::set(A(1) / A(3)), two = R::set(2);
+    const V end = R::add(R::add(c0, c1), R::add(c2, c3));
+    const V inner1 = R::fma(c1, third, c0);
+    const V inner2 = R::fma(R::fma(two, c1, c2), third, c0);
+    const V inner = R::larger(inner1, inner2);
+    V value = c0;
+    V where = R::set(0);
+    M more = static_cast<M>(on & R::above(inner, R::larger(c0, end)));
+    if (!Shaded)
+    {
+      more = static_cast<M>(more & (Located ? R::atLeast(inner, now) : R::above(inner, now)));
+    }
+    if (more)
+    {
+      // The root of c1 + 2 c2 s + 3 c3 s^2 at which the cubic has its maximum.
+      const V zero = R::set(0);
+      const V square = R::fma(c2, c2, R::mul(R::mul(R::set(-3), c1), c3));
+      const V root = R::root(R::larger(square, zero));
+      const M falls = R::above(zero, c2);
+      const V s = R::div(R::choose(falls, c1, R::sub(R::sub(zero, c2), root)),
+        R::choose(falls, R::sub(root, c2), R::mul(R::set(3), c3)));
+      V peak = R::fma(s, R::fma(s, R::fma(s, c3, c2), c1), c0);
+      // Rounding must not lift it above what made it worth while to compute.
+      peak = R::smaller(peak, inner);
+      const M found = static_cast<M>(more & R::above(square, zero) & R::above(s, zero) &
+        R::above(R::set(1), s) & R::above(peak, value));
+      value = R::choose(found, peak, value);
+      where = Located ? R::choose(found, s, where) : where;
+    }
+    if (Located)
+    {
+      const M last = R::above(end, value);
+      where = R::choose(last, R::set(1), where);
+      depth = R::add(R::fma(where, length, enter), R::set(this->Block.reference));
+    }
+    else
+    {
+      depth = where;
+    }
+    value = R::larger(value, end);
+    return R::smaller(value, top);
+  }
+
+  SPLATTING_INLINE void raisePixels(I id, V value, V depth, M raised)
+  {
+    A values[R::N], depths[R::N];
+    std::int32_t pairs[R::N];
+    R::store(values, value);
+    std::memcpy(pairs, &id, sizeof pairs);
+    if (Located)
+    {
+      R::store(depths, depth);
+    }
+    for (unsigned lanes = raised; lanes; lanes &= lanes - 1)
+    {
+      const int n = __builtin_ctz(lanes);
+      raise<A, Located>(this->Tile, pairs[n] >> 4 & 0xff, pairs[n] >> 12 & 0xff, values[n],
+        Located ? depths[n] : A(0));
+    }
+  }
+
+  /// Cells with a corner that is hidden or infinite, which it takes out of `alive`.
+  void splatCellsWithHoles(int z, M alive[])
+  {
+    for (int n = 0; n < Cells; ++n)
+    {
+      if (!(alive[n / R::N] >> n % R::N & 1))
+      {
+        continue;
+      }
+      A corners[8];
+      bool hole = false;
+      for (int c = 0; c < 8; ++c)
+      {
+        const A* const slice =
+          c & 1 ? this->Block.right[z + (c >> 2)] : this->Block.left[z + (c >> 2)];
+        corners[c] = slice[n + 4 * (c >> 1 & 1)];
+        hole |= corners[c] >= CellValue<A>::Highest || corners[c] <= CellValue<A>::Lowest;
+      }
+      if (hole)
+      {
+        alive[n / R::N] = static_cast<M>(alive[n / R::N] & ~(1u << n % R::N));
+        for (int y = static_cast<int>(this->Y0[n]); y <= static_cast<int>(this->Y1[n]); ++y)
+        {
+          for (int x = static_cast<int>(this->X0[n]); x <= static_cast<int>(this->X1[n]); ++x)
+          {
+            this->splatOctants(n, corners, x, y);
+          }
+        }
+      }
+    }
+  }
+
+  struct Segment
+  {
+    A enter, leave;
+
+    /// Cuts off what is outside of [low, high] along one axis.
+    void clip(A o, A d, A low, A high)
+    {
+      if (d == 0)
+      {
+        this->leave = o >= low && o <= high ? this->leave : -std::numeric_limits<A>::max();
+        return;
+      }
+      const A p = (low - o) / d, q = (high - o) / d;
+      const A begin = p < q ? p : q, end = p < q ? q : p;
+      this->enter = begin > this->enter ? begin : this->enter;
+      this->leave = end < this->leave ? end : this->leave;
+    }
+  };
+
+  /// Where the field is not interpolated: the voxels of a cell, each with an eighth of it.
+  void splatOctants(int n, const A (&corners)[8], int px, int py)
+  {
+    const CellBlock<A>& b = this->Block;
+    const int at = py * this->Tile.Stride + px;
+    if (this->Tile.values[at] == CellValue<A>::Outside)
+    {
+      return;
+    }
+    const A x = A(px - b.x), y = A(py - b.y);
+    A o[3], d[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      const A place = a == 2 ? this->PlaceZ : this->Place[a][n];
+      o[a] = fused(x, b.startAcross[a], fused(y, b.startUp[a], place));
+      d[a] = Perspective ? fused(x, b.forwardAcross[a], fused(y, b.forwardUp[a], b.forward[a]))
+        : b.flat[a]      ? A(0)
+                         : b.forward[a];
+    }
+    Segment ray{ -std::numeric_limits<A>::max(), std::numeric_limits<A>::max() };
+    A near = 0, far = 0;
+    if (Cut || Shaded)
+    {
+      near = (this->Tile.nears[at] - b.reference) + this->Tile.nearRests[at];
+      far = (this->Tile.fars[at] - b.reference) + this->Tile.farRests[at];
+    }
+    if (Cut)
+    {
+      ray = { near, far };
+      for (int a = 0; a < 3; ++a)
+      {
+        ray.clip(o[a], d[a], a == 2 ? this->LowZ : this->Low[a][n],
+          a == 2 ? this->HighZ : this->High[a][n]);
+      }
+    }
+    for (int c = 0; c < 8; ++c)
+    {
+      Segment part = ray;
+      for (int a = 0; a < 3; ++a)
+      {
+        const bool upper = c >> a & 1;
+        part.clip(o[a], d[a], upper ? A(0.5) : A(0), upper ? A(1) : A(0.5));
+      }
+      if (!(part.enter < part.leave) || corners[c] == CellValue<A>::None)
+      {
+        continue;
+      }
+      A value = corners[c];
+      if (Shaded)
+      {
+        const A middle = part.enter + A(0.5) * (part.leave - part.enter);
+        A share = (middle - near) / (far - near);
+        share = share > 0 ? share < 1 ? share : A(1) : A(0);
+        const bool finite = value < CellValue<A>::Highest && value > CellValue<A>::Lowest;
+        value = finite ? value * fused(A(1) - share, b.rate, b.ambient) : value;
+      }
+      raise<A, Located>(this->Tile, px, py, value, part.enter + b.reference);
+    }
+  }
+
+  ScreenTile<A>& Tile;
+  const CellBlock<A>& Block;
+  alignas(64) A Corner[2][Cells], Place[2][Cells], Valid[Cells];
+  alignas(64) A Low[2][Cells], High[2][Cells];
+  alignas(64) A Top[Cells], Bound[Cells], X0[Cells], X1[Cells], Y0[Cells], Y1[Cells];
+  alignas(64) A K[8][Cells];
+  A PlaceZ = 0, LowZ = 0, HighZ = 1;
+  alignas(64) std::int32_t Pairs[64] = {};
+  int Pending = 0;
+};
+
+template <class A, bool Perspective>
+void splatWith(ScreenTile<A>& tile, const CellBlock<A>& block)
+{
+  if (block.shaded)
+  {
+    CellSplatter<A, Perspective, true, true, true>(tile, block).run();
+  }
+  else if (block.cut)
+  {
+    block.located ? CellSplatter<A, Perspective, true, true, false>(tile, block).run()
+                  : CellSplatter<A, Perspective, true, false, false>(tile, block).run();
+  }
+  else
+  {
+    block.located ? CellSplatter<A, Perspective, false, true, false>(tile, block).run()
+                  : CellSplatter<A, Perspective, false, false, false>(tile, block).run();
+  }
+}
+}
+}
+
+#endif
