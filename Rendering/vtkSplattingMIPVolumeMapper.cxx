@@ -81,7 +81,7 @@ public:
   vtkRenderWindow* Window = nullptr; // which may abort, during a render
 
   ProjectedVolume Data;
-  WinnerLocations Locations{ Data.Components, Data.Cuts, Data.Images };
+  WinnerLocations Locations{ Data.Source, Data.Components, Data.Cuts, Data.Images };
   splatting::Picture Picture;
   double Shear[2] = { 0.0, 0.0 };
 
