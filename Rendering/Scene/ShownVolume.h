@@ -27,8 +27,6 @@ public:
   void Set(vtkRenderer* renderer, vtkVolume* volume);
   void Reset();
 
-  vtkRenderer* Renderer() const { return this->ItsRenderer; }
-
   /// Whether the renderer has rendered no frame without the volume since, and both still exist, are
   /// in their place and visible.
   bool IsShown() const;
