@@ -73,6 +73,7 @@ public:
   void GiveBack();
   void DropRayCaster();
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
+  bool IsAborted() const;
 
   ReportedProblems Reported;
   std::set<std::string> Announced;   // what ray casting leads to, and was told
@@ -81,7 +82,7 @@ public:
   vtkRenderWindow* Window = nullptr; // which may abort, during a render
 
   ProjectedVolume Data;
-  WinnerLocations Locations{ Data.Components, Data.Cuts, Data.Images };
+  WinnerLocations Locations{ Data.Source, Data.Components, Data.Cuts, Data.Images };
   splatting::Picture Picture;
   double Shear[2] = { 0.0, 0.0 };
 
@@ -96,6 +97,8 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
   splatting::Projector& projector = this->Internal->Data.Components.GetProjector();
   projector.setProgress([this](double done) { this->UpdateProgress(done); });
   projector.setObserver([this](double done) { return this->Internal->GoOn(this, done); });
+  this->Internal->Data.Components.GetWarper().setObserver(
+    [this](double) { return !this->Internal->IsAborted(); });
 }
 
 //------------------------------------------------------------------------------
@@ -145,7 +148,13 @@ bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* s
 {
   done = this->Data.Components.ShareOfAll(done);
   self->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &done);
-  return !this->Window || !this->Window->CheckAbortStatus();
+  return !this->IsAborted();
+}
+
+//------------------------------------------------------------------------------
+bool vtkSplattingMIPVolumeMapper::Internals::IsAborted() const
+{
+  return this->Window && this->Window->CheckAbortStatus();
 }
 
 //------------------------------------------------------------------------------
@@ -305,9 +314,9 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     data.Components.FindScreenRays(
       data.Images, data.Cuts.OfProjection(), data.Cuts.SceneDepths(), view);
   }
-  if (data.Components.IsProjected() && (!properties.DisplayOnRootOnly || data.Ranks.IsRoot()))
+  if (data.Components.IsProjected() && (!properties.DisplayOnRootOnly || data.Ranks.IsRoot()) &&
+    data.Components.Warp(data.Images, view, in.Picture))
   {
-    data.Components.Warp(data.Images, view, in.Picture);
     data.Cuts.Hide(in.Picture);
     in.Locations.Remember(view, data.Grid(), vol, ren);
     this->DisplayLocated(ren);

@@ -170,9 +170,9 @@ public:
    *   largest value that the ray finds. "Voxel" is the nearest to it then.
    *
    * Pixels without a sample, or hidden by other things, have voxel -1 and NaN. nullptr, with an
-   * error message, unless RecordLocations is on; nullptr where nothing has been splatted. Computed
-   * when first asked for after a render, in some milliseconds; the input must not have changed by
-   * then.
+   * error message, unless RecordLocations is on; nullptr if nothing has been splatted, and as for
+   * picks if the volume is no longer shown or its scalars are gone. Computed when first asked for
+   * after a render, in some milliseconds.
    */
   vtkImageData* GetLocations();
 
@@ -192,9 +192,13 @@ public:
    * other modes an average or, in EXACT, the extremum. Pictures interpolate between samples, but
    * not EXACT's maxima.
    *
-   * False (PickValue: NaN), and the output stays as it is, where the last render of this mapper has
-   * no sample, for averages, and, without RecordLocations, where several ranks render. Whether the
-   * sample is opaque does not matter. The input must not have changed since the render.
+   * Return false (PickValue: NaN) and leave the output unchanged
+   * - if the last render of this mapper has no sample there; whether the sample is opaque does not
+   *   matter;
+   * - if the volume is invisible or removed, or the last frame of its renderer has not rendered it;
+   * - if the scalars of that render have been deleted, reallocated or modified since;
+   * - for averages;
+   * - for several ranks without RecordLocations.
    */
   bool PickWorldPosition(int x, int y, double position[3]);
   bool PickVoxel(int x, int y, int ijk[3]);

@@ -476,7 +476,7 @@ void ComponentProjector::FindShown(const std::vector<ShearWarp>& geometries, con
     last.Images, geometries, last.Settings.reduction, place.origin, place.size, this->Shown.data());
 }
 
-void ComponentProjector::Warp(
+bool ComponentProjector::Warp(
   const std::vector<ShearWarp>& geometries, const View& view, Picture& picture)
 {
   this->FindShown(geometries, view);
@@ -487,8 +487,12 @@ void ComponentProjector::Warp(
     Picture& layer = first ? picture : this->Layer;
     if (this->Shown.empty())
     {
-      this->Warper.warp(channel.Images, geometries, channel.Settings.reduction, this->Colors.Of(c),
-        view.viewport, channel.Settings.instructionSet, layer, channel.Rays);
+      if (!this->Warper.warp(channel.Images, geometries, channel.Settings.reduction,
+            this->Colors.Of(c), view.viewport, channel.Settings.instructionSet, layer,
+            channel.Rays))
+      {
+        return false;
+      }
     }
     else
     {
@@ -509,9 +513,10 @@ void ComponentProjector::Warp(
       addSaturated(this->Layer, picture);
     }
   }
+  return true;
 }
 
-void ComponentProjector::WarpScalars(
+bool ComponentProjector::WarpScalars(
   const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars)
 {
   const std::size_t components = this->Channels.size();
@@ -520,8 +525,8 @@ void ComponentProjector::WarpScalars(
   {
     using A = std::remove_pointer_t<decltype(values)>;
     std::fill_n(values, pixels, static_cast<A>(background));
-    this->Warper.warpScalars(channel.Images, geometries, channel.Settings.reduction, view.viewport,
-      channel.Settings.instructionSet, background, values, channel.Rays);
+    return this->Warper.warpScalars(channel.Images, geometries, channel.Settings.reduction,
+      view.viewport, channel.Settings.instructionSet, background, values, channel.Rays);
   };
   const auto interleave = [&](auto* to)
   {
@@ -530,22 +535,20 @@ void ComponentProjector::WarpScalars(
     A* const plane = components > 1 ? reinterpret_cast<A*>(this->Plane.data()) : to;
     for (std::size_t c = 0; c < components; ++c)
     {
-      warp(this->Channels[c], plane);
+      if (!warp(this->Channels[c], plane))
+      {
+        return false;
+      }
       for (std::size_t n = 0; components > 1 && n < pixels; ++n)
       {
         to[n * components + c] = plane[n];
       }
     }
+    return true;
   };
   const ScalarType type = this->Channels.front().Index.volume().type;
-  if (averageType(type) == ScalarType::Float32)
-  {
-    interleave(static_cast<float*>(scalars));
-  }
-  else
-  {
-    interleave(static_cast<double*>(scalars));
-  }
+  return averageType(type) == ScalarType::Float32 ? interleave(static_cast<float*>(scalars))
+                                                  : interleave(static_cast<double*>(scalars));
 }
 
 vtkSmartPointer<vtkImageData> ComponentProjector::MakeShearImage(

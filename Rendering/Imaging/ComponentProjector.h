@@ -105,16 +105,18 @@ public:
   /// component that is located; NaN if the pixel does not show that.
   double ValueOnOwnRay(std::size_t image, const glm::ivec2& pixel) const;
 
-  /// The picture of the images in a view with these geometries.
-  void Warp(const std::vector<ShearWarp>& geometries, const View& view, Picture& picture);
+  /// The picture of the images in a view with these geometries. False if the warper's observer has
+  /// stopped it: there is no picture then.
+  bool Warp(const std::vector<ShearWarp>& geometries, const View& view, Picture& picture);
 
   /**
    * The same as scalars, component after component of each pixel, row after row of the whole
    * viewport from the bottom.
    * @param background  of pixels without a sample
    * @param scalars     of type averageType() of the images' type
+   * @return  false if the warper's observer has stopped it: the scalars have no meaning then
    */
-  void WarpScalars(
+  bool WarpScalars(
     const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars);
 
   /// The largest image, with all components. Its ghost array hides pixels without a sample. There
@@ -142,6 +144,7 @@ public:
   double ShareOfAll(double done) const;
 
   splatting::Projector& GetProjector() { return this->Projector; }
+  splatting::Warper& GetWarper() { return this->Warper; }
 
 private:
   struct Channel

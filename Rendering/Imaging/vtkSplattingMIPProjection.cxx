@@ -38,6 +38,18 @@ using namespace splatting;
 vtkStandardNewMacro(vtkSplattingMIPProjection);
 vtkCxxSetObjectMacro(vtkSplattingMIPProjection, Camera, vtkCamera);
 
+namespace
+{
+bool isAborted(vtkAlgorithm* algorithm)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
+  return algorithm->CheckAbort();
+#else
+  return algorithm->GetAbortExecute() != 0;
+#endif
+}
+}
+
 //------------------------------------------------------------------------------
 class vtkSplattingMIPProjection::Internals
 {
@@ -87,6 +99,7 @@ vtkSplattingMIPProjection::vtkSplattingMIPProjection()
 {
   this->Internal->Components.GetProjector().setObserver(
     [this](double done) { return this->Internal->GoOn(this, done); });
+  this->Internal->Components.GetWarper().setObserver([this](double) { return !isAborted(this); });
 }
 
 //------------------------------------------------------------------------------
@@ -205,11 +218,7 @@ bool vtkSplattingMIPProjection::Internals::GoOn(vtkSplattingMIPProjection* self,
     this->Told = share;
     self->UpdateProgress(std::min(share, 1.0));
   }
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
-  return !self->CheckAbort();
-#else
-  return !self->GetAbortExecute();
-#endif
+  return !isAborted(self);
 }
 
 //------------------------------------------------------------------------------
@@ -324,8 +333,11 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
       return {};
     }
     this->Components.FindScreenRays(this->Images, this->CutsBefore, nullptr, view);
-    this->Components.WarpScalars(
-      this->Images, view, self->BackgroundValue, output->GetScalarPointer(0, 0, n));
+    if (!this->Components.WarpScalars(
+          this->Images, view, self->BackgroundValue, output->GetScalarPointer(0, 0, n)))
+    {
+      return {};
+    }
     if (this->Properties.RecordLocations && this->Components.HasWinners())
     {
       this->Locate(view, n);

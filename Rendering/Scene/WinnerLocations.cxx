@@ -3,6 +3,7 @@
 #include "Scene/WinnerLocations.h"
 
 #include "ComponentProjector.h"
+#include "Input/ScalarSource.h"
 #include "LocationArrays.h"
 #include "Scene/SceneCuts.h"
 #include "Scene/ViewOfVolume.h"
@@ -89,6 +90,7 @@ void WinnerLocations::Remember(
   camera->GetDirectionOfProjection(&this->Frame.direction.x);
   int width, height;
   renderer->GetTiledSizeAndOrigin(&width, &height, &this->Left, &this->Bottom);
+  this->Shown.Set(renderer, volume);
 }
 
 bool WinnerLocations::HasWinners() const
@@ -115,8 +117,10 @@ bool WinnerLocations::Pick(int x, int y, Sample& sample)
 {
   const glm::ivec2 pixel(x - this->Left, y - this->Bottom);
   const glm::ivec2& viewport = this->Frame.view.viewport;
-  if (!this->Known || this->Images.empty() || pixel.x < 0 || pixel.y < 0 || pixel.x >= viewport.x ||
-    pixel.y >= viewport.y)
+  const bool isInside =
+    pixel.x >= 0 && pixel.y >= 0 && pixel.x < viewport.x && pixel.y < viewport.y;
+  if (!this->Known || !isInside || this->Images.empty() || !this->Shown.IsShown() ||
+    !this->Source.HasVolumes())
   {
     return false;
   }
@@ -183,7 +187,11 @@ bool WinnerLocations::PickRay(const glm::ivec2& pixel, Sample& sample)
 
 vtkImageData* WinnerLocations::Image()
 {
-  if (!this->Known || this->Output)
+  if (!this->Known || !this->Shown.IsShown())
+  {
+    return nullptr;
+  }
+  if (this->Output || !this->Source.HasVolumes())
   {
     return this->Output;
   }

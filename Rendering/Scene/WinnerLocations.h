@@ -8,6 +8,7 @@
 
 #include "Display/Picture.h"
 #include "Projection/Locations.h"
+#include "Scene/ShownVolume.h"
 
 #include "vtkSmartPointer.h"
 
@@ -22,6 +23,7 @@ class vtkVolume;
 namespace splatting
 {
 class ComponentProjector;
+class ScalarSource;
 class SceneCuts;
 struct VolumeGrid;
 
@@ -46,9 +48,10 @@ std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors);
 class WinnerLocations
 {
 public:
-  WinnerLocations(
-    ComponentProjector& projector, const SceneCuts& cuts, const std::vector<ShearWarp>& images)
-    : Projector(projector),
+  WinnerLocations(const ScalarSource& source, ComponentProjector& projector, const SceneCuts& cuts,
+    const std::vector<ShearWarp>& images)
+    : Source(source),
+      Projector(projector),
       Cuts(cuts),
       Images(images)
   {
@@ -60,7 +63,8 @@ public:
   void Remember(const View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer);
 
   /// What a pixel of the window shows: point of the world, voxel and value. False if the picture
-  /// has no sample there. Without winners, looks along rays.
+  /// has no sample there, is no longer shown or its voxels are gone. Without winners, looks along
+  /// rays.
   struct Sample
   {
     glm::dvec3 position;
@@ -68,7 +72,8 @@ public:
     double value;
   };
   bool Pick(int x, int y, Sample& sample);
-  /// See makeLocationImage(), its extent in pixels of the window; nullptr before the first frame.
+  /// See makeLocationImage(), its extent in pixels of the window; nullptr before the first frame,
+  /// and if the picture is no longer shown or its voxels are gone.
   vtkImageData* Image();
 
   /// Gives each pixel of a picture its depth's colour, as bright as the picture is.
@@ -84,11 +89,13 @@ private:
   bool HasSample(const ShearImage& image, const ShearPixel& pixel);
   bool PickRay(const glm::ivec2& pixel, Sample& sample);
 
+  const ScalarSource& Source;
   ComponentProjector& Projector;
   const SceneCuts& Cuts;
   const std::vector<ShearWarp>& Images;
   Located Frame; // but for what the projector knows
   int Left = 0, Bottom = 0;
+  ShownVolume Shown;
   bool Known = false;
   std::vector<float> Depths;
   vtkSmartPointer<vtkImageData> Output;

@@ -70,26 +70,32 @@ private:
   {
     for (int p = x; p < x + n; ++p)
     {
-      // Of all images the same points, or those of one would count for more.
-      glm::ivec2 points(0);
-      for (const WarpSource<A>& source : this->Images)
+      const AreaMean mean = this->averageOf(start, p);
+      values[p - x] = mean.weights > 0.0 ? static_cast<A>(mean.sum / mean.weights)
+                                         : std::numeric_limits<A>::quiet_NaN();
+    }
+  }
+
+  /// Of pixel p of a row. Where no point is between samples, as in volumes of one voxel's
+  /// thickness, of the samples themselves.
+  AreaMean averageOf(const glm::dvec3& start, int p) const
+  {
+    AreaMean points, samples;
+    for (std::size_t number = 0; number < this->Images.size(); ++number)
+    {
+      const WarpSource<A>& source = this->Images[number];
+      if (!this->Met[number].cut({ p, p + 1 }, start).empty())
       {
         const PixelArea area = areaOf(source.geometry, start.x + p, start.y);
-        points = glm::max(points, pointsOf(source.geometry, area));
-      }
-      double sum = 0.0;
-      int count = 0;
-      for (std::size_t number = 0; number < this->Images.size(); ++number)
-      {
-        const WarpSource<A>& source = this->Images[number];
-        if (!this->Met[number].cut({ p, p + 1 }, start).empty())
+        const PixelAreas<A> areas(source.image, source.pixels);
+        areas.addAverage(source.geometry, area, points);
+        if (points.weights == 0.0)
         {
-          PixelAreas<A>(source.image, source.pixels)
-            .addAverage(source.geometry, start.x + p, start.y, points, sum, count);
+          areas.addSamples(area, samples);
         }
       }
-      values[p - x] = count > 0 ? static_cast<A>(sum / count) : std::numeric_limits<A>::quiet_NaN();
     }
+    return points.weights > 0.0 ? points : samples;
   }
 
   const std::vector<WarpSource<A>>& Images;

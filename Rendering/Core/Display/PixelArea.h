@@ -16,6 +16,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
 #include <algorithm>
@@ -73,25 +74,28 @@ inline PixelArea areaOf(const ShearWarp& geometry, double x, double y)
   return area;
 }
 
-/// So many points along x and y of a pixel are no farther apart than samples anywhere in its area.
-inline glm::ivec2 pointsOf(const ShearWarp& geometry, const PixelArea& area)
+/// What of an area lies at one height v: from one u to another, if that is more than a point.
+inline glm::dvec2 rowOf(const PixelArea& area, double v)
 {
-  // The place (u, v) = (a, b) / w moves with x by (da - u dw, db - v dw) / w.
-  const glm::dmat3& m = geometry.screenToShear();
-  glm::dvec2 farthest(0.0);
-  double nearness = 0.0; // 1 / w
-  for (const glm::dvec2& corner : area)
+  glm::dvec2 row(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
+  for (int edge = 0; edge < area.count; ++edge)
   {
-    const glm::dvec3 pixel = geometry.shearToScreen() * glm::dvec3(corner, 1.0);
-    nearness = std::max(nearness, pixel.z);
-    for (int a = 0; a < 2; ++a)
+    const glm::dvec2 &a = area.corners[edge], &b = area.corners[(edge + 1) % area.count];
+    if ((a.y <= v) != (b.y <= v))
     {
-      farthest[a] = std::max(farthest[a], glm::length(glm::dvec2(m[a]) - corner * m[a].z));
+      const double u = a.x + (v - a.y) / (b.y - a.y) * (b.x - a.x);
+      row = { std::min(row[0], u), std::max(row[1], u) };
     }
   }
-  // Pixels as wide as some samples are not wider by rounding.
+  return row;
+}
+
+/// Into how many parts to divide a length, so that none is longer than a sample is wide.
+inline int partsOf(double length)
+{
+  // A length of some samples is not longer by rounding.
   constexpr double rounding = 1e-9;
-  return glm::max(glm::ivec2(glm::ceil(farthest * nearness - rounding)), glm::ivec2(1));
+  return std::max(static_cast<int>(std::ceil(length - rounding)), 1);
 }
 
 /// A value of an area, and the sample that it comes from, or of two or four the nearest.
@@ -117,6 +121,18 @@ template <class A>
 struct AreaExtrema
 {
   AreaValue<A> sample, between;
+};
+
+/// The mean of values, each with a weight.
+struct AreaMean
+{
+  double sum = 0.0, weights = 0.0;
+
+  void add(double value, double weight)
+  {
+    this->sum += weight * value;
+    this->weights += weight;
+  }
 };
 
 /**
@@ -151,33 +167,71 @@ public:
   }
 
   /**
-   * Adds up the image at so many points, spread evenly over a pixel's area, and counts those that
-   * are between samples.
+   * Adds the image at points that are spread evenly over an area, no farther apart than samples,
+   * each with the part of the screen that it stands for. Points that are not between samples do not
+   * count. There are at most about as many points as samples in the area, however wide the pixel
+   * is.
    */
-  void addAverage(const ShearWarp& geometry, double x, double y, const glm::ivec2& points,
-    double& sum, int& count) const
+  void addAverage(const ShearWarp& geometry, const PixelArea& area, AreaMean& mean) const
   {
-    const glm::dvec2 last(this->Image.width - 1, this->Image.height - 1);
-    for (int n = 0; n < points.x * points.y; ++n)
+    const glm::dmat3& toScreen = geometry.shearToScreen();
+    const double scale = std::abs(glm::determinant(toScreen));
+    const glm::dvec2 heights = this->heightsOf(area);
+    const int rows = partsOf(heights[1] - heights[0]);
+    const double height = (heights[1] - heights[0]) / rows;
+    for (int row = 0; row < rows && height > 0.0; ++row)
     {
-      const glm::dvec2 at(x - 0.5 + (n % points.x + 0.5) / points.x,
-        y - 0.5 + (static_cast<double>(n / points.x) + 0.5) / points.y);
-      const glm::dvec3 h = geometry.screenToShear() * glm::dvec3(at, 1.0);
-      const glm::dvec2 p = glm::dvec2(h) / h.z;
-      if (!(h.z > 0.0 && p.x >= 0.0 && p.y >= 0.0 && p.x < last.x && p.y < last.y))
+      const double v = heights[0] + (row + 0.5) * height;
+      const glm::dvec2 cut = rowOf(area, v);
+      const double left = std::max(cut[0], 0.0);
+      const double right = std::min(cut[1], this->Image.width - 1.0);
+      const int points = left < right ? partsOf(right - left) : 0;
+      const double width = (right - left) / points;
+      for (int n = 0; n < points; ++n)
       {
-        continue;
-      }
-      const AreaValue<A> value = this->interpolated(p);
-      if (value.found())
-      {
-        sum += value.value;
-        ++count;
+        const glm::dvec2 p(left + (n + 0.5) * width, v);
+        const AreaValue<A> value = this->interpolated(p);
+        if (value.found())
+        {
+          const double z = (toScreen * glm::dvec3(p, 1.0)).z;
+          mean.add(value.value, scale * width * height / (z * z * z));
+        }
       }
     }
   }
 
+  /// Adds the samples in an area, as where no point of it is between samples.
+  void addSamples(const PixelArea& area, AreaMean& mean) const
+  {
+    const glm::dvec2 heights = this->heightsOf(area);
+    for (int v = static_cast<int>(std::ceil(heights[0])); v <= heights[1]; ++v)
+    {
+      const glm::dvec2 cut = rowOf(area, v);
+      this->forRow(v, cut[0], cut[1],
+        [&](int u)
+        {
+          if (this->at(u, v) == this->at(u, v)) // not NaN
+          {
+            mean.add(this->at(u, v), 1.0);
+          }
+        });
+    }
+  }
+
 private:
+  /// The rows of the image that an area extends over.
+  glm::dvec2 heightsOf(const PixelArea& area) const
+  {
+    const double last = this->Image.height - 1;
+    glm::dvec2 heights(last, 0.0);
+    for (const glm::dvec2& corner : area)
+    {
+      heights[0] = std::min(heights[0], std::max(corner.y, 0.0));
+      heights[1] = std::max(heights[1], std::min(corner.y, last));
+    }
+    return heights;
+  }
+
   A at(int u, int v) const
   {
     return static_cast<A>(this->Pixels[std::ptrdiff_t(v) * this->Image.width + u]);
@@ -257,6 +311,13 @@ private:
 
   void takeRow(int v, double low, double high, bool least, AreaExtrema<A>& best) const
   {
+    this->forRow(v, low, high, [&](int u) { best.sample.take({ this->at(u, v), u, v }, least); });
+  }
+
+  /// Calls f(u) for the samples of a row in a range.
+  template <class F>
+  void forRow(int v, double low, double high, F&& f) const
+  {
     const Span& span = this->Image.spans[v];
     const int begin = static_cast<int>(std::ceil(std::max<double>(low, span.begin)));
     const int last = static_cast<int>(std::floor(std::min(high, span.end - 1.0)));
@@ -264,7 +325,7 @@ private:
     {
       if (this->Image.covers(u, v))
       {
-        best.sample.take({ this->at(u, v), u, v }, least);
+        f(u);
       }
     }
   }

@@ -85,23 +85,29 @@ class RowWarp
 public:
   using Pixel = typename Sink::Pixel;
 
-  /// Both must outlive its use.
-  RowWarp(const std::vector<WarpSource<A>>& images, Reduction reduction, const Sink& sink)
+  /// All must outlive its use.
+  RowWarp(const std::vector<WarpSource<A>>& images, Reduction reduction, const Sink& sink,
+    ProgressObserver& observer)
     : Images(images),
       To(sink),
+      Observer(observer),
       Areas(images, reduction)
   {
   }
 
   /// The pixels of a part of a viewport, of which `pixels` is the first and the next row lies a
-  /// stride further.
-  void warp(const Picture& place, Pixel* pixels, std::ptrdiff_t stride) const
+  /// stride further. False if the observer has stopped it.
+  bool warp(const Picture& place, Pixel* pixels, std::ptrdiff_t stride) const
   {
     const bool showsAreas = this->Images.front().geometry.isOverview();
+    if (showsAreas)
+    {
+      this->Observer.start();
+    }
     vtkSMPTools::For(0, place.size.y, 16,
       [&](vtkIdType first, vtkIdType last)
       {
-        for (vtkIdType y = first; y < last; ++y)
+        for (vtkIdType y = first; y < last && (!showsAreas || this->Observer.ask()); ++y)
         {
           const glm::dvec3 start(place.origin.x, place.origin.y + static_cast<double>(y), 1.0);
           Pixel* const out = pixels + y * stride;
@@ -109,6 +115,7 @@ public:
                      : this->warpRow(start, static_cast<int>(y), place.size.x, out);
         }
       });
+    return !showsAreas || !this->Observer.stopped();
   }
 
 private:
@@ -222,6 +229,7 @@ private:
 
   const std::vector<WarpSource<A>>& Images;
   const Sink& To;
+  ProgressObserver& Observer;
   AreaRows<A> Areas;
 };
 
@@ -256,10 +264,11 @@ const Accumulator<T>* samplesOf(
 
 /// Warps images of voxels of type T, which are copied to `copied` where that is needed.
 template <class T, class Sink>
-void warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+bool warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   Reduction reduction, const Kernels& kernels, const Sink& sink,
   std::vector<std::vector<unsigned char>>& copied, const Picture& place,
-  typename Sink::Pixel* pixels, std::ptrdiff_t stride, const ScreenRays& rays)
+  typename Sink::Pixel* pixels, std::ptrdiff_t stride, const ScreenRays& rays,
+  ProgressObserver& observer)
 {
   using A = Accumulator<T>;
   std::vector<WarpSource<A>> sources;
@@ -268,11 +277,11 @@ void warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWa
     const A* const own = samplesOf<T>(images[n], kernels, copied[n]);
     sources.emplace_back(images[n], own, geometries[n], rays, n);
   }
-  RowWarp<A, Sink>(sources, reduction, sink).warp(place, pixels, stride);
+  return RowWarp<A, Sink>(sources, reduction, sink, observer).warp(place, pixels, stride);
 }
 }
 
-void Warper::warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+bool Warper::warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   Reduction reduction, const ColorTable& table, const glm::ivec2& viewport,
   InstructionSet instructionSet, Picture& picture, const ScreenRays& rays)
 {
@@ -280,17 +289,17 @@ void Warper::warp(const std::vector<ShearImage>& images, const std::vector<Shear
   picture.pixels.resize(std::size_t(picture.size.x) * picture.size.y);
   if (picture.pixels.empty())
   {
-    return;
+    return true;
   }
   this->Copied.resize(std::max(this->Copied.size(), geometries.size()));
   const Kernels& kernels = kernelsFor(instructionSet);
-  dispatch(images.front().type,
+  return dispatch(images.front().type,
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
       const ColorSink<Accumulator<T>> sink(kernels, table);
-      warpImages<T>(images, geometries, reduction, kernels, sink, this->Copied, picture,
-        picture.pixels.data(), picture.size.x, rays);
+      return warpImages<T>(images, geometries, reduction, kernels, sink, this->Copied, picture,
+        picture.pixels.data(), picture.size.x, rays, this->Observer);
     });
 }
 
@@ -323,7 +332,7 @@ void Warper::warpPixels(const std::vector<ShearImage>& images, const std::vector
     });
 }
 
-void Warper::warpScalars(const std::vector<ShearImage>& images,
+bool Warper::warpScalars(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& viewport,
   InstructionSet instructionSet, double background, void* scalars, const ScreenRays& rays)
 {
@@ -331,11 +340,11 @@ void Warper::warpScalars(const std::vector<ShearImage>& images,
   placePicture(geometries, viewport, place);
   if (place.size.x < 1 || place.size.y < 1)
   {
-    return;
+    return true;
   }
   this->Copied.resize(std::max(this->Copied.size(), geometries.size()));
   const Kernels& kernels = kernelsFor(instructionSet);
-  dispatch(images.front().type,
+  return dispatch(images.front().type,
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
@@ -343,8 +352,8 @@ void Warper::warpScalars(const std::vector<ShearImage>& images,
       const ScalarSink<A> sink{ kernels, static_cast<A>(background) };
       A* const first =
         static_cast<A*>(scalars) + std::ptrdiff_t(place.origin.y) * viewport.x + place.origin.x;
-      warpImages<T>(
-        images, geometries, reduction, kernels, sink, this->Copied, place, first, viewport.x, rays);
+      return warpImages<T>(images, geometries, reduction, kernels, sink, this->Copied, place, first,
+        viewport.x, rays, this->Observer);
     });
 }
 }

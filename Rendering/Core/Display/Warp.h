@@ -6,6 +6,7 @@
 #ifndef splattingWarp_h
 #define splattingWarp_h
 
+#include "Common/ProgressObserver.h"
 #include "Display/Picture.h"
 #include "Display/ScreenRays.h"
 #include "Display/ShearPixels.h"
@@ -48,8 +49,9 @@ public:
    * @param images      all of one type; those beyond the number of geometries are left alone
    * @param geometries  as ShearWarp::factorise() gives them
    * @param rays        of the view's screen: their values take the place of what is interpolated
+   * @return  false if the observer has stopped it: the picture has no meaning then
    */
-  void warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+  bool warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
     Reduction reduction, const ColorTable& table, const glm::ivec2& viewport,
     InstructionSet instructionSet, Picture& picture, const ScreenRays& rays = {});
 
@@ -62,11 +64,19 @@ public:
    * pixels of the picture get the background; those outside the picture are left alone.
    * @param scalars  of type averageType() of the images' type
    */
-  void warpScalars(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+  bool warpScalars(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
     Reduction reduction, const glm::ivec2& viewport, InstructionSet instructionSet,
     double background, void* scalars, const ScreenRays& rays = {});
 
+  /// Asked by the thread that warps whether to go on, where pixels show areas. The share that it is
+  /// told has no meaning.
+  void setObserver(const ProgressObserver::Callback& callback)
+  {
+    this->Observer.setCallback(callback);
+  }
+
 private:
+  ProgressObserver Observer;
   /// Images converted to the accumulator's type, where they are of another or have holes.
   std::vector<std::vector<unsigned char>> Copied;
 };

@@ -411,8 +411,32 @@ void ScalarSource::Update()
     this->Copies.push_back(copy.bytes ? std::move(copy) : std::move(lengths));
   }
   this->Volumed = this->Examined;
+  this->Lender = this->Examined.scalars;
+  this->LenderTime = this->Lender->GetMTime();
   ++this->NumberOfUpdates;
   this->Seconds = vtkTimerLog::GetUniversalTime() - start;
+}
+
+bool ScalarSource::HasVolumes() const
+{
+  vtkDataArray* const scalars = this->Lender;
+  const bool isKept = scalars && scalars->GetMTime() == this->LenderTime;
+  const int first =
+    this->Volumed.vectorMode == ScalarChoice::Component ? this->Volumed.vectorComponent : 0;
+  for (std::size_t c = 0; c < this->Volumes.size(); ++c)
+  {
+    const VoxelArray& volume = this->Volumes[c];
+    const int component = first + static_cast<int>(c);
+    const bool isCopy = this->Copies[c].bytes || this->Packed;
+    if (!isCopy &&
+      !(isKept && scalars->GetNumberOfTuples() == count(volume.dimensions) &&
+        component < scalars->GetNumberOfComponents() &&
+        componentOf(scalars, component).voxels == volume.voxels))
+    {
+      return false;
+    }
+  }
+  return true;
 }
 
 void ScalarSource::Clear(int vtkType)
@@ -421,6 +445,7 @@ void ScalarSource::Clear(int vtkType)
   this->Volumes.clear();
   this->Copies.clear();
   this->Packed = nullptr;
+  this->Lender = nullptr;
   this->StandIn = nullptr;
   this->StandInCopy = nullptr;
   this->VtkType = vtkType;

@@ -8,6 +8,7 @@
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
+#include "vtkWeakPointer.h"
 
 #include <cstddef>
 #include <memory>
@@ -77,8 +78,11 @@ public:
   void Update();
   /// Another number after each Update() that changed the volumes.
   vtkIdType Version() const { return this->NumberOfUpdates; }
-  /// Valid after Update(), as long as the input.
+  /// Valid after Update(), as long as HasVolumes().
   const VoxelArray& Volume(int component) const { return this->Volumes[component]; }
+  /// Whether the volumes still are what the last Update() has made them: scalars of the input may
+  /// have been deleted, reallocated or modified since, copies have not.
+  bool HasVolumes() const;
   /// For a rank that holds nothing: no volume here; those of others have this type of VTK.
   void Clear(int vtkType);
   /// VTK's name for the type of a volume, or of what is projected from it.
@@ -141,6 +145,9 @@ private:
   Key Examined; // what passed the gate
   Key Volumed;  // what the volumes were made of
   Key Imaged;   // what the image was made of
+  /// The array of volumes that are not copied, and its time then.
+  vtkWeakPointer<vtkDataArray> Lender;
+  vtkMTimeType LenderTime = 0;
   GridOfDataSet Layout;
   int NumberOfComponents = 1;
   bool Dependent = false;

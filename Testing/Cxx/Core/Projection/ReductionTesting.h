@@ -434,9 +434,12 @@ void chooseSettings(reference::Random& random, const reference::RaySamples<S>& r
     s.meanLow = bounds.low + range * random.uniform(0.1, 0.5);
     s.meanHigh = bounds.high - range * random.uniform(0.1, 0.5);
   }
+  // Both ends are in the range.
   if (random.uniform(0, 2) == 0 && s.quality == Quality::Preview)
   {
     s.meanLow = randomLevel(random, rays);
+    s.meanHigh = random.uniform(0, 1) ? randomLevel(random, rays) : Infinity;
+    s.meanHigh = std::max(s.meanLow, s.meanHigh);
   }
 }
 

@@ -398,6 +398,12 @@ void testEmptyRange(stage::Stage& stage, stage::Checks& check)
     mapper->SetQualityMode(mode);
     mapper->SetAverageIPScalarRange(0.0, 255.0);
     check(greatest() == 100, "The average of a constant volume is that constant.");
+    mapper->SetAverageIPScalarRange(100.0, 255.0);
+    check(greatest() == 100, "The range includes its lower end.");
+    mapper->SetAverageIPScalarRange(0.0, 100.0);
+    check(greatest() == 100, "The range includes its upper end.");
+    mapper->SetAverageIPScalarRange(0.0, 99.0);
+    check(greatest() == 0, "No sample is in the range.");
     mapper->SetAverageIPScalarRange(101.0, 255.0);
     check(greatest() == 0, "No sample is in the range.");
     stage.renderer->SetBackground(0.0, 0.2, 0.0);

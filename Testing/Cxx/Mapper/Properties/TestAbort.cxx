@@ -215,6 +215,33 @@ void testAbortCheckEvent(Scene& scene, stage::Checks& check)
   check(scene.stage.pixels() == expected, "The next render is right.");
 }
 
+/// Where pixels are wider than voxels, a frame that does not project can be aborted, too.
+void testOverview(Scene& scene, stage::Checks& check)
+{
+  for (int mode :
+    { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::AVERAGE_INTENSITY_BLEND })
+  {
+    const std::string what = "overview, blend mode " + std::to_string(mode);
+    scene.mapper->SetBlendMode(mode);
+    scene.stage.look(Directions[0], Up, 10.0);
+    const stage::Pixels expected = scene.stage.pixels();
+    check(!isBlack(expected), what + ": there is something to see.");
+    const vtkIdType projections = scene.mapper->GetNumberOfProjections();
+    {
+      const Observer abort(scene.mapper, vtkCommand::VolumeMapperRenderStartEvent,
+        [&](void*) { scene.stage.window->SetAbortRender(1); });
+      check(isBlack(scene.stage.pixels()), what + ": an aborted render draws nothing.");
+    }
+    double position[3];
+    check(!scene.mapper->PickWorldPosition(60, 55, position), what + ": nor is it picked.");
+    check(scene.stage.pixels() == expected, what + ": the next render is right.");
+    check(
+      scene.mapper->GetNumberOfProjections() == projections, what + ": all show one projection.");
+  }
+  scene.mapper->SetBlendModeToMaximumIntensity();
+  scene.stage.look(Directions[0], Up);
+}
+
 /// What was aborted has not been used.
 void testQualityModeUsed(Scene& scene, stage::Checks& check)
 {
@@ -316,6 +343,7 @@ int TestAbort(int, char*[])
   scene.stage.look(Directions[0], Up);
   testChains(scene, check);
   testAbortCheckEvent(scene, check);
+  testOverview(scene, check);
   testQualityModeUsed(scene, check);
   testExceptions(scene, check);
   testRendersWithin(scene, check);
