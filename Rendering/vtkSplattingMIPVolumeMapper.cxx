@@ -201,6 +201,7 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfBudget(vtkSplattingMIPVolumeM
 void vtkSplattingMIPVolumeMapper::Internals::GiveBack()
 {
   this->Data.Clear();
+  this->Locations.Forget();
   this->Picture = {};
   this->DropRayCaster();
 }
@@ -229,10 +230,10 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
   in.Data.BeginFrame();
-  in.Locations.Forget();
   std::string problem;
   try
   {
+    in.Locations.BeginFrame(ren);
     problem = refusalOf(this, ren, vol, in.Data);
     if (problem.empty())
     {

@@ -82,8 +82,9 @@
  * where rays are cast. For the voxel that a pixel shows see SetRecordLocations().
  *
  * Aborting. While it projects, and while it makes chains, the mapper asks the render window's
- * CheckAbortStatus() between bands of image rows, on the thread that renders. An aborted render
- * draws nothing and leaves no shear image; the next one projects anew. Events:
+ * CheckAbortStatus() between bands of image rows, on the thread that renders; in overviews, where
+ * pixels are wider than voxels, also between rows of the picture. An aborted render draws nothing.
+ * An aborted projection leaves no shear image; the next one projects anew. Events:
  * VolumeMapperRenderStartEvent, VolumeMapperRenderProgressEvent (only when projecting; call data:
  * pointer to double, from 0 to 1), VolumeMapperRenderEndEvent; ProgressEvent while chains are made.
  * Observers must not render with this mapper.
@@ -115,7 +116,8 @@
  * picture (two with several components); footprints (about 3 kB a slice); for each thread some rows
  * of voxels and the bounds of a band of tiles; per pixel of the shear image up to 9 bytes where
  * rays are cut, 12 for averages, 5 for depth shading and local maxima, 4 for dependent components,
- * 16 for a bounding surface; per pixel of the screen 4 for depths. Where all this does not fit into
+ * 16 for a bounding surface; per pixel of the screen 4 for depths; for each further renderer a copy
+ * of one component's shear image, for picks. Where all this does not fit into
  * the machine's memory, an error says so, nothing is drawn, and what the mapper holds is given
  * back; the next frame tries again. (With several ranks std::bad_alloc goes on to the caller as
  * well, for the others wait.)
@@ -178,10 +180,11 @@ public:
 
   ///@{
   /**
-   * What a pixel of the window shows: the sample of the shear pixel nearest to it, in EXACT what
-   * its own ray finds; the same as GetLocations() tells. RecordLocations need not be on: without it
-   * one ray is looked along, in about a millisecond. (x, y) are display coordinates, as
-   * vtkRenderWindowInteractor::GetEventPosition() gives them.
+   * What a pixel of the window shows, in any of the viewports that this mapper has rendered in; of
+   * several windows, in the one that it has rendered in last. It is the sample of the shear pixel
+   * nearest to it, in EXACT what its own ray finds; the same as GetLocations() tells.
+   * RecordLocations need not be on: without it one ray is looked along, in about a millisecond. (x,
+   * y) are display coordinates, as vtkRenderWindowInteractor::GetEventPosition() gives them.
    *
    * - PickWorldPosition(): the point of the world to measure from. It lies on the pixel's ray,
    *   where this crosses the middle of the slice that the sample is of (in EXACT, where the field
@@ -193,10 +196,10 @@ public:
    * not EXACT's maxima.
    *
    * Return false (PickValue: NaN) and leave the output unchanged
-   * - if the last render of this mapper has no sample there; whether the sample is opaque does not
-   *   matter;
+   * - if the last frames of the renderers have no sample of this mapper there; whether the sample
+   * is opaque does not matter;
    * - if the volume is invisible or removed, or the last frame of its renderer has not rendered it;
-   * - if the scalars of that render have been deleted, reallocated or modified since;
+   * - if the scalars of that frame have been deleted, reallocated or modified since;
    * - for averages;
    * - for several ranks without RecordLocations.
    */

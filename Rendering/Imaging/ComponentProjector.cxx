@@ -366,11 +366,11 @@ bool ComponentProjector::CanProjectPixels() const
     this->LocatedChannel().Settings.reduction != Reduction::Mean;
 }
 
-const PixelProjector::Pixel& ComponentProjector::ProjectPixel(
+const PixelProjector::Pixel& ComponentProjector::ProjectPixel(const ProjectionSettings& settings,
   const ShearPixel& pixel, const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts)
 {
   Channel& channel = this->Dependent ? this->Channels.back() : this->Channels.front();
-  return this->Pixels.Project(channel.Index, channel.Settings, pixel, geometries, cuts);
+  return this->Pixels.Project(channel.Index, settings, pixel, geometries, cuts);
 }
 
 // From the images of pieces to those of the whole.
@@ -452,11 +452,6 @@ void ComponentProjector::FindScreenRays(const std::vector<ShearWarp>& geometries
       this->Ranks->Reduce(channel.Rays.values(), geometries.front(), Reduction::Maximum);
     }
   }
-}
-
-double ComponentProjector::ValueOnOwnRay(std::size_t image, const glm::ivec2& pixel) const
-{
-  return this->LocatedChannel().Rays.valueAt(image, pixel);
 }
 
 // Where areas are shown, the other components are those of the sample that wins in the area.

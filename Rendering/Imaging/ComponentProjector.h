@@ -101,9 +101,9 @@ public:
   void FindScreenRays(const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts,
     const SceneDepth* depth, const View& view);
 
-  /// What the own ray of a viewport's pixel has found in the last FindScreenRays(), for the
-  /// component that is located; NaN if the pixel does not show that.
-  double ValueOnOwnRay(std::size_t image, const glm::ivec2& pixel) const;
+  /// What the own rays of the viewport's pixels have found in the last FindScreenRays(), for the
+  /// component that is located.
+  const ScreenRays& LocatedRays() const { return this->LocatedChannel().Rays; }
 
   /// The picture of the images in a view with these geometries. False if the warper's observer has
   /// stopped it: there is no picture then.
@@ -132,8 +132,10 @@ public:
 
   /// See PixelProjector: not of pieces, nor of means.
   bool CanProjectPixels() const;
-  const PixelProjector::Pixel& ProjectPixel(const ShearPixel& pixel,
-    const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts);
+  /// @param settings  of the projection that is located
+  const PixelProjector::Pixel& ProjectPixel(const ProjectionSettings& settings,
+    const ShearPixel& pixel, const std::vector<ShearWarp>& geometries,
+    const std::vector<Cuts>& cuts);
 
   /// Of the last projection.
   const ProjectionSettings& Settings() const { return this->Channels.front().Settings; }

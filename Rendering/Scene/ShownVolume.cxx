@@ -4,39 +4,34 @@
 
 #include "vtkCommand.h"
 #include "vtkRenderWindow.h"
-#include "vtkRenderer.h"
-#include "vtkVolume.h"
 
 namespace splatting
 {
 ShownVolume::~ShownVolume()
 {
-  this->Reset();
+  this->StopObserving();
 }
 
 void ShownVolume::Set(vtkRenderer* renderer, vtkVolume* volume)
 {
   if (this->ItsRenderer != renderer)
   {
-    this->Reset();
+    this->StopObserving();
     this->ItsRenderer = renderer;
     this->Observer = renderer->AddObserver(vtkCommand::StartEvent, this, &ShownVolume::StartFrame);
   }
   this->ItsVolume = volume;
-  this->Window = renderer->GetRenderWindow();
+  this->ItsWindow = renderer->GetRenderWindow();
   this->IsViewProp = renderer->HasViewProp(volume) != 0;
   this->IsRendered = true;
 }
 
-void ShownVolume::Reset()
+void ShownVolume::StopObserving()
 {
   if (this->ItsRenderer)
   {
     this->ItsRenderer->RemoveObserver(this->Observer);
   }
-  this->ItsRenderer = nullptr;
-  this->ItsVolume = nullptr;
-  this->IsRendered = false;
 }
 
 bool ShownVolume::IsShown() const
@@ -44,7 +39,7 @@ bool ShownVolume::IsShown() const
   vtkRenderer* const renderer = this->ItsRenderer;
   vtkVolume* const volume = this->ItsVolume;
   return this->IsRendered && renderer && volume && renderer->GetRenderWindow() &&
-    renderer->GetRenderWindow() == this->Window && volume->GetVisibility() &&
+    renderer->GetRenderWindow() == this->ItsWindow && volume->GetVisibility() &&
     (!this->IsViewProp || renderer->HasViewProp(volume));
 }
 

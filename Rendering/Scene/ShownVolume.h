@@ -3,11 +3,11 @@
 #ifndef ShownVolume_h
 #define ShownVolume_h
 
+#include "vtkRenderer.h" // for the weak pointer
+#include "vtkVolume.h"
 #include "vtkWeakPointer.h"
 
-class vtkRenderer;
 class vtkRenderWindow;
-class vtkVolume;
 
 namespace splatting
 {
@@ -25,18 +25,24 @@ public:
 
   /// The present frame of a renderer shows the volume.
   void Set(vtkRenderer* renderer, vtkVolume* volume);
-  void Reset();
+  /// It no longer does.
+  void Drop() { this->IsRendered = false; }
+
+  const vtkRenderer* Renderer() const { return this->ItsRenderer; }
+  /// Only to be compared: it may be deleted.
+  const vtkRenderWindow* Window() const { return this->ItsWindow; }
 
   /// Whether the renderer has rendered no frame without the volume since, and both still exist, are
   /// in their place and visible.
   bool IsShown() const;
 
 private:
+  void StopObserving();
   void StartFrame();
 
   vtkWeakPointer<vtkRenderer> ItsRenderer;
   vtkWeakPointer<vtkVolume> ItsVolume;
-  const vtkRenderWindow* Window = nullptr; // only compared
+  const vtkRenderWindow* ItsWindow = nullptr;
   unsigned long Observer = 0;
   bool IsViewProp = false; // not a part of another prop
   bool IsRendered = false;

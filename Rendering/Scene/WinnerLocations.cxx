@@ -74,53 +74,118 @@ std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors)
 
 void WinnerLocations::Forget()
 {
-  this->Known = false;
+  this->Frames.clear();
+  this->HasLast = false;
   this->Output = nullptr;
+}
+
+// Makes a frame independent of projector and cuts.
+void WinnerLocations::Frame::Copy()
+{
+  Located& from = this->located;
+  this->geometries = *from.geometries;
+  this->images.assign(
+    from.images->begin(), from.images->begin() + static_cast<std::ptrdiff_t>(geometries.size()));
+  this->cuts = *from.cuts;
+  this->ownRays = *this->rays;
+  from.geometries = &this->geometries;
+  from.images = &this->images;
+  from.cuts = &this->cuts;
+  this->rays = &this->ownRays;
+  if (from.depth)
+  {
+    this->depth = *from.depth;
+    from.depth = &this->depth;
+  }
+}
+
+void WinnerLocations::BeginFrame(vtkRenderer* renderer)
+{
+  if (this->HasLast && this->Frames.front()->shown.Renderer() != renderer)
+  {
+    this->Frames.front()->Copy();
+  }
+  this->HasLast = false;
+  this->Output = nullptr;
+  const auto isGone = [](const std::unique_ptr<Frame>& frame) { return !frame->shown.Renderer(); };
+  this->Frames.erase(
+    std::remove_if(this->Frames.begin(), this->Frames.end(), isGone), this->Frames.end());
+  for (const std::unique_ptr<Frame>& frame : this->Frames)
+  {
+    if (frame->shown.Renderer() == renderer)
+    {
+      frame->shown.Drop();
+    }
+  }
+}
+
+// Of a renderer, which becomes the first.
+WinnerLocations::Frame& WinnerLocations::FrameOf(vtkRenderer* renderer)
+{
+  auto frame = std::find_if(this->Frames.begin(), this->Frames.end(),
+    [=](const std::unique_ptr<Frame>& f) { return f->shown.Renderer() == renderer; });
+  if (frame == this->Frames.end())
+  {
+    frame = this->Frames.insert(frame, std::make_unique<Frame>());
+  }
+  std::rotate(this->Frames.begin(), frame, frame + 1);
+  return *this->Frames.front();
 }
 
 void WinnerLocations::Remember(
   const View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer)
 {
-  this->Output = nullptr;
-  this->Known = true;
-  this->Frame.view = view;
-  this->Frame.indexToWorld = indexToWorld(grid, volume);
+  Frame& frame = this->FrameOf(renderer);
+  this->HasLast = true;
+  frame.shown.Set(renderer, volume);
+  frame.version = this->Source.Version();
+  frame.rays = &this->Projector.LocatedRays();
+  frame.canProject = this->Projector.CanProjectPixels();
+  Located& located = frame.located;
+  located = {};
+  located.view = view;
+  located.indexToWorld = indexToWorld(grid, volume);
+  located.geometries = &this->Images;
+  located.cuts = &this->SceneCuts.OfProjection();
+  located.depth = this->SceneCuts.SceneDepths();
+  this->Projector.Describe(located);
   vtkCamera* const camera = renderer->GetActiveCamera();
-  camera->GetPosition(&this->Frame.camera.x);
-  camera->GetDirectionOfProjection(&this->Frame.direction.x);
+  camera->GetPosition(&located.camera.x);
+  camera->GetDirectionOfProjection(&located.direction.x);
   int width, height;
-  renderer->GetTiledSizeAndOrigin(&width, &height, &this->Left, &this->Bottom);
-  this->Shown.Set(renderer, volume);
+  renderer->GetTiledSizeAndOrigin(&width, &height, &frame.left, &frame.bottom);
 }
 
 bool WinnerLocations::HasWinners() const
 {
-  return this->Known && !this->Images.empty() && this->Projector.HasWinners();
+  return this->Last() && !this->Images.empty() && this->Projector.HasWinners();
 }
 
-Located WinnerLocations::Describe() const
+// Whether a frame is still shown and its voxels exist.
+bool WinnerLocations::IsIntact(const Frame& frame) const
 {
-  Located located = this->Frame;
-  located.geometries = &this->Images;
-  located.cuts = &this->Cuts.OfProjection();
-  located.depth = this->Cuts.SceneDepths();
-  this->Projector.Describe(located);
-  return located;
-}
-
-Locator WinnerLocations::Locate() const
-{
-  return Locator(this->Describe());
+  return frame.shown.IsShown() && frame.version == this->Source.Version() &&
+    this->Source.HasVolumes();
 }
 
 bool WinnerLocations::Pick(int x, int y, Sample& sample)
 {
-  const glm::ivec2 pixel(x - this->Left, y - this->Bottom);
-  const glm::ivec2& viewport = this->Frame.view.viewport;
-  const bool isInside =
-    pixel.x >= 0 && pixel.y >= 0 && pixel.x < viewport.x && pixel.y < viewport.y;
-  if (!this->Known || !isInside || this->Images.empty() || !this->Shown.IsShown() ||
-    !this->Source.HasVolumes())
+  return std::any_of(this->Frames.begin(), this->Frames.end(),
+    [&](const std::unique_ptr<Frame>& frame)
+    {
+      return frame->shown.Window() == this->Frames.front()->shown.Window() &&
+        this->IsIntact(*frame) &&
+        this->PickFrame(*frame, { x - frame->left, y - frame->bottom }, sample);
+    });
+}
+
+// Of a pixel of the viewport, which may lie outside.
+bool WinnerLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
+{
+  const Located& located = frame.located;
+  const glm::ivec2& viewport = located.view.viewport;
+  if (located.geometries->empty() || pixel.x < 0 || pixel.y < 0 || pixel.x >= viewport.x ||
+    pixel.y >= viewport.y)
   {
     return false;
   }
@@ -128,46 +193,51 @@ bool WinnerLocations::Pick(int x, int y, Sample& sample)
   place.origin = pixel;
   place.size = glm::ivec2(1);
   place.pixels = { 1u };
-  this->Cuts.Hide(place);
-  return place.pixels.front() && this->PickRay(pixel, sample);
+  if (located.depth)
+  {
+    located.depth->hide(place);
+  }
+  return place.pixels.front() && this->PickRay(frame, pixel, sample);
 }
 
 // Only at the image's rim rounding can let rays meet the volume that have no sample.
-bool WinnerLocations::HasSample(const ShearImage& image, const ShearPixel& pixel)
+bool WinnerLocations::HasSample(const Frame& frame, const ShearPixel& pixel)
 {
+  const Located& located = frame.located;
+  const ShearImage& image = (*located.images)[pixel.image];
   const int u = pixel.u, v = pixel.v;
   const bool isInside = image.meetsVolume(u - 1, v - 1) && image.meetsVolume(u + 1, v - 1) &&
     image.meetsVolume(u - 1, v + 1) && image.meetsVolume(u + 1, v + 1);
   const double value = valueOf(image, u, v);
   return image.covers(u, v) && value == value &&
     (isInside ||
-      this->Projector.ProjectPixel(pixel, this->Images, this->Cuts.OfProjection())
+      this->Projector.ProjectPixel(located.settings, pixel, *located.geometries, *located.cuts)
           .Images.front()
           .winners[0] >= 0);
 }
 
 // Of a pixel of the viewport.
-bool WinnerLocations::PickRay(const glm::ivec2& pixel, Sample& sample)
+bool WinnerLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
 {
-  const bool hasWinners = this->Projector.HasWinners();
-  if (!hasWinners && !this->Projector.CanProjectPixels())
+  Located located = frame.located;
+  const bool hasWinners = located.settings.findsWinners();
+  if (!hasWinners && !frame.canProject)
   {
     return false;
   }
-  Located located = this->Describe();
-  const auto hasSample = [&](const ShearPixel& shear)
-  { return this->HasSample((*located.images)[shear.image], shear); };
+  const auto hasSample = [&](const ShearPixel& shear) { return this->HasSample(frame, shear); };
   ShearPixel shown;
-  findShearPixels(*located.images, this->Images, located.settings.reduction, pixel, glm::ivec2(1),
-    &shown, hasWinners ? std::function<bool(const ShearPixel&)>() : hasSample);
+  findShearPixels(*located.images, *located.geometries, located.settings.reduction, pixel,
+    glm::ivec2(1), &shown, hasWinners ? std::function<bool(const ShearPixel&)>() : hasSample);
   if (shown.image < 0)
   {
     return false;
   }
+  const double own = frame.rays->valueAt(shown.image, pixel);
   if (!hasWinners)
   {
     const PixelProjector::Pixel& alone =
-      this->Projector.ProjectPixel(shown, this->Images, this->Cuts.OfProjection());
+      this->Projector.ProjectPixel(located.settings, shown, *located.geometries, *located.cuts);
     if (alone.Images.front().winners[0] < 0)
     {
       return false;
@@ -180,36 +250,36 @@ bool WinnerLocations::PickRay(const glm::ivec2& pixel, Sample& sample)
   const Locator locator(located);
   sample.position = locator.inWorld(locator.point(glm::dvec2(pixel), shown));
   sample.voxel = locator.voxel(glm::dvec2(pixel), shown);
-  const double own = this->Projector.ValueOnOwnRay(shown.image, pixel);
   sample.value = own == own ? own : valueOf((*located.images)[shown.image], shown.u, shown.v);
   return true;
 }
 
 vtkImageData* WinnerLocations::Image()
 {
-  if (!this->Known || !this->Shown.IsShown())
+  const Frame* const frame = this->Last();
+  if (!frame || !frame->shown.IsShown())
   {
     return nullptr;
   }
-  if (this->Output || !this->Source.HasVolumes())
+  if (this->Output || !this->IsIntact(*frame))
   {
     return this->Output;
   }
-  const glm::ivec2& viewport = this->Frame.view.viewport;
-  const int extent[6] = { this->Left, this->Left + viewport.x - 1, this->Bottom,
-    this->Bottom + viewport.y - 1, 0, 0 };
+  const glm::ivec2& viewport = frame->located.view.viewport;
+  const int extent[6] = { frame->left, frame->left + viewport.x - 1, frame->bottom,
+    frame->bottom + viewport.y - 1, 0, 0 };
   if (!this->HasWinners())
   {
     this->Output = makeLocationImage(nullptr, extent);
     return this->Output;
   }
-  const Locator locator = this->Locate();
+  const Locator locator(frame->located);
   this->Output = makeLocationImage(&locator, extent);
   // What other things hide is not seen.
   Picture seen;
   seen.size = viewport;
   seen.pixels.assign(std::size_t(viewport.x) * viewport.y, 1u);
-  this->Cuts.Hide(seen);
+  this->SceneCuts.Hide(seen);
   for (vtkIdType n = 0; n < this->Output->GetNumberOfPoints(); ++n)
   {
     for (int a = 0; a < 3 && !seen.pixels[n]; ++a)
@@ -232,7 +302,7 @@ void WinnerLocations::ColorByDepth(
     return;
   }
   const std::vector<glm::dvec3> table = depthColors(colors);
-  const Locator locator = this->Locate();
+  const Locator locator(this->Last()->located);
   const glm::dvec2 depths =
     range[0] < range[1] ? glm::dvec2(range[0], range[1]) : locator.depthRange();
   this->Depths.resize(picture.pixels.size());
@@ -268,7 +338,7 @@ const std::vector<float>& WinnerLocations::ClipDepths(const Picture& picture, do
   }
   Locator::Arrays arrays;
   arrays.clipDepths = this->Depths.data();
-  this->Locate().fill(picture.origin, picture.size, arrays);
+  Locator(this->Last()->located).fill(picture.origin, picture.size, arrays);
   for (std::size_t n = 0; n < picture.pixels.size(); ++n)
   {
     const auto* const rgba = reinterpret_cast<const unsigned char*>(&picture.pixels[n]);

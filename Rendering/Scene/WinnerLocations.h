@@ -6,13 +6,17 @@
 #ifndef WinnerLocations_h
 #define WinnerLocations_h
 
+#include "Clipping/SceneDepth.h"
 #include "Display/Picture.h"
+#include "Display/ScreenRays.h"
 #include "Projection/Locations.h"
 #include "Scene/ShownVolume.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkType.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 class vtkImageData;
@@ -43,7 +47,8 @@ vtkSmartPointer<vtkImageData> makeLocationImage(const Locator* locator, const in
 std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors);
 
 /**
- * The locations of one frame. Looks at projector and cuts as that frame has left them.
+ * The locations of the last frame of each renderer. Looks at projector and cuts as the last frame
+ * of all has left them. Before a frame of another renderer it copies what picks need of them.
  */
 class WinnerLocations
 {
@@ -52,19 +57,21 @@ public:
     const std::vector<ShearWarp>& images)
     : Source(source),
       Projector(projector),
-      Cuts(cuts),
+      SceneCuts(cuts),
       Images(images)
   {
   }
 
-  /// Forgets the frame: nothing has been rendered.
+  /// Forgets all frames.
   void Forget();
-  /// Remembers how a frame has seen the volume.
+  /// To be called before a frame of a renderer, whose last one is no longer shown.
+  void BeginFrame(vtkRenderer* renderer);
+  /// Remembers how this frame has seen the volume.
   void Remember(const View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer);
 
-  /// What a pixel of the window shows: point of the world, voxel and value. False if the picture
-  /// has no sample there, is no longer shown or its voxels are gone. Without winners, looks along
-  /// rays.
+  /// What a pixel of the window of the last frame shows: point of the world, voxel and value. False
+  /// if no picture has a sample there that is still shown and whose voxels exist. Without winners,
+  /// looks along rays.
   struct Sample
   {
     glm::dvec3 position;
@@ -72,8 +79,8 @@ public:
     double value;
   };
   bool Pick(int x, int y, Sample& sample);
-  /// See makeLocationImage(), its extent in pixels of the window; nullptr before the first frame,
-  /// and if the picture is no longer shown or its voxels are gone.
+  /// See makeLocationImage(), of the last frame, its extent in pixels of the window; nullptr before
+  /// the first frame, and if the picture is no longer shown or its voxels are gone.
   vtkImageData* Image();
 
   /// Gives each pixel of a picture its depth's colour, as bright as the picture is.
@@ -83,20 +90,39 @@ public:
   const std::vector<float>& ClipDepths(const Picture& picture, double opacity);
 
 private:
+  /// The last frame of a renderer.
+  struct Frame
+  {
+    ShownVolume shown;
+    vtkIdType version = 0; // of the source
+    Located located;
+    int left = 0, bottom = 0;
+    const ScreenRays* rays = nullptr;
+    bool canProject = false;
+    // What the members above point at, once it is copied.
+    std::vector<ShearImage> images;
+    std::vector<ShearWarp> geometries;
+    std::vector<Cuts> cuts;
+    SceneDepth depth;
+    ScreenRays ownRays;
+
+    void Copy();
+  };
+
+  Frame& FrameOf(vtkRenderer* renderer);
+  const Frame* Last() const { return this->HasLast ? this->Frames.front().get() : nullptr; }
   bool HasWinners() const;
-  Located Describe() const;
-  Locator Locate() const;
-  bool HasSample(const ShearImage& image, const ShearPixel& pixel);
-  bool PickRay(const glm::ivec2& pixel, Sample& sample);
+  bool IsIntact(const Frame& frame) const;
+  bool PickFrame(const Frame& frame, const glm::ivec2& pixel, Sample& sample);
+  bool HasSample(const Frame& frame, const ShearPixel& pixel);
+  bool PickRay(const Frame& frame, const glm::ivec2& pixel, Sample& sample);
 
   const ScalarSource& Source;
   ComponentProjector& Projector;
-  const SceneCuts& Cuts;
+  const splatting::SceneCuts& SceneCuts;
   const std::vector<ShearWarp>& Images;
-  Located Frame; // but for what the projector knows
-  int Left = 0, Bottom = 0;
-  ShownVolume Shown;
-  bool Known = false;
+  std::vector<std::unique_ptr<Frame>> Frames; // the last one first
+  bool HasLast = false;                       // whether projector and cuts are of the first
   std::vector<float> Depths;
   vtkSmartPointer<vtkImageData> Output;
 };

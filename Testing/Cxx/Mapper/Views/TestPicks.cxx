@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Picks look along one ray: they are the same whether locations were recorded or not, and what the
-// arrays of all locations say.
+// arrays of all locations say. In each of several viewports they are what they are in that alone.
 #include "CoreTesting.h"
 #include "Stage.h"
 #include "Volume.h"
@@ -54,13 +54,13 @@ std::string toText(const Pick& pick)
   return text.str();
 }
 
-/// Empty if the three answers do not say alike whether there is a sample.
-std::vector<Pick> pickAll(vtkSplattingMIPVolumeMapper* mapper)
+/// Of a viewport. Empty if the three answers do not say alike whether there is a sample.
+std::vector<Pick> pickAll(vtkSplattingMIPVolumeMapper* mapper, int left = 0)
 {
   std::vector<Pick> picks;
   for (int y = 1; y < Height; y += 5)
   {
-    for (int x = 0; x < Width; x += 3)
+    for (int x = left; x < left + Width; x += 3)
     {
       Pick pick;
       pick.has = mapper->PickWorldPosition(x, y, pick.position.data());
@@ -132,12 +132,80 @@ bool areRecorded(
   }
   return same;
 }
+
+/// One mapper in two viewports of a window.
+void testViewports(stage::Checks& check)
+{
+  coretesting::Sightings picked;
+  reference::forScenes("viewports", 40,
+    [&](int n, reference::Random& random)
+    {
+      const auto image =
+        stage::toImageData(reference::uniformNoise<std::uint8_t>({ 30, 26, 34 }, random.bits()));
+      const auto mapper = stage::splatting(image);
+      stage::Stage stage(2 * Width, Height);
+      stage.show(mapper);
+      chooseAtRandom(mapper, image, n, random);
+      mapper->SetRecordLocations(random.uniform(0, 1));
+      vtkNew<vtkRenderer> second;
+      second->AddVolume(stage.volume);
+      stage.window->AddRenderer(second);
+      vtkRenderer* const renderers[] = { stage.renderer, second };
+      for (int side : { 1, 0 }) // as the first one's camera is set in between
+      {
+        // Some see the same projection, some an overview.
+        stage.viewAngle = random.uniform(0, 1) ? 40.0 : 0.0;
+        const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+        stage.look({ x, y, 1.0 }, { 0.1, 1.0, 0.2 }, random.uniform(0, 2) ? 0.8 : 2.5);
+        renderers[side]->SetViewport(0.5 * side, 0.0, 0.5 + 0.5 * side, 1.0);
+        renderers[side]->GetActiveCamera()->DeepCopy(stage.renderer->GetActiveCamera());
+        renderers[side]->ResetCameraClippingRange();
+      }
+      std::vector<Pick> alone[2];
+      for (int side = 0; side < 2; ++side)
+      {
+        renderers[side]->DrawOn();
+        renderers[1 - side]->DrawOff();
+        stage.window->Render();
+        alone[side] = pickAll(mapper, side * Width);
+        picked.add(std::any_of(
+          alone[side].begin(), alone[side].end(), [](const Pick& pick) { return pick.has; }));
+      }
+      for (int first = 0; first < 2; ++first)
+      {
+        renderers[0]->DrawOn();
+        renderers[1]->DrawOn();
+        stage.window->Render();
+        for (int side : { first, 1 - first })
+        {
+          check(!alone[side].empty() && pickAll(mapper, side * Width) == alone[side],
+            "Picks in viewport " + std::to_string(side) + " of scene " + std::to_string(n) +
+              ", mode " + std::to_string(mapper->GetQualityMode()) +
+              ", are the same beside another viewport.");
+        }
+      }
+      stage.volume->VisibilityOff();
+      second->Render();
+      stage.volume->VisibilityOn();
+      const std::vector<Pick> hidden = pickAll(mapper, Width);
+      check(std::none_of(hidden.begin(), hidden.end(), [](const Pick& pick) { return pick.has; }),
+        "Nothing is picked in a viewport that no longer shows the volume.");
+      check(pickAll(mapper) == alone[0], "Picks in the other viewport stay the same.");
+      mapper->SetInputData(stage::toImageData(reference::constant<std::uint8_t>({ 9, 8, 7 }, 50)));
+      second->Render();
+      const std::vector<Pick> old = pickAll(mapper);
+      check(std::none_of(old.begin(), old.end(), [](const Pick& pick) { return pick.has; }),
+        "Nothing is picked of data that are no longer there.");
+    });
+  check(picked.areEnough(0.5), "Samples are picked in viewports.");
+}
 }
 
 //------------------------------------------------------------------------------
 int TestPicks(int, char*[])
 {
   stage::Checks check;
+  testViewports(check);
   coretesting::Sightings picked;
   reference::forScenes("picks", 48,
     [&](int n, reference::Random& random)
