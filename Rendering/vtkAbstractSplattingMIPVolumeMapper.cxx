@@ -22,7 +22,6 @@ static_assert(same(Mapper::MAXIMUM_INTENSITY_BLEND, Filter::MAXIMUM_INTENSITY_BL
     same(Mapper::DEPTH_SHADED, Filter::DEPTH_SHADED) && same(Mapper::LOCAL, Filter::LOCAL) &&
     same(Mapper::PREVIEW, Filter::PREVIEW) && same(Mapper::STANDARD, Filter::STANDARD) &&
     same(Mapper::HIGH, Filter::HIGH) && same(Mapper::EXACT, Filter::EXACT) &&
-    same(Mapper::AUTOMATIC_SAMPLING, Filter::AUTOMATIC_SAMPLING) &&
     same(Mapper::COSINE_BELL, Filter::COSINE_BELL) && same(Mapper::LINES, Filter::LINES) &&
     same(Mapper::SORTED_VOLUME, Filter::SORTED_VOLUME) &&
     same(Mapper::MAGNITUDE, Filter::MAGNITUDE) && same(Mapper::COMPONENT, Filter::COMPONENT),

@@ -94,10 +94,10 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
   : LastRenderUsedRayCasting(false),
     Internal(new Internals)
 {
-  splatting::Projector& projector = this->Internal->Data.Components.GetProjector();
-  projector.setProgress([this](double done) { this->UpdateProgress(done); });
-  projector.setObserver([this](double done) { return this->Internal->GoOn(this, done); });
-  this->Internal->Data.Components.GetWarper().setObserver(
+  ComponentProjector& components = this->Internal->Data.Components;
+  components.GetProjector().setProgress([this](double done) { this->UpdateProgress(done); });
+  components.SetObserver([this](double done) { return this->Internal->GoOn(this, done); });
+  components.GetWarper().setObserver(
     [this](double) { return !this->Internal->IsAborted(); });
 }
 
@@ -310,11 +310,6 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     return TurnOfViews::Degenerate;
   }
   in.WarnOfBudget(this);
-  if (data.Components.IsProjected())
-  {
-    data.Components.FindScreenRays(
-      data.Images, data.Cuts.OfProjection(), data.Cuts.SceneDepths(), view);
-  }
   if (data.Components.IsProjected() && (!properties.DisplayOnRootOnly || data.Ranks.IsRoot()) &&
     data.Components.Warp(data.Images, view, in.Picture))
   {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ComponentProjector.h"
 
+#include "Cells/ScreenColors.h"
 #include "Input/ScalarSource.h"
 #include "PieceExchange.h"
 #include "Projection/Piece.h"
@@ -53,6 +54,7 @@ bool ComponentProjector::SetSource(ScalarSource& source)
   for (std::size_t c = 0; c < components; ++c)
   {
     this->Channels[c].Index.reset(source.Volume(static_cast<int>(c)));
+    this->Channels[c].Cells.clear();
     this->Channels[c].Here.reset();
     this->Channels[c].Whole.reset();
   }
@@ -70,6 +72,7 @@ void ComponentProjector::SetEmpty(ScalarType type, std::size_t components)
     for (Channel& channel : this->Channels)
     {
       channel.Index.reset({ nullptr, type, glm::ivec3(0) });
+      channel.Cells.clear();
       channel.Whole.reset();
     }
     this->Dependent = false;
@@ -153,7 +156,7 @@ std::size_t ComponentProjector::MemorySize() const
   std::size_t size = 0;
   for (const Channel& channel : this->Channels)
   {
-    size += channel.Index.memorySize();
+    size += channel.Index.memorySize() + channel.Cells.memorySize();
   }
   return size;
 }
@@ -163,7 +166,7 @@ double ComponentProjector::Time() const
   double seconds = 0.0;
   for (const Channel& channel : this->Channels)
   {
-    seconds += channel.Index.time();
+    seconds += channel.Index.time() + channel.Cells.time();
   }
   return seconds;
 }
@@ -195,9 +198,8 @@ ProjectionSettings ComponentProjector::SettingsOf(
   {
     settings.quality = Quality::High; // what is taken at winners is an average
   }
-  // Colours taken at winners, locations and where rays have their maxima matter below the window,
-  // too.
-  if (this->Cull && !settings.findsWinners() && settings.reduction == Reduction::Maximum)
+  // Colours taken at winners, and locations, matter below the window, too.
+  if (this->Cull && !settings.keepWinners && settings.reduction == Reduction::Maximum)
   {
     settings.floor = this->Colors.FloorOfWindow(&channel - this->Channels.data());
   }
@@ -237,18 +239,18 @@ bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
 
 // One image of all channels: what is taken at winners needs the projector as the projection has
 // left it.
-bool ComponentProjector::ProjectPart(std::size_t n, ImageOf imageOf, const ShearWarp& geometry,
-  const ProjectionSettings& settings, const Cuts& cuts)
+bool ComponentProjector::ProjectImage(
+  std::size_t n, const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts)
 {
   if (!this->TakesAtWinners(settings))
   {
     return std::all_of(this->Channels.begin(), this->Channels.end(),
       [&](Channel& channel)
-      { return this->ProjectChannel(channel, imageOf(channel, n), geometry, settings, cuts); });
+      { return this->ProjectChannel(channel, channel.Images[n], geometry, settings, cuts); });
   }
   Channel& last = this->Channels.back();
-  const ShearImage& winners = imageOf(last, n);
-  if (!this->ProjectChannel(last, imageOf(last, n), geometry, settings, cuts))
+  const ShearImage& winners = last.Images[n];
+  if (!this->ProjectChannel(last, last.Images[n], geometry, settings, cuts))
   {
     return false;
   }
@@ -259,48 +261,7 @@ bool ComponentProjector::ProjectPart(std::size_t n, ImageOf imageOf, const Shear
       channel.Settings = last.Settings;
       channel.Used = last.Used;
       this->Projector.takeAtWinners(
-        channel.Index.volume(), geometry, last.Settings, winners, imageOf(channel, n));
-    }
-  }
-  return true;
-}
-
-// The geometry and the cuts of a phase.
-void ComponentProjector::LookAtPhase(
-  const ShearWarp& geometry, const Cuts& cuts, const glm::ivec2& phase)
-{
-  geometry.takePhase(phase, this->PhaseGeometry);
-  this->PhaseCuts.cropping = cuts.cropping;
-  this->PhaseCuts.intervals.clear();
-  if (!cuts.intervals.empty())
-  {
-    this->PhaseCuts.intervals.takePhase(cuts.intervals, geometry.phases(), phase);
-  }
-}
-
-// As it is, or phase by phase.
-bool ComponentProjector::ProjectImage(
-  std::size_t n, const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts)
-{
-  const int phases = geometry.phases();
-  if (phases == 1)
-  {
-    const ImageOf whole = [](Channel& channel, std::size_t image) -> ShearImage&
-    { return channel.Images[image]; };
-    return this->ProjectPart(n, whole, geometry, settings, cuts);
-  }
-  const ImageOf part = [](Channel& channel, std::size_t) -> ShearImage& { return channel.Phase; };
-  for (int p = 0; p < phases * phases; ++p)
-  {
-    const glm::ivec2 phase(p % phases, p / phases);
-    this->LookAtPhase(geometry, cuts, phase);
-    if (!this->ProjectPart(n, part, this->PhaseGeometry, settings, this->PhaseCuts))
-    {
-      return false;
-    }
-    for (Channel& channel : this->Channels)
-    {
-      interleave(channel.Phase, phases, phase, channel.Images[n]);
+        channel.Index.volume(), geometry, last.Settings, winners, channel.Images[n]);
     }
   }
   return true;
@@ -310,14 +271,9 @@ bool ComponentProjector::Project(const std::vector<ShearWarp>& geometries,
   const ProjectionSettings& settings, const std::vector<Cuts>& cuts)
 {
   this->Projected = false;
-  this->LookedFrom.clear();
-  this->LookedAt = glm::ivec2(0);
+  this->OnScreen = false;
   this->Done = 0;
-  this->Parts = 0;
-  for (const ShearWarp& geometry : geometries)
-  {
-    this->Parts += static_cast<std::size_t>(geometry.phases()) * geometry.phases();
-  }
+  this->Parts = geometries.size();
   for (Channel& channel : this->Channels)
   {
     channel.Images.resize(std::max(channel.Images.size(), geometries.size()));
@@ -343,13 +299,14 @@ bool ComponentProjector::Project(const std::vector<ShearWarp>& geometries,
 
 bool ComponentProjector::HasWinners() const
 {
-  return this->Projected && this->LocatedChannel().Settings.findsWinners();
+  return this->Projected && this->LocatedChannel().Settings.keepWinners;
 }
 
 void ComponentProjector::Describe(Located& located) const
 {
   const Channel& channel = this->LocatedChannel();
-  located.images = &channel.Images;
+  located.images = this->OnScreen ? nullptr : &channel.Images;
+  located.screen = this->OnScreen ? &channel.Screen : nullptr;
   located.volume = channel.Index.volume();
   if (this->Ranks)
   {
@@ -386,27 +343,8 @@ void ComponentProjector::Exchange(const std::vector<ShearWarp>& geometries,
       {
         fillEmpty(channel.Images[n], channel.Range.low);
       }
-      this->OutlineWhole(channel, n, geometries[n], settings, cuts[n]);
+      this->Projector.outline(geometries[n], settings, cuts[n], channel.Images[n]);
     }
-  }
-}
-
-// Which pixels of an image of the whole have samples.
-void ComponentProjector::OutlineWhole(Channel& channel, std::size_t n, const ShearWarp& geometry,
-  const ProjectionSettings& settings, const Cuts& cuts)
-{
-  const int phases = geometry.phases();
-  if (phases == 1)
-  {
-    this->Projector.outline(geometry, settings, cuts, channel.Images[n]);
-    return;
-  }
-  for (int p = 0; p < phases * phases; ++p)
-  {
-    const glm::ivec2 phase(p % phases, p / phases);
-    this->LookAtPhase(geometry, cuts, phase);
-    this->Projector.outline(this->PhaseGeometry, settings, this->PhaseCuts, channel.Phase);
-    interleaveOutline(channel.Phase, phases, phase, channel.Images[n]);
   }
 }
 
@@ -417,41 +355,101 @@ double ComponentProjector::ShareOfAll(double done) const
     static_cast<double>(channels * std::max<std::size_t>(this->Parts, 1));
 }
 
-void ComponentProjector::FindScreenRays(const std::vector<ShearWarp>& geometries,
-  const std::vector<Cuts>& cuts, const SceneDepth* depth, const View& view)
+void ComponentProjector::SetObserver(const ProgressObserver::Callback& callback)
+{
+  this->Projector.setObserver(callback);
+  this->Cells.observer().setCallback(callback);
+}
+
+void ComponentProjector::UpdateCells(Channel& channel, const View& view)
 {
   const glm::ivec3 first = this->Ranks ? this->Ranks->First() : glm::ivec3(0);
-  std::vector<glm::dmat3> from;
-  for (const ShearWarp& geometry : geometries)
-  {
-    from.push_back(geometry.screenToShear());
-  }
-  // Where other things end within a slice the projection does not tell.
-  const bool isNew = depth || from != this->LookedFrom || view.viewport != this->LookedAt;
-  if (this->Ranks ? !this->Ranks->Any(isNew) : !isNew)
-  {
-    return;
-  }
-  this->LookedFrom = depth ? std::vector<glm::dmat3>() : from;
-  this->LookedAt = view.viewport;
+  const VolumeIndex::Range range = channel.Index.range();
+  channel.Cells.update(
+    CellGrid(channel.Index.volume(), first, view.dimensions, view.showsBoxes), range);
+  channel.Range = range;
+}
+
+bool ComponentProjector::ProjectOnScreen(
+  const View& view, const ProjectionSettings& settings, const RayEnds& ends)
+{
+  this->Projected = false;
+  this->OnScreen = true;
+  this->Done = 0;
+  this->Parts = 1;
+  bool done = true;
   for (Channel& channel : this->Channels)
   {
-    channel.Rays.clear();
-    if (geometries.empty() || geometries.front().isOverview() || !channel.Settings.hasScreenRays())
+    channel.Settings = this->SettingsOf(channel, settings);
+    channel.Used = Acceleration::Bricks;
+    if (done)
     {
-      continue;
-    }
-    const bool skips = channel.Settings.acceleration != Acceleration::Dense &&
-      channel.Index.volume().voxels && channel.Index.hasBricks();
-    const RaySource source{ channel.Index.volume(), first, &cuts, depth,
-      skips ? &channel.Index : nullptr };
-    channel.Rays.find(
-      channel.Images, geometries, source, view.viewport, channel.Settings.instructionSet);
-    if (this->Ranks && channel.Rays.values().width > 0)
-    {
-      this->Ranks->Reduce(channel.Rays.values(), geometries.front(), Reduction::Maximum);
+      this->UpdateCells(channel, view);
+      done = this->Cells.project(
+        channel.Cells, view, channel.Settings, ends, channel.Settings.keepWinners, channel.Screen);
+      ++this->Done;
     }
   }
+  // Where one rank has stopped all do.
+  if (this->Ranks ? this->Ranks->Any(!done) : !done)
+  {
+    return false;
+  }
+  for (Channel& channel : this->Channels)
+  {
+    if (this->Ranks && !channel.Screen.bytes.empty())
+    {
+      this->ExchangeScreen(channel);
+    }
+  }
+  this->Projected = true;
+  return true;
+}
+
+// From what a piece shows to what the whole does: of the ranks that have a pixel's value, the depth
+// nearest to the viewer.
+void ComponentProjector::ExchangeScreen(Channel& channel)
+{
+  ScreenScalars& screen = channel.Screen;
+  const std::vector<unsigned char> own =
+    screen.depths.empty() ? std::vector<unsigned char>() : screen.bytes;
+  ShearImage& image = this->Exchanged;
+  image.type = screen.type;
+  image.width = screen.size.x;
+  image.height = screen.size.y;
+  image.spans.assign(screen.size.y, { 0, screen.size.x });
+  image.nonFinite = true; // pixels without a sample are NaN
+  image.bytes.swap(screen.bytes);
+  this->Ranks->Reduce(image, ShearWarp(), channel.Settings.reduction);
+  image.bytes.swap(screen.bytes);
+  const std::size_t size = sizeOf(screen.type);
+  for (std::size_t n = 0; n < screen.depths.size(); ++n)
+  {
+    const bool isOwn = std::memcmp(&own[n * size], &screen.bytes[n * size], size) == 0;
+    screen.depths[n] = isOwn && screen.depths[n] == screen.depths[n]
+      ? screen.depths[n]
+      : std::numeric_limits<float>::infinity();
+  }
+  if (!screen.depths.empty())
+  {
+    this->Ranks->Least(screen.depths);
+    std::replace(screen.depths.begin(), screen.depths.end(),
+      std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN());
+  }
+}
+
+const ScreenScalars& ComponentProjector::ProjectPixelOnScreen(const View& view,
+  const ProjectionSettings& settings, const RayEnds& ends, const glm::ivec2& pixel)
+{
+  Channel& channel = this->Dependent ? this->Channels.back() : this->Channels.front();
+  this->UpdateCells(channel, view);
+  CellProjector projector; // observed by nobody
+  if (!projector.project(channel.Cells, view, settings, ends, true, { pixel, glm::ivec2(1) },
+        this->PixelOnScreen))
+  {
+    this->PixelOnScreen.size = glm::ivec2(0);
+  }
+  return this->PixelOnScreen;
 }
 
 // Where areas are shown, the other components are those of the sample that wins in the area.
@@ -480,11 +478,14 @@ bool ComponentProjector::Warp(
     Channel& channel = this->Channels[c];
     const bool first = c == 0;
     Picture& layer = first ? picture : this->Layer;
-    if (this->Shown.empty())
+    if (this->OnScreen)
+    {
+      colorScreen(channel.Screen, this->Colors.Of(c), channel.Settings.instructionSet, layer);
+    }
+    else if (this->Shown.empty())
     {
       if (!this->Warper.warp(channel.Images, geometries, channel.Settings.reduction,
-            this->Colors.Of(c), view.viewport, channel.Settings.instructionSet, layer,
-            channel.Rays))
+            this->Colors.Of(c), view.viewport, channel.Settings.instructionSet, layer))
       {
         return false;
       }
@@ -520,8 +521,13 @@ bool ComponentProjector::WarpScalars(
   {
     using A = std::remove_pointer_t<decltype(values)>;
     std::fill_n(values, pixels, static_cast<A>(background));
+    if (this->OnScreen)
+    {
+      copyScreen(channel.Screen, view.viewport, values);
+      return true;
+    }
     return this->Warper.warpScalars(channel.Images, geometries, channel.Settings.reduction,
-      view.viewport, channel.Settings.instructionSet, background, values, channel.Rays);
+      view.viewport, channel.Settings.instructionSet, background, values);
   };
   const auto interleave = [&](auto* to)
   {

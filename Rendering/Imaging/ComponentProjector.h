@@ -3,6 +3,7 @@
 #ifndef ComponentProjector_h
 #define ComponentProjector_h
 
+#include "Cells/CellProjector.h"
 #include "ComponentColors.h"
 #include "Display/Warp.h"
 #include "PixelProjector.h"
@@ -77,6 +78,12 @@ public:
   /// UpdateColors().
   void SetCullBelowWindow(bool cull) { this->Cull = cull; }
 
+  /// Whether these settings are projected by ProjectOnScreen(), not by Project().
+  bool UsesCells(const ProjectionSettings& settings) const
+  {
+    return settings.quality == Quality::Exact && !this->TakesAtWinners(settings);
+  }
+
   /**
    * Whether the images are those that project() would make, the viewer's side aside.
    */
@@ -94,16 +101,20 @@ public:
   /// The images no longer show what they should.
   void Forget() { this->Projected = false; }
 
-  /// Before the pictures of a view: looks along the rays of the screen's pixels in exact mode.
-  /// Collective.
-  /// @param cuts   of the projection, for each image
-  /// @param depth  of other things in the scene, or nullptr
-  void FindScreenRays(const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts,
-    const SceneDepth* depth, const View& view);
-
-  /// What the own rays of the viewport's pixels have found in the last FindScreenRays(), for the
-  /// component that is located.
-  const ScreenRays& LocatedRays() const { return this->LocatedChannel().Rays; }
+  /**
+   * Projects all components onto the screen, by cells. Collective. False if the observer has
+   * stopped it or the view has no meaning: there is no picture then.
+   */
+  bool ProjectOnScreen(
+    const View& view, const ProjectionSettings& settings, const RayEnds& ends);
+  /// Whether the last projection was by cells. It needs no geometries.
+  bool IsOnScreen() const { return this->OnScreen; }
+  /// What that shows, of the component that is located.
+  const ScreenScalars& LocatedScreen() const { return this->LocatedChannel().Screen; }
+  /// The same of one pixel of the viewport, with its depth; not of pieces. The reference is valid
+  /// until the next call.
+  const ScreenScalars& ProjectPixelOnScreen(const View& view, const ProjectionSettings& settings,
+    const RayEnds& ends, const glm::ivec2& pixel);
 
   /// The picture of the images in a view with these geometries. False if the warper's observer has
   /// stopped it: there is no picture then.
@@ -118,6 +129,9 @@ public:
    */
   bool WarpScalars(
     const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars);
+
+  /// Told the share of a projection that is done; returns whether to go on.
+  void SetObserver(const ProgressObserver::Callback& callback);
 
   /// The largest image, with all components. Its ghost array hides pixels without a sample. There
   /// must be images.
@@ -155,8 +169,8 @@ private:
     std::optional<VolumeIndex::Range> Here, Whole; // of pieces only
     ProjectionSettings Settings;
     std::vector<ShearImage> Images; // at least as many as the view has
-    ShearImage Phase;               // the present part of one of them
-    ScreenRays Rays;
+    CellIndex Cells;
+    ScreenScalars Screen; // of projections by cells
     VolumeIndex::Range Range; // of what was projected
     Acceleration Used = Acceleration::Dense;
   };
@@ -170,15 +184,10 @@ private:
   }
   void Exchange(const std::vector<ShearWarp>& geometries, const ProjectionSettings& settings,
     const std::vector<Cuts>& cuts);
-  void OutlineWhole(Channel& channel, std::size_t n, const ShearWarp& geometry,
-    const ProjectionSettings& settings, const Cuts& cuts);
-  void LookAtPhase(const ShearWarp& geometry, const Cuts& cuts, const glm::ivec2& phase);
   bool ProjectImage(
     std::size_t n, const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts);
-  /// Where a channel's image belongs.
-  using ImageOf = ShearImage& (*)(Channel&, std::size_t n);
-  bool ProjectPart(std::size_t n, ImageOf imageOf, const ShearWarp& geometry,
-    const ProjectionSettings& settings, const Cuts& cuts);
+  void UpdateCells(Channel& channel, const View& view);
+  void ExchangeScreen(Channel& channel);
   bool ProjectChannel(Channel& channel, ShearImage& image, const ShearWarp& geometry,
     const ProjectionSettings& settings, const Cuts& cuts);
 
@@ -186,22 +195,22 @@ private:
   bool Dependent = false;
   bool Cull = false;
   bool Projected = false;
+  bool OnScreen = false;
   int Done = 0;          // of the present projection's images of channels
-  std::size_t Parts = 1; // of a channel: images, or phases of them
+  std::size_t Parts = 1; // images of a channel
   vtkIdType Version = 0; // of the source
   PieceExchange* Ranks = nullptr;
 
-  std::vector<glm::dmat3> LookedFrom; // along the screen's rays
-  glm::ivec2 LookedAt{ 0 };
   ComponentColors Colors;
-  ShearWarp PhaseGeometry;
-  Cuts PhaseCuts;
   splatting::Projector Projector;
+  CellProjector Cells;
   PixelProjector Pixels;
+  ScreenScalars PixelOnScreen;
   splatting::Warper Warper;
   Picture Layer; // of one component
   std::vector<ShearPixel> Shown;
   std::vector<unsigned char> Plane; // likewise, scalars
+  ShearImage Exchanged;             // scalars of the screen
 };
 }
 

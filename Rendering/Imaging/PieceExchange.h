@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstddef>
+#include <vector>
 
 namespace splatting
 {
@@ -28,6 +29,8 @@ public:
   /// Collective. From the image of a piece to that of the whole, but for its spans and mask.
   /// @param geometry  of the whole
   virtual void Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction) = 0;
+  /// Collective. Sets each number to the least that any of them has.
+  virtual void Least(std::vector<float>& numbers) const = 0;
 };
 }
 

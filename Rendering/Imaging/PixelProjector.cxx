@@ -11,13 +11,8 @@ const PixelProjector::Pixel& PixelProjector::Project(VolumeIndex& index,
   const ShearWarp& whole = geometries[pixel.image];
   const Cuts& wholeCuts = cuts[pixel.image];
   const glm::ivec2 place(pixel.u, pixel.v);
-  const int phases = whole.phases();
-  if (phases > 1)
-  {
-    whole.takePhase(place % phases, this->PhaseGeometry);
-  }
   ShearWarp& geometry = this->Alone.Geometries.front();
-  (phases > 1 ? this->PhaseGeometry : whole).takePixel(place / phases, geometry);
+  whole.takePixel(place, geometry);
   this->Alone.Cuts.cropping = wholeCuts.cropping;
   this->Alone.Cuts.intervals.clear();
   if (!wholeCuts.intervals.empty())

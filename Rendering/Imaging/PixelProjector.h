@@ -35,7 +35,6 @@ public:
 
 private:
   splatting::Projector Projector;
-  ShearWarp PhaseGeometry;
   Pixel Alone;
 };
 }

@@ -36,18 +36,6 @@ Reduction reductionOf(const ProjectionProperties& properties)
   }
 }
 
-int samplingOf(const ProjectionProperties& properties)
-{
-  switch (properties.ShearImageSampling)
-  {
-    case Names::AUTOMATIC_SAMPLING:
-      return ShearWarp::Automatic;
-    case 3:
-      return 2;
-    default:
-      return properties.ShearImageSampling;
-  }
-}
 }
 
 const char* nameOfQualityMode(int mode)
@@ -59,12 +47,6 @@ const char* nameOfQualityMode(int mode)
 const char* nameOfKernel(int kernel)
 {
   return kernel == Names::COSINE_BELL ? "cosine bell" : "trilinear";
-}
-
-const char* nameOfSampling(int sampling)
-{
-  static const char* const names[] = { "automatic", "1", "2", "3", "4" };
-  return names[sampling];
 }
 
 const char* nameOfMaximumType(int type)
@@ -135,21 +117,18 @@ ProjectionSettings settingsOf(const ProjectionProperties& properties, int mode, 
 {
   ProjectionSettings settings;
   settings.reduction = reductionOf(properties);
-  const bool hasMaxima =
-    settings.reduction != Reduction::Minimum && settings.reduction != Reduction::Mean;
-  if (mode == Names::EXACT && !hasMaxima)
+  if (mode == Names::EXACT && settings.reduction == Reduction::Mean)
   {
     mode = Names::HIGH;
   }
-  settings.quality = static_cast<Quality>(mode);
-  settings.sampling = samplingOf(properties);
-  if (mode == Names::EXACT && isCoarse(view))
+  if (mode == Names::EXACT && isOverview(view))
   {
-    // Between voxels the field is no larger than at one of them. Where pixels are wider than voxels
-    // these are all that can be told apart.
-    settings.quality = Quality::Preview;
-    settings.meets = Meets::Nearest;
+    // The field is nowhere larger than at a voxel, and pixels show areas. Where they are wider than
+    // voxels in all directions, one voxel a slice is enough to lose none.
+    mode = Names::PREVIEW;
+    settings.meets = isCoarse(view) ? Meets::Nearest : Meets::All;
   }
+  settings.quality = static_cast<Quality>(mode);
   switch (settings.reduction)
   {
     case Reduction::DepthShaded:
@@ -164,12 +143,12 @@ ProjectionSettings settingsOf(const ProjectionProperties& properties, int mode, 
       settings.meanHigh = properties.AverageIPScalarRange[1];
       break;
     case Reduction::Maximum:
-      settings.acceleration = static_cast<Acceleration>(properties.Acceleration);
       if (mode == Names::EXACT)
       {
-        settings.acceleration = std::min(settings.acceleration, Acceleration::Bricks);
+        break;
       }
-      else if (properties.Acceleration >= Names::LINES)
+      settings.acceleration = static_cast<Acceleration>(properties.Acceleration);
+      if (properties.Acceleration >= Names::LINES)
       {
         settings.lineTolerance = properties.LineTolerance;
         settings.eliminateInvisible = properties.EliminateInvisible && mode == Names::PREVIEW;

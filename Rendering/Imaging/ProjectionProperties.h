@@ -46,7 +46,6 @@ struct InheritedProperties
 /// What enumerators are called.
 const char* nameOfQualityMode(int mode);
 const char* nameOfKernel(int kernel);
-const char* nameOfSampling(int sampling);
 const char* nameOfMaximumType(int type);
 const char* nameOfVectorMode(int mode);
 const char* nameOfAcceleration(int acceleration);
@@ -60,7 +59,6 @@ struct ProjectionProperties : InheritedProperties
   int Kernel = 0;
   double KernelRadius = 1.0;
   int FootprintSampling = 0;
-  int ShearImageSampling = 1;
   int MaximumType = 0;
   double DepthShadingAmbient = 0.3;
   double DepthShadingChangeRate = 0.7;
@@ -85,7 +83,6 @@ struct ProjectionProperties : InheritedProperties
     visitor("Kernel", this->Kernel, nameOfKernel);
     visitor("KernelRadius", this->KernelRadius);
     visitor("FootprintSampling", this->FootprintSampling);
-    visitor("ShearImageSampling", this->ShearImageSampling, nameOfSampling);
     visitor("MaximumType", this->MaximumType, nameOfMaximumType);
     visitor("DepthShadingAmbient", this->DepthShadingAmbient);
     visitor("DepthShadingChangeRate", this->DepthShadingChangeRate);

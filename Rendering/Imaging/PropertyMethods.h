@@ -155,7 +155,6 @@ T clamped(T value, T least, T most)
   splattingClampMethods(Class, int, Kernel, TRILINEAR, COSINE_BELL);                               \
   splattingClampMethods(Class, double, KernelRadius, 0.5, 1.5);                                    \
   splattingClampMethods(Class, int, FootprintSampling, 0, 64);                                     \
-  splattingClampMethods(Class, int, ShearImageSampling, AUTOMATIC_SAMPLING, 4);                    \
   splattingClampMethods(Class, int, MaximumType, GLOBAL, LOCAL);                                   \
   splattingMethods(Class, double, DepthShadingAmbient);                                            \
   splattingMethods(Class, double, DepthShadingChangeRate);                                         \

@@ -62,7 +62,8 @@ public:
   std::string Problem(
     vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input);
   bool GoOn(vtkSplattingMIPProjection* self, double done);
-  bool ProjectView(vtkSplattingMIPProjection* self, const splatting::View& view);
+  bool ProjectView(vtkSplattingMIPProjection* self, const splatting::View& view,
+    const splatting::ProjectionSettings& settings);
   bool PlaceOutput(vtkImageData* output);
   void Locate(const splatting::View& view, int n);
   std::string ProjectInput(vtkSplattingMIPProjection* self, vtkImageData* output);
@@ -97,7 +98,7 @@ vtkSplattingMIPProjection::vtkSplattingMIPProjection()
     Properties(new ProjectionProperties),
     Internal(new Internals)
 {
-  this->Internal->Components.GetProjector().setObserver(
+  this->Internal->Components.SetObserver(
     [this](double done) { return this->Internal->GoOn(this, done); });
   this->Internal->Components.GetWarper().setObserver([this](double) { return !isAborted(this); });
 }
@@ -224,18 +225,22 @@ bool vtkSplattingMIPProjection::Internals::GoOn(vtkSplattingMIPProjection* self,
 //------------------------------------------------------------------------------
 // Projects a view, unless the last one had the same rays. False if it was given up.
 bool vtkSplattingMIPProjection::Internals::ProjectView(
-  vtkSplattingMIPProjection* self, const splatting::View& view)
+  vtkSplattingMIPProjection* self, const splatting::View& view,
+  const splatting::ProjectionSettings& settings)
 {
+  if (this->Components.UsesCells(settings))
+  {
+    self->NumberOfProjections += this->Components.ProjectOnScreen(view, settings, {});
+    return this->Components.IsProjected();
+  }
   this->Cuts.resize(this->Images.size());
   for (std::size_t n = 0; n < this->Images.size(); ++n)
   {
     this->Cuts[n].cropping = view.cropping;
     this->Cuts[n].intervals.find(this->Images[n], view.halfSpaces);
   }
-  const splatting::ProjectionSettings settings =
-    settingsOf(this->Properties, this->Properties.QualityMode, view);
   // Of equal samples the nearest wins.
-  const bool ordered = splatting::isOrdered(settings.reduction) || settings.findsWinners();
+  const bool ordered = splatting::isOrdered(settings.reduction) || settings.keepWinners;
   if (haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts == this->CutsBefore &&
     this->Components.Shows(settings))
   {
@@ -324,15 +329,19 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     std::swap(this->Images, this->ImagesBefore);
     const splatting::ProjectionSettings settings =
       settingsOf(this->Properties, this->Properties.QualityMode, view);
-    if (!splatting::ShearWarp::factorise(view, this->Images, settings.sampling, settings.meets))
+    this->Images.clear();
+    splatting::PixelRays rays;
+    const bool hasMeaning = this->Components.UsesCells(settings)
+      ? rays.find(view)
+      : splatting::ShearWarp::factorise(view, this->Images, settings.meets);
+    if (!hasMeaning)
     {
       return TurnOfViews::Degenerate;
     }
-    if (!this->ProjectView(self, view) || !this->GoOn(self, 0.0))
+    if (!this->ProjectView(self, view, settings) || !this->GoOn(self, 0.0))
     {
       return {};
     }
-    this->Components.FindScreenRays(this->Images, this->CutsBefore, nullptr, view);
     if (!this->Components.WarpScalars(
           this->Images, view, self->BackgroundValue, output->GetScalarPointer(0, 0, n)))
     {
@@ -351,13 +360,12 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
 // Where the samples of view n lie, as the last projection shows them.
 void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, int n)
 {
-  if (this->Images.empty())
+  if (this->Images.empty() && !this->Components.IsOnScreen())
   {
     return;
   }
   splatting::Located located;
   located.geometries = &this->Images;
-  located.cuts = &this->CutsBefore;
   located.view = view;
   located.indexToWorld = this->Source.Grid().indexToPhysical;
   this->Components.Describe(located);

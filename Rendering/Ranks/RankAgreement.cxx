@@ -387,6 +387,14 @@ int RankAgreement::Least(int here) const
   return least;
 }
 
+void RankAgreement::Least(std::vector<float>& numbers) const
+{
+  std::vector<float> least(numbers.size());
+  this->Controller->AllReduce(numbers.data(), least.data(),
+    static_cast<vtkIdType>(numbers.size()), vtkCommunicator::MIN_OP);
+  numbers.swap(least);
+}
+
 void RankAgreement::Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction)
 {
   const ScalarType type = image.type, keys = encode(image, reduction);

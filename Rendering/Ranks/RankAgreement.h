@@ -83,6 +83,8 @@ public:
   bool Any(bool here) const override;
   /// Collective.
   int Least(int here) const;
+  /// Collective.
+  void Least(std::vector<float>& numbers) const override;
   /**
    * Collective. From the image of a piece to that of the whole, but for its spans and mask.
    *

@@ -59,26 +59,41 @@ int ProjectedVolume::ChooseMode(
   return this->Ranks.AreMany() ? this->Ranks.Least(mode) : mode;
 }
 
-// The images of a view and what cuts them; false if it has no meaning.
-bool ProjectedVolume::Factorise(const MapperProperties& properties, const View& view,
+// What cuts the rays of a view and, unless they are projected onto the screen, its images; false if
+// it has no meaning.
+bool ProjectedVolume::FindCuts(const MapperProperties& properties, const View& view,
   vtkRenderer* renderer, vtkVolume* volume, const SceneCuts::DepthReader& readDepth,
   const ProjectionSettings& settings)
 {
   const double start = vtkTimerLog::GetUniversalTime();
-  if (!ShearWarp::factorise(view, this->Images, settings.sampling, settings.meets))
+  const bool intermixes = properties.IntermixIntersectingGeometry;
+  bool hasMeaning = true;
+  if (this->Components.UsesCells(settings))
   {
-    return false;
+    this->Images.clear();
+    hasMeaning = this->Cuts.FindOnScreen(view, renderer, volume, intermixes, readDepth);
   }
-  this->Cuts.Find(
-    view, this->Images, renderer, volume, properties.IntermixIntersectingGeometry, readDepth);
+  else if (ShearWarp::factorise(view, this->Images, settings.meets))
+  {
+    this->Cuts.Find(view, this->Images, renderer, volume, intermixes, readDepth);
+  }
+  else
+  {
+    hasMeaning = false;
+  }
   this->CutTime = vtkTimerLog::GetUniversalTime() - start;
-  return true;
+  return hasMeaning;
 }
 
 // Whether the last projection is this frame's.
-bool ProjectedVolume::Shows(const ProjectionSettings& settings) const
+bool ProjectedVolume::Shows(const View& view, const ProjectionSettings& settings) const
 {
-  const bool ordered = isOrdered(settings.reduction) || settings.findsWinners() ||
+  if (this->Components.UsesCells(settings))
+  {
+    return this->Components.IsOnScreen() && this->Cuts.AreKeptOnScreen(view) &&
+      this->Components.Shows(settings);
+  }
+  const bool ordered = isOrdered(settings.reduction) || settings.keepWinners ||
     this->Source.AreDependent(); // the nearest of equal samples wins
   return haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts.AreKept() &&
     this->Components.Shows(settings);
@@ -91,31 +106,41 @@ bool ProjectedVolume::Project(const MapperProperties& properties, const View& vi
   const int usable = std::clamp(this->ModeUsed, mode, properties.QualityMode);
   const ProjectionSettings best = settingsOf(properties, usable, view);
   std::swap(this->Images, this->ImagesBefore);
-  if (!this->Factorise(properties, view, renderer, volume, readDepth, best))
+  if (!this->FindCuts(properties, view, renderer, volume, readDepth, best))
   {
     return false;
   }
-  const bool isShown = this->Shows(best);
+  const bool isShown = this->Shows(view, best);
   // Where one rank projects all do.
   if (this->Ranks.AreMany() ? !this->Ranks.Any(!isShown) : isShown)
   {
     return true;
   }
   const ProjectionSettings wanted = settingsOf(properties, mode, view);
-  if (wanted.sampling != best.sampling || wanted.meets != best.meets)
+  const bool onScreen = this->Components.UsesCells(wanted);
+  if (onScreen != this->Components.UsesCells(best) || wanted.meets != best.meets)
   {
-    this->Factorise(properties, view, renderer, volume, readDepth, wanted);
+    this->FindCuts(properties, view, renderer, volume, readDepth, wanted);
   }
   const double start = vtkTimerLog::GetUniversalTime();
   this->ShearImageOutput = nullptr;
-  if (this->Components.Project(this->Images, wanted, this->Cuts.Get()))
+  const bool isDone = onScreen
+    ? this->Components.ProjectOnScreen(view, wanted, this->Cuts.OnScreen())
+    : this->Components.Project(this->Images, wanted, this->Cuts.Get());
+  if (isDone)
   {
-    this->Cuts.Keep();
+    onScreen ? this->Cuts.KeepOnScreen(view) : this->Cuts.Keep();
     this->TimeToProject = this->CutTime + vtkTimerLog::GetUniversalTime() - start;
     ++this->Projections;
     this->ModeUsed = mode;
   }
   return true;
+}
+
+int ProjectedVolume::QualityModeUsed() const
+{
+  return this->Components.IsProjected() ? static_cast<int>(this->Components.Settings().quality)
+                                        : this->ModeUsed;
 }
 
 void ProjectedVolume::Clear()

@@ -52,8 +52,8 @@ public:
     const FinalColor& finalColor);
 
   /**
-   * Projects, unless the last shear image shows the same, or better within what is wanted. There is
-   * no image after an abort.
+   * Projects, unless the last projection shows the same, or better within what is wanted. There is
+   * none after an abort.
    * @return  false if the view has no meaning
    */
   bool Project(const MapperProperties& properties, const View& view, vtkRenderer* renderer,
@@ -69,7 +69,7 @@ public:
 
   /// As the mapper's methods of these names.
   vtkIdType NumberOfProjections() const { return this->Projections; }
-  int QualityModeUsed() const { return this->ModeUsed; }
+  int QualityModeUsed() const;
   double ProjectionTime() const { return this->TimeToProject; }
   double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
   std::size_t IndexMemorySize() const
@@ -79,9 +79,9 @@ public:
 
 private:
   int ChooseMode(const MapperProperties& properties, vtkRenderer* renderer, vtkVolume* volume);
-  bool Factorise(const MapperProperties& properties, const View& view, vtkRenderer* renderer,
+  bool FindCuts(const MapperProperties& properties, const View& view, vtkRenderer* renderer,
     vtkVolume* volume, const SceneCuts::DepthReader& readDepth, const ProjectionSettings& settings);
-  bool Shows(const ProjectionSettings& settings) const;
+  bool Shows(const View& view, const ProjectionSettings& settings) const;
 
   std::vector<ShearWarp> ImagesBefore; // of the frame before the last
   vtkIdType Projections = 0, ProjectionsBefore = 0;

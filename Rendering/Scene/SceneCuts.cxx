@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scene/SceneCuts.h"
 
+#include "Cells/ScreenColors.h"
+
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 
@@ -13,6 +15,20 @@ void SceneCuts::Find(const View& view, const std::vector<ShearWarp>& images, vtk
   vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
 {
   placePicture(images, view.viewport, this->Area);
+  this->FindScene(view, renderer, volume, intermixes, readDepth);
+  this->Present.resize(images.size());
+  for (std::size_t n = 0; n < images.size(); ++n)
+  {
+    this->Present[n].cropping = view.cropping;
+    this->Present[n].intervals.find(
+      images[n], view.halfSpaces, this->Bounds.Get(), this->Seen ? &this->Seen->depth : nullptr);
+  }
+}
+
+// What other things hide where the volume will be seen.
+void SceneCuts::FindScene(const View& view, vtkRenderer* renderer, vtkVolume* volume,
+  bool intermixes, const DepthReader& readDepth)
+{
   this->Seen = renderer->GetSelector() ? this->RememberScene(view, renderer, volume, intermixes)
                                        : this->LookAtScene(renderer, volume, intermixes, readDepth);
   if (this->Seen)
@@ -20,12 +36,43 @@ void SceneCuts::Find(const View& view, const std::vector<ShearWarp>& images, vtk
     this->Seen->indexToClip = view.indexToClip;
     this->Seen->depth.place(view);
   }
-  this->Present.resize(images.size());
-  for (std::size_t n = 0; n < images.size(); ++n)
+}
+
+bool SceneCuts::FindOnScreen(const View& view, vtkRenderer* renderer, vtkVolume* volume,
+  bool intermixes, const DepthReader& readDepth)
+{
+  PixelRays rays;
+  if (!rays.find(view))
   {
-    this->Present[n].cropping = view.cropping;
-    this->Present[n].intervals.find(
-      images[n], view.halfSpaces, this->Bounds.Get(), this->Seen ? &this->Seen->depth : nullptr);
+    return false;
+  }
+  placePicture(view, this->Area);
+  this->FindScene(view, renderer, volume, intermixes, readDepth);
+  return true;
+}
+
+RayEnds SceneCuts::OnScreen()
+{
+  return { this->Bounds.Get(), this->SceneDepths() };
+}
+
+bool SceneCuts::AreKeptOnScreen(const View& view) const
+{
+  return this->KeptView == view && this->KeptSurface == this->Bounds.Version() &&
+    (this->Seen ? this->Seen->depth == this->KeptDepth : this->KeptDepth.empty());
+}
+
+void SceneCuts::KeepOnScreen(const View& view)
+{
+  this->KeptView = view;
+  this->KeptSurface = this->Bounds.Version();
+  if (this->Seen)
+  {
+    this->KeptDepth = this->Seen->depth;
+  }
+  else
+  {
+    this->KeptDepth.clear();
   }
 }
 

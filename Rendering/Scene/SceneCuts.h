@@ -3,6 +3,7 @@
 #ifndef SceneCuts_h
 #define SceneCuts_h
 
+#include "Cells/CellProjector.h"
 #include "Clipping/Cuts.h"
 #include "Clipping/SceneDepth.h"
 #include "Input/BoundingSurface.h"
@@ -40,7 +41,16 @@ public:
   /// What Find() has found, for each image.
   const std::vector<Cuts>& Get() const { return this->Present; }
 
-  /// Whether that is what it was when it was last kept.
+  /// The same for projections onto the screen. False if the view has no meaning.
+  bool FindOnScreen(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
+    const DepthReader& readDepth);
+  /// What FindOnScreen() has found.
+  RayEnds OnScreen();
+  /// Whether that, and the view, is what it was when it was last kept.
+  bool AreKeptOnScreen(const View& view) const;
+  void KeepOnScreen(const View& view);
+
+  /// Whether Get() is what it was when it was last kept.
   bool AreKept() const { return this->Present == this->Kept; }
   /// Keeps the present cuts as those of a projection. Get() has no meaning until the next Find().
   void Keep() { std::swap(this->Present, this->Kept); }
@@ -65,6 +75,8 @@ private:
   /// A scene that was not rendered in so many frames is forgotten.
   static constexpr vtkTypeInt64 FramesKept = 64;
 
+  void FindScene(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
+    const DepthReader& readDepth);
   Scene* RememberScene(
     const View& view, const vtkRenderer* renderer, const vtkVolume* volume, bool intermixes);
   Scene* LookAtScene(
@@ -73,6 +85,10 @@ private:
 
   BoundingSurface Bounds;
   std::vector<Cuts> Present, Kept;
+  /// Of the last projection onto the screen.
+  View KeptView;
+  vtkIdType KeptSurface = 0;
+  SceneDepth KeptDepth;
   std::vector<Scene> Scenes;
   Scene* Seen = nullptr; // in the present frame, if there is anything
   vtkTypeInt64 Frame = 0;

@@ -83,19 +83,33 @@ void WinnerLocations::Forget()
 void WinnerLocations::Frame::Copy()
 {
   Located& from = this->located;
-  this->geometries = *from.geometries;
-  this->images.assign(
-    from.images->begin(), from.images->begin() + static_cast<std::ptrdiff_t>(geometries.size()));
-  this->cuts = *from.cuts;
-  this->ownRays = *this->rays;
-  from.geometries = &this->geometries;
-  from.images = &this->images;
-  from.cuts = &this->cuts;
-  this->rays = &this->ownRays;
-  if (from.depth)
+  if (this->onScreen)
   {
-    this->depth = *from.depth;
-    from.depth = &this->depth;
+    if (from.screen)
+    {
+      this->screen = *from.screen;
+      from.screen = &this->screen;
+    }
+    if (this->ends.surface)
+    {
+      this->surface = *this->ends.surface;
+      this->ends.surface = &this->surface;
+    }
+  }
+  else
+  {
+    this->geometries = *from.geometries;
+    this->images.assign(
+      from.images->begin(), from.images->begin() + static_cast<std::ptrdiff_t>(geometries.size()));
+    this->cuts = *this->projectionCuts;
+    from.geometries = &this->geometries;
+    from.images = &this->images;
+    this->projectionCuts = &this->cuts;
+  }
+  if (this->ends.depth)
+  {
+    this->depth = *this->ends.depth;
+    this->ends.depth = &this->depth;
   }
 }
 
@@ -139,16 +153,20 @@ void WinnerLocations::Remember(
   this->HasLast = true;
   frame.shown.Set(renderer, volume);
   frame.version = this->Source.Version();
-  frame.rays = &this->Projector.LocatedRays();
   frame.canProject = this->Projector.CanProjectPixels();
   Located& located = frame.located;
   located = {};
   located.view = view;
   located.indexToWorld = indexToWorld(grid, volume);
   located.geometries = &this->Images;
-  located.cuts = &this->SceneCuts.OfProjection();
-  located.depth = this->SceneCuts.SceneDepths();
   this->Projector.Describe(located);
+  frame.onScreen = this->Projector.IsOnScreen();
+  frame.ends = this->SceneCuts.OnScreen();
+  frame.projectionCuts = &this->SceneCuts.OfProjection();
+  if (frame.onScreen && !this->Projector.HasWinners())
+  {
+    located.screen = nullptr;
+  }
   vtkCamera* const camera = renderer->GetActiveCamera();
   camera->GetPosition(&located.camera.x);
   camera->GetDirectionOfProjection(&located.direction.x);
@@ -158,7 +176,8 @@ void WinnerLocations::Remember(
 
 bool WinnerLocations::HasWinners() const
 {
-  return this->Last() && !this->Images.empty() && this->Projector.HasWinners();
+  return this->Last() && (this->Projector.IsOnScreen() || !this->Images.empty()) &&
+    this->Projector.HasWinners();
 }
 
 // Whether a frame is still shown and its voxels exist.
@@ -184,7 +203,7 @@ bool WinnerLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sam
 {
   const Located& located = frame.located;
   const glm::ivec2& viewport = located.view.viewport;
-  if (located.geometries->empty() || pixel.x < 0 || pixel.y < 0 || pixel.x >= viewport.x ||
+  if ((!frame.onScreen && located.geometries->empty()) || pixel.x < 0 || pixel.y < 0 || pixel.x >= viewport.x ||
     pixel.y >= viewport.y)
   {
     return false;
@@ -193,11 +212,13 @@ bool WinnerLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sam
   place.origin = pixel;
   place.size = glm::ivec2(1);
   place.pixels = { 1u };
-  if (located.depth)
+  if (frame.ends.depth)
   {
-    located.depth->hide(place);
+    frame.ends.depth->hide(place);
   }
-  return place.pixels.front() && this->PickRay(frame, pixel, sample);
+  return place.pixels.front() &&
+    (frame.onScreen ? this->PickOnScreen(frame, pixel, sample)
+                    : this->PickRay(frame, pixel, sample));
 }
 
 // Only at the image's rim rounding can let rays meet the volume that have no sample.
@@ -211,7 +232,7 @@ bool WinnerLocations::HasSample(const Frame& frame, const ShearPixel& pixel)
   const double value = valueOf(image, u, v);
   return image.covers(u, v) && value == value &&
     (isInside ||
-      this->Projector.ProjectPixel(located.settings, pixel, *located.geometries, *located.cuts)
+      this->Projector.ProjectPixel(located.settings, pixel, *located.geometries, *frame.projectionCuts)
           .Images.front()
           .winners[0] >= 0);
 }
@@ -220,7 +241,7 @@ bool WinnerLocations::HasSample(const Frame& frame, const ShearPixel& pixel)
 bool WinnerLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
 {
   Located located = frame.located;
-  const bool hasWinners = located.settings.findsWinners();
+  const bool hasWinners = located.settings.keepWinners;
   if (!hasWinners && !frame.canProject)
   {
     return false;
@@ -233,24 +254,50 @@ bool WinnerLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sampl
   {
     return false;
   }
-  const double own = frame.rays->valueAt(shown.image, pixel);
   if (!hasWinners)
   {
     const PixelProjector::Pixel& alone =
-      this->Projector.ProjectPixel(located.settings, shown, *located.geometries, *located.cuts);
+      this->Projector.ProjectPixel(located.settings, shown, *located.geometries, *frame.projectionCuts);
     if (alone.Images.front().winners[0] < 0)
     {
       return false;
     }
     located.images = &alone.Images;
     located.geometries = &alone.Geometries;
-    located.cuts = nullptr;
     shown = { 0, 0, 0 };
   }
   const Locator locator(located);
   sample.position = locator.inWorld(locator.point(glm::dvec2(pixel), shown));
   sample.voxel = locator.voxel(glm::dvec2(pixel), shown);
-  sample.value = own == own ? own : valueOf((*located.images)[shown.image], shown.u, shown.v);
+  sample.value = valueOf((*located.images)[shown.image], shown.u, shown.v);
+  return true;
+}
+
+// Of a pixel of the viewport. Without depths the pixel is projected once more.
+bool WinnerLocations::PickOnScreen(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
+{
+  Located located = frame.located;
+  if (!located.screen && !frame.canProject)
+  {
+    return false;
+  }
+  if (!located.screen)
+  {
+    located.screen = &this->Projector.ProjectPixelOnScreen(
+      located.view, located.settings, frame.ends, pixel);
+  }
+  const Locator locator(located);
+  const Locator::Sample found = locator.onScreen(pixel);
+  if (!found.exists)
+  {
+    return false;
+  }
+  const ScreenScalars& screen = *located.screen;
+  const glm::ivec2 place = pixel - screen.origin;
+  sample.position = locator.inWorld(found.point);
+  sample.voxel = found.voxel;
+  sample.value = screen.type == ScalarType::Float32 ? screen.row<float>(place.y)[place.x]
+                                                    : screen.row<double>(place.y)[place.x];
   return true;
 }
 

@@ -6,9 +6,10 @@
 #ifndef WinnerLocations_h
 #define WinnerLocations_h
 
+#include "Cells/CellProjector.h"
+#include "Clipping/ClosedSurface.h"
 #include "Clipping/SceneDepth.h"
 #include "Display/Picture.h"
-#include "Display/ScreenRays.h"
 #include "Projection/Locations.h"
 #include "Scene/ShownVolume.h"
 
@@ -53,7 +54,7 @@ std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors);
 class WinnerLocations
 {
 public:
-  WinnerLocations(const ScalarSource& source, ComponentProjector& projector, const SceneCuts& cuts,
+  WinnerLocations(const ScalarSource& source, ComponentProjector& projector, SceneCuts& cuts,
     const std::vector<ShearWarp>& images)
     : Source(source),
       Projector(projector),
@@ -97,14 +98,17 @@ private:
     vtkIdType version = 0; // of the source
     Located located;
     int left = 0, bottom = 0;
-    const ScreenRays* rays = nullptr;
+    bool onScreen = false; // whether the projection was by cells
+    RayEnds ends;          // of those
+    const std::vector<Cuts>* projectionCuts = nullptr;
     bool canProject = false;
     // What the members above point at, once it is copied.
     std::vector<ShearImage> images;
     std::vector<ShearWarp> geometries;
     std::vector<Cuts> cuts;
+    ScreenScalars screen;
+    ClosedSurface surface;
     SceneDepth depth;
-    ScreenRays ownRays;
 
     void Copy();
   };
@@ -116,10 +120,11 @@ private:
   bool PickFrame(const Frame& frame, const glm::ivec2& pixel, Sample& sample);
   bool HasSample(const Frame& frame, const ShearPixel& pixel);
   bool PickRay(const Frame& frame, const glm::ivec2& pixel, Sample& sample);
+  bool PickOnScreen(const Frame& frame, const glm::ivec2& pixel, Sample& sample);
 
   const ScalarSource& Source;
   ComponentProjector& Projector;
-  const splatting::SceneCuts& SceneCuts;
+  splatting::SceneCuts& SceneCuts;
   const std::vector<ShearWarp>& Images;
   std::vector<std::unique_ptr<Frame>> Frames; // the last one first
   bool HasLast = false;                       // whether projector and cuts are of the first

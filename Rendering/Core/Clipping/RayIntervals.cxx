@@ -20,9 +20,6 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Rounding = DepthLimits::Rounding;
 constexpr double Beyond = DepthLimits::Beyond;
-// How far outside the volume it matters where rays are cut, see RayFinder::shownDepths(): a ray
-// between two that are cut inside and outside is cut between their depths.
-constexpr double Outside = 4.0;
 
 /// The half-spaces as RowDepths::cut() and cutPerspective() take them.
 std::vector<glm::dvec4> asSeen(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces)
@@ -126,7 +123,7 @@ public:
     if (geometry.isPerspective())
     {
       double& eye = geometry.reversed() ? this->Ends.y : this->Ends.x;
-      eye = std::clamp(geometry.eye().z, -Outside, Beyond);
+      eye = std::clamp(geometry.eye().z, DepthLimits::Before, Beyond);
     }
   }
 
@@ -181,15 +178,14 @@ private:
     }
   }
 
-  glm::dvec2 Ends{ -Outside, Beyond }, All{ 0.0 };
+  glm::dvec2 Ends{ DepthLimits::Before, Beyond }, All{ 0.0 };
   std::vector<glm::dvec2> Columns, Rows;
 };
 /// What cuts the rays of an image.
 struct Cutting
 {
-  /// The depths between which some pixels of a row are seen; `unhidden` gets these before the depth
-  /// buffer ends rays.
-  void find(int u, int v, int count, RowDepths& depths, glm::vec2* unhidden) const
+  /// The depths between which some pixels of a row are seen.
+  void find(int u, int v, int count, RowDepths& depths) const
   {
     depths.reset(this->extents.ends().x, this->extents.ends().y, count);
     for (const glm::dvec4& h : this->planes)
@@ -206,11 +202,6 @@ struct Cutting
     if (this->hull)
     {
       depths.cut(this->hull->near(v) + u, this->hull->far(v) + u, count);
-    }
-    const double end = this->geometry.slices().end + Outside;
-    for (int x = 0; x < count; ++x)
-    {
-      unhidden[x] = glm::vec2(glm::clamp(glm::dvec2(depths.near[x], depths.far[x]), -Outside, end));
     }
     if (this->depth)
     {
@@ -237,7 +228,6 @@ void RayIntervals::clear()
   this->Width = 0;
   this->First.clear();
   this->Last.clear();
-  this->Depths.clear();
 }
 
 void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces,
@@ -252,7 +242,6 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
   const std::size_t pixels = std::size_t(this->Width) * geometry.height();
   this->First.resize(pixels);
   this->Last.resize(pixels);
-  this->Depths.resize(pixels);
   const CutLoops& loops = kernelsFor(set);
   const Span slices = geometry.slices();
   Cutting cutting{ geometry, loops, asSeen(geometry, halfSpaces),
@@ -273,7 +262,7 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
         {
           const int count = std::min(RowDepths::Most, this->Width - u);
           const std::size_t first = std::size_t(v) * this->Width + u;
-          cutting.find(u, v, count, depths, &this->Depths[first]);
+          cutting.find(u, v, count, depths);
           lost |= loops.slicesBetween(depths.near, depths.far, slices.begin, slices.end,
             &this->First[first], &this->Last[first], count);
         }
@@ -287,29 +276,6 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
   {
     this->clear();
   }
-}
-
-void RayIntervals::takePhase(const RayIntervals& whole, int phases, const glm::ivec2& phase)
-{
-  this->Width = whole.Width / phases;
-  const int height = static_cast<int>(whole.First.size()) / whole.Width / phases;
-  this->First.resize(std::size_t(this->Width) * height);
-  this->Last.resize(this->First.size());
-  vtkSMPTools::For(0, height, 16,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      for (int v = static_cast<int>(begin); v < end; ++v)
-      {
-        const std::int16_t* const first = whole.first(v * phases + phase.y) + phase.x;
-        const std::int16_t* const last = whole.last(v * phases + phase.y) + phase.x;
-        const std::size_t row = std::size_t(v) * this->Width;
-        for (int u = 0; u < this->Width; ++u)
-        {
-          this->First[row + u] = first[u * phases];
-          this->Last[row + u] = last[u * phases];
-        }
-      }
-    });
 }
 
 void RayIntervals::takePixel(const RayIntervals& whole, const glm::ivec2& pixel, int width)

@@ -51,10 +51,6 @@ public:
   /// empty.
   void findCrossed(const CrossedSlices& crossed, int width, int height, const RayIntervals& within);
 
-  /// Sets these to the intervals of one phase's pixels, of a whole that is not empty: see
-  /// ShearWarp::takePhase().
-  void takePhase(const RayIntervals& whole, int phases, const glm::ivec2& phase);
-
   /// Sets these to the interval of one pixel, in a row of which the others have no slices: see
   /// ShearWarp::takePixel().
   void takePixel(const RayIntervals& whole, const glm::ivec2& pixel, int width);
@@ -66,21 +62,15 @@ public:
   const std::int16_t* first(int v) const { return &this->First[std::size_t(v) * this->Width]; }
   const std::int16_t* last(int v) const { return &this->Last[std::size_t(v) * this->Width]; }
 
-  /// The near and the far depth of a pixel's ray themselves, as find() has found them, but for what
-  /// other things in the scene cut.
-  glm::dvec2 depths(int u, int v) const { return this->Depths[std::size_t(v) * this->Width + u]; }
-
   bool operator==(const RayIntervals& other) const
   {
-    return this->Width == other.Width && this->First == other.First && this->Last == other.Last &&
-      this->Depths == other.Depths;
+    return this->Width == other.Width && this->First == other.First && this->Last == other.Last;
   }
   bool operator!=(const RayIntervals& other) const { return !(*this == other); }
 
 private:
   int Width = 0;
   std::vector<std::int16_t> First, Last;
-  std::vector<glm::vec2> Depths; // only of those that find() has found
 };
 }
 

@@ -31,8 +31,19 @@ class PixelRays;
 class SceneDepth
 {
 public:
+  /// Whether the same depths are known.
+  bool operator==(const SceneDepth& other) const
+  {
+    return this->Origin == other.Origin && this->Size == other.Size &&
+      this->Samples == other.Samples;
+  }
+
   /// Nothing is known.
-  void clear() { this->Size = {}; }
+  void clear()
+  {
+    this->Size = {};
+    this->Samples.clear();
+  }
   bool empty() const { return this->Size.x < 1 || this->Size.y < 1; }
 
   /// Whether depths of this rectangle are known.

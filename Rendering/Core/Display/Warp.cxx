@@ -112,7 +112,7 @@ public:
           const glm::dvec3 start(place.origin.x, place.origin.y + static_cast<double>(y), 1.0);
           Pixel* const out = pixels + y * stride;
           showsAreas ? this->warpAreas(start, place.size.x, out)
-                     : this->warpRow(start, static_cast<int>(y), place.size.x, out);
+                     : this->warpRow(start, place.size.x, out);
         }
       });
     return !showsAreas || !this->Observer.stopped();
@@ -132,42 +132,41 @@ private:
     }
   }
 
-  void warpRow(const glm::dvec3& start, int y, int width, Pixel* out) const
+  void warpRow(const glm::dvec3& start, int width, Pixel* out) const
   {
     forSpans(
       this->Images.size(), start, width,
       [&](std::size_t n) -> const Outline& { return this->Images[n].shown; },
-      [&](std::size_t n, const Span& row) { this->warpSpan(this->Images[n], start, y, row, out); },
+      [&](std::size_t n, const Span& row) { this->warpSpan(this->Images[n], start, row, out); },
       [&](const Span& row) { std::fill(out + row.begin, out + row.end, this->To.empty); });
   }
 
-  /// The pixels of row y, `start` being the first, that one image shows.
+  /// The pixels of a row, `start` being the first, that one image shows.
   void warpSpan(
-    const WarpSource<A>& source, const glm::dvec3& start, int y, const Span& row, Pixel* out) const
+    const WarpSource<A>& source, const glm::dvec3& start, const Span& row, Pixel* out) const
   {
     const glm::dvec3 first = source.geometry.screenToShear() * start;
     const Span inside = source.inside.cut(row, start);
     if (inside.empty())
     {
-      this->warpPoints(source, first, y, row, out);
+      this->warpPoints(source, first, row, out);
       return;
     }
-    this->warpPoints(source, first, y, { row.begin, inside.begin }, out);
-    this->warpInside(source, first, y, inside, out);
-    this->warpPoints(source, first, y, { inside.end, row.end }, out);
+    this->warpPoints(source, first, { row.begin, inside.begin }, out);
+    this->warpInside(source, first, inside, out);
+    this->warpPoints(source, first, { inside.end, row.end }, out);
   }
 
   /// Where neighbours may lie outside the volume.
   void warpPoints(
-    const WarpSource<A>& source, const glm::dvec3& first, int y, const Span& row, Pixel* out) const
+    const WarpSource<A>& source, const glm::dvec3& first, const Span& row, Pixel* out) const
   {
-    this->forChunks(source, y, row, true, out,
-      [&](int begin, int count, const A* own, A* values)
+    this->forChunks(row, true, out,
+      [&](int begin, int count, A* values)
       {
         for (int n = 0; n < count; ++n)
         {
           values[n] = pointAt(source, first, begin + n);
-          values[n] = own && isOwn(own[n]) && std::isfinite(values[n]) ? own[n] : values[n];
         }
       });
   }
@@ -175,53 +174,39 @@ private:
   /// Where all four neighbours are pixels of the volume. Where one has no sample, or is infinite,
   /// interpolation gives no finite value.
   void warpInside(
-    const WarpSource<A>& source, const glm::dvec3& first, int y, const Span& row, Pixel* out) const
+    const WarpSource<A>& source, const glm::dvec3& first, const Span& row, Pixel* out) const
   {
     const WorksheetLoops<A>& loops = this->To.loops;
     const auto interpolate =
       source.geometry.isPerspective() ? loops.interpolateProjective : loops.interpolate;
     const glm::dvec3& step = source.geometry.screenToShear()[0];
-    this->forChunks(source, y, row, source.hasHoles(), out,
-      [&](int begin, int count, const A* own, A* values)
+    this->forChunks(row, source.hasHoles(), out,
+      [&](int begin, int count, A* values)
       {
-        const bool isNeeded = !own || source.hasHoles() || !std::all_of(own, own + count, isOwn);
-        if (isNeeded)
-        {
-          const glm::dvec3 p = first + double(begin) * step;
-          interpolate(source.pixels, source.image.width, &p.x, &step.x, values, count);
-        }
+        const glm::dvec3 p = first + double(begin) * step;
+        interpolate(source.pixels, source.image.width, &p.x, &step.x, values, count);
         for (int n = 0; source.hasHoles() && n < count; ++n)
         {
           values[n] = std::isfinite(values[n]) ? values[n] : pointAt(source, first, begin + n);
         }
-        for (int n = 0; own && n < count; ++n)
-        {
-          const bool isShown = !source.hasHoles() || std::isfinite(values[n]);
-          values[n] = isOwn(own[n]) && isShown ? own[n] : values[n];
-        }
       });
   }
 
-  /// Calls find(begin, count, own, values) for some pixels at a time. Where the screen's rays have
-  /// found something it is `own`; NaN where one has not.
+  /// Calls find(begin, count, values) for some pixels at a time.
   /// @param mayBeEmpty  whether values can be NaN
   template <class F>
-  void forChunks(const WarpSource<A>& source, int y, const Span& row, bool mayBeEmpty, Pixel* out,
-    F&& find) const
+  void forChunks(const Span& row, bool mayBeEmpty, Pixel* out, F&& find) const
   {
     A values[Chunk];
     for (int begin = row.begin; begin < row.end; begin += Chunk)
     {
       const int count = std::min(Chunk, row.end - begin);
-      find(begin, count,
-        source.rays.empty() ? nullptr : source.rays.template values<A>(source.number, begin, y),
-        values);
+      find(begin, count, values);
       mayBeEmpty ? putValues(this->To, values, out + begin, count)
                  : this->To.put(values, out + begin, count);
     }
   }
 
-  static bool isOwn(A value) { return value == value; }
   static A pointAt(const WarpSource<A>& source, const glm::dvec3& first, int x)
   {
     return source.valueAt(first + double(x) * source.geometry.screenToShear()[0]);
@@ -267,15 +252,14 @@ template <class T, class Sink>
 bool warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   Reduction reduction, const Kernels& kernels, const Sink& sink,
   std::vector<std::vector<unsigned char>>& copied, const Picture& place,
-  typename Sink::Pixel* pixels, std::ptrdiff_t stride, const ScreenRays& rays,
-  ProgressObserver& observer)
+  typename Sink::Pixel* pixels, std::ptrdiff_t stride, ProgressObserver& observer)
 {
   using A = Accumulator<T>;
   std::vector<WarpSource<A>> sources;
   for (std::size_t n = 0; n < geometries.size(); ++n)
   {
     const A* const own = samplesOf<T>(images[n], kernels, copied[n]);
-    sources.emplace_back(images[n], own, geometries[n], rays, n);
+    sources.emplace_back(images[n], own, geometries[n]);
   }
   return RowWarp<A, Sink>(sources, reduction, sink, observer).warp(place, pixels, stride);
 }
@@ -283,7 +267,7 @@ bool warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWa
 
 bool Warper::warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   Reduction reduction, const ColorTable& table, const glm::ivec2& viewport,
-  InstructionSet instructionSet, Picture& picture, const ScreenRays& rays)
+  InstructionSet instructionSet, Picture& picture)
 {
   placePicture(geometries, viewport, picture);
   picture.pixels.resize(std::size_t(picture.size.x) * picture.size.y);
@@ -299,7 +283,7 @@ bool Warper::warp(const std::vector<ShearImage>& images, const std::vector<Shear
       using T = std::remove_pointer_t<decltype(null)>;
       const ColorSink<Accumulator<T>> sink(kernels, table);
       return warpImages<T>(images, geometries, reduction, kernels, sink, this->Copied, picture,
-        picture.pixels.data(), picture.size.x, rays, this->Observer);
+        picture.pixels.data(), picture.size.x, this->Observer);
     });
 }
 
@@ -334,7 +318,7 @@ void Warper::warpPixels(const std::vector<ShearImage>& images, const std::vector
 
 bool Warper::warpScalars(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& viewport,
-  InstructionSet instructionSet, double background, void* scalars, const ScreenRays& rays)
+  InstructionSet instructionSet, double background, void* scalars)
 {
   Picture place;
   placePicture(geometries, viewport, place);
@@ -353,7 +337,7 @@ bool Warper::warpScalars(const std::vector<ShearImage>& images,
       A* const first =
         static_cast<A*>(scalars) + std::ptrdiff_t(place.origin.y) * viewport.x + place.origin.x;
       return warpImages<T>(images, geometries, reduction, kernels, sink, this->Copied, place, first,
-        viewport.x, rays, this->Observer);
+        viewport.x, this->Observer);
     });
 }
 }

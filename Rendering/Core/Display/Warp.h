@@ -8,7 +8,6 @@
 
 #include "Common/ProgressObserver.h"
 #include "Display/Picture.h"
-#include "Display/ScreenRays.h"
 #include "Display/ShearPixels.h"
 #include "Kernels/Kernels.h"
 #include "Projection/ShearImage.h"
@@ -48,12 +47,11 @@ public:
    * PixelArea.h, and the picture ends where areas no longer meet the volume.
    * @param images      all of one type; those beyond the number of geometries are left alone
    * @param geometries  as ShearWarp::factorise() gives them
-   * @param rays        of the view's screen: their values take the place of what is interpolated
    * @return  false if the observer has stopped it: the picture has no meaning then
    */
   bool warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
     Reduction reduction, const ColorTable& table, const glm::ivec2& viewport,
-    InstructionSet instructionSet, Picture& picture, const ScreenRays& rays = {});
+    InstructionSet instructionSet, Picture& picture);
 
   /// The same of given shear pixels, one for each pixel of the picture.
   void warpPixels(const std::vector<ShearImage>& images, const std::vector<ShearPixel>& shown,
@@ -66,7 +64,7 @@ public:
    */
   bool warpScalars(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
     Reduction reduction, const glm::ivec2& viewport, InstructionSet instructionSet,
-    double background, void* scalars, const ScreenRays& rays = {});
+    double background, void* scalars);
 
   /// Asked by the thread that warps whether to go on, where pixels show areas. The share that it is
   /// told has no meaning.

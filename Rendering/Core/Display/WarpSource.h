@@ -7,7 +7,6 @@
 #define splattingWarpSource_h
 
 #include "Display/Outline.h"
-#include "Display/ScreenRays.h"
 #include "Projection/ShearImage.h"
 
 #include <glm/vec2.hpp>
@@ -45,18 +44,13 @@ struct WarpSource
   const ShearImage& image;
   const A* pixels;
   const ShearWarp& geometry;
-  const ScreenRays& rays;
-  std::size_t number; // of the image
   Outline shown, inside;
 
   /// All must outlive its use.
-  WarpSource(
-    const ShearImage& i, const A* p, const ShearWarp& g, const ScreenRays& r, std::size_t n)
+  WarpSource(const ShearImage& i, const A* p, const ShearWarp& g)
     : image(i),
       pixels(p),
       geometry(g),
-      rays(r),
-      number(n),
       shown(shownBy(g)),
       inside(withinSamples(g))
   {

@@ -27,24 +27,6 @@ constexpr int RowUnit = 64;
 
 constexpr int SlopeBits = 24, PositionBits = 20, EyeBits = 10;
 
-/// The least power of two by which a pixel must be divided that is so wide in pixels of the screen,
-/// so that its parts are no wider than those.
-int neededSampling(double width)
-{
-  constexpr double rounding = 1.0 + 1e-6;
-  int sampling = 1;
-  while (sampling < ShearWarp::MostSampling && width > rounding * sampling)
-  {
-    sampling *= 2;
-  }
-  return sampling;
-}
-
-/// Enlarges both coordinates.
-glm::dmat3 scaled(double factor)
-{
-  return { factor, 0.0, 0.0, 0.0, factor, 0.0, 0.0, 0.0, 1.0 };
-}
 }
 
 std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm::dvec3& side)
@@ -67,7 +49,7 @@ std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm:
   return result;
 }
 
-ShearWarp::ShearWarp(const View& view, int sampling, Meets meets)
+ShearWarp::ShearWarp(const View& view, Meets meets)
 {
   const glm::dmat4& m = view.indexToClip;
   const glm::dvec3 centre = 0.5 * glm::dvec3(view.dimensions - 1);
@@ -94,18 +76,17 @@ ShearWarp::ShearWarp(const View& view, int sampling, Meets meets)
   const double deeper = glm::dot(glm::dvec3(glm::row(m, 2)) / w, direction);
   this->Reversed = deeper * direction[this->Axes[2]] < 0.0;
   this->computeWarp(rowX, rowY);
-  this->refine(sampling == Automatic ? neededSampling(this->screenWidth({})) : sampling);
   this->setParallelRays();
   this->Valid = true;
 }
 
 bool ShearWarp::factorise(
-  const View& view, std::vector<ShearWarp>& images, int sampling, Meets meets)
+  const View& view, std::vector<ShearWarp>& images, Meets meets)
 {
   if (isParallel(view))
   {
     images.resize(1);
-    images.front() = ShearWarp(view, sampling, meets);
+    images.front() = ShearWarp(view, meets);
     images.resize(images.front().valid() ? 1 : 0);
     return !images.empty();
   }
@@ -118,7 +99,7 @@ bool ShearWarp::factorise(
     images.resize(std::max(images.size(), count + 1));
     images[count].Overview = overview;
     images[count].Met = meets;
-    count += images[count].lookAlong(direction / 2, direction % 2 == 1, view, rays, sampling);
+    count += images[count].lookAlong(direction / 2, direction % 2 == 1, view, rays);
   }
   images.resize(count);
   return valid;
@@ -169,7 +150,7 @@ void ShearWarp::setParallelRays()
     rays.at.resize(this->ImageSize[a]);
     for (int n = 0; n < this->ImageSize[a]; ++n)
     {
-      rays.at[n] = n * this->Pitch + this->Offset[a] - this->Margin[a];
+      rays.at[n] = n - this->Margin[a];
     }
     rays.slope.assign(this->ImageSize[a], -this->Shear[a]);
   }
@@ -199,7 +180,7 @@ bool ShearWarp::findRays(const View& view, Rays& rays)
   return std::isfinite(glm::length(rays.eye)) && std::isfinite(glm::determinant(rays.directions));
 }
 
-bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays& rays, int sampling)
+bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays& rays)
 {
   this->permute(axis, view.dimensions);
   this->Perspective = true;
@@ -228,14 +209,9 @@ bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays&
   {
     return false;
   }
-  if (!this->placeRays(view, directions, farthest, std::max(sampling, 1)))
+  if (!this->placeRays(view, directions, farthest))
   {
     return false;
-  }
-  if (sampling == Automatic)
-  {
-    const glm::dvec2 middle = 0.5 * glm::dvec2(this->RayCount - 1);
-    this->placeRays(view, directions, farthest, neededSampling(this->screenWidth(middle)));
   }
   this->setPerspectiveRays(0, this->Columns);
   this->setPerspectiveRays(1, this->Rows);
@@ -244,12 +220,12 @@ bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays&
 }
 
 bool ShearWarp::placeRays(
-  const View& view, const glm::dmat3& directions, double farthest, int sampling)
+  const View& view, const glm::dmat3& directions, double farthest)
 {
   // An odd number of steps has no ray along the axis, which could run between voxels.
   constexpr double narrower = 1.0 + 0x1p-10;
-  this->Steps = (static_cast<std::int64_t>(std::ceil(2.0 * farthest * narrower)) * sampling) | 1;
-  this->Pitch = this->PixelSize = 2.0 * farthest / static_cast<double>(this->Steps);
+  this->Steps = static_cast<std::int64_t>(std::ceil(2.0 * farthest * narrower)) | 1;
+  this->Pitch = 2.0 * farthest / static_cast<double>(this->Steps);
   if (!this->placeImage(view, directions))
   {
     return false;
@@ -272,7 +248,7 @@ glm::dvec3 ShearWarp::pixelOf(const glm::dvec3& point) const
 {
   if (!this->Perspective)
   {
-    return { glm::dvec2(point) / this->Pitch + this->position(point.z), 1.0 };
+    return { glm::dvec2(point) + this->position(point.z), 1.0 };
   }
   const glm::dvec3 d = point - this->Eye;
   return this->directionToPixel() * glm::dvec3(d.x, d.y, this->Reversed ? -d.z : d.z);
@@ -381,31 +357,6 @@ void ShearWarp::computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY)
     glm::dvec3(inverse[0], 0.0), glm::dvec3(inverse[1], 0.0), glm::dvec3(-(inverse * offset), 1.0));
 }
 
-/// The image's pixels are cut into sampling^2 each, the first in the place of the whole one.
-void ShearWarp::refine(int sampling)
-{
-  this->ImageSize *= sampling;
-  this->RayCount *= sampling;
-  this->Pitch = this->PixelSize = 1.0 / sampling;
-  this->ShearToScreen = this->ShearToScreen * scaled(this->Pitch);
-  this->ScreenToShear = scaled(sampling) * this->ScreenToShear;
-}
-
-void ShearWarp::takePhase(const glm::ivec2& phase, ShearWarp& part) const
-{
-  part = *this;
-  const int count = this->phases();
-  part.ImageSize /= count;
-  part.RayCount /= count;
-  part.Pitch = 1.0;
-  part.Offset = glm::dvec2(phase) * this->Pitch;
-  part.setParallelRays();
-  const glm::dvec3 first(phase, 0.0);
-  part.ShearToScreen = this->ShearToScreen * scaled(count);
-  part.ShearToScreen[2] += this->ShearToScreen * first;
-  part.ScreenToShear = glm::inverse(part.ShearToScreen);
-}
-
 void ShearWarp::takePixel(const glm::ivec2& pixel, ShearWarp& part) const
 {
   part = *this;
@@ -425,21 +376,6 @@ void ShearWarp::takePixel(const glm::ivec2& pixel, ShearWarp& part) const
     part.setPerspectiveRays(a, rays);
     rays.steepest = steepest;
   }
-}
-
-/// How many pixels of the screen lie along one of the image, in the direction that has most.
-double ShearWarp::screenWidth(const glm::dvec2& pixel) const
-{
-  const glm::dvec3 at = this->ShearToScreen * glm::dvec3(pixel, 1.0);
-  const glm::dvec2 shown = glm::dvec2(at) / at.z;
-  glm::dmat2 change;
-  for (int a = 0; a < 2; ++a)
-  {
-    const glm::dvec3& column = this->ShearToScreen[a];
-    change[a] = (glm::dvec2(column) - shown * column.z) / at.z;
-  }
-  return largerStretch(
-    glm::dot(change[0], change[0]) + glm::dot(change[1], change[1]), glm::determinant(change));
 }
 
 RayPath ShearWarp::rayPath(int k) const
@@ -473,10 +409,9 @@ Span ShearWarp::coverage(const RayPath& path, int v) const
 
 glm::dvec4 ShearWarp::inPixels(const glm::dvec4& halfSpace) const
 {
-  const double a = halfSpace[this->Axes[0]] * this->Pitch;
-  const double b = halfSpace[this->Axes[1]] * this->Pitch;
+  const double a = halfSpace[this->Axes[0]], b = halfSpace[this->Axes[1]];
   const double c = halfSpace[this->Axes[2]];
-  const glm::dvec2 origin = this->position(0.0), shear = this->Shear / this->Pitch;
+  const glm::dvec2 origin = this->position(0.0), shear = this->Shear;
   return { a, b, c - a * shear.x - b * shear.y, halfSpace.w - a * origin.x - b * origin.y };
 }
 
@@ -484,7 +419,7 @@ bool ShearWarp::sameShear(const ShearWarp& other) const
 {
   // The rays hold the shears.
   return this->Valid == other.Valid && this->Met == other.Met && this->Axes == other.Axes &&
-    this->Size == other.Size && this->PixelSize == other.PixelSize &&
+    this->Size == other.Size && this->Pitch == other.Pitch &&
     this->Reference == other.Reference && this->DepthRange == other.DepthRange &&
     this->Columns == other.Columns && this->Rows == other.Rows;
 }

@@ -56,9 +56,6 @@ std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm:
  * rounding. That turns rays by at most 2^-25 and moves no voxel of a 4096-slice volume by more than
  * 1/16000 pixel.
  *
- * Shear images can be sampled finer, by a power of two: the s^2 images whose rays are offset by
- * multiples of 1/s, the phases, are projected one by one and interleaved.
- *
  * In perspective views the image holds rays through the eye that follow the principal axis most, in
  * one of its two directions. Their slopes are equidistant, from -1 to 1, where the images of two
  * axes meet. Pixels are a voxel wide (0.1 % less, and as much as makes their number odd) where
@@ -76,26 +73,19 @@ public:
    */
   ShearWarp() = default;
 
-  /// As fine as the screen: pixels are no larger than the screen's in any direction (in perspective
-  /// views in the image's middle), but no smaller than a voxel by more than MostSampling.
-  static constexpr int Automatic = 0;
-  static constexpr int MostSampling = 4;
-
   /**
    * Factorises a parallel view. valid() is false when the view flattens the volume to a line or a
    * point.
-   * @param sampling  pixels along the side of a voxel: 1, 2, 4 or Automatic
    */
-  explicit ShearWarp(const View& view, int sampling = 1, Meets meets = Meets::All);
+  explicit ShearWarp(const View& view, Meets meets = Meets::All);
 
   /**
    * Factorises any view: one image for a parallel view, up to six for a perspective one, those that
    * show some of the volume; none if nothing of it can be seen.
-   * @param sampling  as above; in perspective views where the volume is farthest from the eye
    * @return  false if the view flattens the volume to a line or a point; there are no images then
    */
   static bool factorise(
-    const View& view, std::vector<ShearWarp>& images, int sampling = 1, Meets meets = Meets::All);
+    const View& view, std::vector<ShearWarp>& images, Meets meets = Meets::All);
 
   /**
    * Sets `part` to the geometry of a box of this volume's voxels as a volume by itself: voxels,
@@ -135,16 +125,7 @@ public:
   double reference() const { return this->Reference; }
   /// Voxels from one pixel to the next at that depth.
   double pitch() const { return this->Pitch; }
-  /// The side of a pixel's area there, in voxels: the pitch, but of a phase that of its image.
-  double pixelSize() const { return this->PixelSize; }
-
-  /// How many images, along each side, this one is interleaved from; 1: it is projected as it is.
-  int phases() const { return this->Perspective ? 1 : static_cast<int>(1.0 / this->Pitch); }
-  /**
-   * The geometry of the pixels (phases() u + phase.x, phases() v + phase.y): a voxel apart.
-   */
-  void takePhase(const glm::ivec2& phase, ShearWarp& part) const;
-  /// The geometry of one pixel of an image without phases, as pixel (0, 0); in perspective images
+  /// The geometry of one pixel of the image, as pixel (0, 0); in perspective images
   /// with columns beside it as there are beside other images.
   void takePixel(const glm::ivec2& pixel, ShearWarp& part) const;
   /// Index coordinates where the ray of pixel (u, v) is at depth z.
@@ -178,8 +159,7 @@ public:
   /// Of parallel views: where voxel (0, 0) of slice (or depth) z lies in the image.
   glm::dvec2 position(double z) const
   {
-    return (glm::dvec2(this->Margin) - this->Offset + this->Shear * (z - this->Middle)) /
-      this->Pitch;
+    return glm::dvec2(this->Margin) + this->Shear * (z - this->Middle);
   }
 
   /**
@@ -234,9 +214,7 @@ private:
   void chooseAxes(const glm::dvec3& direction);
   void permute(int principalAxis, const glm::ivec3& dimensions);
   void computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY);
-  void refine(int sampling);
   void setParallelRays();
-  double screenWidth(const glm::dvec2& pixel) const;
 
   /// The rays of a perspective view: through the eye, of viewport pixel (x, y) along
   /// directions (x, y, 1), in index space.
@@ -246,8 +224,8 @@ private:
     glm::dmat3 directions;
   };
   static bool findRays(const View& view, Rays& rays);
-  bool lookAlong(int axis, bool reversed, const View& view, const Rays& rays, int sampling);
-  bool placeRays(const View& view, const glm::dmat3& directions, double farthest, int sampling);
+  bool lookAlong(int axis, bool reversed, const View& view, const Rays& rays);
+  bool placeRays(const View& view, const glm::dmat3& directions, double farthest);
   bool placeImage(const View& view, const glm::dmat3& directions);
   void setPerspectiveRays(int a, AxisRays& rays) const;
   glm::dmat3 directionToPixel() const;
@@ -263,13 +241,12 @@ private:
   glm::ivec2 ImageSize{ 0 }, RayCount{ 0 };
   glm::dvec2 Shear{ 0.0 };
   glm::ivec2 Margin{ 0 };
-  glm::dvec2 Offset{ 0.0 }; // of a phase, in voxels
   double Middle = 0.0;
   bool Perspective = false;
   glm::dvec3 Eye{ 0.0 };
   std::int64_t Steps = 0;              // of slopes from -1 to 1
   std::array<std::int64_t, 2> First{}; // the steps of pixel (0, 0)
-  double Reference = 0.0, Pitch = 1.0, PixelSize = 1.0;
+  double Reference = 0.0, Pitch = 1.0;
   glm::dvec2 DepthRange{ 0.0 }; // of the volume, as far as it lies before the eye
   Span SlicesSeen;
   AxisRays Columns, Rows;

@@ -52,6 +52,13 @@ struct View
   std::vector<glm::dvec4> halfSpaces;
   /// In index space.
   Cropping cropping;
+
+  bool operator==(const View& other) const
+  {
+    return this->dimensions == other.dimensions && this->indexToClip == other.indexToClip &&
+      this->viewport == other.viewport && this->showsBoxes == other.showsBoxes &&
+      this->halfSpaces == other.halfSpaces && this->cropping == other.cropping;
+  }
 };
 
 /**

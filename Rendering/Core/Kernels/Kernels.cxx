@@ -8,12 +8,10 @@
 // anonymous namespace, but the table.
 #include "Kernels/Kernels.h"
 #include "Kernels/DepthKernels.h"
-#include "Kernels/PerspectiveExactKernels.h"
 #include "Kernels/PerspectiveKernels.h"
 #include "Kernels/RayKernels.h"
 #include "Kernels/Registers.h"
 #include "Kernels/ResamplingKernels.h"
-#include "Kernels/SegmentKernels.h"
 #include "Kernels/SplatKernels.h"
 #include "Kernels/SweepKernels.h"
 
@@ -345,8 +343,7 @@ constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::note)>(&note<P>) };
 template <class A>
 constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &axisWeights<A>, &resample<A>,
-  &blend<A>, &raiseBlend<A>, &splat<A, A>, &raiseCubics<A>, &raisePerspectiveCubics<A>,
-  &placeSegments<A>, &findLargest<A>, &raiseAverages<A>, &allFinite<A>, &separate<A>,
+  &blend<A>, &raiseBlend<A>, &splat<A, A>, &raiseAverages<A>, &allFinite<A>, &separate<A>,
   static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
   static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
   &interpolateProjective<A>, &lookUp<A> };

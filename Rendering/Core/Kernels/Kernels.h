@@ -285,115 +285,6 @@ struct Resampling
   int taps;
 };
 
-/// Most segments of a ray's path in a slice: cut in its middle, and twice along i and j.
-constexpr int MostSegments = 6;
-
-/// A segment of the path of all rays in a slice, as in ExactSegments.h.
-template <class A>
-struct CubicSegment
-{
-  const A *low, *high;           ///< the first voxel of pixel (0, 0)'s cell in its two slices
-  const A* weights;              ///< as in ExactSegment
-  bool curved;                   ///< likewise
-  const Span *inField, *inBoxes; ///< the columns and rows of pixels that it counts for, likewise
-};
-
-/// A side of a box, along columns or rows of voxels: at most a voxel long.
-template <class A>
-struct BoxSide
-{
-  int cell;     ///< the voxel before its begin, relative to the pixel
-  A begin, end; ///< places between two voxels: from 0 to 1
-  bool crosses; ///< whether the end lies behind the voxel that follows
-};
-
-/// A box around the segment of rays' paths that lies half a slice to either side of a slice, and
-/// the first voxels that it reads in the slice before, in this one and in the next.
-template <class A>
-struct PathBox
-{
-  const A *before, *own, *behind;
-  BoxSide<A> columns, rows;
-  /// How far rounding can take samples beyond what follows from these voxels.
-  A slack;
-};
-
-/// A rectangle of pixels in one slice, and the segments of their path.
-template <class A>
-struct Cubics
-{
-  A* image; ///< pixel (0, 0), which need not exist
-  std::ptrdiff_t imageStride;
-  Span columns, rows;          ///< the pixels that are raised
-  const Span* field;           ///< for row 0: the columns that see the field, others see boxes
-  std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
-  CubicSegment<A> segments[MostSegments];
-  int count;
-  PathBox<A> box; ///< of pixel (0, 0)
-  bool nonFinite; ///< whether there are NaN or infinities, which boxes know nothing of
-};
-
-/// What AxisCells knows of all columns (or rows) in a slice, depths relative to its middle.
-template <class A>
-struct AxisCellArrays
-{
-  const std::int32_t* cell;       ///< the lower of the cells that the ray is in
-  const A *at, *slope;            ///< its place in that cell: at + slope z
-  const A* crossing;              ///< where it leaves one cell for the other; 2 if it does not
-  const A *fieldBegin, *fieldEnd; ///< where it is in the field
-  const A *boxesBegin, *boxesEnd; ///< and in voxels' boxes
-  const A *fieldNear, *fieldFar;  ///< as fieldBegin and fieldEnd, relative to slice 0
-};
-
-/// The depths in a slice in which rays stay in one row of cells and on one side of its middle.
-template <class A>
-struct PerspectiveCubicSegment
-{
-  A from, to;
-  /// Column 0 of the cell's rows of voxels: two of the lower slice, then two of the upper one.
-  const A* rows[4];
-  A y, z; ///< places in the cell at depth 0
-};
-
-/// One row of pixels in one slice of a perspective image.
-template <class A>
-struct PerspectiveCubicRow
-{
-  A* image;    ///< pixel 0, which need not exist
-  Span pixels; ///< those that are raised
-  AxisCellArrays<A> columns;
-  A slope; ///< of the row
-  PerspectiveCubicSegment<A> segments[3];
-  int count;
-  A fieldBegin, fieldEnd, boxesBegin, boxesEnd; ///< of the row, as in AxisCellArrays
-  A fieldNear, fieldFar;
-  A shortest;                  ///< way through the field that counts as seeing it
-  PathBox<A> box;              ///< of voxel column 0; its columns are each pixel's own
-  std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
-  bool nonFinite;              ///< as in Cubics
-};
-
-/// Segments of rays between two slices, no longer than a voxel in any direction, and the voxels
-/// around.
-template <class A>
-struct FieldSegments
-{
-  static constexpr int most = 128;
-  static constexpr int beyond = 2; ///< columns and rows beside the volume that segments may need
-
-  int count = 0;
-  bool nonFinite; ///< whether voxels may be NaN or infinite
-  /// Rays, as in FieldRay, and the depths between which they are looked at.
-  double at[2][most], slope[2][most], begin[most], end[most];
-  std::int32_t first[3][most]; ///< column, row and slice of the lowest voxel; the slice is given
-  /// Where rays are at the first of the two slices, from the lowest column and row of voxels that
-  /// the segment needs, and what they move by up to the second.
-  A place[2][most], way[2][most];
-  A from[most], to[most];  ///< the segment, 0 to 1
-  A voxels[2][3][3][most]; ///< slice, row, column
-  A largest[most];         ///< what the segment has
-};
-
 /// Worksheets from voxels of which some are not finite.
 template <class A>
 struct Averages
@@ -424,16 +315,6 @@ struct WorksheetLoops
   /// Every pixel of the rectangle: the maximum of it and the weighted sum of its voxels, which must
   /// be finite.
   void (*splat)(const Splat<A>& splat);
-  /// Pixels become the largest of themselves and the cubics that their rays meet. A cubic with a
-  /// NaN coefficient is left out but for its ends.
-  void (*raiseCubics)(const Cubics<A>& cubics);
-  /// The same in perspective views, for a row of pixels, each of which has cubics of its own.
-  void (*raisePerspectiveCubics)(const PerspectiveCubicRow<A>& row);
-  /// Tells from rays which voxels segments need, and where segments are among them: the volume ends
-  /// with column last[0] and row last[1], rays are at their places at depth `start`.
-  void (*placeSegments)(FieldSegments<A>& segments, double start, const std::int32_t last[2]);
-  /// Finds the largest value of each segment; cells with a corner that is not finite are left out.
-  void (*findLargest)(FieldSegments<A>& segments);
   /// Pixels become the larger of themselves and the averages.
   void (*raiseAverages)(const Averages<A>& averages, std::ptrdiff_t n);
   /// Whether there are neither NaN nor infinities.

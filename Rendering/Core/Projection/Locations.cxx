@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Projection/Locations.h"
 
-#include "Projection/RayFinder.h"
-#include "Sampling/FieldOnRay.h"
+#include "Cells/ScreenScalars.h"
+#include "Sampling/ValuesAtWinners.h"
 
 #include <vtkSMPTools.h>
 
@@ -71,24 +71,7 @@ private:
   int Count = 0;
 };
 
-/// Where the trilinear field along the ray of a shear pixel is largest (or least) in slice k; the
-/// nearest to the viewer of such places.
-template <class T>
-double extremumOf(
-  const PermutedVoxels<T>& voxels, const ShearWarp& geometry, int u, int v, int k, bool least)
-{
-  const FieldRay ray = rayOfPixel(geometry, u, v);
-  const glm::dvec2 depths = FieldBox(geometry).depths(ray), faces = geometry.faces(k);
-  Extremum best{ static_cast<double>(k) };
-  FieldOnRay<T>(voxels, geometry, glm::ivec3(0))
-    .take(
-      ray, { std::max(depths.x, faces.x), std::min(depths.y, faces.y) }, least,
-      [](int) { return true; }, best);
-  return best.depth;
-}
-
-/// Finds the voxels of the winners of a shear image, or of one of its phases; (i, j, k) as its axes
-/// are permuted.
+/// Finds the voxels of the winners of a shear image; (i, j, k) as its axes are permuted.
 template <class T>
 class VoxelFinder
 {
@@ -124,15 +107,9 @@ public:
     {
       return this->inMiddle(u, v, k);
     }
-    switch (this->Source.settings.quality)
-    {
-      case Quality::Preview:
-        return this->onPath(u, v, k, step % StepsPerSlice);
-      case Quality::Exact:
-        return this->atExtremum(u, v, k);
-      default:
-        return { this->inFootprint(u, v, k), k };
-    }
+    return this->Source.settings.quality == Quality::Preview
+      ? this->onPath(u, v, k, step % StepsPerSlice)
+      : glm::ivec3(this->inFootprint(u, v, k), k);
   }
 
   glm::ivec3 inMiddle(int u, int v, int k) const
@@ -153,15 +130,6 @@ private:
     }
     const RayPath& path = this->Paths[k];
     return { u + path.di[t], v + path.dj[t], k };
-  }
-
-  glm::ivec3 atExtremum(int u, int v, int k) const
-  {
-    const bool least = this->Source.settings.reduction == Reduction::Minimum;
-    const double z = extremumOf<T>(this->Voxels, this->Geometry, u, v, k, least);
-    const glm::dvec2 at = this->Geometry.onRay(u, v, z);
-    return glm::clamp(
-      glm::ivec3(glm::round(glm::dvec3(at, z))), glm::ivec3(0), this->Geometry.size() - 1);
   }
 
   glm::ivec2 inFootprint(int u, int v, int k) const
@@ -259,14 +227,8 @@ glm::ivec3 findVoxel(const Located& located, const ShearPixel& pixel)
   const ShearImage& projected = (*located.images)[pixel.image];
   const ShearWarp& geometry = (*located.geometries)[pixel.image];
   const int step = projected.winners[std::size_t(pixel.v) * projected.width + pixel.u];
-  const glm::ivec2 place(pixel.u, pixel.v);
-  const int phases = geometry.phases();
-  ShearWarp phase, alone;
-  if (phases > 1)
-  {
-    geometry.takePhase(place % phases, phase);
-  }
-  (phases > 1 ? phase : geometry).takePixel(place / phases, alone);
+  ShearWarp alone;
+  geometry.takePixel({ pixel.u, pixel.v }, alone);
   return dispatch(located.volume.type,
     [&](auto* null)
     {
@@ -285,19 +247,8 @@ void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
-      const int phases = geometry.phases();
-      std::vector<ShearWarp> parts(std::size_t(phases) * phases);
-      std::vector<std::unique_ptr<VoxelFinder<T>>> finders;
       GeneralTable table;
-      for (int p = 0; p < phases * phases; ++p)
-      {
-        if (phases > 1)
-        {
-          geometry.takePhase({ p % phases, p / phases }, parts[p]);
-        }
-        finders.push_back(
-          std::make_unique<VoxelFinder<T>>(located, phases > 1 ? parts[p] : geometry, table));
-      }
+      const VoxelFinder<T> finder(located, geometry, table);
       vtkSMPTools::For(0, projected.height, 8,
         [&](vtkIdType first, vtkIdType last)
         {
@@ -308,9 +259,7 @@ void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec
               const std::size_t at = std::size_t(v) * projected.width + u;
               if (projected.winners[at] >= 0)
               {
-                const VoxelFinder<T>& finder = *finders[v % phases * phases + u % phases];
-                voxels[at] =
-                  unpermuted(geometry, finder.find(u / phases, v / phases, projected.winners[at]));
+                voxels[at] = unpermuted(geometry, finder.find(u, v, projected.winners[at]));
               }
             }
           }
@@ -318,85 +267,38 @@ void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec
     });
 }
 
-Locator::Locator(const Located& located) : Source(located)
-{
-  if (!located.settings.hasScreenRays() || !located.volume.voxels || !located.cuts)
-  {
-    return;
-  }
-  for (std::size_t n = 0; n < located.geometries->size(); ++n)
-  {
-    const ShearWarp& geometry = (*located.geometries)[n];
-    const ShearImage& image = (*located.images)[n];
-    const Cuts& cuts = (*located.cuts)[n];
-    this->OwnRays.push_back(dispatch(located.volume.type,
-      [&](auto* null) -> DepthOnRay
-      {
-        using T = std::remove_pointer_t<decltype(null)>;
-        const RaySource source{ located.volume, glm::ivec3(0), located.cuts, located.depth };
-        const auto finder = std::make_shared<RayFinder<T>>(image, geometry, source, cuts);
-        return [finder, &geometry](const glm::ivec2& pixel)
-        {
-          const Extremum found = finder->find({ geometry, pixel });
-          return found.value > -std::numeric_limits<double>::infinity()
-            ? found.depth
-            : std::numeric_limits<double>::quiet_NaN();
-        };
-      }));
-  }
-}
-
-/// NaN if the screen's rays are not looked along, or find nothing.
-double Locator::depthOnOwnRay(const glm::dvec2& pixel, const ShearPixel& shown) const
-{
-  const ShearWarp& geometry = (*this->Source.geometries)[shown.image];
-  if (this->OwnRays.empty() || geometry.isOverview())
-  {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  return this->OwnRays[shown.image](glm::ivec2(glm::round(pixel)));
-}
+Locator::Locator(const Located& located) : Source(located) {}
 
 double Locator::depthOf(const ShearPixel& shown) const
 {
   const ShearImage& image = (*this->Source.images)[shown.image];
-  const ShearWarp& geometry = (*this->Source.geometries)[shown.image];
-  const int k = image.winners[std::size_t(shown.v) * image.width + shown.u] / StepsPerSlice;
-  if (this->Source.settings.quality != Quality::Exact || !this->Source.volume.voxels)
-  {
-    return k;
-  }
-  return dispatch(this->Source.volume.type,
-    [&](auto* null)
-    {
-      using T = std::remove_pointer_t<decltype(null)>;
-      const PermutedVoxels<T> voxels(this->Source.volume, geometry);
-      return extremumOf<T>(voxels, geometry, shown.u, shown.v, k,
-        this->Source.settings.reduction == Reduction::Minimum);
-    });
+  return image.winners[std::size_t(shown.v) * image.width + shown.u] / StepsPerSlice;
 }
 
-Locator::Sample Locator::sample(const glm::dvec2& pixel, const ShearPixel& shown) const
+glm::ivec3 Locator::voxel(const glm::dvec2&, const ShearPixel& shown) const
 {
-  const double own = this->depthOnOwnRay(pixel, shown);
-  if (own == own)
-  {
-    const glm::dvec3 point = this->pointAt(pixel, shown, own);
-    const glm::ivec3 last = this->Source.view.dimensions - 1;
-    return { point, glm::clamp(glm::ivec3(glm::round(point)), glm::ivec3(0), last), true };
-  }
-  return { this->pointAt(pixel, shown, this->depthOf(shown)), glm::ivec3(-1), false };
-}
-
-glm::ivec3 Locator::voxel(const glm::dvec2& pixel, const ShearPixel& shown) const
-{
-  const Sample sample = this->sample(pixel, shown);
-  return sample.hasVoxel ? sample.voxel : findVoxel(this->Source, shown);
+  return findVoxel(this->Source, shown);
 }
 
 glm::dvec3 Locator::point(const glm::dvec2& pixel, const ShearPixel& shown) const
 {
-  return this->sample(pixel, shown).point;
+  return this->pointAt(pixel, shown, this->depthOf(shown));
+}
+
+Locator::Sample Locator::onScreen(const glm::ivec2& pixel) const
+{
+  const ScreenScalars& screen = *this->Source.screen;
+  const glm::ivec2 p = pixel - screen.origin;
+  Sample sample;
+  if (p.x >= 0 && p.y >= 0 && p.x < screen.size.x && p.y < screen.size.y)
+  {
+    const float depth = screen.depths[std::size_t(p.y) * screen.size.x + p.x];
+    sample.exists = depth == depth;
+    sample.point = screen.rays.point(pixel.x, pixel.y, depth);
+    sample.voxel = glm::clamp(glm::round(sample.point), glm::dvec3(0.0),
+      glm::dvec3(this->Source.view.dimensions - 1));
+  }
+  return sample;
 }
 
 /// Where a pixel's ray is at a depth along the principal axis.
@@ -405,7 +307,6 @@ glm::dvec3 Locator::pointAt(const glm::dvec2& pixel, const ShearPixel& shown, do
   const ShearWarp& geometry = (*this->Source.geometries)[shown.image];
   if (geometry.isPerspective())
   {
-    // In exact mode an extremum may lie at the eye itself, where all pixels are one.
     constexpr double nearest = 1e-6;
     z = geometry.reversed() ? std::min(z, geometry.eye().z - nearest)
                             : std::max(z, geometry.eye().z + nearest);
@@ -469,67 +370,78 @@ glm::dvec2 Locator::depthRange() const
   return range;
 }
 
-void Locator::fillRow(int y, const glm::ivec2& origin, int width, const ShearPixel* shown,
-  const std::vector<std::vector<glm::ivec3>>& voxels, const Arrays& arrays) const
+void Locator::put(std::size_t at, const Sample& sample, const Arrays& arrays) const
 {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  for (int x = 0; x < width; ++x)
+  const bool has = sample.exists;
+  const glm::dvec3 world = has ? this->inWorld(sample.point) : glm::dvec3(none);
+  if (arrays.voxels)
   {
-    const std::size_t at = std::size_t(y) * width + x;
-    const ShearPixel& from = shown[at];
-    const bool has = from.image >= 0;
-    glm::dvec3 point(none), world(none);
-    glm::ivec3 voxel(-1);
-    if (has)
-    {
-      const Sample sample = this->sample(glm::dvec2(origin.x + x, origin.y + y), from);
-      point = sample.point;
-      world = this->inWorld(point);
-      voxel = sample.voxel;
-      if (arrays.voxels && !sample.hasVoxel)
-      {
-        voxel = this->OwnRays.empty()
-          ? voxels[from.image]
-                  [std::size_t(from.v) * (*this->Source.images)[from.image].width + from.u]
-          : findVoxel(this->Source, from);
-      }
-    }
-    if (arrays.voxels)
-    {
-      std::copy(&voxel.x, &voxel.x + 3, arrays.voxels + 3 * at);
-    }
-    if (arrays.depths)
-    {
-      arrays.depths[at] = static_cast<float>(has ? this->depth(world) : none);
-    }
-    if (arrays.positions)
-    {
-      std::copy(&world.x, &world.x + 3, arrays.positions + 3 * at);
-    }
-    if (arrays.clipDepths)
-    {
-      const glm::dvec4 clip = this->Source.view.indexToClip * glm::dvec4(point, 1.0);
-      arrays.clipDepths[at] = static_cast<float>(has ? 0.5 * clip.z / clip.w + 0.5 : none);
-    }
+    const glm::ivec3 voxel = has ? sample.voxel : glm::ivec3(-1);
+    std::copy(&voxel.x, &voxel.x + 3, arrays.voxels + 3 * at);
+  }
+  if (arrays.depths)
+  {
+    arrays.depths[at] = static_cast<float>(has ? this->depth(world) : none);
+  }
+  if (arrays.positions)
+  {
+    std::copy(&world.x, &world.x + 3, arrays.positions + 3 * at);
+  }
+  if (arrays.clipDepths)
+  {
+    const glm::dvec4 clip = this->Source.view.indexToClip * glm::dvec4(sample.point, 1.0);
+    arrays.clipDepths[at] = static_cast<float>(has ? 0.5 * clip.z / clip.w + 0.5 : none);
   }
 }
 
 void Locator::fill(const glm::ivec2& origin, const glm::ivec2& size, const Arrays& arrays) const
 {
+  if (this->Source.screen)
+  {
+    this->fillFrom(origin, size, arrays, [&](const glm::ivec2& pixel, std::size_t)
+      { return this->onScreen(pixel); });
+    return;
+  }
   std::vector<ShearPixel> shown(std::size_t(size.x) * size.y);
   findShearPixels(*this->Source.images, *this->Source.geometries, this->Source.settings.reduction,
     origin, size, shown.data());
   std::vector<std::vector<glm::ivec3>> voxels(this->Source.geometries->size());
-  for (std::size_t n = 0; arrays.voxels && this->OwnRays.empty() && n < voxels.size(); ++n)
+  for (std::size_t n = 0; arrays.voxels && n < voxels.size(); ++n)
   {
     findVoxels(this->Source, n, voxels[n]);
   }
+  this->fillFrom(origin, size, arrays,
+    [&](const glm::ivec2& pixel, std::size_t at)
+    {
+      const ShearPixel& from = shown[at];
+      Sample sample;
+      sample.exists = from.image >= 0;
+      if (sample.exists)
+      {
+        const int width = (*this->Source.images)[from.image].width;
+        sample.point = this->point(glm::dvec2(pixel), from);
+        sample.voxel = arrays.voxels ? voxels[from.image][std::size_t(from.v) * width + from.u]
+                                     : glm::ivec3(-1);
+      }
+      return sample;
+    });
+}
+
+template <class F>
+void Locator::fillFrom(
+  const glm::ivec2& origin, const glm::ivec2& size, const Arrays& arrays, F&& sampleOf) const
+{
   vtkSMPTools::For(0, size.y, 8,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType y = first; y < last; ++y)
       {
-        this->fillRow(static_cast<int>(y), origin, size.x, shown.data(), voxels, arrays);
+        for (int x = 0; x < size.x; ++x)
+        {
+          const std::size_t at = std::size_t(y) * size.x + x;
+          this->put(at, sampleOf(origin + glm::ivec2(x, y), at), arrays);
+        }
       }
     });
 }

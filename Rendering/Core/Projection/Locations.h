@@ -3,16 +3,13 @@
 /**
  * Where the samples lie that a projection shows: from winners to voxels, depths and points.
  *
- * A sample is the slice (in preview the voxel) that a pixel's value comes from. Its point lies on
- * the ray of the screen pixel (in overviews of the shear pixel), in the middle of that slice. In
- * exact mode it lies where that ray has its largest value, as RayFinder finds it. If RayFinder
- * finds none, and for other reductions, it lies at the depth of the field's extremum in the slice,
- * on the ray of the nearest shear pixel.
- *
- * Its voxel is, in preview, the one that wins; in standard and high the one of the slice that adds
- * most to the average: the largest weight times its distance from the volume's lowest value (of
- * minima, from the highest); in exact mode the one nearest to the point. If only a piece of the
- * volume is here, all modes but preview take the middle of the slice, and the voxel nearest to it.
+ * In exact projections a sample lies where the pixel's ray has its extremum, and its voxel is the
+ * one nearest to that point. Else a sample is the slice (in preview the voxel) that a pixel's value
+ * comes from. Its point lies on the ray of the screen pixel (in overviews of the shear pixel), in
+ * the middle of that slice. Its voxel is, in preview, the one that wins; in standard and high the
+ * one of the slice that adds most to the average: the largest weight times its distance from the
+ * volume's lowest value (of minima, from the highest). If only a piece of the volume is here, it is
+ * the voxel nearest to the point.
  */
 #ifndef splattingLocations_h
 #define splattingLocations_h
@@ -23,11 +20,13 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include <functional>
+#include <cstddef>
 #include <vector>
 
 namespace splatting
 {
+struct ScreenScalars;
+
 /// A view's projection with winners. What is pointed at must outlive its use.
 struct Located
 {
@@ -35,10 +34,9 @@ struct Located
   const std::vector<ShearWarp>* geometries = nullptr; ///< as many as the view has
   VoxelArray volume; ///< what was projected; without voxels if only a piece of it is here
   double low = 0.0, high = 0.0; ///< its range, infinities and NaN aside
-  /// Of each image; without them nothing is looked for on the screen's own rays.
-  const std::vector<Cuts>* cuts = nullptr;
-  const SceneDepth* depth = nullptr; ///< of what else is in the scene, if there is anything
-  ProjectionSettings settings;       ///< of the projection
+  /// Of an exact projection, with depths: there are no images then.
+  const ScreenScalars* screen = nullptr;
+  ProjectionSettings settings; ///< of the projection
   View view;
   glm::dmat4 indexToWorld{ 1.0 };
   /// Depths are distances from here: in parallel views along the direction, of length 1.
@@ -59,6 +57,16 @@ public:
   glm::dvec3 point(const glm::dvec2& pixel, const ShearPixel& shown) const;
   /// The voxel that it shows.
   glm::ivec3 voxel(const glm::dvec2& pixel, const ShearPixel& shown) const;
+
+  /// A sample, if there is one.
+  struct Sample
+  {
+    bool exists = false;
+    glm::dvec3 point{ 0.0 }; ///< in index space
+    glm::ivec3 voxel{ -1 };
+  };
+  /// What a pixel of the viewport shows in an exact projection.
+  Sample onScreen(const glm::ivec2& pixel) const;
   glm::dvec3 inWorld(const glm::dvec3& point) const;
   /// Of a point of the world.
   double depth(const glm::dvec3& world) const;
@@ -77,24 +85,13 @@ public:
   void fill(const glm::ivec2& origin, const glm::ivec2& size, const Arrays& arrays) const;
 
 private:
-  /// The depth of the largest value on the ray of a pixel of the viewport; NaN if there is none.
-  using DepthOnRay = std::function<double(const glm::ivec2&)>;
-
-  /// Where a pixel's sample lies, and its voxel where its own ray tells that.
-  struct Sample
-  {
-    glm::dvec3 point;
-    glm::ivec3 voxel;
-    bool hasVoxel;
-  };
-  Sample sample(const glm::dvec2& pixel, const ShearPixel& shown) const;
   glm::dvec3 pointAt(const glm::dvec2& pixel, const ShearPixel& shown, double z) const;
-  double depthOnOwnRay(const glm::dvec2& pixel, const ShearPixel& shown) const;
-  void fillRow(int y, const glm::ivec2& origin, int width, const ShearPixel* shown,
-    const std::vector<std::vector<glm::ivec3>>& voxels, const Arrays& arrays) const;
+  template <class F>
+  void fillFrom(
+    const glm::ivec2& origin, const glm::ivec2& size, const Arrays& arrays, F&& sampleOf) const;
+  void put(std::size_t at, const Sample& sample, const Arrays& arrays) const;
 
   Located Source;
-  std::vector<DepthOnRay> OwnRays; // of each image, where the screen's rays are looked along
 };
 
 /// The voxel of a shear pixel with a winner.

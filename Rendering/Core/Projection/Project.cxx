@@ -61,7 +61,7 @@ Acceleration choose(
     index.statistics(geometry.principalAxis(), static_cast<int>(settings.quality), isCut);
   const double worthwhile = worthwhileShare(settings, geometry.isPerspective());
   double patience = statistics.share > worthwhile ? 32.0 : 0.0; // frames
-  if (settings.quality == Quality::High || settings.quality == Quality::Exact)
+  if (settings.quality == Quality::High)
   {
     // Views change little from frame to frame. Where bricks nearly pay, the next ones may, and
     // trying costs little where much is computed. (Whole registers can make the share exceed 1.)
@@ -91,7 +91,7 @@ void openImage(const ProjectionSettings& settings, ScalarType voxels, ShearImage
   const std::size_t pixels = std::size_t(image.width) * image.height;
   image.type = samples ? voxels : accumulatorOf(voxels);
   image.bytes.resize(pixels * sizeOf(image.type));
-  image.winners.resize(settings.findsWinners() ? pixels : 0);
+  image.winners.resize(settings.keepWinners ? pixels : 0);
 }
 
 void learn(SkipStatistics& statistics, Acceleration used, const TileCount& count)
@@ -111,7 +111,7 @@ void learn(SkipStatistics& statistics, Acceleration used, const TileCount& count
 struct Projector::Scratch
 {
   /// Made when they are first used.
-  std::array<std::array<std::unique_ptr<ProjectionMode>, 2>, 4> modes; // parallel, perspective
+  std::array<std::array<std::unique_ptr<ProjectionMode>, 2>, 3> modes; // parallel, perspective
   std::unique_ptr<ProjectionMode> chains;
   WalkSpace walks;
   std::vector<SliceGeometry> slices;
@@ -132,9 +132,9 @@ Projector::~Projector() = default;
 ProjectionMode& Projector::mode(Quality quality, bool perspective)
 {
   using Make = std::unique_ptr<ProjectionMode> (*)();
-  static constexpr Make make[4][2] = { { &makePreview, &makePerspectivePreview },
+  static constexpr Make make[3][2] = { { &makePreview, &makePerspectivePreview },
     { &makeWorksheets, &makePerspectiveWorksheets },
-    { &makeWorksheets, &makePerspectiveWorksheets }, { &makeExact, &makePerspectiveExact } };
+    { &makeWorksheets, &makePerspectiveWorksheets } };
   const int q = static_cast<int>(quality);
   std::unique_ptr<ProjectionMode>& mode = this->Memory->modes[q][perspective];
   if (!mode)
@@ -168,7 +168,7 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
     return Acceleration::Dense;
   }
   if (wanted >= Acceleration::Lines && !index.range().nonFinite && cuts.none() &&
-    !geometry.isPerspective() && !settings.keepWinners && settings.quality != Quality::Exact &&
+    !geometry.isPerspective() && !settings.keepWinners &&
     &geometry != &this->Memory->part && !this->stopped())
   {
     lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),

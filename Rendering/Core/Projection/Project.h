@@ -94,15 +94,8 @@ struct ProjectionSettings
   /// Whether the image tells its winners: of equal samples the nearest to the viewer. Means have
   /// none: not for Reduction::Mean. Lines and its sorted kin are Bricks then.
   bool keepWinners = false;
-  /// Whether the screen's own rays are looked along, see RayFinder.h. They need winners.
-  bool hasScreenRays() const
-  {
-    return this->quality == Quality::Exact && this->reduction == Reduction::Maximum;
-  }
-  bool findsWinners() const { return this->keepWinners || this->hasScreenRays(); }
-  /// How shear images are sampled and which voxels their rays meet, as ShearWarp::factorise() takes
-  /// it. Not compared: images are.
-  int sampling = 1;
+  /// Which voxels the rays of shear images meet, as ShearWarp::factorise() takes it. Not compared:
+  /// images are.
   Meets meets = Meets::All;
   /// Values at or below need not be told apart: the image is the larger of this (in preview rounded
   /// down to the scalar type) and what it would be otherwise.

@@ -37,7 +37,7 @@ public:
   {
     ShearImage& image = this->Context.image;
     const std::size_t begin = std::size_t(v0) * image.width, end = std::size_t(v1) * image.width;
-    if (this->Settings.findsWinners())
+    if (this->Settings.keepWinners)
     {
       std::fill(image.winners.begin() + begin, image.winners.begin() + end, -1);
     }
@@ -67,7 +67,7 @@ public:
   /// must not depend on the side that they are seen from.
   bool isReversed() const
   {
-    return (this->Settings.reduction == Reduction::Local || this->Settings.findsWinners()) &&
+    return (this->Settings.reduction == Reduction::Local || this->Settings.keepWinners) &&
       this->Context.geometry.reversed();
   }
 
@@ -89,7 +89,7 @@ public:
             narrow(scratch.mask.data(), present, pixels);
           }
           const Row row{ step, v, pixels, isCut ? scratch.mask.data() : present };
-          this->Settings.findsWinners() ? this->takeAndNote(row, samples, scratch)
+          this->Settings.keepWinners ? this->takeAndNote(row, samples, scratch)
                                         : this->take(row, samples, scratch);
         }
       });

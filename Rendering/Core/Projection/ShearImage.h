@@ -58,15 +58,6 @@ struct ShearImage
       (this->mask.empty() || this->mask[std::ptrdiff_t(v) * this->width + u]);
   }
 };
-
-/**
- * Puts the image of one phase into its place. What the whole image was is lost with phase (0, 0).
- */
-void interleave(const ShearImage& part, int phases, const glm::ivec2& phase, ShearImage& whole);
-
-/// The same of spans and mask alone.
-void interleaveOutline(
-  const ShearImage& part, int phases, const glm::ivec2& phase, ShearImage& whole);
 }
 
 #endif

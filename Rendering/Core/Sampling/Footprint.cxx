@@ -138,12 +138,12 @@ void normalise(WeightTable& weights)
 
 /// H of the five voxels around a pixel, at depth z.
 std::array<double, 5> profile(
-  const Kernel& kernel, double fraction, double shear, double width, double z)
+  const Kernel& kernel, double fraction, double shear, double z)
 {
   std::array<double, 5> values;
   for (int d = -2; d <= 2; ++d)
   {
-    values[d + 2] = kernel.overPixel(-d - fraction - shear * z, width);
+    values[d + 2] = kernel.overPixel(-d - fraction - shear * z, 1.0);
   }
   return values;
 }
@@ -206,18 +206,15 @@ double Kernel::overPixel(double t, double width) const
 }
 
 WeightTable closedFormWeights(
-  const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction, double width)
+  const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction)
 {
-  const double support = kernel.support(), half = 0.5 * width;
+  const double support = kernel.support();
   Breaks breaks(-0.5, 0.5);
-  // H has kinks where an end of the pixel meets an end of h, or its tip. Those of pixels as wide as
-  // a voxel coincide.
-  const std::array<double, 6> kinks{ support + half, -support - half, support - half,
-    half - support, half, -half };
-  for (int n = 0; n < (width < 1.0 ? 6 : 2); ++n)
+  // H has kinks where an end of the pixel meets an end of h.
+  for (double kink : { support + 0.5, -support - 0.5 })
   {
-    breaks.addPeriodic(-fraction.x, shear.x, kinks[n]);
-    breaks.addPeriodic(-fraction.y, shear.y, kinks[n]);
+    breaks.addPeriodic(-fraction.x, shear.x, kink);
+    breaks.addPeriodic(-fraction.y, shear.y, kink);
   }
   for (double kink : { 0.0, 1.0 - support, support - 1.0, support, -support })
   {
@@ -227,8 +224,8 @@ WeightTable closedFormWeights(
   WeightTable weights{};
   const auto add = [&](double z, double share)
   {
-    const auto x = profile(kernel, fraction.x, shear.x, width, z);
-    const auto y = profile(kernel, fraction.y, shear.y, width, z);
+    const auto x = profile(kernel, fraction.x, shear.x, z);
+    const auto y = profile(kernel, fraction.y, shear.y, z);
     for (int c = -1; c <= 1; ++c)
     {
       const double depth = share * kernel(z - c);
@@ -251,29 +248,28 @@ WeightTable closedFormWeights(
   return weights;
 }
 
-void GeneralTable::set(const Kernel& kernel, const glm::dvec2& shear, int sampling, int perVoxel)
+void GeneralTable::set(const Kernel& kernel, const glm::dvec2& shear, int sampling)
 {
-  const int perPixel = std::max(sampling, leastSampling(kernel));
-  if (this->Of == kernel && this->Shear == shear && this->PerPixel == perPixel &&
-    this->Sampling == perPixel * perVoxel)
+  sampling = std::max(sampling, leastSampling(kernel));
+  if (this->Of == kernel && this->Shear == shear && this->Sampling == sampling)
   {
     return;
   }
   this->Of = kernel;
   this->Shear = shear;
-  this->PerPixel = 0; // until it is made: there may be no memory for it
-  this->Sampling = perPixel * perVoxel;
-  this->Half = 0.5 / perVoxel;
+  this->Sampling = sampling;
   // The sheared voxel covers support * (1 + |shear|) on either side: 2 x 2 pixels for a box, 4 x 4
   // for the trilinear kernel [CS98, section 3].
   const double s = kernel.support();
   const double reach = s * (1.0 + std::max(std::abs(shear.x), std::abs(shear.y)));
   this->Voxels = 2 * static_cast<int>(std::ceil(reach));
-  const int n = this->Voxels * this->Sampling;
+  const int n = this->Voxels * sampling;
+  this->Sampling = 0; // until it is made: there may be no memory for it
   for (auto& entries : this->Entries)
   {
     entries.resize(static_cast<std::size_t>(n) * n);
   }
+  this->Sampling = sampling;
   vtkSMPTools::For(0, 3 * n, 8,
     [&](vtkIdType first, vtkIdType last)
     {
@@ -287,7 +283,6 @@ void GeneralTable::set(const Kernel& kernel, const glm::dvec2& shear, int sampli
         }
       }
     });
-  this->PerPixel = perPixel;
 }
 
 double GeneralTable::place(int subPixel) const
@@ -337,8 +332,8 @@ double GeneralTable::entry(const Kernel& kernel, int part, const glm::dvec2& p) 
 /// is `pixel` voxels from the one nearest to the voxel, which lies at `centre`.
 int GeneralTable::firstOf(int pixel, double centre) const
 {
-  const auto isBefore = [&](int n) { return this->place(n) + centre - pixel < -this->Half; };
-  const double begin = pixel - this->Half - centre + 0.5 * this->Voxels;
+  const auto isBefore = [&](int n) { return this->place(n) + centre - pixel < -0.5; };
+  const double begin = pixel - 0.5 - centre + 0.5 * this->Voxels;
   int n = static_cast<int>(std::ceil(begin * this->Sampling - 0.5)); // but for rounding
   for (; isBefore(n); ++n)
   {
@@ -355,8 +350,7 @@ WeightTable GeneralTable::weights(const glm::dvec2& fraction) const
   const int n = this->Voxels * this->Sampling;
   for (int c = -1; c <= 1; ++c)
   {
-    // The voxel lies at d + fraction of slice k's frame, and c shears away in its own. Pixels are a
-    // voxel apart; between them there is room where they are narrower.
+    // The voxel lies at d + fraction of slice k's frame, and c shears away in its own.
     const glm::dvec2 centre = fraction + double(c) * this->Shear;
     for (int dj = -2; dj <= 2; ++dj)
     {
@@ -365,10 +359,10 @@ WeightTable GeneralTable::weights(const glm::dvec2& fraction) const
       {
         const int column = this->firstOf(-di, centre.x);
         double& sum = weights[c + 1][dj + 2][di + 2];
-        for (int y = std::max(row, 0); y < std::min(row + this->PerPixel, n); ++y)
+        for (int y = std::max(row, 0); y < std::min(row + this->Sampling, n); ++y)
         {
           const double* const entries = &this->Entries[c + 1][static_cast<std::size_t>(y) * n];
-          for (int x = std::max(column, 0); x < std::min(column + this->PerPixel, n); ++x)
+          for (int x = std::max(column, 0); x < std::min(column + this->Sampling, n); ++x)
           {
             sum += entries[x];
           }

@@ -62,11 +62,10 @@ using WeightTable = std::array<std::array<std::array<double, 5>, 5>, 3>;
  * Weights in closed form: the integrand is smooth between the kinks of h and H, where
  * Gauss-Legendre quadrature is exact for the polynomial kernels (3 nodes) and accurate to 1e-13 for
  * the cosine bell (10 nodes).
- * `fraction` is where the nearest voxel lies, relative to the pixel, in [-1/2, 1/2] voxels. The
- * pixel is `width` voxels wide, 1 or less.
+ * `fraction` is where the nearest voxel lies, relative to the pixel, in [-1/2, 1/2] voxels.
  */
 WeightTable closedFormWeights(
-  const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction, double width);
+  const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction);
 
 /**
  * The paper's way: a general table of the sheared voxel's thickness, weighted by h, at the
@@ -77,8 +76,7 @@ WeightTable closedFormWeights(
 class GeneralTable
 {
 public:
-  /// For pixels 1 / perVoxel voxels wide.
-  void set(const Kernel& kernel, const glm::dvec2& shear, int sampling, int perVoxel);
+  void set(const Kernel& kernel, const glm::dvec2& shear, int sampling);
   WeightTable weights(const glm::dvec2& fraction) const;
 
 private:
@@ -88,9 +86,7 @@ private:
 
   Kernel Of;
   glm::dvec2 Shear{ 0.0 };
-  int PerPixel = 0;                           // sub-pixels along the side of a pixel
-  int Sampling = 0;                           // sub-pixels along the side of a voxel
-  double Half = 0.5;                          // a pixel, in voxels
+  int Sampling = 0;                           // sub-pixels along the side of a pixel
   int Voxels = 0;                             // the table covers Voxels x Voxels voxels
   std::array<std::vector<double>, 3> Entries; // "up", "middle" and "down" footprint
 };

@@ -214,8 +214,6 @@ std::unique_ptr<ProjectionMode> makePreview();
 std::unique_ptr<ProjectionMode> makePerspectivePreview();
 std::unique_ptr<ProjectionMode> makeWorksheets();
 std::unique_ptr<ProjectionMode> makePerspectiveWorksheets();
-std::unique_ptr<ProjectionMode> makeExact();
-std::unique_ptr<ProjectionMode> makePerspectiveExact();
 std::unique_ptr<ProjectionMode> makeChains();
 }
 

@@ -76,7 +76,7 @@ void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int samplin
   const glm::dvec2 shear = geometry.shear();
   if (sampling > 0)
   {
-    table.set(kernel, shear, sampling, static_cast<int>(std::lround(1.0 / geometry.pixelSize())));
+    table.set(kernel, shear, sampling);
   }
   footprints.resize(geometry.size().z);
   vtkSMPTools::For(0, geometry.size().z, 8,
@@ -89,9 +89,8 @@ void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int samplin
         footprint.nearest = { static_cast<int>(std::floor(position.x + 0.5)),
           static_cast<int>(std::floor(position.y + 0.5)) };
         const glm::dvec2 fraction = position - glm::dvec2(footprint.nearest);
-        const WeightTable weights = sampling > 0
-          ? table.weights(fraction)
-          : closedFormWeights(kernel, shear, fraction, geometry.pixelSize());
+        const WeightTable weights =
+          sampling > 0 ? table.weights(fraction) : closedFormWeights(kernel, shear, fraction);
         setTaps(footprint, quantisedTaps(weights, weightBits));
       }
     });

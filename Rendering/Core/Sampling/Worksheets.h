@@ -45,7 +45,7 @@ constexpr int weightBits = sizeof(T) == 1 ? 16
                                           : 48;
 
 /// The footprints of all slices; `sampling` as ProjectionSettings::footprintSampling. The table is
-/// set if it is needed, and of use again for other phases and frames of the same view.
+/// set if it is needed, and of use again for other frames of the same view.
 template <class A>
 void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int sampling, int weightBits,
   GeneralTable& table, std::vector<SliceFootprint<A>>& footprints);

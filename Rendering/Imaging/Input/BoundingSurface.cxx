@@ -78,6 +78,7 @@ const char* BoundingSurface::Update(vtkPolyData* data, const glm::dmat4& worldTo
   {
     return this->Fault;
   }
+  ++this->NumberOfUpdates;
   this->Data = data;
   this->DataTime = time;
   this->WorldToIndex = worldToIndex;

@@ -26,6 +26,9 @@ public:
   /// Of the last Update().
   bool IsOpen() const { return this->Open; }
 
+  /// Another number after each Update() that changed the triangles.
+  vtkIdType Version() const { return this->NumberOfUpdates; }
+
   /// Nullptr if there is none.
   ClosedSurface* Get() { return this->Surface.empty() ? nullptr : &this->Surface; }
 
@@ -38,6 +41,7 @@ private:
   glm::dmat4 WorldToIndex{ 1.0 };
   const char* Fault = nullptr;
   bool Open = false;
+  vtkIdType NumberOfUpdates = 0;
   std::vector<glm::dvec3> Points; // in the world
   std::vector<glm::ivec3> Triangles;
   ClosedSurface Surface;
