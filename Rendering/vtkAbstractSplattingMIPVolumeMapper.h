@@ -53,8 +53,6 @@ public:
     EXACT = 3
   };
 
-  static constexpr int AUTOMATIC_SAMPLING = 0;
-
   enum Kernels
   {
     TRILINEAR = 0,
@@ -344,32 +342,14 @@ public:
    * How the footprint weights are obtained. 0 (default): closed form. N in [1, 64]: from the
    * paper's general table, digitised at N x N sub-pixels per pixel [CS98, section 3], whose weights
    * tend to the closed form as N grows. Perspective views always have the closed form. A view makes
-   * its table once, for all slices and phases of a finer shear image. That takes time and memory in
-   * proportion to (N ShearImageSampling)^2: at most two seconds of one core and 60 MB, for N = 64,
-   * a sampling of 4 and the widest bell; 10 ms for N = 16 and a sampling of 1. A projection then
-   * takes at most 1 ms of one core for each slice and phase more.
+   * its table once, for all slices. That takes time and memory in proportion to N^2: 10 ms for
+   * N = 16, at most 0.2 s of one core and 4 MB. A projection then takes at most 1 ms of one core
+   * for each slice more.
    */
   virtual void SetFootprintSampling(int);
   virtual int GetFootprintSampling();
   virtual int GetFootprintSamplingMinValue();
   virtual int GetFootprintSamplingMaxValue();
-  ///@}
-
-  ///@{
-  /**
-   * How many pixels the shear image has along the side of a voxel (in perspective, where the volume
-   * is farthest from the eye): 1, 2 or 4; 3 is taken as 2. What STANDARD and HIGH average over
-   * shrinks with the pixels. The time of a projection grows with their number. AUTOMATIC_SAMPLING
-   * (0): the least of the three with which a pixel of the shear image is no wider than one of the
-   * screen, or 4. Default: 1, as in [CS98]. PREVIEW, STANDARD and HIGH then place what is small up
-   * to half a voxel off where it is magnified; with AUTOMATIC_SAMPLING they do not. In EXACT the
-   * screen's pixels have rays of their own, which look where those of the shear image have their
-   * maxima; more of these find more in noise.
-   */
-  virtual void SetShearImageSampling(int);
-  virtual int GetShearImageSampling();
-  virtual int GetShearImageSamplingMinValue();
-  virtual int GetShearImageSamplingMaxValue();
   ///@}
 
   ///@{

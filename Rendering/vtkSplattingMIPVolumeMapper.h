@@ -209,16 +209,16 @@ public:
   ///@}
 
   /**
-   * The last shear image, its spacing 1 / ShearImageSampling, or nullptr before the first render.
-   * Scalars: as many components as are projected, in the input's type in mode PREVIEW (that of the
-   * copy, if voxels are hidden or resampled, or a magnitude), else, and for averages and depth
-   * shading, float (double for 32- and 64-bit integers and double). The image's physical
+   * The last shear image, its spacing 1, or nullptr before the first render and in EXACT, which has
+   * none. Scalars: as many components as are projected, in the input's type in mode PREVIEW (that
+   * of the copy, if voxels are hidden or resampled, or a magnitude), else, and for averages and
+   * depth shading, float (double for 32- and 64-bit integers and double). The image's physical
    * coordinates are voxel indices, relative to the volume's first voxel, on the volume's middle
    * slice along the principal axis: the ray of pixel (u, v) at origin + spacing * (u, v) crosses
    * slice k there at that point minus GetShear() * (k - (slices-1)/2). In perspective it is the
    * largest of the view's shear images. Coordinates are then voxel indices where the volume is
    * farthest from the eye, half a slice beyond the farthest slice; the spacing is a little less
-   * than 1 / ShearImageSampling, and the last columns may belong to no ray of the view. Pixels
+   * than 1, and the last columns may belong to no ray of the view. Pixels
    * whose ray meets no sample of any component are marked hidden in the ghost array. Axes: for
    * principal axis 2 the image's x and y are the volume's first and second axis, for 1 first and
    * third, for 0 second and third. Costs a copy of the shear image; the caller must not change it.
@@ -227,7 +227,7 @@ public:
 
   /**
    * The image axis (0, 1 or 2) along which the last render projected, in perspective that of
-   * GetShearImage(); -1 before the first render.
+   * GetShearImage(); -1 before the first render and in EXACT.
    */
   int GetPrincipalAxis();
 

@@ -98,8 +98,6 @@ public:
     EXACT = 3
   };
 
-  static constexpr int AUTOMATIC_SAMPLING = 0;
-
   enum Kernels
   {
     TRILINEAR = 0,
@@ -263,8 +261,7 @@ public:
   /**
    * As of the mapper: the reconstruction kernel of mode HIGH, default TRILINEAR; the radius of the
    * cosine bell in voxels, default 1, clamped to [0.5, 1.5]; how footprints are sampled, default 0
-   * (closed form), clamped to [0, 64]; how many pixels the shear image has along the side of a
-   * voxel: 1 (the default), 2, 4 or AUTOMATIC_SAMPLING (as fine as the output).
+   * (closed form), clamped to [0, 64].
    */
   virtual void SetKernel(int);
   virtual int GetKernel();
@@ -280,10 +277,6 @@ public:
   virtual int GetFootprintSampling();
   virtual int GetFootprintSamplingMinValue();
   virtual int GetFootprintSamplingMaxValue();
-  virtual void SetShearImageSampling(int);
-  virtual int GetShearImageSampling();
-  virtual int GetShearImageSamplingMinValue();
-  virtual int GetShearImageSamplingMaxValue();
   ///@}
 
   ///@{

@@ -286,7 +286,6 @@ void testLocations(Ranks& ranks)
       own->mapper->SetQualityMode(n % 3);
       own->mapper->SetBlendMode(n % 4 ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
                                       : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
-      own->mapper->SetShearImageSampling(n % 5 == 4 ? 2 : 1);
       own->mapper->RecordLocationsOn();
       look(*own, whole, n % 12);
       own->window->Render();

@@ -58,13 +58,6 @@ inline std::vector<Way> waysOfAll()
       },
       2 },
     { "exact", [](Mapper* m) { m->SetQualityModeToExact(); }, 2 },
-    { "standard, two pixels per voxel",
-      [](Mapper* m)
-      {
-        m->SetQualityModeToStandard();
-        m->SetShearImageSampling(2);
-      },
-      1 },
     { "minimum",
       [](Mapper* m)
       {

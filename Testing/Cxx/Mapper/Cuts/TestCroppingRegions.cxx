@@ -212,7 +212,6 @@ void testDefinition(stage::Stage& stage, stage::Checks& check)
                     : mapper->SetBlendModeToMaximumIntensity();
       mapper->SetMaximumType(kind % 3);
       mapper->SetAcceleration(random.uniform<int>(Mapper::AUTO, Mapper::SORTED_VOLUME));
-      mapper->SetShearImageSampling(turn % 10 == 9 ? 4 : turn % 4 == 0 ? 2 : 1);
       stage.window->Render();
       const double error = stage::shearImageError(stage, mapper, image, volume);
       check(error <= stage::allowedError(mapper),
