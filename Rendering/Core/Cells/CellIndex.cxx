@@ -3,12 +3,12 @@
 #include "Cells/CellIndex.h"
 
 #include <vtkSMPTools.h>
-#include <vtkTimerLog.h>
 
 #include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -252,12 +252,13 @@ const CellBounds& CellIndex::bounds(bool minima)
 {
   if (!this->Made[minima])
   {
-    const double start = vtkTimerLog::GetUniversalTime();
+    const auto start = std::chrono::steady_clock::now();
     dispatch(this->Grid.voxels.type,
       [&](auto* null)
       { this->make<std::remove_pointer_t<decltype(null)>>(minima, this->Bounds[minima]); });
     this->Made[minima] = true;
-    this->Seconds += vtkTimerLog::GetUniversalTime() - start;
+    this->Seconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
   return this->Bounds[minima];
 }
