@@ -56,9 +56,27 @@ inline A nextAbove(A value)
   return value;
 }
 
-/// Where rays run within a plane between cells, how far they may be beside it by rounding.
+/// Cells are wider by this at each side: more than the rounding by which the places of a ray in two
+/// neighbours differ, so that no part of a ray which runs along their face slips through.
 template <class A>
-constexpr A BesideFace = sizeof(A) == sizeof(float) ? A(0x1p-21) : A(0x1p-48);
+constexpr A BesideFace = std::numeric_limits<A>::epsilon();
+
+/// Where a cell begins and ends that is cropped at some place.
+template <class A>
+inline A lowEnd(A low)
+{
+  return low >= 0 ? low : -BesideFace<A>;
+}
+template <class A>
+inline A highEnd(A high)
+{
+  return high <= 1 ? high : 1 + BesideFace<A>;
+}
+
+/// Where rays run along a face, their reciprocal direction is limited to this, so that its products
+/// are finite.
+template <class A>
+constexpr A Steepest = sizeof(A) == sizeof(float) ? A(0x1p60) : A(0x1p200);
 
 /// 0, 1, 2, ...
 template <class A>
@@ -137,6 +155,21 @@ class CellSplatter
   using M = typename R::Mask;
   using I = typename R::Index;
   static constexpr int Cells = 16;
+  static constexpr bool Split = sizeof(A) < sizeof(double);
+
+  /// See CellSum.
+  struct Sum
+  {
+    V most, rest;
+
+    SPLATTING_INLINE V whole() const { return Split ? R::add(this->most, this->rest) : this->most; }
+    /// o + t d
+    static SPLATTING_INLINE V at(const Sum& o, const Sum& d, V t)
+    {
+      const V most = R::fma(d.most, t, o.most);
+      return Split ? R::add(most, R::fma(d.rest, t, o.rest)) : most;
+    }
+  };
 
 public:
   CellSplatter(ScreenTile<A>& tile, const CellBlock<A>& block) : Tile(tile), Block(block)
@@ -146,8 +179,8 @@ public:
       const int x = n & 3, y = n >> 2;
       this->Corner[0][n] = A(x - 2);
       this->Corner[1][n] = A(y - 2);
-      this->Place[0][n] = block.start[0] - this->Corner[0][n];
-      this->Place[1][n] = block.start[1] - this->Corner[1][n];
+      this->Place[0][n] = block.start[0].most - this->Corner[0][n];
+      this->Place[1][n] = block.start[1].most - this->Corner[1][n];
       const bool valid =
         x >= block.begin[0] && x < block.end[0] && y >= block.begin[1] && y < block.end[1];
       this->Valid[n] = valid ? CellValue<A>::Outside : CellValue<A>::None;
@@ -157,8 +190,8 @@ public:
         {
           const A low = block.low[a] - this->Corner[a][n],
                   high = block.high[a] - this->Corner[a][n];
-          this->Low[a][n] = low > 0 ? low : A(0);
-          this->High[a][n] = high < 1 ? high : A(1);
+          this->Low[a][n] = lowEnd(low);
+          this->High[a][n] = highEnd(high);
         }
       }
     }
@@ -350,12 +383,12 @@ private:
   void prepareSlice(int z)
   {
     const A corner = A(z - 2);
-    this->PlaceZ = this->Block.start[2] - corner;
+    this->PlaceZ = this->Block.start[2].most - corner;
     if (Cut)
     {
       const A low = this->Block.low[2] - corner, high = this->Block.high[2] - corner;
-      this->LowZ = low > 0 ? low : A(0);
-      this->HighZ = high < 1 ? high : A(1);
+      this->LowZ = lowEnd(low);
+      this->HighZ = highEnd(high);
     }
     for (int n = 0; n < Cells; ++n)
     {
@@ -439,9 +472,20 @@ private:
     }
   }
 
-  /// The part of rays within cells along one axis.
-  SPLATTING_INLINE void clip(int a, V o, V d, V low, V high, V& enter, V& leave, M& on) const
+  /// place + rest + x across + y up
+  static SPLATTING_INLINE Sum along(
+    V x, V y, const CellSum<A>& across, const CellSum<A>& up, V place, A rest)
   {
+    return { R::fma(x, R::set(across.most), R::fma(y, R::set(up.most), place)),
+      !Split ? R::set(0)
+             : R::fma(x, R::set(across.rest), R::fma(y, R::set(up.rest), R::set(rest))) };
+  }
+
+  /// The part of rays within cells along one axis.
+  SPLATTING_INLINE void clip(
+    int a, const Sum& start, const Sum& direction, V low, V high, V& enter, V& leave, M& on) const
+  {
+    const V o = start.whole(), d = direction.whole();
     if (!Perspective && this->Block.flat[a])
     {
       const V beside = R::set(BesideFace<A>);
@@ -449,8 +493,19 @@ private:
         on & R::atLeast(R::add(o, beside), low) & R::atLeast(R::add(high, beside), o));
       return;
     }
-    const V inverse = Perspective ? R::div(R::set(1), d) : R::set(this->Block.inverse[a]);
-    const V p = R::mul(R::sub(low, o), inverse), q = R::mul(R::sub(high, o), inverse);
+    V inverse = R::set(this->Block.inverse[a]);
+    if (Perspective)
+    {
+      inverse = R::smaller(R::div(R::set(1), d), R::set(Steepest<A>));
+      inverse = R::larger(inverse, R::set(-Steepest<A>));
+    }
+    V p = R::mul(R::sub(low, o), inverse), q = R::mul(R::sub(high, o), inverse);
+    if (Cut && this->Block.crops)
+    {
+      // What is left by rounding: the value where a ray ends may be its largest one.
+      p = R::fma(R::sub(low, Sum::at(start, direction, p)), inverse, p);
+      q = R::fma(R::sub(high, Sum::at(start, direction, q)), inverse, q);
+    }
     enter = R::larger(enter, R::smaller(p, q));
     leave = R::smaller(leave, R::larger(p, q));
   }
@@ -464,15 +519,16 @@ private:
     const V at = R::fma(pixelY, R::set(A(this->Tile.Stride)), pixelX);
     const V now = R::gather(this->Tile.values, at, on, R::set(CellValue<A>::Outside));
     const V px = R::sub(pixelX, R::set(A(b.x))), py = R::sub(pixelY, R::set(A(b.y)));
-    V o[3], d[3];
+    Sum o[3], d[3];
     for (int a = 0; a < 3; ++a)
     {
-      const V place = a == 2 ? R::set(this->PlaceZ) : R::pick(this->Place[a], id);
-      o[a] = R::fma(px, R::set(b.startAcross[a]), R::fma(py, R::set(b.startUp[a]), place));
-      d[a] = R::set(b.forward[a]);
+      o[a] = this->along(px, py, b.startAcross[a], b.startUp[a],
+        a == 2 ? R::set(this->PlaceZ) : R::pick(this->Place[a], id), b.start[a].rest);
+      d[a] = { R::set(b.forward[a].most), R::set(b.forward[a].rest) };
       if (Perspective)
       {
-        d[a] = R::fma(px, R::set(b.forwardAcross[a]), R::fma(py, R::set(b.forwardUp[a]), d[a]));
+        d[a] =
+          this->along(px, py, b.forwardAcross[a], b.forwardUp[a], d[a].most, b.forward[a].rest);
       }
     }
     V enter = R::set(-std::numeric_limits<A>::max()), leave = R::set(std::numeric_limits<A>::max());
@@ -487,8 +543,9 @@ private:
     }
     for (int a = 0; a < 3; ++a)
     {
-      const V low = !Cut ? R::set(0) : a == 2 ? R::set(this->LowZ) : R::pick(this->Low[a], id);
-      const V high = !Cut ? R::set(1) : a == 2 ? R::set(this->HighZ) : R::pick(this->High[a], id);
+      const bool isConstant = !Cut || a == 2;
+      const V low = isConstant ? R::set(this->LowZ) : R::pick(this->Low[a], id);
+      const V high = isConstant ? R::set(this->HighZ) : R::pick(this->High[a], id);
       this->clip(a, o[a], d[a], low, high, enter, leave, on);
     }
     if (Cut)
@@ -519,7 +576,7 @@ private:
 
   /// The largest value on the parts of rays between enter and leave, and where it is.
   SPLATTING_INLINE V largestOnRay(
-    I id, const V o[3], const V d[3], V enter, V leave, V now, M on, V& depth) const
+    I id, const Sum o[3], const Sum d[3], V enter, V leave, V now, M on, V& depth) const
   {
     const V k0 = R::pick(this->K[0], id), kx = R::pick(this->K[1], id);
     const V ky = R::pick(this->K[2], id), kz = R::pick(this->K[3], id);
@@ -527,9 +584,10 @@ private:
     const V kyz = R::pick(this->K[6], id), kxyz = R::pick(this->K[7], id);
     const V top = R::pick(this->Top, id);
     const V length = R::sub(leave, enter);
-    const V x = R::fma(d[0], enter, o[0]), y = R::fma(d[1], enter, o[1]);
-    const V z = R::fma(d[2], enter, o[2]);
-    const V ex = R::mul(d[0], length), ey = R::mul(d[1], length), ez = R::mul(d[2], length);
+    const V x = Sum::at(o[0], d[0], enter), y = Sum::at(o[1], d[1], enter);
+    const V z = Sum::at(o[2], d[2], enter);
+    const V ex = R::mul(d[0].whole(), length), ey = R::mul(d[1].whole(), length);
+    const V ez = R::mul(d[2].whole(), length);
     // Slopes of the field where the ray enters, and the cubic c0 + c1 s + c2 s^2 + c3 s^3.
     const V gyz = R::fma(kxyz, x, kyz), gxz = R::fma(kxyz, y, kxz), gxy = R::fma(kxyz, z, kxy);
     const V hy = R::fma(kxy, x, ky), hz = R::fma(kxz, x, kz);
@@ -667,10 +725,14 @@ private:
     for (int a = 0; a < 3; ++a)
     {
       const A place = a == 2 ? this->PlaceZ : this->Place[a][n];
-      o[a] = fused(x, b.startAcross[a], fused(y, b.startUp[a], place));
-      d[a] = Perspective ? fused(x, b.forwardAcross[a], fused(y, b.forwardUp[a], b.forward[a]))
-        : b.flat[a]      ? A(0)
-                         : b.forward[a];
+      o[a] = fused(x, b.startAcross[a].most, fused(y, b.startUp[a].most, place)) +
+        fused(x, b.startAcross[a].rest, fused(y, b.startUp[a].rest, b.start[a].rest));
+      d[a] = b.flat[a] ? A(0) : b.forward[a].most + b.forward[a].rest;
+      if (Perspective)
+      {
+        d[a] = fused(x, b.forwardAcross[a].most, fused(y, b.forwardUp[a].most, b.forward[a].most)) +
+          fused(x, b.forwardAcross[a].rest, fused(y, b.forwardUp[a].rest, b.forward[a].rest));
+      }
     }
     Segment ray{ -std::numeric_limits<A>::max(), std::numeric_limits<A>::max() };
     A near = 0, far = 0;
@@ -694,7 +756,8 @@ private:
       for (int a = 0; a < 3; ++a)
       {
         const bool upper = c >> a & 1;
-        part.clip(o[a], d[a], upper ? A(0.5) : A(0), upper ? A(1) : A(0.5));
+        part.clip(
+          o[a], d[a], upper ? A(0.5) : -BesideFace<A>, upper ? A(1) + BesideFace<A> : A(0.5));
       }
       if (!(part.enter < part.leave) || corners[c] == CellValue<A>::None)
       {
@@ -719,7 +782,7 @@ private:
   alignas(64) A Low[2][Cells], High[2][Cells];
   alignas(64) A Top[Cells], Bound[Cells], X0[Cells], X1[Cells], Y0[Cells], Y1[Cells];
   alignas(64) A K[8][Cells];
-  A PlaceZ = 0, LowZ = 0, HighZ = 1;
+  A PlaceZ = 0, LowZ = -BesideFace<A>, HighZ = 1 + BesideFace<A>;
   alignas(64) std::int32_t Pairs[64] = {};
   int Pending = 0;
 };
