@@ -181,19 +181,15 @@ public:
       this->Corner[1][n] = A(y - 2);
       this->Place[0][n] = block.start[0].most - this->Corner[0][n];
       this->Place[1][n] = block.start[1].most - this->Corner[1][n];
-      const bool valid =
+      bool valid =
         x >= block.begin[0] && x < block.end[0] && y >= block.begin[1] && y < block.end[1];
-      this->Valid[n] = valid ? CellValue<A>::Outside : CellValue<A>::None;
-      if (Cut)
+      for (int a = 0; a < 2 && Cut; ++a)
       {
-        for (int a = 0; a < 2; ++a)
-        {
-          const A low = block.low[a] - this->Corner[a][n],
-                  high = block.high[a] - this->Corner[a][n];
-          this->Low[a][n] = lowEnd(low);
-          this->High[a][n] = highEnd(high);
-        }
+        this->Low[a][n] = lowEnd(block.low[a] - this->Corner[a][n]);
+        this->High[a][n] = highEnd(block.high[a] - this->Corner[a][n]);
+        valid = valid && this->Low[a][n] < this->High[a][n];
       }
+      this->Valid[n] = valid ? CellValue<A>::Outside : CellValue<A>::None;
     }
   }
 
@@ -248,6 +244,15 @@ private:
 
   void splatSlice(int z, M alive[])
   {
+    if (Cut)
+    {
+      this->LowZ = lowEnd(this->Block.low[2] - A(z - 2));
+      this->HighZ = highEnd(this->Block.high[2] - A(z - 2));
+      if (!(this->LowZ < this->HighZ))
+      {
+        return;
+      }
+    }
     if (this->Block.seen)
     {
       this->takeSeen(z, alive);
@@ -384,12 +389,6 @@ private:
   {
     const A corner = A(z - 2);
     this->PlaceZ = this->Block.start[2].most - corner;
-    if (Cut)
-    {
-      const A low = this->Block.low[2] - corner, high = this->Block.high[2] - corner;
-      this->LowZ = lowEnd(low);
-      this->HighZ = highEnd(high);
-    }
     for (int n = 0; n < Cells; ++n)
     {
       A bound = Shaded ? this->Top[n] * this->Block.mostFactor : this->Top[n];
