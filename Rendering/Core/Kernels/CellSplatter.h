@@ -501,9 +501,13 @@ private:
     V p = R::mul(R::sub(low, o), inverse), q = R::mul(R::sub(high, o), inverse);
     if (Cut && this->Block.crops)
     {
-      // What is left by rounding: the value where a ray ends may be its largest one.
-      p = R::fma(R::sub(low, Sum::at(start, direction, p)), inverse, p);
-      q = R::fma(R::sub(high, Sum::at(start, direction, q)), inverse, q);
+      // What is left by rounding: the value where a ray ends may be its largest one. Along a plane
+      // the places of rays are not precise enough.
+      const V zero = R::set(0), steep = R::set(1024);
+      const M crosses = R::above(steep, R::larger(inverse, R::sub(zero, inverse)));
+      const V step = R::choose(crosses, inverse, zero);
+      p = R::fma(R::sub(low, Sum::at(start, direction, p)), step, p);
+      q = R::fma(R::sub(high, Sum::at(start, direction, q)), step, q);
     }
     enter = R::larger(enter, R::smaller(p, q));
     leave = R::smaller(leave, R::larger(p, q));
