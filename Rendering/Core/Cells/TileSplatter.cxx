@@ -437,9 +437,11 @@ void TileSplatter<T>::placeRays(const SeenBox& seen, const glm::dvec3& middle)
   const glm::dvec3 forward = rays.direction(pixel.x, pixel.y);
   b.x = pixel.x - this->Pixels.low.x;
   b.y = pixel.y - this->Pixels.low.y;
+  b.middleT = static_cast<A>(whole.t() - t);
   const double scale = perspective ? t : 1.0;
   for (int a = 0; a < 3; ++a)
   {
+    b.alongT[a] = static_cast<A>(rays.toPixel()[a][2]);
     b.start[a] = CellSum<A>(start[a]);
     b.startAcross[a] = CellSum<A>(scale * rays.across()[a]);
     b.startUp[a] = CellSum<A>(scale * rays.up()[a]);

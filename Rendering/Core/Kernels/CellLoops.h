@@ -97,6 +97,7 @@ struct CellBlock
   int x, y;                        ///< a pixel, whose ray is
   CellSum<A> start[3], forward[3]; ///< start + (t - reference) forward
   A reference;
+  A alongT[3], middleT; ///< t - reference of a point p, about: alongT . p + middleT
   CellSum<A> startAcross[3], startUp[3];     ///< from pixel to pixel
   CellSum<A> forwardAcross[3], forwardUp[3]; ///< of perspective views
   A inverse[3];                              ///< 1 / forward of parallel views

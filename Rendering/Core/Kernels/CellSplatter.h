@@ -388,9 +388,12 @@ private:
   void prepareSlice(int z)
   {
     const A corner = A(z - 2);
+    const A middle = fused(this->Block.alongT[2], corner + A(0.5), this->Block.middleT);
     this->PlaceZ = this->Block.start[2].most - corner;
     for (int n = 0; n < Cells; ++n)
     {
+      this->MiddleT[n] = fused(this->Block.alongT[0], this->Corner[0][n] + A(0.5),
+        fused(this->Block.alongT[1], this->Corner[1][n] + A(0.5), middle));
       A bound = Shaded ? this->Top[n] * this->Block.mostFactor : this->Top[n];
       if (Located && bound >= this->Block.tiesFrom)
       {
@@ -481,10 +484,8 @@ private:
   }
 
   /// The part of rays within cells along one axis.
-  SPLATTING_INLINE void clip(
-    int a, const Sum& start, const Sum& direction, V low, V high, V& enter, V& leave, M& on) const
+  SPLATTING_INLINE void clip(int a, V o, V d, V low, V high, V& enter, V& leave, M& on) const
   {
-    const V o = start.whole(), d = direction.whole();
     if (!Perspective && this->Block.flat[a])
     {
       const V beside = R::set(BesideFace<A>);
@@ -506,8 +507,8 @@ private:
       const V zero = R::set(0), steep = R::set(1024);
       const M crosses = R::above(steep, R::larger(inverse, R::sub(zero, inverse)));
       const V step = R::choose(crosses, inverse, zero);
-      p = R::fma(R::sub(low, Sum::at(start, direction, p)), step, p);
-      q = R::fma(R::sub(high, Sum::at(start, direction, q)), step, q);
+      p = R::fma(R::sub(low, R::fma(d, p, o)), step, p);
+      q = R::fma(R::sub(high, R::fma(d, q, o)), step, q);
     }
     enter = R::larger(enter, R::smaller(p, q));
     leave = R::smaller(leave, R::larger(p, q));
@@ -522,27 +523,31 @@ private:
     const V at = R::fma(pixelY, R::set(A(this->Tile.Stride)), pixelX);
     const V now = R::gather(this->Tile.values, at, on, R::set(CellValue<A>::Outside));
     const V px = R::sub(pixelX, R::set(A(b.x))), py = R::sub(pixelY, R::set(A(b.y)));
-    Sum o[3], d[3];
+    // From the cell's middle on parameters are small, and precise.
+    const V middle = R::pick(this->MiddleT, id);
+    V o[3], d[3];
     for (int a = 0; a < 3; ++a)
     {
-      o[a] = this->along(px, py, b.startAcross[a], b.startUp[a],
+      const Sum start = this->along(px, py, b.startAcross[a], b.startUp[a],
         a == 2 ? R::set(this->PlaceZ) : R::pick(this->Place[a], id), b.start[a].rest);
-      d[a] = { R::set(b.forward[a].most), R::set(b.forward[a].rest) };
+      Sum direction{ R::set(b.forward[a].most), R::set(b.forward[a].rest) };
       if (Perspective)
       {
-        d[a] =
-          this->along(px, py, b.forwardAcross[a], b.forwardUp[a], d[a].most, b.forward[a].rest);
+        direction = this->along(
+          px, py, b.forwardAcross[a], b.forwardUp[a], direction.most, b.forward[a].rest);
       }
+      o[a] = Sum::at(start, direction, middle);
+      d[a] = direction.whole();
     }
     V enter = R::set(-std::numeric_limits<A>::max()), leave = R::set(std::numeric_limits<A>::max());
     V near = enter, far = leave;
     if (Cut || Shaded)
     {
       const V zero = R::set(0), reference = R::set(b.reference);
-      near = R::add(R::sub(R::gather(this->Tile.nears, at, on, zero), reference),
-        R::gather(this->Tile.nearRests, at, on, zero));
-      far = R::add(R::sub(R::gather(this->Tile.fars, at, on, zero), reference),
-        R::gather(this->Tile.farRests, at, on, zero));
+      near = R::sub(R::sub(R::gather(this->Tile.nears, at, on, zero), reference), middle);
+      near = R::add(near, R::gather(this->Tile.nearRests, at, on, zero));
+      far = R::sub(R::sub(R::gather(this->Tile.fars, at, on, zero), reference), middle);
+      far = R::add(far, R::gather(this->Tile.farRests, at, on, zero));
     }
     for (int a = 0; a < 3; ++a)
     {
@@ -563,6 +568,7 @@ private:
     }
     V depth;
     V value = this->largestOnRay(id, o, d, enter, leave, now, on, depth);
+    depth = Located ? R::add(R::add(depth, middle), R::set(b.reference)) : depth;
     if (Shaded)
     {
       const V middle = R::fma(R::set(A(0.5)), R::sub(leave, enter), enter);
@@ -579,7 +585,7 @@ private:
 
   /// The largest value on the parts of rays between enter and leave, and where it is.
   SPLATTING_INLINE V largestOnRay(
-    I id, const Sum o[3], const Sum d[3], V enter, V leave, V now, M on, V& depth) const
+    I id, const V o[3], const V d[3], V enter, V leave, V now, M on, V& depth) const
   {
     const V k0 = R::pick(this->K[0], id), kx = R::pick(this->K[1], id);
     const V ky = R::pick(this->K[2], id), kz = R::pick(this->K[3], id);
@@ -587,10 +593,9 @@ private:
     const V kyz = R::pick(this->K[6], id), kxyz = R::pick(this->K[7], id);
     const V top = R::pick(this->Top, id);
     const V length = R::sub(leave, enter);
-    const V x = Sum::at(o[0], d[0], enter), y = Sum::at(o[1], d[1], enter);
-    const V z = Sum::at(o[2], d[2], enter);
-    const V ex = R::mul(d[0].whole(), length), ey = R::mul(d[1].whole(), length);
-    const V ez = R::mul(d[2].whole(), length);
+    const V x = R::fma(d[0], enter, o[0]), y = R::fma(d[1], enter, o[1]);
+    const V z = R::fma(d[2], enter, o[2]);
+    const V ex = R::mul(d[0], length), ey = R::mul(d[1], length), ez = R::mul(d[2], length);
     // Slopes of the field where the ray enters, and the cubic c0 + c1 s + c2 s^2 + c3 s^3.
     const V gyz = R::fma(kxyz, x, kyz), gxz = R::fma(kxyz, y, kxz), gxy = R::fma(kxyz, z, kxy);
     const V hy = R::fma(kxy, x, ky), hz = R::fma(kxz, x, kz);
@@ -635,7 +640,7 @@ private:
     {
       const M last = R::above(end, value);
       where = R::choose(last, R::set(1), where);
-      depth = R::add(R::fma(where, length, enter), R::set(this->Block.reference));
+      depth = R::fma(where, length, enter);
     }
     else
     {
@@ -723,26 +728,29 @@ private:
     {
       return;
     }
-    const A x = A(px - b.x), y = A(py - b.y);
+    const A x = A(px - b.x), y = A(py - b.y), middle = this->MiddleT[n];
     A o[3], d[3];
     for (int a = 0; a < 3; ++a)
     {
       const A place = a == 2 ? this->PlaceZ : this->Place[a][n];
-      o[a] = fused(x, b.startAcross[a].most, fused(y, b.startUp[a].most, place)) +
+      const A start = fused(x, b.startAcross[a].most, fused(y, b.startUp[a].most, place));
+      const A startRest =
         fused(x, b.startAcross[a].rest, fused(y, b.startUp[a].rest, b.start[a].rest));
-      d[a] = b.flat[a] ? A(0) : b.forward[a].most + b.forward[a].rest;
+      A most = b.forward[a].most, rest = b.forward[a].rest;
       if (Perspective)
       {
-        d[a] = fused(x, b.forwardAcross[a].most, fused(y, b.forwardUp[a].most, b.forward[a].most)) +
-          fused(x, b.forwardAcross[a].rest, fused(y, b.forwardUp[a].rest, b.forward[a].rest));
+        most = fused(x, b.forwardAcross[a].most, fused(y, b.forwardUp[a].most, most));
+        rest = fused(x, b.forwardAcross[a].rest, fused(y, b.forwardUp[a].rest, rest));
       }
+      o[a] = fused(most, middle, start) + fused(rest, middle, startRest);
+      d[a] = !Perspective && b.flat[a] ? A(0) : most + rest;
     }
     Segment ray{ -std::numeric_limits<A>::max(), std::numeric_limits<A>::max() };
     A near = 0, far = 0;
     if (Cut || Shaded)
     {
-      near = (this->Tile.nears[at] - b.reference) + this->Tile.nearRests[at];
-      far = (this->Tile.fars[at] - b.reference) + this->Tile.farRests[at];
+      near = this->Tile.nears[at] - b.reference - middle + this->Tile.nearRests[at];
+      far = this->Tile.fars[at] - b.reference - middle + this->Tile.farRests[at];
     }
     if (Cut)
     {
@@ -775,14 +783,14 @@ private:
         const bool finite = value < CellValue<A>::Highest && value > CellValue<A>::Lowest;
         value = finite ? value * fused(A(1) - share, b.rate, b.ambient) : value;
       }
-      raise<A, Located>(this->Tile, px, py, value, part.enter + b.reference);
+      raise<A, Located>(this->Tile, px, py, value, part.enter + middle + b.reference);
     }
   }
 
   ScreenTile<A>& Tile;
   const CellBlock<A>& Block;
   alignas(64) A Corner[2][Cells], Place[2][Cells], Valid[Cells];
-  alignas(64) A Low[2][Cells], High[2][Cells];
+  alignas(64) A Low[2][Cells], High[2][Cells], MiddleT[Cells];
   alignas(64) A Top[Cells], Bound[Cells], X0[Cells], X1[Cells], Y0[Cells], Y1[Cells];
   alignas(64) A K[8][Cells];
   A PlaceZ = 0, LowZ = -BesideFace<A>, HighZ = 1 + BesideFace<A>;
