@@ -160,10 +160,12 @@ CellRay<R> CellOracle<R>::ray(double x, double y, const glm::dvec3& shift) const
     const R depth = this->Scene.depths[pixel];
     if (depth < 1)
     {
-      // Shown is what is nearer: z <= (2 depth - 1) w.
-      const R limit = 2 * depth - 1;
-      cut(ray, limit * (dot(rows[3], ray.start) + rests[3]) - dot(rows[2], ray.start) - rests[2],
-        limit * dot(rows[3], ray.direction) - dot(rows[2], ray.direction));
+      // Shown is what is nearer: z <= (2 depth - 1) w where w is positive.
+      const R limit = 2 * depth - 1, sense = parallel && middle < 0 ? -1 : 1;
+      cut(ray,
+        sense *
+          (limit * (dot(rows[3], ray.start) + rests[3]) - dot(rows[2], ray.start) - rests[2]),
+        sense * (limit * dot(rows[3], ray.direction) - dot(rows[2], ray.direction)));
     }
   }
   if (!this->Scene.triangles.empty())

@@ -294,7 +294,7 @@ private:
       counts.worst = std::max(counts.worst, static_cast<double>(error / this->Tolerance));
       this->Check(false, "pixel ", x, ", ", y, ": ", value, ", not ", sample.value,
         sample.exists ? "" : " (none)", ", error ", error / this->Tolerance,
-        " of the bound, ray of length ", ray.far - ray.near, ", direction ", ray.direction[0], " ",
+        " of the bound at ", sample.t, " of ", ray.near, " to ", ray.far, ", ray of length ", ray.far - ray.near, ", direction ", ray.direction[0], " ",
         ray.direction[1], " ", ray.direction[2]);
     }
   }

@@ -21,13 +21,6 @@ void testNoise(Counts& counts, Checks& check)
       scene.volume = coretesting::wholeRangeNoise<T>(size, random);
       scene.view = randomCellView(size, 150, random);
       scene.view.showsBoxes = random.uniform(0, 2) == 0;
-      if (getenv("DBG"))
-      {
-        std::cerr << size[0] << " " << size[1] << " " << size[2] << " boxes "
-                  << scene.view.showsBoxes << " viewport " << scene.view.viewport.x << " "
-                  << scene.view.viewport.y << " par " << splatting::isParallel(scene.view) << " "
-                  << glm::to_string(scene.view.indexToClip) << std::endl;
-      }
       counts.add(compareScene(scene, check));
     });
 }
