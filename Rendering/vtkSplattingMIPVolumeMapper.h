@@ -293,10 +293,11 @@ public:
    * controller, and each rank colours and shows the result: the picture has the same bits as one
    * rank's, for any pieces.
    *
-   * Render() is collective then: all ranks must render as often, or wait for each other for ever.
-   * GetBounds() are those of the whole, so that a frustum culls on all ranks or on none. What is
-   * wrong on one rank is told by all, and all skip the frame, as they do where ranks differ in a
-   * setting that changes the picture.
+   * Rendering is collective then: all ranks must render as often, also while the volume is
+   * invisible, or wait for each other for ever. Set nullptr to end that. GetBounds() are those of
+   * the whole, so that a frustum culls on all ranks or on none. What is wrong on one rank is told
+   * by all, and all skip the frame. So they do where ranks differ in a setting that changes the
+   * picture, or, from the second frame on, in whether they render the volume.
    *
    * Projected are global and depth-shaded maxima and minima of independent components; anything
    * else is refused with a sentence, as are rectilinear grids. Chains are walked as bricks, without
