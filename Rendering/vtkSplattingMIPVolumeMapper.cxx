@@ -331,6 +331,11 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   }
   in.WarnOfSurface(this);
   data.Prepare(properties, view, vol, finalColor);
+  if (const char* const fault =
+        data.Components.FaultOfVoxels(static_cast<Quality>(properties.QualityMode)))
+  {
+    return fault;
+  }
   const auto readDepth = [this, ren](const int origin[2], const int size[2], float* depths)
   { return this->ReadDepth(ren, origin, size, depths); };
   if (!data.Project(properties, view, ren, vol, readDepth))

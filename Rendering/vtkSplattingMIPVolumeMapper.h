@@ -102,7 +102,9 @@
  * on the number of threads or on the instruction set: the same input gives the same bits.
  *
  * NaN voxels are no samples: they never win and, in a worksheet, the average is taken over the
- * other voxels. Infinities are ordinary values. A ray without a sample is transparent.
+ * other voxels. Infinities are ordinary values. Finite magnitudes must be at most 1e37 (of double
+ * 1e303), in exact mode 1e18 (1e150), so that nothing overflows. A ray without a sample is
+ * transparent.
  *
  * For integers of up to 32 bits the lowest voxel is subtracted before voxels are
  * weighed and added again in the end: a flat background of that value is exact.
