@@ -105,7 +105,9 @@
  * NaN voxels are no samples: they never win and, in a worksheet, the average is taken over the
  * other voxels. Infinities are ordinary values. In EXACT a cell with a corner that is NaN, hidden or
  * infinite is not interpolated: each of its eight octants has the value of its nearest voxel, or
- * none if that voxel is hidden or NaN. A ray without a sample is transparent.
+ * none if that voxel is hidden or NaN. Finite magnitudes must be at most 1e37 (of double 1e303), in
+ * EXACT beside infinities 1e18 (1e150), so that nothing overflows. A ray without a sample is
+ * transparent.
  *
  * For integers of up to 32 bits the lowest voxel is subtracted before voxels are
  * weighed and added again in the end: a flat background of that value is exact.
@@ -299,10 +301,11 @@ public:
    * controller, and each rank colours and shows the result: the picture has the same bits as one
    * rank's, for any pieces.
    *
-   * Render() is collective then: all ranks must render as often, or wait for each other for ever.
-   * GetBounds() are those of the whole, so that a frustum culls on all ranks or on none. What is
-   * wrong on one rank is told by all, and all skip the frame, as they do where ranks differ in a
-   * setting that changes the picture.
+   * Rendering is collective then: all ranks must render as often, also while the volume is
+   * invisible, or wait for each other for ever. Set nullptr to end that. GetBounds() are those of
+   * the whole, so that a frustum culls on all ranks or on none. What is wrong on one rank is told
+   * by all, and all skip the frame. So they do where ranks differ in a setting that changes the
+   * picture, or, from the second frame on, in whether they render the volume.
    *
    * Projected are global and depth-shaded maxima and minima of independent components; anything
    * else is refused with a sentence, as are rectilinear grids. Chains are walked as bricks, without
