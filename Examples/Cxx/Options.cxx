@@ -383,6 +383,10 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
 
   options.Modes = ChooseModes(words.Mode);
   TranslateWords(words, options);
+  if (words.Output.empty())
+  {
+    throw CLI::ValidationError("--output", "the name of a file is missing");
+  }
   options.Output = std::filesystem::absolute(words.Output).string();
   options.HasWindow = app.count("--window") > 0;
   options.HasLevel = app.count("--level") > 0;

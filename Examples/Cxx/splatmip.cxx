@@ -14,6 +14,7 @@
 #include "Writing/DepthCoding.h"
 #include "Writing/Picture.h"
 #include "Writing/PictureSeries.h"
+#include "Writing/SafeFiles.h"
 #include "Writing/ValueFile.h"
 
 #include "vtkImageAppend.h"
@@ -21,10 +22,10 @@
 
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -116,7 +117,9 @@ void WriteStill(const Volume& volume, const LookSettings& look, const Options& o
     row->AddInputData(Paint(views, palette, 0));
   }
   row->Update();
-  WritePNG(row->GetOutput(), options.Output);
+  WriteSafely({ options.Output },
+    [&](const std::vector<std::string>& names)
+    { return WritePNG(row->GetOutput(), names.front()); });
   std::printf("\npicture: %s\n", options.Output.c_str());
 }
 
@@ -134,6 +137,12 @@ void WriteTurn(const Volume& volume, const LookSettings& look, const Options& op
   std::printf("\nturn: %s\n", options.Output.c_str());
 }
 
+std::vector<std::string> GetOutputFiles(const Options& options)
+{
+  return options.Rotate > 0 ? GetSeriesFiles(options.Output, options.Rotate)
+                            : std::vector<std::string>{ options.Output };
+}
+
 /**
  * What would be in vain is told before the volume is read.
  */
@@ -145,8 +154,9 @@ void CheckBeforehand(const Options& options)
   }
   if (!options.Interactive)
   {
-    const bool isPNG = std::filesystem::path(options.Output).extension() == ".png";
-    CheckWritable(options.Output, options.Rotate > 0 && isPNG);
+    const auto outputs = GetOutputFiles(options);
+    CheckNotInput(outputs, { options.Input, options.Mask.Path });
+    CheckWritable(outputs);
   }
 }
 
@@ -158,6 +168,10 @@ void Run(const Options& options)
   if (!options.Mask.Path.empty())
   {
     ApplyMask(options.Mask, volume);
+  }
+  if (!options.Interactive)
+  {
+    CheckNotInput(GetOutputFiles(options), volume.Files);
   }
   const LookSettings look = CompleteLook(options, volume);
   PrintVolume(volume, look);

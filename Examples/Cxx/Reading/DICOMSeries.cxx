@@ -113,8 +113,8 @@ bool IsDICOMFile(const std::string& path)
   return vtkDICOMUtilities::IsDICOMFile(path.c_str());
 }
 
-std::vector<std::string> ChooseSeries(
-  const std::string& path, int number, const QuietReading& quiet, std::vector<std::string>& notes)
+std::vector<std::string> ChooseSeries(const std::string& path, int number,
+  const QuietReading& quiet, std::vector<std::string>& notes, std::vector<std::string>& files)
 {
   const bool isFolder = std::filesystem::is_directory(path);
   const std::string parent = std::filesystem::path(path).parent_path().string();
@@ -138,6 +138,10 @@ std::vector<std::string> ChooseSeries(
   if (all.size() > 1)
   {
     notes.push_back("there are " + std::to_string(all.size()) + " series (--series chooses):");
+  }
+  for (const Series& series : all)
+  {
+    files.insert(files.end(), series.Files.begin(), series.Files.end());
   }
   for (std::size_t i = 0; i < all.size() && all.size() > 1; ++i)
   {

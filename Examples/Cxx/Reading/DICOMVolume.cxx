@@ -148,7 +148,7 @@ void PlaceVolume(Volume& volume, const SlicePlane& plane, const SliceGrid& grid,
 Volume ReadDICOM(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
   Volume volume;
-  const auto names = ChooseSeries(path, settings.Series, quiet, volume.Notes);
+  const auto names = ChooseSeries(path, settings.Series, quiet, volume.Notes, volume.Files);
   const auto files = OpenFiles(names, quiet, volume.Notes);
   const std::vector<DICOMFrame> frames = FindFrames(files);
   std::vector<SlicePlane> planes;

@@ -134,6 +134,7 @@ vtkUnsignedCharArray* GetHiding(vtkImageData* image)
 void ApplyMask(const MaskSettings& settings, Volume& volume)
 {
   const Volume mask = ReadVolume(settings.Path, {});
+  volume.Files.insert(volume.Files.end(), mask.Files.begin(), mask.Files.end());
   std::array<std::array<int, 4>, 3> map;
   if (!FindVoxelMap(volume, mask, map))
   {

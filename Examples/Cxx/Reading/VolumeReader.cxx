@@ -24,6 +24,8 @@
 #include "vtkTIFFReader.h"
 #include "vtkXMLImageDataReader.h"
 
+#include <vtksys/SystemTools.hxx>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -347,6 +349,34 @@ Volume ReadAny(const std::string& path, const ReadSettings& settings, const Quie
 }
 
 /**
+ * Add the existing files that the lines of a header without data name.
+ */
+void AddCompanions(const std::string& path, std::vector<std::string>& files)
+{
+  const std::filesystem::path header(path);
+  const std::string ending = vtksys::SystemTools::LowerCase(header.extension().string());
+  if (ending != ".mhd" && ending != ".nhdr")
+  {
+    return;
+  }
+  std::ifstream file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line);)
+  {
+    const std::size_t end = line.find_last_not_of(" \t\r") + 1;
+    for (std::size_t begin = 0; begin < end; begin = line.find_first_of(" \t:=", begin))
+    {
+      begin = line.find_first_not_of(" \t:=", begin);
+      const std::filesystem::path name(line.substr(begin, end - begin));
+      std::error_code error;
+      if (std::filesystem::is_regular_file(header.parent_path() / name, error))
+      {
+        files.push_back((header.parent_path() / name).string());
+      }
+    }
+  }
+}
+
+/**
  * Refuse what no reader needs to be asked about.
  */
 void CheckFile(const std::string& path)
@@ -389,6 +419,8 @@ Volume ReadVolume(const std::string& path, const ReadSettings& settings)
     QuietReading quiet;
     Volume volume = ReadAny(path, settings, quiet);
     volume.Name = std::filesystem::path(path).filename().string();
+    volume.Files.push_back(path);
+    AddCompanions(path, volume.Files);
     return volume;
   }
   catch (const std::bad_alloc&)

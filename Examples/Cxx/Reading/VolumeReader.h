@@ -49,6 +49,11 @@ struct Volume
   std::vector<std::string> Notes;
 
   /**
+   * The files that were read, and others of the same DICOM folder, which no output may replace.
+   */
+  std::vector<std::string> Files;
+
+  /**
    * Whether the file says how the patient lies, and how large voxels are.
    */
   bool IsOriented = false;
