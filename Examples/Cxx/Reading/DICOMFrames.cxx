@@ -363,7 +363,7 @@ std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
 {
   CheckCounts(frames, places);
   const std::size_t count = places[0].size();
-  CheckFrame(frames[0].File->Path, number, static_cast<int>(count));
+  CheckChoice(frames[0].File->Path, "volume", number, static_cast<int>(count));
   std::vector<std::size_t> order;
   const std::size_t chosen = number > 0 ? static_cast<std::size_t>(number) - 1 : 0;
   for (const auto& [tag, name] : TimeTags)
@@ -378,8 +378,8 @@ std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
     }
     if (!order.empty())
     {
-      notes.push_back("volume " + std::to_string(chosen + 1) + " of " + std::to_string(count) +
-        " (--frame chooses), " + name + " " + keys[chosen]);
+      notes.push_back(DescribeChoice("volume", number, static_cast<int>(count)) + ", " + name +
+        " " + keys[chosen]);
       return order;
     }
   }

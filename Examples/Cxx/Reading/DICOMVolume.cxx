@@ -5,6 +5,7 @@
 #include "ProgressLine.h"
 #include "Reading/DICOMFrames.h"
 #include "Reading/DICOMSeries.h"
+#include "Reading/Placement.h"
 #include "Reading/Reading.h"
 #include "Reading/SliceStack.h"
 
@@ -38,30 +39,22 @@ int FindScalarType(const std::vector<DICOMFrame>& frames, const std::vector<std:
 }
 
 /**
- * A component, from 0 on, of a frame of a file's image as a slice of a volume.
+ * A frame of a file's image as a slice of a volume.
  */
-void CopySlice(vtkImageData* from, int frame, int component, vtkImageData* to, int slice)
+void CopySlice(vtkImageData* from, int frame, vtkImageData* to, int slice)
 {
   const int* const size = to->GetDimensions();
   const vtkIdType count = vtkIdType(size[0]) * size[1];
   vtkDataArray* const source = from->GetPointData()->GetScalars();
   vtkDataArray* const target = to->GetPointData()->GetScalars();
-  if (source->GetDataType() == target->GetDataType() && source->GetNumberOfComponents() == 1)
-  {
-    target->InsertTuples(slice * count, count, frame * count, source);
-    return;
-  }
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    target->SetComponent(slice * count + i, 0, source->GetComponent(frame * count + i, component));
-  }
+  target->InsertTuples(slice * count, count, frame * count, source); // converts the type, too
 }
 
 /**
  * The frames in their order, each file read once.
  */
 vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
-  const std::vector<std::size_t>& order, int component, const QuietReading& quiet)
+  const std::vector<std::size_t>& order, const QuietReading& quiet)
 {
   const SlicePlane& plane = frames[order[0]].Plane;
   const double voxels = double(plane.Size[0]) * plane.Size[1] * order.size();
@@ -69,7 +62,7 @@ vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetDimensions(static_cast<int>(plane.Size[0]), static_cast<int>(plane.Size[1]),
     static_cast<int>(order.size()));
-  image->AllocateScalars(FindScalarType(frames, order), 1);
+  image->AllocateScalars(FindScalarType(frames, order), frames[order[0]].File->Components);
   std::map<DICOMFile*, std::vector<std::size_t>> slicesOf;
   for (std::size_t slice = 0; slice < order.size(); ++slice)
   {
@@ -83,7 +76,7 @@ vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
     vtkImageData* const found = ReadPixels(*file, quiet);
     for (const std::size_t slice : slices)
     {
-      CopySlice(found, frames[order[slice]].Number, component, image, static_cast<int>(slice));
+      CopySlice(found, frames[order[slice]].Number, image, static_cast<int>(slice));
     }
     file->Reader->GetOutput()->ReleaseData();
     done += slices.size();
@@ -101,7 +94,8 @@ vtkSmartPointer<vtkImageData> Blend(
   CheckMemory(double(size[0]) * size[1] * slices.size(), "the volume");
   auto even = vtkSmartPointer<vtkImageData>::New();
   even->SetDimensions(size[0], size[1], static_cast<int>(slices.size()));
-  even->AllocateScalars(image->GetScalarType(), 1);
+  const int components = image->GetNumberOfScalarComponents();
+  even->AllocateScalars(image->GetScalarType(), components);
   vtkDataArray* const from = image->GetPointData()->GetScalars();
   vtkDataArray* const to = even->GetPointData()->GetScalars();
   const bool isWhole = image->GetScalarType() != VTK_FLOAT && image->GetScalarType() != VTK_DOUBLE;
@@ -118,30 +112,30 @@ vtkSmartPointer<vtkImageData> Blend(
       to->InsertTuples(start, count, weight == 0.0 ? first : second, from);
       continue;
     }
-    for (vtkIdType i = 0; i < count; ++i)
+    for (vtkIdType i = 0; i < count * components; ++i)
     {
-      const double a = from->GetComponent(first + i, 0), b = from->GetComponent(second + i, 0);
-      const double value = (1.0 - weight) * a + weight * b;
-      to->SetComponent(start + i, 0, isWhole ? std::round(value) : value);
+      const vtkIdType point = i / components;
+      const int n = static_cast<int>(i % components);
+      const double value = (1.0 - weight) * from->GetComponent(first + point, n) +
+        weight * from->GetComponent(second + point, n);
+      to->SetComponent(start + point, n, isWhole ? std::round(value) : value);
     }
   }
   return even;
 }
 
-void PlaceVolume(Volume& volume, const SlicePlane& plane, const SliceGrid& grid, double thickness)
+void Place(Volume& volume, const SlicePlane& plane, const SliceGrid& grid, double thickness)
 {
-  volume.Image->SetSpacing(
-    plane.Spacing[0], plane.Spacing[1], grid.Step > 0.0 ? grid.Step : thickness);
-  volume.Origin = plane.Position;
   volume.IsOriented = true;
   volume.IsInMillimeters = true;
-  volume.Orientation = vtkSmartPointer<vtkMatrix4x4>::New();
+  Steps steps;
   for (int row = 0; row < 3; ++row)
   {
-    volume.Orientation->SetElement(row, 0, plane.Row[row]);
-    volume.Orientation->SetElement(row, 1, plane.Column[row]);
-    volume.Orientation->SetElement(row, 2, grid.Direction[row]);
+    steps[0][row] = plane.Row[row] * plane.Spacing[0];
+    steps[1][row] = plane.Column[row] * plane.Spacing[1];
+    steps[2][row] = grid.Direction[row] * (grid.Step > 0.0 ? grid.Step : thickness);
   }
+  PlaceVolume(volume, steps, plane.Position);
 }
 }
 
@@ -158,21 +152,15 @@ Volume ReadDICOM(const std::string& path, const ReadSettings& settings, const Qu
   }
   const auto order = ChooseTime(frames, FindPlaces(planes), settings.Frame, volume.Notes);
   const SliceGrid grid = MakeGrid(planes, order);
-  const int components = files.front()->Components;
-  CheckComponent(path, settings.Component, components);
-  volume.Image = ReadFrames(frames, order, std::max(settings.Component, 1) - 1, quiet);
+  volume.Image = ReadFrames(frames, order, quiet);
   if (!grid.Note.empty())
   {
     volume.Image = Blend(volume.Image, order, grid.Slices);
     volume.Notes.push_back(grid.Note);
     volume.Caution = "slices interpolated";
   }
-  if (components > 1)
-  {
-    volume.Notes.push_back(DescribeComponent(settings.Component, components));
-  }
   FindWindow(frames, order, volume.Window, volume.Level);
-  PlaceVolume(volume, planes[order[0]], grid, files.front()->Thickness);
+  Place(volume, planes[order[0]], grid, files.front()->Thickness);
   volume.Study = files.front()->Reader->GetMetaData();
   return volume;
 }

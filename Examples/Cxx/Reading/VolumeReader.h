@@ -12,13 +12,16 @@
 #include <vector>
 
 /**
- * What of a file with several volumes is wanted: numbers from 1 on, or 0 for the usual ones.
+ * What of a file with several volumes is wanted: numbers from 1 on, 0 and no text for the
+ * usual ones.
  */
 struct ReadSettings
 {
   int Series = 0;
   int Frame = 0;
-  int Component = 0;
+  int Channel = 0;
+  std::string Array;     // its name
+  std::string Component; // a number, "luminance" or "magnitude"
 };
 
 /**

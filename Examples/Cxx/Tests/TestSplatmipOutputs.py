@@ -30,6 +30,8 @@ class TestInputs(splatmip.SplatmipTest):
         for path in (splatmip.write_nifti(self.path("a.nii.gz")),
                      splatmip.write_meta(self.path("a.mha"))):
             self.assert_kept(path, path)
+        path = splatmip.write_file(self.path("text.nii"), b"This is told before it is read.")
+        self.assert_kept(path, path)
 
     def test_links(self):
         path = splatmip.write_nifti(self.path("a.nii"))

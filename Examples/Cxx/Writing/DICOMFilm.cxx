@@ -11,8 +11,6 @@
 #include "vtkObjectFactory.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <fstream>
 
 namespace
 {
@@ -121,34 +119,16 @@ vtkSmartPointer<vtkImageData> PaintFrames(vtkImageData* slices, const Palette& p
   }
   return frames;
 }
-
-/**
- * Whether a file has all bytes of its last element, the pixels.
- */
-bool IsComplete(const std::string& path, vtkImageData* frames)
-{
-  const auto bytes =
-    static_cast<std::uint32_t>(frames->GetNumberOfPoints() * frames->GetNumberOfScalarComponents());
-  unsigned char head[12] = {};
-  std::ifstream file(path, std::ios::binary);
-  file.seekg(-static_cast<std::streamoff>(bytes) - std::streamoff(sizeof(head)), std::ios::end);
-  file.read(reinterpret_cast<char*>(head), sizeof(head));
-  const unsigned char expected[12] = { 0xE0, 0x7F, 0x10, 0x00, 'O', 'B', 0, 0,
-    static_cast<unsigned char>(bytes), static_cast<unsigned char>(bytes >> 8),
-    static_cast<unsigned char>(bytes >> 16), static_cast<unsigned char>(bytes >> 24) };
-  return file && std::equal(head, head + sizeof(head), expected);
-}
 }
 
 bool WriteDICOM(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
   const std::vector<std::string>& names)
 {
   const QuietReading quiet;
-  const auto frames = PaintFrames(slices, palette);
   vtkNew<FilmGenerator> generator;
   generator->IsInMillimeters = settings.IsInMillimeters;
   vtkNew<vtkDICOMWriter> writer;
-  writer->SetInputData(frames);
+  writer->SetInputData(PaintFrames(slices, palette));
   writer->SetGenerator(generator);
   writer->SetMetaData(DescribeFilm(settings.Study));
   writer->SetSeriesDescription("splatmip");
@@ -159,5 +139,5 @@ bool WriteDICOM(vtkImageData* slices, const Palette& palette, const FilmSettings
   writer->SetTimeSpacing(1000.0 / settings.Rate);
   writer->SetFileName(names.front().c_str());
   writer->Write();
-  return !writer->GetErrorCode() && !quiet.HasErrors() && IsComplete(names.front(), frames);
+  return !writer->GetErrorCode() && !quiet.HasErrors();
 }
