@@ -287,7 +287,7 @@ class TestMetaImage(splatmip.SplatmipTest):
             if image.GetDimension() == 3:
                 self.assertTrue((SimpleITK.GetArrayFromImage(image) == values).all())
                 axes = numpy.reshape(image.GetDirection(), (3, 3)) * image.GetSpacing()
-                self.assertLess(abs(numpy.hstack((axes, numpy.c_[image.GetOrigin()])) - places).max(),
+                self.assertLess(abs(numpy.column_stack((axes, image.GetOrigin())) - places).max(),
                                 1e-9)
         self.assert_volume(path, values, places, *arguments)
 
