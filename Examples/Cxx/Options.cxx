@@ -187,11 +187,9 @@ void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
     ->expected(6)
     ->delimiter(',');
   group.Add("--mask", options.Mask.Path, "FILE", CLI::Validator(),
-    "Only voxels that are not 0 in this file, which must have the volume's voxels");
-  group
-    .Add("--label", options.Mask.Label, "NUMBER", CLI::Validator(CheckLabel, ""),
-      "Of the mask only the voxels with this number")
-    ->needs("--mask");
+    "Only voxels where the nearest voxel of this file is not 0");
+  group.Add("--label", options.Mask.Label, "NUMBER", CLI::Validator(CheckLabel, ""),
+    "Of the mask, or of a DICOM segmentation, only the voxels with this number");
 }
 
 void DeclareLookOptions(CLI::App& app, Options& options)

@@ -24,6 +24,7 @@
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -163,11 +164,19 @@ void CheckBeforehand(const Options& options)
 void Run(const Options& options)
 {
   CheckBeforehand(options);
-  Volume volume =
-    options.Input.empty() ? ReadBuiltInVolume() : ReadVolume(options.Input, options.Read);
+  ReadSettings read = options.Read;
+  read.Label = options.Mask.Path.empty() ? options.Mask.Label : 0;
+  read.HidesPadding =
+    options.Projection.BlendMode != vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
+  Volume volume = options.Input.empty() ? ReadBuiltInVolume() : ReadVolume(options.Input, read);
   if (!options.Mask.Path.empty())
   {
     ApplyMask(options.Mask, volume);
+  }
+  else if (options.Mask.Label != 0 && !volume.HasLabels)
+  {
+    throw std::runtime_error(
+      "--label is for a --mask or a DICOM segmentation; give one, or leave it out.");
   }
   if (!options.Interactive)
   {

@@ -18,6 +18,11 @@ std::vector<std::string> ChooseSeries(const std::string& path, int number,
   const QuietReading& quiet, std::vector<std::string>& notes, std::vector<std::string>& files);
 
 /**
+ * Why a file cannot be read that is DICOM in some wrapping, and what to do; else nothing.
+ */
+std::string ExplainFile(const std::string& path);
+
+/**
  * Whether a file looks like DICOM's, whatever its name is.
  */
 bool IsDICOMFile(const std::string& path);

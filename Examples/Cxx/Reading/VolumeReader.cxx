@@ -88,6 +88,11 @@ bool IsDICOMFile(const std::string&)
   return false;
 }
 
+std::string ExplainFile(const std::string&)
+{
+  return "";
+}
+
 Volume ReadDICOM(const std::string& path, const ReadSettings&, const QuietReading&)
 {
   Refuse(path,
@@ -133,9 +138,11 @@ Volume ReadAny(const std::string& path, const ReadSettings& settings, const Quie
   const bool isDICOM = std::filesystem::is_directory(path, error) || (!read && IsDICOMFile(path));
   if (!isDICOM && !read)
   {
+    const std::string reason = ExplainFile(path);
     Refuse(path,
-      "unknown kind of file; give a " + JoinWords(GetVolumeEndings()) +
-        " file, or a DICOM file, a DICOMDIR or a folder with DICOM files.");
+      !reason.empty() ? reason
+                      : "unknown kind of file; give a " + JoinWords(GetVolumeEndings()) +
+          " file, or a DICOM file, a DICOMDIR or a folder with DICOM files.");
   }
   if (!isDICOM && settings.Series > 0)
   {

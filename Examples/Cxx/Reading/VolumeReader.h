@@ -20,8 +20,10 @@ struct ReadSettings
   int Series = 0;
   int Frame = 0;
   int Channel = 0;
-  std::string Array;     // its name
-  std::string Component; // a number, "luminance" or "magnitude"
+  int Label = 0;             // of a DICOM segmentation
+  bool HidesPadding = false; // also where a maximum does not show it
+  std::string Array;         // its name
+  std::string Component;     // a number, "luminance" or "magnitude"
 };
 
 /**
@@ -61,6 +63,11 @@ struct Volume
    */
   bool IsOriented = false;
   bool IsInMillimeters = false;
+
+  /**
+   * Whether values are labels, of which the settings choose one.
+   */
+  bool HasLabels = false;
 
   /**
    * What whoever sees a picture must know, in a few words; may be empty.
