@@ -4,14 +4,18 @@
 import bz2
 import gzip
 import os
+import sys
 import unittest
 import zlib
 
 import numpy
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk
+from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 import SplatmipTesting as splatmip
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "Python"))
+import volume_files  # noqa: E402
 
 try:
     import nibabel
@@ -28,6 +32,18 @@ PLACES = numpy.array([[1.5, 0, 0, 1], [0, 1.2, 0, 2], [0, 0, 2.5, 3.0]])
 
 def make_values(dtype=numpy.int16, seed=0):
     return numpy.random.default_rng(seed).integers(0, 1000, SIZE).astype(dtype)
+
+
+def check_viewer(test, path, values, places):
+    """The browser viewer has the same values at the same places."""
+    image = volume_files.read_volume(path).image
+    found = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(image.GetDimensions()[::-1])
+    for index in ((0, 0, 0), (5, 0, 0), (0, 19, 0), (0, 0, 29), (3, 7, 11)):
+        place = [0.0, 0.0, 0.0]
+        image.TransformPhysicalPointToContinuousIndex(places @ (*index, 1), place)
+        x, y, z = (int(round(number)) for number in place)
+        test.assertLess(abs(numpy.array(place) - (x, y, z)).max(), 1e-3)
+        test.assertEqual(found[z, y, x], values[index[::-1]], path)
 
 
 def turn(degrees):
@@ -49,12 +65,14 @@ class TestNIfTI(splatmip.SplatmipTest):
         nibabel.save(image, self.path(name))
         return self.path(name)
 
-    def judge(self, path, *arguments, frame=0, affine=None, unit=1.0):
+    def judge(self, path, *arguments, frame=0, affine=None, unit=1.0, is_viewed=False):
         """As nibabel reads it, which counts to the right and the front."""
         image = nibabel.load(path)
         values = numpy.asarray(image.dataobj)
         values = values.reshape(*values.shape[:3], -1, order="F")[..., frame].T
         axes = unit * numpy.diag([-1, -1, 1]) @ (image.affine if affine is None else affine)[:3]
+        if is_viewed:
+            check_viewer(self, path, values, axes)
         return self.assert_volume(path, values, axes, *arguments)
 
     def test_forms(self):
@@ -65,9 +83,9 @@ class TestNIfTI(splatmip.SplatmipTest):
         oblique[:3, 3] = 10, -20, 30
         sheared = oblique.copy()
         sheared[0, 1] += 0.7
-        self.judge(self.write("a.nii", values, oblique))
-        self.judge(self.write("a.nii.gz", values, None, oblique))
-        self.judge(self.write("a.nii", values, oblique, other))
+        self.judge(self.write("a.nii", values, oblique), is_viewed=True)
+        self.judge(self.write("a.nii.gz", values, None, oblique), is_viewed=True)
+        self.judge(self.write("a.nii", values, oblique, other), is_viewed=True)
         self.judge(self.write("a.nii", values, sheared))
         self.judge(self.write("a.nii", values, 2 * oblique))
         self.judge(self.write("a.nii", values, oblique, kind=nibabel.Nifti2Image))
@@ -75,12 +93,12 @@ class TestNIfTI(splatmip.SplatmipTest):
         with open(path, "r+b") as file:  # pixdim[1]
             file.seek(80)
             file.write(numpy.float32(-1.5).tobytes())
-        self.judge(path, affine=numpy.diag([1.5, 1.2, 2.5, 1]))
+        self.judge(path, affine=numpy.diag([1.5, 1.2, 2.5, 1]), is_viewed=True)
         path = self.write("a.nii", values, oblique, other)
         with open(path, "r+b") as file:  # srow
             file.seek(280)
             file.write(bytes(48))
-        text = self.judge(path, affine=other)
+        text = self.judge(path, affine=other, is_viewed=True)
         self.assertNotIn("exchanged", text)
 
     def test_types(self):
@@ -289,6 +307,8 @@ class TestMetaImage(splatmip.SplatmipTest):
                 axes = numpy.reshape(image.GetDirection(), (3, 3)) * image.GetSpacing()
                 self.assertLess(abs(numpy.column_stack((axes, image.GetOrigin())) - places).max(),
                                 1e-9)
+        if not arguments:
+            check_viewer(self, path, values, places)
         self.assert_volume(path, values, places, *arguments)
 
     def test_geometry(self):
@@ -327,7 +347,7 @@ class TestMetaImage(splatmip.SplatmipTest):
         self.check(self.write(values.astype(">i2").view(numpy.int16), BinaryDataByteOrderMSB="True"),
                    PLACES)
         text = " ".join(map(str, values.ravel())).encode() + b"\n"
-        self.check(self.write(BinaryData="False", data=text), PLACES)
+        self.assert_volume(self.write(BinaryData="False", data=text), values, PLACES)
         for name in ("raw", "gzip", "no sizes"):
             path = (self.write(data=values.tobytes()[:-100]) if name == "raw" else
                     self.write(CompressedData="True", CompressedDataSize=len(packed),
