@@ -24,14 +24,20 @@ compiler=(g++)
 packages=(
   cmake ninja-build "${compiler[@]}" pkgconf ccache xz-utils
   libvtk9-dev python3-vtk9 libglm-dev          # the module and its Python package
-  libcli11-dev libvtk-dicom-dev                # splatmip
+  libcli11-dev                                 # splatmip, with ...
+  libvtk-dicom-dev libinsighttoolkit5-dev      # ... the libraries that ...
+  libnifti-dev libtiff-dev                     # ... read its files
   libbenchmark-dev                             # the benchmark
   dpkg-dev file help2man                       # Debian packages
   python3-numpy                                # tests and examples in Python
-  libgdcm-tools                                # makes a DICOMDIR, for the tests
-  python3-vedo python3-vedo-examples           # programs of others, for the tests
   xvfb xauth libgl1-mesa-dri                   # OpenGL without a display
-  openmpi-bin                                  # mpiexec, for the tests of several ranks
+)
+[[ " ${cmake_options[*]} " == *" -DBUILD_TESTING=OFF "* ]] || packages+=(
+  libgdcm-tools                                # makes a DICOMDIR
+  python3-pydicom python3-nibabel              # judge what splatmip reads, as does SimpleITK, ...
+  python3-tifffile                             # ... which Debian does not have
+  python3-vedo python3-vedo-examples           # programs of others
+  openmpi-bin                                  # mpiexec, for several ranks
 )
 missing=()
 for package in "${packages[@]}"; do

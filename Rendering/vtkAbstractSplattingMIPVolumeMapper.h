@@ -119,7 +119,7 @@ public:
 
   ///@{
   /**
-   * What a slice contributes to a pixel of the shear image [CS98, section 2 and 3]. Default EXACT.
+   * What a slice contributes to a pixel of the shear image [CS98, section 2 and 3], or EXACT.
    *
    * PREVIEW: the largest of the voxels that the pixel's ray crosses in the slice (up to three), so
    * that the shear image equals an exact voxel traversal bit for bit. Fastest.
@@ -127,23 +127,14 @@ public:
    * thickness (3x3 weights).
    * HIGH: the average of the volume, interpolated with Kernel, over the same region (5x5 weights
    * from each of three slices).
-   * EXACT: the largest value that the trilinearly interpolated volume takes along the pixel's ray,
-   * found analytically, cell by cell [Sakas et al. 1995]: no sample distance can miss it, and
-   * nothing is averaged. The interpolated volume ends at the centres of the outermost voxels (at
-   * the ends of their boxes for cell data); a cell with a NaN voxel is left out. For maxima of all
-   * MaximumTypes; minima, averages and dependent components are those of HIGH. For MaximumType
-   * GLOBAL each pixel of the screen looks along a ray of its own, in the slices where the shear
-   * image's rays around it have their maxima and in those beside them. It shows a value that the
-   * volume has on that ray, hardly ever less than the largest. Planes, slabs, surfaces and
-   * geometry then cut rays where they are, not between slices. A shear image costs two to four
-   * times HIGH's, and the screen's rays about 0.2 microseconds of a core each. Where all of the
-   * volume is seen in pixels wider than voxels, a ray takes only the voxel of each slice that it
-   * passes nearest to. The interpolated volume is nowhere larger than at voxels, so no maximum is
-   * lost, and this is the fastest of all.
+   * EXACT (default): the extremum of the trilinearly interpolated volume on the ray of each pixel
+   * of the screen, in closed form, cell by cell [Sakas et al. 1995]. Nothing is averaged, and no
+   * sample distance can miss a voxel. There is no shear image. Averages and dependent components
+   * are those of HIGH.
    *
-   * In an overview, where pixels are wider than voxels in some direction, a pixel shows the largest
-   * value over its area (of minima the least, of averages the average), in all modes. Else it shows
-   * the value at its centre.
+   * In an overview, where pixels are wider than voxels in some direction, a pixel shows the extremum
+   * (of averages the average) over its area instead of the value at its centre. EXACT then shows
+   * voxels, as PREVIEW does. GetQualityModeUsed() returns the mode that is shown.
    *
    * In perspective a pixel's area is as wide as rays are apart: nearly a voxel where the volume is
    * farthest from the eye, and less in nearer slices.
@@ -342,9 +333,7 @@ public:
    * How the footprint weights are obtained. 0 (default): closed form. N in [1, 64]: from the
    * paper's general table, digitised at N x N sub-pixels per pixel [CS98, section 3], whose weights
    * tend to the closed form as N grows. Perspective views always have the closed form. A view makes
-   * its table once, for all slices. That takes time and memory in proportion to N^2: 10 ms for
-   * N = 16, at most 0.2 s of one core and 4 MB. A projection then takes at most 1 ms of one core
-   * for each slice more.
+   * its table once, for all slices, in time and memory proportional to N^2.
    */
   virtual void SetFootprintSampling(int);
   virtual int GetFootprintSampling();
@@ -355,7 +344,8 @@ public:
   ///@{
   /**
    * What the projection leaves out and in which order it meets the rest. All give the same picture,
-   * bit for bit (but for LineTolerance, CullBelowWindow and the sign of zeros). Default AUTO.
+   * bit for bit (but for LineTolerance, CullBelowWindow and the sign of zeros). Default AUTO. Is
+   * ignored in EXACT, which always uses bricks of 8x8x8 cells.
    *
    * DENSE: every voxel, in the order of memory.
    * BRICKS: the volume is divided into bricks of 8x4x4 voxels. Where no brick behind a tile of 8x4
@@ -370,9 +360,9 @@ public:
    *
    * AUTO takes BRICKS, unless their last frame along this principal axis, in this mode and with or
    * without cuts as now, still had to splat more than a limit of the tiles: 30 % in PREVIEW, 40 %
-   * in STANDARD (50 % in perspective), 60 % in HIGH and EXACT. With AVX-512 the limit is 30 % in
-   * STANDARD of parallel views, and 50 % in HIGH and EXACT. Above the limit AUTO takes DENSE for 32
-   * frames, then tries BRICKS again. In HIGH and EXACT it waits fewer frames the nearer the share
+   * in STANDARD (50 % in perspective), 60 % in HIGH. With AVX-512 the limit is 30 % in
+   * STANDARD of parallel views, and 50 % in HIGH. Above the limit AUTO takes DENSE for 32
+   * frames, then tries BRICKS again. In HIGH it waits fewer frames the nearer the share
    * was to the limit: from 0 there to 32 if all tiles were splatted. It never takes chains, which
    * are slower on all data that we measured (splatmip-paper reports it), but need less memory than
    * the volume.

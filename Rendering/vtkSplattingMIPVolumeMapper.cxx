@@ -4,6 +4,7 @@
 
 #include "MapperProperties.h"
 #include "PropertyMethods.h"
+#include "Ranks/FrameAttendance.h"
 #include "ReportedProblems.h"
 #include "Scene/ProjectedVolume.h"
 #include "Scene/RayCastFallback.h"
@@ -67,6 +68,11 @@ private:
 class vtkSplattingMIPVolumeMapper::Internals
 {
 public:
+  explicit Internals(vtkSplattingMIPVolumeMapper* self)
+    : Attendance([=](vtkRenderer* renderer, vtkVolume* volume)
+        { this->ReportAbsence(self, renderer, volume); })
+  {
+  }
   void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
   void WarnOfSurface(vtkSplattingMIPVolumeMapper* self);
   void WarnOfBudget(vtkSplattingMIPVolumeMapper* self);
@@ -74,6 +80,7 @@ public:
   void DropRayCaster();
   bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
   bool IsAborted() const;
+  void ReportAbsence(vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
 
   ReportedProblems Reported;
   std::set<std::string> Announced;   // what ray casting leads to, and was told
@@ -81,6 +88,7 @@ public:
   bool OpenSurfaceReported = false;  // likewise
   vtkRenderWindow* Window = nullptr; // which may abort, during a render
 
+  FrameAttendance Attendance; // of several ranks
   ProjectedVolume Data;
   WinnerLocations Locations{ Data.Source, Data.Components, Data.Cuts, Data.Images };
   splatting::Picture Picture;
@@ -92,7 +100,7 @@ public:
 //------------------------------------------------------------------------------
 vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
   : LastRenderUsedRayCasting(false),
-    Internal(new Internals)
+    Internal(new Internals(this))
 {
   ComponentProjector& components = this->Internal->Data.Components;
   components.GetProjector().setProgress([this](double done) { this->UpdateProgress(done); });
@@ -155,6 +163,22 @@ bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* s
 bool vtkSplattingMIPVolumeMapper::Internals::IsAborted() const
 {
   return this->Window && this->Window->CheckAbortStatus();
+}
+
+//------------------------------------------------------------------------------
+// The other ranks wait for this one, which has rendered a frame without the volume.
+void vtkSplattingMIPVolumeMapper::Internals::ReportAbsence(
+  vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume)
+{
+  if (volume->GetMapper() != self || !this->Data.Ranks.Use(self->GetController()))
+  {
+    return;
+  }
+  const std::string problem = this->Data.Ranks.AgreeOnAbsence();
+  if (this->Reported.Update(renderer, volume, problem))
+  {
+    vtkErrorWithObjectMacro(self, << problem);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -234,6 +258,10 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   try
   {
     in.Locations.BeginFrame(ren);
+    if (in.Data.Ranks.Use(this->GetController()))
+    {
+      in.Attendance.Attend(ren, vol);
+    }
     problem = refusalOf(this, ren, vol, in.Data);
     if (problem.empty())
     {
@@ -303,6 +331,11 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   }
   in.WarnOfSurface(this);
   data.Prepare(properties, view, vol, finalColor);
+  if (const char* const fault =
+        data.Components.FaultOfVoxels(static_cast<Quality>(properties.QualityMode)))
+  {
+    return fault;
+  }
   const auto readDepth = [this, ren](const int origin[2], const int size[2], float* depths)
   { return this->ReadDepth(ren, origin, size, depths); };
   if (!data.Project(properties, view, ren, vol, readDepth))

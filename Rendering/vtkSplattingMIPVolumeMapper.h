@@ -62,7 +62,8 @@
  * as the grid, if these are more); beyond that, steps are enlarged by one factor. Peaks between the
  * points of the copy are lowered by the interpolation.
  *
- * A slice counts for a ray if the ray crosses it (voxels being boxes) and, where the ray is cut, if
+ * In EXACT all cuts lie where they are. In the other modes, and in overviews, a slice counts for a
+ * ray if the ray crosses it (voxels being boxes) and, where the ray is cut, if
  * the point where it crosses the middle of the slice is not cut away. If the cuts leave less than a
  * slice, the nearest one counts. Footprints that stick out of the volume repeat its outermost
  * voxels; those beside a clipping plane also read the voxels behind it.
@@ -72,8 +73,8 @@
  * thick as that voxel.
  *
  * The interpolation type of the vtkVolumeProperty has no meaning here, and a change costs nothing:
- * the quality mode says how voxels are reconstructed, and the shear image is always interpolated
- * between its pixels. (The default of the property is nearest, so that all volumes would look like
+ * the quality mode says how voxels are reconstructed, and shear images are always interpolated
+ * between their pixels. (The default of the property is nearest, so that all volumes would look like
  * the preview if it had a meaning.)
  *
  * Selection by vtkHardwareSelector, and all that uses it (vtkRenderer::PickProp, vtkPropPicker),
@@ -97,22 +98,27 @@
  * the same with 2^-48 and 2^-53 for double. In perspective slices are cut into up to three parts,
  * whose weights are products of one for the column, one for the row and one for the slice and are
  * rounded likewise, for all types. Within a part they do not know that x and y grow together along
- * a ray: a covariance of at most 0.021 square voxels is lost. Exact maxima have up to 24 roundings
- * of max|v| (of (max-min) for integers of up to 32 bits), in perspective up to 80. No step depends
+ * a ray: a covariance of at most 0.021 square voxels is lost. Exact extrema are computed in float,
+ * for 32- and 64-bit integers and double in double, to 1e-6 and 1e-12 of (max-min). No step depends
  * on the number of threads or on the instruction set: the same input gives the same bits.
  *
  * NaN voxels are no samples: they never win and, in a worksheet, the average is taken over the
- * other voxels. Infinities are ordinary values. A ray without a sample is transparent.
+ * other voxels. Infinities are ordinary values. In EXACT a cell with a corner that is NaN, hidden or
+ * infinite is not interpolated: each of its eight octants has the value of its nearest voxel, or
+ * none if that voxel is hidden or NaN. Finite magnitudes must be at most 1e37 (of double 1e303), in
+ * EXACT beside infinities 1e18 (1e150), so that nothing overflows. A ray without a sample is
+ * transparent.
  *
  * For integers of up to 32 bits the lowest voxel is subtracted before voxels are
  * weighed and added again in the end: a flat background of that value is exact.
  *
- * Memory. The mapper holds the largest voxel of every brick of 8x4x4 for each axis (3/128 of the
- * volume), a transposed copy of the volume once its first (fastest) image axis was the principal
+ * Memory. For EXACT the mapper holds the largest voxel of every 4x4x4 and 8x8x8 cells (1/56 of the
+ * volume, and as much for minima), else the largest voxel of every brick of 8x4x4 for each axis
+ * (3/128 of the volume), a transposed copy of the volume once its first (fastest) image axis was the principal
  * one, chains of voxels where SetAcceleration asks for them, all of this for each component, and a
  * copy of the scalars if they are not stored voxel after voxel, if some are hidden, or if they are
  * resampled. GetIndexMemorySize() counts all, SetIndexMemoryBudget() limits all but that copy
- * (components have equal shares). Work space comes on top: per component the shear image; the
+ * and what EXACT holds (components have equal shares). Work space comes on top: per component the shear image; the
  * picture (two with several components); footprints (about 3 kB a slice); for each thread some rows
  * of voxels and the bounds of a band of tiles; per pixel of the shear image up to 9 bytes where
  * rays are cut, 12 for averages, 5 for depth shading and local maxima, 4 for dependent components,
@@ -148,8 +154,9 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * The quality mode of the last projection: QualityMode, or a faster one, see
-   * AutoAdjustSampleDistances. EXACT before the first one.
+   * Get the quality mode that the last projection shows: QualityMode, or a faster one (see
+   * AutoAdjustSampleDistances). PREVIEW for EXACT in overviews, HIGH for averages and dependent
+   * components in EXACT. EXACT before the first projection.
    */
   int GetQualityModeUsed();
 
@@ -168,8 +175,8 @@ public:
    * - "Depth", float: the distance in world units, from the plane through the camera's position
    *   across the direction of projection, in perspective from the eye.
    * - "Position", three doubles: the point of the world. It lies on the ray of the pixel, where
-   *   this crosses the middle of the slice that the sample is of; in EXACT where the field has the
-   *   largest value that the ray finds. "Voxel" is the nearest to it then.
+   *   this crosses the middle of the slice that the sample is of; in EXACT where the interpolated
+   *   volume has its extremum, the nearest to the viewer of several. "Voxel" is the nearest to it.
    *
    * Pixels without a sample, or hidden by other things, have voxel -1 and NaN. nullptr, with an
    * error message, unless RecordLocations is on; nullptr if nothing has been splatted, and as for
@@ -182,8 +189,8 @@ public:
   /**
    * What a pixel of the window shows, in any of the viewports that this mapper has rendered in; of
    * several windows, in the one that it has rendered in last. It is the sample of the shear pixel
-   * nearest to it, in EXACT what its own ray finds; the same as GetLocations() tells.
-   * RecordLocations need not be on: without it one ray is looked along, in about a millisecond. (x,
+   * nearest to it, in EXACT that of its own ray; the same as GetLocations() returns.
+   * RecordLocations need not be on: without it one pixel is projected, in about a millisecond. (x,
    * y) are display coordinates, as vtkRenderWindowInteractor::GetEventPosition() gives them.
    *
    * - PickWorldPosition(): the point of the world to measure from. It lies on the pixel's ray,
@@ -209,10 +216,11 @@ public:
   ///@}
 
   /**
-   * The last shear image, its spacing 1, or nullptr before the first render and in EXACT, which has
-   * none. Scalars: as many components as are projected, in the input's type in mode PREVIEW (that
-   * of the copy, if voxels are hidden or resampled, or a magnitude), else, and for averages and
-   * depth shading, float (double for 32- and 64-bit integers and double). The image's physical
+   * Get the last shear image, or nullptr before the first render and in EXACT, which has none. Its
+   * spacing is 1.
+   * Scalars: as many components as are projected, in the input's type in mode PREVIEW (that of the
+   * copy, if voxels are hidden or resampled, or a magnitude), else, and for averages and depth
+   * shading, float (double for 32- and 64-bit integers and double). The image's physical
    * coordinates are voxel indices, relative to the volume's first voxel, on the volume's middle
    * slice along the principal axis: the ray of pixel (u, v) at origin + spacing * (u, v) crosses
    * slice k there at that point minus GetShear() * (k - (slices-1)/2). In perspective it is the
@@ -293,22 +301,22 @@ public:
    * controller, and each rank colours and shows the result: the picture has the same bits as one
    * rank's, for any pieces.
    *
-   * Render() is collective then: all ranks must render as often, or wait for each other for ever.
-   * GetBounds() are those of the whole, so that a frustum culls on all ranks or on none. What is
-   * wrong on one rank is told by all, and all skip the frame, as they do where ranks differ in a
-   * setting that changes the picture.
+   * Rendering is collective then: all ranks must render as often, also while the volume is
+   * invisible, or wait for each other for ever. Set nullptr to end that. GetBounds() are those of
+   * the whole, so that a frustum culls on all ranks or on none. What is wrong on one rank is told
+   * by all, and all skip the frame. So they do where ranks differ in a setting that changes the
+   * picture, or, from the second frame on, in whether they render the volume.
    *
    * Projected are global and depth-shaded maxima and minima of independent components; anything
    * else is refused with a sentence, as are rectilinear grids. Chains are walked as bricks, without
    * LineTolerance. Geometry that hides the volume must be the same on all ranks, or
-   * IntermixIntersectingGeometry be off. Of locations, voxels in modes other than PREVIEW are those
-   * that rays pass in the middle of the slice, as are points in EXACT.
+   * IntermixIntersectingGeometry be off. Of locations, voxels in STANDARD and HIGH are those that
+   * rays pass in the middle of the slice.
    *
    * A frame costs three or four reductions of 4 bytes and a gathering of about 500 bytes from each
-   * rank. If it projects, each shear image is reduced as well: 1 to 8 bytes a pixel in preview, 4
-   * (8 for 32- and 64-bit integers and double) in the other modes, 4 more for locations and exact
-   * maxima, and the memory of one more shear image. For exact maxima, what the screen's rays find
-   * takes another 4 (8) bytes for each pixel of the picture.
+   * rank. If it projects, each shear image, in exact mode the picture's scalars, is reduced as
+   * well: 1 to 8 bytes a pixel in preview, 4 (8 for 32- and 64-bit integers and double) in the other
+   * modes, 4 more for locations, and the memory of one more image.
    */
   virtual void SetController(vtkMultiProcessController*);
   virtual vtkMultiProcessController* GetController();

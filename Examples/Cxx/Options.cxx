@@ -65,6 +65,16 @@ std::string CheckSize(const std::string& text)
     : "not a size such as 400x600, each between 16 and 8192";
 }
 
+std::string CheckComponentWord(const std::string& text)
+{
+  int number = 0;
+  char rest = 0;
+  const bool isNumber = std::sscanf(text.c_str(), "%5d%c", &number, &rest) == 1 && number > 0;
+  return isNumber || text == "luminance" || text == "magnitude"
+    ? ""
+    : "not a number from 1 on, luminance or magnitude";
+}
+
 std::string CheckLabel(const std::string& text)
 {
   int label = 0;
@@ -139,8 +149,14 @@ void DeclareVolumeOptions(CLI::App& app, Options& options)
     "file");
   group.Add("--frame", options.Read.Frame, "NUMBER", Between(1, 99999),
     "Of several volumes at the same place, such as times or echoes; default: the first");
-  group.Add("--component", options.Read.Component, "NUMBER", Between(1, 99999),
-    "Of several values in each voxel, such as red, green and blue; default: the first");
+  group.Add("--channel", options.Read.Channel, "NUMBER", Between(1, 99999),
+    "Of several channels of a TIFF stack by ImageJ or OME; default: the first");
+  group.Add("--array", options.Read.Array, "NAME", CLI::Validator(),
+    "Of several arrays of a VTK file; default: the active one, or the first");
+  group.Add("--component", options.Read.Component, "NUMBER", CLI::Validator(CheckComponentWord, ""),
+    "Of several values in each voxel, such as red, green and blue; or luminance, of these three, "
+    "or "
+    "magnitude, of a vector; default: the first");
 }
 
 void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
@@ -171,11 +187,9 @@ void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
     ->expected(6)
     ->delimiter(',');
   group.Add("--mask", options.Mask.Path, "FILE", CLI::Validator(),
-    "Only voxels that are not 0 in this file, which must have the volume's voxels");
-  group
-    .Add("--label", options.Mask.Label, "NUMBER", CLI::Validator(CheckLabel, ""),
-      "Of the mask only the voxels with this number")
-    ->needs("--mask");
+    "Only voxels where the nearest voxel of this file is not 0");
+  group.Add("--label", options.Mask.Label, "NUMBER", CLI::Validator(CheckLabel, ""),
+    "Of the mask, or of a DICOM segmentation, only the voxels with this number");
 }
 
 void DeclareLookOptions(CLI::App& app, Options& options)
@@ -296,9 +310,11 @@ void CheckCombinations(const Options& options)
   const ProjectionSettings& settings = options.Projection;
   const bool isMaximum = settings.BlendMode == vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
   if (options.Input.empty() &&
-    (options.Read.Series > 0 || options.Read.Frame > 0 || options.Read.Component > 0))
+    (options.Read.Series > 0 || options.Read.Frame > 0 || options.Read.Channel > 0 ||
+      !options.Read.Array.empty() || !options.Read.Component.empty()))
   {
-    throw CLI::ValidationError("--series, --frame, --component", "they are of a file: name one");
+    throw CLI::ValidationError(
+      "--series, --frame, --channel, --array, --component", "they are of a file: name one");
   }
   if (options.Interactive + options.Compare + (options.Rotate > 0) > 1)
   {
@@ -383,6 +399,10 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
 
   options.Modes = ChooseModes(words.Mode);
   TranslateWords(words, options);
+  if (words.Output.empty())
+  {
+    throw CLI::ValidationError("--output", "the name of a file is missing");
+  }
   options.Output = std::filesystem::absolute(words.Output).string();
   options.HasWindow = app.count("--window") > 0;
   options.HasLevel = app.count("--level") > 0;

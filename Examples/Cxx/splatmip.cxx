@@ -14,6 +14,7 @@
 #include "Writing/DepthCoding.h"
 #include "Writing/Picture.h"
 #include "Writing/PictureSeries.h"
+#include "Writing/SafeFiles.h"
 #include "Writing/ValueFile.h"
 
 #include "vtkImageAppend.h"
@@ -21,10 +22,11 @@
 
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -116,7 +118,9 @@ void WriteStill(const Volume& volume, const LookSettings& look, const Options& o
     row->AddInputData(Paint(views, palette, 0));
   }
   row->Update();
-  WritePNG(row->GetOutput(), options.Output);
+  WriteSafely({ options.Output },
+    [&](const std::vector<std::string>& names)
+    { return WritePNG(row->GetOutput(), names.front()); });
   std::printf("\npicture: %s\n", options.Output.c_str());
 }
 
@@ -134,6 +138,12 @@ void WriteTurn(const Volume& volume, const LookSettings& look, const Options& op
   std::printf("\nturn: %s\n", options.Output.c_str());
 }
 
+std::vector<std::string> GetOutputFiles(const Options& options)
+{
+  return options.Rotate > 0 ? GetSeriesFiles(options.Output, options.Rotate)
+                            : std::vector<std::string>{ options.Output };
+}
+
 /**
  * What would be in vain is told before the volume is read.
  */
@@ -145,19 +155,32 @@ void CheckBeforehand(const Options& options)
   }
   if (!options.Interactive)
   {
-    const bool isPNG = std::filesystem::path(options.Output).extension() == ".png";
-    CheckWritable(options.Output, options.Rotate > 0 && isPNG);
+    const auto outputs = GetOutputFiles(options);
+    CheckNotInput(outputs, { options.Input, options.Mask.Path });
+    CheckWritable(outputs);
   }
 }
 
 void Run(const Options& options)
 {
   CheckBeforehand(options);
-  Volume volume =
-    options.Input.empty() ? ReadBuiltInVolume() : ReadVolume(options.Input, options.Read);
+  ReadSettings read = options.Read;
+  read.Label = options.Mask.Path.empty() ? options.Mask.Label : 0;
+  read.HidesPadding =
+    options.Projection.BlendMode != vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
+  Volume volume = options.Input.empty() ? ReadBuiltInVolume() : ReadVolume(options.Input, read);
   if (!options.Mask.Path.empty())
   {
     ApplyMask(options.Mask, volume);
+  }
+  else if (options.Mask.Label != 0 && !volume.HasLabels)
+  {
+    throw std::runtime_error(
+      "--label is for a --mask or a DICOM segmentation; give one, or leave it out.");
+  }
+  if (!options.Interactive)
+  {
+    CheckNotInput(GetOutputFiles(options), volume.Files);
   }
   const LookSettings look = CompleteLook(options, volume);
   PrintVolume(volume, look);

@@ -124,6 +124,8 @@ def check_dimensions(fields, *keys):
         raise VolumeError("it has several values per voxel or times; save one volume of it.")
     if dimension != 3 or "data file" in fields or fields.get("elementdatafile", "LOCAL") != "LOCAL":
         raise VolumeError("it is not one volume with its data in the same file; save it so.")
+    if any(key in fields for key in ("line skip", "lineskip", "byte skip", "byteskip")):
+        raise VolumeError("something lies between its header and its data; save it without.")
     shape = numbers(fields.get("sizes", fields.get("dimsize", "")), 3)[::-1].astype(int)
     if shape.min() < 1:
         raise DAMAGED
@@ -151,12 +153,15 @@ def read_nrrd(path):
 def read_meta(path):
     fields, data = read_header(path)
     shape = check_dimensions(fields, "ndims")
-    directions = fields.get("transformmatrix", "1 0 0 0 1 0 0 0 1")
-    spacing = fields.get("elementspacing", "1 1 1")
-    axes = numbers(directions, 9).reshape(3, 3).T * numbers(spacing, 3)
-    origin = fields.get("offset", fields.get("position", fields.get("origin", "0 0 0")))
+    def find(*keys):
+        return next((fields[key] for key in keys if key in fields), None)
+    directions = find("transformmatrix", "rotation", "orientation")
+    spacing = find("elementspacing", "elementsize")
+    axes = numbers(directions or "1 0 0 0 1 0 0 0 1", 9).reshape(3, 3).T * numbers(spacing or "1 1 1", 3)
+    origin = find("origin", "position", "offset") or "0 0 0"
+    is_in_mm = spacing is not None and find("distanceunits") in (None, "?", "mm")
     image = make_image(decode(data, fields, shape), axes, numbers(origin, 3))
-    return Volume(image, "transformmatrix" in fields, "elementspacing" in fields)
+    return Volume(image, directions is not None, is_in_mm)
 
 
 def run_reader(reader, path):
@@ -215,20 +220,22 @@ def read_nifti(path):
     if is_scaled and (slope, intercept) != (1.0, 0.0):  # codes become values
         wide = numpy.float32 if values.dtype.itemsize <= 2 else numpy.float64
         values = values.astype(wide) * wide(slope) + wide(intercept)
-    matrix = reader.GetSFormMatrix() or reader.GetQFormMatrix()
+    forms = [numpy.array([[form.GetElement(i, j) for j in range(4)] for i in range(3)])
+             for form in (reader.GetSFormMatrix(), reader.GetQFormMatrix()) if form]
+    # Programs write sforms of zeros beside a good qform.
+    matrix = next((form for form in forms if abs(numpy.linalg.det(form[:, :3])) > 1e-9), None)
     header = reader.GetNIFTIHeader()
     unit = {1: 1000.0, 3: 0.001}.get(header.GetXYZTUnits() & 7, 1.0)  # m and um
-    spacing = numpy.abs(image.GetSpacing())
-    axes, origin = numpy.diag(spacing) * unit, numpy.zeros(3)
-    if matrix:
+    spacing = numpy.array(image.GetSpacing())  # with signs, by which VTK divides sforms
+    axes, origin = numpy.diag(abs(spacing)) * unit, numpy.zeros(3)
+    if matrix is not None:
         to_lps = numpy.array([[-1], [-1], [1]]) * unit
-        columns = numpy.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(3)])
-        axes, origin = to_lps * columns[:, :3] * spacing, (to_lps * columns[:, 3:]).ravel()
+        axes, origin = to_lps * matrix[:, :3] * spacing, (to_lps * matrix[:, 3:]).ravel()
     low, high = header.GetCalMin(), header.GetCalMax()
     volumes = reader.GetTimeDimension()
-    notes = [] if matrix else ["the file does not say how the patient lies; left and right may be exchanged"]
+    notes = [] if matrix is not None else ["the file does not say how the patient lies; left and right may be exchanged"]
     notes += [f"the first of {volumes} volumes"] if volumes > 1 else []
-    return Volume(make_image(values, axes, origin), bool(matrix), True,
+    return Volume(make_image(values, axes, origin), matrix is not None, True,
                   (low, high) if high > low else None, "; ".join(notes))
 
 

@@ -134,6 +134,25 @@ void ComponentProjector::SetRanks(PieceExchange* ranks)
   }
 }
 
+// Sums of weighted voxels overflow, or of a ray's samples. Exact mode computes products of voxels.
+const char* ComponentProjector::FaultOfVoxels(Quality quality)
+{
+  const bool isExact = quality == Quality::Exact;
+  const bool isTooLarge = std::any_of(this->Channels.begin(), this->Channels.end(),
+    [=](Channel& channel)
+    {
+      const bool isDouble = channel.Index.volume().type == ScalarType::Float64;
+      const double most = isExact ? (isDouble ? 1e150 : 1e18) : (isDouble ? 1e303 : 1e37);
+      return channel.Index.largestMagnitude() > most;
+    });
+  return !isTooLarge ? nullptr
+    : isExact ? "The scalars have magnitudes above 1e18 (of double 1e150), which is too large for "
+                "exact mode: choose another mode, or scale them, and set voxels without a value to "
+                "NaN."
+              : "The scalars have magnitudes above 1e37 (of double 1e303), so that sums overflow: "
+                "scale them, and set voxels without a value to NaN.";
+}
+
 bool ComponentProjector::SetBudget(std::size_t bytes)
 {
   bool changed = false;

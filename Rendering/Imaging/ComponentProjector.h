@@ -62,6 +62,9 @@ public:
   /// whole. Must outlive its use.
   void SetRanks(PieceExchange* ranks);
 
+  /// What is wrong with voxels that are too large to be computed with, or nullptr.
+  const char* FaultOfVoxels(Quality quality);
+
   /// Every component gets the same share. A change gives up what is there; returns whether it has
   /// changed.
   bool SetBudget(std::size_t bytes);

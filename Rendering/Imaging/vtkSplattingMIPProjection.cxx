@@ -294,6 +294,11 @@ std::string vtkSplattingMIPProjection::Internals::ProjectInput(
 {
   this->Components.SetSource(this->Source);
   this->Components.SetBudget(static_cast<std::size_t>(this->Properties.IndexMemoryBudget));
+  if (const char* const fault =
+        this->Components.FaultOfVoxels(static_cast<Quality>(this->Properties.QualityMode)))
+  {
+    return fault;
+  }
   return this->PlaceOutput(output)
     ? this->ProjectViews(self, output)
     : "There is no memory for the output: choose fewer pixels or views.";

@@ -148,6 +148,14 @@ const RankReport* firstPiece(const std::vector<RankReport>& reports)
 /// views and scalars.
 std::string problemOf(const std::vector<RankReport>& reports, bool ofGrids)
 {
+  const auto absent = std::find_if(
+    reports.begin(), reports.end(), [](const RankReport& report) { return report.absent != 0; });
+  if (absent != reports.end())
+  {
+    return "Rank " + std::to_string(absent - reports.begin()) +
+      " does not render the volume, while others do: make the volume visible on all ranks or on "
+      "none, and give their cameras the same settings.";
+  }
   for (std::size_t rank = 0; rank < reports.size(); ++rank)
   {
     if (reports[rank].problem[0])
@@ -373,6 +381,16 @@ std::string RankAgreement::Agree(const RankReport& own)
     this->FirstVoxel = this->BoxOf(own).begin;
   }
   return problem;
+}
+
+std::string RankAgreement::AgreeOnAbsence() const
+{
+  RankReport own;
+  own.absent = 1;
+  const std::vector<RankReport> reports = this->Gather(own);
+  const bool areAll = std::all_of(
+    reports.begin(), reports.end(), [](const RankReport& report) { return report.absent != 0; });
+  return areAll ? std::string() : problemOf(reports, false);
 }
 
 bool RankAgreement::Any(bool here) const

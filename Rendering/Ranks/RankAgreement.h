@@ -34,6 +34,7 @@ struct RankReport
     -1 }; ///< of points; the rank holds nothing if it is empty
   std::int32_t cells = 0, vtkType = 0, type = 0, components = 0;
   std::int32_t layers = 0; ///< of ghosts, that the quality mode needs
+  std::int32_t absent = 0; ///< whether the rank has rendered a frame without the volume
   double origin[3] = {}, spacing[3] = {}, direction[9] = {};
   struct
   {
@@ -67,6 +68,11 @@ public:
    * @return what is wrong, the same on all ranks, or an empty string
    */
   std::string Agree(const RankReport& own);
+  /**
+   * Collective, in place of Agree(), on a rank that has rendered a frame without the volume.
+   * @return what is wrong, the same on all ranks, or an empty string if none has rendered it
+   */
+  std::string AgreeOnAbsence() const;
   /// Collective. The same of the grid alone.
   std::string AgreeOnGrid(const RankReport& own);
 

@@ -363,6 +363,55 @@ void testRefusals(Ranks& ranks, Scene& many, const std::vector<unsigned char>& e
   ranks.check(many.render() == expected, "after refusals the picture differs");
 }
 
+/// A rank that does not render the volume keeps no other waiting.
+void testAbsence(
+  Ranks& ranks, Scene& many, vtkImageData* whole, const std::vector<unsigned char>& expected)
+{
+  const bool last = ranks.own == ranks.count - 1;
+  vtkCamera* const camera = many.renderer->GetActiveCamera();
+  const auto hide = [&] { many.volume->VisibilityOff(); };
+  const auto cull = [&]
+  {
+    camera->SetPosition(1e4, 1e4, 1e4);
+    camera->SetFocalPoint(2e4, 1e4, 1e4);
+  };
+  const auto show = [&]
+  {
+    many.volume->VisibilityOn();
+    look(many, whole, 1);
+  };
+  const std::string absent = "Rank " + std::to_string(ranks.count - 1) + " does not render";
+  for (const bool hides : { true, false })
+  {
+    const int before = many.errors;
+    for (int frame = 0; frame < 3; ++frame)
+    {
+      if (last)
+      {
+        hides ? hide() : cull();
+      }
+      many.render();
+    }
+    ranks.check(many.errors == before + 1 && many.lastError.find(absent) != std::string::npos,
+      "a volume that one rank does not render is not told once but: " + many.lastError);
+    show();
+    ranks.check(many.render() == expected, "once all ranks render, the picture differs");
+    hides ? hide() : cull();
+    many.render();
+    ranks.check(many.errors == before + 1, "no rank renders: " + many.lastError);
+    show();
+    ranks.check(many.render() == expected, "after no rank has rendered, the picture differs");
+  }
+  // Without the volume, ranks are by themselves.
+  many.renderer->RemoveVolume(many.volume);
+  for (int frame = 0; frame < ranks.own; ++frame)
+  {
+    many.render();
+  }
+  many.renderer->AddVolume(many.volume);
+  ranks.check(many.render() == expected, "once the volume is back, the picture differs");
+}
+
 /// What is wrong on one rank is told by all, and all are well again when it is mended.
 void testProblems(Ranks& ranks)
 {
@@ -411,6 +460,7 @@ void testProblems(Ranks& ranks)
   many.mapper->SetInputDataObject(vtkSmartPointer<vtkImageData>::New());
   wrong("ranks with nothing", "No rank has any voxels");
   testRefusals(ranks, many, expected);
+  testAbsence(ranks, many, whole, expected);
   // One rank by itself again.
   many.mapper->SetController(nullptr);
   many.mapper->SetInputDataObject(whole);

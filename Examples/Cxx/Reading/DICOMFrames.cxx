@@ -35,7 +35,8 @@ const struct
   { DC::NominalCardiacTriggerDelayTime, "trigger delay" }, { DC::EchoTime, "echo time" },
   { DC::EffectiveEchoTime, "echo time" }, { DC::DiffusionBValue, "b value" },
   { DC::AcquisitionNumber, "acquisition" }, { DC::AcquisitionTime, "acquisition time" },
-  { DC::ContentTime, "time" }, { DC::ImageType, "image type" }, { DC::SOPInstanceUID, "object" } };
+  { DC::ContentTime, "time" }, { DC::ImageType, "image type" }, { DC::SOPInstanceUID, "object" },
+  { DC::InstanceNumber, "instance number" }, { DC::DimensionIndexValues, "dimension index" } };
 
 vtkDICOMValue Get(const DICOMFile& file, int frame, vtkDICOMTag tag)
 {
@@ -77,6 +78,7 @@ std::unique_ptr<DICOMFile> OpenFile(const std::string& path, const QuietReading&
   file->Reader = vtkSmartPointer<vtkDICOMReader>::New();
   file->Reader->SetFileName(path.c_str());
   file->Reader->SortingOff();
+  file->Reader->AutoRescaleOff(); // which clamps values to 16 bits
   file->Reader->SetMemoryRowOrderToFileNative();
   file->Reader->UpdateInformation();
   vtkDICOMMetaData* const elements = file->Reader->GetMetaData();
@@ -86,11 +88,25 @@ std::unique_ptr<DICOMFile> OpenFile(const std::string& path, const QuietReading&
   {
     RefuseDamaged(path, quiet);
   }
-  if (elements->Has(DC::DoseGridScaling))
+  if (elements->Get(DC::PhotometricInterpretation).AsString() == "PALETTE COLOR")
   {
-    file->Reader->SetOutputScalarType(
-      elements->Get(DC::BitsAllocated).AsInt() > 16 ? VTK_DOUBLE : VTK_FLOAT);
-    file->Reader->UpdateInformation();
+    Refuse(path,
+      "its values are indices of a palette (PALETTE COLOR); convert it to RGB, for example with "
+      "gdcmimg or dcmtk's dcmj2pnm.");
+  }
+  if (elements->Get(DC::ImageType).AsString().find("MOSAIC") != std::string::npos)
+  {
+    Refuse(path,
+      "this picture is a mosaic, with the slices of a volume side by side; convert the series "
+      "with dcm2niix.");
+  }
+  const int bits = elements->Get(DC::BitsStored).AsInt();
+  const int high =
+    std::min(elements->Get(DC::HighBit).AsInt(), elements->Get(DC::BitsAllocated).AsInt() - 1);
+  file->Shift = bits > 0 ? std::max(0, high + 1 - bits) : 0;
+  if (file->Shift > 0)
+  {
+    elements->Set(DC::BitsStored, high + 1); // the reader keeps the lowest bits
   }
   vtkInformation* const info = file->Reader->GetOutputInformation(0);
   file->ScalarType = vtkImageData::GetScalarType(info);
@@ -216,12 +232,36 @@ void CheckFrames(const DICOMFile& file, const std::vector<Vector3>& offsets)
 }
 
 /**
- * The frames at a place by what a tag says of them, if that tells them apart.
+ * Compares text of one or several numbers.
  */
-std::map<std::string, std::size_t> SortByTag(
+struct IsLess
+{
+  bool operator()(const std::string& a, const std::string& b) const
+  {
+    std::istringstream first(a), second(b);
+    std::string x, y;
+    while (std::getline(first, x, '\\') && std::getline(second, y, '\\'))
+    {
+      const double difference = std::atof(x.c_str()) - std::atof(y.c_str());
+      if (difference != 0.0)
+      {
+        return difference < 0.0;
+      }
+    }
+    return a < b;
+  }
+};
+
+/// Frames at a place by what a tag says of them.
+using Sorted = std::map<std::string, std::size_t, IsLess>;
+
+/**
+ * Empty if the tag does not tell them apart.
+ */
+Sorted SortByTag(
   const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& place, vtkDICOMTag tag)
 {
-  std::map<std::string, std::size_t> sorted;
+  Sorted sorted;
   for (const std::size_t i : place)
   {
     const vtkDICOMValue value = Get(*frames[i].File, frames[i].Number, tag);
@@ -230,39 +270,31 @@ std::map<std::string, std::size_t> SortByTag(
       sorted.emplace(value.AsString(), i);
     }
   }
-  return sorted.size() == place.size() ? sorted : std::map<std::string, std::size_t>();
-}
-
-std::set<std::string> GetKeys(const std::map<std::string, std::size_t>& sorted)
-{
-  std::set<std::string> keys;
-  for (const auto& entry : sorted)
-  {
-    keys.insert(entry.first);
-  }
-  return keys;
+  return sorted.size() == place.size() ? sorted : Sorted();
 }
 
 /**
- * What all frames have at the places of a stack, in the order of numbers where they are numbers, or
- * nothing if places differ.
+ * The frame of that number at each place, in the order of a tag that tells them apart, or none. The
+ * tag must have the same values at all places unless ranks are enough.
  */
-std::vector<std::string> FindKeys(const std::vector<DICOMFrame>& frames,
-  const std::vector<std::vector<std::size_t>>& places, vtkDICOMTag tag)
+std::vector<std::size_t> ChooseByTag(const std::vector<DICOMFrame>& frames,
+  const std::vector<std::vector<std::size_t>>& places, vtkDICOMTag tag, std::size_t number,
+  bool areRanksEnough)
 {
-  const auto keys = GetKeys(SortByTag(frames, places[0], tag));
+  std::vector<std::size_t> order;
+  const Sorted first = SortByTag(frames, places[0], tag);
   for (const auto& place : places)
   {
-    if (GetKeys(SortByTag(frames, place, tag)) != keys)
+    const Sorted sorted = SortByTag(frames, place, tag);
+    const bool isSame = std::equal(sorted.begin(), sorted.end(), first.begin(), first.end(),
+      [](const auto& a, const auto& b) { return a.first == b.first; });
+    if (sorted.empty() || !(isSame || areRanksEnough))
     {
       return {};
     }
+    order.push_back(std::next(sorted.begin(), static_cast<std::ptrdiff_t>(number))->second);
   }
-  std::vector<std::string> sorted(keys.begin(), keys.end());
-  std::stable_sort(sorted.begin(), sorted.end(),
-    [](const std::string& a, const std::string& b)
-    { return std::atof(a.c_str()) < std::atof(b.c_str()); });
-  return sorted;
+  return order;
 }
 
 /**
@@ -363,26 +395,27 @@ std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
 {
   CheckCounts(frames, places);
   const std::size_t count = places[0].size();
-  CheckFrame(frames[0].File->Path, number, static_cast<int>(count));
-  std::vector<std::size_t> order;
+  CheckChoice(frames[0].File->Path, "volume", number, static_cast<int>(count));
   const std::size_t chosen = number > 0 ? static_cast<std::size_t>(number) - 1 : 0;
-  for (const auto& [tag, name] : TimeTags)
+  for (const bool areRanksEnough : { false, true })
   {
-    const auto keys = count > 1 ? FindKeys(frames, places, tag) : std::vector<std::string>();
-    for (const auto& place : places)
+    for (const auto& [tag, name] : TimeTags)
     {
-      if (keys.size() == count)
+      const bool isRanked = tag != DC::ImageType && tag != DC::SOPInstanceUID;
+      const auto order = count > 1 && (isRanked || !areRanksEnough)
+        ? ChooseByTag(frames, places, tag, chosen, areRanksEnough)
+        : std::vector<std::size_t>();
+      if (!order.empty())
       {
-        order.push_back(SortByTag(frames, place, tag)[keys[chosen]]);
+        const DICOMFrame& first = frames[order[0]];
+        notes.push_back(DescribeChoice("volume", number, static_cast<int>(count)) + ", " +
+          (areRanksEnough ? std::string("by the order of ") + name + " at each place"
+                          : name + (" " + Get(*first.File, first.Number, tag).AsString())));
+        return order;
       }
     }
-    if (!order.empty())
-    {
-      notes.push_back("volume " + std::to_string(chosen + 1) + " of " + std::to_string(count) +
-        " (--frame chooses), " + name + " " + keys[chosen]);
-      return order;
-    }
   }
+  std::vector<std::size_t> order;
   for (const auto& place : places)
   {
     order.push_back(place[0]);
@@ -404,12 +437,6 @@ vtkImageData* ReadPixels(DICOMFile& file, const QuietReading& quiet)
   if (HasFailed(file.Reader.Get(), quiet) || image->GetNumberOfPoints() < 1)
   {
     RefuseDamaged(file.Path, quiet);
-  }
-  const double scale = Get(file, 0, DC::DoseGridScaling).AsDouble();
-  vtkDataArray* const values = image->GetPointData()->GetScalars();
-  for (vtkIdType i = 0; scale != 0.0 && i < values->GetNumberOfTuples(); ++i)
-  {
-    values->SetComponent(i, 0, scale * values->GetComponent(i, 0));
   }
   return image;
 }

@@ -25,6 +25,7 @@ struct DICOMFile
   vtkSmartPointer<vtkDICOMReader> Reader;
   int ScalarType;   // of the values, of which each pixel has so many
   int Components;   //
+  int Shift;        // bits of a pixel below the lowest of its code
   double Thickness; // of its slices, mm, or 1
 };
 

@@ -13,9 +13,13 @@
 #include "vtkNew.h"
 #include "vtkStringArray.h"
 
+#include <vtksys/SystemTools.hxx>
+
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 
 namespace
 {
@@ -87,25 +91,56 @@ std::vector<Series> FindSeries(const std::string& folder, const QuietReading& qu
 }
 
 /**
- * The series that a file belongs to, or else the largest.
+ * The series that a file belongs to, or for a folder the largest. Their number if there is none.
  */
 std::size_t FindDefault(const std::vector<Series>& all, const std::string& path)
 {
-  std::size_t largest = 0;
-  for (std::size_t i = 0; i < all.size(); ++i)
+  const std::string name = std::filesystem::path(path).filename().string();
+  if (std::filesystem::is_directory(path) || vtksys::SystemTools::UpperCase(name) == "DICOMDIR")
   {
-    for (const std::string& file : all[i].Files)
-    {
-      std::error_code error;
-      if (std::filesystem::equivalent(file, path, error))
-      {
-        return i;
-      }
-    }
-    largest = all[i].Bytes > all[largest].Bytes ? i : largest;
+    const auto largest = std::max_element(
+      all.begin(), all.end(), [](const Series& a, const Series& b) { return a.Bytes < b.Bytes; });
+    return static_cast<std::size_t>(largest - all.begin());
   }
-  return largest;
+  const auto found = std::find_if(all.begin(), all.end(),
+    [&](const Series& series)
+    {
+      return std::any_of(series.Files.begin(), series.Files.end(),
+        [&](const std::string& file)
+        {
+          std::error_code error;
+          return std::filesystem::equivalent(file, path, error);
+        });
+    });
+  return static_cast<std::size_t>(found - all.begin());
 }
+}
+
+std::string ExplainFile(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  std::string head(2048, '\0');
+  file.read(&head[0], static_cast<std::streamsize>(head.size()));
+  const std::string name = std::filesystem::path(path).filename().string();
+  if (head.compare(0, 2, "\x1F\x8B") == 0)
+  {
+    return name + " is compressed by gzip; unpack it with gunzip.";
+  }
+  if (head.compare(128, 4, "DICM") == 0)
+  {
+    return head.find("1.2.840.10008.1.2.1.99") == std::string::npos
+      ? ""
+      : name + " is deflated DICOM; convert it with DCMTK's dcmconv +te.";
+  }
+  // group 8 or 2, of an element below 0x100, with a type in two letters or a short length
+  const bool isBig = head[0] == 0;
+  const char group = head[isBig ? 1 : 0];
+  const bool isElement = (group == 8 || group == 2) && head[isBig ? 0 : 1] == 0 &&
+    head[isBig ? 2 : 3] == 0 &&
+    ((std::isupper(head[4]) && std::isupper(head[5])) || (head[6] == 0 && head[7] == 0));
+  return isElement
+    ? name + " looks like DICOM without a header; convert it with DCMTK's dcmconv +te."
+    : "";
 }
 
 bool IsDICOMFile(const std::string& path)
@@ -113,8 +148,30 @@ bool IsDICOMFile(const std::string& path)
   return vtkDICOMUtilities::IsDICOMFile(path.c_str());
 }
 
-std::vector<std::string> ChooseSeries(
-  const std::string& path, int number, const QuietReading& quiet, std::vector<std::string>& notes)
+namespace
+{
+/**
+ * The first explanation of a file, or of those in a folder.
+ */
+std::string ExplainFiles(const std::string& path)
+{
+  std::error_code error;
+  if (!std::filesystem::is_directory(path, error))
+  {
+    return ExplainFile(path);
+  }
+  std::string reason;
+  for (std::filesystem::recursive_directory_iterator entry(path, error), end;
+       reason.empty() && !error && entry != end; entry.increment(error))
+  {
+    reason = entry->is_regular_file(error) ? ExplainFile(entry->path().string()) : "";
+  }
+  return reason;
+}
+}
+
+std::vector<std::string> ChooseSeries(const std::string& path, int number,
+  const QuietReading& quiet, std::vector<std::string>& notes, std::vector<std::string>& files)
 {
   const bool isFolder = std::filesystem::is_directory(path);
   const std::string parent = std::filesystem::path(path).parent_path().string();
@@ -122,10 +179,15 @@ std::vector<std::string> ChooseSeries(
       : parent.empty()                                ? "."
                                                       : parent,
     quiet);
-  if (all.empty())
+  const std::size_t chosen =
+    number > 0 ? static_cast<std::size_t>(number) - 1 : FindDefault(all, path);
+  if (all.empty() || (number == 0 && chosen == all.size()))
   {
-    Refuse(
-      path, "no DICOM images here; give the folder of a CT or MR series, or one of its files.");
+    const std::string reason = ExplainFiles(path);
+    Refuse(path,
+      reason.empty() ? "no DICOM images here; give the folder of a CT or MR series, or one of its "
+                       "files."
+                     : reason);
   }
   if (number > static_cast<int>(all.size()))
   {
@@ -133,11 +195,13 @@ std::vector<std::string> ChooseSeries(
       "there is no series " + std::to_string(number) + " among " + std::to_string(all.size()) +
         "; leave --series out to see their list.");
   }
-  const std::size_t chosen =
-    number > 0 ? static_cast<std::size_t>(number) - 1 : FindDefault(all, path);
   if (all.size() > 1)
   {
     notes.push_back("there are " + std::to_string(all.size()) + " series (--series chooses):");
+  }
+  for (const Series& series : all)
+  {
+    files.insert(files.end(), series.Files.begin(), series.Files.end());
   }
   for (std::size_t i = 0; i < all.size() && all.size() > 1; ++i)
   {

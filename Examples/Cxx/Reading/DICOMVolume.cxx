@@ -4,13 +4,16 @@
 
 #include "ProgressLine.h"
 #include "Reading/DICOMFrames.h"
+#include "Reading/DICOMSegments.h"
 #include "Reading/DICOMSeries.h"
+#include "Reading/DICOMValues.h"
+#include "Reading/Placement.h"
 #include "Reading/Reading.h"
 #include "Reading/SliceStack.h"
 
 #include "vtkDICOMMetaData.h"
 #include "vtkDataArray.h"
-#include "vtkMath.h"
+#include "vtkImageCast.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 
@@ -21,61 +24,52 @@
 namespace
 {
 /**
- * The type that holds the values of all files.
+ * 16-bit integers where they hold the values that there are.
  */
-int FindScalarType(const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& order)
+vtkSmartPointer<vtkImageData> Narrow(vtkImageData* image)
 {
-  const auto getType = [&](std::size_t i) { return frames[i].File->ScalarType; };
-  const int type = getType(order[0]);
-  bool isSame = true, isShort = true;
-  for (const std::size_t i : order)
+  double range[2];
+  image->GetScalarRange(range);
+  if (image->GetScalarType() != VTK_INT || range[0] < VTK_SHORT_MIN ||
+    range[1] > VTK_UNSIGNED_SHORT_MAX || (range[0] < 0.0 && range[1] > VTK_SHORT_MAX))
   {
-    isSame = isSame && getType(i) == type;
-    isShort =
-      isShort && (getType(i) == VTK_FLOAT || vtkDataArray::GetDataTypeSize(getType(i)) <= 2);
+    return image;
   }
-  return isSame ? type : isShort ? VTK_FLOAT : VTK_DOUBLE;
-}
-
-/**
- * A component, from 0 on, of a frame of a file's image as a slice of a volume.
- */
-void CopySlice(vtkImageData* from, int frame, int component, vtkImageData* to, int slice)
-{
-  const int* const size = to->GetDimensions();
-  const vtkIdType count = vtkIdType(size[0]) * size[1];
-  vtkDataArray* const source = from->GetPointData()->GetScalars();
-  vtkDataArray* const target = to->GetPointData()->GetScalars();
-  if (source->GetDataType() == target->GetDataType() && source->GetNumberOfComponents() == 1)
-  {
-    target->InsertTuples(slice * count, count, frame * count, source);
-    return;
-  }
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    target->SetComponent(slice * count + i, 0, source->GetComponent(frame * count + i, component));
-  }
+  vtkNew<vtkImageCast> cast;
+  cast->SetInputData(image);
+  cast->SetOutputScalarType(range[1] > VTK_SHORT_MAX ? VTK_UNSIGNED_SHORT : VTK_SHORT);
+  cast->Update();
+  return cast->GetOutput();
 }
 
 /**
  * The frames in their order, each file read once.
  */
 vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
-  const std::vector<std::size_t>& order, int component, const QuietReading& quiet)
+  const std::vector<std::size_t>& order, bool hidesPadding, const QuietReading& quiet,
+  std::vector<std::string>& notes)
 {
+  std::vector<const DICOMFrame*> chosen;
+  std::vector<ValueMap> maps;
+  for (const std::size_t i : order)
+  {
+    chosen.push_back(&frames[i]);
+    maps.push_back(FindValueMap(frames[i], hidesPadding, notes));
+  }
   const SlicePlane& plane = frames[order[0]].Plane;
   const double voxels = double(plane.Size[0]) * plane.Size[1] * order.size();
   CheckMemory(voxels, frames[order[0]].File->Path);
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetDimensions(static_cast<int>(plane.Size[0]), static_cast<int>(plane.Size[1]),
     static_cast<int>(order.size()));
-  image->AllocateScalars(FindScalarType(frames, order), 1);
+  image->AllocateScalars(FindScalarType(chosen, maps), frames[order[0]].File->Components);
   std::map<DICOMFile*, std::vector<std::size_t>> slicesOf;
   for (std::size_t slice = 0; slice < order.size(); ++slice)
   {
     slicesOf[frames[order[slice]].File].push_back(slice);
   }
   ProgressLine line("reading slices");
+  SliceConverter converter;
   std::size_t done = 0;
   for (const auto& [file, slices] : slicesOf)
   {
@@ -83,12 +77,12 @@ vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
     vtkImageData* const found = ReadPixels(*file, quiet);
     for (const std::size_t slice : slices)
     {
-      CopySlice(found, frames[order[slice]].Number, component, image, static_cast<int>(slice));
+      converter.Convert(found, chosen[slice]->Number, maps[slice], image, static_cast<int>(slice));
     }
     file->Reader->GetOutput()->ReleaseData();
     done += slices.size();
   }
-  return image;
+  return Narrow(image);
 }
 
 /**
@@ -101,7 +95,8 @@ vtkSmartPointer<vtkImageData> Blend(
   CheckMemory(double(size[0]) * size[1] * slices.size(), "the volume");
   auto even = vtkSmartPointer<vtkImageData>::New();
   even->SetDimensions(size[0], size[1], static_cast<int>(slices.size()));
-  even->AllocateScalars(image->GetScalarType(), 1);
+  const int components = image->GetNumberOfScalarComponents();
+  even->AllocateScalars(image->GetScalarType(), components);
   vtkDataArray* const from = image->GetPointData()->GetScalars();
   vtkDataArray* const to = even->GetPointData()->GetScalars();
   const bool isWhole = image->GetScalarType() != VTK_FLOAT && image->GetScalarType() != VTK_DOUBLE;
@@ -118,61 +113,88 @@ vtkSmartPointer<vtkImageData> Blend(
       to->InsertTuples(start, count, weight == 0.0 ? first : second, from);
       continue;
     }
-    for (vtkIdType i = 0; i < count; ++i)
+    for (vtkIdType i = 0; i < count * components; ++i)
     {
-      const double a = from->GetComponent(first + i, 0), b = from->GetComponent(second + i, 0);
-      const double value = (1.0 - weight) * a + weight * b;
-      to->SetComponent(start + i, 0, isWhole ? std::round(value) : value);
+      const vtkIdType point = i / components;
+      const int n = static_cast<int>(i % components);
+      const double value = (1.0 - weight) * from->GetComponent(first + point, n) +
+        weight * from->GetComponent(second + point, n);
+      to->SetComponent(start + point, n, isWhole ? std::round(value) : value);
     }
   }
   return even;
 }
 
-void PlaceVolume(Volume& volume, const SlicePlane& plane, const SliceGrid& grid, double thickness)
+void Place(Volume& volume, const SlicePlane& plane, const SliceGrid& grid, double thickness)
 {
-  volume.Image->SetSpacing(
-    plane.Spacing[0], plane.Spacing[1], grid.Step > 0.0 ? grid.Step : thickness);
-  volume.Origin = plane.Position;
   volume.IsOriented = true;
   volume.IsInMillimeters = true;
-  volume.Orientation = vtkSmartPointer<vtkMatrix4x4>::New();
+  Steps steps;
   for (int row = 0; row < 3; ++row)
   {
-    volume.Orientation->SetElement(row, 0, plane.Row[row]);
-    volume.Orientation->SetElement(row, 1, plane.Column[row]);
-    volume.Orientation->SetElement(row, 2, grid.Direction[row]);
+    steps[0][row] = plane.Row[row] * plane.Spacing[0];
+    steps[1][row] = plane.Column[row] * plane.Spacing[1];
+    steps[2][row] = grid.Direction[row] * (grid.Step > 0.0 ? grid.Step : thickness);
   }
+  PlaceVolume(volume, steps, plane.Position);
+}
+
+std::vector<SlicePlane> GetPlanes(const std::vector<DICOMFrame>& frames)
+{
+  std::vector<SlicePlane> planes;
+  for (const DICOMFrame& frame : frames)
+  {
+    planes.push_back(frame.Plane);
+  }
+  return planes;
+}
+
+/**
+ * The frames that agree with most others: not a scout among slices.
+ */
+std::vector<DICOMFrame> ChooseStack(
+  const std::vector<DICOMFrame>& frames, std::vector<std::string>& notes)
+{
+  std::string note;
+  std::vector<DICOMFrame> chosen;
+  for (const std::size_t i : FindLargestStack(GetPlanes(frames), note))
+  {
+    chosen.push_back(frames[i]);
+  }
+  if (!note.empty())
+  {
+    notes.push_back(note);
+  }
+  return chosen;
 }
 }
 
 Volume ReadDICOM(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
   Volume volume;
-  const auto names = ChooseSeries(path, settings.Series, quiet, volume.Notes);
+  const auto names = ChooseSeries(path, settings.Series, quiet, volume.Notes, volume.Files);
   const auto files = OpenFiles(names, quiet, volume.Notes);
-  const std::vector<DICOMFrame> frames = FindFrames(files);
-  std::vector<SlicePlane> planes;
-  for (const DICOMFrame& frame : frames)
+  if (IsSegmentation(*files.front()))
   {
-    planes.push_back(frame.Plane);
+    Volume segments = ReadSegments(files, settings.Label, quiet);
+    segments.Notes.insert(segments.Notes.begin(), volume.Notes.begin(), volume.Notes.end());
+    segments.Files = volume.Files;
+    segments.Study = files.front()->Reader->GetMetaData();
+    return segments;
   }
+  const std::vector<DICOMFrame> frames = ChooseStack(FindFrames(files), volume.Notes);
+  const std::vector<SlicePlane> planes = GetPlanes(frames);
   const auto order = ChooseTime(frames, FindPlaces(planes), settings.Frame, volume.Notes);
   const SliceGrid grid = MakeGrid(planes, order);
-  const int components = files.front()->Components;
-  CheckComponent(path, settings.Component, components);
-  volume.Image = ReadFrames(frames, order, std::max(settings.Component, 1) - 1, quiet);
+  volume.Image = ReadFrames(frames, order, settings.HidesPadding, quiet, volume.Notes);
   if (!grid.Note.empty())
   {
     volume.Image = Blend(volume.Image, order, grid.Slices);
     volume.Notes.push_back(grid.Note);
     volume.Caution = "slices interpolated";
   }
-  if (components > 1)
-  {
-    volume.Notes.push_back(DescribeComponent(settings.Component, components));
-  }
   FindWindow(frames, order, volume.Window, volume.Level);
-  PlaceVolume(volume, planes[order[0]], grid, files.front()->Thickness);
+  Place(volume, planes[order[0]], grid, files.front()->Thickness);
   volume.Study = files.front()->Reader->GetMetaData();
   return volume;
 }

@@ -11,7 +11,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -52,41 +51,37 @@ std::string DescribeGrid(const Volume& volume)
 }
 
 /**
- * From the volume's voxels to the mask's, in whole numbers: each row has one 1 or -1, and an
- * offset. False if there is no such map.
+ * From the volume's voxels to the mask's.
  */
-bool FindVoxelMap(const Volume& volume, const Volume& mask, std::array<std::array<int, 4>, 3>& map)
+vtkSmartPointer<vtkMatrix4x4> FindVoxelMap(const Volume& volume, const Volume& mask)
 {
-  vtkNew<vtkMatrix4x4> exact, toMask;
+  auto toMask = vtkSmartPointer<vtkMatrix4x4>::New();
   vtkMatrix4x4::Invert(MakeIndexToPatient(mask), toMask);
-  vtkMatrix4x4::Multiply4x4(toMask, MakeIndexToPatient(volume), exact);
-  const int* const size = volume.Image->GetDimensions();
-  const int* const maskSize = mask.Image->GetDimensions();
-  for (int row = 0; row < 3; ++row)
+  vtkMatrix4x4::Multiply4x4(toMask, MakeIndexToPatient(volume), toMask);
+  return toMask;
+}
+
+/**
+ * Whether both have the same voxels: corners are corners, in any order.
+ */
+bool HaveSameVoxels(vtkMatrix4x4* toMask, const int size[3], const int maskSize[3])
+{
+  for (int corner = 0; corner < 8; ++corner)
   {
-    double error = 0.0; // at the farthest corner
-    int steps = 0, length = 0;
-    for (int column = 0; column < 4; ++column)
+    double place[4] = { corner & 1 ? size[0] - 1.0 : 0.0, corner & 2 ? size[1] - 1.0 : 0.0,
+      corner & 4 ? size[2] - 1.0 : 0.0, 1.0 };
+    toMask->MultiplyPoint(place, place);
+    for (int axis = 0; axis < 3; ++axis)
     {
-      const double element = exact->GetElement(row, column);
-      const double whole = std::clamp(std::round(element), -1e6, 1e6);
-      map[row][column] = static_cast<int>(whole);
-      error += std::fabs(element - whole) * (column < 3 ? size[column] - 1 : 1);
-      if (column < 3 && map[row][column] != 0)
+      const double end = 2.0 * place[axis] < maskSize[axis] - 1 ? 0.0 : maskSize[axis] - 1.0;
+      if (!(std::fabs(place[axis] - end) < Tolerance))
       {
-        ++steps;
-        length = std::abs(map[row][column]) == 1 ? size[column] : 0;
+        return false;
       }
     }
-    const auto& axis = map[row];
-    const bool isReversed = axis[0] + axis[1] + axis[2] < 0;
-    if (!(error < Tolerance) || steps != 1 || length != maskSize[row] ||
-      axis[3] != (isReversed ? length - 1 : 0))
-    {
-      return false;
-    }
   }
-  return true;
+  return vtkIdType(size[0]) * size[1] * size[2] ==
+    vtkIdType(maskSize[0]) * maskSize[1] * maskSize[2];
 }
 
 /**
@@ -133,19 +128,20 @@ vtkUnsignedCharArray* GetHiding(vtkImageData* image)
 
 void ApplyMask(const MaskSettings& settings, Volume& volume)
 {
-  const Volume mask = ReadVolume(settings.Path, {});
-  std::array<std::array<int, 4>, 3> map;
-  if (!FindVoxelMap(volume, mask, map))
-  {
-    Refuse(settings.Path,
-      "this mask has other voxels than the volume: " + DescribeGrid(mask) +
-        ", where the volume has " + DescribeGrid(volume) +
-        "; resample the mask to the volume's voxels.");
-  }
+  ReadSettings read;
+  read.Label = settings.Label;
+  const Volume mask = ReadVolume(settings.Path, read);
+  volume.Files.insert(volume.Files.end(), mask.Files.begin(), mask.Files.end());
+  const auto toMask = FindVoxelMap(volume, mask);
   vtkDataArray* const labels = mask.Image->GetPointData()->GetScalars();
   vtkUnsignedCharArray* const hiding = GetHiding(volume.Image);
   const int* const size = volume.Image->GetDimensions();
   const int* const maskSize = mask.Image->GetDimensions();
+  if (!HaveSameVoxels(toMask, size, maskSize))
+  {
+    volume.Notes.push_back("the mask has other voxels than the volume: " + DescribeGrid(mask) +
+      ", where the volume has " + DescribeGrid(volume) + "; the nearest were taken");
+  }
   vtkIdType point = 0, shown = 0;
   for (int k = 0; k < size[2]; ++k)
   {
@@ -153,11 +149,16 @@ void ApplyMask(const MaskSettings& settings, Volume& volume)
     {
       for (int i = 0; i < size[0]; ++i, ++point)
       {
-        const auto place = [&](int axis) {
-          return vtkIdType(map[axis][0] * i + map[axis][1] * j + map[axis][2] * k + map[axis][3]);
-        };
-        const double label =
-          labels->GetComponent((place(2) * maskSize[1] + place(1)) * maskSize[0] + place(0), 0);
+        double place[4] = { double(i), double(j), double(k), 1.0 };
+        toMask->MultiplyPoint(place, place);
+        vtkIdType index = 0;
+        for (int axis = 2; axis >= 0 && index >= 0; --axis)
+        {
+          const double whole = std::round(place[axis]);
+          const bool isInside = whole >= 0.0 && whole < maskSize[axis];
+          index = isInside ? index * maskSize[axis] + vtkIdType(whole) : -1;
+        }
+        const double label = index >= 0 ? labels->GetComponent(index, 0) : 0.0;
         const bool isShown = settings.Label ? label == settings.Label : label != 0.0;
         shown += isShown;
         if (!isShown)
@@ -170,7 +171,7 @@ void ApplyMask(const MaskSettings& settings, Volume& volume)
   if (shown == 0)
   {
     Refuse(settings.Path,
-      "this mask shows nothing; its labels are " + ListLabels(labels) +
+      "this mask shows nothing of the volume; its labels are " + ListLabels(labels) +
         ", so give one of them as --label.");
   }
   volume.Notes.push_back("the mask shows " + std::to_string(shown) + " of " +

@@ -17,8 +17,9 @@ struct MaskSettings
 };
 
 /**
- * Hides the voxels that a mask does not show. Its voxels must be those of the volume, in any order
- * of axes and directions. Throws std::runtime_error with one sentence.
+ * Hides the voxels that a mask does not show: each whose nearest voxel of the mask is none of
+ * those, or lies outside it. A note says so if their voxels differ. Throws std::runtime_error with
+ * one sentence.
  */
 void ApplyMask(const MaskSettings& settings, Volume& volume);
 

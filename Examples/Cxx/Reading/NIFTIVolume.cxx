@@ -2,32 +2,80 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reading/NIFTIVolume.h"
 
-#include "Reading/FileHeaders.h"
-#include "Reading/Orientation.h"
+#include "Reading/Placement.h"
 #include "Reading/Reading.h"
 
-#include "vtkImageExtractComponents.h"
-#include "vtkImageShiftScale.h"
-#include "vtkNIFTIImageHeader.h"
-#include "vtkNIFTIImageReader.h"
-#include "vtkNew.h"
+#include "vtkDataArray.h"
+#include "vtkPointData.h"
+
+#include <nifti2_io.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 
 namespace
 {
-/**
- * One of several volumes, which take as much memory as all while they are read.
- */
-vtkSmartPointer<vtkImageData> ExtractVolume(vtkImageData* image, int number, int count)
+struct Free
 {
-  const int components = image->GetNumberOfScalarComponents() / count;
-  vtkNew<vtkImageExtractComponents> extract;
-  extract->SetInputData(image);
-  extract->SetComponents((number - 1) * components);
-  extract->Update();
-  return extract->GetOutput();
+  void operator()(nifti_image* image) const { nifti_image_free(image); }
+};
+
+struct Type
+{
+  int Code;
+  int VTKType;
+  int Components;
+};
+
+constexpr Type Types[] = { { DT_UINT8, VTK_UNSIGNED_CHAR, 1 }, { DT_INT8, VTK_SIGNED_CHAR, 1 },
+  { DT_INT16, VTK_SHORT, 1 }, { DT_UINT16, VTK_UNSIGNED_SHORT, 1 }, { DT_INT32, VTK_INT, 1 },
+  { DT_UINT32, VTK_UNSIGNED_INT, 1 }, { DT_INT64, VTK_LONG_LONG, 1 },
+  { DT_UINT64, VTK_UNSIGNED_LONG_LONG, 1 }, { DT_FLOAT32, VTK_FLOAT, 1 },
+  { DT_FLOAT64, VTK_DOUBLE, 1 }, { DT_RGB24, VTK_UNSIGNED_CHAR, 3 },
+  { DT_RGBA32, VTK_UNSIGNED_CHAR, 4 }, { DT_COMPLEX64, VTK_FLOAT, 2 },
+  { DT_COMPLEX128, VTK_DOUBLE, 2 } };
+
+const Type& FindType(const nifti_image& header, const std::string& path)
+{
+  const auto* const type = std::find_if(std::begin(Types), std::end(Types),
+    [&](const Type& other) { return other.Code == header.datatype; });
+  if (type == std::end(Types))
+  {
+    Refuse(path,
+      std::string("values of type ") + nifti_datatype_string(header.datatype) + " (datatype " +
+        std::to_string(header.datatype) + ") are not supported; save the volume as float.");
+  }
+  return *type;
+}
+
+/**
+ * One of the volumes along the axes beyond the third, from 0 on; nullptr if it is incomplete.
+ */
+vtkSmartPointer<vtkImageData> ReadFrame(nifti_image* header, std::int64_t number, const Type& type)
+{
+  std::int64_t place[8] = { 7, -1, -1, -1, 0, 0, 0, 0 }; // -1: all
+  for (int axis = 4; axis <= header->ndim; ++axis)
+  {
+    place[axis] = number % header->dim[axis];
+    number /= header->dim[axis];
+  }
+  void* values = nullptr;
+  if (nifti_read_collapsed_image(header, place, &values) <= 0)
+  {
+    return nullptr;
+  }
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(int(header->nx), int(header->ny), int(header->nz));
+  const auto scalars =
+    vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type.VTKType));
+  scalars->SetNumberOfComponents(type.Components);
+  scalars->SetVoidArray(
+    values, image->GetNumberOfPoints() * type.Components, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
+  scalars->SetName("values");
+  image->GetPointData()->SetScalars(scalars);
+  return image;
 }
 
 /**
@@ -35,61 +83,67 @@ vtkSmartPointer<vtkImageData> ExtractVolume(vtkImageData* image, int number, int
  */
 vtkSmartPointer<vtkImageData> Scale(vtkImageData* image, double slope, double intercept)
 {
-  const int bytes = image->GetScalarSize();
-  vtkNew<vtkImageShiftScale> scale;
-  scale->SetInputData(image);
-  scale->SetShift(intercept / slope);
-  scale->SetScale(slope);
-  scale->SetOutputScalarType(
-    image->GetScalarType() == VTK_FLOAT || bytes <= 2 ? VTK_FLOAT : VTK_DOUBLE);
-  scale->Update();
-  return scale->GetOutput();
+  const bool isFloat = image->GetScalarType() == VTK_FLOAT || image->GetScalarSize() <= 2;
+  auto scaled = vtkSmartPointer<vtkImageData>::New();
+  scaled->CopyStructure(image);
+  scaled->AllocateScalars(isFloat ? VTK_FLOAT : VTK_DOUBLE, 1);
+  vtkDataArray* const from = image->GetPointData()->GetScalars();
+  vtkDataArray* const to = scaled->GetPointData()->GetScalars();
+  for (vtkIdType i = 0; i < from->GetNumberOfTuples(); ++i)
+  {
+    to->SetComponent(i, 0, slope * from->GetComponent(i, 0) + intercept);
+  }
+  return scaled;
 }
 
 /**
- * How long one of the header's units of length is: metres, millimetres or micrometres.
+ * Whether the axes of a matrix span space.
  */
-double GetMillimeters(int unit)
+bool IsUsable(const nifti_dmat44& matrix)
 {
-  return unit == 1 ? 1000.0 : unit == 3 ? 0.001 : 1.0;
+  nifti_dmat33 axes;
+  for (int column = 0; column < 3; ++column)
+  {
+    const double length = std::hypot(matrix.m[0][column], matrix.m[1][column], matrix.m[2][column]);
+    for (int row = 0; row < 3; ++row)
+    {
+      axes.m[row][column] = matrix.m[row][column] / length;
+    }
+  }
+  return std::fabs(nifti_dmat33_determ(axes)) > 1e-3; // false for NaN
 }
 
 /**
- * Millimetres: the header may count in metres or micrometres, and the columns of an sform may be
- * longer than 1, so that voxels are larger than the header's pixdim.
+ * The sform as it stands, else the qform, else the voxel size alone.
  */
-void ScaleSpacing(vtkImageData* image, vtkMatrix4x4* columns, int unit)
+void Place(Volume& volume, const nifti_image& header)
 {
-  double spacing[3];
-  image->GetSpacing(spacing);
-  for (int axis = 0; axis < 3; ++axis)
+  const nifti_dmat44* const form = header.sform_code > 0 && IsUsable(header.sto_xyz)
+    ? &header.sto_xyz
+    : header.qform_code > 0 && IsUsable(header.qto_xyz) ? &header.qto_xyz
+                                                        : nullptr;
+  Steps steps = { { { std::fabs(header.dx), 0.0, 0.0 }, { 0.0, std::fabs(header.dy), 0.0 },
+    { 0.0, 0.0, std::fabs(header.dz) } } };
+  std::array<double, 3> origin = {};
+  for (int row = 0; row < 3 && form; ++row)
   {
-    spacing[axis] *= GetMillimeters(unit);
-    spacing[axis] *= columns ? std::hypot(columns->GetElement(0, axis),
-                                 columns->GetElement(1, axis), columns->GetElement(2, axis))
-                             : 1.0;
+    for (int column = 0; column < 3; ++column)
+    {
+      steps[column][row] = form->m[row][column];
+    }
+    origin[row] = form->m[row][3];
   }
-  image->SetSpacing(spacing);
-}
-
-void PlaceVolume(Volume& volume, vtkNIFTIImageReader* reader)
-{
-  vtkMatrix4x4* const columns =
-    reader->GetSFormMatrix() ? reader->GetSFormMatrix() : reader->GetQFormMatrix();
-  volume.Orientation = MakeOrientation(columns, true);
-  volume.IsOriented = columns != nullptr;
-  volume.IsInMillimeters = true;
-  const int unit = reader->GetNIFTIHeader()->GetXYZTUnits() & 7;
-  ScaleSpacing(volume.Image, columns, unit);
-  for (int axis = 0; columns && axis < 3; ++axis)
+  TurnToLPS(steps, origin);
+  volume.IsOriented = form != nullptr;
+  PlaceVolume(volume, steps, origin);
+  ConvertToMillimeters(volume,
+    header.xyz_units == NIFTI_UNITS_METER      ? "m"
+      : header.xyz_units == NIFTI_UNITS_MICRON ? "um"
+                                               : "mm");
+  if (!form)
   {
-    volume.Origin[axis] =
-      (axis < 2 ? -1.0 : 1.0) * GetMillimeters(unit) * columns->GetElement(axis, 3);
-  }
-  if (!columns)
-  {
-    volume.Notes.push_back("the file does not say how the patient lies; left and right may be "
-                           "exchanged");
+    volume.Notes.push_back(
+      "the file does not say how the patient lies; left and right may be exchanged");
     volume.Caution = "orientation unknown";
   }
 }
@@ -97,34 +151,35 @@ void PlaceVolume(Volume& volume, vtkNIFTIImageReader* reader)
 
 Volume ReadNIFTI(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
-  if (!HasSoundNIFTIHeader(path))
+  const SilentErrors silent; // the library prints errors at any debug level
+  const std::unique_ptr<nifti_image, Free> header(nifti_image_read(path.c_str(), 0));
+  const auto isSound = [](std::int64_t size) { return size >= 1 && size <= VTK_INT_MAX; };
+  if (!header || !isSound(header->nx) || !isSound(header->ny) || !isSound(header->nz))
   {
     RefuseDamaged(path, quiet);
   }
-  vtkNew<vtkNIFTIImageReader> reader;
-  reader->SetFileName(path.c_str());
-  reader->SetTimeAsVector(settings.Frame > 1);
-  reader->UpdateInformation();
-  const int count = std::max(1, reader->GetTimeDimension());
-  CheckFrame(path, settings.Frame, count);
+  const Type& type = FindType(*header, path);
+  CheckMemory(double(header->nx) * double(header->ny) * double(header->nz), path);
+  const int count = static_cast<int>(header->nvox / (header->nx * header->ny * header->nz));
+  CheckChoice(path, "volume", settings.Frame, count);
   Volume volume;
-  volume.Image = RunReader(reader, path, quiet);
   if (count > 1)
   {
-    const int number = std::max(1, settings.Frame);
-    volume.Image = number > 1 ? ExtractVolume(volume.Image, number, count) : volume.Image;
-    volume.Notes.push_back(
-      "volume " + std::to_string(number) + " of " + std::to_string(count) + " (--frame chooses)");
+    volume.Notes.push_back(DescribeChoice("volume", settings.Frame, count));
   }
-  const double slope = reader->GetRescaleSlope(), intercept = reader->GetRescaleIntercept();
+  volume.Image = ReadFrame(header.get(), std::max(1, settings.Frame) - 1, type);
+  if (!volume.Image)
+  {
+    RefuseDamaged(path, quiet);
+  }
+  const double slope = header->scl_slope, intercept = header->scl_inter;
   if (std::isfinite(slope) && std::isfinite(intercept) && slope != 0.0 &&
-    (slope != 1.0 || intercept != 0.0))
+    (slope != 1.0 || intercept != 0.0) && type.Components == 1)
   {
     volume.Image = Scale(volume.Image, slope, intercept);
   }
-  PlaceVolume(volume, reader);
-  const double low = reader->GetNIFTIHeader()->GetCalMin();
-  const double high = reader->GetNIFTIHeader()->GetCalMax();
+  Place(volume, *header);
+  const double low = header->cal_min, high = header->cal_max;
   volume.Window = high > low && std::isfinite(high - low) ? high - low : 0.0;
   volume.Level = 0.5 * (low + high);
   return volume;

@@ -5,8 +5,20 @@
 #include "vtkObjectFactory.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <iostream>
 #include <vector>
+
+#include <fcntl.h>
+#ifdef _WIN32
+#include <io.h>
+#define close _close
+#define dup _dup
+#define dup2 _dup2
+#define open _open
+#else
+#include <unistd.h>
+#endif
 
 /**
  * Collects VTK's messages instead of showing them.
@@ -79,4 +91,24 @@ std::string QuietReading::GetReason() const
   std::replace_if(
     text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return text.empty() ? "" : " (" + text + ")";
+}
+
+SilentErrors::SilentErrors()
+{
+#ifdef _WIN32
+  const int nowhere = open("NUL", _O_WRONLY);
+#else
+  const int nowhere = open("/dev/null", O_WRONLY);
+#endif
+  std::fflush(stderr);
+  this->Saved = dup(2);
+  dup2(nowhere, 2);
+  close(nowhere);
+}
+
+SilentErrors::~SilentErrors()
+{
+  std::fflush(stderr);
+  dup2(this->Saved, 2);
+  close(this->Saved);
 }

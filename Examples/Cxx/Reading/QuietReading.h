@@ -36,6 +36,11 @@ public:
    */
   std::string GetReason() const;
 
+  /**
+   * What libraries have written to the standard streams.
+   */
+  std::string GetPrinted() const { return this->Sink.str(); }
+
 private:
   vtkSmartPointer<MessageCollector> Collector;
   vtkSmartPointer<vtkOutputWindow> Window;
@@ -43,6 +48,21 @@ private:
   std::ostringstream Sink;
   std::streambuf* Cout;
   std::streambuf* Cerr;
+};
+
+/**
+ * In its scope nothing that a C library prints reaches stderr.
+ */
+class SilentErrors
+{
+public:
+  SilentErrors();
+  ~SilentErrors();
+  SilentErrors(const SilentErrors&) = delete;
+  SilentErrors& operator=(const SilentErrors&) = delete;
+
+private:
+  int Saved; // file descriptor
 };
 
 #endif

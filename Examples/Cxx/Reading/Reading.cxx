@@ -2,50 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reading/Reading.h"
 
-#include "ProgressLine.h"
-
-#include "vtkCallbackCommand.h"
-#include "vtkCommand.h"
-#include "vtkDataArray.h"
-#include "vtkInformation.h"
+#include "vtkImageExtractComponents.h"
 #include "vtkNew.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <vtksys/SystemInformation.hxx>
 
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
 #include <stdexcept>
 
 namespace
 {
-/**
- * The number of voxels that a reader has announced.
- */
-std::uintmax_t CheckExtent(vtkInformation* info, const std::string& path, const QuietReading& quiet)
+std::string GetOption(const std::string& what)
 {
-  const int* extent = info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
-  double voxels = 1.0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double first = extent ? extent[2 * axis] : 0.0;
-    const double last = extent ? extent[2 * axis + 1] : -1.0;
-    if (last < first)
-    {
-      RefuseDamaged(path, quiet);
-    }
-    voxels *= last - first + 1.0;
-  }
-  CheckMemory(voxels, path);
-  return static_cast<std::uintmax_t>(voxels);
+  return what == "volume" ? "--frame" : "--" + what;
 }
-
-void ShowProgress(vtkObject* caller, unsigned long, void* line, void*)
-{
-  static_cast<ProgressLine*>(line)->Show(static_cast<vtkAlgorithm*>(caller)->GetProgress());
-}
-
 }
 
 void Refuse(const std::string& path, const std::string& reason)
@@ -60,30 +30,29 @@ void RefuseDamaged(const std::string& path, const QuietReading& quiet)
       "; check it, or export the volume again.");
 }
 
-void CheckFrame(const std::string& path, int number, int count)
+void CheckChoice(const std::string& path, const std::string& what, int number, int count)
 {
   if (number > count)
   {
     Refuse(path,
-      "there is no volume " + std::to_string(number) + " here, only " + std::to_string(count) +
-        "; give another --frame.");
+      "there is no " + what + " " + std::to_string(number) + " here, only " +
+        std::to_string(count) + "; give another " + GetOption(what) + ".");
   }
 }
 
-void CheckComponent(const std::string& path, int number, int count)
+std::string DescribeChoice(const std::string& what, int number, int count)
 {
-  if (number > count)
-  {
-    Refuse(path,
-      "there is no component " + std::to_string(number) + " here, only " + std::to_string(count) +
-        "; give another --component.");
-  }
+  return what + " " + std::to_string(std::max(number, 1)) + " of " + std::to_string(count) + " (" +
+    GetOption(what) + " chooses)";
 }
 
-std::string DescribeComponent(int number, int count)
+vtkSmartPointer<vtkImageData> ExtractComponent(vtkImageData* image, int number)
 {
-  return "component " + std::to_string(std::max(number, 1)) + " of " + std::to_string(count) +
-    " (--component chooses)";
+  vtkNew<vtkImageExtractComponents> extract;
+  extract->SetInputData(image);
+  extract->SetComponents(number - 1);
+  extract->Update();
+  return extract->GetOutput();
 }
 
 std::string JoinWords(const std::vector<std::string>& words)
@@ -108,40 +77,4 @@ void CheckMemory(double voxels, const std::string& path)
       "the header asks for more voxels than this machine has bytes of memory; it is damaged, or "
       "the volume must be reduced first.");
   }
-}
-
-vtkSmartPointer<vtkImageData> RunReader(vtkAlgorithm* reader, const std::string& path,
-  const QuietReading& quiet, const TextHeader* header)
-{
-  ProgressLine line("reading " + std::filesystem::path(path).filename().string());
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetCallback(ShowProgress);
-  observer->SetClientData(&line);
-  reader->AddObserver(vtkCommand::ProgressEvent, observer);
-
-  reader->UpdateInformation();
-  vtkInformation* info = reader->GetOutputInformation(0);
-  if (HasFailed(reader, quiet) || !info)
-  {
-    RefuseDamaged(path, quiet);
-  }
-  const std::uintmax_t voxels = CheckExtent(info, path, quiet);
-  const auto components =
-    static_cast<std::uintmax_t>(vtkImageData::GetNumberOfScalarComponents(info));
-  const int bytes = vtkDataArray::GetDataTypeSize(vtkImageData::GetScalarType(info));
-  if (header && !header->HasData(voxels * components, static_cast<std::uintmax_t>(bytes)))
-  {
-    RefuseDamaged(path, quiet);
-  }
-  reader->Update();
-  reader->RemoveObserver(observer);
-
-  auto* image = vtkImageData::SafeDownCast(reader->GetOutputDataObject(0));
-  if (HasFailed(reader, quiet) || !image || image->GetNumberOfPoints() < 1)
-  {
-    RefuseDamaged(path, quiet);
-  }
-  auto copy = vtkSmartPointer<vtkImageData>::New();
-  copy->ShallowCopy(image);
-  return copy;
 }

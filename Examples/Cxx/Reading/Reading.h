@@ -3,10 +3,8 @@
 #ifndef Reading_h
 #define Reading_h
 
-#include "Reading/FileHeaders.h"
 #include "Reading/QuietReading.h"
 
-#include "vtkAlgorithm.h"
 #include "vtkErrorCode.h"
 #include "vtkImageData.h"
 #include "vtkSmartPointer.h"
@@ -26,16 +24,20 @@
 void CheckMemory(double voxels, const std::string& path);
 
 /**
- * Refuse a number (from 1 on, or 0 for any) of a volume, or of a component, that a file does not
- * have.
+ * Refuse a number (from 1 on, or 0 for any) of one of several volumes, channels or components that
+ * a file does not have.
  */
-void CheckFrame(const std::string& path, int number, int count);
-void CheckComponent(const std::string& path, int number, int count);
+void CheckChoice(const std::string& path, const std::string& what, int number, int count);
 
 /**
- * What is said of one component (from 1 on, or 0 for the first) of several.
+ * A note about one (from 1 on, or 0 for the first) of several, with the option that chooses.
  */
-std::string DescribeComponent(int number, int count);
+std::string DescribeChoice(const std::string& what, int number, int count);
+
+/**
+ * One of the components of an image, from 1 on.
+ */
+vtkSmartPointer<vtkImageData> ExtractComponent(vtkImageData* image, int number);
 
 /**
  * As in ".a, .b or .c".
@@ -47,12 +49,5 @@ bool HasFailed(Reader* reader, const QuietReading& quiet)
 {
   return quiet.HasErrors() || reader->GetErrorCode() != vtkErrorCode::NoError;
 }
-
-/**
- * Run one of VTK's readers to its image; whatever goes wrong becomes one sentence. The header,
- * where the format has one, tells whether the data are complete.
- */
-vtkSmartPointer<vtkImageData> RunReader(vtkAlgorithm* reader, const std::string& path,
-  const QuietReading& quiet, const TextHeader* header = nullptr);
 
 #endif

@@ -91,84 +91,27 @@ bool HaveSameSpacing(const SlicePlane& a, const SlicePlane& b)
   return isSame(0) && isSame(1);
 }
 
-bool HaveSameSize(const SlicePlane& a, const SlicePlane& b)
-{
-  return a.Size == b.Size;
-}
-
 /**
- * One plane of the most that are alike, and one of the fewest: the same if all are alike.
+ * How a plane differs from the usual ones.
  */
-struct Kinds
+std::string DescribeDifference(const SlicePlane& odd, const SlicePlane& usual)
 {
-  const SlicePlane* Usual;
-  const SlicePlane* Odd;
-  std::size_t NumberOfOdd;
-};
-
-template <class Alike>
-Kinds FindKinds(const std::vector<SlicePlane>& planes, Alike areAlike)
-{
-  std::vector<std::pair<const SlicePlane*, std::size_t>> kinds;
-  for (const SlicePlane& plane : planes)
-  {
-    const auto kind = std::find_if(
-      kinds.begin(), kinds.end(), [&](const auto& other) { return areAlike(*other.first, plane); });
-    if (kind == kinds.end())
-    {
-      kinds.emplace_back(&plane, 1);
-    }
-    else
-    {
-      ++kind->second;
-    }
-  }
-  const auto isLess = [](const auto& a, const auto& b) { return a.second < b.second; };
-  const auto usual = std::max_element(kinds.begin(), kinds.end(), isLess);
-  const auto odd = std::min_element(kinds.rbegin(), kinds.rend(), isLess);
-  return { usual->first, odd->first, planes.size() - usual->second };
-}
-
-/**
- * Refuse planes of several kinds; what says in what the odd one differs from the usual one.
- */
-template <class Alike, class Difference>
-void RequireAlike(const std::vector<SlicePlane>& planes, Alike areAlike, Difference what)
-{
-  const Kinds kinds = FindKinds(planes, areAlike);
-  if (kinds.Odd == kinds.Usual)
-  {
-    return;
-  }
   std::ostringstream text;
-  text << "this slice, " << At(*kinds.Odd) << ", ";
-  what(text, *kinds.Odd, *kinds.Usual);
-  text << ", and does not fit most of the " << planes.size() << " slices";
-  if (kinds.NumberOfOdd > 1)
+  if (!HaveSameOrientation(odd, usual))
   {
-    text << " (nor do " << kinds.NumberOfOdd - 1 << " more)";
+    text << "is turned by " << GetAngle(odd, usual) << " degrees";
   }
-  text << "; move what does not belong to the volume out of the folder, or choose another series.";
-  RefusePlane(*kinds.Odd, text.str());
-}
-
-void CheckAlike(const std::vector<SlicePlane>& planes)
-{
-  RequireAlike(planes, HaveSameOrientation,
-    [](std::ostream& text, const SlicePlane& odd, const SlicePlane& usual)
-    { text << "is turned by " << GetAngle(odd, usual) << " degrees"; });
-  RequireAlike(planes, HaveSameSize,
-    [](std::ostream& text, const SlicePlane& odd, const SlicePlane& usual)
-    {
-      text << "has " << odd.Size[0] << " x " << odd.Size[1] << " pixels, not " << usual.Size[0]
-           << " x " << usual.Size[1];
-    });
-  RequireAlike(planes, HaveSameSpacing,
-    [](std::ostream& text, const SlicePlane& odd, const SlicePlane& usual)
-    {
-      text << "has pixels of " << odd.Spacing[0] << " x " << odd.Spacing[1] << " mm, not "
-           << usual.Spacing[0] << " x " << usual.Spacing[1];
-    });
+  else if (odd.Size != usual.Size)
+  {
+    text << "has " << odd.Size[0] << " x " << odd.Size[1] << " pixels, not " << usual.Size[0]
+         << " x " << usual.Size[1];
+  }
+  else
+  {
+    text << "has pixels of " << odd.Spacing[0] << " x " << odd.Spacing[1] << " mm, not "
+         << usual.Spacing[0] << " x " << usual.Spacing[1];
+  }
+  return text.str();
 }
 
 double GetMedian(std::vector<double> values)
@@ -342,9 +285,35 @@ void CheckCount(
 }
 }
 
+std::vector<std::size_t> FindLargestStack(const std::vector<SlicePlane>& planes, std::string& note)
+{
+  std::vector<std::vector<std::size_t>> kinds;
+  for (std::size_t i = 0; i < planes.size(); ++i)
+  {
+    const auto kind = std::find_if(kinds.begin(), kinds.end(),
+      [&](const auto& other)
+      {
+        const SlicePlane& first = planes[other.front()];
+        return HaveSameOrientation(first, planes[i]) && first.Size == planes[i].Size &&
+          HaveSameSpacing(first, planes[i]);
+      });
+    (kind == kinds.end() ? *kinds.insert(kind, std::vector<std::size_t>()) : *kind).push_back(i);
+  }
+  const auto usual = std::max_element(
+    kinds.begin(), kinds.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  const auto odd = usual == kinds.begin() ? kinds.end() - 1 : kinds.begin();
+  if (kinds.size() > 1)
+  {
+    const SlicePlane& plane = planes[odd->front()];
+    note = "only the largest stack is shown; " + std::to_string(planes.size() - usual->size()) +
+      " of " + std::to_string(planes.size()) + " slices do not fit, such as " + Describe(plane) +
+      ", which " + DescribeDifference(plane, planes[usual->front()]);
+  }
+  return *usual;
+}
+
 std::vector<std::vector<std::size_t>> FindPlaces(const std::vector<SlicePlane>& planes)
 {
-  CheckAlike(planes);
   const Vector3 normal = GetNormal(planes[0]);
   std::vector<std::pair<double, std::size_t>> heights;
   for (std::size_t i = 0; i < planes.size(); ++i)

@@ -24,8 +24,14 @@ struct SlicePlane
 };
 
 /**
- * The planes at each place, numbers of the given ones, in the order of the places along the normal.
- * Throws std::runtime_error with one sentence if planes differ in orientation, pixels or size.
+ * The largest number of planes that agree in orientation, pixels and size, numbers of the given
+ * ones. A note says which do not.
+ */
+std::vector<std::size_t> FindLargestStack(const std::vector<SlicePlane>& planes, std::string& note);
+
+/**
+ * The planes of a stack at each place, numbers of the given ones, in the order of the places along
+ * the normal.
  */
 std::vector<std::vector<std::size_t>> FindPlaces(const std::vector<SlicePlane>& planes);
 

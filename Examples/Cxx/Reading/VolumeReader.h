@@ -12,13 +12,18 @@
 #include <vector>
 
 /**
- * What of a file with several volumes is wanted: numbers from 1 on, or 0 for the usual ones.
+ * What of a file with several volumes is wanted: numbers from 1 on, 0 and no text for the
+ * usual ones.
  */
 struct ReadSettings
 {
   int Series = 0;
   int Frame = 0;
-  int Component = 0;
+  int Channel = 0;
+  int Label = 0;             // of a DICOM segmentation
+  bool HidesPadding = false; // also where a maximum does not show it
+  std::string Array;         // its name
+  std::string Component;     // a number, "luminance" or "magnitude"
 };
 
 /**
@@ -49,10 +54,20 @@ struct Volume
   std::vector<std::string> Notes;
 
   /**
+   * The files that were read, and others of the same DICOM folder, which no output may replace.
+   */
+  std::vector<std::string> Files;
+
+  /**
    * Whether the file says how the patient lies, and how large voxels are.
    */
   bool IsOriented = false;
   bool IsInMillimeters = false;
+
+  /**
+   * Whether values are labels, of which the settings choose one.
+   */
+  bool HasLabels = false;
 
   /**
    * What whoever sees a picture must know, in a few words; may be empty.

@@ -99,6 +99,26 @@ encoding: {encoding}
     return write_file(path, header.encode() + b"\n" + data)
 
 
+TYPES = {"int8": "CHAR", "uint8": "UCHAR", "int16": "SHORT", "uint16": "USHORT", "int32": "INT",
+         "uint32": "UINT", "int64": "LONG_LONG", "uint64": "ULONG_LONG", "float32": "FLOAT",
+         "float64": "DOUBLE"}  # NumPy's, and MetaImage's less MET_
+
+
+def encode_meta(values, axes=None, **fields):
+    """A .mha file of values[..., z, y, x]; columns of axes, 3 x 4, are steps and origin (LPS)."""
+    header = {"ObjectType": "Image", "NDims": values.ndim, "BinaryData": "True",
+              "BinaryDataByteOrderMSB": "False", "DimSize": " ".join(map(str, values.shape[::-1]))}
+    if axes is not None:
+        lengths = numpy.linalg.norm(axes[:, :3], axis=0)
+        header["TransformMatrix"] = " ".join(map(repr, (axes[:, :3] / lengths).T.ravel().tolist()))
+        header["Offset"] = " ".join(map(repr, axes[:, 3].tolist()))
+        header["ElementSpacing"] = " ".join(map(repr, lengths.tolist()))
+    header.update({"ElementType": "MET_" + TYPES[values.dtype.name], **fields})
+    header.setdefault("ElementDataFile", "LOCAL")
+    text = "".join(f"{key} = {value}\n" for key, value in header.items() if value is not None)
+    return text.encode() + values.astype(values.dtype.newbyteorder("<")).tobytes()
+
+
 def remember_run(folder, arguments):
     """Which file this run writes."""
     words = [*arguments, "splatmip.png"]
@@ -193,6 +213,33 @@ class SplatmipTest(unittest.TestCase):
         self.assertGreater(pixels[78:, 66:].max(), 200)
         self.assertLess(pixels[78:, :62].max(), 50)
         self.assertLess(pixels[12:62, 66:].max(), 50)
+        return text
+
+    def project(self, path, *arguments):
+        """Values of two views, with their places (LPS), and the text."""
+        results = []
+        for view in (("--azimuth", "25", "--elevation", "15"), ("--azimuth", "-70")):
+            result = self.run_program(path, "--output", self.path("v.mha"), "--mode", "high",
+                                      "--size", "60x50", *view, *arguments)
+            self.assertEqual((result.returncode, result.stderr), (0, ""), (path, arguments))
+            results.append(read_values(self.path("v.mha")))
+        return results, result.stdout
+
+    def assert_volume(self, path, values, axes, *arguments, options=()):
+        """The file has these values[z, y, x] at these places, 3 x 4 (LPS). The options are of both.
+        Returns the text."""
+        reference = write_file(self.path("reference.mha"), encode_meta(values, axes))
+        expected, _ = self.project(reference, *options)
+        found, text = self.project(path, *arguments, *options)
+        size = " x ".join(map(str, values.shape[::-1]))
+        self.assertIn(f": {size} voxels", text)
+        scale = numpy.nanmax(abs(numpy.where(numpy.isfinite(values), values, 0))) + 1e-9
+        for (picture, place), (wanted, wanted_place) in zip(found, expected):
+            # single precision
+            self.assertLess(abs(place - wanted_place).max(), 1e-5 * abs(wanted_place).max(), path)
+            self.assertTrue((numpy.isnan(picture) == numpy.isnan(wanted)).all(), path)
+            self.assertGreater(numpy.nanstd(wanted), 0.01 * scale)
+            self.assertLess(numpy.nanmax(abs(picture - wanted)), 1e-5 * scale, path)
         return text
 
     def assert_center(self, path, center):

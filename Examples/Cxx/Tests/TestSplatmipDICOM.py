@@ -118,29 +118,6 @@ class TestGeometry(DICOMTest):
         self.assert_refused(self.folder, word=f"{self.name(2)}: this slice, at (0, 0, 4) mm")
         self.assert_refused(self.folder, word=f"{self.name(3)} at (0, 0, 4.05) mm")
 
-    def test_turned(self):
-        c, s = math.cos(0.5), math.sin(0.5)
-        self.slices[7]["ImageOrientationPatient"] = (1, 0, 0, 0, c, s)
-        self.assert_refused(self.write(), word=f"{self.name(7)}: this slice, at (0, 0, 14) mm, is "
-                                               f"turned by {math.degrees(0.5):.4f} degrees")
-
-    def test_stacks(self):
-        """Two stacks across each other, as in a scout."""
-        for fields in self.slices[9:]:
-            fields["ImageOrientationPatient"] = (1, 0, 0, 0, 0, 1)
-        self.assert_refused(self.write(), word="turned by 90 degrees")
-        self.assert_refused(self.folder, word="nor do 4 more")
-
-    def test_other_pixels(self):
-        self.slices[2]["PixelSpacing"] = (2, 1.5)
-        self.assert_refused(self.write(), word=f"{self.name(2)}: this slice, at (0, 0, 4) mm, has "
-                                               "pixels of 1.5 x 2 mm, not 1.5 x 1")
-
-    def test_other_size(self):
-        self.slices[2].update(Rows=10, Columns=12)
-        self.assert_refused(self.write(), word=f"{self.name(2)}: this slice, at (0, 0, 4) mm, has "
-                                               "12 x 10 pixels, not 10 x 12")
-
     def test_shifted(self):
         for k in (0, 6, 13):
             slices = dicom.make_slices(make_image(make_wedge()))

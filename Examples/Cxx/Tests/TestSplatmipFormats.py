@@ -25,52 +25,15 @@ class TestFormats(splatmip.SplatmipTest):
         self.draw_block(splatmip.write_meta(self.path("a.mha")))
         self.draw_block(splatmip.write_meta(self.path("a.mhd")))
 
-    def test_meta_orientation(self):
-        data = splatmip.get_bytes(splatmip.make_image(x_of_left=0))
-        header = f"""ObjectType = Image
-NDims = 3
-BinaryData = True
-BinaryDataByteOrderMSB = False
-TransformMatrix = -1 0 0 0 -1 0 0 0 1
-Offset = 0 0 0
-ElementSpacing = 1.5 1 2
-DimSize = {splatmip.SIZE[0]} {splatmip.SIZE[1]} {splatmip.SIZE[2]}
-ElementType = MET_SHORT
-ElementDataFile = LOCAL
-"""
-        self.draw_block(splatmip.write_file(self.path("a.mha"), header.encode() + data))
-
     def test_nrrd(self):
         self.draw_block(splatmip.write_nrrd(self.path("a.nrrd")))
         self.draw_block(splatmip.write_nrrd(self.path("b.nrrd"), encoding="gzip"))
         self.draw_block(splatmip.write_nrrd(self.path("c.nhdr")))
 
-    def test_nrrd_orientation(self):
-        self.draw_block(splatmip.write_nrrd(self.path("a.nrrd"), space="right-anterior-superior", x_of_left=0))
-        self.draw_block(splatmip.write_nrrd(self.path("b.nrrd"), space="right-anterior-superior",
-                              directions="(-1.5,0,0) (0,-1,0) (0,0,2)"))
-
-    def test_nrrd_spaces(self):
-        """Values lie where the space says, in the patient's coordinates."""
-        for space, center in (("left-posterior-superior", (6.75, 5.5, 13.0)),
-                              ("LPS", (6.75, 5.5, 13.0)),
-                              ("left-anterior-superior", (6.75, -5.5, 13.0)),
-                              ("RAS", (-6.75, -5.5, 13.0))):
-            self.assert_center(splatmip.write_nrrd(self.path("a.nrrd"), space=space), center)
-
     def test_nifti(self):
         self.draw_block(splatmip.write_nifti(self.path("a.nii")))
         self.draw_block(splatmip.write_nifti(self.path("a.nii.gz")))
         self.draw_block(splatmip.write_nifti(self.path("A.NII.GZ")))
-
-    def test_components(self):
-        image = splatmip.make_image()
-        colors = vtk.vtkImageAppendComponents()
-        for _ in range(3):
-            colors.AddInputData(image)
-        colors.Update()
-        self.draw_block(splatmip.write_with(
-            vtk.vtkXMLImageDataWriter(), colors.GetOutput(), self.path("a.vti")))
 
 
 class TestRefusals(splatmip.SplatmipTest):
@@ -127,14 +90,14 @@ class TestRefusals(splatmip.SplatmipTest):
 
     def test_huge_header(self):
         self.assert_refused(splatmip.write_file(
-            self.path("a.nrrd"), b"NRRD0004\ntype: short\ndimension: 3\n"
+            self.path("a.nrrd"), b"NRRD0004\ntype: short\ndimension: 3\nendian: little\n"
             b"sizes: 100000 100000 100000\nencoding: raw\n\nxx"), word="memory")
 
     def test_no_point_scalars(self):
         image = vtk.vtkImageData()
         image.SetDimensions(*splatmip.SIZE)
         self.assert_refused(splatmip.write_with(
-            vtk.vtkXMLImageDataWriter(), image, self.path("a.vti")), word="point data")
+            vtk.vtkXMLImageDataWriter(), image, self.path("a.vti")), word="no numeric value")
 
     def test_no_numbers(self):
         """Of NaN alone there is no picture; a few numbers among a million are found."""

@@ -64,7 +64,7 @@ class TestMasks(splatmip.SplatmipTest):
         result = self.run_program(self.file, "--mask", mask, "--label", "5")
         self.assertEqual((result.returncode, result.stdout), (1, ""))
         self.assertIn("its labels are 3 or 7", result.stderr)
-        self.assert_refused("--label", "5", word="--mask", code=2)
+        self.assert_refused("--label", "5", word="--label is for a --mask or a DICOM segmentation")
         self.assert_refused(self.file, "--mask", mask, "--label", "0", word="other than 0", code=2)
         self.assert_refused("--compare", "--mask", mask, word="whole volume", code=2)
 
@@ -109,19 +109,34 @@ class TestMasks(splatmip.SplatmipTest):
         self.assert_shown(1.0, 0.0, "--mask", mask, "--label", "3")
 
     def test_other_geometry(self):
-        """A mask of other voxels is refused: nothing is drawn."""
-        turned = numpy.array([[1, 0, 0], [0, numpy.cos(0.02), numpy.sin(0.02)],
-                              [0, -numpy.sin(0.02), numpy.cos(0.02)]])
-        for labels, settings in ((self.labels[:-1], {}), (self.labels, {"spacing": (1.5, 1, 2.1)}),
-                                 (self.labels, {"origin": (-12, 30, 7.5)}),
-                                 (self.labels, {"origin": (-12, 30, 9)}),
-                                 (self.labels, {"axes": turned}),
-                                 (self.labels, {"axes": -numpy.eye(3)})):
-            mask = write_nrrd(self.path("m.nrrd"), labels, **settings)
-            self.assert_refused(self.file, "--mask", mask, word="this mask has other voxels")
+        """Voxels of the volume take the nearest label, or are hidden outside the mask."""
+        c, s = numpy.cos(0.3), numpy.sin(0.3)
+        volume = numpy.random.default_rng(0).integers(0, 1000, (14, 16, 20)).astype(numpy.float32)
+        own = numpy.column_stack((numpy.diag(SPACING), ORIGIN))
+        path = splatmip.write_file(self.path("n.mha"), splatmip.encode_meta(volume, own))
+        labels = numpy.random.default_rng(1).integers(0, 3, (9, 12, 11)).astype(numpy.int16)
+        for axes, origin, spacing in ((numpy.eye(3), (-10, 31, 8.2), SPACING),
+                                      (numpy.eye(3), ORIGIN, (2.7, 1.3, 3.1)),
+                                      ([[c, s, 0], [-s, c, 0], [0, 0, -1]], (-6, 30, 30.3), (2, 1.5, 2))):
+            mask = write_nrrd(self.path("m.nrrd"), labels, axes, origin, spacing)
+            steps = numpy.array(axes, float).T * spacing
+            points = numpy.indices(volume.shape)[::-1].reshape(3, -1)
+            places = own[:, :3] @ points + own[:, 3:]
+            index = numpy.rint(numpy.linalg.solve(steps, places - numpy.c_[numpy.array(origin)]))
+            index = index.astype(int)
+            inside = ((index >= 0) & (index < numpy.c_[numpy.array(labels.shape[::-1])])).all(axis=0)
+            found = numpy.where(inside, labels[tuple(numpy.where(inside, index, 0)[::-1])], 0)
+            for words, shown in (((), found != 0), (("--label", "2"), found == 2)):
+                expected = numpy.where(shown.reshape(volume.shape), volume, numpy.nan)
+                text = self.assert_volume(path, expected, own, "--mask", mask, *words)
+                self.assertIn("the mask has other voxels than the volume: 11 x 12 x 9 voxels", text)
         near = write_nrrd(self.path("m.nrrd"), self.labels, origin=(-12.05, 30.04, 7.05))
-        self.assert_shown(1.0, 0.0, "--mask", near, "--label", "3")
+        text = self.assert_shown(1.0, 0.0, "--mask", near, "--label", "3")
+        self.assertNotIn("other voxels", text)
+        far = write_nrrd(self.path("m.nrrd"), self.labels, origin=(900, 30, 7))
+        self.assert_refused(self.file, "--mask", far, word="this mask shows nothing of the volume")
         self.assert_refused(self.file, "--mask", "none.nii", word="none.nii: no such file")
+
 
 
 class TestComponents(splatmip.SplatmipTest):

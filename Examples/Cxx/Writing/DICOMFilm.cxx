@@ -121,8 +121,8 @@ vtkSmartPointer<vtkImageData> PaintFrames(vtkImageData* slices, const Palette& p
 }
 }
 
-void WriteDICOM(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
-  const std::string& path)
+bool WriteDICOM(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+  const std::vector<std::string>& names)
 {
   const QuietReading quiet;
   vtkNew<FilmGenerator> generator;
@@ -137,10 +137,7 @@ void WriteDICOM(vtkImageData* slices, const Palette& palette, const FilmSettings
   writer->SetFileSliceOrderToSame();
   writer->SetTimeDimension(slices->GetDimensions()[2]);
   writer->SetTimeSpacing(1000.0 / settings.Rate);
-  writer->SetFileName(path.c_str());
+  writer->SetFileName(names.front().c_str());
   writer->Write();
-  if (writer->GetErrorCode() || quiet.HasErrors())
-  {
-    throw CannotWrite(path);
-  }
+  return !writer->GetErrorCode() && !quiet.HasErrors();
 }

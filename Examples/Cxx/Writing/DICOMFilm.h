@@ -6,12 +6,14 @@
 #include "Writing/PictureSeries.h"
 
 #include <string>
+#include <vector>
 
 /**
  * Writes slices as one DICOM file with a frame for each: a multi-frame secondary capture of gray
- * bytes or true colours, in a series of its own in the study of the files that were read.
+ * bytes or true colours, in a series of its own in the study of the files that were read. Returns
+ * whether the file is complete.
  */
-void WriteDICOM(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
-  const std::string& path);
+bool WriteDICOM(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+  const std::vector<std::string>& names);
 
 #endif

@@ -3,7 +3,9 @@
 #include "Writing/PictureSeries.h"
 
 #include "ProgressLine.h"
+#include "Reading/QuietReading.h"
 #include "Reading/Reading.h"
+#include "Writing/SafeFiles.h"
 
 #include "vtkNew.h"
 #include "vtkPNGWriter.h"
@@ -17,10 +19,13 @@
 #endif
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 
 namespace
 {
@@ -34,28 +39,55 @@ std::string NumberName(const std::string& path, int n)
     .string();
 }
 
-void WritePNGs(
-  vtkImageData* slices, const Palette& palette, const FilmSettings&, const std::string& path)
+bool WritePNGs(vtkImageData* slices, const Palette& palette, const FilmSettings&,
+  const std::vector<std::string>& names)
 {
   const int count = slices->GetDimensions()[2];
   ProgressLine line("writing");
-  for (int n = 0; n < count; ++n)
+  bool isComplete = true;
+  for (int n = 0; n < count && isComplete; ++n)
   {
     line.Show(double(n) / count);
-    WritePNG(Paint(slices, palette, n), NumberName(path, n));
+    isComplete = WritePNG(Paint(slices, palette, n), names[n]);
   }
+  return isComplete;
 }
 
 #ifdef SPLATMIP_HAS_THEORA
-void WriteTheora(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
-  const std::string& path)
+/**
+ * Whether the pages of an Ogg file follow each other up to one that is marked as the last:
+ * vtkOggTheoraWriter does not report that the disk is full.
+ */
+bool IsCompleteOgg(const std::string& path)
 {
-  if (!std::ofstream(path, std::ios::binary))
+  std::ifstream file(path, std::ios::binary);
+  std::array<unsigned char, 27> page = {};
+  std::array<unsigned char, 255> lengths;
+  const std::uint64_t size = std::filesystem::file_size(path);
+  std::uint64_t end = 0;
+  for (std::uint32_t number = 0; file.read(reinterpret_cast<char*>(page.data()), page.size());
+       ++number)
   {
-    throw CannotWrite(path);
+    file.read(reinterpret_cast<char*>(lengths.data()), page[26]);
+    const auto body = std::accumulate(lengths.begin(), lengths.begin() + page[26], 0);
+    const std::uint32_t found =
+      page[18] | page[19] << 8 | page[20] << 16 | std::uint32_t(page[21]) << 24;
+    file.seekg(body, std::ios::cur);
+    end += page.size() + page[26] + body;
+    if (!file || std::string(page.begin(), page.begin() + 4) != "OggS" || found != number)
+    {
+      return false;
+    }
   }
+  return end == size && (page[5] & 4) != 0;
+}
+
+bool WriteTheora(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+  const std::vector<std::string>& names)
+{
+  const QuietReading quiet;
   vtkNew<vtkOggTheoraWriter> writer;
-  writer->SetFileName(path.c_str());
+  writer->SetFileName(names.front().c_str());
   writer->SetRate(settings.Rate);
   writer->SetQuality(2);
   writer->SubsamplingOff();
@@ -72,10 +104,7 @@ void WriteTheora(vtkImageData* slices, const Palette& palette, const FilmSetting
     writer->Write();
   }
   writer->End();
-  if (writer->GetError())
-  {
-    throw CannotWrite(path);
-  }
+  return !writer->GetError() && IsCompleteOgg(names.front());
 }
 #endif
 
@@ -89,8 +118,8 @@ constexpr auto WriteDICOM = nullptr;
 struct SeriesFormat
 {
   const char* Ending;
-  void (*Write)(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
-    const std::string& path); // nullptr if there is no
+  bool (*Write)(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+    const std::vector<std::string>& names); // nullptr if there is no
   const char* Library;
 };
 
@@ -104,27 +133,6 @@ const SeriesFormat* FindFormat(const std::string& path)
     [&](const SeriesFormat& format) { return ending == format.Ending; });
   return found == std::end(Formats) ? nullptr : found;
 }
-}
-
-std::runtime_error CannotWrite(const std::string& path)
-{
-  return std::runtime_error(
-    path + ": this cannot be written; give a file in a folder that you may write to (--output).");
-}
-
-void CheckWritable(const std::string& path, bool isNumbered)
-{
-  const std::string name = isNumbered ? NumberName(path, 0) : path;
-  std::error_code error;
-  const bool isThere = std::filesystem::exists(name, error);
-  if (!std::ofstream(name, std::ios::binary | std::ios::app))
-  {
-    throw CannotWrite(name);
-  }
-  if (!isThere)
-  {
-    std::filesystem::remove(name, error);
-  }
 }
 
 vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette, int n)
@@ -147,7 +155,7 @@ vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette
   return picture;
 }
 
-void WritePNG(vtkImageData* image, const std::string& path)
+bool WritePNG(vtkImageData* image, const std::string& path)
 {
   vtkNew<vtkPNGWriter> writer;
   writer->SetInputData(image);
@@ -157,10 +165,7 @@ void WritePNG(vtkImageData* image, const std::string& path)
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes->GetPointer(0)), bytes->GetNumberOfValues());
   file.close();
-  if (!file)
-  {
-    throw CannotWrite(path);
-  }
+  return !file.fail();
 }
 
 std::vector<std::string> GetSeriesEndings()
@@ -185,8 +190,24 @@ std::string CheckSeriesName(const std::string& path)
       format->Ending + " with: take .png";
 }
 
+std::vector<std::string> GetSeriesFiles(const std::string& path, int count)
+{
+  if (std::filesystem::path(path).extension() != ".png")
+  {
+    return { path };
+  }
+  std::vector<std::string> names;
+  for (int n = 0; n < count; ++n)
+  {
+    names.push_back(NumberName(path, n));
+  }
+  return names;
+}
+
 void WriteSeries(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
   const std::string& path)
 {
-  FindFormat(path)->Write(slices, palette, settings, path);
+  WriteSafely(GetSeriesFiles(path, slices->GetDimensions()[2]),
+    [&](const std::vector<std::string>& names)
+    { return FindFormat(path)->Write(slices, palette, settings, names); });
 }

@@ -8,18 +8,8 @@
 #include "vtkImageData.h"
 #include "vtkSmartPointer.h"
 
-#include <stdexcept>
 #include <string>
 #include <vector>
-
-/// What every writer throws whose file cannot be made or filled.
-std::runtime_error CannotWrite(const std::string& path);
-
-/**
- * Throws that if a picture, or the first of numbered ones, cannot be written: to be asked before
- * the work. What is not there yet is not there afterwards.
- */
-void CheckWritable(const std::string& path, bool isNumbered);
 
 /**
  * One of the slices in the palette's colours, if it has none of its own.
@@ -27,10 +17,9 @@ void CheckWritable(const std::string& path, bool isNumbered);
 vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette, int n);
 
 /**
- * Encode in memory and write by hand, so that a failure is one sentence and not VTK's report.
- * Throws std::runtime_error.
+ * Writes a PNG file and returns whether it is complete.
  */
-void WritePNG(vtkImageData* image, const std::string& path);
+bool WritePNG(vtkImageData* image, const std::string& path);
 
 /**
  * What a film says besides its pictures.
@@ -53,6 +42,11 @@ std::vector<std::string> GetSeriesEndings();
  * the ending.
  */
 std::string CheckSeriesName(const std::string& path);
+
+/**
+ * The files of a series: a film, or so many numbered pictures.
+ */
+std::vector<std::string> GetSeriesFiles(const std::string& path, int count);
 
 /**
  * Writes the slices of an image, bottom row first: bytes, which are places in the palette, or

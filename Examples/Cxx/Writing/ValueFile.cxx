@@ -3,7 +3,8 @@
 #include "Writing/ValueFile.h"
 
 #include "Reading/QuietReading.h"
-#include "Writing/PictureSeries.h"
+#include "Reading/VolumeReader.h"
+#include "Writing/SafeFiles.h"
 
 #include "vtkImageCast.h"
 #include "vtkMatrix3x3.h"
@@ -13,10 +14,13 @@
 #include "vtkSmartPointer.h"
 #include "vtkTIFFWriter.h"
 
+#include <tiffio.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 namespace
 {
@@ -50,39 +54,37 @@ vtkSmartPointer<vtkMatrix4x4> MakeForm(vtkImageData* values)
 /**
  * By one of VTK's writers, whose reports are not for the user.
  */
-void WriteWith(vtkImageWriter* writer, vtkImageData* values, const std::string& path)
+bool WriteWith(vtkImageWriter* writer, vtkImageData* values, const std::string& path)
 {
   const QuietReading quiet;
   writer->SetInputData(values);
   writer->SetFileName(path.c_str());
   writer->Write();
-  if (writer->GetErrorCode() || quiet.HasErrors())
-  {
-    throw CannotWrite(path);
-  }
+  return !writer->GetErrorCode() && !quiet.HasErrors();
 }
 
-void WriteNIFTI(vtkImageData* values, const std::string& path)
+bool WriteNIFTI(vtkImageData* values, const std::string& path)
 {
   const auto form = MakeForm(values);
   vtkNew<vtkNIFTIImageWriter> writer;
   writer->SetQFormMatrix(form);
   writer->SetSFormMatrix(form);
-  WriteWith(writer, values, path);
+  return WriteWith(writer, values, path);
 }
 
-void WriteTIFF(vtkImageData* values, const std::string& path)
+bool WriteTIFF(vtkImageData* values, const std::string& path)
 {
+  TIFFSetErrorHandler(nullptr); // which writes to stderr
   vtkNew<vtkTIFFWriter> writer;
   writer->SetCompressionToNoCompression();
-  WriteWith(writer, values, path);
   std::printf("TIFF holds the size of a pixel, but not where the picture lies: .nii and .mha do\n");
+  return WriteWith(writer, values, path);
 }
 
 /**
  * By hand, because VTK's writer leaves directions out.
  */
-void WriteMeta(vtkImageData* values, const std::string& path)
+bool WriteMeta(vtkImageData* values, const std::string& path)
 {
   const int* const size = values->GetDimensions();
   const double* const spacing = values->GetSpacing();
@@ -107,16 +109,13 @@ void WriteMeta(vtkImageData* values, const std::string& path)
   file.write(static_cast<const char*>(values->GetScalarPointer()),
     static_cast<std::streamsize>(values->GetNumberOfPoints() * sizeof(float)));
   file.close();
-  if (!file)
-  {
-    throw CannotWrite(path);
-  }
+  return !file.fail();
 }
 
 struct ValueFormat
 {
   const char* Ending;
-  void (*Write)(vtkImageData* values, const std::string& path);
+  bool (*Write)(vtkImageData* values, const std::string& path);
 };
 
 constexpr ValueFormat Formats[] = { { ".nii", WriteNIFTI }, { ".nii.gz", WriteNIFTI },
@@ -127,6 +126,21 @@ const ValueFormat* FindFormat(const std::string& path)
   const auto* const found = std::find_if(std::begin(Formats), std::end(Formats),
     [&](const ValueFormat& format) { return EndsWith(path, format.Ending); });
   return found == std::end(Formats) ? nullptr : found;
+}
+
+/**
+ * Whether a file has as many values: VTK's writers do not report that the disk is full.
+ */
+bool CanBeRead(const std::string& path, vtkImageData* values)
+{
+  try
+  {
+    return ReadVolume(path, {}).Image->GetNumberOfPoints() == values->GetNumberOfPoints();
+  }
+  catch (const std::runtime_error&)
+  {
+    return false;
+  }
 }
 }
 
@@ -156,5 +170,7 @@ void WriteValues(
   const double* const first = picture->GetOrigin();
   values->SetOrigin(first[0] + origin[0], first[1] + origin[1], first[2] + origin[2]);
   values->SetDirectionMatrix(picture->GetDirectionMatrix()); // which filters do not pass on
-  FindFormat(path)->Write(values, path);
+  WriteSafely({ path },
+    [&](const std::vector<std::string>& names)
+    { return FindFormat(path)->Write(values, names.front()) && CanBeRead(names.front(), values); });
 }

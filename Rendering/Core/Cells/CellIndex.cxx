@@ -252,13 +252,13 @@ const CellBounds& CellIndex::bounds(bool minima)
 {
   if (!this->Made[minima])
   {
-    using Clock = std::chrono::steady_clock;
-    const Clock::time_point start = Clock::now();
+    const auto start = std::chrono::steady_clock::now();
     dispatch(this->Grid.voxels.type,
       [&](auto* null)
       { this->make<std::remove_pointer_t<decltype(null)>>(minima, this->Bounds[minima]); });
     this->Made[minima] = true;
-    this->Seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    this->Seconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
   return this->Bounds[minima];
 }

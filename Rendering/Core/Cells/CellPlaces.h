@@ -180,7 +180,7 @@ private:
       from[a] = first[a] == 0 ? low[a] : std::max(low[a], planes[first[a] - 1]);
       to[a] = last[a] == 2 ? high[a] : std::min(high[a], planes[last[a]]);
     }
-    if (from.x <= to.x && from.y <= to.y && from.z <= to.z)
+    if (from.x < to.x && from.y < to.y && from.z < to.z)
     {
       this->boxes.emplace_back(from, to);
     }

@@ -18,7 +18,8 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 /// Bricks between two looks at whether the tile is done.
 constexpr int ChecksEvery = 64;
 /// Directions below this do not change a coordinate within a block.
-constexpr double Flat = 1e-9;
+template <class A>
+constexpr double Flat = sizeof(A) == sizeof(float) ? 1e-9 : 1e-15;
 
 /// The least and the greatest value of h in a box.
 glm::dvec2 rangeOf(const glm::dvec4& h, const CellBox& box)
@@ -28,14 +29,18 @@ glm::dvec2 rangeOf(const glm::dvec4& h, const CellBox& box)
   return { middle - reach, middle + reach };
 }
 
+/// Planes that are nearer to a box than this may cut it.
+constexpr double Touches = 1e-6;
+
 bool overlap(const CellBox& a, const CellBox& b)
 {
   return glm::all(glm::lessThanEqual(glm::abs(a.middle - b.middle), a.half + b.half));
 }
 
-bool contains(const CellBox& a, const CellBox& b)
+/// Whether b is inside a, not even at a side of it.
+bool isWithin(const CellBox& a, const CellBox& b)
 {
-  return glm::all(glm::lessThanEqual(glm::abs(a.middle - b.middle), a.half - b.half));
+  return glm::all(glm::lessThan(glm::abs(a.middle - b.middle), a.half - b.half));
 }
 }
 
@@ -163,8 +168,6 @@ void TileSplatter<T>::open(int tile)
 {
   const CellFrame<T>& f = this->Frame;
   this->Pixels = f.pixelsOf(tile);
-  this->HasEnds = f.cutsAll || f.crops || f.shades || !f.halfSpaces.empty() ||
-    f.rays.isPerspective() || f.grid.shift != glm::ivec3(0);
   this->FirstNear = this->FirstFar = Infinity;
   this->LastNear = this->LastFar = -Infinity;
   std::fill_n(this->Tile.values, this->Tile.Size, CellValue<A>::Outside);
@@ -199,7 +202,7 @@ void TileSplatter<T>::openRow(int y)
     this->Tile.depths[row + x] =
       f.mayBeEmpty ? std::numeric_limits<A>::infinity() : static_cast<A>(near[x]);
   }
-  for (int x = 0; x < count && this->HasEnds; ++x)
+  for (int x = 0; x < count; ++x)
   {
     const A begin = static_cast<A>(near[x]), end = static_cast<A>(far[x]);
     this->Tile.nears[row + x] = begin;
@@ -306,7 +309,9 @@ bool TileSplatter<T>::splatBrick(std::uint32_t brick)
     order[place] = b;
   }
   const glm::ivec3 cell = f.grid.brickCell(brick);
-  const bool isCut = f.cutsAll || this->isCutByHalfSpace(box);
+  const glm::dvec3 first(cell - f.grid.shift);
+  const bool isCut =
+    f.cutsAll || this->isCutByHalfSpace(CellBox(first, first + double(BrickCells)));
   for (int n = 0; n < count; ++n)
   {
     const int b = order[n];
@@ -319,7 +324,7 @@ template <class T>
 bool TileSplatter<T>::isCutByHalfSpace(const CellBox& box) const
 {
   return std::any_of(this->Frame.halfSpaces.begin(), this->Frame.halfSpaces.end(),
-    [&](const glm::dvec4& h) { return rangeOf(h, box).x < 0.0; });
+    [&](const glm::dvec4& h) { return rangeOf(h, box).x < Touches * glm::length(glm::dvec3(h)); });
 }
 
 template <class T>
@@ -359,24 +364,25 @@ void TileSplatter<T>::splatBlock(const glm::ivec3& cell, A bound, bool isCut)
     this->findSeenCells(cell);
     block.seen = this->Seen;
   }
-  isCut = seen.isNear() || (isCut && (f.cutsAll || this->isCutByHalfSpace(box)));
-  // A cell's box, not only its part in the field.
+  // Of the block, not of what the volume has of it: the same for all pieces.
   const CellBox whole(middle - 0.5 * BlockCells, middle + 0.5 * BlockCells);
+  isCut = seen.isNear() || (isCut && (f.cutsAll || this->isCutByHalfSpace(whole)));
+  const CellBox field(f.grid.low, f.grid.high);
+  // Rays begin and end where the field does: cells are too wide for that by rounding.
+  isCut = isCut || !isWithin(field, whole);
   for (const CellBox& region : f.regions.boxes)
   {
     if (!overlap(region, box))
     {
       continue;
     }
-    const bool isInside = contains(region, box) &&
-      contains(CellBox(f.grid.low, f.grid.high),
-        CellBox(glm::dvec3(glm::max(cell, f.grid.begin) - f.grid.shift),
-          glm::dvec3(glm::min(cell + BlockCells, f.grid.end) - f.grid.shift)));
-    block.cut = isCut || !isInside;
+    block.crops = f.crops && !isWithin(region, whole);
+    block.cut = isCut || block.crops;
     for (int a = 0; a < 3; ++a)
     {
-      block.low[a] = static_cast<A>(std::max(region.low()[a], whole.low()[a] - 1.0) - middle[a]);
-      block.high[a] = static_cast<A>(std::min(region.high()[a], whole.high()[a] + 1.0) - middle[a]);
+      const double low = region.low()[a], high = region.high()[a];
+      block.low[a] = static_cast<A>(low > f.grid.low[a] ? low - middle[a] : -BlockCells);
+      block.high[a] = static_cast<A>(high < f.grid.high[a] ? high - middle[a] : BlockCells);
     }
     this->Loops.splat(this->Tile, block);
   }
@@ -431,16 +437,18 @@ void TileSplatter<T>::placeRays(const SeenBox& seen, const glm::dvec3& middle)
   const glm::dvec3 forward = rays.direction(pixel.x, pixel.y);
   b.x = pixel.x - this->Pixels.low.x;
   b.y = pixel.y - this->Pixels.low.y;
+  b.middleT = static_cast<A>(whole.t() - t);
   const double scale = perspective ? t : 1.0;
   for (int a = 0; a < 3; ++a)
   {
-    b.start[a] = static_cast<A>(start[a]);
-    b.startAcross[a] = static_cast<A>(scale * rays.across()[a]);
-    b.startUp[a] = static_cast<A>(scale * rays.up()[a]);
-    b.forward[a] = static_cast<A>(forward[a]);
-    b.forwardAcross[a] = static_cast<A>(rays.across()[a]);
-    b.forwardUp[a] = static_cast<A>(rays.up()[a]);
-    b.flat[a] = std::abs(forward[a]) < Flat;
+    b.alongT[a] = static_cast<A>(rays.toPixel()[a][2]);
+    b.start[a] = CellSum<A>(start[a]);
+    b.startAcross[a] = CellSum<A>(scale * rays.across()[a]);
+    b.startUp[a] = CellSum<A>(scale * rays.up()[a]);
+    b.forward[a] = CellSum<A>(forward[a]);
+    b.forwardAcross[a] = CellSum<A>(rays.across()[a]);
+    b.forwardUp[a] = CellSum<A>(rays.up()[a]);
+    b.flat[a] = std::abs(forward[a]) < Flat<A>;
     b.inverse[a] = b.flat[a] ? A(0) : static_cast<A>(1.0 / forward[a]);
   }
   if (seen.isNear())

@@ -94,7 +94,6 @@ private:
   const CellLoops<A>& Loops;
   PixelRectangle Pixels;
   CellBlock<A> Block;
-  bool HasEnds = false;
   /// Of the tile's rays: the least and the greatest begin, the least and the greatest end.
   double FirstNear = 0.0, LastNear = 0.0, FirstFar = 0.0, LastFar = 0.0;
   std::int32_t Seen[64][4];

@@ -11,6 +11,7 @@
 
 #include "Kernels/Kernels.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -36,6 +37,27 @@ struct CellScale
 {
   A factor = 1, offset = 0;
   bool holes = false; ///< whether there may be NaN or infinities
+};
+
+/**
+ * A number as a sum, because rays need more digits than float has. The first term is a multiple of
+ * `unit`: sums of such numbers and of their multiples by pixels are exact as far as a block's side.
+ * The rest is 0 of double.
+ */
+template <class A>
+struct CellSum
+{
+  static constexpr double unit = 0x1p-20;
+
+  A most = 0, rest = 0;
+
+  CellSum() = default;
+  explicit CellSum(double value)
+  {
+    const bool isSplit = sizeof(A) < sizeof(double);
+    this->most = static_cast<A>(isSplit ? std::nearbyint(value / unit) * unit : value);
+    this->rest = static_cast<A>(value - static_cast<double>(this->most));
+  }
 };
 
 /**
@@ -72,13 +94,14 @@ struct CellBlock
   bool holes;
 
   bool perspective;
-  int x, y;               ///< a pixel, whose ray is
-  A start[3], forward[3]; ///< start + (t - reference) forward
+  int x, y;                        ///< a pixel, whose ray is
+  CellSum<A> start[3], forward[3]; ///< start + (t - reference) forward
   A reference;
-  A startAcross[3], startUp[3];     ///< from pixel to pixel
-  A forwardAcross[3], forwardUp[3]; ///< of perspective views
-  A inverse[3];                     ///< 1 / forward of parallel views
-  bool flat[3];                     ///< whether parallel rays run within planes of constant x, y, z
+  A alongT[3], middleT; ///< t - reference of a point p, about: alongT . p + middleT
+  CellSum<A> startAcross[3], startUp[3];     ///< from pixel to pixel
+  CellSum<A> forwardAcross[3], forwardUp[3]; ///< of perspective views
+  A inverse[3];                              ///< 1 / forward of parallel views
+  bool flat[3]; ///< whether parallel rays run within planes of constant x, y, z
 
   /// The pixels that may see the block, inclusive, and the smallest value there.
   int columns[2], rows[2];
@@ -90,8 +113,9 @@ struct CellBlock
   /// The pixels that see each cell, where that does not hold: first and last column, then rows.
   const std::int32_t (*seen)[4];
 
-  bool cut;          ///< whether rays begin or end, or the field ends, within the block
-  A low[3], high[3]; ///< where the field ends
+  bool cut;          ///< whether rays may begin or end within the block
+  bool crops;        ///< whether they do so at the planes of cropping
+  A low[3], high[3]; ///< these
 
   bool located;
   A tiesFrom; ///< from which value on the nearest of equal samples is sought

@@ -56,9 +56,27 @@ inline A nextAbove(A value)
   return value;
 }
 
-/// Where rays run within a plane between cells, how far they may be beside it by rounding.
+/// Cells are wider by this at each side: more than the rounding by which the places of a ray in two
+/// neighbours differ, so that no part of a ray which runs along their face slips through.
 template <class A>
-constexpr A BesideFace = sizeof(A) == sizeof(float) ? A(0x1p-21) : A(0x1p-48);
+constexpr A BesideFace = std::numeric_limits<A>::epsilon();
+
+/// Where a cell begins and ends that is cropped at some place.
+template <class A>
+inline A lowEnd(A low)
+{
+  return low >= 0 ? low : -BesideFace<A>;
+}
+template <class A>
+inline A highEnd(A high)
+{
+  return high <= 1 ? high : 1 + BesideFace<A>;
+}
+
+/// Where rays run along a face, their reciprocal direction is limited to this, so that its products
+/// are finite.
+template <class A>
+constexpr A Steepest = sizeof(A) == sizeof(float) ? A(0x1p60) : A(0x1p200);
 
 /// 0, 1, 2, ...
 template <class A>
@@ -137,6 +155,21 @@ class CellSplatter
   using M = typename R::Mask;
   using I = typename R::Index;
   static constexpr int Cells = 16;
+  static constexpr bool Split = sizeof(A) < sizeof(double);
+
+  /// See CellSum.
+  struct Sum
+  {
+    V most, rest;
+
+    SPLATTING_INLINE V whole() const { return Split ? R::add(this->most, this->rest) : this->most; }
+    /// o + t d
+    static SPLATTING_INLINE V at(const Sum& o, const Sum& d, V t)
+    {
+      const V most = R::fma(d.most, t, o.most);
+      return Split ? R::add(most, R::fma(d.rest, t, o.rest)) : most;
+    }
+  };
 
 public:
   CellSplatter(ScreenTile<A>& tile, const CellBlock<A>& block) : Tile(tile), Block(block)
@@ -146,21 +179,17 @@ public:
       const int x = n & 3, y = n >> 2;
       this->Corner[0][n] = A(x - 2);
       this->Corner[1][n] = A(y - 2);
-      this->Place[0][n] = block.start[0] - this->Corner[0][n];
-      this->Place[1][n] = block.start[1] - this->Corner[1][n];
-      const bool valid =
+      this->Place[0][n] = block.start[0].most - this->Corner[0][n];
+      this->Place[1][n] = block.start[1].most - this->Corner[1][n];
+      bool valid =
         x >= block.begin[0] && x < block.end[0] && y >= block.begin[1] && y < block.end[1];
-      this->Valid[n] = valid ? CellValue<A>::Outside : CellValue<A>::None;
-      if (Cut)
+      for (int a = 0; a < 2 && Cut; ++a)
       {
-        for (int a = 0; a < 2; ++a)
-        {
-          const A low = block.low[a] - this->Corner[a][n],
-                  high = block.high[a] - this->Corner[a][n];
-          this->Low[a][n] = low > 0 ? low : A(0);
-          this->High[a][n] = high < 1 ? high : A(1);
-        }
+        this->Low[a][n] = lowEnd(block.low[a] - this->Corner[a][n]);
+        this->High[a][n] = highEnd(block.high[a] - this->Corner[a][n]);
+        valid = valid && this->Low[a][n] < this->High[a][n];
       }
+      this->Valid[n] = valid ? CellValue<A>::Outside : CellValue<A>::None;
     }
   }
 
@@ -215,6 +244,15 @@ private:
 
   void splatSlice(int z, M alive[])
   {
+    if (Cut)
+    {
+      this->LowZ = lowEnd(this->Block.low[2] - A(z - 2));
+      this->HighZ = highEnd(this->Block.high[2] - A(z - 2));
+      if (!(this->LowZ < this->HighZ))
+      {
+        return;
+      }
+    }
     if (this->Block.seen)
     {
       this->takeSeen(z, alive);
@@ -350,15 +388,12 @@ private:
   void prepareSlice(int z)
   {
     const A corner = A(z - 2);
-    this->PlaceZ = this->Block.start[2] - corner;
-    if (Cut)
-    {
-      const A low = this->Block.low[2] - corner, high = this->Block.high[2] - corner;
-      this->LowZ = low > 0 ? low : A(0);
-      this->HighZ = high < 1 ? high : A(1);
-    }
+    const A middle = fused(this->Block.alongT[2], corner + A(0.5), this->Block.middleT);
+    this->PlaceZ = this->Block.start[2].most - corner;
     for (int n = 0; n < Cells; ++n)
     {
+      this->MiddleT[n] = fused(this->Block.alongT[0], this->Corner[0][n] + A(0.5),
+        fused(this->Block.alongT[1], this->Corner[1][n] + A(0.5), middle));
       A bound = Shaded ? this->Top[n] * this->Block.mostFactor : this->Top[n];
       if (Located && bound >= this->Block.tiesFrom)
       {
@@ -439,6 +474,15 @@ private:
     }
   }
 
+  /// place + rest + x across + y up
+  static SPLATTING_INLINE Sum along(
+    V x, V y, const CellSum<A>& across, const CellSum<A>& up, V place, A rest)
+  {
+    return { R::fma(x, R::set(across.most), R::fma(y, R::set(up.most), place)),
+      !Split ? R::set(0)
+             : R::fma(x, R::set(across.rest), R::fma(y, R::set(up.rest), R::set(rest))) };
+  }
+
   /// The part of rays within cells along one axis.
   SPLATTING_INLINE void clip(int a, V o, V d, V low, V high, V& enter, V& leave, M& on) const
   {
@@ -449,8 +493,23 @@ private:
         on & R::atLeast(R::add(o, beside), low) & R::atLeast(R::add(high, beside), o));
       return;
     }
-    const V inverse = Perspective ? R::div(R::set(1), d) : R::set(this->Block.inverse[a]);
-    const V p = R::mul(R::sub(low, o), inverse), q = R::mul(R::sub(high, o), inverse);
+    V inverse = R::set(this->Block.inverse[a]);
+    if (Perspective)
+    {
+      inverse = R::smaller(R::div(R::set(1), d), R::set(Steepest<A>));
+      inverse = R::larger(inverse, R::set(-Steepest<A>));
+    }
+    V p = R::mul(R::sub(low, o), inverse), q = R::mul(R::sub(high, o), inverse);
+    if (Cut && this->Block.crops)
+    {
+      // What is left by rounding: the value where a ray ends may be its largest one. Along a plane
+      // the places of rays are not precise enough.
+      const V zero = R::set(0), steep = R::set(1024);
+      const M crosses = R::above(steep, R::larger(inverse, R::sub(zero, inverse)));
+      const V step = R::choose(crosses, inverse, zero);
+      p = R::fma(R::sub(low, R::fma(d, p, o)), step, p);
+      q = R::fma(R::sub(high, R::fma(d, q, o)), step, q);
+    }
     enter = R::larger(enter, R::smaller(p, q));
     leave = R::smaller(leave, R::larger(p, q));
   }
@@ -464,31 +523,37 @@ private:
     const V at = R::fma(pixelY, R::set(A(this->Tile.Stride)), pixelX);
     const V now = R::gather(this->Tile.values, at, on, R::set(CellValue<A>::Outside));
     const V px = R::sub(pixelX, R::set(A(b.x))), py = R::sub(pixelY, R::set(A(b.y)));
+    // From the cell's middle on parameters are small, and precise.
+    const V middle = R::pick(this->MiddleT, id);
     V o[3], d[3];
     for (int a = 0; a < 3; ++a)
     {
-      const V place = a == 2 ? R::set(this->PlaceZ) : R::pick(this->Place[a], id);
-      o[a] = R::fma(px, R::set(b.startAcross[a]), R::fma(py, R::set(b.startUp[a]), place));
-      d[a] = R::set(b.forward[a]);
+      const Sum start = this->along(px, py, b.startAcross[a], b.startUp[a],
+        a == 2 ? R::set(this->PlaceZ) : R::pick(this->Place[a], id), b.start[a].rest);
+      Sum direction{ R::set(b.forward[a].most), R::set(b.forward[a].rest) };
       if (Perspective)
       {
-        d[a] = R::fma(px, R::set(b.forwardAcross[a]), R::fma(py, R::set(b.forwardUp[a]), d[a]));
+        direction = this->along(
+          px, py, b.forwardAcross[a], b.forwardUp[a], direction.most, b.forward[a].rest);
       }
+      o[a] = Sum::at(start, direction, middle);
+      d[a] = direction.whole();
     }
     V enter = R::set(-std::numeric_limits<A>::max()), leave = R::set(std::numeric_limits<A>::max());
     V near = enter, far = leave;
     if (Cut || Shaded)
     {
       const V zero = R::set(0), reference = R::set(b.reference);
-      near = R::add(R::sub(R::gather(this->Tile.nears, at, on, zero), reference),
-        R::gather(this->Tile.nearRests, at, on, zero));
-      far = R::add(R::sub(R::gather(this->Tile.fars, at, on, zero), reference),
-        R::gather(this->Tile.farRests, at, on, zero));
+      near = R::sub(R::sub(R::gather(this->Tile.nears, at, on, zero), reference), middle);
+      near = R::add(near, R::gather(this->Tile.nearRests, at, on, zero));
+      far = R::sub(R::sub(R::gather(this->Tile.fars, at, on, zero), reference), middle);
+      far = R::add(far, R::gather(this->Tile.farRests, at, on, zero));
     }
     for (int a = 0; a < 3; ++a)
     {
-      const V low = !Cut ? R::set(0) : a == 2 ? R::set(this->LowZ) : R::pick(this->Low[a], id);
-      const V high = !Cut ? R::set(1) : a == 2 ? R::set(this->HighZ) : R::pick(this->High[a], id);
+      const bool isConstant = !Cut || a == 2;
+      const V low = isConstant ? R::set(this->LowZ) : R::pick(this->Low[a], id);
+      const V high = isConstant ? R::set(this->HighZ) : R::pick(this->High[a], id);
       this->clip(a, o[a], d[a], low, high, enter, leave, on);
     }
     if (Cut)
@@ -503,6 +568,7 @@ private:
     }
     V depth;
     V value = this->largestOnRay(id, o, d, enter, leave, now, on, depth);
+    depth = Located ? R::add(R::add(depth, middle), R::set(b.reference)) : depth;
     if (Shaded)
     {
       const V middle = R::fma(R::set(A(0.5)), R::sub(leave, enter), enter);
@@ -574,7 +640,7 @@ private:
     {
       const M last = R::above(end, value);
       where = R::choose(last, R::set(1), where);
-      depth = R::add(R::fma(where, length, enter), R::set(this->Block.reference));
+      depth = R::fma(where, length, enter);
     }
     else
     {
@@ -662,22 +728,29 @@ private:
     {
       return;
     }
-    const A x = A(px - b.x), y = A(py - b.y);
+    const A x = A(px - b.x), y = A(py - b.y), middle = this->MiddleT[n];
     A o[3], d[3];
     for (int a = 0; a < 3; ++a)
     {
       const A place = a == 2 ? this->PlaceZ : this->Place[a][n];
-      o[a] = fused(x, b.startAcross[a], fused(y, b.startUp[a], place));
-      d[a] = Perspective ? fused(x, b.forwardAcross[a], fused(y, b.forwardUp[a], b.forward[a]))
-        : b.flat[a]      ? A(0)
-                         : b.forward[a];
+      const A start = fused(x, b.startAcross[a].most, fused(y, b.startUp[a].most, place));
+      const A startRest =
+        fused(x, b.startAcross[a].rest, fused(y, b.startUp[a].rest, b.start[a].rest));
+      A most = b.forward[a].most, rest = b.forward[a].rest;
+      if (Perspective)
+      {
+        most = fused(x, b.forwardAcross[a].most, fused(y, b.forwardUp[a].most, most));
+        rest = fused(x, b.forwardAcross[a].rest, fused(y, b.forwardUp[a].rest, rest));
+      }
+      o[a] = fused(most, middle, start) + fused(rest, middle, startRest);
+      d[a] = !Perspective && b.flat[a] ? A(0) : most + rest;
     }
     Segment ray{ -std::numeric_limits<A>::max(), std::numeric_limits<A>::max() };
     A near = 0, far = 0;
     if (Cut || Shaded)
     {
-      near = (this->Tile.nears[at] - b.reference) + this->Tile.nearRests[at];
-      far = (this->Tile.fars[at] - b.reference) + this->Tile.farRests[at];
+      near = this->Tile.nears[at] - b.reference - middle + this->Tile.nearRests[at];
+      far = this->Tile.fars[at] - b.reference - middle + this->Tile.farRests[at];
     }
     if (Cut)
     {
@@ -694,7 +767,8 @@ private:
       for (int a = 0; a < 3; ++a)
       {
         const bool upper = c >> a & 1;
-        part.clip(o[a], d[a], upper ? A(0.5) : A(0), upper ? A(1) : A(0.5));
+        part.clip(
+          o[a], d[a], upper ? A(0.5) : -BesideFace<A>, upper ? A(1) + BesideFace<A> : A(0.5));
       }
       if (!(part.enter < part.leave) || corners[c] == CellValue<A>::None)
       {
@@ -709,17 +783,17 @@ private:
         const bool finite = value < CellValue<A>::Highest && value > CellValue<A>::Lowest;
         value = finite ? value * fused(A(1) - share, b.rate, b.ambient) : value;
       }
-      raise<A, Located>(this->Tile, px, py, value, part.enter + b.reference);
+      raise<A, Located>(this->Tile, px, py, value, part.enter + middle + b.reference);
     }
   }
 
   ScreenTile<A>& Tile;
   const CellBlock<A>& Block;
   alignas(64) A Corner[2][Cells], Place[2][Cells], Valid[Cells];
-  alignas(64) A Low[2][Cells], High[2][Cells];
+  alignas(64) A Low[2][Cells], High[2][Cells], MiddleT[Cells];
   alignas(64) A Top[Cells], Bound[Cells], X0[Cells], X1[Cells], Y0[Cells], Y1[Cells];
   alignas(64) A K[8][Cells];
-  A PlaceZ = 0, LowZ = 0, HighZ = 1;
+  A PlaceZ = 0, LowZ = -BesideFace<A>, HighZ = 1 + BesideFace<A>;
   alignas(64) std::int32_t Pairs[64] = {};
   int Pending = 0;
 };

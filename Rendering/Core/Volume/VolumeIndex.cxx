@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -227,6 +229,26 @@ private:
   glm::ivec3 Count; ///< of cubes
   vtkSMPThreadLocal<Scratch> Scratches;
 };
+
+template <class T>
+double largestMagnitudeOf(const VoxelArray& volume, const Extremes<T>& extremes)
+{
+  const double low = static_cast<double>(extremes.low);
+  const double high = static_cast<double>(extremes.high);
+  if (std::isfinite(low) && std::isfinite(high))
+  {
+    return std::max(std::abs(low), std::abs(high));
+  }
+  // Infinities hide the others.
+  const T* const voxels = static_cast<const T*>(volume.voxels);
+  const glm::ivec3& size = volume.dimensions;
+  return std::accumulate(voxels, voxels + std::ptrdiff_t(size.x) * size.y * size.z, 0.0,
+    [](double largest, T voxel)
+    {
+      const double magnitude = std::abs(static_cast<double>(voxel));
+      return std::isfinite(magnitude) ? std::max(largest, magnitude) : largest;
+    });
+}
 }
 
 template <class T>
@@ -236,6 +258,7 @@ void VolumeIndex::survey()
   const Extremes<T> extremes = Survey<T>(this->Volume, fits ? this->Bricks.data() : nullptr)();
   this->ValueRange = { static_cast<double>(extremes.low), static_cast<double>(extremes.high),
     extremes.nonFinite };
+  this->Magnitude = largestMagnitudeOf(this->Volume, extremes);
   // Walks of volumes with infinities leave nothing out.
   this->BricksMade = fits && !this->ValueRange.hasInfinities();
   if (!this->BricksMade)
@@ -358,6 +381,12 @@ const VolumeIndex::Range& VolumeIndex::range()
   return this->ValueRange;
 }
 
+double VolumeIndex::largestMagnitude()
+{
+  this->range();
+  return this->Magnitude;
+}
+
 void VolumeIndex::setRangeOfWhole(const Range& range)
 {
   if (this->Volume.voxels)
@@ -380,7 +409,7 @@ const LineIndex* VolumeIndex::lines(
 {
   const bool plain = encoding.order == LineOrder::Lines && !encoding.eliminate;
   LineIndex& lines = this->Lines[principalAxis][plain ? 0 : 1];
-  std::optional<LineEncoding>& tooLarge = this->TooLarge[principalAxis][plain ? 0 : 1];
+  std::optional<LineEncoding>& tooLarge = this->Unmade[principalAxis][plain ? 0 : 1];
   if (lines.holds(encoding))
   {
     return &lines;

@@ -129,6 +129,9 @@ public:
   /// holds the voxels' own.
   void setRangeOfWhole(const Range& range);
 
+  /// The largest magnitude of finite voxels. Of a piece, of its own.
+  double largestMagnitude();
+
   /// Whether there are bricks: the budget has room for them, and there are no infinities.
   bool hasBricks();
   /// The bricks along an axis; 3/128 of the volume for all axes together.
@@ -165,9 +168,10 @@ private:
   std::unique_ptr<unsigned char[]> Copy;
   std::size_t CopySize = 0;
   Range ValueRange;
+  double Magnitude = 0.0;
   std::array<BrickMaxima, 3> Bricks;
   std::array<std::array<LineIndex, 2>, 3> Lines;
-  std::array<std::array<std::optional<LineEncoding>, 2>, 3> TooLarge; // encodings that had no room
+  std::array<std::array<std::optional<LineEncoding>, 2>, 3> Unmade; // encodings that had no room
   bool Surveyed = false;
   bool BricksMade = false;
   bool Exceeded = false;

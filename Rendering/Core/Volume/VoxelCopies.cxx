@@ -4,6 +4,7 @@
 
 #include <vtkSMPTools.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -28,10 +29,38 @@ void forAll(std::ptrdiff_t count, std::ptrdiff_t grain, Body&& body)
 constexpr std::ptrdiff_t Grain = 1 << 16; // voxels that are worth a task
 
 template <class T>
-double square(const StridedVoxels& from, std::ptrdiff_t n)
+double valueOf(const StridedVoxels& from, std::ptrdiff_t n)
 {
-  const double value = static_cast<double>(static_cast<const T*>(from.voxels)[n * from.stride]);
-  return value * value;
+  return static_cast<double>(static_cast<const T*>(from.voxels)[n * from.stride]);
+}
+
+/// The length of a vector of n-th voxels. Of finite ones it is finite, and at most the largest
+/// number of its type.
+template <class T>
+Accumulator<T> lengthOf(const std::vector<StridedVoxels>& components, std::ptrdiff_t n)
+{
+  using A = Accumulator<T>;
+  double sum = 0.0;
+  for (const StridedVoxels& component : components)
+  {
+    const double value = valueOf<T>(component, n);
+    sum += value * value;
+  }
+  constexpr double least = 1e-280; // below, squares lose digits
+  constexpr double most = std::numeric_limits<A>::max();
+  double length = std::sqrt(sum);
+  if (sum < least || length > most)
+  {
+    bool isFinite = true;
+    length = 0.0;
+    for (const StridedVoxels& component : components)
+    {
+      length = std::hypot(length, valueOf<T>(component, n));
+      isFinite = isFinite && std::isfinite(valueOf<T>(component, n));
+    }
+    length = isFinite ? std::min(length, most) : length;
+  }
+  return static_cast<A>(length);
 }
 
 /// A row of voxels, interpolated between four rows.
@@ -133,16 +162,7 @@ void magnitude(const std::vector<StridedVoxels>& components, std::ptrdiff_t coun
     {
       using T = std::remove_pointer_t<decltype(null)>;
       Accumulator<T>* const out = static_cast<Accumulator<T>*>(to);
-      forAll(count, Grain,
-        [&, out](std::ptrdiff_t n)
-        {
-          double sum = 0.0;
-          for (const StridedVoxels& component : components)
-          {
-            sum += square<T>(component, n);
-          }
-          out[n] = static_cast<Accumulator<T>>(std::sqrt(sum));
-        });
+      forAll(count, Grain, [&, out](std::ptrdiff_t n) { out[n] = lengthOf<T>(components, n); });
     });
 }
 

@@ -183,6 +183,14 @@ std::vector<Fault> inputFaults()
     { "bit array", "bits",
       [](Scene& s)
       { s.mapper->SetInputData(withArray(vtkNew<vtkBitArray>(), 36 * 36 * 36, false)); } },
+    { "too large scalars", "magnitudes above 1e18",
+      [](Scene& s)
+      {
+        vtkNew<vtkDoubleArray> array;
+        const auto image = withArray(array, 36 * 36 * 36, false);
+        array->SetValue(0, -1e308);
+        s.mapper->SetInputData(image);
+      } },
     { "too few scalars", "tuples",
       [](Scene& s)
       { s.mapper->SetInputData(withArray(vtkNew<vtkUnsignedCharArray>(), 36 * 36, false)); } },

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DICOMSegments_h
+#define DICOMSegments_h
+
+#include "Reading/DICOMFrames.h"
+#include "Reading/VolumeReader.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+/**
+ * Whether a file is a DICOM segmentation (SEG).
+ */
+bool IsSegmentation(const DICOMFile& file);
+
+/**
+ * Read a segmentation as a volume of segment numbers, 0 where no segment is, or of one segment
+ * alone if a label is given. Frames that the file leaves out are empty. Throws std::runtime_error
+ * with one sentence.
+ */
+Volume ReadSegments(
+  const std::vector<std::unique_ptr<DICOMFile>>& files, int label, const QuietReading& quiet);
+
+#endif

@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Reading/DICOMValues.h"
+
+#include "vtkDICOMItem.h"
+#include "vtkDICOMMetaData.h"
+#include "vtkDICOMSequence.h"
+#include "vtkDataArray.h"
+#include "vtkPointData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+
+namespace
+{
+vtkDICOMValue Get(const DICOMFrame& frame, vtkDICOMTag tag)
+{
+  return frame.File->Reader->GetMetaData()->Get(0, frame.Number, tag);
+}
+
+void AddNote(std::vector<std::string>& notes, const std::string& note)
+{
+  if (std::find(notes.begin(), notes.end(), note) == notes.end())
+  {
+    notes.push_back(note);
+  }
+}
+
+/**
+ * Codes whose first bit is their sign.
+ */
+double AddSign(double code, const ValueMap& map)
+{
+  return map.IsSigned && code >= std::ldexp(1.0, map.Bits - 1) ? code - std::ldexp(1.0, map.Bits)
+                                                               : code;
+}
+
+/**
+ * A table of values, with its first code.
+ */
+void SetTable(ValueMap& map, const vtkDICOMItem& table)
+{
+  const vtkDICOMValue descriptor = table.Get(DC::LUTDescriptor);
+  const vtkDICOMValue data = table.Get(DC::LUTData);
+  if (descriptor.GetNumberOfValues() != 3 || data.GetNumberOfValues() < 1)
+  {
+    return;
+  }
+  map.FirstOfTable = AddSign(descriptor.GetUnsignedShort(1), map);
+  for (std::size_t i = 0; i < data.GetNumberOfValues(); ++i)
+  {
+    map.Table.push_back(static_cast<std::uint16_t>(data.GetInt(i)));
+  }
+}
+
+void SetSlope(ValueMap& map, double slope, double intercept)
+{
+  if (std::isfinite(slope) && std::isfinite(intercept) && slope != 0.0)
+  {
+    map.Slope = slope;
+    map.Intercept = intercept;
+  }
+}
+
+/**
+ * Values in the order of the standard: the first of the elements that is there.
+ */
+void SetValues(ValueMap& map, const DICOMFrame& frame, std::vector<std::string>& notes)
+{
+  const vtkDICOMSequence tables = Get(frame, DC::ModalityLUTSequence);
+  const vtkDICOMSequence worlds = Get(frame, DC::RealWorldValueMappingSequence);
+  if (tables.GetNumberOfItems() > 0)
+  {
+    SetTable(map, tables.GetItem(0));
+    AddNote(notes, "the values are those of the file's Modality LUT");
+  }
+  else if (Get(frame, DC::RescaleSlope).IsValid())
+  {
+    SetSlope(
+      map, Get(frame, DC::RescaleSlope).AsDouble(), Get(frame, DC::RescaleIntercept).AsDouble());
+  }
+  else if (Get(frame, DC::DoseGridScaling).IsValid())
+  {
+    SetSlope(map, Get(frame, DC::DoseGridScaling).AsDouble(), 0.0);
+  }
+  else if (worlds.GetNumberOfItems() > 0)
+  {
+    const bool isLinear = worlds.Get(0, DC::RealWorldValueSlope).IsValid();
+    SetSlope(map, isLinear ? worlds.Get(0, DC::RealWorldValueSlope).AsDouble() : 1.0,
+      isLinear ? worlds.Get(0, DC::RealWorldValueIntercept).AsDouble() : 0.0);
+    AddNote(notes,
+      isLinear ? "the values are the file's real world values"
+               : "the values are codes: the file's table of real world values is not applied");
+  }
+}
+
+void SetPadding(ValueMap& map, const DICOMFrame& frame, bool hidesPadding)
+{
+  const vtkDICOMValue value = Get(frame, DC::PixelPaddingValue);
+  const vtkDICOMValue limit = Get(frame, DC::PixelPaddingRangeLimit);
+  if (!value.IsValid() || map.Bits == 0)
+  {
+    return;
+  }
+  // The standard has them signed or not as pixels are, which not all files obey.
+  const double codes = std::ldexp(1.0, map.Bits);
+  const auto read = [&](const vtkDICOMValue& code)
+  { return AddSign(std::fmod(code.AsInt() + codes, codes), map); };
+  const double first = read(value), second = limit.IsValid() ? read(limit) : first;
+  const double middle = map.IsSigned ? 0.0 : 0.5 * codes;
+  if (hidesPadding || std::max(first, second) >= middle)
+  {
+    map.Padding[0] = std::min(first, second);
+    map.Padding[1] = std::max(first, second);
+  }
+}
+
+template <class From, class To>
+void Look(const From* from, vtkIdType count, const std::vector<double>& values, To* to)
+{
+  std::transform(
+    from, from + count, to, [&](From stored) { return static_cast<To>(values[stored]); });
+}
+
+/**
+ * From a table by the stored bits, or one by one.
+ */
+template <class To>
+void ConvertValues(vtkDataArray* from, vtkIdType first, vtkIdType count, const ValueMap& map,
+  const std::vector<double>& values, To* to)
+{
+  if (values.size() == 256)
+  {
+    Look(static_cast<const std::uint8_t*>(from->GetVoidPointer(first)), count, values, to);
+    return;
+  }
+  if (!values.empty())
+  {
+    Look(static_cast<const std::uint16_t*>(from->GetVoidPointer(first)), count, values, to);
+    return;
+  }
+  const int components = from->GetNumberOfComponents();
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const vtkIdType place = first + i;
+    to[i] = static_cast<To>(
+      map.GetValue(from->GetComponent(place / components, static_cast<int>(place % components))));
+  }
+}
+}
+
+double ValueMap::GetValue(double stored) const
+{
+  const double code = this->Shift > 0 ? std::floor(std::ldexp(stored, -this->Shift)) : stored;
+  if (code >= this->Padding[0] && code <= this->Padding[1])
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  if (!this->Table.empty())
+  {
+    const double last = static_cast<double>(this->Table.size() - 1);
+    return this->Table[static_cast<std::size_t>(std::clamp(code - this->FirstOfTable, 0.0, last))];
+  }
+  return this->Slope * code + this->Intercept;
+}
+
+bool ValueMap::operator==(const ValueMap& other) const
+{
+  const auto tie = [](const ValueMap& map)
+  {
+    return std::tie(map.Bits, map.Shift, map.IsSigned, map.Slope, map.Intercept, map.Table,
+      map.FirstOfTable, map.Padding[0], map.Padding[1]);
+  };
+  return tie(*this) == tie(other);
+}
+
+ValueMap FindValueMap(const DICOMFrame& frame, bool hidesPadding, std::vector<std::string>& notes)
+{
+  ValueMap map;
+  const int type = frame.File->ScalarType;
+  if (type != VTK_FLOAT && type != VTK_DOUBLE)
+  {
+    const int most = 8 * vtkDataArray::GetDataTypeSize(type);
+    const int stored = Get(frame, DC::BitsStored).AsInt();
+    map.Shift = frame.File->Shift;
+    map.Bits = (stored > 0 ? std::min(stored, most) : most) - map.Shift;
+    map.IsSigned = Get(frame, DC::PixelRepresentation).AsInt() == 1;
+  }
+  SetValues(map, frame, notes);
+  SetPadding(map, frame, hidesPadding);
+  if (Get(frame, DC::PhotometricInterpretation).AsString() == "MONOCHROME1")
+  {
+    AddNote(
+      notes, "the file wants low values bright (MONOCHROME1), as --colormap inverted shows it");
+  }
+  return map;
+}
+
+int FindScalarType(const std::vector<const DICOMFrame*>& frames, const std::vector<ValueMap>& maps)
+{
+  double low = 0.0, high = 0.0;
+  bool isWhole = true, isNarrow = true;
+  for (std::size_t i = 0; i < maps.size(); ++i)
+  {
+    ValueMap map = maps[i];
+    const int type = frames[i]->File->ScalarType;
+    const bool hasPadding = map.Padding[0] <= map.Padding[1];
+    isNarrow = isNarrow && (type == VTK_FLOAT || vtkDataArray::GetDataTypeSize(type) <= 2);
+    isWhole = isWhole && map.Bits > 0 && !hasPadding && std::floor(map.Slope) == map.Slope &&
+      std::floor(map.Intercept) == map.Intercept;
+    const double codes = std::ldexp(1.0, map.Bits);
+    for (const double code :
+      { map.IsSigned ? -0.5 * codes : 0.0, map.IsSigned ? 0.5 * codes - 1.0 : codes - 1.0 })
+    {
+      const double value = map.Table.empty() ? map.Slope * code + map.Intercept
+        : code > 0.0                         ? 65535.0
+                                             : 0.0;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+  if (!isWhole)
+  {
+    return isNarrow ? VTK_FLOAT : VTK_DOUBLE;
+  }
+  return low >= 0.0 && high <= VTK_UNSIGNED_CHAR_MAX ? VTK_UNSIGNED_CHAR
+    : low >= VTK_SHORT_MIN && high <= VTK_SHORT_MAX  ? VTK_SHORT
+    : low >= 0.0 && high <= VTK_UNSIGNED_SHORT_MAX   ? VTK_UNSIGNED_SHORT
+    : low >= VTK_INT_MIN && high <= VTK_INT_MAX      ? VTK_INT
+    : low >= 0.0 && high <= VTK_UNSIGNED_INT_MAX     ? VTK_UNSIGNED_INT
+                                                     : VTK_DOUBLE;
+}
+
+void SliceConverter::Convert(
+  vtkImageData* stored, int frame, const ValueMap& map, vtkImageData* to, int slice)
+{
+  vtkDataArray* const from = stored->GetPointData()->GetScalars();
+  const int bits = 8 * from->GetDataTypeSize();
+  const bool isSigned = from->GetDataTypeMin() < 0.0;
+  const std::size_t size = map.Bits > 0 && bits <= 16 ? std::size_t(1) << bits : 0;
+  if (!(map == this->Map) || this->Values.size() != size)
+  {
+    this->Map = map;
+    this->Values.resize(size);
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      const double code = static_cast<double>(i);
+      this->Values[i] =
+        map.GetValue(isSigned && 2 * i >= size ? code - static_cast<double>(size) : code);
+    }
+  }
+  const int* const dimensions = to->GetDimensions();
+  const vtkIdType count =
+    vtkIdType(dimensions[0]) * dimensions[1] * to->GetNumberOfScalarComponents();
+  void* const values = to->GetScalarPointer(0, 0, slice);
+  switch (to->GetScalarType())
+  {
+    vtkTemplateMacro(
+      ConvertValues(from, frame * count, count, map, this->Values, static_cast<VTK_TT*>(values)));
+  }
+}

@@ -1,0 +1,392 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Reading/VTKVolume.h"
+
+#include "ProgressLine.h"
+#include "Reading/Placement.h"
+#include "Reading/Reading.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetReader.h"
+#include "vtkInformation.h"
+#include "vtkMatrix3x3.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkXMLImageDataReader.h"
+#include "vtkXMLRectilinearGridReader.h"
+
+#include <vtksys/SystemTools.hxx>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+namespace
+{
+/// Coordinates of rectilinear grids that are off an even place by less of the step are even.
+constexpr double EvenEnough = 1e-3;
+
+/// Voxels along an axis, times those that there are, that an uneven grid may become.
+constexpr double MostVoxels = 8.0;
+
+/**
+ * Whether the end of an XML file is there: VTK's readers accept raw data without it.
+ */
+bool HasEnd(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  std::string tail(static_cast<std::size_t>(std::min<std::streamoff>(256, file.tellg())), ' ');
+  file.seekg(-static_cast<std::streamoff>(tail.size()), std::ios::end);
+  file.read(&tail[0], static_cast<std::streamsize>(tail.size()));
+  return tail.find("</VTKFile>") != std::string::npos;
+}
+
+/**
+ * Refuse an extent without points, or with more than fit into memory, before it is read.
+ */
+void CheckExtent(vtkInformation* info, const std::string& path, const QuietReading& quiet)
+{
+  const int* extent = info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
+  double voxels = 1.0;
+  for (int axis = 0; axis < 3 && extent; ++axis)
+  {
+    const double count = double(extent[2 * axis + 1]) - extent[2 * axis] + 1.0;
+    if (count < 1.0)
+    {
+      RefuseDamaged(path, quiet);
+    }
+    voxels *= count;
+  }
+  CheckMemory(voxels, path);
+}
+
+vtkSmartPointer<vtkDataSet> RunReader(
+  vtkAlgorithm* reader, const std::string& path, const QuietReading& quiet)
+{
+  ProgressLine line("reading " + std::filesystem::path(path).filename().string());
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetClientData(&line);
+  observer->SetCallback(
+    [](vtkObject* caller, unsigned long, void* client, void*) {
+      static_cast<ProgressLine*>(client)->Show(static_cast<vtkAlgorithm*>(caller)->GetProgress());
+    });
+  reader->AddObserver(vtkCommand::ProgressEvent, observer);
+  reader->UpdateInformation();
+  vtkInformation* const info = reader->GetOutputInformation(0);
+  if (HasFailed(reader, quiet) || !info)
+  {
+    RefuseDamaged(path, quiet);
+  }
+  CheckExtent(info, path, quiet);
+  reader->Update();
+  reader->RemoveObserver(observer);
+  vtkSmartPointer<vtkDataSet> data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  if (HasFailed(reader, quiet) || !data || data->GetNumberOfPoints() < 1)
+  {
+    RefuseDamaged(path, quiet);
+  }
+  return data;
+}
+
+/**
+ * The places of voxels along an axis: of points, or of the middles of cells.
+ */
+std::vector<double> GetPlaces(vtkDataSet* data, int axis, bool isOfCells)
+{
+  std::vector<double> places;
+  if (auto* const grid = vtkRectilinearGrid::SafeDownCast(data))
+  {
+    vtkDataArray* const coordinates = axis == 0 ? grid->GetXCoordinates()
+      : axis == 1                               ? grid->GetYCoordinates()
+                                                : grid->GetZCoordinates();
+    for (vtkIdType i = 0; i < coordinates->GetNumberOfTuples(); ++i)
+    {
+      places.push_back(coordinates->GetComponent(i, 0));
+    }
+  }
+  else
+  {
+    auto* const image = vtkImageData::SafeDownCast(data);
+    for (int i = 0; i < image->GetDimensions()[axis]; ++i)
+    {
+      places.push_back((image->GetExtent()[2 * axis] + i) * image->GetSpacing()[axis]);
+    }
+  }
+  if (isOfCells && places.size() > 1)
+  {
+    std::transform(places.begin(), places.end() - 1, places.begin() + 1, places.begin(),
+      [](double a, double b) { return 0.5 * (a + b); });
+    places.pop_back();
+  }
+  return places;
+}
+
+/**
+ * Places with the least of the steps of others.
+ */
+std::vector<double> SpaceEvenly(const std::vector<double>& places, const std::string& path)
+{
+  const double length = places.back() - places.front();
+  double least = std::fabs(length);
+  for (std::size_t i = 1; i < places.size(); ++i)
+  {
+    const double step = places[i] - places[i - 1];
+    if (!(step * length > 0.0))
+    {
+      Refuse(path, "its coordinates neither rise nor fall; write the grid again.");
+    }
+    least = std::min(least, std::fabs(step));
+  }
+  if (places.size() < 2 || std::fabs(least * double(places.size() - 1) / length) > 1.0 - EvenEnough)
+  {
+    return places;
+  }
+  const double count = std::ceil(std::fabs(length) / least * (1.0 - EvenEnough));
+  if (count > MostVoxels * double(places.size()))
+  {
+    Refuse(path, "its coordinates are too uneven to interpolate; resample the grid to an image.");
+  }
+  std::vector<double> even;
+  for (int i = 0; i <= static_cast<int>(count); ++i)
+  {
+    even.push_back(places.front() + length * i / count);
+  }
+  return even;
+}
+
+/// Between which of some values a place lies, and its share of the second.
+struct Between
+{
+  vtkIdType First;
+  vtkIdType Second;
+  double Share;
+};
+
+std::vector<Between> FindBetween(const std::vector<double>& from, const std::vector<double>& to)
+{
+  std::vector<Between> found;
+  std::size_t i = 0;
+  const double sign = from.back() < from.front() ? -1.0 : 1.0;
+  for (const double place : to)
+  {
+    while (i + 2 < from.size() && sign * from[i + 1] <= sign * place)
+    {
+      ++i;
+    }
+    const std::size_t next = std::min(i + 1, from.size() - 1);
+    const double share = next > i ? (place - from[i]) / (from[next] - from[i]) : 0.0;
+    found.push_back({ vtkIdType(i), vtkIdType(next), std::clamp(share, 0.0, 1.0) });
+  }
+  return found;
+}
+
+/**
+ * Values between those of an array, of which the sizes are given, as floating point.
+ */
+vtkSmartPointer<vtkDataArray> Interpolate(vtkDataArray* values,
+  const std::array<std::vector<double>, 3>& from, const std::array<std::vector<double>, 3>& to)
+{
+  std::array<std::vector<Between>, 3> between;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    between[axis] = FindBetween(from[axis], to[axis]);
+  }
+  const vtkIdType row = vtkIdType(from[0].size()), page = row * vtkIdType(from[1].size());
+  const bool isFloat = values->GetDataTypeSize() <= 2 || values->GetDataType() == VTK_FLOAT;
+  const auto result = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
+  result->SetNumberOfComponents(values->GetNumberOfComponents());
+  result->SetNumberOfTuples(vtkIdType(to[0].size() * to[1].size() * to[2].size()));
+  vtkIdType point = 0;
+  for (const Between& z : between[2])
+  {
+    for (const Between& y : between[1])
+    {
+      for (const Between& x : between[0])
+      {
+        for (int component = 0; component < values->GetNumberOfComponents(); ++component)
+        {
+          const auto along = [&](vtkIdType start)
+          {
+            return (1.0 - x.Share) * values->GetComponent(start + x.First, component) +
+              x.Share * values->GetComponent(start + x.Second, component);
+          };
+          const auto across = [&](vtkIdType start)
+          {
+            return (1.0 - y.Share) * along(start + y.First * row) +
+              y.Share * along(start + y.Second * row);
+          };
+          result->SetComponent(point, component,
+            (1.0 - z.Share) * across(z.First * page) + z.Share * across(z.Second * page));
+        }
+        ++point;
+      }
+    }
+  }
+  return result;
+}
+
+/**
+ * The arrays of numbers of points or cells.
+ */
+std::vector<vtkDataArray*> ListArrays(vtkDataSetAttributes* attributes)
+{
+  std::vector<vtkDataArray*> arrays;
+  for (int n = 0; n < attributes->GetNumberOfArrays(); ++n)
+  {
+    vtkDataArray* const array = attributes->GetArray(n);
+    const bool isGhost =
+      array && array->GetName() && array->GetName() == std::string(attributes->GhostArrayName());
+    if (array && array->GetDataType() != VTK_BIT && array->GetNumberOfComponents() > 0 && !isGhost)
+    {
+      arrays.push_back(array);
+    }
+  }
+  vtkDataArray* const active = attributes->GetScalars();
+  std::stable_partition(
+    arrays.begin(), arrays.end(), [&](vtkDataArray* array) { return array == active; });
+  return arrays;
+}
+
+std::string GetName(vtkDataArray* array)
+{
+  return array->GetName() && *array->GetName() ? array->GetName() : "unnamed";
+}
+
+/**
+ * The array that the settings name, else the active one, else the first, points before cells.
+ */
+vtkDataArray* ChooseArray(
+  vtkDataSet* data, const std::string& path, const std::string& wanted, Volume& volume)
+{
+  std::vector<vtkDataArray*> arrays = ListArrays(data->GetPointData());
+  const auto cells = ListArrays(data->GetCellData());
+  arrays.insert(arrays.end(), cells.begin(), cells.end());
+  std::vector<std::string> names;
+  std::transform(arrays.begin(), arrays.end(), std::back_inserter(names), GetName);
+  if (arrays.empty())
+  {
+    Refuse(path, "no numeric value at each point or cell; save the volume with scalars.");
+  }
+  const auto found = wanted.empty() ? names.begin() : std::find(names.begin(), names.end(), wanted);
+  if (found == names.end())
+  {
+    Refuse(path,
+      "there is no array " + wanted + " here, only " + JoinWords(names) +
+        "; give another --array.");
+  }
+  if (arrays.size() > 1)
+  {
+    volume.Notes.push_back("array " + *found + " (--array chooses " + JoinWords(names) + ")");
+  }
+  return arrays[static_cast<std::size_t>(found - names.begin())];
+}
+
+Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& wanted)
+{
+  auto* const image = vtkImageData::SafeDownCast(data);
+  if (!image && !vtkRectilinearGrid::SafeDownCast(data))
+  {
+    Refuse(path, "no image and no rectilinear grid; resample it to an image.");
+  }
+  Volume volume;
+  vtkSmartPointer<vtkDataArray> values = ChooseArray(data, path, wanted, volume);
+  const auto cells = ListArrays(data->GetCellData());
+  const bool isOfCells = std::find(cells.begin(), cells.end(), values) != cells.end();
+  std::array<std::vector<double>, 3> places, even;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    places[axis] = GetPlaces(data, axis, isOfCells);
+    even[axis] = image ? places[axis] : SpaceEvenly(places[axis], path);
+  }
+  if (values->GetNumberOfTuples() !=
+    vtkIdType(places[0].size() * places[1].size() * places[2].size()))
+  {
+    Refuse(path, "no numeric value at each point or cell; save the volume with scalars.");
+  }
+  if (even != places)
+  {
+    CheckMemory(double(even[0].size()) * double(even[1].size()) * double(even[2].size()), path);
+    values = Interpolate(values, places, even);
+    volume.Notes.push_back("the grid is uneven and was interpolated to the least of its steps");
+    volume.Caution = "grid interpolated";
+  }
+  volume.Image = vtkSmartPointer<vtkImageData>::New();
+  volume.Image->SetDimensions(int(even[0].size()), int(even[1].size()), int(even[2].size()));
+  if (vtkDataArray* const hidden = isOfCells || !image
+      ? nullptr
+      : data->GetPointData()->GetArray(data->GetPointData()->GhostArrayName()))
+  {
+    volume.Image->GetPointData()->AddArray(hidden);
+  }
+  if (!values->GetName())
+  {
+    values->SetName("values");
+  }
+  volume.Image->GetPointData()->SetScalars(values);
+  Steps steps = {};
+  std::array<double, 3> origin = {};
+  for (int row = 0; row < 3; ++row)
+  {
+    origin[row] = image ? image->GetOrigin()[row] : 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto& along = even[axis];
+      const double element =
+        image ? image->GetDirectionMatrix()->GetElement(row, axis) : double(row == axis);
+      const double spacing = image ? image->GetSpacing()[axis]
+        : along.size() > 1         ? (along.back() - along.front()) / double(along.size() - 1)
+                                   : 1.0;
+      steps[axis][row] = element * spacing;
+      origin[row] += element * along.front();
+    }
+  }
+  PlaceVolume(volume, steps, origin);
+  return volume;
+}
+}
+
+Volume ReadVTK(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
+{
+  CheckChoice(path, "volume", settings.Frame, 1);
+  const std::string ending =
+    vtksys::SystemTools::LowerCase(std::filesystem::path(path).extension().string());
+  vtkSmartPointer<vtkDataSet> data;
+  if (ending == ".vtk")
+  {
+    vtkNew<vtkDataSetReader> reader;
+    reader->SetFileName(path.c_str());
+    reader->ReadAllScalarsOn();
+    reader->ReadAllVectorsOn();
+    reader->ReadAllFieldsOn();
+    data = RunReader(reader, path, quiet);
+  }
+  else
+  {
+    if (!HasEnd(path))
+    {
+      RefuseDamaged(path, quiet);
+    }
+    const vtkSmartPointer<vtkXMLReader> reader = ending == ".vtr"
+      ? vtkSmartPointer<vtkXMLReader>(vtkSmartPointer<vtkXMLRectilinearGridReader>::New())
+      : vtkSmartPointer<vtkXMLReader>(vtkSmartPointer<vtkXMLImageDataReader>::New());
+    reader->SetFileName(path.c_str());
+    data = RunReader(reader, path, quiet);
+  }
+  return MakeVolume(data, path, settings.Array);
+}
+
+Volume ReadVTKText(const std::string& text, const std::string& name, const QuietReading& quiet)
+{
+  vtkNew<vtkXMLImageDataReader> reader;
+  reader->ReadFromInputStringOn();
+  reader->SetInputString(text);
+  return MakeVolume(RunReader(reader, name, quiet), name, "");
+}

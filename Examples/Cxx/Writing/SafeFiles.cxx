@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Writing/SafeFiles.h"
+
+#include <vtksys/SystemTools.hxx>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <stdexcept>
+
+namespace
+{
+constexpr int Interrupts[] = { SIGINT, SIGTERM,
+#ifdef SIGHUP
+  SIGHUP
+#endif
+};
+
+/// The files that an interrupt must remove, or nullptr.
+std::atomic<const std::vector<std::string>*> Unfinished{ nullptr };
+
+/// Async-signal-safe on POSIX: the list does not change while it is registered.
+void RemoveUnfinished(int signal)
+{
+  const std::vector<std::string>* const names = Unfinished.load();
+  for (std::size_t n = 0; names && n < names->size(); ++n)
+  {
+    std::remove((*names)[n].c_str());
+  }
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+/**
+ * Names of files that do not exist yet, which are removed at the end of the scope or by a signal.
+ */
+class TemporaryFiles
+{
+public:
+  explicit TemporaryFiles(const std::vector<std::string>& outputs)
+  {
+    for (const std::string& output : outputs)
+    {
+      this->Names.push_back(MakeName(output, this->Names.size()));
+    }
+    Unfinished = &this->Names;
+    for (std::size_t n = 0; n < std::size(Interrupts); ++n)
+    {
+      this->Handlers[n] = std::signal(Interrupts[n], RemoveUnfinished);
+      if (this->Handlers[n] == SIG_IGN) // as under nohup
+      {
+        std::signal(Interrupts[n], SIG_IGN);
+      }
+    }
+  }
+
+  ~TemporaryFiles()
+  {
+    for (std::size_t n = 0; n < std::size(Interrupts); ++n)
+    {
+      std::signal(Interrupts[n], this->Handlers[n]);
+    }
+    Unfinished = nullptr;
+    for (const std::string& name : this->Names)
+    {
+      std::remove(name.c_str());
+    }
+  }
+
+  TemporaryFiles(const TemporaryFiles&) = delete;
+  TemporaryFiles& operator=(const TemporaryFiles&) = delete;
+
+  std::vector<std::string> Names;
+
+private:
+  /// In the same folder, so that it can be renamed; readers and writers need the ending.
+  static std::string MakeName(const std::string& output, std::size_t number)
+  {
+    const std::filesystem::path path(output);
+    const std::string end = path.extension().string();
+    const std::string ending = end == ".gz" ? path.stem().extension().string() + end : end;
+    std::random_device random;
+    std::filesystem::path name;
+    do
+    {
+      name = path.parent_path() /
+        (".splatmip-" + std::to_string(random()) + "-" + std::to_string(number) + ending);
+    } while (std::filesystem::exists(name));
+    return name.string();
+  }
+
+  void (*Handlers[std::size(Interrupts)])(int);
+};
+
+/// The file that a name stands for, or the name if there is none: links remain links.
+std::string FollowLinks(const std::string& output)
+{
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::weakly_canonical(output, error);
+  return error ? output : path.string();
+}
+
+std::runtime_error CannotWrite(const std::string& output)
+{
+  return std::runtime_error(
+    output + ": this cannot be written; give a file in a folder that you may write to (--output).");
+}
+
+/// Give a new file the permissions of the one that it replaces.
+void KeepPermissions(const std::string& name, const std::string& output)
+{
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(output, error);
+  if (std::filesystem::is_regular_file(status))
+  {
+    std::filesystem::permissions(name, status.permissions(), error);
+  }
+}
+}
+
+void CheckWritable(const std::vector<std::string>& outputs)
+{
+  for (const std::string& output : outputs)
+  {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(output, error);
+    if (std::filesystem::exists(status) &&
+      (!std::filesystem::is_regular_file(status) ||
+        !vtksys::SystemTools::TestFileAccess(output, vtksys::TEST_FILE_WRITE)))
+    {
+      throw CannotWrite(output);
+    }
+  }
+  const TemporaryFiles temporary({ FollowLinks(outputs.front()) });
+  if (!std::ofstream(temporary.Names.front(), std::ios::binary))
+  {
+    throw CannotWrite(outputs.front());
+  }
+}
+
+void CheckNotInput(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs)
+{
+  for (const std::string& output : outputs)
+  {
+    std::error_code error;
+    for (std::size_t n = 0; n < inputs.size() && std::filesystem::exists(output, error); ++n)
+    {
+      if (std::filesystem::equivalent(output, inputs[n], error))
+      {
+        throw std::runtime_error(
+          output + ": this is one of the files to read; give another --output.");
+      }
+    }
+  }
+}
+
+void WriteSafely(const std::vector<std::string>& outputs,
+  const std::function<bool(const std::vector<std::string>& names)>& write)
+{
+  std::vector<std::string> targets;
+  for (const std::string& output : outputs)
+  {
+    targets.push_back(FollowLinks(output));
+  }
+  const TemporaryFiles temporary(targets);
+  bool isComplete = write(temporary.Names);
+  std::error_code error;
+  for (std::size_t n = 0; n < targets.size() && isComplete; ++n)
+  {
+    KeepPermissions(temporary.Names[n], targets[n]);
+    std::filesystem::rename(temporary.Names[n], targets[n], error);
+    isComplete = !error;
+  }
+  if (!isComplete)
+  {
+    throw std::runtime_error(outputs.front() +
+      ": this could not be written completely, so nothing was written; see whether the disk is "
+      "full.");
+  }
+}

@@ -1,0 +1,349 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Random scenes for the engine of exact projections, and how each of their pixels is compared with
+ * the oracle.
+ */
+#ifndef CellTesting_h
+#define CellTesting_h
+
+#include "CellOracle.h"
+#include "CoreTesting.h"
+
+#include "Cells/CellProjector.h"
+#include "Clipping/ClosedSurface.h"
+#include "Clipping/SceneDepth.h"
+
+#include <glm/geometric.hpp>
+#define GLM_ENABLE_EXPERIMENTAL
+#include <glm/gtc/matrix_access.hpp>
+#include <glm/gtx/string_cast.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace celltesting
+{
+using coretesting::Checks;
+using reference::Random;
+using splatting::ProjectionSettings;
+using splatting::Reduction;
+using splatting::ScreenScalars;
+using splatting::View;
+
+/// What the oracle computes with.
+template <class T>
+using Real =
+  std::conditional_t<std::is_same_v<splatting::Accumulator<T>, float>, double, long double>;
+
+/// Largest error as a share of the volume's range: by definition of the exact mode.
+template <class T>
+constexpr double Bound = std::is_same_v<splatting::Accumulator<T>, float> ? 1e-6 : 1e-12;
+
+/// A pixel is ambiguous if a ray this many voxels beside its own shows something else.
+template <class T>
+constexpr double Beside = std::is_same_v<splatting::Accumulator<T>, float> ? 0x1p-20 : 1e-12;
+
+/// Something to project.
+template <class T>
+struct Scene
+{
+  reference::Volume<T> volume;
+  View view;
+  ProjectionSettings settings;
+  std::vector<glm::dvec3> points; ///< of a closed surface
+  std::vector<glm::ivec3> triangles;
+  std::vector<float> depths; ///< of all pixels of the viewport
+  bool locate = false;
+};
+
+/// The engine's picture of a scene, the ends of rays made anew.
+template <class T>
+class Engine
+{
+public:
+  explicit Engine(const Scene<T>& scene) : Source(scene)
+  {
+    const reference::Volume<T>& volume = scene.volume;
+    const splatting::VoxelArray voxels{ volume.voxels.data(), splatting::scalarTypeOf<T>(),
+      coretesting::toGlm(volume.size) };
+    splatting::VolumeIndex whole;
+    whole.reset(voxels);
+    this->Range = whole.range();
+    this->Index.update(
+      splatting::CellGrid(voxels, glm::ivec3(0), voxels.dimensions, scene.view.showsBoxes),
+      this->Range);
+    if (!scene.triangles.empty())
+    {
+      this->Surface.reset(scene.points, scene.triangles);
+      this->Ends.surface = &this->Surface;
+    }
+    if (!scene.depths.empty())
+    {
+      std::copy(scene.depths.begin(), scene.depths.end(),
+        this->Depth.allocate(glm::ivec2(0), scene.view.viewport));
+      this->Depth.place(scene.view);
+      this->Ends.depth = &this->Depth;
+    }
+  }
+
+  const splatting::VolumeIndex::Range& range() const { return this->Range; }
+  const splatting::RayEnds& ends() const { return this->Ends; }
+
+  bool project(ScreenScalars& screen)
+  {
+    return this->Projector.project(this->Index, this->Source.view, this->Source.settings,
+      this->Ends, this->Source.locate, screen);
+  }
+  bool project(const glm::ivec2 (&within)[2], ScreenScalars& screen)
+  {
+    return this->Projector.project(this->Index, this->Source.view, this->Source.settings,
+      this->Ends, this->Source.locate, within, screen);
+  }
+
+private:
+  const Scene<T>& Source;
+  splatting::VolumeIndex::Range Range;
+  splatting::CellIndex Index;
+  splatting::ClosedSurface Surface;
+  splatting::SceneDepth Depth;
+  splatting::RayEnds Ends;
+  splatting::CellProjector Projector;
+};
+
+/// A pixel of the viewport; NaN outside of the rectangle.
+template <class A>
+A valueAt(const ScreenScalars& screen, int x, int y)
+{
+  const glm::ivec2 p = glm::ivec2(x, y) - screen.origin;
+  const bool isIn = p.x >= 0 && p.y >= 0 && p.x < screen.size.x && p.y < screen.size.y;
+  return isIn ? screen.row<A>(p.y)[p.x] : std::numeric_limits<A>::quiet_NaN();
+}
+
+inline float depthAt(const ScreenScalars& screen, int x, int y)
+{
+  const glm::ivec2 p = glm::ivec2(x, y) - screen.origin;
+  return screen.depths[std::size_t(p.y) * screen.size.x + p.x];
+}
+
+/// What was compared, and how far it was off.
+struct Counts
+{
+  long pixels = 0, samples = 0, ambiguous = 0;
+  double worst = 0.0; ///< error as a share of the bound
+
+  void add(const Counts& other)
+  {
+    this->pixels += other.pixels;
+    this->samples += other.samples;
+    this->ambiguous += other.ambiguous;
+    this->worst = std::max(this->worst, other.worst);
+  }
+  /// Prints them, and checks that there is something to compare.
+  void report(const std::string& family, Checks& check, double mostAmbiguous = 2e-3) const
+  {
+    std::cout << std::left << std::setw(28) << family << " pixels " << this->pixels << ", samples "
+              << this->samples << ", ambiguous " << this->ambiguous << ", worst error "
+              << std::setprecision(3) << this->worst << " of the bound" << std::endl;
+    if (reference::onlyScene().empty())
+    {
+      check(this->samples > 0, family, ": nothing is seen");
+      check(this->ambiguous <= 20 + mostAmbiguous * this->samples, family, ": ", this->ambiguous,
+        " of ", this->samples, " samples are ambiguous");
+    }
+  }
+};
+
+template <class T>
+reference::CellScene<Real<T>> oracleScene(const Scene<T>& scene)
+{
+  reference::CellScene<Real<T>> result;
+  result.size = coretesting::toGlm(scene.volume.size);
+  result.voxels.assign(scene.volume.voxels.begin(), scene.volume.voxels.end());
+  for (int c = 0; c < 4; ++c)
+  {
+    for (int r = 0; r < 4; ++r)
+    {
+      result.indexToClip[c][r] = scene.view.indexToClip[c][r];
+    }
+  }
+  result.viewport = scene.view.viewport;
+  result.showsBoxes = scene.view.showsBoxes;
+  result.halfSpaces = scene.view.halfSpaces;
+  result.planes = scene.view.cropping.planes;
+  result.flags = scene.view.cropping.flags;
+  for (const glm::ivec3& t : scene.triangles)
+  {
+    result.triangles.push_back({ scene.points[t[0]], scene.points[t[1]], scene.points[t[2]] });
+  }
+  result.depths = scene.depths;
+  return result;
+}
+
+/// Compares the pixels of one scene.
+template <class T>
+class Comparison
+{
+public:
+  using A = splatting::Accumulator<T>;
+  using R = Real<T>;
+  using Sample = reference::CellSample<R>;
+
+  Comparison(const Scene<T>& scene, const splatting::VolumeIndex::Range& range, Checks& check)
+    : Source(scene),
+      Plain(oracleScene(scene)),
+      Oracle(Plain),
+      Check(check)
+  {
+    const bool isFinite = range.low <= range.high && !range.hasInfinities();
+    R low = std::numeric_limits<R>::infinity(), high = -low;
+    for (const R voxel : this->Plain.voxels)
+    {
+      low = std::isfinite(voxel) ? std::min(low, voxel) : low;
+      high = std::isfinite(voxel) ? std::max(high, voxel) : high;
+    }
+    this->Low = low <= high ? low : 0;
+    this->Range = low <= high ? high - low : 0;
+    this->Lowest = isFinite ? range.low : 0.0;
+    // Values are computed from the lowest voxel on, and added to it in the end.
+    const R largest = low <= high ? std::max(std::fabs(low), std::fabs(high)) : R(0);
+    this->Tolerance = Bound<T> * this->Range + std::numeric_limits<A>::epsilon() * largest;
+  }
+
+  const reference::CellOracle<R>& oracle() const { return this->Oracle; }
+  R tolerance() const { return this->Tolerance; }
+
+  Sample expected(const reference::CellRay<R>& ray) const
+  {
+    const ProjectionSettings& s = this->Source.settings;
+    switch (s.reduction)
+    {
+      case Reduction::DepthShaded:
+        return this->Oracle.shaded(ray, { this->Lowest, s.ambient, s.changeRate });
+      case Reduction::Local:
+        return this->Oracle.local(ray, s.threshold, 0x1p-40 * static_cast<double>(this->Range));
+      default:
+        return this->Oracle.largest(ray, s.reduction == Reduction::Minimum);
+    }
+  }
+
+  /// Rays that cross the field over too little have no sample.
+  bool crosses(const reference::CellRay<R>& ray, int x, int y, const ScreenScalars& screen) const
+  {
+    const R step = glm::length(screen.rays.direction(x, y));
+    return ray.far - ray.near > splatting::CellProjector::ShortestRay * step;
+  }
+
+  Counts compare(const ScreenScalars& screen) const
+  {
+    Counts counts;
+    for (int y = 0; y < this->Source.view.viewport.y; ++y)
+    {
+      for (int x = 0; x < this->Source.view.viewport.x; ++x)
+      {
+        this->comparePixel(screen, x, y, counts);
+      }
+    }
+    return counts;
+  }
+
+private:
+  Sample sampleOf(const reference::CellRay<R>& ray, int x, int y, const ScreenScalars& screen) const
+  {
+    return this->crosses(ray, x, y, screen) ? this->expected(ray) : Sample();
+  }
+
+  /// 0 if both are the same, infinite if only one is a sample.
+  R error(A value, const Sample& sample) const
+  {
+    const bool exists = value == value;
+    if (exists != sample.exists)
+    {
+      return std::numeric_limits<R>::infinity();
+    }
+    return !exists || R(value) == sample.value ? R(0) : std::fabs(R(value) - sample.value);
+  }
+
+  void comparePixel(const ScreenScalars& screen, int x, int y, Counts& counts) const
+  {
+    const A value = valueAt<A>(screen, x, y);
+    const reference::CellRay<R> ray = this->Oracle.ray(x, y);
+    const Sample sample = this->sampleOf(ray, x, y, screen);
+    ++counts.pixels;
+    counts.samples += sample.exists;
+    const R error = this->error(value, sample);
+    if (error <= this->Tolerance)
+    {
+      const double share = error > 0 ? static_cast<double>(error / this->Tolerance) : 0.0;
+      counts.worst = std::max(counts.worst, share);
+    }
+    else if (this->isAmbiguous(screen, x, y, value))
+    {
+      ++counts.ambiguous;
+    }
+    else
+    {
+      counts.worst = std::max(counts.worst, static_cast<double>(error / this->Tolerance));
+      this->Check(false, "pixel ", x, ", ", y, ": ", value, ", not ", sample.value,
+        sample.exists ? "" : " (none)", ", error ", error / this->Tolerance,
+        " of the bound at ", sample.t, " of ", ray.near, " to ", ray.far, ", ray of length ", ray.far - ray.near, ", direction ", ray.direction[0], " ",
+        ray.direction[1], " ", ray.direction[2]);
+    }
+  }
+
+  /// Whether rays beside a pixel's own differ by more than a continuous field can, and the engine's
+  /// value is in their range.
+  bool isAmbiguous(const ScreenScalars& screen, int x, int y, A value) const
+  {
+    const R infinity = std::numeric_limits<R>::infinity();
+    R least = infinity, largest = -infinity;
+    bool none = false;
+    for (int n = 0; n < 8; ++n)
+    {
+      const glm::dvec3 shift = Beside<T> * (2.0 * glm::dvec3(n & 1, n >> 1 & 1, n >> 2) - 1.0);
+      const Sample sample = this->sampleOf(this->Oracle.ray(x, y, shift), x, y, screen);
+      none |= !sample.exists;
+      least = sample.exists ? std::min(least, sample.value) : least;
+      largest = sample.exists ? std::max(largest, sample.value) : largest;
+    }
+    if (!(value == value) || !(least <= largest))
+    {
+      return none && (value == value || least <= largest);
+    }
+    const R margin = this->Tolerance;
+    return (none || largest - least > 16 * margin) &&
+      (none || (value >= least - margin && value <= largest + margin));
+  }
+
+  const Scene<T>& Source;
+  const reference::CellScene<R> Plain;
+  const reference::CellOracle<R> Oracle;
+  Checks& Check;
+  R Low, Range, Tolerance;
+  double Lowest;
+};
+
+/// Projects a scene and compares all pixels of it.
+template <class T>
+Counts compareScene(const Scene<T>& scene, Checks& check)
+{
+  Engine<T> engine(scene);
+  ScreenScalars screen;
+  if (!engine.project(screen))
+  {
+    check(false, "the view has no meaning: ", glm::to_string(scene.view.indexToClip));
+    return {};
+  }
+  return Comparison<T>(scene, engine.range(), check).compare(screen);
+}
+}
+
+#endif

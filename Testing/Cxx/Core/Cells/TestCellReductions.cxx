@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Exact minima, depth-shaded maxima and local maxima of random scenes.
+ */
+#include "CellViews.h"
+
+namespace
+{
+using namespace celltesting;
+
+void setShading(ProjectionSettings& settings, Random& random)
+{
+  // Shares of both signs: samples may become darker than the darkest voxel.
+  const bool usual = random.uniform(0, 1);
+  settings.ambient = usual ? random.uniform(0.0, 1.0) : random.uniform(-0.5, 1.0);
+  settings.changeRate = usual ? 1.0 - settings.ambient : random.uniform(-1.0, 1.0);
+}
+
+template <class T>
+void setThreshold(Scene<T>& scene, Random& random)
+{
+  const int voxel = random.uniform(0, static_cast<int>(scene.volume.voxels.size()) - 1);
+  const double threshold = static_cast<double>(scene.volume.voxels[voxel]);
+  scene.settings.threshold = threshold == threshold && random.uniform(0, 9)
+    ? threshold
+    : -std::numeric_limits<double>::infinity();
+}
+
+template <class T>
+void addCuts(View& view, Random& random)
+{
+  const glm::dvec3 middle = 0.5 * glm::dvec3(view.dimensions);
+  if (random.uniform(0, 2) == 0)
+  {
+    const glm::dvec3 normal = coretesting::anyVector(random, -1.0, 1.0);
+    view.halfSpaces.emplace_back(normal, -glm::dot(normal, middle));
+  }
+  if (random.uniform(0, 2) == 0)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      const double low = middle[a] * random.uniform(0.0, 1.2);
+      view.cropping.planes[a] = { low, low + random.uniform(0.1, 6.0) };
+    }
+    view.cropping.flags = static_cast<std::uint32_t>(random.bits()) & splatting::Cropping::All;
+  }
+}
+
+template <class T>
+void testReduction(const std::string& name, Reduction reduction, bool holes, Checks& check)
+{
+  const std::string series = coretesting::seriesOf<T>(name + (holes ? ", holes" : ""));
+  Counts counts;
+  reference::forScenes(series, 160,
+    [&](int, Random& random)
+    {
+      Scene<T> scene;
+      const std::array<int, 3> size = coretesting::randomSize(random, 18);
+      scene.volume = holes ? coretesting::volumeWithOddValues<T>(size, random)
+                           : coretesting::wholeRangeNoise<T>(size, random);
+      scene.view = randomCellView(size, 80, random);
+      scene.view.showsBoxes = random.uniform(0, 2) == 0;
+      scene.settings.reduction = reduction;
+      setShading(scene.settings, random);
+      setThreshold(scene, random);
+      addCuts<T>(scene.view, random);
+      counts.add(compareScene(scene, check));
+    });
+  counts.report(series, check, 2e-2);
+}
+
+template <class T>
+void testAll(bool holes, Checks& check)
+{
+  testReduction<T>("minima", Reduction::Minimum, holes, check);
+  testReduction<T>("depth-shaded", Reduction::DepthShaded, holes, check);
+  testReduction<T>("local", Reduction::Local, holes, check);
+}
+}
+
+int TestCellReductions(int, char*[])
+{
+  Checks check;
+  testAll<std::uint8_t>(false, check);
+  testAll<std::int16_t>(false, check);
+  testAll<float>(false, check);
+  testAll<float>(true, check);
+  testAll<std::int64_t>(false, check);
+  testAll<double>(true, check);
+  return check.result();
+}

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Exact maxima of random scenes at every pixel: all voxel types, views from anywhere, volumes of
+ * one voxel along axes, scalars of cells.
+ */
+#include "CellViews.h"
+
+namespace
+{
+using namespace celltesting;
+
+template <class T>
+void testNoise(Counts& counts, Checks& check)
+{
+  reference::forScenes(coretesting::seriesOf<T>("noise"), 400,
+    [&](int, Random& random)
+    {
+      Scene<T> scene;
+      std::array<int, 3> size = coretesting::randomSize(random, 14);
+      scene.volume = coretesting::wholeRangeNoise<T>(size, random);
+      scene.view = randomCellView(size, 150, random);
+      scene.view.showsBoxes = random.uniform(0, 2) == 0;
+      counts.add(compareScene(scene, check));
+    });
+}
+}
+
+int TestCells(int, char*[])
+{
+  Checks check;
+  coretesting::forEachType(
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      Counts counts;
+      testNoise<T>(counts, check);
+      counts.report(coretesting::seriesOf<T>("noise"), check);
+    });
+  return check.result();
+}
