@@ -75,7 +75,7 @@ void testReuse(stage::Checks& check)
   mapper->SetBlendModeToComposite();
   check(scene.pixels() != first && projections() == 1, "Composite.");
   mapper->SetBlendModeToMaximumIntensity();
-  check(scene.pixels() == first && projections() == 1, "The shear image outlasts other modes.");
+  check(scene.pixels() == first && projections() == 1, "The projection outlasts other modes.");
   scene.renderer->GetActiveCamera()->Azimuth(2.0);
   scene.pixels();
   check(projections() == 2, "A turn projects.");
