@@ -219,8 +219,10 @@ RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& prob
 {
   RankReport report;
   report.setProblem(problem);
-  // EXACT gives way to HIGH, which reaches farther, where it takes too long or there are no maxima.
-  const int mode = std::min<int>(mapper->GetQualityMode(), vtkSplattingMIPVolumeMapper::HIGH);
+  // EXACT gives way to HIGH, which reaches farther, where it takes too long.
+  const int mode = mapper->GetAutoAdjustSampleDistances()
+    ? std::min<int>(mapper->GetQualityMode(), vtkSplattingMIPVolumeMapper::HIGH)
+    : mapper->GetQualityMode();
   report.layers = reachOf(static_cast<Quality>(mode)).layers();
   if (vtkImageData* const image = pieceOf(mapper))
   {

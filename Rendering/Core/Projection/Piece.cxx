@@ -199,7 +199,7 @@ Reach reachOf(Quality quality)
     case Quality::High:
       return { 2, 1 };
     default:
-      return { 2, 1 };
+      return { 1, 1 };
   }
 }
 

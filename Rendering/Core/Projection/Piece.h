@@ -41,8 +41,8 @@ struct Box
  * A ray moves by half a voxel at most before and behind the middle, from which it is half a voxel
  * at most to the nearest voxel's side, and a pixel is half a voxel wide on either side. Standard
  * mode's boxes reach half a voxel further, 1.5 to 2 in all, high mode's hats one, and cosine bells
- * one and a half, of which the weights at the very end are 0. The exact field reads the cells that
- * the ray is in, up to the middle of the next slice. Previews take each voxel by itself.
+ * one and a half, of which the weights at the very end are 0. A cell of the exact field lies
+ * between neighbouring voxels. Previews take each voxel by itself.
  */
 struct Reach
 {
