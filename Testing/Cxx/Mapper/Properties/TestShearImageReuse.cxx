@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The shear image as the mapper hands it out, and when it is projected again.
+// The shear image as the mapper hands it out, and when the volume is projected again.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
@@ -180,22 +180,29 @@ void testReuse(stage::Stage& stage, Mapper* mapper, stage::Checks& check)
   keeps("the window changes its size.", [&] { stage.window->SetSize(120, 150); });
 }
 
+void testModes(stage::Stage& stage, Mapper* mapper, stage::Checks& check)
+{
+  const auto again = [&](const char* what, auto step)
+  { check(projects(stage, mapper, 1, step), std::string("One projection when ") + what); };
+  again("the mode changes.", [&] { mapper->SetQualityModeToStandard(); });
+  again("the mode changes back.", [&] { mapper->SetQualityModeToHigh(); });
+  again("the kernel changes.", [&] { mapper->SetKernelToCosineBell(); });
+  again("the kernel's radius changes.", [&] { mapper->SetKernelRadius(1.3); });
+  again("the weights change.", [&] { mapper->SetFootprintSampling(8); });
+}
+
 void testProjection(stage::Stage& stage, Mapper* mapper, vtkImageData* image, stage::Checks& check)
 {
   vtkCamera* const camera = stage.renderer->GetActiveCamera();
+  const std::string mode = mapper->GetQualityModeAsString();
   const auto again = [&](const char* what, auto step)
-  { check(projects(stage, mapper, 1, step), std::string("One projection when ") + what); };
+  { check(projects(stage, mapper, 1, step), "In mode " + mode + " one projection when " + what); };
   again("the view turns.",
     [&]
     {
       camera->Azimuth(10.0);
       stage.renderer->ResetCameraClippingRange();
     });
-  again("the mode changes.", [&] { mapper->SetQualityModeToStandard(); });
-  again("the mode changes back.", [&] { mapper->SetQualityModeToHigh(); });
-  again("the kernel changes.", [&] { mapper->SetKernelToCosineBell(); });
-  again("the kernel's radius changes.", [&] { mapper->SetKernelRadius(1.3); });
-  again("the weights change.", [&] { mapper->SetFootprintSampling(8); });
   again("a plane cuts the volume.",
     [&]
     {
@@ -278,10 +285,17 @@ void testNumberOfProjections(stage::Stage& stage, stage::Checks& check)
   const auto image = stage::toImageData(smallNoise());
   const auto mapper = stage::splatting(image);
   stage.show(mapper);
+  mapper->SetQualityModeToHigh();
   stage.look(oblique, up);
   testReuse(stage, mapper, check);
-  stage.look(oblique, up);
-  testProjection(stage, mapper, image, check);
+  testModes(stage, mapper, check);
+  for (int mode : { Mapper::HIGH, Mapper::EXACT })
+  {
+    mapper->SetQualityMode(mode);
+    stage.volume->SetScale(1.0);
+    stage.look(oblique, up);
+    testProjection(stage, mapper, image, check);
+  }
 }
 }
 
