@@ -233,13 +233,15 @@ private:
 
   SPLATTING_INLINE M mayRaise(V top, A least) const
   {
+    // Cells that the volume does not have, or all of whose voxels are hidden, raise nothing.
+    const M exists = R::above(top, R::set(CellValue<A>::None));
     if (Shaded)
     {
-      const M exists = R::above(top, R::set(CellValue<A>::None));
-      const V most = R::mul(top, R::set(this->Block.mostFactor));
-      top = this->Block.bounded ? most : R::choose(exists, R::set(CellValue<A>::Highest), top);
+      top = this->Block.bounded ? R::mul(top, R::set(this->Block.mostFactor))
+                                : R::set(CellValue<A>::Highest);
     }
-    return Located ? R::atLeast(top, R::set(least)) : R::above(top, R::set(least));
+    return static_cast<M>(
+      exists & (Located ? R::atLeast(top, R::set(least)) : R::above(top, R::set(least))));
   }
 
   SPLATTING_INLINE void findSliceMaxima(int z, V maxima[]) const
