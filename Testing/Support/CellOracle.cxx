@@ -163,8 +163,7 @@ CellRay<R> CellOracle<R>::ray(double x, double y, const glm::dvec3& shift) const
       // Shown is what is nearer: z <= (2 depth - 1) w where w is positive.
       const R limit = 2 * depth - 1, sense = parallel && middle < 0 ? -1 : 1;
       cut(ray,
-        sense *
-          (limit * (dot(rows[3], ray.start) + rests[3]) - dot(rows[2], ray.start) - rests[2]),
+        sense * (limit * (dot(rows[3], ray.start) + rests[3]) - dot(rows[2], ray.start) - rests[2]),
         sense * (limit * dot(rows[3], ray.direction) - dot(rows[2], ray.direction)));
     }
   }
@@ -336,7 +335,7 @@ std::vector<CellSegment<R>> CellOracle<R>::segments(const CellRay<R>& ray) const
           nearest[a] = static_cast<int>(std::floor(at(a, middle) + R(0.5)));
         }
         const R voxel = this->voxel(nearest);
-        if (halves[h] < halves[h + 1] && voxel == voxel)
+        if (halves[h + 1] - halves[h] > this->Shortest && voxel == voxel)
         {
           segments.push_back({ halves[h], halves[h + 1], segment.cell, false, voxel });
         }

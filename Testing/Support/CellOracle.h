@@ -85,7 +85,13 @@ template <class R>
 class CellOracle
 {
 public:
-  explicit CellOracle(const CellScene<R>& scene) : Scene(scene) { this->findBox(); }
+  /// @param shortest  octants that a ray crosses over less are left out
+  explicit CellOracle(const CellScene<R>& scene, double shortest = 1e-13)
+    : Scene(scene),
+      Shortest(shortest)
+  {
+    this->findBox();
+  }
 
   /**
    * The ray through a pixel's centre, which lies at integers.
@@ -129,6 +135,7 @@ private:
   std::vector<std::array<R, 2>> shownParts(const CellRay<R>& ray) const;
 
   const CellScene<R>& Scene;
+  const R Shortest;
   R Low[3], High[3];
 };
 

@@ -19,7 +19,7 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr int ChecksEvery = 64;
 /// Directions below this do not change a coordinate within a block.
 template <class A>
-constexpr double Flat = sizeof(A) == sizeof(float) ? 1e-9 : 1e-15;
+constexpr double Flat = sizeof(A) == sizeof(float) ? 1e-9 : 1e-13;
 
 /// The least and the greatest value of h in a box.
 glm::dvec2 rangeOf(const glm::dvec4& h, const CellBox& box)
@@ -73,6 +73,7 @@ CellFrame<T>::CellFrame(CellIndex& index, const View& view, const ProjectionSett
   }
   this->cutsAll = ends.surface || ends.depth;
   const bool canDarken = this->shades && std::min(this->ambient, this->ambient + this->rate) < 0.0;
+  this->isFinite = !index.range().hasInfinities();
   this->mayBeEmpty = this->scale.holes || this->crops || canDarken;
 }
 
@@ -161,6 +162,7 @@ TileSplatter<T>::TileSplatter(const CellFrame<T>& frame, ScreenTile<A>& tile)
   block.ambient = static_cast<A>(frame.ambient);
   block.rate = static_cast<A>(frame.rate);
   block.mostFactor = 1;
+  block.bounded = frame.isFinite;
 }
 
 template <class T>
@@ -226,7 +228,10 @@ void TileSplatter<T>::openRow(int y)
 template <class T>
 bool TileSplatter<T>::reaches(A bound, A least, A factor) const
 {
-  bound = this->Frame.shades ? bound * factor : bound;
+  if (this->Frame.shades)
+  {
+    bound = this->Frame.isFinite ? bound * factor : CellValue<A>::Highest;
+  }
   return bound > least || (this->Frame.locates && bound == least && bound >= this->Block.tiesFrom);
 }
 
@@ -271,12 +276,11 @@ bool TileSplatter<T>::splatBrick(std::uint32_t brick)
     const double rest = 1.0 + 0x1p-9;
     const double factor = f.shades ? std::max({ f.ambient, f.ambient + f.rate, 0.0 }) : 1.0;
     const double range = std::abs(static_cast<double>(f.scale.factor) * (f.highest - f.lowest));
-    const A most = static_cast<A>(
-      (static_cast<double>(bound) * rest + (std::isfinite(range) ? 0x1p-9 * range : 0.0)) * factor *
-      (1.0 + 1e-5));
+    const A most =
+      static_cast<A>((static_cast<double>(bound) * rest + 0x1p-9 * range) * factor * (1.0 + 1e-5));
     const A least =
       this->Loops.least(this->Tile, 0, ScreenTile<A>::Side - 1, 0, ScreenTile<A>::Side - 1);
-    if (std::isfinite(range) && most < least)
+    if (f.isFinite && most < least)
     {
       return false;
     }

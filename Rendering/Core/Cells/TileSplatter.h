@@ -59,6 +59,7 @@ struct CellFrame
   const double ambient, rate;
   bool cutsAll;    ///< whether rays may end in any block: by a surface or a depth buffer
   bool mayBeEmpty; ///< whether a ray in the field may have no sample
+  bool isFinite;   ///< whether values are relative to the lowest voxel, none below 0
 };
 
 /**

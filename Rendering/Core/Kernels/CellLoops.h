@@ -121,6 +121,7 @@ struct CellBlock
   A tiesFrom; ///< from which value on the nearest of equal samples is sought
   bool shaded;
   A ambient, rate, mostFactor;
+  bool bounded; ///< whether shaded samples are at most mostFactor times the largest voxel
 };
 
 template <class A>

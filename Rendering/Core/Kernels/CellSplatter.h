@@ -59,7 +59,16 @@ inline A nextAbove(A value)
 /// Cells are wider by this at each side: more than the rounding by which the places of a ray in two
 /// neighbours differ, so that no part of a ray which runs along their face slips through.
 template <class A>
-constexpr A BesideFace = std::numeric_limits<A>::epsilon();
+constexpr A BesideFace = sizeof(A) == sizeof(float) ? A(0x1p-23) : A(0x1p-46);
+
+/// The same where rays never leave a face: these places are as precise as views.
+template <class A>
+constexpr A InFace = sizeof(A) == sizeof(float) ? BesideFace<A> : A(0x1p-42);
+
+/// Parts of rays that are shorter may be there by rounding alone. They are left out where their
+/// neighbours do not have the same values: at cropping's planes and in octants.
+template <class A>
+constexpr A Sliver = 2 * BesideFace<A>;
 
 /// Where a cell begins and ends that is cropped at some place.
 template <class A>
@@ -224,11 +233,15 @@ private:
 
   SPLATTING_INLINE M mayRaise(V top, A least) const
   {
+    // Cells that the volume does not have, or all of whose voxels are hidden, raise nothing.
+    const M exists = R::above(top, R::set(CellValue<A>::None));
     if (Shaded)
     {
-      top = R::mul(top, R::set(this->Block.mostFactor));
+      top = this->Block.bounded ? R::mul(top, R::set(this->Block.mostFactor))
+                                : R::set(CellValue<A>::Highest);
     }
-    return Located ? R::atLeast(top, R::set(least)) : R::above(top, R::set(least));
+    return static_cast<M>(
+      exists & (Located ? R::atLeast(top, R::set(least)) : R::above(top, R::set(least))));
   }
 
   SPLATTING_INLINE void findSliceMaxima(int z, V maxima[]) const
@@ -395,6 +408,7 @@ private:
       this->MiddleT[n] = fused(this->Block.alongT[0], this->Corner[0][n] + A(0.5),
         fused(this->Block.alongT[1], this->Corner[1][n] + A(0.5), middle));
       A bound = Shaded ? this->Top[n] * this->Block.mostFactor : this->Top[n];
+      bound = Shaded && !this->Block.bounded ? CellValue<A>::Highest : bound;
       if (Located && bound >= this->Block.tiesFrom)
       {
         bound = nextAbove(bound);
@@ -488,7 +502,7 @@ private:
   {
     if (!Perspective && this->Block.flat[a])
     {
-      const V beside = R::set(BesideFace<A>);
+      const V beside = R::set(InFace<A>);
       on = static_cast<M>(
         on & R::atLeast(R::add(o, beside), low) & R::atLeast(R::add(high, beside), o));
       return;
@@ -498,6 +512,14 @@ private:
     {
       inverse = R::smaller(R::div(R::set(1), d), R::set(Steepest<A>));
       inverse = R::larger(inverse, R::set(-Steepest<A>));
+      if (!Split)
+      {
+        const M isFlat =
+          R::above(R::larger(inverse, R::sub(R::set(0), inverse)), R::set(A(0x1p43)));
+        const V beside = R::choose(isFlat, R::set(InFace<A>), R::set(0));
+        low = R::sub(low, beside);
+        high = R::add(high, beside);
+      }
     }
     V p = R::mul(R::sub(low, o), inverse), q = R::mul(R::sub(high, o), inverse);
     if (Cut && this->Block.crops)
@@ -561,7 +583,8 @@ private:
       enter = R::larger(enter, near);
       leave = R::smaller(leave, far);
     }
-    on = static_cast<M>(on & R::above(leave, enter));
+    const V least = R::set(Cut && b.crops ? Sliver<A> : A(0));
+    on = static_cast<M>(on & R::above(R::sub(leave, enter), least));
     if (!on)
     {
       return;
@@ -571,8 +594,9 @@ private:
     depth = Located ? R::add(R::add(depth, middle), R::set(b.reference)) : depth;
     if (Shaded)
     {
-      const V middle = R::fma(R::set(A(0.5)), R::sub(leave, enter), enter);
-      V share = R::div(R::sub(middle, near), R::sub(far, near));
+      // Relative to the ray's beginning, so that short rays are shaded right.
+      const V place = R::fma(R::set(A(0.5)), R::sub(leave, enter), R::sub(enter, near));
+      V share = R::div(place, R::sub(far, near));
       share = R::smaller(R::larger(share, R::set(0)), R::set(1));
       value = R::mul(value, R::fma(R::sub(R::set(1), share), R::set(b.rate), R::set(b.ambient)));
     }
@@ -709,7 +733,8 @@ private:
     {
       if (d == 0)
       {
-        this->leave = o >= low && o <= high ? this->leave : -std::numeric_limits<A>::max();
+        const bool isInside = o >= low - InFace<A> && o <= high + InFace<A>;
+        this->leave = isInside ? this->leave : -std::numeric_limits<A>::max();
         return;
       }
       const A p = (low - o) / d, q = (high - o) / d;
@@ -743,7 +768,9 @@ private:
         rest = fused(x, b.forwardAcross[a].rest, fused(y, b.forwardUp[a].rest, rest));
       }
       o[a] = fused(most, middle, start) + fused(rest, middle, startRest);
-      d[a] = !Perspective && b.flat[a] ? A(0) : most + rest;
+      const A direction = most + rest;
+      const bool isFlat = Perspective ? std::fabs(direction) < A(0x1p-43) : b.flat[a];
+      d[a] = isFlat ? A(0) : direction;
     }
     Segment ray{ -std::numeric_limits<A>::max(), std::numeric_limits<A>::max() };
     A near = 0, far = 0;
@@ -770,15 +797,14 @@ private:
         part.clip(
           o[a], d[a], upper ? A(0.5) : -BesideFace<A>, upper ? A(1) + BesideFace<A> : A(0.5));
       }
-      if (!(part.enter < part.leave) || corners[c] == CellValue<A>::None)
+      if (!(part.leave - part.enter > Sliver<A>) || corners[c] == CellValue<A>::None)
       {
         continue;
       }
       A value = corners[c];
       if (Shaded)
       {
-        const A middle = part.enter + A(0.5) * (part.leave - part.enter);
-        A share = (middle - near) / (far - near);
+        A share = fused(A(0.5), part.leave - part.enter, part.enter - near) / (far - near);
         share = share > 0 ? share < 1 ? share : A(1) : A(0);
         const bool finite = value < CellValue<A>::Highest && value > CellValue<A>::Lowest;
         value = finite ? value * fused(A(1) - share, b.rate, b.ambient) : value;

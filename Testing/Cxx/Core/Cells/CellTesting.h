@@ -201,6 +201,7 @@ public:
     : Source(scene),
       Plain(oracleScene(scene)),
       Oracle(Plain),
+      Coarse(Plain, 8.0 * Beside<T>),
       Check(check)
   {
     const bool isFinite = range.low <= range.high && !range.hasInfinities();
@@ -216,6 +217,12 @@ public:
     // Values are computed from the lowest voxel on, and added to it in the end.
     const R largest = low <= high ? std::max(std::fabs(low), std::fabs(high)) : R(0);
     this->Tolerance = Bound<T> * this->Range + std::numeric_limits<A>::epsilon() * largest;
+    if (scene.settings.reduction == Reduction::DepthShaded)
+    {
+      // Errors grow by the largest factor.
+      this->Tolerance *=
+        std::max(1.0, std::abs(scene.settings.ambient) + std::abs(scene.settings.changeRate));
+    }
   }
 
   const reference::CellOracle<R>& oracle() const { return this->Oracle; }
@@ -223,15 +230,19 @@ public:
 
   Sample expected(const reference::CellRay<R>& ray) const
   {
+    return this->expected(this->Oracle, ray);
+  }
+  Sample expected(const reference::CellOracle<R>& oracle, const reference::CellRay<R>& ray) const
+  {
     const ProjectionSettings& s = this->Source.settings;
     switch (s.reduction)
     {
       case Reduction::DepthShaded:
-        return this->Oracle.shaded(ray, { this->Lowest, s.ambient, s.changeRate });
+        return oracle.shaded(ray, { this->Lowest, s.ambient, s.changeRate });
       case Reduction::Local:
-        return this->Oracle.local(ray, s.threshold, 0x1p-40 * static_cast<double>(this->Range));
+        return oracle.local(ray, s.threshold, 0x1p-40 * static_cast<double>(this->Range));
       default:
-        return this->Oracle.largest(ray, s.reduction == Reduction::Minimum);
+        return oracle.largest(ray, s.reduction == Reduction::Minimum);
     }
   }
 
@@ -293,9 +304,9 @@ private:
     {
       counts.worst = std::max(counts.worst, static_cast<double>(error / this->Tolerance));
       this->Check(false, "pixel ", x, ", ", y, ": ", value, ", not ", sample.value,
-        sample.exists ? "" : " (none)", ", error ", error / this->Tolerance,
-        " of the bound at ", sample.t, " of ", ray.near, " to ", ray.far, ", ray of length ", ray.far - ray.near, ", direction ", ray.direction[0], " ",
-        ray.direction[1], " ", ray.direction[2]);
+        sample.exists ? "" : " (none)", ", error ", error / this->Tolerance, " of the bound at ",
+        sample.t, " of ", ray.near, " to ", ray.far, ", ray of length ", ray.far - ray.near,
+        ", direction ", ray.direction[0], " ", ray.direction[1], " ", ray.direction[2]);
     }
   }
 
@@ -306,10 +317,15 @@ private:
     const R infinity = std::numeric_limits<R>::infinity();
     R least = infinity, largest = -infinity;
     bool none = false;
-    for (int n = 0; n < 8; ++n)
+    for (int n = 0; n < 18; ++n)
     {
-      const glm::dvec3 shift = Beside<T> * (2.0 * glm::dvec3(n & 1, n >> 1 & 1, n >> 2) - 1.0);
-      const Sample sample = this->sampleOf(this->Oracle.ray(x, y, shift), x, y, screen);
+      const glm::dvec3 side(n & 1, n >> 1 & 1, n >> 2 & 1);
+      const glm::dvec3 shift = n < 16 ? Beside<T> * (2.0 * side - 1.0) : glm::dvec3(0.0);
+      const reference::CellRay<R> ray = this->Oracle.ray(x, y, shift);
+      const bool isCoarse = (n >> 3 & 1) || n == 17;
+      const Sample sample = !this->crosses(ray, x, y, screen)
+        ? Sample()
+        : this->expected(isCoarse ? this->Coarse : this->Oracle, ray);
       none |= !sample.exists;
       least = sample.exists ? std::min(least, sample.value) : least;
       largest = sample.exists ? std::max(largest, sample.value) : largest;
@@ -319,13 +335,13 @@ private:
       return none && (value == value || least <= largest);
     }
     const R margin = this->Tolerance;
-    return (none || largest - least > 16 * margin) &&
+    return (none || largest - least > 6 * margin) &&
       (none || (value >= least - margin && value <= largest + margin));
   }
 
   const Scene<T>& Source;
   const reference::CellScene<R> Plain;
-  const reference::CellOracle<R> Oracle;
+  const reference::CellOracle<R> Oracle, Coarse;
   Checks& Check;
   R Low, Range, Tolerance;
   double Lowest;

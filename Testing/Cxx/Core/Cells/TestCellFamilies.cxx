@@ -20,14 +20,12 @@ View viewAlong(const std::array<int, 3>& size, const glm::dvec3& direction, Rand
   const glm::dmat3 placement = randomPlacement(random);
   return random.uniform(0, 1)
     ? parallelView(size, pixels, 120, direction, placement, random)
-    : perspectiveView(
-        size, pixels, 120, random.uniform(1.0, 5.0), direction, placement, random);
+    : perspectiveView(size, pixels, 120, random.uniform(1.0, 5.0), direction, placement, random);
 }
 
 template <class T>
-void compareAlong(
-  reference::Volume<T> volume, const glm::dvec3& direction, Random& random, Counts& counts,
-  Checks& check)
+void compareAlong(reference::Volume<T> volume, const glm::dvec3& direction, Random& random,
+  Counts& counts, Checks& check)
 {
   Scene<T> scene;
   scene.volume = std::move(volume);
@@ -55,8 +53,8 @@ void testVessels(bool across, Checks& check)
       Plate plate{ view, 0.0, 0.0, random.uniform(0.3, 0.9) };
       plate.from = glm::dot(middle, view) + sense * 4.0 - 1.2;
       plate.to = plate.from + 2.4;
-      const auto volume = volumeOf<T>(
-        size, [&](const glm::dvec3& p) { return std::max(vessel.at(p), plate.at(p)); });
+      const auto volume =
+        volumeOf<T>(size, [&](const glm::dvec3& p) { return std::max(vessel.at(p), plate.at(p)); });
       compareAlong<T>(volume, view, random, counts, check);
     });
   counts.report(name, check);
@@ -75,8 +73,8 @@ void testSingleVoxels(Checks& check)
       const glm::dvec3 voxel = glm::round(middle - random.uniform(2.0, 5.0) * view);
       Plate plate{ view, glm::dot(middle, view) + 1.5, glm::dot(middle, view) + 4.0,
         random.uniform(0.3, 0.9) };
-      const auto volume = volumeOf<T>({ 17, 17, 17 },
-        [&](const glm::dvec3& p) { return p == voxel ? 1.0 : plate.at(p); });
+      const auto volume = volumeOf<T>(
+        { 17, 17, 17 }, [&](const glm::dvec3& p) { return p == voxel ? 1.0 : plate.at(p); });
       compareAlong<T>(volume, view, random, counts, check);
     });
   counts.report(name, check);
@@ -96,8 +94,8 @@ void testTubes(Checks& check)
       vessel.width = random.uniform(1.0, 2.0);
       vessel.direction = glm::normalize(view + tilt * anyUnitVector(random));
       vessel.point = glm::dvec3(8.0) + coretesting::anyVector(random, -2.0, 2.0);
-      const auto volume = volumeOf<T>({ 18, 16, 17 },
-        [&](const glm::dvec3& p) { return vessel.at(p); });
+      const auto volume =
+        volumeOf<T>({ 18, 16, 17 }, [&](const glm::dvec3& p) { return vessel.at(p); });
       compareAlong<T>(volume, view, random, counts, check);
     });
   counts.report(name, check);

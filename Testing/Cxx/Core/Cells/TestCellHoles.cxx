@@ -58,8 +58,8 @@ void makeHoles(reference::Volume<T>& volume, HoleKind kind, Random& random)
     {
       continue;
     }
-    const bool isHidden = kind == FewHidden || kind == MostHidden ||
-      (kind == Everything && random.uniform(0, 1));
+    const bool isHidden =
+      kind == FewHidden || kind == MostHidden || (kind == Everything && random.uniform(0, 1));
     const bool isNegative = sign == 2 ? random.uniform(0, 1) : sign;
     voxel = isHidden ? hidden : isNegative ? -infinity : infinity;
   }
@@ -105,8 +105,8 @@ void testSingleVoxels(Checks& check)
     const float outside = hidden ? 1.0f : std::numeric_limits<float>::quiet_NaN();
     scene.volume = reference::Volume<float>({ 9, 9, 9 }, outside);
     scene.volume.at(4, 4, 4) = hidden ? std::numeric_limits<float>::quiet_NaN() : 5.0f;
-    scene.view = parallelView(
-      scene.volume.size, 8.0, 100, glm::dvec3(0.0, 0.0, 1.0), glm::dmat3(1.0), random);
+    scene.view =
+      parallelView(scene.volume.size, 8.0, 100, glm::dvec3(0.0, 0.0, 1.0), glm::dmat3(1.0), random);
     Engine<float> engine(scene);
     ScreenScalars screen;
     engine.project(screen);
@@ -117,8 +117,8 @@ void testSingleVoxels(Checks& check)
       {
         const float value = valueAt<float>(screen, x, y);
         samples += value == value;
-        check(!(value == value) || value == (hidden ? 1.0f : 5.0f), "pixel ", x, ", ", y, ": ",
-          value);
+        check(
+          !(value == value) || value == (hidden ? 1.0f : 5.0f), "pixel ", x, ", ", y, ": ", value);
       }
     }
     check(hidden ? samples > 1000 : samples >= 49 && samples <= 81, samples, " samples");
