@@ -141,7 +141,7 @@ const char* ComponentProjector::FaultOfVoxels(Quality quality)
   const bool isTooLarge = std::any_of(this->Channels.begin(), this->Channels.end(),
     [=](Channel& channel)
     {
-      const bool isDouble = channel.Index.volume().type == ScalarType::Float64;
+      const bool isDouble = averageType(channel.Index.volume().type) == ScalarType::Float64;
       const double most = isExact ? (isDouble ? 1e150 : 1e18) : (isDouble ? 1e303 : 1e37);
       return channel.Index.largestMagnitude() > most;
     });
@@ -452,8 +452,8 @@ void ComponentProjector::ExchangeScreen(Channel& channel)
   if (!screen.depths.empty())
   {
     this->Ranks->Least(screen.depths);
-    std::replace(screen.depths.begin(), screen.depths.end(),
-      std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN());
+    std::replace(screen.depths.begin(), screen.depths.end(), std::numeric_limits<float>::infinity(),
+      std::numeric_limits<float>::quiet_NaN());
   }
 }
 
@@ -463,8 +463,8 @@ const ScreenScalars& ComponentProjector::ProjectPixelOnScreen(const View& view,
   Channel& channel = this->Dependent ? this->Channels.back() : this->Channels.front();
   this->UpdateCells(channel, view);
   CellProjector projector; // observed by nobody
-  if (!projector.project(channel.Cells, view, settings, ends, true, { pixel, glm::ivec2(1) },
-        this->PixelOnScreen))
+  if (!projector.project(
+        channel.Cells, view, settings, ends, true, { pixel, glm::ivec2(1) }, this->PixelOnScreen))
   {
     this->PixelOnScreen.size = glm::ivec2(0);
   }
