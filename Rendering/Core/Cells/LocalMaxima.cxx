@@ -245,7 +245,7 @@ bool findPeak(const CellFrame<T>& frame, const glm::dvec3& start, const glm::dve
     for (int a = 0; a < 3; ++a)
     {
       frame.kernels.within(
-        &from, &to, 1, start[a], 0.0, direction[a], 0.0, region.low()[a], region.high()[a]);
+        &from, &to, 0, 1, start[a], 0.0, direction[a], 0.0, region.low()[a], region.high()[a]);
     }
     if (from < to)
     {
