@@ -121,20 +121,21 @@ void CellFrame<T>::findEnds(int x, int y, int count, double* near, double* far) 
   const bool perspective = this->rays.isPerspective();
   std::fill_n(near, count, perspective ? 0.0 : -Infinity);
   std::fill_n(far, count, Infinity);
-  const glm::dvec3 start = this->rays.start(x, y), forward = this->rays.direction(x, y);
+  // From column 0 on: the same bits for any first pixel.
+  const glm::dvec3 start = this->rays.start(0, y), forward = this->rays.direction(0, y);
   const glm::dvec3& across = this->rays.across();
   const auto step = [&](double change) { return perspective ? 0.0 : change; };
   const auto turn = [&](double change) { return perspective ? change : 0.0; };
   for (int a = 0; a < 3; ++a)
   {
-    this->kernels.within(near, far, count, start[a], step(across[a]), forward[a], turn(across[a]),
-      this->grid.low[a], this->grid.high[a]);
+    this->kernels.within(near, far, x, count, start[a], step(across[a]), forward[a],
+      turn(across[a]), this->grid.low[a], this->grid.high[a]);
   }
   for (const glm::dvec4& h : this->halfSpaces)
   {
     const glm::dvec3 normal(h);
     const double change = glm::dot(normal, across);
-    this->kernels.before(near, far, count, glm::dot(normal, start) + h.w, step(change),
+    this->kernels.before(near, far, x, count, glm::dot(normal, start) + h.w, step(change),
       glm::dot(normal, forward), turn(change));
   }
   if (!this->surface.empty())
@@ -509,7 +510,7 @@ void TileSplatter<T>::finish(ScreenScalars& screen) const
 {
   const CellFrame<T>& f = this->Frame;
   const A back = A(1) / f.scale.factor;
-  const A lowest = static_cast<A>(f.lowest), highest = static_cast<A>(f.highest);
+  const A highest = static_cast<A>(f.highest);
   constexpr A none = std::numeric_limits<A>::quiet_NaN();
   constexpr A infinite = std::numeric_limits<A>::infinity();
   for (int y = this->Pixels.low.y; y <= this->Pixels.high.y; ++y)
@@ -525,7 +526,8 @@ void TileSplatter<T>::finish(ScreenScalars& screen) const
       const A value = this->Tile.values[row + x];
       const A sense = f.minima ? -infinite : infinite;
       const bool isEmpty = value == CellValue<A>::Outside || value == CellValue<A>::None;
-      A voxel = value * back + lowest;
+      // The products of sums, not the sums of products, are finite.
+      A voxel = (value - f.scale.offset) * back;
       if (!f.shades)
       {
         // Rounding must not lift it above the largest voxel.
