@@ -138,7 +138,7 @@ const char* ComponentProjector::FaultOfVoxels(Quality quality)
   const bool isTooLarge = std::any_of(this->Channels.begin(), this->Channels.end(),
     [=](Channel& channel)
     {
-      const bool isDouble = channel.Index.volume().type == ScalarType::Float64;
+      const bool isDouble = averageType(channel.Index.volume().type) == ScalarType::Float64;
       const double most = isExact ? (isDouble ? 1e150 : 1e18) : (isDouble ? 1e303 : 1e37);
       return channel.Index.largestMagnitude() > most;
     });

@@ -113,6 +113,20 @@ void testRefusal(Checks& check, vtkImageData* image, const std::string& what)
   }
 }
 
+/// Those of integers fit into double, however many bits they have.
+void testIntegers(Checks& check)
+{
+  for (int mode = 0; mode < 4; ++mode)
+  {
+    const auto filter = projectiontesting::projectionOf(
+      imageWith<unsigned long long>(1, std::numeric_limits<unsigned long long>::max()));
+    filter->SetQualityMode(mode);
+    const projectiontesting::Errors errors(filter);
+    filter->Update();
+    check(errors.texts.empty(), "large integers are refused");
+  }
+}
+
 template <class T>
 void testLimits(Checks& check)
 {
@@ -171,5 +185,6 @@ int TestLargeScalars(int, char*[])
   testScaling<double>(check);
   testLimits<float>(check);
   testLimits<double>(check);
+  testIntegers(check);
   return check.result();
 }
