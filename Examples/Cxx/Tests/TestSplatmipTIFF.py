@@ -180,7 +180,7 @@ class TestDescriptions(splatmip.SplatmipTest):
         self.assert_refused(path, "--channel", "4", word="there is no channel 4 here, only 3")
         self.assert_refused(path, "--frame", "3", word="there is no volume 3 here, only 2")
         self.assertIn("channel 2 of 3 (--channel chooses)",
-                      self.project(path, "--channel", "2")[1])
+                      self.project(path, "--channel", "2")[2])
 
     def test_imagej_pages(self):
         """A page for each picture, as ImageJ writes for compressed data."""
