@@ -43,37 +43,21 @@ std::string FindField(const std::string& path, const std::string& key, char sepa
   return "";
 }
 
-int FindVTKType(itk::IOComponentEnum type, const std::string& path)
+int GetScalarType(const itk::ImageIOBase* io, const std::string& path)
 {
-  switch (type)
+  using Type = itk::IOComponentEnum;
+  const Type type = io->GetComponentType();
+  const bool isFloat = type == Type::FLOAT || type == Type::DOUBLE;
+  const auto all = { Type::CHAR, Type::SHORT, Type::INT, Type::LONG, Type::LONGLONG };
+  const bool isSigned = std::find(all.begin(), all.end(), type) != all.end();
+  const int found = type == Type::UNKNOWNCOMPONENTTYPE
+    ? VTK_VOID
+    : FindScalarType(io->GetComponentSize(), isFloat, isSigned);
+  if (found == VTK_VOID)
   {
-    case itk::IOComponentEnum::UCHAR:
-      return VTK_UNSIGNED_CHAR;
-    case itk::IOComponentEnum::CHAR:
-      return VTK_SIGNED_CHAR;
-    case itk::IOComponentEnum::USHORT:
-      return VTK_UNSIGNED_SHORT;
-    case itk::IOComponentEnum::SHORT:
-      return VTK_SHORT;
-    case itk::IOComponentEnum::UINT:
-      return VTK_UNSIGNED_INT;
-    case itk::IOComponentEnum::INT:
-      return VTK_INT;
-    case itk::IOComponentEnum::ULONG:
-      return VTK_UNSIGNED_LONG;
-    case itk::IOComponentEnum::LONG:
-      return VTK_LONG;
-    case itk::IOComponentEnum::ULONGLONG:
-      return VTK_UNSIGNED_LONG_LONG;
-    case itk::IOComponentEnum::LONGLONG:
-      return VTK_LONG_LONG;
-    case itk::IOComponentEnum::FLOAT:
-      return VTK_FLOAT;
-    case itk::IOComponentEnum::DOUBLE:
-      return VTK_DOUBLE;
-    default:
-      Refuse(path, "values of this type are not supported; save the volume as float.");
+    Refuse(path, "values of this type are not supported; save the volume as float.");
   }
+  return found;
 }
 
 /**
@@ -124,7 +108,7 @@ vtkSmartPointer<vtkImageData> ReadImage(
     itk::Object::GlobalWarningDisplayOff();
     io->SetFileName(path);
     io->ReadImageInformation();
-    const int type = FindVTKType(io->GetComponentType(), path);
+    const int type = GetScalarType(io, path);
     const unsigned int dimensions = io->GetNumberOfDimensions();
     itk::ImageIORegion region(dimensions);
     double size[3] = { 1.0, 1.0, 1.0 };

@@ -55,6 +55,23 @@ vtkSmartPointer<vtkImageData> ExtractComponent(vtkImageData* image, int number)
   return extract->GetOutput();
 }
 
+int FindScalarType(std::size_t bytes, bool isFloat, bool isSigned)
+{
+  switch (bytes)
+  {
+    case 1:
+      return isFloat ? VTK_VOID : isSigned ? VTK_SIGNED_CHAR : VTK_UNSIGNED_CHAR;
+    case 2:
+      return isFloat ? VTK_VOID : isSigned ? VTK_SHORT : VTK_UNSIGNED_SHORT;
+    case 4:
+      return isFloat ? VTK_FLOAT : isSigned ? VTK_INT : VTK_UNSIGNED_INT;
+    case 8:
+      return isFloat ? VTK_DOUBLE : isSigned ? VTK_LONG_LONG : VTK_UNSIGNED_LONG_LONG;
+    default:
+      return VTK_VOID;
+  }
+}
+
 std::string JoinWords(const std::vector<std::string>& words)
 {
   std::string text;

@@ -9,6 +9,7 @@
 #include "vtkImageData.h"
 #include "vtkSmartPointer.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,11 @@ std::string DescribeChoice(const std::string& what, int number, int count);
  * One of the components of an image, from 1 on.
  */
 vtkSmartPointer<vtkImageData> ExtractComponent(vtkImageData* image, int number);
+
+/**
+ * VTK's name for a type of numbers, or VTK_VOID if there is none.
+ */
+int FindScalarType(std::size_t bytes, bool isFloat, bool isSigned);
 
 /**
  * As in ".a, .b or .c".

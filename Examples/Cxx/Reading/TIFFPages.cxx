@@ -150,22 +150,8 @@ void TIFFPages::CheckPage()
 
 int TIFFPages::GetVTKType() const
 {
-  const bool isSigned = this->Format == SAMPLEFORMAT_INT;
-  if (this->Format == SAMPLEFORMAT_IEEEFP)
-  {
-    return this->Bits == 32 ? VTK_FLOAT : VTK_DOUBLE;
-  }
-  switch (this->Bits)
-  {
-    case 8:
-      return isSigned ? VTK_SIGNED_CHAR : VTK_UNSIGNED_CHAR;
-    case 16:
-      return isSigned ? VTK_SHORT : VTK_UNSIGNED_SHORT;
-    case 32:
-      return isSigned ? VTK_INT : VTK_UNSIGNED_INT;
-    default:
-      return isSigned ? VTK_LONG_LONG : VTK_UNSIGNED_LONG_LONG;
-  }
+  return FindScalarType(
+    this->Bits / 8U, this->Format == SAMPLEFORMAT_IEEEFP, this->Format == SAMPLEFORMAT_INT);
 }
 
 void TIFFPages::Read(int page, char* pixels)
