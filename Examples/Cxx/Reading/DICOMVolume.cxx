@@ -176,6 +176,7 @@ Volume ReadDICOM(const std::string& path, const ReadSettings& settings, const Qu
   const auto files = OpenFiles(names, quiet, volume.Notes);
   if (IsSegmentation(*files.front()))
   {
+    CheckChoice(path, "volume", settings.Frame, 1);
     Volume segments = ReadSegments(files, settings.Label, quiet);
     segments.Notes.insert(segments.Notes.begin(), volume.Notes.begin(), volume.Notes.end());
     segments.Files = volume.Files;

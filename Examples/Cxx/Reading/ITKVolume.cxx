@@ -13,7 +13,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
+#include <sstream>
 #include <vector>
 
 namespace
@@ -30,9 +30,8 @@ std::string Trim(const std::string& text)
  */
 std::string FindField(const std::string& path, const std::string& key, char separator)
 {
-  std::ifstream file(path, std::ios::binary);
-  std::string line;
-  for (int n = 0; n < 1000 && std::getline(file, line) && line != "" && line != "\r"; ++n)
+  std::istringstream header(ReadHead(path));
+  for (std::string line; std::getline(header, line) && !Trim(line).empty();)
   {
     const std::size_t end = line.find(separator);
     if (end != std::string::npos && Trim(line.substr(0, end)) == key)

@@ -8,6 +8,7 @@
 #include <vtksys/SystemInformation.hxx>
 
 #include <algorithm>
+#include <fstream>
 #include <stdexcept>
 
 namespace
@@ -28,6 +29,15 @@ void RefuseDamaged(const std::string& path, const QuietReading& quiet)
   Refuse(path,
     "damaged, incomplete or not what its name says" + quiet.GetReason() +
       "; check it, or export the volume again.");
+}
+
+std::string ReadHead(const std::string& path)
+{
+  std::string head(1 << 20, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(&head[0], static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head;
 }
 
 void CheckChoice(const std::string& path, const std::string& what, int number, int count)

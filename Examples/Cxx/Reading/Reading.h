@@ -25,6 +25,11 @@
 void CheckMemory(double voxels, const std::string& path);
 
 /**
+ * The beginning of a file, where its header is, if that is text.
+ */
+std::string ReadHead(const std::string& path);
+
+/**
  * Refuse a number (from 1 on, or 0 for any) of one of several volumes, channels or components that
  * a file does not have.
  */

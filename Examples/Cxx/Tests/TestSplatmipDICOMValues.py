@@ -228,6 +228,7 @@ class TestSegments(ValuesTest):
             for n, number in enumerate(self.NUMBERS):
                 self.assert_volume(path, numpy.uint16(number * volume[n]), places,
                                    "--label", str(number))
+        self.assert_refused(path, "--frame", "2", word="no volume 2 here, only 1")
         self.assert_refused(path, "--label", "3", word="no segment 3 here, only 2 (part 2) or 5")
         path, volume = self.write_segments(overlap=True)
         labels = numpy.uint16(numpy.where(volume[1], 5, 2 * volume[0]))
