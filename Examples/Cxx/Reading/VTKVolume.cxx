@@ -252,54 +252,24 @@ vtkDataArray* ChooseArray(
   return arrays[static_cast<std::size_t>(found - names.begin())];
 }
 
-Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& wanted)
+/// Of voxels along three axes.
+using Places = std::array<std::vector<double>, 3>;
+
+vtkSmartPointer<vtkDataArray> MakeEven(
+  vtkSmartPointer<vtkDataArray> values, const Places& places, const Places& even)
 {
-  auto* const image = vtkImageData::SafeDownCast(data);
-  if (!image && !vtkRectilinearGrid::SafeDownCast(data))
-  {
-    Refuse(path, "no image and no rectilinear grid; resample it to an image.");
-  }
-  Volume volume;
-  vtkSmartPointer<vtkDataArray> values = ChooseArray(data, path, wanted, volume);
-  const auto cells = ListArrays(data->GetCellData());
-  const bool isOfCells = std::find(cells.begin(), cells.end(), values) != cells.end();
-  std::array<std::vector<double>, 3> places, even;
+  vtkIdType stride = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
-    places[axis] = GetPlaces(data, axis, isOfCells);
-    even[axis] = image ? places[axis] : SpaceEvenly(places[axis], path);
+    const bool isEven = even[axis] == places[axis];
+    values = isEven ? values : Interpolate(values, stride, places[axis], even[axis]);
+    stride *= static_cast<vtkIdType>(even[axis].size());
   }
-  if (values->GetNumberOfTuples() !=
-    vtkIdType(places[0].size() * places[1].size() * places[2].size()))
-  {
-    Refuse(path, "no numeric value at each point or cell; save the volume with scalars.");
-  }
-  if (even != places)
-  {
-    CheckMemory(double(even[0].size()) * double(even[1].size()) * double(even[2].size()), path);
-    vtkIdType stride = 1;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const bool isEven = even[axis] == places[axis];
-      values = isEven ? values : Interpolate(values, stride, places[axis], even[axis]);
-      stride *= static_cast<vtkIdType>(even[axis].size());
-    }
-    volume.Notes.push_back("the grid is uneven and was interpolated to the least of its steps");
-    volume.Caution = "grid interpolated";
-  }
-  volume.Image = vtkSmartPointer<vtkImageData>::New();
-  volume.Image->SetDimensions(int(even[0].size()), int(even[1].size()), int(even[2].size()));
-  if (vtkDataArray* const hidden = isOfCells || !image
-      ? nullptr
-      : data->GetPointData()->GetArray(data->GetPointData()->GhostArrayName()))
-  {
-    volume.Image->GetPointData()->AddArray(hidden);
-  }
-  if (!values->GetName())
-  {
-    values->SetName("values");
-  }
-  volume.Image->GetPointData()->SetScalars(values);
+  return values;
+}
+
+void Place(Volume& volume, vtkImageData* image, const Places& even)
+{
   Steps steps = {};
   std::array<double, 3> origin = {};
   for (int row = 0; row < 3; ++row)
@@ -318,6 +288,50 @@ Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& 
     }
   }
   PlaceVolume(volume, steps, origin);
+}
+
+Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& wanted)
+{
+  auto* const image = vtkImageData::SafeDownCast(data);
+  if (!image && !vtkRectilinearGrid::SafeDownCast(data))
+  {
+    Refuse(path, "no image and no rectilinear grid; resample it to an image.");
+  }
+  Volume volume;
+  vtkSmartPointer<vtkDataArray> values = ChooseArray(data, path, wanted, volume);
+  const auto cells = ListArrays(data->GetCellData());
+  const bool isOfCells = std::find(cells.begin(), cells.end(), values) != cells.end();
+  Places places, even;
+  double voxels = 1.0, evenVoxels = 1.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    places[axis] = GetPlaces(data, axis, isOfCells);
+    even[axis] = image ? places[axis] : SpaceEvenly(places[axis], path);
+    voxels *= static_cast<double>(places[axis].size());
+    evenVoxels *= static_cast<double>(even[axis].size());
+  }
+  if (static_cast<double>(values->GetNumberOfTuples()) != voxels)
+  {
+    Refuse(path, "no numeric value at each point or cell; save the volume with scalars.");
+  }
+  if (even != places)
+  {
+    CheckMemory(evenVoxels, path);
+    values = MakeEven(values, places, even);
+    volume.Notes.push_back("the grid is uneven and was interpolated to the least of its steps");
+    volume.Caution = "grid interpolated";
+  }
+  volume.Image = vtkSmartPointer<vtkImageData>::New();
+  volume.Image->SetDimensions(int(even[0].size()), int(even[1].size()), int(even[2].size()));
+  vtkDataArray* const hidden =
+    data->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName());
+  if (hidden && image && !isOfCells)
+  {
+    volume.Image->GetPointData()->AddArray(hidden);
+  }
+  values->SetName(GetName(values).c_str());
+  volume.Image->GetPointData()->SetScalars(values);
+  Place(volume, image, even);
   return volume;
 }
 }
