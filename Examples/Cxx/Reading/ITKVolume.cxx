@@ -42,6 +42,36 @@ std::string FindField(const std::string& path, const std::string& key, char sepa
   return "";
 }
 
+[[noreturn]] void RefuseUnread(const std::string& path, const std::string& reason)
+{
+  if (reason.find("not available") != std::string::npos)
+  {
+    Refuse(path,
+      "the encoding of its data is not supported (" + reason +
+        "); save the volume with gzip or raw data.");
+  }
+  Refuse(path,
+    "damaged, incomplete or not what its name says (" + reason +
+      "); check it, or export the volume again.");
+}
+
+/**
+ * Refuse lines that ITK 5 cannot quote in an error without a buffer overflow. Only values of keys
+ * of one's own are so long in sound files.
+ */
+void CheckLines(const std::string& path)
+{
+  constexpr std::size_t Longest = 500;
+  std::istringstream header(ReadHead(path));
+  for (std::string line; std::getline(header, line) && !Trim(line).empty();)
+  {
+    if (line.size() > Longest && line[0] != '#' && line.find(":=") == std::string::npos)
+    {
+      RefuseUnread(path, "a line of its header is too long");
+    }
+  }
+}
+
 int GetScalarType(const itk::ImageIOBase* io, const std::string& path)
 {
   using Type = itk::IOComponentEnum;
@@ -60,9 +90,10 @@ int GetScalarType(const itk::ImageIOBase* io, const std::string& path)
 }
 
 /**
- * The last two of a chain of reasons, a line each, without the functions that report them.
+ * The last two of a chain of reasons, a line each, without the functions that report them; or the
+ * first of several reports.
  */
-std::string GetReason(const std::string& report)
+std::string GetReason(const std::string& report, bool isChain)
 {
   std::vector<std::string> lines;
   for (std::string line : vtksys::SystemTools::SplitString(report, '\n'))
@@ -75,24 +106,11 @@ std::string GetReason(const std::string& report)
       lines.push_back(line);
     }
   }
-  std::string text = lines.empty() ? "" : lines.back();
-  text = lines.size() > 1 ? lines[lines.size() - 2] + ": " + text : text;
+  std::string text = lines.empty() ? "" : isChain ? lines.back() : lines.front();
+  text = lines.size() > 1 && isChain ? lines[lines.size() - 2] + ": " + text : text;
   std::replace_if(
     text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return text;
-}
-
-[[noreturn]] void RefuseUnread(const std::string& path, const std::string& reason)
-{
-  if (reason.find("not available") != std::string::npos)
-  {
-    Refuse(path,
-      "the encoding of its data is not supported (" + reason +
-        "); save the volume with gzip or raw data.");
-  }
-  Refuse(path,
-    "damaged, incomplete or not what its name says (" + reason +
-      "); check it, or export the volume again.");
 }
 
 /**
@@ -128,14 +146,15 @@ vtkSmartPointer<vtkImageData> ReadImage(
     io->Read(image->GetScalarPointer());
     if (!quiet.GetPrinted().empty()) // by MetaIO, which reports incomplete data so
     {
-      RefuseUnread(path, GetReason(quiet.GetPrinted()));
+      RefuseUnread(path, GetReason(quiet.GetPrinted(), false));
     }
     return image;
   }
   catch (const itk::ExceptionObject& error)
   {
     const std::string printed = quiet.GetPrinted();
-    RefuseUnread(path, GetReason(printed.empty() ? error.GetDescription() : printed));
+    RefuseUnread(
+      path, GetReason(printed.empty() ? error.GetDescription() : printed, printed.empty()));
   }
 }
 
@@ -215,6 +234,7 @@ bool StartsWith(const std::string& text, const std::string& start)
 
 Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
+  CheckLines(path);
   const std::string kinds = FindField(path, "kinds", ':');
   const auto io = itk::NrrdImageIO::New();
   Volume volume =

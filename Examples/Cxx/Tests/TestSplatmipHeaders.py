@@ -161,6 +161,14 @@ class TestNIfTI(splatmip.SplatmipTest):
             file.write(numpy.int16([1536, 128]).tobytes())
         self.assert_refused(path, word="FLOAT128 (datatype 1536) are not supported; save")
 
+    def test_damaged(self):
+        """Numbers that libnifti would trust."""
+        path = self.write("a.nii", make_values().T, numpy.eye(4), kind=nibabel.Nifti2Image)
+        with open(path, "r+b") as file:  # dim[0]
+            file.seek(21)
+            file.write(b"9")
+        self.assert_refused(path, word="a.nii: damaged, incomplete")
+
     def test_real_files(self):
         """Test data of nibabel, where its package has them."""
         folder = os.path.join(os.path.dirname(nibabel.__file__), "tests", "data")
@@ -238,7 +246,8 @@ class TestNRRD(splatmip.SplatmipTest):
                 ({"dimension": None}, ["dimension: 3"], "6 20 30|: don't yet have a valid dim"),
                 ({"type": None}, [], "required field: type"),
                 ({"encoding": None}, [], "required field: encoding"),
-                ({"type": "block"}, [], "type is block")):
+                ({"type": "block"}, [], "type is block"),
+                ({}, [9999 * "1 "], "a line of its header is too long")):
             self.assert_refused(self.write(None, lines, **fields), word=word)
 
     def test_spaces(self):
@@ -353,6 +362,7 @@ class TestMetaImage(splatmip.SplatmipTest):
                     self.write(CompressedData="True", CompressedDataSize=len(packed),
                                data=packed[:-200]) if name == "gzip" else self.write(DimSize="6 20 0"))
             self.assert_refused(path, word="a.mha: damaged, incomplete")
+        self.assert_refused(self.write(ElementType=None), word="(ElementType required and not defined)")
 
 
 class TestVTK(splatmip.SplatmipTest):
