@@ -226,6 +226,20 @@ std::string GetEntry(itk::ImageIOBase* io, const std::string& key)
   return value;
 }
 
+/**
+ * The number of vectors in text such as "(1,0,0) none (nan,nan,nan)" that are not empty.
+ */
+std::size_t CountVectors(const std::string& text)
+{
+  std::size_t count = 0;
+  for (std::size_t place = text.find('('); place != std::string::npos;
+       place = text.find('(', place + 1))
+  {
+    count += text.compare(place, 4, "(nan") != 0;
+  }
+  return count;
+}
+
 bool StartsWith(const std::string& text, const std::string& start)
 {
   return text.rfind(start, 0) == 0;
@@ -252,10 +266,12 @@ Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const Qui
   volume.IsOriented =
     StartsWith(space, "left-posterior-superior") || StartsWith(space, "right-anterior-superior");
   const std::string directions = FindField(path, "space directions", ':');
-  if ((directions + FindField(path, "spacings", ':')).find_first_of("0123456789") ==
-    std::string::npos)
+  const std::string spacings = FindField(path, "spacings", ':');
+  if (CountVectors(directions) < std::min(3U, io->GetNumberOfDimensions()) &&
+    spacings.find_first_of("0123456789") == std::string::npos)
   {
     steps = {};
+    volume.IsOriented = false;
   }
   PlaceVolume(volume, steps, origin);
   const std::string units = FindField(path, "space units", ':'); // as in "mm" "mm" "mm"

@@ -293,6 +293,17 @@ class TestNRRD(splatmip.SplatmipTest):
         text = self.check(self.write(space_units='"ell" "ell" "ell"'))
         self.assertIn("ell, which is unknown: 1 mm was taken for it", text)
 
+    def test_no_size(self):
+        """Without a vector for each axis nothing is known."""
+        first, _, last = self.FIELDS["space directions"].split()
+        for words in ("none none none", f"{first} none {last}", f"{first} (nan,nan,nan) {last}"):
+            places = numpy.eye(3, 4) + numpy.array([[0, 0, 0, 1], [0, 0, 0, 2], [0, 0, 0, 3]])
+            text = self.assert_volume(self.write(space_directions=words), make_values(), places)
+            self.assertIn("the file does not say how large voxels are: 1 mm was taken\n", text)
+        pictures = [self.draw(self.path("a.nrrd"), "--output", "a.png", *words)[0]
+                    for words in ((), ("--no-marks",))]
+        self.assertTrue((pictures[0] == pictures[1]).all())
+
     def test_incomplete(self):
         self.assert_refused(self.write(make_values().tobytes()[:-100]), word="fread got only 3550")
         self.assert_refused(self.write(gzip.compress(make_values().tobytes())[:-400],
