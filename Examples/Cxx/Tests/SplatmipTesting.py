@@ -237,6 +237,10 @@ class SplatmipTest(unittest.TestCase):
         scale = numpy.nanmax(abs(numpy.where(numpy.isfinite(values), values, 0))) + 1e-9
         # single precision
         self.assertLess(abs(place - wanted_place).max(), 1e-5 * abs(wanted_place).max(), path)
+        if not options:  # the middle of the picture is that of the volume, whatever the reference is
+            middle = axes @ [*((n - 1) / 2 for n in values.shape[::-1]), 1]
+            self.assertLess(abs((place @ [29.5, 24.5, 0, 1])[:3] - middle).max(),
+                            1e-4 * abs(wanted_place).max(), path)
         self.assertTrue((numpy.isnan(picture) == numpy.isnan(wanted)).all(), path)
         self.assertGreater(numpy.nanstd(wanted), 0.01 * scale)
         self.assertLess(numpy.nanmax(abs(picture - wanted)), 1e-5 * scale, path)
