@@ -451,8 +451,8 @@ void ComponentProjector::ExchangeScreen(Channel& channel)
   if (!screen.depths.empty())
   {
     this->Ranks->Least(screen.depths);
-    std::replace(screen.depths.begin(), screen.depths.end(),
-      std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN());
+    std::replace(screen.depths.begin(), screen.depths.end(), std::numeric_limits<float>::infinity(),
+      std::numeric_limits<float>::quiet_NaN());
   }
 }
 
@@ -462,8 +462,8 @@ const ScreenScalars& ComponentProjector::ProjectPixelOnScreen(const View& view,
   Channel& channel = this->Dependent ? this->Channels.back() : this->Channels.front();
   this->UpdateCells(channel, view);
   CellProjector projector; // observed by nobody
-  if (!projector.project(channel.Cells, view, settings, ends, true, { pixel, glm::ivec2(1) },
-        this->PixelOnScreen))
+  if (!projector.project(
+        channel.Cells, view, settings, ends, true, { pixel, glm::ivec2(1) }, this->PixelOnScreen))
   {
     this->PixelOnScreen.size = glm::ivec2(0);
   }

@@ -22,12 +22,11 @@
 
 namespace
 {
-vtkSmartPointer<vtkVolumeMapper> MakeSplatting(const BenchmarkMapper& kind, int sampling)
+vtkSmartPointer<vtkVolumeMapper> MakeSplatting(const BenchmarkMapper& kind)
 {
   auto mapper = vtkSmartPointer<vtkSplattingMIPVolumeMapper>::New();
   mapper->SetQualityMode(kind.QualityMode);
   mapper->SetAcceleration(kind.Acceleration);
-  mapper->SetShearImageSampling(sampling);
   return mapper;
 }
 
@@ -51,8 +50,7 @@ vtkSmartPointer<vtkVolumeMapper> MakeGPURayCasting(double distance)
   return mapper;
 }
 
-vtkSmartPointer<vtkVolumeMapper> MakeMapper(
-  const BenchmarkMapper& kind, vtkImageData* image, int sampling)
+vtkSmartPointer<vtkVolumeMapper> MakeMapper(const BenchmarkMapper& kind, vtkImageData* image)
 {
   const double* spacing = image->GetSpacing();
   const double distance = kind.SampleDistance * *std::min_element(spacing, spacing + 3);
@@ -60,7 +58,7 @@ vtkSmartPointer<vtkVolumeMapper> MakeMapper(
   switch (kind.Kind)
   {
     case BenchmarkMapper::SPLATTING:
-      mapper = MakeSplatting(kind, sampling);
+      mapper = MakeSplatting(kind);
       break;
     case BenchmarkMapper::CPU_RAY_CASTING:
       mapper = MakeCPURayCasting(distance);
@@ -142,7 +140,7 @@ BenchmarkStage& BenchmarkStage::GetInstance()
 }
 
 //------------------------------------------------------------------------------
-BenchmarkStage::BenchmarkStage() : Sampling(1)
+BenchmarkStage::BenchmarkStage()
 {
   RequireDisplay(this->Window);
   this->Window->SetOffScreenRendering(1);
@@ -189,7 +187,7 @@ void BenchmarkStage::SetMapper(const BenchmarkMapper& kind, vtkImageData* image)
   this->Property->SetInterpolationType(kind.Interpolation);
   image->GetPointData()->GetScalars()->Modified();
 
-  this->Mapper = MakeMapper(kind, image, this->Sampling);
+  this->Mapper = MakeMapper(kind, image);
   this->Prop->SetProperty(this->Property);
   this->Prop->SetMapper(this->Mapper);
   this->Renderer->AddVolume(this->Prop);

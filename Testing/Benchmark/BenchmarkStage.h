@@ -104,12 +104,6 @@ public:
   void SetViewAngle(double degrees) { this->ViewAngle = degrees; }
   double GetViewAngle() const { return this->ViewAngle; }
 
-  /**
-   * The splatting mapper's ShearImageSampling; as by default 1.
-   */
-  void SetSampling(int sampling) { this->Sampling = sampling; }
-  int GetSampling() const { return this->Sampling; }
-
   void LookFrom(int view);
 
   /**
@@ -137,7 +131,6 @@ private:
   BenchmarkStage();
 
   double ViewAngle = 0.0;
-  int Sampling;
   double Range[2] = { 0.0, 1.0 }; // of the image's scalars
   vtkNew<vtkVolumeProperty> Property;
   vtkNew<vtkVolume> Prop;

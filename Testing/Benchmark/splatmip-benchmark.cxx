@@ -31,7 +31,6 @@ struct Options
 {
   std::string Data = SPLATTINGMIP_TEST_DATA;
   double ViewAngle = 0.0;
-  int Sampling = 1;
   int Threads = 0;
   bool Quick = false;
   bool IsConsole = true; // what Google Benchmark prints is meant for people
@@ -73,7 +72,6 @@ so there is none with --benchmark_report_aggregates_only.
   --data=DIR     where lidc-idri-0314.nrrd lies
   --threads=N    threads of vtkSMPTools and of the ray caster on the CPU
   --perspective=DEGREES  perspective cameras with this view angle, for all but floor, index and turn
-  --sampling=N   pixels of shear images per voxel along each side; without it 1
 
   For JSON, too: --benchmark_out=FILE. The rows that matter most:
     splatmip-benchmark --benchmark_filter='frame/vessels256-uint8/[0-9]+/[^g]'
@@ -118,10 +116,6 @@ Options TakeOptions(int& argc, char** argv)
     {
       options.ViewAngle = std::atof(value.c_str());
     }
-    else if (Starts(argv[i], "--sampling=", value))
-    {
-      options.Sampling = std::atoi(value.c_str());
-    }
     else
     {
       if (Starts(argv[i], "--benchmark_format=", value))
@@ -152,7 +146,6 @@ Facts DescribeMachine()
       std::to_string(vtkSMPTools::GetEstimatedNumberOfThreads()) + " (vtkSMPTools, " +
         vtkSMPTools::GetBackend() + ")" },
     { "instruction set", mapper->GetInstructionSet() }, { "camera", DescribeCamera() },
-    { "shear image sampling", std::to_string(BenchmarkStage::GetInstance().GetSampling()) },
     { "OpenGL renderer", BenchmarkStage::GetInstance().GetDeviceName() },
     { "VTK", vtkVersion::GetVTKVersion() } };
 }
@@ -298,7 +291,6 @@ int main(int argc, char** argv)
     vtkSMPTools::Initialize(options.Threads);
   }
   BenchmarkStage::GetInstance().SetViewAngle(options.ViewAngle);
-  BenchmarkStage::GetInstance().SetSampling(options.Sampling);
   RegisterAll(options);
   const Facts machine = DescribeMachine();
   for (const auto& fact : machine)

@@ -225,12 +225,6 @@ inline splatting::View transformedView(
   return result;
 }
 
-/// Mostly one pixel per voxel.
-inline int anySampling(reference::Random& random)
-{
-  return random.uniform(0, 2) ? 1 : 2 << random.uniform(0, 1);
-}
-
 /// One of the images of a perspective view.
 inline splatting::ShearWarp randomPerspectiveImage(
   const std::array<int, 3>& size, reference::Random& random)
@@ -239,7 +233,7 @@ inline splatting::ShearWarp randomPerspectiveImage(
   while (images.empty())
   {
     const splatting::View view = randomPerspective(size, random);
-    splatting::ShearWarp::factorise(view, images, anySampling(random));
+    splatting::ShearWarp::factorise(view, images);
   }
   return images[random.uniform(0, static_cast<int>(images.size()) - 1)];
 }
@@ -307,8 +301,7 @@ reference::Volume<T> volumeWithOddValues(const std::array<int, 3>& size, referen
 
 inline reference::ShearView referenceView(const splatting::ShearWarp& geometry)
 {
-  return { geometry.principalAxis(), { geometry.shear().x, geometry.shear().y },
-    geometry.phases() };
+  return { geometry.principalAxis(), { geometry.shear().x, geometry.shear().y } };
 }
 
 /// The rays of a perspective image.
@@ -336,32 +329,12 @@ inline splatting::Cuts cutsBy(const splatting::ShearWarp& geometry,
   return cuts;
 }
 
-/// As a mapper does: phase by phase, if there are several.
 inline splatting::ShearImage project(splatting::VolumeIndex& index,
   const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
-  splatting::Cuts cuts)
+  const splatting::Cuts& cuts)
 {
-  splatting::Projector projector;
-  splatting::ShearImage image, part;
-  const int phases = geometry.phases();
-  if (phases == 1)
-  {
-    projector.project(index, geometry, settings, cuts, image);
-    return image;
-  }
-  const splatting::RayIntervals intervals = cuts.intervals;
-  splatting::ShearWarp partGeometry;
-  for (int p = 0; p < phases * phases; ++p)
-  {
-    const glm::ivec2 phase(p % phases, p / phases);
-    geometry.takePhase(phase, partGeometry);
-    if (!intervals.empty())
-    {
-      cuts.intervals.takePhase(intervals, phases, phase);
-    }
-    projector.project(index, partGeometry, settings, cuts, part);
-    splatting::interleave(part, phases, phase, image);
-  }
+  splatting::ShearImage image;
+  splatting::Projector().project(index, geometry, settings, cuts, image);
   return image;
 }
 

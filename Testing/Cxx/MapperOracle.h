@@ -95,7 +95,6 @@ inline reference::ShearView viewOf(vtkSplattingMIPVolumeMapper* mapper)
   reference::ShearView view;
   view.axis = mapper->GetPrincipalAxis();
   mapper->GetShear(view.shear);
-  view.sampling = static_cast<int>(std::lround(1.0 / mapper->GetShearImage()->GetSpacing()[0]));
   return view;
 }
 

@@ -9,6 +9,7 @@
 #ifndef ScreenOracle_h
 #define ScreenOracle_h
 
+#include "FieldMaximum.h"
 #include "MapperOracle.h"
 #include "Traversal.h"
 
@@ -84,6 +85,33 @@ private:
   Point Eye;
   bool BeginsAtEye;
 };
+
+/// The largest value of the field on a pixel's ray, from where that begins.
+inline reference::CutMaximum maximumOnRay(const reference::Volume<double>& field,
+  const ScreenRays& rays, double x, double y, const reference::RayCuts& cuts = {})
+{
+  const ScreenRays::Point begin = rays.begin(x, y), end = rays.end(x, y);
+  int k = 0;
+  for (int a = 1; a < 3; ++a)
+  {
+    k = std::abs(end[a] - begin[a]) > std::abs(end[k] - begin[k]) ? a : k;
+  }
+  reference::FieldRay ray;
+  ray.axes = { k == 0 ? 1 : 0, k == 2 ? 1 : 2, k };
+  ray.start = begin[k];
+  for (int a = 0; a < 2; ++a)
+  {
+    const int axis = ray.axes[a];
+    ray.at[a] = begin[axis];
+    ray.slope[a] = (end[axis] - begin[axis]) / (end[k] - begin[k]);
+  }
+  return reference::cutMaximum(field, ray, reference::FieldDomain::Centres,
+    std::min(begin[k], end[k]), std::max(begin[k], end[k]), cuts);
+}
+
+/// How far a gray may be from the field's extremum in a picture with 255 grays for bytes from 0 to
+/// 255: half a gray, and 1/16 that the table of colours is off.
+constexpr double FieldTolerance = 0.5 + 1.0 / 16 + 0.01;
 
 /// The largest (or least) voxel within so many voxels along each axis.
 template <class Pick>

@@ -63,7 +63,8 @@ class TestRender(unittest.TestCase):
         # and high differ from point samples by a part of that; preview shows whole voxels, half a
         # voxel's difference brighter on average. A picture shifted by one voxel differs by more,
         # an empty one by about 90.
-        for mode, bound in (("Preview", 5.0), ("Standard", 3.0), ("High", 3.0)):
+        for mode, bound in (("Preview", 5.0), ("Standard", 3.0), ("High", 3.0),
+                            ("Exact", 1.0)):
             mapper = vtkSplattingMIPVolumeMapper()
             getattr(mapper, f"SetQualityModeTo{mode}")()
             found = picture(mapper)
@@ -75,11 +76,15 @@ class TestRender(unittest.TestCase):
         mapper = vtkSplattingMIPVolumeMapper()
         self.assertIsNone(mapper.GetShearImage())
         picture(mapper)
+        self.assertIsNone(mapper.GetShearImage())
+        self.assertEqual(mapper.GetPrincipalAxis(), -1)
+        self.assertIn("QualityMode: exact", str(mapper))
+        mapper.SetQualityModeToHigh()
+        picture(mapper)
         self.assertEqual(mapper.GetShearImage().GetScalarTypeAsString(), "float")
         self.assertIn(mapper.GetPrincipalAxis(), (0, 1, 2))
         self.assertLessEqual(max(abs(s) for s in mapper.GetShear()), 1.0)
         self.assertFalse(mapper.GetLastRenderUsedRayCasting())
-        self.assertIn("QualityMode: exact", str(mapper))
 
 
 if __name__ == "__main__":

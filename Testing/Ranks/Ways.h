@@ -23,7 +23,7 @@ struct Way
 {
   std::string name;
   std::function<void(Mapper*)> set;
-  int layers; ///< of ghosts
+  int layers; ///< of ghosts; with AutoAdjustSampleDistances off
 };
 
 inline void crop(Mapper* mapper)
@@ -57,12 +57,12 @@ inline std::vector<Way> waysOfAll()
         m->SetKernelRadius(1.5);
       },
       2 },
-    { "exact", [](Mapper* m) { m->SetQualityModeToExact(); }, 2 },
-    { "standard, two pixels per voxel",
+    { "exact", [](Mapper* m) { m->SetQualityModeToExact(); }, 1 },
+    { "exact minimum",
       [](Mapper* m)
       {
-        m->SetQualityModeToStandard();
-        m->SetShearImageSampling(2);
+        m->SetQualityModeToExact();
+        m->SetBlendModeToMinimumIntensity();
       },
       1 },
     { "minimum",
@@ -94,7 +94,7 @@ inline std::vector<Way> waysOfParts()
         m->SetDepthShadingAmbient(-0.2);
         crop(m);
       },
-      2 },
+      1 },
     { "cropped",
       [](Mapper* m)
       {
@@ -108,7 +108,7 @@ inline std::vector<Way> waysOfParts()
         m->SetQualityModeToExact();
         crop(m);
       },
-      2 },
+      1 },
     { "clipped",
       [](Mapper* m)
       {
@@ -122,7 +122,7 @@ inline std::vector<Way> waysOfParts()
         m->SetQualityModeToExact();
         clip(m);
       },
-      2 },
+      1 },
   };
 }
 

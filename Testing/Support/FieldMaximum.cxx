@@ -159,11 +159,109 @@ double fieldMaximum(const Volume<double>& volume, const FieldRay& ray, double ne
   return largest;
 }
 
+namespace
+{
+/// Where a ray is along an axis of the volume: place + slope z.
+struct AxisOfRay
+{
+  double place, slope;
+};
+
+std::array<AxisOfRay, 3> axesOf(const FieldRay& ray)
+{
+  std::array<AxisOfRay, 3> axes;
+  for (int a = 0; a < 2; ++a)
+  {
+    axes[ray.axes[a]] = { ray.at[a] - ray.slope[a] * ray.start, ray.slope[a] };
+  }
+  axes[ray.axes[2]] = { 0.0, 1.0 };
+  return axes;
+}
+
+/// Cuts a range of depths to where offset + slope z >= 0.
+void cutRange(std::array<double, 2>& range, double offset, double slope)
+{
+  if (slope > 0.0)
+  {
+    range[0] = std::max(range[0], -offset / slope);
+  }
+  else if (slope < 0.0)
+  {
+    range[1] = std::min(range[1], -offset / slope);
+  }
+  else if (offset < 0.0)
+  {
+    range[1] = -HUGE_VAL;
+  }
+}
+
+bool isShown(const std::array<AxisOfRay, 3>& axes, const RayCuts& cuts, double z)
+{
+  int region = 0;
+  for (int a = 0, factor = 1; a < 3; ++a, factor *= 3)
+  {
+    const double at = axes[a].place + axes[a].slope * z;
+    region += factor * (at < cuts.planes[a][0] ? 0 : at <= cuts.planes[a][1] ? 1 : 2);
+  }
+  return (cuts.regions >> region & 1u) != 0;
+}
+}
+
+CutMaximum cutMaximum(const Volume<double>& volume, const FieldRay& ray, FieldDomain domain,
+  double near, double far, const RayCuts& cuts)
+{
+  constexpr double margin = 1e-5;
+  const std::array<AxisOfRay, 3> axes = axesOf(ray);
+  std::array<double, 2> range = depthsInField(volume.size, ray, domain, near, far);
+  for (const std::array<double, 4>& h : cuts.halfSpaces)
+  {
+    double offset = h[3], slope = 0.0;
+    for (int a = 0; a < 3; ++a)
+    {
+      offset += h[a] * axes[a].place;
+      slope += h[a] * axes[a].slope;
+    }
+    cutRange(range, offset, slope);
+  }
+  std::vector<double> depths{ range[0], range[1] };
+  for (int a = 0; a < 3; ++a)
+  {
+    for (const double plane : cuts.planes[a])
+    {
+      const double z = (plane - axes[a].place) / axes[a].slope;
+      if (z > range[0] && z < range[1])
+      {
+        depths.push_back(z);
+      }
+    }
+  }
+  std::sort(depths.begin(), depths.end());
+  CutMaximum maximum;
+  bool isNear = false; // whether there may be something
+  maximum.low = maximum.high = -HUGE_VAL;
+  for (std::size_t n = 0; n + 1 < depths.size(); ++n)
+  {
+    const double from = depths[n], to = depths[n + 1];
+    if (range[1] - range[0] <= -2.0 * margin || !isShown(axes, cuts, 0.5 * (from + to)))
+    {
+      continue;
+    }
+    isNear = true;
+    maximum.high = std::max(maximum.high, fieldMaximum(volume, ray, from - margin, to + margin));
+    if (to - from > 2.0 * margin)
+    {
+      maximum.isHit = true;
+      maximum.low = std::max(maximum.low, fieldMaximum(volume, ray, from + margin, to - margin));
+    }
+  }
+  maximum.isCertain = maximum.isHit == isNear;
+  return maximum;
+}
+
 FieldRay fieldRay(const std::array<int, 3>& volumeSize, const ShearView& view, int u, int v)
 {
   const ShearGrid grid = makeShearGrid(volumeSize, view);
-  return { grid.axes,
-    { double(u) / view.sampling - grid.margin[0], double(v) / view.sampling - grid.margin[1] },
+  return { grid.axes, { double(u) - grid.margin[0], double(v) - grid.margin[1] },
     { -view.shear[0], -view.shear[1] }, grid.middle };
 }
 

@@ -14,6 +14,7 @@
 
 #include "PerspectiveProjection.h"
 #include "Projection.h"
+#include "Reductions.h"
 
 namespace reference
 {
@@ -49,6 +50,19 @@ double fieldAt(const Volume<double>& volume, const std::array<double, 3>& point)
 
 /// The largest value of the field between two depths.
 double fieldMaximum(const Volume<double>& volume, const FieldRay& ray, double near, double far);
+
+/// What a ray finds in a field that is cut: a value from `low` to `high`, if it finds one.
+struct CutMaximum
+{
+  bool isCertain = true; ///< whether it finds one is no matter of rounding
+  bool isHit = false;
+  double low = 0.0, high = 0.0;
+};
+
+/// The largest value of the field on those parts of a ray between two depths that lie in all
+/// half-spaces and in shown regions. All cuts are certain to 1e-5 slices only.
+CutMaximum cutMaximum(const Volume<double>& volume, const FieldRay& ray, FieldDomain domain,
+  double near, double far, const RayCuts& cuts);
 
 /// The ray of a pixel of a parallel view.
 FieldRay fieldRay(const std::array<int, 3>& volumeSize, const ShearView& view, int u, int v);

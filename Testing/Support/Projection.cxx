@@ -28,9 +28,7 @@ constexpr double Pi = 3.14159265358979323846;
 AxisMotion inSliceMotion(int pixel, int axis, const ShearGrid& grid, const ShearView& view)
 {
   const std::int64_t s = inUnits(view.shear[axis]);
-  return {
-    pixel * (WholeVoxel / view.sampling) - grid.margin[axis] * WholeVoxel + s / 2 * grid.size[2], -s
-  };
+  return { (pixel - grid.margin[axis]) * WholeVoxel + s / 2 * grid.size[2], -s };
 }
 
 //------------------------------------------------------------------------------
@@ -58,7 +56,7 @@ struct ShearedVolume
 
   double rayPosition(int inSliceAxis, int pixel, double z) const
   {
-    return static_cast<double>(pixel) / this->view.sampling - this->grid.margin[inSliceAxis] -
+    return static_cast<double>(pixel) - this->grid.margin[inSliceAxis] -
       this->view.shear[inSliceAxis] * (z - this->grid.middle);
   }
 };
@@ -71,7 +69,6 @@ class SlabIntegral
 public:
   SlabIntegral(const ShearedVolume& source, const Kernel& kernel)
     : Source(source),
-      Half(0.5 / source.view.sampling),
       H(kernel),
       InSliceRule(gaussLegendre(kernel.shape == Kernel::CosineBell ? 10 : 4)),
       DepthRule(gaussLegendre(kernel.shape == Kernel::CosineBell ? 16 : 4))
@@ -119,20 +116,20 @@ private:
     }
     const double a = this->Source.rayPosition(axis, pixel, low);
     const double b = this->Source.rayPosition(axis, pixel, high);
-    const double left = std::min(a, b) - this->Half;
-    const double right = std::max(a, b) + this->Half;
+    const double left = std::min(a, b) - Half;
+    const double right = std::max(a, b) + Half;
     for (double kink : fieldKinks(this->H, left, right))
     {
-      kinks.push_back(low + (a - this->Half - kink) / shear);
-      kinks.push_back(low + (a + this->Half - kink) / shear);
+      kinks.push_back(low + (a - Half - kink) / shear);
+      kinks.push_back(low + (a + Half - kink) / shear);
     }
   }
 
   Samples samplePixel(int axis, int pixel, double z) const
   {
     const double centre = this->Source.rayPosition(axis, pixel, z);
-    const double low = centre - this->Half;
-    const double high = centre + this->Half;
+    const double low = centre - Half;
+    const double high = centre + Half;
     Samples samples;
     samples.range = reachingIndices(this->H, low, high);
     for (const Node& x :
@@ -143,7 +140,7 @@ private:
       {
         kernel[n] = this->H(x.position - (samples.range.first + n));
       }
-      samples.weights.push_back(x.weight / (2.0 * this->Half));
+      samples.weights.push_back(x.weight);
       samples.kernel.push_back(kernel);
     }
     return samples;
@@ -211,7 +208,7 @@ private:
   }
 
   const ShearedVolume& Source;
-  const double Half; // a pixel
+  static constexpr double Half = 0.5; // a pixel
   const Kernel H;
   const std::vector<Node> InSliceRule;
   const std::vector<Node> DepthRule;
@@ -308,12 +305,8 @@ ShearGrid makeShearGrid(const std::array<int, 3>& volumeSize, const ShearView& v
     }
     grid.margin[a] = static_cast<int>(std::ceil(std::abs(shear) * grid.size[2] / 2.0)) + 1;
   }
-  if (view.sampling != 1 && view.sampling != 2 && view.sampling != 4)
-  {
-    throw std::invalid_argument("The sampling must be 1, 2 or 4.");
-  }
-  grid.width = (grid.size[0] + 2 * grid.margin[0]) * view.sampling;
-  grid.height = (grid.size[1] + 2 * grid.margin[1]) * view.sampling;
+  grid.width = grid.size[0] + 2 * grid.margin[0];
+  grid.height = grid.size[1] + 2 * grid.margin[1];
   grid.middle = (grid.size[2] - 1) / 2.0;
   return grid;
 }

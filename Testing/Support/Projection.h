@@ -71,13 +71,12 @@ struct Image
 
 /**
  * A parallel view of a volume. The principal axis is 0, 1 or 2; the shears, in pixels per slice
- * along the image's x and y, are multiples of 2^-24 of magnitude 1 at most. Sampling is 1, 2 or 4.
+ * along the image's x and y, are multiples of 2^-24 of magnitude 1 at most.
  */
 struct ShearView
 {
   int axis = 2;
   double shear[2] = { 0.0, 0.0 };
-  int sampling = 1;
 };
 
 /**
@@ -100,7 +99,7 @@ ShearGrid makeShearGrid(const std::array<int, 3>& volumeSize, const ShearView& v
 
 /**
  * The voxels that the ray of pixel (u,v) crosses, in the order of ascending depth, as positions in
- * the volume, by traverse() in Traversal.h. With a sample per voxel no ray lies within a face: the
+ * the volume, by traverse() in Traversal.h. No ray lies within a face: the
  * position along an axis with shear 0 is u - m, an integer, and faces are half-way between
  * integers.
  */

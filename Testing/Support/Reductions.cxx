@@ -43,7 +43,7 @@ PerspectiveRays raysOf(const ShearGrid& grid, const ShearView& view)
   {
     for (int pixel = 0; pixel < pixels[a]; ++pixel)
     {
-      rays.at[a].push_back(static_cast<double>(pixel) / view.sampling - grid.margin[a]);
+      rays.at[a].push_back(static_cast<double>(pixel) - grid.margin[a]);
       rays.slope[a].push_back(-view.shear[a]);
     }
   }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Pictures of vtkSplattingMIPProjection against the definition: where a pixel's ray meets the shear
-// image, between the four rays beside it, each reduced sample by sample. In a process without a
-// display, which never loads OpenGL.
+// image, between the four rays beside it, each reduced sample by sample; in exact mode the field on
+// its own ray. In a process without a display, which never loads OpenGL.
 #include "AverageTesting.h"
 #include "ProjectionTesting.h"
 
@@ -28,16 +28,9 @@ struct Oracle
 {
   reference::ShearGrid grid;
   reference::ShearView view;
-  std::vector<unsigned char> meets, hit, known;
+  std::vector<unsigned char> meets, hit;
   std::vector<double> values;
-  // Of exact mode:
-  reference::Volume<double> volume;
-  std::vector<double> ways; ///< of rays through the field
-  std::vector<int> winners; ///< the slices of their maxima
 };
-
-/// Where it is not clear which slice wins.
-constexpr int NoWinner = std::numeric_limits<int>::min();
 
 /// A parallel view in index space: a ray through `corner + x across + y up` runs along `direction`.
 struct Rays
@@ -168,42 +161,18 @@ reference::RayCuts cutsOf(Filter* filter, vtkImageData* image)
   return cuts;
 }
 
-/// The slice in which a ray has its maximum, and that. NoWinner if it is nearly that in others.
-int findWinner(const reference::Volume<double>& field, const reference::FieldRay& ray,
-  const std::array<double, 2>& depths, double& value)
-{
-  std::vector<double> maxima;
-  const int first = static_cast<int>(std::floor(depths[0] + 0.5));
-  for (int k = first; k - 0.5 < depths[1]; ++k)
-  {
-    const double from = std::max(depths[0], k - 0.5), to = std::min(depths[1], k + 0.5);
-    maxima.push_back(from < to ? reference::fieldMaximum(field, ray, from, to) : -HUGE_VAL);
-  }
-  const auto largest = std::max_element(maxima.begin(), maxima.end());
-  value = *largest;
-  // Rounding must not choose. Between two slices the maximum may be in both.
-  constexpr double near = 1e-4;
-  const auto count = std::count_if(maxima.begin(), maxima.end(),
-    [&](double other) { return other > value - near * (1.0 + std::abs(value)); });
-  return count == 1 ? first + static_cast<int>(largest - maxima.begin()) : NoWinner;
-}
-
 template <class T>
 Oracle oracleOf(
   const reference::Volume<T>& volume, Filter* filter, vtkImageData* image, const Rays& rays)
 {
   Oracle oracle;
   findView(rays, oracle.view);
-  oracle.view.sampling =
-    static_cast<int>(std::lround(1.0 / filter->GetShearImage()->GetSpacing()[0]));
   oracle.grid = reference::makeShearGrid(volume.size, oracle.view);
   const reference::Volume<double> exact = reference::toDouble(volume);
-  const bool isExact = filter->GetQualityMode() == Filter::EXACT;
-  const auto samples = filter->GetQualityMode() == Filter::PREVIEW || isExact
+  const auto samples = filter->GetQualityMode() == Filter::PREVIEW
     ? reference::voxelSamples(exact, oracle.view)
     : reference::slabSamples(exact, oracle.view, kernelOf(filter));
   const reference::RayCutter cutter(oracle.grid, oracle.view, cutsOf(filter, image));
-  oracle.volume = isExact ? exact : reference::Volume<double>();
   const double lowest = reference::lowestVoxel(volume);
   const bool reversed = rays.direction[oracle.view.axis] < 0.0;
   for (int v = 0; v < oracle.grid.height; ++v)
@@ -211,23 +180,10 @@ Oracle oracleOf(
     for (int u = 0; u < oracle.grid.width; ++u)
     {
       const auto& own = samples[std::size_t(v) * oracle.grid.width + u];
-      reference::Outcome<double> outcome =
+      const reference::Outcome<double> outcome =
         reduced(reference::cutRay(own, cutter, u, v, reversed), lowest, filter);
-      bool known = true;
-      if (isExact)
-      {
-        const auto ray = reference::fieldRay(volume.size, oracle.view, u, v);
-        const double end = oracle.grid.size[2] - 0.5;
-        const auto depths =
-          reference::depthsInField(volume.size, ray, reference::FieldDomain::Centres, -0.5, end);
-        known = own.empty() || depths[1] - depths[0] > 1e-6;
-        oracle.ways.push_back(depths[1] - depths[0]);
-        oracle.winners.push_back(
-          known && !own.empty() ? findWinner(exact, ray, depths, outcome.value) : NoWinner);
-      }
       oracle.meets.push_back(!own.empty());
       oracle.hit.push_back(outcome.hit);
-      oracle.known.push_back(known);
       oracle.values.push_back(outcome.value);
     }
   }
@@ -258,84 +214,6 @@ struct Expected
   double slack = 0.0; ///< what it may differ by, beside rounding
 };
 
-/// How exact mode's rays about a pixel run through the field.
-struct Ways
-{
-  double shortest = HUGE_VAL, longest = 0.0;
-  bool certain = true;
-
-  void add(double way, double weight)
-  {
-    this->certain = this->certain && (weight > 1e-9 || weight == 0.0) && std::abs(way) > 1e-6;
-    this->shortest = weight > 0.0 ? std::min(this->shortest, way) : this->shortest;
-    this->longest = weight > 0.0 ? std::max(this->longest, way) : this->longest;
-  }
-};
-
-/// What a ray finds: at the rim of the field all along it, else from the slice before to the slice
-/// behind each of the winners. False if that is open.
-bool findOnRay(const Oracle& oracle, const reference::FieldRay& ray, const Ways& ways,
-  const std::vector<int>& winners, double& value)
-{
-  const auto depths = reference::depthsInField(
-    oracle.volume.size, ray, reference::FieldDomain::Centres, -0.5, oracle.grid.size[2] - 0.5);
-  const double own = depths[1] - depths[0];
-  const double share = ways.shortest / ways.longest;
-  if (!ways.certain || (ways.shortest >= 0.0 && std::abs(share - 0.5) <= 1e-5))
-  {
-    return false;
-  }
-  if (ways.shortest < 0.0 || share < 0.5)
-  {
-    value = own > 1e-5 ? reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]) : 0.0;
-    return own > 1e-5;
-  }
-  value = -HUGE_VAL;
-  for (const int winner : winners)
-  {
-    const double from = std::max(depths[0], winner - 1.0), to = std::min(depths[1], winner + 1.0);
-    if (winner == NoWinner || std::abs(winner - depths[0]) <= 1e-5 ||
-      std::abs(winner - depths[1]) <= 1e-5)
-    {
-      return false;
-    }
-    // Where the ray does not meet the middle of a winner's slice, it looks at all of it.
-    value = std::max(value,
-      winner >= depths[0] && winner <= depths[1]
-        ? reference::fieldMaximum(oracle.volume, ray, from, to)
-        : reference::fieldMaximum(oracle.volume, ray, depths[0], depths[1]));
-  }
-  return true;
-}
-
-/// A pixel shows what its own ray finds. Places and shears are rounded, which displaces the ray:
-/// one that grazes a face of the field then ends elsewhere.
-void expectOwnRay(const Oracle& oracle, const Rays& rays, const glm::dvec3& point, const Ways& ways,
-  const std::vector<int>& winners, Expected& expected)
-{
-  reference::FieldRay ray;
-  ray.axes = oracle.grid.axes;
-  ray.start = point[ray.axes[2]];
-  for (int a = 0; a < 2; ++a)
-  {
-    ray.at[a] = point[ray.axes[a]];
-    ray.slope[a] = rays.direction[ray.axes[a]] / rays.direction[ray.axes[2]];
-  }
-  expected.certain = expected.certain && findOnRay(oracle, ray, ways, winners, expected.value);
-  // Shears are rounded by 2^-25 a slice at most, from the middle of the stack on.
-  const double way =
-    0x1p-25 * *std::max_element(oracle.volume.size.begin(), oracle.volume.size.end());
-  for (int n = 0; n < 4 && expected.certain; ++n)
-  {
-    reference::FieldRay displaced = ray;
-    displaced.at[0] += n % 2 ? way : -way;
-    displaced.at[1] += n / 2 ? way : -way;
-    double value = 0.0;
-    expected.certain = findOnRay(oracle, displaced, ways, winners, value);
-    expected.slack = std::max(expected.slack, std::abs(value - expected.value));
-  }
-}
-
 Expected expectedPixel(
   const Oracle& oracle, const std::array<int, 3>& size, const Rays& rays, const glm::dvec3& point)
 {
@@ -348,34 +226,19 @@ Expected expectedPixel(
   }
   const auto& axes = oracle.grid.axes;
   const double depth = point[axes[2]] - oracle.grid.middle;
-  const double pu =
-    oracle.view.sampling * (point[axes[0]] + oracle.grid.margin[0] + oracle.view.shear[0] * depth);
-  const double pv =
-    oracle.view.sampling * (point[axes[1]] + oracle.grid.margin[1] + oracle.view.shear[1] * depth);
+  const double pu = point[axes[0]] + oracle.grid.margin[0] + oracle.view.shear[0] * depth;
+  const double pv = point[axes[1]] + oracle.grid.margin[1] + oracle.view.shear[1] * depth;
   const int u = static_cast<int>(std::floor(pu)), v = static_cast<int>(std::floor(pv));
   double sum = 0.0, weight = 0.0, lost = 0.0;
-  Ways ways;
-  std::vector<int> winners; // of those that are weighted
   for (int n = 0; n < 4; ++n)
   {
     const int i = u + n % 2, j = v + n / 2;
     const double w = std::abs(u + 1 - n % 2 - pu) * std::abs(v + 1 - n / 2 - pv);
     if (i < 0 || j < 0 || i >= oracle.grid.width || j >= oracle.grid.height)
     {
-      ways.add(-1.0, w);
       continue;
     }
     const std::size_t pixel = std::size_t(j) * oracle.grid.width + i;
-    const bool isExact = !oracle.ways.empty();
-    if (isExact)
-    {
-      ways.add(oracle.ways[pixel], w);
-      if (w > 0.0)
-      {
-        winners.push_back(oracle.winners[pixel]);
-      }
-    }
-    expected.certain = expected.certain && (oracle.known[pixel] || isExact || w < 1e-9);
     if (oracle.meets[pixel])
     {
       (oracle.hit[pixel] ? weight : lost) += w;
@@ -385,11 +248,32 @@ Expected expectedPixel(
   expected.certain = expected.certain && std::abs(lost - 0.5) > 1e-5 && weight > 1e-5;
   expected.hit = weight > 1e-5 && lost <= 0.5;
   expected.value = sum / weight;
-  if (!oracle.ways.empty() && expected.hit)
-  {
-    expectOwnRay(oracle, rays, point, ways, winners, expected);
-  }
   return expected;
+}
+
+/// In exact mode: the largest value of the field on the pixel's own ray, or the least.
+Expected expectedOnRay(const reference::Volume<double>& field, Filter* filter, vtkImageData* image,
+  const Rays& rays, const glm::dvec3& point)
+{
+  const glm::dvec3 d = glm::abs(rays.direction);
+  const int k = d.z >= d.x && d.z >= d.y ? 2 : d.y >= d.x ? 1 : 0;
+  reference::FieldRay ray;
+  ray.axes = { k == 0 ? 1 : 0, k == 2 ? 1 : 2, k };
+  ray.start = point[k];
+  for (int a = 0; a < 2; ++a)
+  {
+    ray.at[a] = point[ray.axes[a]];
+    ray.slope[a] = rays.direction[ray.axes[a]] / rays.direction[k];
+  }
+  const bool isMinimum = filter->GetBlendMode() == Filter::MINIMUM_INTENSITY_BLEND;
+  reference::Volume<double> volume = field;
+  std::transform(field.voxels.begin(), field.voxels.end(), volume.voxels.begin(),
+    [isMinimum](double voxel) { return isMinimum ? -voxel : voxel; });
+  const auto maximum = reference::cutMaximum(
+    volume, ray, reference::FieldDomain::Centres, -0.5, field.size[k] - 0.5, cutsOf(filter, image));
+  const double middle = 0.5 * (maximum.low + maximum.high);
+  return { maximum.isCertain, maximum.isHit, isMinimum ? -middle : middle,
+    0.5 * (maximum.high - maximum.low) };
 }
 
 struct Count
@@ -412,21 +296,28 @@ void compare(Checks& check, const reference::Volume<T>& volume, Filter* filter, 
   {
     return;
   }
-  const Oracle oracle = oracleOf(volume, filter, image, rays);
+  const bool isExact = filter->GetQualityMode() == Filter::EXACT;
+  const Oracle oracle = isExact ? Oracle() : oracleOf(volume, filter, image, rays);
+  const reference::Volume<double> field = reference::toDouble(volume);
   const double low = double(*std::min_element(volume.voxels.begin(), volume.voxels.end()));
   const double high = double(*std::max_element(volume.voxels.begin(), volume.voxels.end()));
   // Weights as the class documentation has them, shading and means, then rounded places in the
-  // shear image (2^-24 of a pixel and, of shears, 2^-25 a slice) and a bilinear mean.
-  const double bound = coretesting::errorBound<T>(splatting::Quality::High, low, high) +
-    1e-6 * oracle.view.sampling * (high - low) +
-    32.0 * (type == VTK_FLOAT ? 0x1p-24 : 0x1p-53) * std::max(std::abs(low), std::abs(high));
+  // shear image (2^-24 of a pixel and, of shears, 2^-25 a slice) and a bilinear mean. In exact mode
+  // 10^-6 of the range, or 10^-12 with double precision, and a value's own rounding.
+  const double rounding = type == VTK_FLOAT ? 0x1p-24 : 0x1p-53;
+  const double largest = std::max(std::abs(low), std::abs(high));
+  const double bound = isExact
+    ? (type == VTK_FLOAT ? 1e-6 : 1e-12) * (high - low) + 2.0 * rounding * largest
+    : coretesting::errorBound<T>(splatting::Quality::High, low, high) + 1e-6 * (high - low) +
+      32.0 * rounding * largest;
   const int* const size = filter->GetOutputSize();
   for (int y = 0; y < size[1]; ++y)
   {
     for (int x = 0; x < size[0]; ++x)
     {
       const glm::dvec3 point = rays.corner + double(x) * rays.across + double(y) * rays.up;
-      const Expected expected = expectedPixel(oracle, volume.size, rays, point);
+      const Expected expected = isExact ? expectedOnRay(field, filter, image, rays, point)
+                                        : expectedPixel(oracle, volume.size, rays, point);
       if (!expected.certain)
       {
         continue;
@@ -454,15 +345,14 @@ void chooseAtRandom(Filter* filter, vtkImageData* image, bool integers, referenc
   filter->SetKernel(random.uniform(0, 1));
   filter->SetKernelRadius(random.uniform(0.6, 1.5));
   filter->SetAcceleration(random.uniform<int>(Filter::AUTO, Filter::SORTED_VOLUME));
-  filter->SetShearImageSampling(random.uniform(0, 4));
-  if (filter->GetQualityMode() == Filter::EXACT)
-  {
-    return;
-  }
-  filter->SetBlendMode(random.uniform(1, 3));
+  const bool isExact = filter->GetQualityMode() == Filter::EXACT;
+  // Of exact mode the global extrema: means are those of high mode.
+  const int blendModes[] = { Filter::MAXIMUM_INTENSITY_BLEND, Filter::MINIMUM_INTENSITY_BLEND,
+    Filter::AVERAGE_INTENSITY_BLEND };
+  filter->SetBlendMode(blendModes[random.uniform(0, isExact ? 1 : 2)]);
   // Whether a local maximum ends hangs on comparisons, which need exact samples.
   const bool isSharp = integers && filter->GetQualityMode() == Filter::PREVIEW;
-  filter->SetMaximumType(random.uniform(0, isSharp ? 2 : 1));
+  filter->SetMaximumType(random.uniform(0, isSharp ? 2 : isExact ? 0 : 1));
   filter->SetLocalMaximumThreshold(random.uniform(-100.0, 100.0));
   filter->SetDepthShadingAmbient(random.uniform(0.0, 0.6));
   filter->SetDepthShadingChangeRate(random.uniform(0.1, 0.4));

@@ -98,12 +98,13 @@ void testEffects(Checks& check)
         check((settingsOf(changed, mode, coretesting::magnifiedView()) == before) != expected, name,
           " in mode ", mode, ", reduction ", n, expected ? ": has no effect" : ": has an effect");
       };
-      // Exact are maxima only; the others are those of high mode then.
-      const bool isHigh = mode == Names::HIGH || (mode == Names::EXACT && n > 2);
+      // Exact are extrema only; means are those of high mode then.
+      const bool isExact = mode == Names::EXACT && n < 4;
+      const bool isHigh = mode == Names::HIGH || (mode == Names::EXACT && !isExact);
       test("shading", n == 1, [](auto& c) { c.DepthShadingAmbient = 0.1; });
       test("threshold", n == 2, [](auto& c) { c.LocalMaximumThreshold = 5.0; });
       test("range", n == 4, [](auto& c) { c.AverageIPScalarRange[1] = 7.0; });
-      test("acceleration", n == 0, [](auto& c) { c.Acceleration = Names::LINES; });
+      test("acceleration", n == 0 && !isExact, [](auto& c) { c.Acceleration = Names::LINES; });
       test("locations", n != 4, [](auto& c) { c.RecordLocations = true; });
       test("kernel", isHigh, [](auto& c) { c.Kernel = Names::COSINE_BELL; });
       test("radius", false, [](auto& c) { c.KernelRadius = 0.7; });
@@ -124,16 +125,5 @@ int TestProjectionProperties(int, char*[])
   testFaults(check);
   testMethods(check);
   testEffects(check);
-  ProjectionProperties properties;
-  const auto samplingOf = [&properties](int mode)
-  { return settingsOf(properties, mode, coretesting::magnifiedView()).sampling; };
-  check(samplingOf(Names::HIGH) == 1 && samplingOf(Names::EXACT) == 1,
-    "no mode samples as finely as the screen by default");
-  for (const int sampling : { 1, 2, 3, 4 })
-  {
-    properties.ShearImageSampling = sampling;
-    const int found = samplingOf(Names::EXACT);
-    check(found == (sampling == 3 ? 2 : sampling), "a sampling of ", sampling, " is ", found);
-  }
   return check.result();
 }

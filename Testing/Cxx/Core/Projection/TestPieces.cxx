@@ -16,7 +16,7 @@ using splatting::Reduction;
 
 namespace
 {
-const Quality Qualities[] = { Quality::Preview, Quality::Standard, Quality::High, Quality::Exact };
+const Quality Qualities[] = { Quality::Preview, Quality::Standard, Quality::High };
 
 /// Cuts a box into a number of parts, at any place, some of which hold nothing.
 void cut(const Box& box, int count, reference::Random& random, std::vector<Box>& parts)
@@ -117,18 +117,15 @@ Scene randomScene(const std::array<int, 3>& size, reference::Random& random)
   view.showsBoxes = random.uniform(0, 3) == 0;
   scene.geometry = perspective ? randomPerspectiveImage(size, random) : splatting::ShearWarp(view);
   splatting::ProjectionSettings& settings = scene.settings;
-  settings.quality = Qualities[random.uniform(0, 3)];
+  settings.quality = Qualities[random.uniform(0, 2)];
   if (settings.quality == Quality::High && random.uniform(0, 2) == 0)
   {
     settings.kernel = { splatting::Reconstruction::CosineBell, random.uniform(0.5, 1.5) };
   }
   settings.footprintSampling = random.uniform(0, 5) == 0 ? 10 : 0;
-  if (settings.quality != Quality::Exact)
-  {
-    const Reduction reductions[] = { Reduction::Maximum, Reduction::Maximum, Reduction::Minimum,
-      Reduction::DepthShaded };
-    settings.reduction = reductions[random.uniform(0, 3)];
-  }
+  const Reduction reductions[] = { Reduction::Maximum, Reduction::Maximum, Reduction::Minimum,
+    Reduction::DepthShaded };
+  settings.reduction = reductions[random.uniform(0, 3)];
   settings.acceleration = static_cast<splatting::Acceleration>(random.uniform(0, 3));
   std::vector<glm::dvec4> halfSpaces;
   for (int n = random.uniform(0, 5) - 3; n > 0; --n)

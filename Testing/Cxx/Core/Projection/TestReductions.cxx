@@ -36,10 +36,10 @@ bool isReversed(const splatting::View& view, const splatting::ShearWarp& geometr
   return (view.indexToClip * ray).z / view.indexToClip[3][3] < 0.0;
 }
 
-Case caseOf(const splatting::View& view, int sampling = 1)
+Case caseOf(const splatting::View& view)
 {
   Case c;
-  c.geometry = splatting::ShearWarp(view, sampling);
+  c.geometry = splatting::ShearWarp(view);
   c.reversed = isReversed(view, c.geometry);
   return c;
 }
@@ -48,7 +48,7 @@ Case caseOf(const splatting::View& view, int sampling = 1)
 Case randomCase(Checks& check, const std::array<int, 3>& size, reference::Random& random)
 {
   const splatting::View view = viewFromAnySide(size, random);
-  const Case c = caseOf(view, anySampling(random));
+  const Case c = caseOf(view);
   check(c.geometry.reversed() == c.reversed, "the viewer is on another side");
   return c;
 }

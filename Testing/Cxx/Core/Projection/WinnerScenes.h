@@ -40,7 +40,7 @@ inline Scene anyScene(
   while (scene.images.empty())
   {
     scene.view = magnified(perspective ? randomPerspective(size, random) : anyView(size, random));
-    splatting::ShearWarp::factorise(scene.view, scene.images, anySampling(random));
+    splatting::ShearWarp::factorise(scene.view, scene.images);
   }
   if (mayBeCut && random.uniform(0, 2) == 0)
   {

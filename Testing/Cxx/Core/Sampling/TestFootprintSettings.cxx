@@ -25,10 +25,10 @@ const double shears[] = { 0.0, 0x1p-24, -0x1p-24, 1e-12, 0.5, -1.0 };
 const double fractions[] = { -0.5, -1.0 / 3.0, -0.25, -0.125, 0.0, 0x1p-24, 1.0 / 6.0, 0.25, 0.37,
   std::nextafter(0.5, 0.0) };
 
-GeneralTable tableOf(const Kernel& kernel, const glm::dvec2& shear, int sampling, int perVoxel)
+GeneralTable tableOf(const Kernel& kernel, const glm::dvec2& shear, int sampling)
 {
   GeneralTable table;
-  table.set(kernel, shear, sampling, perVoxel);
+  table.set(kernel, shear, sampling);
   return table;
 }
 
@@ -49,7 +49,7 @@ double sumOf(const WeightTable& weights)
 }
 
 void checkWeights(Checks& check, const GeneralTable& table, const Kernel& kernel, int sampling,
-  int perVoxel, const glm::dvec2& shear)
+  const glm::dvec2& shear)
 {
   for (double x : fractions)
   {
@@ -57,9 +57,9 @@ void checkWeights(Checks& check, const GeneralTable& table, const Kernel& kernel
     {
       const WeightTable weights = table.weights({ x, y });
       check(std::abs(sumOf(weights) - 1.0) < 1e-13 && splatting::quantisedTaps(weights, 16).size(),
-        "kernel ", int(kernel.shape), " of radius ", kernel.radius, ", ", sampling, " sub-pixels, ",
-        perVoxel, " pixels per voxel, shear ", shear.x, " ", shear.y, ", fraction ", x, " ", y,
-        ": weights sum to ", sumOf(weights));
+        "kernel ", int(kernel.shape), " of radius ", kernel.radius, ", ", sampling,
+        " sub-pixels, shear ", shear.x, " ", shear.y, ", fraction ", x, " ", y, ": weights sum to ",
+        sumOf(weights));
     }
   }
 }
@@ -74,14 +74,13 @@ std::vector<Kernel> allKernels()
   return kernels;
 }
 
-void testWeights(Checks& check, const Kernel& kernel, int sampling, int perVoxel)
+void testWeights(Checks& check, const Kernel& kernel, int sampling)
 {
   for (double x : shears)
   {
     for (double y : { 0.0, x, 0.5 })
     {
-      checkWeights(
-        check, tableOf(kernel, { x, y }, sampling, perVoxel), kernel, sampling, perVoxel, { x, y });
+      checkWeights(check, tableOf(kernel, { x, y }, sampling), kernel, sampling, { x, y });
     }
   }
 }
@@ -92,10 +91,7 @@ void testAllWeights(Checks& check)
   {
     for (int sampling : { 1, 2, 3, 4, 7 })
     {
-      for (int perVoxel : { 1, 2, 4 })
-      {
-        testWeights(check, kernel, sampling, perVoxel);
-      }
+      testWeights(check, kernel, sampling);
     }
   }
 }
@@ -106,12 +102,12 @@ void testSettingAgain(Checks& check)
   const Kernel kernels[] = { { Reconstruction::Hat }, { Reconstruction::CosineBell, 1.0 },
     { Reconstruction::CosineBell, 1.3 } };
   GeneralTable table;
-  int kernel = 0, sampling = 2, perVoxel = 1;
+  int kernel = 0, sampling = 2;
   glm::dvec2 shear(0.25, 0.5);
   reference::Random random(7);
   for (int n = 0; n < 200; ++n)
   {
-    switch (random.uniform(0, 3))
+    switch (random.uniform(0, 2))
     {
       case 0:
         kernel = random.uniform(0, 2);
@@ -119,18 +115,13 @@ void testSettingAgain(Checks& check)
       case 1:
         sampling = 1 << random.uniform(0, 2);
         break;
-      case 2:
-        perVoxel = 1 << random.uniform(0, 2);
-        break;
       default:
         shear[random.uniform(0, 1)] = random.uniform(-1.0, 1.0);
     }
-    table.set(kernels[kernel], shear, sampling, perVoxel);
+    table.set(kernels[kernel], shear, sampling);
     const glm::dvec2 fraction(0.125, -0.3);
-    check(table.weights(fraction) ==
-        tableOf(kernels[kernel], shear, sampling, perVoxel).weights(fraction),
-      "kernel ", kernel, ", ", sampling, " sub-pixels, ", perVoxel,
-      " pixels per voxel: a table that was another has other weights");
+    check(table.weights(fraction) == tableOf(kernels[kernel], shear, sampling).weights(fraction),
+      "kernel ", kernel, ", ", sampling, " sub-pixels: a table that was another has other weights");
   }
 }
 
@@ -182,8 +173,8 @@ void testPictures(Checks& check)
   }
 }
 
-/// A frame with the largest table and the most phases takes as long as a few tables, not as one for
-/// each of its 16 phases. The processors' time counts: other programs' does not.
+/// A frame with the largest table takes as long as a few tables, not as one for each slice. The
+/// processors' time counts: other programs' does not.
 void testTime(Checks& check)
 {
   const auto secondsOf = [](const auto& body)
@@ -194,14 +185,14 @@ void testTime(Checks& check)
   };
   const std::array<int, 3> thick{ 37, 26, 13 };
   const auto volume = wholeRangeNoise<std::uint8_t>(thick, 5);
-  const splatting::ShearWarp geometry(viewWithShear(thick, 2, 0.31, 0.17), 4);
+  const splatting::ShearWarp geometry(viewWithShear(thick, 2, 0.31, 0.17));
   splatting::ProjectionSettings settings;
   settings.quality = Quality::High;
   settings.footprintSampling = 64;
-  const double table = secondsOf([&] { tableOf(settings.kernel, geometry.shear(), 64, 4); });
+  const double table = secondsOf([&] { tableOf(settings.kernel, geometry.shear(), 64); });
   const double frame = secondsOf([&] { project(volume, geometry, settings); });
-  std::cout << "64 x 64 sub-pixels, 4 x 4 pixels per voxel: a table takes " << table
-            << " s, a frame " << frame << " s" << std::endl;
+  std::cout << "64 x 64 sub-pixels: a table takes " << table << " s, a frame " << frame << " s"
+            << std::endl;
   check(frame < 5.0 * table, "a frame takes ", frame / table, " times as long as its table");
 }
 }

@@ -72,14 +72,9 @@ void testNearest(Checks& check)
       std::vector<splatting::ShearWarp> geometries;
       const splatting::View view =
         n % 2 ? randomPerspective(volume.size, random) : anyView(volume.size, random);
-      splatting::ShearWarp::factorise(
-        view, geometries, anySampling(random), splatting::Meets::Nearest);
+      splatting::ShearWarp::factorise(view, geometries, splatting::Meets::Nearest);
       for (const splatting::ShearWarp& geometry : geometries)
       {
-        if (geometry.phases() > 1)
-        {
-          continue;
-        }
         splatting::ProjectionSettings settings;
         settings.quality = splatting::Quality::Preview;
         settings.instructionSet = anyInstructionSet(random);
@@ -114,7 +109,7 @@ void testEachVoxelOnce(Checks& check)
     [&](int, reference::Random& random)
     {
       const auto size = randomSize(random, 20);
-      const splatting::ShearWarp geometry(anyView(size, random), 1, splatting::Meets::Nearest);
+      const splatting::ShearWarp geometry(anyView(size, random), splatting::Meets::Nearest);
       auto volume = reference::constant<float>(size, 0.0f);
       const int voxel = random.uniform(0, static_cast<int>(volume.voxels.size()) - 1);
       volume.voxels[voxel] = 1.0f;

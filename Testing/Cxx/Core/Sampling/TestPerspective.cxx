@@ -81,7 +81,7 @@ void testPreviews(Checks& check, Sightings& seen)
       const auto volume = volumeWithOddValues<T>(randomSize(random, largest), random);
       const splatting::View view = randomPerspective(volume.size, random);
       std::vector<splatting::ShearWarp> images;
-      splatting::ShearWarp::factorise(view, images, anySampling(random));
+      splatting::ShearWarp::factorise(view, images);
       int hits = 0;
       for (const splatting::ShearWarp& image : images)
       {

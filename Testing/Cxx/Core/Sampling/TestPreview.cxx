@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Preview mode equals an exact voxel traversal along the same rays, bit for bit: every scalar type,
-// 2500 views, half of them through edges and corners of voxels, a third sampled finer.
+// 2500 views, half of them through edges and corners of voxels.
 #include "CoreTesting.h"
 
 using namespace coretesting;
@@ -17,7 +17,7 @@ void testViews(Checks& check)
     {
       const reference::Volume<T> volume = volumeWithOddValues<T>(randomSize(random, 12), random);
       const splatting::View view = anyView(volume.size, random);
-      const splatting::ShearWarp geometry(view, anySampling(random));
+      const splatting::ShearWarp geometry(view);
       splatting::ProjectionSettings settings;
       settings.quality = splatting::Quality::Preview;
       settings.instructionSet = anyInstructionSet(random);

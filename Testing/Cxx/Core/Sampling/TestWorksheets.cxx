@@ -76,7 +76,7 @@ void testType(Checks& check)
       const Mode mode = modes()[n % 5];
       const auto volume = wholeRangeNoise<T>(randomSize(random, 6), random);
       const splatting::View view = anyView(volume.size, random);
-      const splatting::ShearWarp geometry(view, anySampling(random));
+      const splatting::ShearWarp geometry(view);
       const double low = double(*std::min_element(volume.voxels.begin(), volume.voxels.end()));
       const double high = double(*std::max_element(volume.voxels.begin(), volume.voxels.end()));
       // The reference itself is good to some rounding errors of double.

@@ -324,7 +324,6 @@ void testDefinitions(stage::Stage& stage, stage::Checks& check)
       mapper->SetDepthShadingAmbient(random.uniform(0.0, 1.0));
       mapper->SetDepthShadingChangeRate(random.uniform(0.0, 1.0));
       mapper->SetLocalMaximumThreshold(random.uniform(0.0, 255.0));
-      mapper->SetShearImageSampling(turn % 10 == 9 ? 4 : turn % 5 == 0 ? 2 : 1);
       for (int kind = 0; kind < 5; ++kind)
       {
         kind == 0     ? mapper->SetBlendModeToMinimumIntensity()

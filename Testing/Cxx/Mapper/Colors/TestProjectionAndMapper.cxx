@@ -24,9 +24,13 @@ namespace
 constexpr int Width = 90;
 constexpr int Height = 70;
 
-/// Whether pixels with a sample are the same, and the others, too.
+/// Whether pixels with a sample are the same, and the others, too. EXACT has no shear images.
 bool sameShearImages(vtkImageData* a, vtkImageData* b)
 {
+  if (!a && !b)
+  {
+    return true;
+  }
   if (!a || !b || a->GetNumberOfPoints() != b->GetNumberOfPoints() ||
     a->GetScalarType() != b->GetScalarType())
   {
@@ -138,16 +142,17 @@ double largestDifference(vtkImageData* a, vtkImageData* b)
   return largest;
 }
 
-/// A depth-shaded maximum without shades is the maximum: in the shear image, since exact pictures
-/// show what the screen's own rays find of maxima alone. Pictures are finite, also where cuts leave
+/// A depth-shaded maximum without shades is the maximum. Pictures are finite, also where cuts leave
 /// a ray nothing of what exact mode sees, and whatever shades would be.
 void testWithoutShades(
   vtkSplattingMIPProjection* filter, const std::string& view, stage::Checks& check)
 {
   filter->SetMaximumType(vtkSplattingMIPProjection::GLOBAL);
   filter->Update();
+  const bool isExact = !filter->GetShearImage();
+  const auto result = [&] { return isExact ? filter->GetOutput() : filter->GetShearImage(); };
   vtkNew<vtkImageData> maximum, picture;
-  maximum->DeepCopy(filter->GetShearImage());
+  maximum->DeepCopy(result());
   picture->DeepCopy(filter->GetOutput());
   const auto shade = [&](double ambient)
   {
@@ -157,9 +162,10 @@ void testWithoutShades(
     filter->Update();
   };
   shade(1.0);
-  // The lowest voxel is subtracted and added again.
-  check(maximum->GetNumberOfPoints() == filter->GetShearImage()->GetNumberOfPoints() &&
-      largestDifference(maximum, filter->GetShearImage()) <= 255.0 * 2.0 * 0x1p-24,
+  // The lowest voxel is subtracted and added again. Exact maxima are off by 10^-6 of the range.
+  const double bound = 255.0 * (2.0 * 0x1p-24 + (isExact ? 2e-6 : 0.0));
+  check(maximum->GetNumberOfPoints() == result()->GetNumberOfPoints() &&
+      largestDifference(maximum, result()) <= bound,
     "without shades it is the maximum" + view);
   check(largestDifference(picture, filter->GetOutput()) <= 255.0,
     "what has no shades" + view + " is finite");

@@ -3,6 +3,7 @@
 //
 // VTK's cropping regions in the mapper: the sets that have names and others, against VTK's ray
 // caster and against the definition, and planes that change at run time.
+#include "FieldMaximum.h"
 #include "ScreenOracle.h"
 
 #include "vtkCommand.h"
@@ -83,8 +84,8 @@ constexpr int ManyPixels = 200; // that are compared with the voxels near their 
 /// tables, and one as OpenGL may interpolate bytes with as many bits as they have.
 constexpr double RayCasterTolerance = 2.0;
 
-/// What the voxels near each ray allow: ray casters end rays at the planes, the mapper shows whole
-/// voxels or none, and along a region's rim pictures are up to half a voxel off.
+/// What the voxels near each ray allow: ray casters end rays at the planes, averages are of whole
+/// voxels or none, and along a region's rim their pictures are up to half a voxel off.
 void compareWithVoxels(const stage::ScreenRays& rays, const stage::Envelope& envelope,
   const reference::Image<double>& picture, const reference::Image<double>& other, double tolerance,
   reference::Random& random, const std::string& what, stage::Checks& check)
@@ -119,23 +120,45 @@ void compareWithDefinition(stage::Stage& stage, vtkImageData* image, Mapper* map
   }
 }
 
+/// Of a view in mode EXACT: the largest value of the field on the part of the ray that is shown.
+void compareWithField(const stage::ScreenRays& rays, const reference::Volume<double>& field,
+  const reference::RayCuts& cuts, const reference::Image<double>& picture,
+  const reference::Image<double>& other, reference::Random& random, const std::string& what,
+  stage::Checks& check)
+{
+  for (int n = 0; n < ManyPixels; ++n)
+  {
+    const auto at = stage::somePixel(other, n % 2 == 0, random);
+    const auto maximum = stage::maximumOnRay(field, rays, at[0], at[1], cuts);
+    const double low = maximum.isHit ? maximum.low : 0.0;
+    const double high = maximum.isHit ? maximum.high : 0.0;
+    const double found = picture.at(at[0], at[1]);
+    check(!maximum.isCertain ||
+        (found >= low - stage::FieldTolerance && found <= high + stage::FieldTolerance),
+      what + ": pixel " + std::to_string(at[0]) + " " + std::to_string(at[1]) + " is " +
+        std::to_string(found) + ", not from " + std::to_string(low) + " to " +
+        std::to_string(high) + ".");
+  }
+}
+
 void testAgainstRayCasters(stage::Stage& stage, stage::Checks& check)
 {
   reference::Random blobs(3);
   const Bytes volume = stage::blobsAndTubes({ 64, 56, 60 }, 40, blobs);
   const auto image = stage::toImageData(volume);
+  const reference::Volume<double> field = reference::toDouble(volume);
   stage::Definition definition(volume);
   const int named[] = { VTK_CROP_SUBVOLUME, VTK_CROP_FENCE, VTK_CROP_INVERTED_FENCE, VTK_CROP_CROSS,
     VTK_CROP_INVERTED_CROSS };
   int cut = 0;
-  reference::forScenes(stage.viewAngle > 0.0 ? "regions in perspective" : "regions", 27,
+  reference::forScenes(stage.viewAngle > 0.0 ? "regions in perspective" : "regions", 36,
     [&](int number, reference::Random& random)
     {
-      const int set = number % 9, direction = number / 9;
+      const int set = number % 9, direction = number / 9 % 3, mode = (number + number / 9) % 4;
       const int region = set < 5 ? named[set] : randomFlags(random);
       stage::placeAtRandom(image, random);
       const auto mapper = stage::splatting(image);
-      mapper->SetQualityMode((set + direction) % 3);
+      mapper->SetQualityMode(mode);
       placePlanes(mapper, image, random, 0.15);
       mapper->SetCroppingRegionFlags(region);
       stage.show(mapper);
@@ -154,14 +177,18 @@ void testAgainstRayCasters(stage::Stage& stage, stage::Checks& check)
       const auto gpu = truthOf(stage, stage::gpuRayCaster(image, distance), mapper, image, false);
       std::cout << what << ": " << stage::Likeness(gpu, picture).text() << std::endl;
       const stage::ScreenRays rays(stage, image);
-      const stage::Envelope envelope(
-        volume, mapper->GetQualityMode(), stage::croppingOf(mapper, image));
+      const reference::RayCuts cuts = stage::croppingOf(mapper, image);
+      const stage::Envelope envelope(volume, mode, cuts);
       compareWithVoxels(rays, envelope, picture, gpu, stage::GrayTolerance, random, what, check);
       compareWithVoxels(
         rays, envelope, gpu, gpu, RayCasterTolerance, random, what + ", the GPU's", check);
       compareWithVoxels(
         rays, envelope, fixed, gpu, RayCasterTolerance, random, what + ", fixed-point", check);
-      if (stage.viewAngle <= 0.0)
+      if (mapper->GetQualityModeUsed() == Mapper::EXACT)
+      {
+        compareWithField(rays, field, cuts, picture, gpu, random, what, check);
+      }
+      else if (mode != Mapper::EXACT && stage.viewAngle <= 0.0)
       {
         compareWithDefinition(stage, image, mapper, definition, picture, gpu, random, what, check);
       }
@@ -212,7 +239,6 @@ void testDefinition(stage::Stage& stage, stage::Checks& check)
                     : mapper->SetBlendModeToMaximumIntensity();
       mapper->SetMaximumType(kind % 3);
       mapper->SetAcceleration(random.uniform<int>(Mapper::AUTO, Mapper::SORTED_VOLUME));
-      mapper->SetShearImageSampling(turn % 10 == 9 ? 4 : turn % 4 == 0 ? 2 : 1);
       stage.window->Render();
       const double error = stage::shearImageError(stage, mapper, image, volume);
       check(error <= stage::allowedError(mapper),

@@ -213,11 +213,10 @@ void testSmartMapperKeepsIndex(vtkImageData* image, stage::Checks& check)
   check(projections == 1, "One projection.");
   for (int frame = 0; frame < 3; ++frame)
   {
-    stage.renderer->GetActiveCamera()->Zoom(1.02);
     stage.setGrayRamp(20.0, 200.0 + frame);
     stage.pixels();
   }
-  check(splatting->GetNumberOfProjections() == projections, "Zoom and colours project nothing.");
+  check(splatting->GetNumberOfProjections() == projections, "Colours project nothing.");
   stage.renderer->GetActiveCamera()->Azimuth(3.0);
   stage.pixels();
   check(splatting->GetNumberOfProjections() == projections + 1, "A turn projects once.");

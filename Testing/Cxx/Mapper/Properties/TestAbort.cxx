@@ -315,7 +315,7 @@ int TestAbort(int, char*[])
   {
     scene.stage.viewAngle = viewAngle;
     scene.stage.look(Directions[0], Up);
-    for (int mode = 0; mode < 3; ++mode)
+    for (int mode = Mapper::PREVIEW; mode <= Mapper::EXACT; ++mode)
     {
       scene.mapper->SetQualityMode(mode);
       const std::string what = scene.mapper->GetQualityModeAsString();

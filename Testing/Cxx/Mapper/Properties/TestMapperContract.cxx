@@ -92,13 +92,6 @@ void testClamping(Mapper* mapper, stage::Checks& check)
       sets(mapper, &Mapper::SetFootprintSampling, &Mapper::GetFootprintSampling, value, expected),
       "SetFootprintSampling " + std::to_string(value));
   }
-  for (const auto& [value, expected] :
-    { std::pair(1, 1), { 4, 4 }, { 0, 0 }, { 5, 4 }, { 2, 2 }, { -1, 0 }, { 3, 3 } })
-  {
-    check(
-      sets(mapper, &Mapper::SetShearImageSampling, &Mapper::GetShearImageSampling, value, expected),
-      "SetShearImageSampling " + std::to_string(value));
-  }
 }
 
 void testClampingOfAcceleration(Mapper* mapper, stage::Checks& check)
@@ -207,13 +200,13 @@ void testPrinting(Mapper* mapper, stage::Checks& check)
   mapper->Print(stream);
   const std::string text = stream.str();
   for (const char* variable : { "QualityMode: exact", "Kernel: trilinear",
-         "KernelRadius: ", "FootprintSampling: ", "ShearImageSampling: 1",
-         "LastRenderUsedRayCasting: ", "PrincipalAxis: ", "Shear: ", "IndexMemorySize: ",
-         "NumberOfProjections: ", "ProjectionTime: ", "InstructionSet: ", "Acceleration: auto",
-         "AccelerationUsed: dense", "LineTolerance: ", "EliminateInvisible: ",
-         "QualityModeUsed: exact", "AutoAdjustSampleDistances: On", "FinalColorWindow: 1",
-         "FinalColorLevel: 0.5", "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend",
-         "VectorMode: disabled", "VectorComponent: ", "MaskInput: ", "Cropping" })
+         "KernelRadius: ", "FootprintSampling: ", "LastRenderUsedRayCasting: ", "PrincipalAxis: ",
+         "Shear: ", "IndexMemorySize: ", "NumberOfProjections: ", "ProjectionTime: ",
+         "InstructionSet: ", "Acceleration: auto", "AccelerationUsed: dense",
+         "LineTolerance: ", "EliminateInvisible: ", "QualityModeUsed: exact",
+         "AutoAdjustSampleDistances: On", "FinalColorWindow: 1", "FinalColorLevel: 0.5",
+         "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend", "VectorMode: disabled",
+         "VectorComponent: ", "MaskInput: ", "Cropping" })
   {
     check(text.find(variable) != std::string::npos, std::string("PrintSelf names ") + variable);
   }

@@ -83,9 +83,6 @@ void testSettings(Mapper* mapper, Checks& check)
   check(changes(Mapper::HIGH, [&] { mapper->SetBlendModeToAverageIntensity(); }), "averages");
   check(changes(Mapper::HIGH, [&] { mapper->SetAverageIPScalarRange(2.0, 5.0); }), "the range");
   check(changes(Mapper::HIGH, [&] { mapper->SetFootprintSampling(9); }), "the footprint");
-  check(settings(Mapper::HIGH).sampling == 1, "the shear image's sampling");
-  mapper->SetShearImageSampling(4);
-  check(settings(Mapper::HIGH).sampling == 4, "a finer sampling");
 }
 }
 

@@ -122,8 +122,6 @@ void addProjectionSettings(Settings<Object>& all, const Of& of)
     [](auto* p, V v) { p->SetKernelRadius(v[0]); });
   add("FootprintSampling", oneOf({ 0, 0, 0, 1, 3 }),
     [](auto* p, V v) { p->SetFootprintSampling(int(v[0])); });
-  add("ShearImageSampling", oneOf({ 0, 1, 2, 4 }),
-    [](auto* p, V v) { p->SetShearImageSampling(int(v[0])); });
   add("MaximumType", oneOf({ 0, 0, 1, 1, 2 }), [](auto* p, V v) { p->SetMaximumType(int(v[0])); });
   add("DepthShadingAmbient", oneOf({ 0.3, 0.0, 1.0, -1.0 }),
     [](auto* p, V v) { p->SetDepthShadingAmbient(v[0]); });

@@ -32,7 +32,9 @@ void testCellsAsPoints(stage::Stage& stage, stage::Checks& check)
   const auto mapper = stage::splatting(cells);
   const auto plain = stage::splatting(points);
   expectSame(stage, plain, mapper, "Cells", check, false);
-  check(mapper->GetIndexMemorySize() == plain->GetIndexMemorySize(), "Cells: no copy.");
+  // In mode EXACT the field goes on to the sides of cells: they need a little more.
+  const vtkIdType copy = Voxels * vtkIdType(sizeof(short));
+  check(mapper->GetIndexMemorySize() < plain->GetIndexMemorySize() + copy, "Cells: no copy.");
 
   // Cropping lies where it is told to, whatever voxels are.
   for (vtkVolumeMapper* cropped : { plain.Get(), mapper.Get() })

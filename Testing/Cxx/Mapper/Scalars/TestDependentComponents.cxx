@@ -111,7 +111,6 @@ void testTuples(stage::Stage& stage, stage::Checks& check)
       const auto image = noise(size, components, random.bits());
       const auto mapper = stage::splatting(image);
       mapper->SetQualityModeToPreview();
-      mapper->SetShearImageSampling(random.uniform(1, 2));
       mapper->SetBlendMode(random.uniform(0, 1) ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
                                                 : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
       stage.show(mapper);

@@ -82,7 +82,6 @@ void chooseAtRandom(
 {
   mapper->SetQualityMode(n % 4);
   mapper->SetKernel(random.uniform(0, 1));
-  mapper->SetShearImageSampling(random.uniform(0, 2));
   mapper->SetBlendMode(random.uniform(0, 2) ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
                                             : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
   stage::chooseSamples(mapper, image, random);
