@@ -26,14 +26,14 @@ packages=(
   libvtk9-dev python3-vtk9 libglm-dev          # the module and its Python package
   libcli11-dev                                 # splatmip, with ...
   libvtk-dicom-dev libinsighttoolkit5-dev      # ... the libraries that ...
-  libnifti-dev libtiff-dev                     # ... read its files
+  libnifti-dev libtiff-dev                     # ... read its files, and what the CMake files ...
+  libgdcm-tools                                # ... of GDCM, below them, refer to
   libbenchmark-dev                             # the benchmark
   dpkg-dev file help2man                       # Debian packages
   python3-numpy                                # tests and examples in Python
   xvfb xauth libgl1-mesa-dri                   # OpenGL without a display
 )
 [[ " ${cmake_options[*]} " == *" -DBUILD_TESTING=OFF "* ]] || packages+=(
-  libgdcm-tools                                # makes a DICOMDIR
   python3-pydicom python3-nibabel              # judge what splatmip reads, as does SimpleITK, ...
   python3-tifffile                             # ... which Debian does not have
   python3-vedo python3-vedo-examples           # programs of others

@@ -45,9 +45,10 @@ run_tests() {
 }
 
 part_more() {
-  if ! command -v chromium >/dev/null; then
+  if ! command -v chromedriver >/dev/null || ! /usr/bin/python3 -c "import selenium" 2>/dev/null; then
     apt-get update -qq
-    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium >/dev/null
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+      chromium-driver python3-selenium >/dev/null
   fi
   bash "$testing_dir/Package/VTKsOwn/fetch-on-debian.sh" "$build_dir/vtk-tests"
   build tests -DSPLATTINGMIP_BUILD_BENCHMARK=ON "-DSPLATTINGMIP_VTK_TESTS=$build_dir/vtk-tests"

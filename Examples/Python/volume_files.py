@@ -14,6 +14,7 @@ import zlib
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_BIT
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkNIFTIImageReader
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader
@@ -177,6 +178,8 @@ def run_reader(reader, path):
     scalars = image.GetPointData().GetScalars() or image.GetPointData().GetArray(0)
     if not scalars or scalars.GetNumberOfComponents() != 1:
         raise VolumeError("it has not one value at each point; save the volume so.")
+    if scalars.GetDataType() == VTK_BIT:
+        raise VolumeError("its values are bits; convert them to unsigned char with vtkImageCast.")
     image.GetPointData().SetScalars(scalars)
     return image
 

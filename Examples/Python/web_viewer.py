@@ -11,6 +11,7 @@ server keeps nothing about who looks. While the view moves, pictures are JPEG in
 it rests, PNG in the exact one.
 """
 import argparse
+import contextlib
 import hmac
 import http.server
 import json
@@ -35,6 +36,9 @@ FOLDER = pathlib.Path(__file__).resolve().parent
 AORTA = FOLDER.parent / "Data" / "aorta-stent.vti"
 MODES = ("preview", "standard", "high", "exact")
 MOST_PIXELS = 4096  # along each side
+MOST_AREA = 1 << 23  # pixels of a picture
+MOST_CONNECTIONS = 64
+MOST_REQUESTS = 8  # that wait for their pictures, or get them
 HOST_HELP = """the address to listen on. The default, 127.0.0.1, is this machine alone: to look at it from
 another one, run "ssh -L PORT:127.0.0.1:PORT THIS_MACHINE" there. With any other, such as 0.0.0.0,
 whoever reaches this machine over the network and knows the printed address sees the volume, and
@@ -43,6 +47,53 @@ nothing on the way is encrypted"""
 
 class Abandoned(Exception):
     """Nobody waits for the picture any more."""
+
+
+class Busy(Exception):
+    """Too many requests wait."""
+
+
+class Request:
+    """Waits for a picture, or gets it."""
+
+    def __init__(self, name, is_connected):
+        self.name = name
+        self.is_connected = is_connected
+        self.is_superseded = False
+
+    def is_wanted(self):
+        return not self.is_superseded and self.is_connected()
+
+
+class Queue:
+    """Requests in their order. The first has its turn, the others wait."""
+
+    def __init__(self):
+        self.condition = threading.Condition()
+        self.requests = []
+
+    @contextlib.contextmanager
+    def turn(self, name, is_connected):
+        """Waits for the turn of a new request, which supersedes others of the same name."""
+        request = Request(name, is_connected)
+        with self.condition:
+            for other in self.requests:
+                other.is_superseded = other.is_superseded or (name != "" and other.name == name)
+            if len(self.requests) >= MOST_REQUESTS:
+                raise Busy(f"{MOST_REQUESTS} pictures wait to be made: try again later")
+            self.requests.append(request)
+            self.condition.notify_all()
+        try:
+            with self.condition:
+                while self.requests[0] is not request and request.is_wanted():
+                    self.condition.wait(0.2)
+            if not request.is_wanted():
+                raise Abandoned
+            yield request
+        finally:
+            with self.condition:
+                self.requests.remove(request)
+                self.condition.notify_all()
 
 
 def describe(volume, name):
@@ -68,7 +119,7 @@ class Viewer:
     """Pictures of one volume, and what is seen at their pixels; one at a time."""
 
     def __init__(self, volume, name):
-        self.lock = threading.Lock()
+        self.queue = Queue()
         self.is_wanted = lambda: True
         self.description = describe(volume, name)
         self.problem = ""
@@ -89,7 +140,7 @@ class Viewer:
     note_problem.CallDataType = "string0"
 
     def project(self, view, size, focal_point, is_wanted, locations=False):
-        """The output of the projection, for the holder of the lock."""
+        """The output of the projection, in the turn of a request."""
         projection = self.projection
         projection.SetViewDirection(view["direction"])
         projection.SetViewUp(view["up"])
@@ -110,32 +161,32 @@ class Viewer:
             raise ValueError(self.problem)
         return projection.GetOutput()
 
-    def picture(self, view, is_wanted):
+    def picture(self, view, is_connected):
         """A file, JPEG or PNG, and its type; gray, or black where nothing is seen."""
-        with self.lock:
-            output = self.project(view, view["size"], view["focalPoint"], is_wanted)
+        with self.queue.turn(view["page"] and view["page"] + " picture", is_connected) as request:
+            output = self.project(view, view["size"], view["focalPoint"], request.is_wanted)
             values = vtk_to_numpy(output.GetPointData().GetScalars()).astype(float)
             low = view["level"] - view["window"] / 2.0
             with numpy.errstate(over="ignore"):  # infinite is white or black
                 gray = 255.0 / view["window"] * (values - low) + 0.5
-        gray = numpy.fmin(numpy.fmax(gray, 0.0), 255.0).astype(numpy.uint8)
-        image = vtkImageData()
-        image.SetDimensions(*view["size"], 1)
-        image.GetPointData().SetScalars(numpy_to_vtk(gray))
-        writer = vtkJPEGWriter() if view["kind"] == "jpeg" else vtkPNGWriter()
-        writer.SetInputData(image)
-        writer.WriteToMemoryOn()
-        writer.Write()
-        return "image/" + view["kind"], bytes(vtk_to_numpy(writer.GetResult()))
+            gray = numpy.fmin(numpy.fmax(gray, 0.0), 255.0).astype(numpy.uint8)
+            image = vtkImageData()
+            image.SetDimensions(*view["size"], 1)
+            image.GetPointData().SetScalars(numpy_to_vtk(gray))
+            writer = vtkJPEGWriter() if view["kind"] == "jpeg" else vtkPNGWriter()
+            writer.SetInputData(image)
+            writer.WriteToMemoryOn()
+            writer.Write()
+            return "image/" + view["kind"], bytes(vtk_to_numpy(writer.GetResult()))
 
-    def pick(self, view, is_wanted):
+    def pick(self, view, is_connected):
         """Value, place and voxel of what is seen at a pixel, by a picture of this pixel alone."""
         size, (x, y) = view["size"], view["pixel"]
         right = numpy.cross(view["direction"], view["up"])
         point = view["focalPoint"] + view["spacing"] * (
             (x - (size[0] - 1) / 2.0) * right + ((size[1] - 1) / 2.0 - y) * view["up"])
-        with self.lock:
-            pixel = self.project(view, (1, 1), point, is_wanted, locations=True).GetPointData()
+        with self.queue.turn(view["page"] and view["page"] + " pick", is_connected) as request:
+            pixel = self.project(view, (1, 1), point, request.is_wanted, locations=True).GetPointData()
             value = pixel.GetScalars().GetTuple1(0)
             if math.isnan(value):
                 return {}
@@ -180,7 +231,10 @@ def parse_view(query):
         "offset": numbers("offset", 1)[0],  # of the slab: how far behind the focal point
         "mode": choice("mode", MODES),
         "kind": choice("kind", ("jpeg", "png")),
+        "page": fields.get("page", "")[:64],  # a newer request of a page replaces the one before
     }
+    if view["size"][0] * view["size"][1] > MOST_AREA:
+        raise ValueError(f"size must be of at most {MOST_AREA} pixels")
     if "pixel" in fields:  # of a pick: column and row from the upper left
         view["pixel"] = numbers("pixel", 2, 0, MOST_PIXELS)
     return view
@@ -195,9 +249,14 @@ class Handler(http.server.BaseHTTPRequestHandler):
 
     protocol_version = "HTTP/1.1"
     disable_nagle_algorithm = True  # pictures wait for nothing
-    timeout = 600
+    timeout = 60
 
     def do_GET(self):
+        self.server.set_busy(self.connection, True)
+        self.answer_request()
+        self.server.set_busy(self.connection, False)
+
+    def answer_request(self):
         start = f"/{self.server.token}/"
         place = urllib.parse.urlsplit(self.path[len(start):])
         if not hmac.compare_digest(self.path[:len(start)].encode(), start.encode()):
@@ -220,6 +279,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
             return self.answer(404, "text/plain", b"There is nothing here.\n")
         except ValueError as error:
             return self.answer(400, "text/plain", f"{error}\n".encode())
+        except Busy as error:
+            return self.answer(503, "text/plain", f"{error}\n".encode())
         except Abandoned:
             self.close_connection = True
 
@@ -253,13 +314,43 @@ class Handler(http.server.BaseHTTPRequestHandler):
 
 
 class Server(http.server.ThreadingHTTPServer):
-    """Requests of all who know the token."""
+    """Requests of all who know the token. A connection too many closes the one that has been idle for
+    longest."""
+
+    request_queue_size = MOST_CONNECTIONS
 
     def __init__(self, host, port, viewer):
         self.address_family = socket.AF_INET6 if ":" in host else socket.AF_INET
         self.viewer = viewer
+        self.lock = threading.Lock()
+        self.connections = {}  # whether each is busy, the one that has been used last at the end
         self.token = secrets.token_urlsafe(16)
         super().__init__((host, port), Handler)
+
+    def set_busy(self, connection, is_busy):
+        with self.lock:
+            if self.connections.pop(connection, None) is not None:
+                self.connections[connection] = is_busy
+
+    def process_request(self, request, client_address):
+        with self.lock:
+            idle = next((connection for connection, is_busy in self.connections.items() if not is_busy), None)
+            if len(self.connections) >= MOST_CONNECTIONS and idle:
+                del self.connections[idle]
+                with contextlib.suppress(OSError):
+                    idle.shutdown(socket.SHUT_RDWR)  # which ends its thread
+            has_room = len(self.connections) < MOST_CONNECTIONS
+            if has_room:
+                self.connections[request] = False
+        if has_room:
+            super().process_request(request, client_address)
+        else:
+            self.shutdown_request(request)
+
+    def shutdown_request(self, request):
+        with self.lock:
+            self.connections.pop(request, None)
+        super().shutdown_request(request)
 
     def handle_error(self, request, client_address):
         """A browser that hangs up is no fault."""

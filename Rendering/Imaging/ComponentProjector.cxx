@@ -137,20 +137,19 @@ void ComponentProjector::SetRanks(PieceExchange* ranks)
 // Sums of weighted voxels overflow, or of a ray's samples. Exact mode computes products of voxels.
 const char* ComponentProjector::FaultOfVoxels(Quality quality)
 {
-  const bool isExact = quality == Quality::Exact;
   const bool isTooLarge = std::any_of(this->Channels.begin(), this->Channels.end(),
-    [=](Channel& channel)
+    [isExact = quality == Quality::Exact](Channel& channel)
     {
       const bool isDouble = averageType(channel.Index.volume().type) == ScalarType::Float64;
-      const double most = isExact ? (isDouble ? 1e150 : 1e18) : (isDouble ? 1e303 : 1e37);
+      const double most = isExact && channel.Index.range().hasInfinities()
+        ? (isDouble ? 1e150 : 1e18)
+        : (isDouble ? 1e303 : 1e37);
       return channel.Index.largestMagnitude() > most;
     });
-  return !isTooLarge ? nullptr
-    : isExact ? "The scalars have magnitudes above 1e18 (of double 1e150), which is too large for "
-                "exact mode: choose another mode, or scale them, and set voxels without a value to "
-                "NaN."
-              : "The scalars have magnitudes above 1e37 (of double 1e303), so that sums overflow: "
-                "scale them, and set voxels without a value to NaN.";
+  return isTooLarge ? "The scalars have magnitudes above 1e37 (of double 1e303; in exact mode beside "
+                      "infinities 1e18 and 1e150), so that sums overflow: scale them, and set voxels "
+                      "without a value to NaN."
+                    : nullptr;
 }
 
 bool ComponentProjector::SetBudget(std::size_t bytes)

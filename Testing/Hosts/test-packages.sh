@@ -16,7 +16,8 @@ bare=clean-$suite
 clean=clean-$suite-copy
 build_packages=(
   cmake ninja-build g++ ccache pkgconf xz-utils libvtk9-dev python3-vtk9 libglm-dev libcli11-dev
-  libvtk-dicom-dev libinsighttoolkit5-dev libnifti-dev libtiff-dev dpkg-dev file help2man lintian)
+  libvtk-dicom-dev libinsighttoolkit5-dev libnifti-dev libtiff-dev libgdcm-tools dpkg-dev file
+  help2man lintian)
 # What the tests use, and the packages need not bring.
 display=(xvfb xauth libgl1-mesa-dri)
 compiler=(cmake make g++)

@@ -5,15 +5,14 @@
     taskset -c 0,1 python3 MeasureWebViewer.py FILE [--mode preview] [--seconds 10]
 
 Viewer, browser and this script share the processors. Pictures have 512 x 512 pixels. Ends with 77
-where there is no Chromium.
+where there is no Chromium or Selenium.
 """
 import argparse
 import math
 import pathlib
 import sys
-import time
 
-import Chromium
+import BrowserTesting
 import WebViewerTesting as testing
 
 SIDE = 512
@@ -36,17 +35,14 @@ def median(numbers):
 
 def measure(page, seconds):
     """Times of pictures shown, and of requests what the server took and the transfer."""
-    page.mouse("mousePressed", SIDE / 2, SIDE / 2, button="left", buttons=1, clickCount=1)
+    centre = (SIDE // 2, SIDE // 2)
+    page.drag(centre, [], releases=False)
     page.evaluate("void (times.splice(0), performance.clearResourceTimings())")
-    start = time.monotonic()
-    moves = 0
-    while time.monotonic() < start + seconds:  # 60 places a second
-        moves += 1
-        x, y = 0.4 * math.sin(0.03 * moves), 0.2 * math.sin(0.05 * moves)
-        page.mouse("mouseMoved", SIDE * (0.5 + x), SIDE * (0.5 + y), button="left", buttons=1)
-        time.sleep(max(0.0, start + moves / 60.0 - time.monotonic()))
+    places = [(round(SIDE * (0.5 + 0.4 * math.sin(0.03 * n))), round(SIDE * (0.5 + 0.2 * math.sin(0.05 * n))))
+              for n in range(round(60 * seconds))]
+    page.drag(centre, places, pause=1 / 60, releases=False)
     found = page.evaluate("times"), page.evaluate(REQUESTS)
-    page.mouse("mouseReleased", SIDE / 2, SIDE / 2, button="left", clickCount=1)
+    page.click(*centre)
     return found
 
 
@@ -56,11 +52,11 @@ def main():
     parser.add_argument("--mode", default="preview")
     parser.add_argument("--seconds", type=float, default=10.0)
     arguments = parser.parse_args()
-    if not Chromium.find_chromium():
-        print("skipped: no Chromium")
+    if BrowserTesting.what_is_missing():
+        print("skipped:", BrowserTesting.what_is_missing())
         sys.exit(77)
-    with testing.running_viewer(arguments.file) as viewer, Chromium.chromium_page() as page:
-        page.send("Page.addScriptToEvaluateOnNewDocument", source=RECORDER)
+    with testing.running_viewer(arguments.file) as viewer, BrowserTesting.browser_page() as page:
+        page.run_first(RECORDER)
         width = 2 * SIDE
         page.open(viewer.address, width, SIDE)
         while page.evaluate("canvas.clientWidth") != SIDE:

@@ -13,6 +13,7 @@ import zlib
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_BIT
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
@@ -274,6 +275,18 @@ class TestVolumeFiles(unittest.TestCase):
             status, words = testing.run_to_end(path)
             self.assertEqual(status, 1)
             self.assertTrue(re.fullmatch(r"web_viewer.py: \S+: [^\n]+\.\n", words), words)
+
+    def test_bits_are_refused_with_one_sentence(self):
+        image = vtkImageData()
+        image.SetDimensions(4, 5, 6)
+        image.AllocateScalars(VTK_BIT, 1)
+        writer = vtkXMLImageDataWriter()
+        writer.SetInputData(image)
+        writer.SetFileName(str(self.folder / "bits.vti"))
+        writer.Write()
+        status, words = testing.run_to_end(self.folder / "bits.vti")
+        self.assertEqual(status, 1)
+        self.assertTrue(re.fullmatch(r"web_viewer.py: \S+: its values are bits; [^\n]+\.\n", words), words)
 
 
 if __name__ == "__main__":

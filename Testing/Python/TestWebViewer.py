@@ -2,11 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The server of Examples/Python/web_viewer.py, without a browser."""
 import concurrent.futures
+import contextlib
 import http.client
+import itertools
+import os
 import pathlib
 import socket
 import sys
 import tempfile
+import threading
 import time
 import types
 import unittest
@@ -134,7 +138,7 @@ class TestWebViewer(unittest.TestCase):
     def test_bad_requests_get_a_sentence(self):
         good = self.make_view().fields()
         bad = {"direction": ["", "1,2", "0,0,nan", "0,0.5,0", "0,0,1"], "up": ["0,1,0", "x,y,z"],
-               "focalPoint": ["inf,0,0", "1e300,0,0"], "size": ["0,5", "5000,5", "1.5,2", "5"],
+               "focalPoint": ["inf,0,0", "1e300,0,0"], "size": ["0,5", "5000,5", "4096,4096", "1.5,2", "5"],
                "spacing": ["0", "-1", "nan"], "window": ["0", "nan", "1e999"], "level": ["nan", "a"],
                "thickness": ["-1", "nan"], "offset": ["nan", "1,2"], "mode": ["", "best"], "kind": ["gif"]}
         for name, texts in bad.items():
@@ -178,12 +182,91 @@ class TestWebViewer(unittest.TestCase):
             volume = volume_files.read_volume(testing.write_nrrd(pathlib.Path(folder) / "phantom.nrrd"))
         viewer = web_viewer.Viewer(volume, "phantom")
         view = self.make_view()
-        for _ in range(2):
+        for answers in ([False], [True], [True]):  # at once, and in the midst of the projection
+            connected = itertools.chain(answers, itertools.repeat(False))
             with self.assertRaises(web_viewer.Abandoned):
-                viewer.picture(web_viewer.parse_view(view.query()), lambda: False)
+                viewer.picture(web_viewer.parse_view(view.query()), lambda: next(connected))
         kind, body = viewer.picture(web_viewer.parse_view(view.query()), lambda: True)
         self.assertEqual(kind, "image/png")
         self.assertLessEqual(abs(testing.decode(body) - view.picture()).max(), 0.501)
+
+    def test_a_newer_request_of_a_page_replaces_the_one_before(self):
+        queue = web_viewer.Queue()
+        outcomes = {}
+
+        def ask(number, name, is_connected=lambda: True):
+            try:
+                with queue.turn(name, is_connected):
+                    outcomes[number] = "turn"
+            except (web_viewer.Abandoned, web_viewer.Busy) as error:
+                outcomes[number] = type(error).__name__
+
+        def wait_for(condition):
+            end = time.monotonic() + 20
+            while not condition():
+                self.assertLess(time.monotonic(), end, outcomes)
+                time.sleep(0.01)
+
+        def start(numbers, name, waiting, is_connected=lambda: True):
+            for number in numbers:
+                threading.Thread(target=ask, args=(number, name, is_connected), daemon=True).start()
+            wait_for(lambda: len(queue.requests) == waiting)
+
+        with queue.turn("first", lambda: True) as first:
+            start([0], "second", 2)
+            start([1], "second", 2)
+            wait_for(lambda: outcomes == {0: "Abandoned"})
+            start([2], "third", 3)
+            start([3, 4], "", 5)
+            start([5], "", 5, lambda: False)
+            wait_for(lambda: outcomes == {0: "Abandoned", 5: "Abandoned"})
+            self.assertTrue(first.is_wanted())
+            start([6], "first", 6)
+            self.assertFalse(first.is_wanted())
+            start(range(7, 12), "", web_viewer.MOST_REQUESTS)
+            wait_for(lambda: len(outcomes) == 5)
+        wait_for(lambda: len(outcomes) == 12)
+        self.assertEqual(sorted(outcomes.values()), ["Abandoned"] * 2 + ["Busy"] * 3 + ["turn"] * 7)
+        self.assertEqual(queue.requests, [])
+
+    def status(self, name):
+        """A number of the viewer's process, as Linux tells it."""
+        lines = pathlib.Path(f"/proc/{self.viewer.process.pid}/status").read_text().splitlines()
+        return next(int(line.split()[1]) for line in lines if line.startswith(name + ":"))
+
+    def processor_time(self):
+        fields = pathlib.Path(f"/proc/{self.viewer.process.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    @unittest.skipUnless(pathlib.Path("/proc/self/status").exists(), "no /proc here")
+    def test_idle_connections_keep_nobody_out(self):
+        threads = self.status("Threads")
+        with contextlib.ExitStack() as stack:
+            for _ in range(8 * web_viewer.MOST_CONNECTIONS):
+                stack.enter_context(socket.create_connection(("127.0.0.1", self.viewer.port), 10))
+            self.check_picture(self.make_view())
+            start, used = time.monotonic(), self.processor_time()
+            time.sleep(1.0)
+            self.assertLess(self.processor_time() - used, 0.2 * (time.monotonic() - start))
+            self.assertLess(self.status("Threads"), threads + web_viewer.MOST_CONNECTIONS + 10)
+            descriptors = len(list(pathlib.Path(f"/proc/{self.viewer.process.pid}/fd").iterdir()))
+            self.assertLess(descriptors, web_viewer.MOST_CONNECTIONS + 50)
+            self.check_picture(self.make_view())
+
+    @unittest.skipUnless(pathlib.Path("/proc/self/status").exists(), "no /proc here")
+    def test_many_large_pictures_at_once_do_not_pile_up(self):
+        fields = {**self.make_view((2896, 2896)).fields(), "mode": "preview", "kind": "jpeg"}
+        self.assertEqual(self.viewer.get("picture", **fields)[0], 200)
+        before = self.status("VmHWM")
+        with concurrent.futures.ThreadPoolExecutor(30) as pool:
+            answers = list(pool.map(lambda _: self.viewer.get("picture", **fields), range(30)))
+        self.assertLess(self.status("VmHWM") - before, 400000)  # kB
+        refused = [body for status, _, body in answers if status == 503]
+        self.assertEqual(len(refused), sum(status != 200 for status, _, _ in answers))
+        self.assertGreater(len(refused), 0)
+        self.assertLess(len(refused), 30)
+        self.assertEqual(set(refused), {b"8 pictures wait to be made: try again later\n"})
+        self.check_picture(self.make_view())
 
     def test_a_browser_that_hangs_up_is_noticed(self):
         ours, theirs = socket.socketpair()

@@ -466,6 +466,10 @@ void testProblems(Ranks& ranks)
     cropped(wholeImage(last ? VTK_SHORT : VTK_UNSIGNED_CHAR, 1, false), withGhosts(own, whole, 2));
   many.mapper->SetInputDataObject(other);
   wrong("a piece of another type", "differ in type", expected);
+  const auto large = cropped(wholeImage(VTK_FLOAT, 1, false), withGhosts(own, whole, 2));
+  large->GetPointData()->GetScalars()->SetComponent(0, 0, last ? 3e38 : 0.0);
+  many.mapper->SetInputDataObject(large);
+  wrong("a piece with large scalars", "magnitudes above", expected);
   many.mapper->SetInputDataObject(good);
   many.renderer->GetActiveCamera()->SetParallelScale(last ? 20.0 : 21.0);
   wrong("another camera", "in different ways", expected);

@@ -49,29 +49,74 @@ std::vector<std::string> ListSegments(
 }
 
 /**
- * The distance of slices of which each frame's place is a multiple: the one that the file gives,
- * else the least.
+ * Even slices, on each of which frames lie.
  */
-double FindStep(const std::vector<double>& heights, double thickness, const std::string& path)
+struct Grid
 {
-  double least = heights.size() > 1 ? heights.back() - heights.front() : thickness;
-  for (std::size_t i = 1; i < heights.size(); ++i)
+  Vector3 Normal;
+  Vector3 First; // the first pixel of the first slice
+  double Step = 0.0;
+  vtkIdType Slices = 0;
+
+  double GetHeight(const SlicePlane& plane) const
   {
-    least = std::min(least, heights[i] - heights[i - 1]);
+    return vtkMath::Dot(plane.Position.data(), this->Normal.data()) -
+      vtkMath::Dot(this->First.data(), this->Normal.data());
+  }
+
+  vtkIdType GetSlice(const SlicePlane& plane) const
+  {
+    return static_cast<vtkIdType>(std::lround(this->GetHeight(plane) / this->Step));
+  }
+};
+
+/**
+ * Whether a plane is on a slice, with its pixels above those of the first.
+ */
+bool IsOnGrid(const SlicePlane& plane, const Grid& grid)
+{
+  const double height = grid.GetHeight(plane), place = height / grid.Step;
+  double aside = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    aside = std::hypot(aside, plane.Position[axis] - grid.First[axis] - height * grid.Normal[axis]);
+  }
+  return std::fabs(place - std::round(place)) < NearEnough &&
+    aside < 0.5 * std::min(plane.Spacing[0], plane.Spacing[1]);
+}
+
+/**
+ * The distance of slices is the one that the file gives, else the least between frames.
+ */
+Grid FindGrid(const std::vector<SlicePlane>& planes, double thickness, const std::string& path)
+{
+  std::string note;
+  if (FindLargestStack(planes, note).size() != planes.size())
+  {
+    Refuse(path, "its frames are of different kinds; " + note + ".");
+  }
+  const auto places = FindPlaces(planes);
+  Grid grid;
+  grid.First = planes[places.front()[0]].Position;
+  vtkMath::Cross(planes[0].Row.data(), planes[0].Column.data(), grid.Normal.data());
+  double least = thickness;
+  for (std::size_t i = 1; i < places.size(); ++i)
+  {
+    const double step =
+      grid.GetHeight(planes[places[i][0]]) - grid.GetHeight(planes[places[i - 1][0]]);
+    least = i == 1 ? step : std::min(least, step);
   }
   for (const double step : { thickness, least })
   {
-    if (std::all_of(heights.begin(), heights.end(),
-          [&](double height)
-          {
-            const double place = (height - heights.front()) / step;
-            return std::fabs(place - std::round(place)) < NearEnough;
-          }))
+    grid.Step = step;
+    grid.Slices = grid.GetSlice(planes[places.back()[0]]) + 1;
+    if (std::all_of(planes.begin(), planes.end(),
+          [&](const SlicePlane& plane) { return IsOnGrid(plane, grid); }))
     {
-      return step;
+      return grid;
     }
   }
-  Refuse(path, "its frames are not evenly spaced; export the segmentation again.");
+  Refuse(path, "its frames are not evenly above each other; export the segmentation again.");
 }
 
 /**
@@ -120,51 +165,29 @@ Volume ReadSegments(
   }
   const std::vector<DICOMFrame> frames = FindFrames(files);
   std::vector<SlicePlane> planes;
-  std::vector<double> heights;
-  const SlicePlane& plane = frames.front().Plane;
-  Vector3 normal;
-  vtkMath::Cross(plane.Row.data(), plane.Column.data(), normal.data());
   for (const DICOMFrame& frame : frames)
   {
     planes.push_back(frame.Plane);
   }
-  std::string note;
-  if (FindLargestStack(planes, note).size() != planes.size())
-  {
-    Refuse(path, "its frames are of different kinds; " + note + ".");
-  }
-  const auto places = FindPlaces(planes);
-  for (const auto& place : places)
-  {
-    heights.push_back(vtkMath::Dot(planes[place[0]].Position.data(), normal.data()));
-  }
-  const double step = FindStep(heights, files.front()->Thickness, path);
-  const auto slices = std::lround((heights.back() - heights.front()) / step) + 1;
-  CheckMemory(double(plane.Size[0]) * double(plane.Size[1]) * double(slices), path);
+  const SlicePlane& plane = planes.front();
+  const Grid grid = FindGrid(planes, files.front()->Thickness, path);
+  const auto pixels = static_cast<vtkIdType>(plane.Size[0] * plane.Size[1]);
+  CheckMemory(double(pixels) * double(grid.Slices), path);
   Volume volume;
   volume.Image = vtkSmartPointer<vtkImageData>::New();
-  volume.Image->SetDimensions(int(plane.Size[0]), int(plane.Size[1]), int(slices));
+  volume.Image->SetDimensions(int(plane.Size[0]), int(plane.Size[1]), int(grid.Slices));
   volume.Image->AllocateScalars(VTK_UNSIGNED_SHORT, 1);
   vtkDataArray* const labels = volume.Image->GetPointData()->GetScalars();
   labels->Fill(0.0);
-  const auto pixels = static_cast<vtkIdType>(plane.Size[0] * plane.Size[1]);
   bool isOverlapping = false;
   for (const DICOMFrame& frame : frames)
   {
     vtkDataArray* const stored = ReadPixels(*frame.File, quiet)->GetPointData()->GetScalars();
-    const double height = vtkMath::Dot(frame.Plane.Position.data(), normal.data());
-    const auto slice = static_cast<vtkIdType>(std::lround((height - heights.front()) / step));
+    const vtkIdType slice = grid.GetSlice(frame.Plane);
     isOverlapping = AddFrame(frame, stored, label, pixels, slice, labels) || isOverlapping;
   }
-  Steps steps;
-  for (int row = 0; row < 3; ++row)
-  {
-    steps[0][row] = plane.Row[row] * plane.Spacing[0];
-    steps[1][row] = plane.Column[row] * plane.Spacing[1];
-    steps[2][row] = normal[row] * step;
-  }
   volume.IsOriented = volume.IsInMillimeters = volume.HasLabels = true;
-  PlaceVolume(volume, steps, planes[places.front()[0]].Position);
+  PlaceVolume(volume, MakeSteps(plane, grid.Normal, grid.Step), grid.First);
   volume.Notes.push_back("segments " + JoinWords(names) + " (--label chooses)");
   if (isOverlapping)
   {

@@ -129,14 +129,8 @@ void Place(Volume& volume, const SlicePlane& plane, const SliceGrid& grid, doubl
 {
   volume.IsOriented = true;
   volume.IsInMillimeters = true;
-  Steps steps;
-  for (int row = 0; row < 3; ++row)
-  {
-    steps[0][row] = plane.Row[row] * plane.Spacing[0];
-    steps[1][row] = plane.Column[row] * plane.Spacing[1];
-    steps[2][row] = grid.Direction[row] * (grid.Step > 0.0 ? grid.Step : thickness);
-  }
-  PlaceVolume(volume, steps, plane.Position);
+  const double step = grid.Step > 0.0 ? grid.Step : thickness;
+  PlaceVolume(volume, MakeSteps(plane, grid.Direction, step), plane.Position);
 }
 
 std::vector<SlicePlane> GetPlanes(const std::vector<DICOMFrame>& frames)
@@ -176,6 +170,7 @@ Volume ReadDICOM(const std::string& path, const ReadSettings& settings, const Qu
   const auto files = OpenFiles(names, quiet, volume.Notes);
   if (IsSegmentation(*files.front()))
   {
+    CheckChoice(path, "volume", settings.Frame, 1);
     Volume segments = ReadSegments(files, settings.Label, quiet);
     segments.Notes.insert(segments.Notes.begin(), volume.Notes.begin(), volume.Notes.end());
     segments.Files = volume.Files;

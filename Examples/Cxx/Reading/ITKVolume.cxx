@@ -13,7 +13,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
+#include <sstream>
 #include <vector>
 
 namespace
@@ -30,9 +30,8 @@ std::string Trim(const std::string& text)
  */
 std::string FindField(const std::string& path, const std::string& key, char separator)
 {
-  std::ifstream file(path, std::ios::binary);
-  std::string line;
-  for (int n = 0; n < 1000 && std::getline(file, line) && line != "" && line != "\r"; ++n)
+  std::istringstream header(ReadHead(path));
+  for (std::string line; std::getline(header, line) && !Trim(line).empty();)
   {
     const std::size_t end = line.find(separator);
     if (end != std::string::npos && Trim(line.substr(0, end)) == key)
@@ -41,62 +40,6 @@ std::string FindField(const std::string& path, const std::string& key, char sepa
     }
   }
   return "";
-}
-
-int FindVTKType(itk::IOComponentEnum type, const std::string& path)
-{
-  switch (type)
-  {
-    case itk::IOComponentEnum::UCHAR:
-      return VTK_UNSIGNED_CHAR;
-    case itk::IOComponentEnum::CHAR:
-      return VTK_SIGNED_CHAR;
-    case itk::IOComponentEnum::USHORT:
-      return VTK_UNSIGNED_SHORT;
-    case itk::IOComponentEnum::SHORT:
-      return VTK_SHORT;
-    case itk::IOComponentEnum::UINT:
-      return VTK_UNSIGNED_INT;
-    case itk::IOComponentEnum::INT:
-      return VTK_INT;
-    case itk::IOComponentEnum::ULONG:
-      return VTK_UNSIGNED_LONG;
-    case itk::IOComponentEnum::LONG:
-      return VTK_LONG;
-    case itk::IOComponentEnum::ULONGLONG:
-      return VTK_UNSIGNED_LONG_LONG;
-    case itk::IOComponentEnum::LONGLONG:
-      return VTK_LONG_LONG;
-    case itk::IOComponentEnum::FLOAT:
-      return VTK_FLOAT;
-    case itk::IOComponentEnum::DOUBLE:
-      return VTK_DOUBLE;
-    default:
-      Refuse(path, "values of this type are not supported; save the volume as float.");
-  }
-}
-
-/**
- * The last two of a chain of reasons, a line each, without the functions that report them.
- */
-std::string GetReason(const std::string& report)
-{
-  std::vector<std::string> lines;
-  for (std::string line : vtksys::SystemTools::SplitString(report, '\n'))
-  {
-    const std::size_t name = line.rfind("[nrrd] ", 0) == 0 ? line.find(": ") : std::string::npos;
-    line.erase(0, name == std::string::npos ? 0 : name + 2);
-    line.erase(line.find_last_not_of(" .:\r") + 1);
-    if (!line.empty())
-    {
-      lines.push_back(line);
-    }
-  }
-  std::string text = lines.empty() ? "" : lines.back();
-  text = lines.size() > 1 ? lines[lines.size() - 2] + ": " + text : text;
-  std::replace_if(
-    text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text;
 }
 
 [[noreturn]] void RefuseUnread(const std::string& path, const std::string& reason)
@@ -113,6 +56,64 @@ std::string GetReason(const std::string& report)
 }
 
 /**
+ * Refuse lines that ITK 5 cannot quote in an error without a buffer overflow. Only values of keys
+ * of one's own are so long in sound files.
+ */
+void CheckLines(const std::string& path)
+{
+  constexpr std::size_t Longest = 500;
+  std::istringstream header(ReadHead(path));
+  for (std::string line; std::getline(header, line) && !Trim(line).empty();)
+  {
+    if (line.size() > Longest && line[0] != '#' && line.find(":=") == std::string::npos)
+    {
+      RefuseUnread(path, "a line of its header is too long");
+    }
+  }
+}
+
+int GetScalarType(const itk::ImageIOBase* io, const std::string& path)
+{
+  using Type = itk::IOComponentEnum;
+  const Type type = io->GetComponentType();
+  const bool isFloat = type == Type::FLOAT || type == Type::DOUBLE;
+  const auto all = { Type::CHAR, Type::SHORT, Type::INT, Type::LONG, Type::LONGLONG };
+  const bool isSigned = std::find(all.begin(), all.end(), type) != all.end();
+  const int found = type == Type::UNKNOWNCOMPONENTTYPE
+    ? VTK_VOID
+    : FindScalarType(io->GetComponentSize(), isFloat, isSigned);
+  if (found == VTK_VOID)
+  {
+    Refuse(path, "values of this type are not supported; save the volume as float.");
+  }
+  return found;
+}
+
+/**
+ * The last two of a chain of reasons, a line each, without the functions that report them; or the
+ * first of several reports.
+ */
+std::string GetReason(const std::string& report, bool isChain)
+{
+  std::vector<std::string> lines;
+  for (std::string line : vtksys::SystemTools::SplitString(report, '\n'))
+  {
+    const std::size_t name = line.rfind("[nrrd] ", 0) == 0 ? line.find(": ") : std::string::npos;
+    line.erase(0, name == std::string::npos ? 0 : name + 2);
+    line.erase(line.find_last_not_of(" .:\r") + 1);
+    if (!line.empty())
+    {
+      lines.push_back(line);
+    }
+  }
+  std::string text = lines.empty() ? "" : isChain ? lines.back() : lines.front();
+  text = lines.size() > 1 && isChain ? lines[lines.size() - 2] + ": " + text : text;
+  std::replace_if(
+    text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text;
+}
+
+/**
  * The file's image of at most three dimensions, with the frames one behind the other along the
  * third.
  */
@@ -124,7 +125,7 @@ vtkSmartPointer<vtkImageData> ReadImage(
     itk::Object::GlobalWarningDisplayOff();
     io->SetFileName(path);
     io->ReadImageInformation();
-    const int type = FindVTKType(io->GetComponentType(), path);
+    const int type = GetScalarType(io, path);
     const unsigned int dimensions = io->GetNumberOfDimensions();
     itk::ImageIORegion region(dimensions);
     double size[3] = { 1.0, 1.0, 1.0 };
@@ -145,14 +146,15 @@ vtkSmartPointer<vtkImageData> ReadImage(
     io->Read(image->GetScalarPointer());
     if (!quiet.GetPrinted().empty()) // by MetaIO, which reports incomplete data so
     {
-      RefuseUnread(path, GetReason(quiet.GetPrinted()));
+      RefuseUnread(path, GetReason(quiet.GetPrinted(), false));
     }
     return image;
   }
   catch (const itk::ExceptionObject& error)
   {
     const std::string printed = quiet.GetPrinted();
-    RefuseUnread(path, GetReason(printed.empty() ? error.GetDescription() : printed));
+    RefuseUnread(
+      path, GetReason(printed.empty() ? error.GetDescription() : printed, printed.empty()));
   }
 }
 
@@ -224,6 +226,20 @@ std::string GetEntry(itk::ImageIOBase* io, const std::string& key)
   return value;
 }
 
+/**
+ * The number of vectors in text such as "(1,0,0) none (nan,nan,nan)" that are not empty.
+ */
+std::size_t CountVectors(const std::string& text)
+{
+  std::size_t count = 0;
+  for (std::size_t place = text.find('('); place != std::string::npos;
+       place = text.find('(', place + 1))
+  {
+    count += text.compare(place, 4, "(nan") != 0;
+  }
+  return count;
+}
+
 bool StartsWith(const std::string& text, const std::string& start)
 {
   return text.rfind(start, 0) == 0;
@@ -232,6 +248,7 @@ bool StartsWith(const std::string& text, const std::string& start)
 
 Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
+  CheckLines(path);
   const std::string kinds = FindField(path, "kinds", ':');
   const auto io = itk::NrrdImageIO::New();
   Volume volume =
@@ -249,10 +266,12 @@ Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const Qui
   volume.IsOriented =
     StartsWith(space, "left-posterior-superior") || StartsWith(space, "right-anterior-superior");
   const std::string directions = FindField(path, "space directions", ':');
-  if ((directions + FindField(path, "spacings", ':')).find_first_of("0123456789") ==
-    std::string::npos)
+  const std::string spacings = FindField(path, "spacings", ':');
+  if (CountVectors(directions) < std::min(3U, io->GetNumberOfDimensions()) &&
+    spacings.find_first_of("0123456789") == std::string::npos)
   {
     steps = {};
+    volume.IsOriented = false;
   }
   PlaceVolume(volume, steps, origin);
   const std::string units = FindField(path, "space units", ':'); // as in "mm" "mm" "mm"

@@ -13,12 +13,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 
 namespace
 {
 struct Free
 {
+  void operator()(void* header) const { std::free(header); }
   void operator()(nifti_image* image) const { nifti_image_free(image); }
 };
 
@@ -48,6 +50,21 @@ const Type& FindType(const nifti_image& header, const std::string& path)
         std::to_string(header.datatype) + ") are not supported; save the volume as float.");
   }
   return *type;
+}
+
+/**
+ * Whether a header has 1 to 7 dimensions: libnifti 3.0.1 trusts the number in NIfTI-2.
+ */
+bool HasSoundDimension(const std::string& path)
+{
+  int version = 0;
+  const std::unique_ptr<void, Free> header(nifti_read_header(path.c_str(), &version, 0));
+  if (!header || version != 2)
+  {
+    return header != nullptr;
+  }
+  const std::int64_t dimension = static_cast<const nifti_2_header*>(header.get())->dim[0];
+  return dimension >= 1 && dimension <= 7;
 }
 
 /**
@@ -152,7 +169,8 @@ void Place(Volume& volume, const nifti_image& header)
 Volume ReadNIFTI(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
   const SilentErrors silent; // the library prints errors at any debug level
-  const std::unique_ptr<nifti_image, Free> header(nifti_image_read(path.c_str(), 0));
+  const std::unique_ptr<nifti_image, Free> header(
+    HasSoundDimension(path) ? nifti_image_read(path.c_str(), 0) : nullptr);
   const auto isSound = [](std::int64_t size) { return size >= 1 && size <= VTK_INT_MAX; };
   if (!header || !isSound(header->nx) || !isSound(header->ny) || !isSound(header->nz))
   {

@@ -8,6 +8,7 @@
 #include <vtksys/SystemInformation.hxx>
 
 #include <algorithm>
+#include <fstream>
 #include <stdexcept>
 
 namespace
@@ -28,6 +29,15 @@ void RefuseDamaged(const std::string& path, const QuietReading& quiet)
   Refuse(path,
     "damaged, incomplete or not what its name says" + quiet.GetReason() +
       "; check it, or export the volume again.");
+}
+
+std::string ReadHead(const std::string& path)
+{
+  std::string head(1 << 20, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(&head[0], static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head;
 }
 
 void CheckChoice(const std::string& path, const std::string& what, int number, int count)
@@ -53,6 +63,23 @@ vtkSmartPointer<vtkImageData> ExtractComponent(vtkImageData* image, int number)
   extract->SetComponents(number - 1);
   extract->Update();
   return extract->GetOutput();
+}
+
+int FindScalarType(std::size_t bytes, bool isFloat, bool isSigned)
+{
+  switch (bytes)
+  {
+    case 1:
+      return isFloat ? VTK_VOID : isSigned ? VTK_SIGNED_CHAR : VTK_UNSIGNED_CHAR;
+    case 2:
+      return isFloat ? VTK_VOID : isSigned ? VTK_SHORT : VTK_UNSIGNED_SHORT;
+    case 4:
+      return isFloat ? VTK_FLOAT : isSigned ? VTK_INT : VTK_UNSIGNED_INT;
+    case 8:
+      return isFloat ? VTK_DOUBLE : isSigned ? VTK_LONG_LONG : VTK_UNSIGNED_LONG_LONG;
+    default:
+      return VTK_VOID;
+  }
 }
 
 std::string JoinWords(const std::vector<std::string>& words)

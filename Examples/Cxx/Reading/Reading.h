@@ -9,6 +9,7 @@
 #include "vtkImageData.h"
 #include "vtkSmartPointer.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,11 @@
  * A damaged header can ask for any amount of memory: refuse before it is allocated.
  */
 void CheckMemory(double voxels, const std::string& path);
+
+/**
+ * The beginning of a file, where its header is, if that is text.
+ */
+std::string ReadHead(const std::string& path);
 
 /**
  * Refuse a number (from 1 on, or 0 for any) of one of several volumes, channels or components that
@@ -38,6 +44,11 @@ std::string DescribeChoice(const std::string& what, int number, int count);
  * One of the components of an image, from 1 on.
  */
 vtkSmartPointer<vtkImageData> ExtractComponent(vtkImageData* image, int number);
+
+/**
+ * VTK's name for a type of numbers, or VTK_VOID if there is none.
+ */
+int FindScalarType(std::size_t bytes, bool isFloat, bool isSigned);
 
 /**
  * As in ".a, .b or .c".

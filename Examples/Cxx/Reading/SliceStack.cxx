@@ -285,6 +285,18 @@ void CheckCount(
 }
 }
 
+std::array<Vector3, 3> MakeSteps(const SlicePlane& plane, const Vector3& direction, double step)
+{
+  std::array<Vector3, 3> steps;
+  for (int row = 0; row < 3; ++row)
+  {
+    steps[0][row] = plane.Row[row] * plane.Spacing[0];
+    steps[1][row] = plane.Column[row] * plane.Spacing[1];
+    steps[2][row] = direction[row] * step;
+  }
+  return steps;
+}
+
 std::vector<std::size_t> FindLargestStack(const std::vector<SlicePlane>& planes, std::string& note)
 {
   std::vector<std::vector<std::size_t>> kinds;

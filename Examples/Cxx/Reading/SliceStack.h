@@ -24,6 +24,11 @@ struct SlicePlane
 };
 
 /**
+ * Vectors from voxel to voxel of a stack whose slices follow in a direction, a unit vector.
+ */
+std::array<Vector3, 3> MakeSteps(const SlicePlane& plane, const Vector3& direction, double step);
+
+/**
  * The largest number of planes that agree in orientation, pixels and size, numbers of the given
  * ones. A note says which do not.
  */

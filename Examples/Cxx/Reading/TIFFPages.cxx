@@ -62,7 +62,8 @@ TIFFPages::TIFFPages(const std::string& path) : Path(path), File(nullptr, TIFFCl
     const auto kind = GetTag<std::uint32_t>(file, TIFFTAG_SUBFILETYPE);
     if ((kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0)
     {
-      this->CheckPage();
+      this->CheckType();
+      this->CheckKind();
       this->Pages.push_back(page);
     }
     ++page;
@@ -81,7 +82,7 @@ void TIFFPages::RefuseTag(const char* tag, double value, const std::string& advi
   Refuse(this->Path, text.str());
 }
 
-void TIFFPages::CheckPage()
+void TIFFPages::CheckType() const
 {
   TIFF* const file = this->File.get();
   const std::string asGray = "save the stack as gray values, uncompressed";
@@ -113,6 +114,13 @@ void TIFFPages::CheckPage()
   {
     this->RefuseTag("ImageDepth", depth, "save the stack with a page for each slice");
   }
+}
+
+void TIFFPages::CheckKind()
+{
+  TIFF* const file = this->File.get();
+  const auto bits = GetTag<std::uint16_t>(file, TIFFTAG_BITSPERSAMPLE);
+  const auto format = GetTag<std::uint16_t>(file, TIFFTAG_SAMPLEFORMAT);
   const auto width = GetTag<std::uint32_t>(file, TIFFTAG_IMAGEWIDTH);
   const auto height = GetTag<std::uint32_t>(file, TIFFTAG_IMAGELENGTH);
   const auto samples = GetTag<std::uint16_t>(file, TIFFTAG_SAMPLESPERPIXEL);
@@ -150,22 +158,8 @@ void TIFFPages::CheckPage()
 
 int TIFFPages::GetVTKType() const
 {
-  const bool isSigned = this->Format == SAMPLEFORMAT_INT;
-  if (this->Format == SAMPLEFORMAT_IEEEFP)
-  {
-    return this->Bits == 32 ? VTK_FLOAT : VTK_DOUBLE;
-  }
-  switch (this->Bits)
-  {
-    case 8:
-      return isSigned ? VTK_SIGNED_CHAR : VTK_UNSIGNED_CHAR;
-    case 16:
-      return isSigned ? VTK_SHORT : VTK_UNSIGNED_SHORT;
-    case 32:
-      return isSigned ? VTK_INT : VTK_UNSIGNED_INT;
-    default:
-      return isSigned ? VTK_LONG_LONG : VTK_UNSIGNED_LONG_LONG;
-  }
+  return FindScalarType(
+    this->Bits / 8U, this->Format == SAMPLEFORMAT_IEEEFP, this->Format == SAMPLEFORMAT_INT);
 }
 
 void TIFFPages::Read(int page, char* pixels)

@@ -47,7 +47,8 @@ public:
 
 private:
   [[noreturn]] void RefuseTag(const char* tag, double value, const std::string& advice) const;
-  void CheckPage();
+  void CheckType() const;
+  void CheckKind();
   void ReadBlocks(char* pixels);
   std::size_t GetRowBytes() const { return this->Width * this->Samples * this->Bits / 8; }
 

@@ -161,72 +161,35 @@ std::vector<double> SpaceEvenly(const std::vector<double>& places, const std::st
   return even;
 }
 
-/// Between which of some values a place lies, and its share of the second.
-struct Between
-{
-  vtkIdType First;
-  vtkIdType Second;
-  double Share;
-};
-
-std::vector<Between> FindBetween(const std::vector<double>& from, const std::vector<double>& to)
-{
-  std::vector<Between> found;
-  std::size_t i = 0;
-  const double sign = from.back() < from.front() ? -1.0 : 1.0;
-  for (const double place : to)
-  {
-    while (i + 2 < from.size() && sign * from[i + 1] <= sign * place)
-    {
-      ++i;
-    }
-    const std::size_t next = std::min(i + 1, from.size() - 1);
-    const double share = next > i ? (place - from[i]) / (from[next] - from[i]) : 0.0;
-    found.push_back({ vtkIdType(i), vtkIdType(next), std::clamp(share, 0.0, 1.0) });
-  }
-  return found;
-}
-
 /**
- * Values between those of an array, of which the sizes are given, as floating point.
+ * Values at other places along one axis, as floating point. Stride is that of the axis.
  */
-vtkSmartPointer<vtkDataArray> Interpolate(vtkDataArray* values,
-  const std::array<std::vector<double>, 3>& from, const std::array<std::vector<double>, 3>& to)
+vtkSmartPointer<vtkDataArray> Interpolate(vtkDataArray* values, vtkIdType stride,
+  const std::vector<double>& from, const std::vector<double>& to)
 {
-  std::array<std::vector<Between>, 3> between;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    between[axis] = FindBetween(from[axis], to[axis]);
-  }
-  const vtkIdType row = vtkIdType(from[0].size()), page = row * vtkIdType(from[1].size());
   const bool isFloat = values->GetDataTypeSize() <= 2 || values->GetDataType() == VTK_FLOAT;
   const auto result = vtkSmartPointer<vtkDataArray>::Take(
     vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
+  const auto size = static_cast<vtkIdType>(from.size());
+  const vtkIdType lines = values->GetNumberOfTuples() / size / stride;
   result->SetNumberOfComponents(values->GetNumberOfComponents());
-  result->SetNumberOfTuples(vtkIdType(to[0].size() * to[1].size() * to[2].size()));
+  result->SetNumberOfTuples(lines * stride * static_cast<vtkIdType>(to.size()));
   vtkIdType point = 0;
-  for (const Between& z : between[2])
+  for (vtkIdType line = 0; line < lines; ++line)
   {
-    for (const Between& y : between[1])
+    vtkIdType i = 0; // the place is between this one and the next
+    for (const double place : to)
     {
-      for (const Between& x : between[0])
+      while (i + 2 < size && std::fabs(from[i + 1] - from[0]) <= std::fabs(place - from[0]))
       {
-        for (int component = 0; component < values->GetNumberOfComponents(); ++component)
-        {
-          const auto along = [&](vtkIdType start)
-          {
-            return (1.0 - x.Share) * values->GetComponent(start + x.First, component) +
-              x.Share * values->GetComponent(start + x.Second, component);
-          };
-          const auto across = [&](vtkIdType start)
-          {
-            return (1.0 - y.Share) * along(start + y.First * row) +
-              y.Share * along(start + y.Second * row);
-          };
-          result->SetComponent(point, component,
-            (1.0 - z.Share) * across(z.First * page) + z.Share * across(z.Second * page));
-        }
-        ++point;
+        ++i;
+      }
+      const double share = (place - from[i]) / (from[i + 1] - from[i]);
+      for (vtkIdType n = 0; n < stride; ++n, ++point)
+      {
+        const vtkIdType first = (line * size + i) * stride + n;
+        result->InterpolateTuple(
+          point, first, values, first + stride, values, std::clamp(share, 0.0, 1.0));
       }
     }
   }
@@ -289,48 +252,24 @@ vtkDataArray* ChooseArray(
   return arrays[static_cast<std::size_t>(found - names.begin())];
 }
 
-Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& wanted)
+/// Of voxels along three axes.
+using Places = std::array<std::vector<double>, 3>;
+
+vtkSmartPointer<vtkDataArray> MakeEven(
+  vtkSmartPointer<vtkDataArray> values, const Places& places, const Places& even)
 {
-  auto* const image = vtkImageData::SafeDownCast(data);
-  if (!image && !vtkRectilinearGrid::SafeDownCast(data))
-  {
-    Refuse(path, "no image and no rectilinear grid; resample it to an image.");
-  }
-  Volume volume;
-  vtkSmartPointer<vtkDataArray> values = ChooseArray(data, path, wanted, volume);
-  const auto cells = ListArrays(data->GetCellData());
-  const bool isOfCells = std::find(cells.begin(), cells.end(), values) != cells.end();
-  std::array<std::vector<double>, 3> places, even;
+  vtkIdType stride = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
-    places[axis] = GetPlaces(data, axis, isOfCells);
-    even[axis] = image ? places[axis] : SpaceEvenly(places[axis], path);
+    const bool isEven = even[axis] == places[axis];
+    values = isEven ? values : Interpolate(values, stride, places[axis], even[axis]);
+    stride *= static_cast<vtkIdType>(even[axis].size());
   }
-  if (values->GetNumberOfTuples() !=
-    vtkIdType(places[0].size() * places[1].size() * places[2].size()))
-  {
-    Refuse(path, "no numeric value at each point or cell; save the volume with scalars.");
-  }
-  if (even != places)
-  {
-    CheckMemory(double(even[0].size()) * double(even[1].size()) * double(even[2].size()), path);
-    values = Interpolate(values, places, even);
-    volume.Notes.push_back("the grid is uneven and was interpolated to the least of its steps");
-    volume.Caution = "grid interpolated";
-  }
-  volume.Image = vtkSmartPointer<vtkImageData>::New();
-  volume.Image->SetDimensions(int(even[0].size()), int(even[1].size()), int(even[2].size()));
-  if (vtkDataArray* const hidden = isOfCells || !image
-      ? nullptr
-      : data->GetPointData()->GetArray(data->GetPointData()->GhostArrayName()))
-  {
-    volume.Image->GetPointData()->AddArray(hidden);
-  }
-  if (!values->GetName())
-  {
-    values->SetName("values");
-  }
-  volume.Image->GetPointData()->SetScalars(values);
+  return values;
+}
+
+void Place(Volume& volume, vtkImageData* image, const Places& even)
+{
   Steps steps = {};
   std::array<double, 3> origin = {};
   for (int row = 0; row < 3; ++row)
@@ -349,6 +288,50 @@ Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& 
     }
   }
   PlaceVolume(volume, steps, origin);
+}
+
+Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& wanted)
+{
+  auto* const image = vtkImageData::SafeDownCast(data);
+  if (!image && !vtkRectilinearGrid::SafeDownCast(data))
+  {
+    Refuse(path, "no image and no rectilinear grid; resample it to an image.");
+  }
+  Volume volume;
+  vtkSmartPointer<vtkDataArray> values = ChooseArray(data, path, wanted, volume);
+  const auto cells = ListArrays(data->GetCellData());
+  const bool isOfCells = std::find(cells.begin(), cells.end(), values) != cells.end();
+  Places places, even;
+  double voxels = 1.0, evenVoxels = 1.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    places[axis] = GetPlaces(data, axis, isOfCells);
+    even[axis] = image ? places[axis] : SpaceEvenly(places[axis], path);
+    voxels *= static_cast<double>(places[axis].size());
+    evenVoxels *= static_cast<double>(even[axis].size());
+  }
+  if (static_cast<double>(values->GetNumberOfTuples()) != voxels)
+  {
+    Refuse(path, "no numeric value at each point or cell; save the volume with scalars.");
+  }
+  if (even != places)
+  {
+    CheckMemory(evenVoxels, path);
+    values = MakeEven(values, places, even);
+    volume.Notes.push_back("the grid is uneven and was interpolated to the least of its steps");
+    volume.Caution = "grid interpolated";
+  }
+  volume.Image = vtkSmartPointer<vtkImageData>::New();
+  volume.Image->SetDimensions(int(even[0].size()), int(even[1].size()), int(even[2].size()));
+  vtkDataArray* const hidden =
+    data->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName());
+  if (hidden && image && !isOfCells)
+  {
+    volume.Image->GetPointData()->AddArray(hidden);
+  }
+  values->SetName(GetName(values).c_str());
+  volume.Image->GetPointData()->SetScalars(values);
+  Place(volume, image, even);
   return volume;
 }
 }

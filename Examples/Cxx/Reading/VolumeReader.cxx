@@ -25,6 +25,7 @@
 #include <filesystem>
 #include <fstream>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 
 namespace
@@ -172,8 +173,8 @@ void AddCompanions(const std::string& path, std::vector<std::string>& files)
   {
     return;
   }
-  std::ifstream file(path, std::ios::binary);
-  for (std::string line; std::getline(file, line);)
+  std::istringstream lines(ReadHead(path));
+  for (std::string line; std::getline(lines, line);)
   {
     const std::size_t end = line.find_last_not_of(" \t\r") + 1;
     for (std::size_t begin = 0; begin < end; begin = line.find_first_of(" \t:=", begin))

@@ -185,14 +185,16 @@ class TestStacks(ValuesTest):
 class TestSegments(ValuesTest):
     NUMBERS = (2, 5)
 
-    def write_segments(self, kind="BINARY", overlap=False):
+    def write_segments(self, kind="BINARY", overlap=False, shift=0, every=1):
         """Two segments in slices 2 to 7 of 9, without the frames that are empty."""
         volume = numpy.zeros((len(self.NUMBERS), *SIZE), bool)
         volume[0, 2:4, 2:6, 1:4] = volume[0, 7, 2:6, 1:4] = True
         volume[1, 3:6, 5:11, 5 - 3 * overlap:9] = True
+        volume[:, numpy.arange(SIZE[0]) % every > 0] = False
         groups, pixels = [], []
         for n, k in numpy.argwhere(volume.any(axis=(2, 3)))[::-1]:
-            groups.append({"PlanePositionSequence": [{"ImagePositionPatient": (0, 0, 2 * int(k))}],
+            groups.append({"PlanePositionSequence": [{"ImagePositionPatient": (
+                shift * int(k), 0, 2 * int(k))}],
                            "SegmentIdentificationSequence": [
                                {"ReferencedSegmentNumber": self.NUMBERS[n]}]})
             pixels.append(volume[n, k])
@@ -228,7 +230,14 @@ class TestSegments(ValuesTest):
             for n, number in enumerate(self.NUMBERS):
                 self.assert_volume(path, numpy.uint16(number * volume[n]), places,
                                    "--label", str(number))
+        self.assert_refused(path, "--frame", "2", word="no volume 2 here, only 1")
         self.assert_refused(path, "--label", "3", word="no segment 3 here, only 2 (part 2) or 5")
+        path, volume = self.write_segments(every=2)  # no frames are as near as slices are
+        labels = numpy.uint16(2 * volume[0] + 5 * volume[1])[:3]
+        self.assertEqual(list(labels.any(axis=(1, 2))), [True, False, True])
+        self.assert_volume(path, labels, places)
+        path, _ = self.write_segments(shift=1)
+        self.assert_refused(path, word="its frames are not evenly above each other")
         path, volume = self.write_segments(overlap=True)
         labels = numpy.uint16(numpy.where(volume[1], 5, 2 * volume[0]))
         text = self.assert_volume(path, labels, places)

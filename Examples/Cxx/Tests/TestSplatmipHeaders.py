@@ -161,6 +161,14 @@ class TestNIfTI(splatmip.SplatmipTest):
             file.write(numpy.int16([1536, 128]).tobytes())
         self.assert_refused(path, word="FLOAT128 (datatype 1536) are not supported; save")
 
+    def test_damaged(self):
+        """Numbers that libnifti would trust."""
+        path = self.write("a.nii", make_values().T, numpy.eye(4), kind=nibabel.Nifti2Image)
+        with open(path, "r+b") as file:  # dim[0]
+            file.seek(21)
+            file.write(b"9")
+        self.assert_refused(path, word="a.nii: damaged, incomplete")
+
     def test_real_files(self):
         """Test data of nibabel, where its package has them."""
         folder = os.path.join(os.path.dirname(nibabel.__file__), "tests", "data")
@@ -238,7 +246,8 @@ class TestNRRD(splatmip.SplatmipTest):
                 ({"dimension": None}, ["dimension: 3"], "6 20 30|: don't yet have a valid dim"),
                 ({"type": None}, [], "required field: type"),
                 ({"encoding": None}, [], "required field: encoding"),
-                ({"type": "block"}, [], "type is block")):
+                ({"type": "block"}, [], "type is block"),
+                ({}, [9999 * "1 "], "a line of its header is too long")):
             self.assert_refused(self.write(None, lines, **fields), word=word)
 
     def test_spaces(self):
@@ -283,6 +292,17 @@ class TestNRRD(splatmip.SplatmipTest):
                                options=("--slab", str(10 * length)))
         text = self.check(self.write(space_units='"ell" "ell" "ell"'))
         self.assertIn("ell, which is unknown: 1 mm was taken for it", text)
+
+    def test_no_size(self):
+        """Without a vector for each axis nothing is known."""
+        first, _, last = self.FIELDS["space directions"].split()
+        for words in ("none none none", f"{first} none {last}", f"{first} (nan,nan,nan) {last}"):
+            places = numpy.eye(3, 4) + numpy.array([[0, 0, 0, 1], [0, 0, 0, 2], [0, 0, 0, 3]])
+            text = self.assert_volume(self.write(space_directions=words), make_values(), places)
+            self.assertIn("the file does not say how large voxels are: 1 mm was taken\n", text)
+        pictures = [self.draw(self.path("a.nrrd"), "--output", "a.png", *words)[0]
+                    for words in ((), ("--no-marks",))]
+        self.assertTrue((pictures[0] == pictures[1]).all())
 
     def test_incomplete(self):
         self.assert_refused(self.write(make_values().tobytes()[:-100]), word="fread got only 3550")
@@ -353,6 +373,7 @@ class TestMetaImage(splatmip.SplatmipTest):
                     self.write(CompressedData="True", CompressedDataSize=len(packed),
                                data=packed[:-200]) if name == "gzip" else self.write(DimSize="6 20 0"))
             self.assert_refused(path, word="a.mha: damaged, incomplete")
+        self.assert_refused(self.write(ElementType=None), word="(ElementType required and not defined)")
 
 
 class TestVTK(splatmip.SplatmipTest):

@@ -85,11 +85,12 @@ private:
     const std::string ending = end == ".gz" ? path.stem().extension().string() + end : end;
     std::random_device random;
     std::filesystem::path name;
+    std::error_code error;
     do
     {
       name = path.parent_path() /
         (".splatmip-" + std::to_string(random()) + "-" + std::to_string(number) + ending);
-    } while (std::filesystem::exists(name));
+    } while (std::filesystem::exists(name, error));
     return name.string();
   }
 

@@ -295,12 +295,15 @@ std::size_t CellIndex::memorySize() const
 template <class A>
 CellScale<A> scaleOf(const VolumeIndex::Range& range, bool minima)
 {
-  // Sums of a few values must be finite.
-  constexpr double few = 0x1p-8;
+  // Squares of values must be finite, and above 0. Of volumes with infinities no more is known than
+  // that sums of a few values must be finite.
   const bool finite = !range.hasInfinities() && range.low <= range.high;
-  const bool large = range.hasInfinities() ||
-    few * range.high - few * range.low > few * few * static_cast<double>(CellValue<A>::Highest);
-  const double factor = (minima ? -1.0 : 1.0) * (large ? few : 1.0);
+  const double half = finite ? 0.5 * range.high - 0.5 * range.low : 0.0;
+  constexpr int most = sizeof(A) == sizeof(float) ? 120 : 1000;
+  int exponent = half > 0.0 ? std::ilogb(half) + 1 : 0;
+  exponent = std::abs(exponent) > 40 ? std::clamp(exponent, -most, most) : 0;
+  const double size = range.hasInfinities() ? 0x1p-8 : std::ldexp(1.0, -exponent);
+  const double factor = minima ? -size : size;
   CellScale<A> scale;
   scale.factor = static_cast<A>(factor);
   scale.offset = finite ? static_cast<A>(-factor * (minima ? range.high : range.low)) : A(0);

@@ -25,7 +25,11 @@ public:
   bool take(double value, double t)
   {
     const bool counts = this->Value >= this->Threshold;
-    if (counts && value < this->Value - this->Rounding)
+    // Where voxels are infinite there is no range.
+    const double rounding = this->Rounding > 0.0 || !std::isfinite(this->Value)
+      ? this->Rounding
+      : 0x1p-40 * std::abs(this->Value);
+    if (counts && value < this->Value - rounding)
     {
       return true;
     }
@@ -172,8 +176,8 @@ public:
       const glm::ivec3 at = brick - grid.firstBrick;
       const std::size_t n = (std::size_t(at.z) * grid.bricks.y + at.y) * grid.bricks.x + at.x;
       const double largest = static_cast<double>(this->Frame.bounds.template brick<T>()[n]);
-      // Below the threshold there is no local maximum, nor one that begins there.
-      if (!(largest >= this->Threshold))
+      // Below the threshold there is no local maximum, but one before may end there.
+      if (!(largest >= this->Threshold) && !peak.ends())
       {
         from = this->leave(BrickCells * brick, BrickCells, from, to);
         continue;
@@ -241,7 +245,7 @@ bool findPeak(const CellFrame<T>& frame, const glm::dvec3& start, const glm::dve
     for (int a = 0; a < 3; ++a)
     {
       frame.kernels.within(
-        &from, &to, 1, start[a], 0.0, direction[a], 0.0, region.low()[a], region.high()[a]);
+        &from, &to, 0, 1, start[a], 0.0, direction[a], 0.0, region.low()[a], region.high()[a]);
     }
     if (from < to)
     {

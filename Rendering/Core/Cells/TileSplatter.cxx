@@ -121,20 +121,21 @@ void CellFrame<T>::findEnds(int x, int y, int count, double* near, double* far) 
   const bool perspective = this->rays.isPerspective();
   std::fill_n(near, count, perspective ? 0.0 : -Infinity);
   std::fill_n(far, count, Infinity);
-  const glm::dvec3 start = this->rays.start(x, y), forward = this->rays.direction(x, y);
+  // From column 0 on: the same bits for any first pixel.
+  const glm::dvec3 start = this->rays.start(0, y), forward = this->rays.direction(0, y);
   const glm::dvec3& across = this->rays.across();
   const auto step = [&](double change) { return perspective ? 0.0 : change; };
   const auto turn = [&](double change) { return perspective ? change : 0.0; };
   for (int a = 0; a < 3; ++a)
   {
-    this->kernels.within(near, far, count, start[a], step(across[a]), forward[a], turn(across[a]),
-      this->grid.low[a], this->grid.high[a]);
+    this->kernels.within(near, far, x, count, start[a], step(across[a]), forward[a],
+      turn(across[a]), this->grid.low[a], this->grid.high[a]);
   }
   for (const glm::dvec4& h : this->halfSpaces)
   {
     const glm::dvec3 normal(h);
     const double change = glm::dot(normal, across);
-    this->kernels.before(near, far, count, glm::dot(normal, start) + h.w, step(change),
+    this->kernels.before(near, far, x, count, glm::dot(normal, start) + h.w, step(change),
       glm::dot(normal, forward), turn(change));
   }
   if (!this->surface.empty())
@@ -162,6 +163,16 @@ TileSplatter<T>::TileSplatter(const CellFrame<T>& frame, ScreenTile<A>& tile)
   block.ambient = static_cast<A>(frame.ambient);
   block.rate = static_cast<A>(frame.rate);
   block.mostFactor = 1;
+  const PixelRays& rays = frame.rays;
+  for (int a = 0; a < 3; ++a)
+  {
+    block.alongT[a] = static_cast<A>(rays.toPixel()[a][2]);
+    block.startAcross[a] = block.forwardAcross[a] = CellSum<A>(rays.across()[a]);
+    block.startUp[a] = block.forwardUp[a] = CellSum<A>(rays.up()[a]);
+    block.forward[a] = CellSum<A>(rays.forward()[a]);
+    block.flat[a] = std::abs(rays.forward()[a]) < Flat<A>;
+    block.inverse[a] = block.flat[a] ? A(0) : static_cast<A>(1.0 / rays.forward()[a]);
+  }
   block.bounded = frame.isFinite;
 }
 
@@ -254,50 +265,98 @@ typename TileSplatter<T>::A TileSplatter<T>::mostFactor(const SeenBox& seen) con
 template <class T>
 bool TileSplatter<T>::splat(const std::vector<std::uint32_t>& bricks)
 {
-  for (const std::uint32_t brick : bricks)
+  // Memory takes longer to fetch a brick's voxels than it takes to splat them.
+  constexpr std::size_t ahead = 2;
+  std::uint32_t waiting[ahead + 1];
+  std::size_t taken = 0, splatted = 0;
+  bool isDone = false;
+  for (auto brick = bricks.begin(); brick != bricks.end() && !isDone; ++brick)
   {
-    if (!this->splatBrick(brick))
+    isDone = this->isDone(*brick);
+    if (!isDone && this->mayRaise(*brick))
     {
-      return false;
+      this->prefetch(*brick);
+      waiting[taken++ % (ahead + 1)] = *brick;
+      if (taken - splatted > ahead)
+      {
+        this->splatBrick(waiting[splatted++ % (ahead + 1)]);
+      }
     }
   }
-  return true;
+  while (splatted < taken)
+  {
+    this->splatBrick(waiting[splatted++ % (ahead + 1)]);
+  }
+  return !isDone;
+}
+
+// Whether no brick from this one on can raise a pixel of the tile; looked at now and then.
+template <class T>
+bool TileSplatter<T>::isDone(std::uint32_t brick)
+{
+  const CellFrame<T>& f = this->Frame;
+  if (++this->SinceCheck < ChecksEvery)
+  {
+    return false;
+  }
+  this->SinceCheck = 0;
+  // The order of bricks is right to within a thousandth of the range.
+  const A bound = boundOf<T>(f.bounds.template brick<T>()[brick], f.scale);
+  const double rest = 1.0 + 0x1p-9;
+  const double factor = f.shades ? std::max({ f.ambient, f.ambient + f.rate, 0.0 }) : 1.0;
+  const double range = std::abs(static_cast<double>(f.scale.factor) * (f.highest - f.lowest));
+  const A most =
+    static_cast<A>((static_cast<double>(bound) * rest + 0x1p-9 * range) * factor * (1.0 + 1e-5));
+  const A least =
+    this->Loops.least(this->Tile, 0, ScreenTile<A>::Side - 1, 0, ScreenTile<A>::Side - 1);
+  return f.isFinite && most < least;
 }
 
 template <class T>
-bool TileSplatter<T>::splatBrick(std::uint32_t brick)
+bool TileSplatter<T>::mayRaise(std::uint32_t brick) const
 {
   const CellFrame<T>& f = this->Frame;
   const A bound = boundOf<T>(f.bounds.template brick<T>()[brick], f.scale);
-  if (++this->SinceCheck >= ChecksEvery)
-  {
-    // The order of bricks is right to within a thousandth of the range.
-    this->SinceCheck = 0;
-    const double rest = 1.0 + 0x1p-9;
-    const double factor = f.shades ? std::max({ f.ambient, f.ambient + f.rate, 0.0 }) : 1.0;
-    const double range = std::abs(static_cast<double>(f.scale.factor) * (f.highest - f.lowest));
-    const A most =
-      static_cast<A>((static_cast<double>(bound) * rest + 0x1p-9 * range) * factor * (1.0 + 1e-5));
-    const A least =
-      this->Loops.least(this->Tile, 0, ScreenTile<A>::Side - 1, 0, ScreenTile<A>::Side - 1);
-    if (f.isFinite && most < least)
-    {
-      return false;
-    }
-  }
   const CellBox box = f.boxOfBrick(brick);
   const SeenBox seen(f.rays, box);
   const PixelRectangle pixels = seen.within(this->Pixels);
   if (pixels.empty())
   {
-    return true;
+    return false;
   }
   const glm::ivec2 low = pixels.low - this->Pixels.low, high = pixels.high - this->Pixels.low;
-  const A factor = f.shades ? this->mostFactor(seen) : A(1);
-  if (!this->reaches(bound, this->Loops.least(this->Tile, low.x, high.x, low.y, high.y), factor))
+  return this->reaches(bound, this->Loops.least(this->Tile, low.x, high.x, low.y, high.y),
+    f.shades ? this->mostFactor(seen) : A(1));
+}
+
+template <class T>
+void TileSplatter<T>::prefetch(std::uint32_t brick) const
+{
+#if defined(__GNUC__)
+  const CellGrid& grid = this->Frame.grid;
+  const glm::ivec3& size = grid.voxels.dimensions;
+  const glm::ivec3 cell = this->Frame.grid.brickCell(brick);
+  const glm::ivec2 x = grid.voxelsOf(0, cell.x, cell.x + BrickCells);
+  const glm::ivec2 y = grid.voxelsOf(1, cell.y, cell.y + BrickCells);
+  const glm::ivec2 z = grid.voxelsOf(2, cell.z, cell.z + BrickCells);
+  for (std::ptrdiff_t k = z.x; k <= z.y; ++k)
   {
-    return true;
+    for (std::ptrdiff_t j = y.x; j <= y.y; ++j)
+    {
+      const T* const row = static_cast<const T*>(grid.voxels.voxels) + (k * size.y + j) * size.x;
+      __builtin_prefetch(row + x.x);
+      __builtin_prefetch(row + x.y);
+    }
   }
+#else
+  (void)brick;
+#endif
+}
+
+template <class T>
+void TileSplatter<T>::splatBrick(std::uint32_t brick)
+{
+  const CellFrame<T>& f = this->Frame;
   // The blocks with the largest voxels first.
   const T* const blocks = f.bounds.template block<T>() + 8 * std::size_t(brick);
   A bounds[8];
@@ -321,7 +380,6 @@ bool TileSplatter<T>::splatBrick(std::uint32_t brick)
     const int b = order[n];
     this->splatBlock(cell + BlockCells * glm::ivec3(b & 1, b >> 1 & 1, b >> 2), bounds[b], isCut);
   }
-  return true;
 }
 
 template <class T>
@@ -394,7 +452,7 @@ void TileSplatter<T>::splatBlock(const glm::ivec3& cell, A bound, bool isCut)
 
 // The voxels of a block, and which of its cells there are.
 template <class T>
-bool TileSplatter<T>::load(const glm::ivec3& cell)
+void TileSplatter<T>::load(const glm::ivec3& cell)
 {
   const CellGrid& grid = this->Frame.grid;
   const glm::ivec3& size = grid.voxels.dimensions;
@@ -421,7 +479,6 @@ bool TileSplatter<T>::load(const glm::ivec3& cell)
   }
   static_cast<const BlockLoops<T>&>(this->Frame.kernels)
     .load(rows, x, this->Frame.scale, this->Block);
-  return true;
 }
 
 // The rays of the pixels around one that sees the block's middle, from points beside that on.
@@ -442,18 +499,15 @@ void TileSplatter<T>::placeRays(const SeenBox& seen, const glm::dvec3& middle)
   b.x = pixel.x - this->Pixels.low.x;
   b.y = pixel.y - this->Pixels.low.y;
   b.middleT = static_cast<A>(whole.t() - t);
-  const double scale = perspective ? t : 1.0;
   for (int a = 0; a < 3; ++a)
   {
-    b.alongT[a] = static_cast<A>(rays.toPixel()[a][2]);
     b.start[a] = CellSum<A>(start[a]);
-    b.startAcross[a] = CellSum<A>(scale * rays.across()[a]);
-    b.startUp[a] = CellSum<A>(scale * rays.up()[a]);
-    b.forward[a] = CellSum<A>(forward[a]);
-    b.forwardAcross[a] = CellSum<A>(rays.across()[a]);
-    b.forwardUp[a] = CellSum<A>(rays.up()[a]);
-    b.flat[a] = std::abs(forward[a]) < Flat<A>;
-    b.inverse[a] = b.flat[a] ? A(0) : static_cast<A>(1.0 / forward[a]);
+    if (perspective)
+    {
+      b.startAcross[a] = CellSum<A>(t * rays.across()[a]);
+      b.startUp[a] = CellSum<A>(t * rays.up()[a]);
+      b.forward[a] = CellSum<A>(forward[a]);
+    }
   }
   if (seen.isNear())
   {
@@ -509,7 +563,7 @@ void TileSplatter<T>::finish(ScreenScalars& screen) const
 {
   const CellFrame<T>& f = this->Frame;
   const A back = A(1) / f.scale.factor;
-  const A lowest = static_cast<A>(f.lowest), highest = static_cast<A>(f.highest);
+  const A highest = static_cast<A>(f.highest);
   constexpr A none = std::numeric_limits<A>::quiet_NaN();
   constexpr A infinite = std::numeric_limits<A>::infinity();
   for (int y = this->Pixels.low.y; y <= this->Pixels.high.y; ++y)
@@ -525,7 +579,8 @@ void TileSplatter<T>::finish(ScreenScalars& screen) const
       const A value = this->Tile.values[row + x];
       const A sense = f.minima ? -infinite : infinite;
       const bool isEmpty = value == CellValue<A>::Outside || value == CellValue<A>::None;
-      A voxel = value * back + lowest;
+      // The products of sums, not the sums of products, are finite.
+      A voxel = (value - f.scale.offset) * back;
       if (!f.shades)
       {
         // Rounding must not lift it above the largest voxel.

@@ -80,12 +80,15 @@ public:
 
 private:
   void openRow(int y);
-  bool splatBrick(std::uint32_t brick);
+  bool isDone(std::uint32_t brick);
+  bool mayRaise(std::uint32_t brick) const;
+  void prefetch(std::uint32_t brick) const;
+  void splatBrick(std::uint32_t brick);
   void splatBlock(const glm::ivec3& cell, A bound, bool isCut);
   void splatRegion(const SeenBox& seen, const CellBox& box, const CellBox* region);
   bool reaches(A bound, A least, A factor) const;
   void placeRays(const SeenBox& seen, const glm::dvec3& middle);
-  bool load(const glm::ivec3& cell);
+  void load(const glm::ivec3& cell);
   void findSeenCells(const glm::ivec3& cell);
   A mostFactor(const SeenBox& seen) const;
   bool isCutByHalfSpace(const CellBox& box) const;

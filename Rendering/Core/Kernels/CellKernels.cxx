@@ -108,12 +108,12 @@ constexpr double Flat = 1e-13;
 constexpr double Beside = 1e-9;
 constexpr double Infinite = std::numeric_limits<double>::infinity();
 
-void within(double* near, double* far, int n, double start, double step, double forward,
+void within(double* near, double* far, int first, int n, double start, double step, double forward,
   double turn, double low, double high)
 {
   for (int x = 0; x < n; ++x)
   {
-    const double p = start + x * step, d = forward + x * turn;
+    const double p = start + (first + x) * step, d = forward + (first + x) * turn;
     const double a = (low - p) / d, b = (high - p) / d;
     const bool isFlat = d < Flat && d > -Flat;
     const bool isInside = p >= low - Beside && p <= high + Beside;
@@ -124,12 +124,12 @@ void within(double* near, double* far, int n, double start, double step, double 
   }
 }
 
-void before(
-  double* near, double* far, int n, double start, double step, double forward, double turn)
+void before(double* near, double* far, int first, int n, double start, double step, double forward,
+  double turn)
 {
   for (int x = 0; x < n; ++x)
   {
-    const double p = start + x * step, d = forward + x * turn;
+    const double p = start + (first + x) * step, d = forward + (first + x) * turn;
     const double t = -p / d;
     const double enter = d > 0.0 ? t : p < -Beside && d == 0.0 ? Infinite : -Infinite;
     const double leave = d < 0.0 ? t : Infinite;

@@ -31,7 +31,7 @@ struct CellValue
   static constexpr A Outside = std::numeric_limits<A>::infinity(); ///< a pixel beside the volume
 };
 
-/// From voxels to values: factor * voxel + offset. The factor is a power of two, or minus one.
+/// From voxels to values: factor * voxel + offset. The factor is a power of two, or minus that.
 template <class A>
 struct CellScale
 {
@@ -144,13 +144,13 @@ struct BlockLoops
 
 struct RayEndLoops
 {
-  /// Limits the rays of pixels x = 0 to n - 1, which are at start + x step + t (forward + x turn),
-  /// to the part in [low, high].
-  void (*within)(double* near, double* far, int n, double start, double step, double forward,
-    double turn, double low, double high);
+  /// Limits the rays of pixels x = first to first + n - 1, which are at
+  /// start + x step + t (forward + x turn), to the part in [low, high].
+  void (*within)(double* near, double* far, int first, int n, double start, double step,
+    double forward, double turn, double low, double high);
   /// The same to the part where that is at least 0.
-  void (*before)(
-    double* near, double* far, int n, double start, double step, double forward, double turn);
+  void (*before)(double* near, double* far, int first, int n, double start, double step,
+    double forward, double turn);
 };
 
 struct CellKernels

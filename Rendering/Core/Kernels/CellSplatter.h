@@ -226,6 +226,10 @@ public:
         this->splatSlice(z, alive);
       }
     }
+    if (this->Tile.firstChanged <= this->Tile.lastChanged)
+    {
+      refresh(this->Tile);
+    }
   }
 
 private:
@@ -289,25 +293,21 @@ private:
     {
       this->splatCellsWithHoles(z, alive);
     }
-    this->Pending = 0;
+    int pending = 0;
     for (int g = 0; g < Groups; ++g)
     {
-      alive[g] = this->listSmallCells(g, alive[g]);
+      alive[g] = this->listSmallCells(g, alive[g], pending);
     }
     for (int g = 0; g < Groups; ++g)
     {
       for (unsigned cells = alive[g]; cells; cells &= cells - 1)
       {
-        this->listCell(g * R::N + __builtin_ctz(cells));
+        this->listCell(g * R::N + __builtin_ctz(cells), pending);
       }
     }
-    if (this->Pending > 0)
+    if (pending > 0)
     {
-      this->evaluate(this->Pairs, firstLanes<A>(this->Pending));
-    }
-    if (this->Tile.firstChanged <= this->Tile.lastChanged)
-    {
-      refresh(this->Tile);
+      this->evaluate(this->Pairs, firstLanes<A>(pending));
     }
   }
 
@@ -316,12 +316,8 @@ private:
   {
     const CellBlock<A>& b = this->Block;
     const V half = R::set(A(0.5)), margin = R::set(b.margin);
-    // Cells have sides of 1: half of what they extend to on the screen.
-    const A reachX = (std::fabs(b.across[0]) + std::fabs(b.across[1]) + std::fabs(b.across[2])) / 2;
-    const A reachY = (std::fabs(b.up[0]) + std::fabs(b.up[1]) + std::fabs(b.up[2])) / 2;
-    const A middle = A(z - 2) + A(0.5);
-    const V restX = R::set(fused(b.across[2], middle, b.acrossStart));
-    const V restY = R::set(fused(b.up[2], middle, b.upStart));
+    const V restX = R::set(fused(b.across[2], A(z - 2), b.acrossStart));
+    const V restY = R::set(fused(b.up[2], A(z - 2), b.upStart));
     for (int g = 0; g < Groups; ++g)
     {
       if (!alive[g])
@@ -329,12 +325,18 @@ private:
         continue;
       }
       const int n = g * R::N;
-      const V cx = R::add(R::load(this->Corner[0] + n), half);
-      const V cy = R::add(R::load(this->Corner[1] + n), half);
-      V mx = R::fma(R::set(b.across[0]), cx, R::fma(R::set(b.across[1]), cy, restX));
-      V my = R::fma(R::set(b.up[0]), cx, R::fma(R::set(b.up[1]), cy, restY));
-      V x0 = R::sub(mx, R::set(reachX)), x1 = R::add(mx, R::set(reachX));
-      V y0 = R::sub(my, R::set(reachY)), y1 = R::add(my, R::set(reachY));
+      // Middle of what is left of the cells, from their first corners on, and half its sides.
+      V m[3], h[3];
+      this->narrow(z, n, m, h);
+      const V cx = R::add(R::load(this->Corner[0] + n), m[0]);
+      const V cy = R::add(R::load(this->Corner[1] + n), m[1]);
+      const V mx = R::fma(R::set(b.across[0]), cx,
+        R::fma(R::set(b.across[1]), cy, R::fma(R::set(b.across[2]), m[2], restX)));
+      const V my = R::fma(
+        R::set(b.up[0]), cx, R::fma(R::set(b.up[1]), cy, R::fma(R::set(b.up[2]), m[2], restY)));
+      const V reachX = reachOf(b.across, h), reachY = reachOf(b.up, h);
+      V x0 = R::sub(mx, reachX), x1 = R::add(mx, reachX);
+      V y0 = R::sub(my, reachY), y1 = R::add(my, reachY);
       if (Perspective)
       {
         const V p = R::set(b.inverses[0]), q = R::set(b.inverses[1]);
@@ -354,6 +356,59 @@ private:
       R::store(this->Y0 + n, y0);
       R::store(this->Y1 + n, y1);
     }
+  }
+
+  static SPLATTING_INLINE V reachOf(const A (&row)[3], const V h[3])
+  {
+    return R::fma(R::set(std::fabs(row[0])), h[0],
+      R::fma(R::set(std::fabs(row[1])), h[1], R::mul(R::set(std::fabs(row[2])), h[2])));
+  }
+
+  /// The part of cells in which the field may exceed all pixels that see the block. For any x the
+  /// field is not above the larger corners at x = 0 and at x = 1, interpolated.
+  SPLATTING_INLINE void narrow(int z, int n, V middle[3], V half[3]) const
+  {
+    const V point5 = R::set(A(0.5));
+    for (int a = 0; a < 3; ++a)
+    {
+      middle[a] = half[a] = point5;
+    }
+    if (Shaded || this->Block.holes)
+    {
+      return;
+    }
+    const V a000 = R::load(this->Block.left[z] + n), a100 = R::load(this->Block.right[z] + n);
+    const V a010 = R::load(this->Block.left[z] + n + 4);
+    const V a110 = R::load(this->Block.right[z] + n + 4);
+    const V a001 = R::load(this->Block.left[z + 1] + n);
+    const V a101 = R::load(this->Block.right[z + 1] + n);
+    const V a011 = R::load(this->Block.left[z + 1] + n + 4);
+    const V a111 = R::load(this->Block.right[z + 1] + n + 4);
+    const V x0 = R::larger(R::larger(a000, a010), R::larger(a001, a011));
+    const V x1 = R::larger(R::larger(a100, a110), R::larger(a101, a111));
+    const V y0 = R::larger(R::larger(a000, a100), R::larger(a001, a101));
+    const V y1 = R::larger(R::larger(a010, a110), R::larger(a011, a111));
+    const V z0 = R::larger(R::larger(a000, a100), R::larger(a010, a110));
+    const V z1 = R::larger(R::larger(a001, a101), R::larger(a011, a111));
+    this->narrow(x0, x1, middle[0], half[0]);
+    this->narrow(y0, y1, middle[1], half[1]);
+    this->narrow(z0, z1, middle[2], half[2]);
+  }
+
+  /// From the bounds at both ends of an axis.
+  SPLATTING_INLINE void narrow(V first, V last, V& middle, V& half) const
+  {
+    const V least = R::set(this->Block.least), zero = R::set(0), one = R::set(1);
+    const V margin = R::set(A(1e-3)), point5 = R::set(A(0.5));
+    const M begins = Located ? R::atLeast(first, least) : R::above(first, least);
+    const M ends = Located ? R::atLeast(last, least) : R::above(last, least);
+    const V crossing = R::div(R::sub(least, first), R::sub(last, first));
+    V low = R::choose(begins, zero, R::sub(crossing, margin));
+    V high = R::choose(ends, one, R::add(crossing, margin));
+    low = R::smaller(R::larger(low, zero), one);
+    high = R::smaller(R::larger(high, low), one);
+    middle = R::mul(R::add(low, high), point5);
+    half = R::mul(R::sub(high, low), point5);
   }
 
   void takeSeen(int z, M alive[])
@@ -418,7 +473,7 @@ private:
   }
 
   /// Cells that few pixels see: pixel after pixel of all cells at a time. Returns the other ones.
-  M listSmallCells(int g, M alive)
+  M listSmallCells(int g, M alive, int& pending)
   {
     constexpr A most = A(6.5);
     if (!alive)
@@ -444,11 +499,8 @@ private:
       const V value =
         R::gather(this->Tile.values, R::fma(y, stride, x), small, R::set(CellValue<A>::Outside));
       const M on = static_cast<M>(small & R::above(bound, value));
-      if (on)
-      {
-        const V id = R::fma(y, R::set(A(4096)), R::fma(x, R::set(A(16)), lane));
-        this->append(R::compress(this->Pairs + this->Pending, id, on));
-      }
+      const V id = R::fma(y, R::set(A(4096)), R::fma(x, R::set(A(16)), lane));
+      this->append(R::compress(this->Pairs + pending, id, on), pending);
       x = R::add(x, one);
       const M over = R::above(x, x1);
       y = R::choose(over, R::add(y, one), y);
@@ -458,33 +510,31 @@ private:
     return others;
   }
 
-  void listCell(int n)
+  void listCell(int n, int& pending)
   {
-    const int x0 = static_cast<int>(this->X0[n]), y0 = static_cast<int>(this->Y0[n]);
-    const int width = static_cast<int>(this->X1[n]) - x0 + 1;
+    const int x0 = static_cast<int>(this->X0[n]), x1 = static_cast<int>(this->X1[n]);
+    const int y0 = static_cast<int>(this->Y0[n]), y1 = static_cast<int>(this->Y1[n]);
     const V bound = R::set(this->Bound[n]);
-    for (int y = y0; y <= static_cast<int>(this->Y1[n]); ++y)
+    for (int x = x0; x <= x1; x += R::N)
     {
-      const A* const row = this->Tile.values + y * this->Tile.Stride + x0;
-      for (int x = 0; x < width; x += R::N)
+      const M columns = firstLanes<A>(x1 - x + 1);
+      const A* row = this->Tile.values + y0 * this->Tile.Stride + x;
+      std::int32_t id = n | x << 4 | y0 << 12;
+      for (int y = y0; y <= y1; ++y, row += this->Tile.Stride, id += 1 << 12)
       {
-        const M on = static_cast<M>(R::above(bound, R::load(row + x)) & firstLanes<A>(width - x));
-        if (on)
-        {
-          this->append(
-            R::compress(this->Pairs + this->Pending, n | (x0 + x) << 4 | y << 12, 16, on));
-        }
+        const M on = static_cast<M>(R::above(bound, R::load(row)) & columns);
+        this->append(R::compress(this->Pairs + pending, id, 16, on), pending);
       }
     }
   }
 
-  SPLATTING_INLINE void append(int count)
+  SPLATTING_INLINE void append(int count, int& pending)
   {
-    this->Pending += count;
-    if (this->Pending >= R::N)
+    pending += count;
+    if (pending >= R::N)
     {
-      this->Pending -= R::N;
-      this->evaluate(this->Pairs + this->Pending, firstLanes<A>(R::N));
+      pending -= R::N;
+      this->evaluate(this->Pairs + pending, firstLanes<A>(R::N));
     }
   }
 
@@ -821,7 +871,6 @@ private:
   alignas(64) A K[8][Cells];
   A PlaceZ = 0, LowZ = -BesideFace<A>, HighZ = 1 + BesideFace<A>;
   alignas(64) std::int32_t Pairs[64] = {};
-  int Pending = 0;
 };
 
 template <class A, bool Perspective>

@@ -18,11 +18,10 @@ using Filter = vtkSplattingMIPProjection;
 
 /// The largest magnitude that is projected.
 template <class T>
-double mostOf(int mode)
-{
-  const bool isExact = mode == Filter::EXACT;
-  return sizeof(T) == 4 ? (isExact ? 1e18 : 1e37) : (isExact ? 1e150 : 1e303);
-}
+constexpr double mostOf = sizeof(T) == 4 ? 1e37 : 1e303;
+/// The same in exact mode beside infinities.
+template <class T>
+constexpr double mostBesideInfinity = sizeof(T) == 4 ? 1e18 : 1e150;
 
 template <class T>
 vtkSmartPointer<vtkImageData> imageWith(int components, T value)
@@ -51,7 +50,7 @@ void testScaling(Checks& check)
     [&](int n, reference::Random& random)
     {
       const int mode = n % 4;
-      const T scale = static_cast<T>(std::ldexp(1.0, std::ilogb(mostOf<T>(mode))));
+      const T scale = static_cast<T>(std::ldexp(1.0, std::ilogb(mostOf<T>)));
       auto volume = reference::uniformNoise<T>({ 13, 12, 14 }, random.bits(), T(-1), T(1));
       const auto small = projectiontesting::imageOf(volume);
       std::transform(volume.voxels.begin(), volume.voxels.end(), volume.voxels.begin(),
@@ -67,7 +66,7 @@ void testScaling(Checks& check)
           : reduction == 4                  ? int(Filter::LOCAL)
                                             : int(Filter::GLOBAL));
       filter->SetLocalMaximumThreshold(0.0);
-      filter->SetAverageIPScalarRange(-mostOf<T>(mode), mostOf<T>(mode));
+      filter->SetAverageIPScalarRange(-mostOf<T>, mostOf<T>);
       filter->SetOutputSize(40, 36);
       vtkNew<vtkCamera> camera;
       camera->SetFocalPoint(6.0, 5.5, 6.5);
@@ -113,10 +112,24 @@ void testRefusal(Checks& check, vtkImageData* image, const std::string& what)
   }
 }
 
+/// Those of integers fit into double, however many bits they have.
+void testIntegers(Checks& check)
+{
+  for (int mode = 0; mode < 4; ++mode)
+  {
+    const auto filter = projectiontesting::projectionOf(
+      imageWith<unsigned long long>(1, std::numeric_limits<unsigned long long>::max()));
+    filter->SetQualityMode(mode);
+    const projectiontesting::Errors errors(filter);
+    filter->Update();
+    check(errors.texts.empty(), "large integers are refused");
+  }
+}
+
 template <class T>
 void testLimits(Checks& check)
 {
-  const T above = static_cast<T>(1.01 * mostOf<T>(Filter::HIGH));
+  const T above = static_cast<T>(1.01 * mostOf<T>);
   const T greatest = std::numeric_limits<T>::max();
   for (const T value : { above, -above, greatest, -greatest })
   {
@@ -129,10 +142,19 @@ void testLimits(Checks& check)
   }
   for (int mode = 0; mode < 4; ++mode)
   {
-    for (const double share : { 0.99, -0.99, 1.01, -1.01 })
+    for (int n = 0; n < 8; ++n)
     {
-      const auto filter =
-        projectiontesting::projectionOf(imageWith(1, static_cast<T>(share * mostOf<T>(mode))));
+      const bool besideInfinity = n >= 4;
+      const double share = (n & 1 ? -1.0 : 1.0) * (n & 2 ? 1.01 : 0.99);
+      const double most =
+        besideInfinity && mode == Filter::EXACT ? mostBesideInfinity<T> : mostOf<T>;
+      const auto image = imageWith(1, static_cast<T>(share * most));
+      if (besideInfinity)
+      {
+        image->SetScalarComponentFromDouble(
+          1, 1, 1, 0, std::numeric_limits<double>::infinity());
+      }
+      const auto filter = projectiontesting::projectionOf(image);
       filter->SetQualityMode(mode);
       const projectiontesting::Errors errors(filter);
       filter->Update();
@@ -171,5 +193,6 @@ int TestLargeScalars(int, char*[])
   testScaling<double>(check);
   testLimits<float>(check);
   testLimits<double>(check);
+  testIntegers(check);
   return check.result();
 }

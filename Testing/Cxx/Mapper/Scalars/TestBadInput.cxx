@@ -183,7 +183,7 @@ std::vector<Fault> inputFaults()
     { "bit array", "bits",
       [](Scene& s)
       { s.mapper->SetInputData(withArray(vtkNew<vtkBitArray>(), 36 * 36 * 36, false)); } },
-    { "too large scalars", "magnitudes above 1e18",
+    { "too large scalars", "magnitudes above 1e37",
       [](Scene& s)
       {
         vtkNew<vtkDoubleArray> array;

@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Exact projections give the same bits for any instruction set, number of threads, rectangle of the
+ * viewport and division into pieces. Values near the largest number do not overflow.
+ */
+#include "CellViews.h"
+
+#include <vtkSMPTools.h>
+
+#include <cstring>
+
+namespace
+{
+using namespace celltesting;
+
+template <class T>
+using Picture = std::vector<std::pair<splatting::Accumulator<T>, float>>;
+
+/// All pixels of the viewport.
+template <class T>
+Picture<T> pictureOf(const View& view, const ScreenScalars& screen)
+{
+  using A = splatting::Accumulator<T>;
+  Picture<T> picture;
+  for (int y = 0; y < view.viewport.y; ++y)
+  {
+    for (int x = 0; x < view.viewport.x; ++x)
+    {
+      const A value = valueAt<A>(screen, x, y);
+      picture.emplace_back(value, value == value ? depthAt(screen, x, y) : 0.0f);
+    }
+  }
+  return picture;
+}
+
+template <class T>
+bool sameBits(const Picture<T>& a, const Picture<T>& b)
+{
+  return std::equal(a.begin(), a.end(), b.begin(),
+    [](const auto& p, const auto& q)
+    {
+      const bool bothNone = p.first != p.first && q.first != q.first;
+      return bothNone || (p.first == q.first && p.second == q.second);
+    });
+}
+
+/// The picture of a rectangle, tile offsets and all; the rest is taken from the whole.
+template <class T>
+Picture<T> withRectangle(
+  Engine<T>& engine, const Scene<T>& scene, const Picture<T>& whole, const glm::ivec2 (&within)[2])
+{
+  ScreenScalars screen;
+  engine.project(within, screen);
+  Picture<T> picture = whole;
+  const Picture<T> part = pictureOf<T>(scene.view, screen);
+  const int width = scene.view.viewport.x;
+  for (int y = within[0].y; y < std::min(within[0].y + within[1].y, scene.view.viewport.y); ++y)
+  {
+    for (int x = within[0].x; x < std::min(within[0].x + within[1].x, width); ++x)
+    {
+      picture[y * width + x] = part[y * width + x];
+    }
+  }
+  return picture;
+}
+
+/// Of two pieces with a voxel layer in common, the larger values; of equal ones the nearer.
+template <class T>
+Picture<T> fromPieces(const Scene<T>& scene, const splatting::VolumeIndex::Range& range,
+  const splatting::RayEnds& ends, int axis, int layer)
+{
+  Picture<T> result;
+  const glm::ivec3 whole = scene.view.dimensions;
+  for (int p = 0; p < 2; ++p)
+  {
+    glm::ivec3 first(0), size = whole;
+    first[axis] = p ? layer : 0;
+    size[axis] = p ? whole[axis] - layer : layer + 1;
+    reference::Volume<T> piece({ size.x, size.y, size.z });
+    for (int k = 0; k < size.z; ++k)
+    {
+      for (int j = 0; j < size.y; ++j)
+      {
+        for (int i = 0; i < size.x; ++i)
+        {
+          piece.at(i, j, k) = scene.volume.at(first.x + i, first.y + j, first.z + k);
+        }
+      }
+    }
+    splatting::CellIndex index;
+    index.update(splatting::CellGrid({ piece.voxels.data(), splatting::scalarTypeOf<T>(), size },
+                   first, whole, scene.view.showsBoxes),
+      range);
+    splatting::CellProjector projector;
+    ScreenScalars screen;
+    projector.project(index, scene.view, scene.settings, ends, true, screen);
+    const Picture<T> part = pictureOf<T>(scene.view, screen);
+    result = p ? result : part;
+    for (std::size_t n = 0; n < part.size() && p; ++n)
+    {
+      auto& now = result[n];
+      const bool isMinimum = scene.settings.reduction == Reduction::Minimum;
+      const bool better = isMinimum ? part[n].first < now.first : part[n].first > now.first;
+      if (now.first != now.first || better)
+      {
+        now = part[n];
+      }
+      else if (part[n].first == now.first)
+      {
+        now.second = std::min(now.second, part[n].second);
+      }
+    }
+  }
+  return result;
+}
+
+template <class T>
+Scene<T> anyScene(const std::array<int, 3>& size, Random& random)
+{
+  Scene<T> scene;
+  scene.volume = coretesting::volumeWithOddValues<T>(size, random);
+  scene.view = randomCellView(size, 200, random);
+  scene.view.showsBoxes = random.uniform(0, 2) == 0;
+  scene.locate = true;
+  constexpr Reduction reductions[] = { Reduction::Maximum, Reduction::Minimum,
+    Reduction::DepthShaded };
+  scene.settings.reduction = reductions[random.uniform(0, 2)];
+  if (random.uniform(0, 1))
+  {
+    const glm::dvec3 normal = coretesting::anyVector(random, -1.0, 1.0);
+    scene.view.halfSpaces.emplace_back(
+      normal, -glm::dot(normal, 0.4 * glm::dvec3(scene.view.dimensions)));
+  }
+  if (random.uniform(0, 2) == 0)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      const double low = random.uniform(0.0, size[a] + 0.0);
+      scene.view.cropping.planes[a] = { random.uniform(0, 1) ? low : std::round(low), low + 3.0 };
+    }
+    scene.view.cropping.flags =
+      static_cast<std::uint32_t>(random.bits()) & splatting::Cropping::All;
+  }
+  return scene;
+}
+
+template <class T>
+void testInvariance(Checks& check)
+{
+  reference::forScenes(coretesting::seriesOf<T>("invariance"), 80,
+    [&](int, Random& random)
+    {
+      const std::array<int, 3> size = coretesting::randomSize(random, 22);
+      Scene<T> scene = anyScene<T>(size, random);
+      Engine<T> engine(scene);
+      ScreenScalars screen;
+      engine.project(screen);
+      const Picture<T> whole = pictureOf<T>(scene.view, screen);
+      for (const splatting::InstructionSet set : coretesting::instructionSets)
+      {
+        scene.settings.instructionSet = set;
+        engine.project(screen);
+        check(sameBits<T>(whole, pictureOf<T>(scene.view, screen)), "instruction set ",
+          static_cast<int>(set));
+      }
+      vtkSMPTools::LocalScope(
+        vtkSMPTools::Config{ 1 + random.uniform(0, 4) }, [&]() { engine.project(screen); });
+      check(sameBits<T>(whole, pictureOf<T>(scene.view, screen)), "threads");
+      const glm::ivec2 from(
+        random.uniform(0, scene.view.viewport.x - 1), random.uniform(0, scene.view.viewport.y - 1));
+      const glm::ivec2 within[2] = { from,
+        glm::ivec2(random.uniform(1, 200), random.uniform(1, 200)) };
+      check(sameBits<T>(whole, withRectangle(engine, scene, whole, within)), "rectangle");
+      const int axis = random.uniform(0, 2);
+      if (size[axis] > 2)
+      {
+        const int layer = random.uniform(1, size[axis] - 2);
+        check(sameValues<T>(whole, fromPieces(scene, engine.range(), engine.ends(), axis, layer)),
+          "pieces along ", axis, " of ", size[axis], " at ", layer, ", reduction ",
+          static_cast<int>(scene.settings.reduction), ", boxes ", scene.view.showsBoxes,
+          ", cropping ", scene.view.cropping.cuts(), ", half-spaces ",
+          scene.view.halfSpaces.size());
+      }
+    });
+}
+
+/// Noise up to the largest number of both signs.
+template <class T>
+void testLargestValues(Checks& check)
+{
+  const std::string series = coretesting::seriesOf<T>("largest values");
+  Counts counts;
+  reference::forScenes(series, 80,
+    [&](int, Random& random)
+    {
+      Scene<T> scene;
+      const std::array<int, 3> size = coretesting::randomSize(random, 14);
+      scene.volume = coretesting::wholeRangeNoise<T>(size, random);
+      const T largest =
+        random.uniform(0, 1) ? std::numeric_limits<T>::max() : std::numeric_limits<T>::max() / 64;
+      for (T& voxel : scene.volume.voxels)
+      {
+        voxel *= largest;
+      }
+      scene.view = randomCellView(size, 80, random);
+      scene.settings.reduction = random.uniform(0, 1) ? Reduction::Minimum : Reduction::Maximum;
+      counts.add(compareScene(scene, check));
+    });
+  counts.report(series, check);
+}
+}
+
+int TestCellInvariance(int, char*[])
+{
+  Checks check;
+  testInvariance<std::uint8_t>(check);
+  testInvariance<std::int16_t>(check);
+  testInvariance<std::int64_t>(check);
+  testInvariance<float>(check);
+  testInvariance<double>(check);
+  testLargestValues<float>(check);
+  testLargestValues<double>(check);
+  return check.result();
+}
