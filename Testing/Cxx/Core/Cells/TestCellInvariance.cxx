@@ -45,6 +45,19 @@ bool sameBits(const Picture<T>& a, const Picture<T>& b)
     });
 }
 
+/// The values are the same. Two values that differ in the engine may be equal once they are rounded
+/// to the screen's: then pieces have the nearer one.
+template <class T>
+bool sameValues(const Picture<T>& whole, const Picture<T>& pieces)
+{
+  return std::equal(whole.begin(), whole.end(), pieces.begin(),
+    [](const auto& p, const auto& q)
+    {
+      const bool bothNone = p.first != p.first && q.first != q.first;
+      return bothNone || (p.first == q.first && q.second <= p.second);
+    });
+}
+
 /// The picture of a rectangle, tile offsets and all; the rest is taken from the whole.
 template <class T>
 Picture<T> withRectangle(
