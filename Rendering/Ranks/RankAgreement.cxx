@@ -375,7 +375,8 @@ std::string RankAgreement::Agree(const RankReport& own)
   if (problem.empty() && !this->IsCovered(reports))
   {
     problem = "The ranks' pieces do not cover the image: each needs " + std::to_string(own.layers) +
-      " layers of its neighbours' voxels in this quality mode. Ask the pipeline for as many ghost "
+      (own.layers == 1 ? " layer" : " layers") +
+      " of its neighbours' voxels in this quality mode. Ask the pipeline for as many ghost "
       "layers.";
   }
   if (!own.isEmpty())
@@ -410,8 +411,8 @@ int RankAgreement::Least(int here) const
 void RankAgreement::Least(std::vector<float>& numbers) const
 {
   std::vector<float> least(numbers.size());
-  this->Controller->AllReduce(numbers.data(), least.data(),
-    static_cast<vtkIdType>(numbers.size()), vtkCommunicator::MIN_OP);
+  this->Controller->AllReduce(
+    numbers.data(), least.data(), static_cast<vtkIdType>(numbers.size()), vtkCommunicator::MIN_OP);
   numbers.swap(least);
 }
 
