@@ -146,10 +146,11 @@ const char* ComponentProjector::FaultOfVoxels(Quality quality)
         : (isDouble ? 1e303 : 1e37);
       return channel.Index.largestMagnitude() > most;
     });
-  return isTooLarge ? "The scalars have magnitudes above 1e37 (of double 1e303; in exact mode beside "
-                      "infinities 1e18 and 1e150), so that sums overflow: scale them, and set voxels "
-                      "without a value to NaN."
-                    : nullptr;
+  return isTooLarge
+    ? "The scalars have magnitudes above 1e37 (of double 1e303; in exact mode beside "
+      "infinities 1e18 and 1e150), so that sums overflow: scale them, and set voxels "
+      "without a value to NaN."
+    : nullptr;
 }
 
 bool ComponentProjector::SetBudget(std::size_t bytes)
@@ -403,8 +404,11 @@ bool ComponentProjector::ProjectOnScreen(
     if (done)
     {
       this->UpdateCells(channel, view);
-      done = this->Cells.project(
-        channel.Cells, view, channel.Settings, ends, channel.Settings.keepWinners, channel.Screen);
+      const bool locate = channel.Settings.keepWinners;
+      done = this->Ranks
+        ? this->Cells.projectPiece(
+            channel.Cells, view, channel.Settings, ends, locate, channel.Screen)
+        : this->Cells.project(channel.Cells, view, channel.Settings, ends, locate, channel.Screen);
       ++this->Done;
     }
   }
@@ -438,7 +442,7 @@ void ComponentProjector::ExchangeScreen(Channel& channel)
   image.spans.assign(screen.size.y, { 0, screen.size.x });
   image.nonFinite = true; // pixels without a sample are NaN
   image.bytes.swap(screen.bytes);
-  this->Ranks->Reduce(image, ShearWarp(), channel.Settings.reduction);
+  this->Ranks->Reduce(image, ShearWarp(), Reduction::Maximum);
   image.bytes.swap(screen.bytes);
   const std::size_t size = sizeOf(screen.type);
   for (std::size_t n = 0; n < screen.depths.size(); ++n)
@@ -454,6 +458,7 @@ void ComponentProjector::ExchangeScreen(Channel& channel)
     std::replace(screen.depths.begin(), screen.depths.end(), std::numeric_limits<float>::infinity(),
       std::numeric_limits<float>::quiet_NaN());
   }
+  CellProjector::finish(channel.Cells, channel.Settings, screen);
 }
 
 const ScreenScalars& ComponentProjector::ProjectPixelOnScreen(const View& view,

@@ -108,8 +108,7 @@ public:
    * Projects all components onto the screen, by cells. Collective. False if the observer has
    * stopped it or the view has no meaning: there is no picture then.
    */
-  bool ProjectOnScreen(
-    const View& view, const ProjectionSettings& settings, const RayEnds& ends);
+  bool ProjectOnScreen(const View& view, const ProjectionSettings& settings, const RayEnds& ends);
   /// Whether the last projection was by cells. It needs no geometries.
   bool IsOnScreen() const { return this->OnScreen; }
   /// What that shows, of the component that is located.
@@ -173,7 +172,7 @@ private:
     ProjectionSettings Settings;
     std::vector<ShearImage> Images; // at least as many as the view has
     CellIndex Cells;
-    ScreenScalars Screen; // of projections by cells
+    ScreenScalars Screen;     // of projections by cells
     VolumeIndex::Range Range; // of what was projected
     Acceleration Used = Acceleration::Dense;
   };

@@ -313,4 +313,16 @@ CellScale<A> scaleOf(const VolumeIndex::Range& range, bool minima)
 
 template CellScale<float> scaleOf<float>(const VolumeIndex::Range&, bool);
 template CellScale<double> scaleOf<double>(const VolumeIndex::Range&, bool);
+
+template <class A>
+ValueScale<A>::ValueScale(const VolumeIndex::Range& range, Reduction reduction)
+  : scale(scaleOf<A>(range, reduction == Reduction::Minimum)),
+    highest(static_cast<A>(reduction == Reduction::Minimum ? range.low : range.high)),
+    minima(reduction == Reduction::Minimum),
+    shades(reduction == Reduction::DepthShaded)
+{
+}
+
+template struct ValueScale<float>;
+template struct ValueScale<double>;
 }

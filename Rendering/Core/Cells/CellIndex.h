@@ -4,6 +4,7 @@
 #define splattingCellIndex_h
 
 #include "Kernels/CellLoops.h"
+#include "Projection/Project.h"
 #include "Volume/VolumeIndex.h"
 
 #include <glm/vec2.hpp>
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace splatting
@@ -117,6 +119,40 @@ template <class A>
 CellScale<A> scaleOf(const VolumeIndex::Range& range, bool minima);
 extern template CellScale<float> scaleOf<float>(const VolumeIndex::Range&, bool);
 extern template CellScale<double> scaleOf<double>(const VolumeIndex::Range&, bool);
+
+/// From the values of the kernels to voxels.
+template <class A>
+struct ValueScale
+{
+  CellScale<A> scale;
+  A highest; ///< the largest voxel, of minima the least
+  bool minima;
+  bool shades; ///< whether voxels may be above the largest
+
+  ValueScale(const VolumeIndex::Range& range, Reduction reduction);
+
+  /// NaN if there is no sample.
+  A voxelOf(A value) const
+  {
+    constexpr A infinite = std::numeric_limits<A>::infinity();
+    if (value == CellValue<A>::Outside || value == CellValue<A>::None)
+    {
+      return std::numeric_limits<A>::quiet_NaN();
+    }
+    if (value >= CellValue<A>::Highest || value <= CellValue<A>::Lowest)
+    {
+      return (value > 0) != this->minima ? infinite : -infinite;
+    }
+    // The products of sums, not the sums of products, are finite.
+    const A voxel = (value - this->scale.offset) * (A(1) / this->scale.factor);
+    // Rounding must not lift it above the largest voxel.
+    return this->shades ? voxel
+      : this->minima    ? std::max(voxel, this->highest)
+                        : std::min(voxel, this->highest);
+  }
+};
+extern template struct ValueScale<float>;
+extern template struct ValueScale<double>;
 
 /// What a voxel that bounds() gives is as a value.
 template <class T>

@@ -110,11 +110,46 @@ CellProjector::~CellProjector() = default;
 bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
   const RayEnds& ends, bool locate, ScreenScalars& screen)
 {
-  return this->project(index, view, settings, ends, locate, { { 0, 0 }, view.viewport }, screen);
+  return this->project(
+    index, view, settings, ends, locate, Wanted{ { 0, 0 }, view.viewport, true }, screen);
 }
 
 bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
   const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], ScreenScalars& screen)
+{
+  return this->project(
+    index, view, settings, ends, locate, Wanted{ within[0], within[1], true }, screen);
+}
+
+bool CellProjector::projectPiece(CellIndex& index, const View& view,
+  const ProjectionSettings& settings, const RayEnds& ends, bool locate, ScreenScalars& screen)
+{
+  return this->project(
+    index, view, settings, ends, locate, Wanted{ { 0, 0 }, view.viewport, false }, screen);
+}
+
+void CellProjector::finish(
+  const CellIndex& index, const ProjectionSettings& settings, ScreenScalars& screen)
+{
+  dispatch(screen.type,
+    [&](auto* null)
+    {
+      using A = Accumulator<std::remove_pointer_t<decltype(null)>>;
+      const ValueScale<A> scale(index.range(), settings.reduction);
+      A* const values = screen.row<A>(0);
+      vtkSMPTools::For(0, vtkIdType(screen.size.x) * screen.size.y, 1 << 14,
+        [&](vtkIdType begin, vtkIdType end)
+        {
+          for (vtkIdType n = begin; n < end; ++n)
+          {
+            values[n] = scale.voxelOf(values[n]);
+          }
+        });
+    });
+}
+
+bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
+  const RayEnds& ends, bool locate, const Wanted& within, ScreenScalars& screen)
 {
   this->Observer.start();
   if (!screen.rays.find(view))
@@ -122,8 +157,8 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
     return false;
   }
   const CellGrid& grid = index.grid();
-  const PixelRectangle wanted{ glm::max(within[0], glm::ivec2(0)),
-    glm::min(within[0] + within[1], view.viewport) - 1 };
+  const PixelRectangle wanted{ glm::max(within.origin, glm::ivec2(0)),
+    glm::min(within.origin + within.size, view.viewport) - 1 };
   const PixelRectangle rectangle = rectangleOf(screen.rays, CellBox(grid.low, grid.high), wanted);
   screen.origin = rectangle.low;
   screen.size = rectangle.empty() ? glm::ivec2(0) : rectangle.high - rectangle.low + 1;
@@ -183,7 +218,7 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
                 break;
               }
             }
-            splatter.finish(screen);
+            splatter.finish(within.finished, screen);
             this->Observer.bandDone();
           }
           memory.giveBack<A>(std::move(tile));

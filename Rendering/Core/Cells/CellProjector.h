@@ -60,9 +60,28 @@ public:
   bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
     const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], ScreenScalars& screen);
 
+  /**
+   * The same of a piece of a volume, or of nothing. Pixels have values that several pieces reduce:
+   * the largest of each pixel (of minima, too), NaN being none, and the least depth of the pieces
+   * that have it. finish() turns them into scalars. Not for Reduction::Local.
+   */
+  bool projectPiece(CellIndex& index, const View& view, const ProjectionSettings& settings,
+    const RayEnds& ends, bool locate, ScreenScalars& screen);
+  static void finish(
+    const CellIndex& index, const ProjectionSettings& settings, ScreenScalars& screen);
+
   ProgressObserver& observer() { return this->Observer; }
 
 private:
+  /// The pixels that are wanted, and whether their values become scalars.
+  struct Wanted
+  {
+    glm::ivec2 origin, size;
+    bool finished;
+  };
+  bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
+    const RayEnds& ends, bool locate, const Wanted& wanted, ScreenScalars& screen);
+
   struct Scratch;
   std::unique_ptr<Scratch> Memory;
   ProgressObserver Observer;

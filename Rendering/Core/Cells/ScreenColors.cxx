@@ -28,8 +28,8 @@ void placePicture(const View& view, Picture& picture)
 namespace
 {
 template <class A>
-void colorRows(const ScreenScalars& screen, const ColorTable& table,
-  const WorksheetLoops<A>& loops, Picture& picture)
+void colorRows(const ScreenScalars& screen, const ColorTable& table, const WorksheetLoops<A>& loops,
+  Picture& picture)
 {
   const auto last = static_cast<std::int32_t>(table.colors.size()) - 1;
   const A low = static_cast<A>(table.low);
@@ -51,8 +51,8 @@ void colorRows(const ScreenScalars& screen, const ColorTable& table,
 }
 }
 
-void colorScreen(const ScreenScalars& screen, const ColorTable& table, InstructionSet instructionSet,
-  Picture& picture)
+void colorScreen(const ScreenScalars& screen, const ColorTable& table,
+  InstructionSet instructionSet, Picture& picture)
 {
   picture.origin = screen.origin;
   picture.size = screen.size;
@@ -71,8 +71,8 @@ void copyScreen(const ScreenScalars& screen, const glm::ivec2& viewport, void* s
       for (int y = 0; y < screen.size.y; ++y)
       {
         const A* const from = screen.row<A>(y);
-        A* const to = static_cast<A*>(scalars) +
-          std::ptrdiff_t(screen.origin.y + y) * viewport.x + screen.origin.x;
+        A* const to = static_cast<A*>(scalars) + std::ptrdiff_t(screen.origin.y + y) * viewport.x +
+          screen.origin.x;
         for (int x = 0; x < screen.size.x; ++x)
         {
           to[x] = from[x] == from[x] ? from[x] : to[x];

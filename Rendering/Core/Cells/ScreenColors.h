@@ -13,8 +13,8 @@ namespace splatting
 void placePicture(const View& view, Picture& picture);
 
 /// Fills the picture with the colours of scalars. Pixels without a sample are transparent.
-void colorScreen(const ScreenScalars& screen, const ColorTable& table, InstructionSet instructionSet,
-  Picture& picture);
+void colorScreen(const ScreenScalars& screen, const ColorTable& table,
+  InstructionSet instructionSet, Picture& picture);
 
 /**
  * Copies scalars into those of a whole viewport, row after row from the bottom. Only pixels with a

@@ -54,7 +54,8 @@ CellFrame<T>::CellFrame(CellIndex& index, const View& view, const ProjectionSett
     tiles((pixels.high - pixels.low) / ScreenTile<A>::Side + 1),
     viewport(view.viewport),
     kernels(cellKernelsFor(settings.instructionSet)),
-    scale(scaleOf<A>(index.range(), settings.reduction == Reduction::Minimum)),
+    values(index.range(), settings.reduction),
+    scale(values.scale),
     lowest(-static_cast<double>(scale.offset) / static_cast<double>(scale.factor)),
     highest(settings.reduction == Reduction::Minimum ? index.range().low : index.range().high),
     halfSpaces(view.halfSpaces),
@@ -559,13 +560,10 @@ void TileSplatter<T>::findSeenCells(const glm::ivec3& cell)
 }
 
 template <class T>
-void TileSplatter<T>::finish(ScreenScalars& screen) const
+void TileSplatter<T>::finish(bool finished, ScreenScalars& screen) const
 {
   const CellFrame<T>& f = this->Frame;
-  const A back = A(1) / f.scale.factor;
-  const A highest = static_cast<A>(f.highest);
   constexpr A none = std::numeric_limits<A>::quiet_NaN();
-  constexpr A infinite = std::numeric_limits<A>::infinity();
   for (int y = this->Pixels.low.y; y <= this->Pixels.high.y; ++y)
   {
     const std::ptrdiff_t row = std::ptrdiff_t(y - this->Pixels.low.y) * this->Tile.Stride;
@@ -577,19 +575,8 @@ void TileSplatter<T>::finish(ScreenScalars& screen) const
     for (int x = 0; x <= this->Pixels.high.x - this->Pixels.low.x; ++x)
     {
       const A value = this->Tile.values[row + x];
-      const A sense = f.minima ? -infinite : infinite;
       const bool isEmpty = value == CellValue<A>::Outside || value == CellValue<A>::None;
-      // The products of sums, not the sums of products, are finite.
-      A voxel = (value - f.scale.offset) * back;
-      if (!f.shades)
-      {
-        // Rounding must not lift it above the largest voxel.
-        voxel = f.minima ? std::max(voxel, highest) : std::min(voxel, highest);
-      }
-      out[x] = isEmpty                   ? none
-        : value >= CellValue<A>::Highest ? sense
-        : value <= CellValue<A>::Lowest  ? -sense
-                                         : voxel;
+      out[x] = finished ? f.values.voxelOf(value) : isEmpty ? none : value;
       if (depths)
       {
         depths[x] = isEmpty ? std::numeric_limits<float>::quiet_NaN()

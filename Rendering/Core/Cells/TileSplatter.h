@@ -47,7 +47,8 @@ struct CellFrame
   const glm::ivec2 tiles;
   const glm::ivec2 viewport;
   const CellKernels& kernels;
-  const CellScale<A> scale;
+  const ValueScale<A> values;
+  const CellScale<A>& scale;
   const double lowest;  ///< the voxel whose value is 0; 0 if voxels are infinite
   const double highest; ///< the largest voxel, of minima the least
   const std::vector<glm::dvec4>& halfSpaces;
@@ -76,7 +77,8 @@ public:
   void open(int tile);
   /// Returns whether bricks with smaller voxels than these can raise a pixel.
   bool splat(const std::vector<std::uint32_t>& bricks);
-  void finish(ScreenScalars& screen) const;
+  /// Writes the tile to the screen: scalars or, for CellProjector::finish(), values.
+  void finish(bool finished, ScreenScalars& screen) const;
 
 private:
   void openRow(int y);

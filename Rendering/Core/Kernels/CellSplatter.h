@@ -315,7 +315,7 @@ private:
   void findSeen(int z, M alive[])
   {
     const CellBlock<A>& b = this->Block;
-    const V half = R::set(A(0.5)), margin = R::set(b.margin);
+    const V margin = R::set(b.margin);
     const V restX = R::set(fused(b.across[2], A(z - 2), b.acrossStart));
     const V restY = R::set(fused(b.up[2], A(z - 2), b.upStart));
     for (int g = 0; g < Groups; ++g)

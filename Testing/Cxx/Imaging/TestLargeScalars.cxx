@@ -151,8 +151,7 @@ void testLimits(Checks& check)
       const auto image = imageWith(1, static_cast<T>(share * most));
       if (besideInfinity)
       {
-        image->SetScalarComponentFromDouble(
-          1, 1, 1, 0, std::numeric_limits<double>::infinity());
+        image->SetScalarComponentFromDouble(1, 1, 1, 0, std::numeric_limits<double>::infinity());
       }
       const auto filter = projectiontesting::projectionOf(image);
       filter->SetQualityMode(mode);

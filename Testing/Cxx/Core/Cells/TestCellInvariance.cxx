@@ -65,12 +65,32 @@ Picture<T> withRectangle(
   return picture;
 }
 
-/// Of two pieces with a voxel layer in common, the larger values; of equal ones the nearer.
+/// The larger values of two pieces; of equal ones the nearer.
+template <class A>
+void reduce(const ScreenScalars& part, ScreenScalars& whole)
+{
+  const A* const from = part.row<A>(0);
+  A* const to = whole.row<A>(0);
+  for (std::size_t n = 0; n < whole.depths.size(); ++n)
+  {
+    if (from[n] > to[n] || to[n] != to[n])
+    {
+      to[n] = from[n];
+      whole.depths[n] = part.depths[n];
+    }
+    else if (from[n] == to[n])
+    {
+      whole.depths[n] = std::min(whole.depths[n], part.depths[n]);
+    }
+  }
+}
+
+/// The picture of two pieces with a voxel layer in common.
 template <class T>
 Picture<T> fromPieces(const Scene<T>& scene, const splatting::VolumeIndex::Range& range,
   const splatting::RayEnds& ends, int axis, int layer)
 {
-  Picture<T> result;
+  ScreenScalars result;
   const glm::ivec3 whole = scene.view.dimensions;
   for (int p = 0; p < 2; ++p)
   {
@@ -94,25 +114,16 @@ Picture<T> fromPieces(const Scene<T>& scene, const splatting::VolumeIndex::Range
       range);
     splatting::CellProjector projector;
     ScreenScalars screen;
-    projector.project(index, scene.view, scene.settings, ends, true, screen);
-    const Picture<T> part = pictureOf<T>(scene.view, screen);
-    result = p ? result : part;
-    for (std::size_t n = 0; n < part.size() && p; ++n)
+    projector.projectPiece(index, scene.view, scene.settings, ends, true, screen);
+    if (p == 0)
     {
-      auto& now = result[n];
-      const bool isMinimum = scene.settings.reduction == Reduction::Minimum;
-      const bool better = isMinimum ? part[n].first < now.first : part[n].first > now.first;
-      if (now.first != now.first || better)
-      {
-        now = part[n];
-      }
-      else if (part[n].first == now.first)
-      {
-        now.second = std::min(now.second, part[n].second);
-      }
+      result = screen;
+      continue;
     }
+    reduce<splatting::Accumulator<T>>(screen, result);
+    splatting::CellProjector::finish(index, scene.settings, result);
   }
-  return result;
+  return pictureOf<T>(scene.view, result);
 }
 
 template <class T>
@@ -176,7 +187,7 @@ void testInvariance(Checks& check)
       if (size[axis] > 2)
       {
         const int layer = random.uniform(1, size[axis] - 2);
-        check(sameValues<T>(whole, fromPieces(scene, engine.range(), engine.ends(), axis, layer)),
+        check(sameBits<T>(whole, fromPieces(scene, engine.range(), engine.ends(), axis, layer)),
           "pieces along ", axis, " of ", size[axis], " at ", layer, ", reduction ",
           static_cast<int>(scene.settings.reduction), ", boxes ", scene.view.showsBoxes,
           ", cropping ", scene.view.cropping.cuts(), ", half-spaces ",
