@@ -321,7 +321,8 @@ public:
    * of the shear image, so that its edges are as soft as the shear image's pixels are large; what
    * lies behind the volume does not matter, and the shear image is used again. Geometry between a
    * part that Cropping or BoundingSurface takes away and what is left counts as inside. With
-   * geometry inside, panning and zooming project anew.
+   * geometry inside, panning and zooming project anew. In EXACT the rays of the screen's pixels end
+   * at the geometry.
    */
   virtual void SetIntermixIntersectingGeometry(vtkTypeBool);
   virtual vtkTypeBool GetIntermixIntersectingGeometry();
@@ -418,8 +419,8 @@ public:
    * Do not tell apart scalars below the window, that is those, from the lowest one up, that all
    * have its colour and opacity. What cannot rise above them is left out. No pixel of the shear
    * image is then below the window's lower end; since the picture interpolates between its pixels,
-   * edges against the background become brighter by up to half a pixel. MaximumType GLOBAL only.
-   * Default off.
+   * edges against the background become brighter by up to half a pixel. In EXACT the picture stays
+   * the same. MaximumType GLOBAL only. Default off.
    */
   virtual void SetCullBelowWindow(bool);
   virtual bool GetCullBelowWindow();
@@ -431,7 +432,8 @@ public:
    * Bytes that the index may hold besides the input: bricks (3/128 of the volume), chains, and the
    * copy (as large as the volume) for views along the first axis, in which rows of memory are rays.
    * What would exceed them is not made, with one warning: the projection is DENSE, and without the
-   * copy 32 slices at a time are transposed in every frame. Default 4 GiB. 0: none.
+   * copy 32 slices at a time are transposed in every frame. The bounds that EXACT holds are always
+   * made. Default 4 GiB. 0: none.
    */
   virtual void SetIndexMemoryBudget(vtkTypeInt64);
   virtual vtkTypeInt64 GetIndexMemoryBudget();

@@ -149,7 +149,7 @@ private:
   glm::dvec3 Place, Direction;
 };
 
-/// The walk along one ray.
+/// The walk along one ray. Values are voxels times a power of two, so that squares are finite.
 template <class T>
 class RayOfCells
 {
@@ -159,7 +159,8 @@ public:
     : Frame(frame),
       Start(start + glm::dvec3(frame.grid.shift)), // in cells
       Direction(direction),
-      Threshold(threshold)
+      Threshold(threshold),
+      Scale(std::abs(static_cast<double>(frame.scale.factor)))
   {
   }
 
@@ -175,7 +176,8 @@ public:
       const glm::ivec3 brick = cell / BrickCells;
       const glm::ivec3 at = brick - grid.firstBrick;
       const std::size_t n = (std::size_t(at.z) * grid.bricks.y + at.y) * grid.bricks.x + at.x;
-      const double largest = static_cast<double>(this->Frame.bounds.template brick<T>()[n]);
+      const double largest =
+        this->Scale * static_cast<double>(this->Frame.bounds.template brick<T>()[n]);
       // Below the threshold there is no local maximum, but one before may end there.
       if (!(largest >= this->Threshold) && !peak.ends())
       {
@@ -221,13 +223,14 @@ private:
     {
       const glm::ivec3 v =
         glm::clamp(first + glm::ivec3(n & 1, n >> 1 & 1, n >> 2), glm::ivec3(0), size - 1);
-      corners[n] = static_cast<double>(voxels[(std::ptrdiff_t(v.z) * size.y + v.y) * size.x + v.x]);
+      const std::ptrdiff_t at = (std::ptrdiff_t(v.z) * size.y + v.y) * size.x + v.x;
+      corners[n] = this->Scale * static_cast<double>(voxels[at]);
     }
   }
 
   const CellFrame<T>& Frame;
   glm::dvec3 Start, Direction;
-  double Threshold;
+  double Threshold, Scale;
 };
 
 /// The first local maximum of a ray, if there is one at or above the threshold.
@@ -269,7 +272,8 @@ template <class T>
 void findLocalMaxima(const CellFrame<T>& frame, double threshold, ScreenScalars& screen)
 {
   using A = Accumulator<T>;
-  const double range = frame.highest - frame.lowest;
+  const double scale = std::abs(static_cast<double>(frame.scale.factor));
+  const double range = scale * frame.highest - scale * frame.lowest;
   const double rounding = std::isfinite(range) ? 0x1p-40 * range : 0.0;
   vtkSMPTools::For(0, screen.size.y, 1,
     [&](vtkIdType begin, vtkIdType end)
@@ -287,11 +291,12 @@ void findLocalMaxima(const CellFrame<T>& frame, double threshold, ScreenScalars&
           {
             continue;
           }
-          FirstPeak peak(threshold, rounding);
+          FirstPeak peak(scale * threshold, rounding);
           if (findPeak(frame, frame.rays.start(first.x + x, first.y),
-                frame.rays.direction(first.x + x, first.y), near[x], far[x], threshold, peak))
+                frame.rays.direction(first.x + x, first.y), near[x], far[x], scale * threshold,
+                peak))
           {
-            values[x] = static_cast<A>(peak.value());
+            values[x] = static_cast<A>(peak.value() / scale);
             depths[x] = static_cast<float>(peak.t());
           }
         }

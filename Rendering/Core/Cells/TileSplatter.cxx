@@ -42,6 +42,16 @@ bool isWithin(const CellBox& a, const CellBox& b)
 {
   return glm::all(glm::lessThan(glm::abs(a.middle - b.middle), a.half - b.half));
 }
+
+/// The value of a floor; 0, the lowest voxel, if there is none above that.
+template <class A>
+A leastOf(double floor, const ValueScale<A>& values)
+{
+  const A voxel = static_cast<A>(floor);
+  return std::isfinite(voxel) && !values.minima
+    ? std::max(std::fma(values.scale.factor, voxel, values.scale.offset), A(0))
+    : A(0);
+}
 }
 
 template <class T>
@@ -62,6 +72,7 @@ CellFrame<T>::CellFrame(CellIndex& index, const View& view, const ProjectionSett
     regions(view.cropping, grid.low, grid.high),
     crops(view.cropping.cuts()),
     depth(ends.depth),
+    least(leastOf<A>(settings.floor, values)),
     minima(settings.reduction == Reduction::Minimum),
     locates(locate),
     shades(settings.reduction == Reduction::DepthShaded),
@@ -204,7 +215,7 @@ void TileSplatter<T>::openRow(int y)
   double near[ScreenTile<A>::Side], far[ScreenTile<A>::Side];
   const int count = this->Pixels.high.x - this->Pixels.low.x + 1;
   f.findEnds(this->Pixels.low.x, y, count, near, far);
-  const A empty = f.mayBeEmpty ? CellValue<A>::None : A(0);
+  const A empty = f.mayBeEmpty ? CellValue<A>::None : f.least;
   const std::ptrdiff_t row = std::ptrdiff_t(y - this->Pixels.low.y) * this->Tile.Stride;
   for (int x = 0; x < count; ++x)
   {

@@ -56,6 +56,7 @@ struct CellFrame
   const bool crops;
   const SceneDepth* depth;
   SurfaceOnScreen surface;
+  const A least; ///< values below need not be told apart, see ProjectionSettings::floor
   const bool minima, locates, shades;
   const double ambient, rate;
   bool cutsAll;    ///< whether rays may end in any block: by a surface or a depth buffer

@@ -130,6 +130,8 @@ public:
   ~Projector();
 
   /**
+   * For all modes but Quality::Exact, which CellProjector projects.
+   *
    * @param first  where the index' voxels begin in the volume that the geometry and the cuts are
    * of, along the volume's axes. If they are a piece of it, the image holds the samples that can be
    * computed from the piece alone: see Piece.h. Chains are not walked.
