@@ -315,7 +315,7 @@ private:
   void findSeen(int z, M alive[])
   {
     const CellBlock<A>& b = this->Block;
-    const V half = R::set(A(0.5)), margin = R::set(b.margin);
+    const V margin = R::set(b.margin);
     const V restX = R::set(fused(b.across[2], A(z - 2), b.acrossStart));
     const V restY = R::set(fused(b.up[2], A(z - 2), b.upStart));
     for (int g = 0; g < Groups; ++g)
@@ -760,6 +760,10 @@ private:
         corners[c] = slice[n + 4 * (c >> 1 & 1)];
         hole |= corners[c] >= CellValue<A>::Highest || corners[c] <= CellValue<A>::Lowest;
       }
+      for (int c = 0; c < 8 && hole; ++c)
+      {
+        corners[c] = this->isInField(n, z, c) ? corners[c] : CellValue<A>::None;
+      }
       if (hole)
       {
         alive[n / R::N] = static_cast<M>(alive[n / R::N] & ~(1u << n % R::N));
@@ -772,6 +776,20 @@ private:
         }
       }
     }
+  }
+
+  /// Whether an octant lies in the field, which ends in the middle of the outermost cells. Rays end
+  /// there, too, but rounding may leave them a part beyond.
+  bool isInField(int n, int z, int octant) const
+  {
+    const A first[3] = { this->Corner[0][n], this->Corner[1][n], A(z - 2) };
+    bool inside = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      const A middle = first[a] + (octant >> a & 1 ? A(0.75) : A(0.25));
+      inside = inside && middle > this->Block.fieldLow[a] && middle < this->Block.fieldHigh[a];
+    }
+    return inside;
   }
 
   struct Segment
