@@ -444,6 +444,11 @@ void TileSplatter<T>::splatBlock(const glm::ivec3& cell, A bound, bool isCut)
   const CellBox field(f.grid.low, f.grid.high);
   // Rays begin and end where the field does: cells are too wide for that by rounding.
   isCut = isCut || !isWithin(field, whole);
+  for (int a = 0; a < 3; ++a)
+  {
+    block.fieldLow[a] = static_cast<A>(f.grid.low[a] - middle[a]);
+    block.fieldHigh[a] = static_cast<A>(f.grid.high[a] - middle[a]);
+  }
   for (const CellBox& region : f.regions.boxes)
   {
     if (!overlap(region, box))

@@ -113,9 +113,10 @@ struct CellBlock
   /// The pixels that see each cell, where that does not hold: first and last column, then rows.
   const std::int32_t (*seen)[4];
 
-  bool cut;          ///< whether rays may begin or end within the block
-  bool crops;        ///< whether they do so at the planes of cropping
-  A low[3], high[3]; ///< these
+  bool cut;                    ///< whether rays may begin or end within the block
+  bool crops;                  ///< whether they do so at the planes of cropping
+  A low[3], high[3];           ///< these
+  A fieldLow[3], fieldHigh[3]; ///< where the field ends
 
   bool located;
   A tiesFrom; ///< from which value on the nearest of equal samples is sought

@@ -760,6 +760,10 @@ private:
         corners[c] = slice[n + 4 * (c >> 1 & 1)];
         hole |= corners[c] >= CellValue<A>::Highest || corners[c] <= CellValue<A>::Lowest;
       }
+      for (int c = 0; c < 8 && hole; ++c)
+      {
+        corners[c] = this->isInField(n, z, c) ? corners[c] : CellValue<A>::None;
+      }
       if (hole)
       {
         alive[n / R::N] = static_cast<M>(alive[n / R::N] & ~(1u << n % R::N));
@@ -772,6 +776,20 @@ private:
         }
       }
     }
+  }
+
+  /// Whether an octant lies in the field, which ends in the middle of the outermost cells. Rays end
+  /// there, too, but rounding may leave them a part beyond.
+  bool isInField(int n, int z, int octant) const
+  {
+    const A first[3] = { this->Corner[0][n], this->Corner[1][n], A(z - 2) };
+    bool inside = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      const A middle = first[a] + (octant >> a & 1 ? A(0.75) : A(0.25));
+      inside = inside && middle > this->Block.fieldLow[a] && middle < this->Block.fieldHigh[a];
+    }
+    return inside;
   }
 
   struct Segment

@@ -52,6 +52,10 @@ constexpr double Bound = std::is_same_v<splatting::Accumulator<T>, float> ? 1e-6
 template <class T>
 constexpr double Beside = std::is_same_v<splatting::Accumulator<T>, float> ? 0x1p-20 : 1e-12;
 
+/// How precisely the places of a ray are known, in voxels.
+template <class T>
+constexpr double Precision = std::is_same_v<splatting::Accumulator<T>, float> ? 0x1p-21 : 0x1p-44;
+
 /// Something to project.
 template <class T>
 struct Scene
@@ -222,11 +226,19 @@ public:
       // Errors grow by the largest factor.
       this->Tolerance *=
         std::max(1.0, std::abs(scene.settings.ambient) + std::abs(scene.settings.changeRate));
+      const R most = isFinite ? this->Range : largest;
+      this->ShareTolerance = std::abs(scene.settings.changeRate) * most * Precision<T>;
     }
   }
 
   const reference::CellOracle<R>& oracle() const { return this->Oracle; }
   R tolerance() const { return this->Tolerance; }
+  /// Of one ray: the shorter it is, the less is known which share of it lies before a sample.
+  R tolerance(const reference::CellRay<R>& ray) const
+  {
+    const R length = ray.far - ray.near;
+    return this->Tolerance + (length > 0 ? this->ShareTolerance / length : R(0));
+  }
 
   Sample expected(const reference::CellRay<R>& ray) const
   {
@@ -290,10 +302,10 @@ private:
     const Sample sample = this->sampleOf(ray, x, y, screen);
     ++counts.pixels;
     counts.samples += sample.exists;
-    const R error = this->error(value, sample);
-    if (error <= this->Tolerance)
+    const R error = this->error(value, sample), tolerance = this->tolerance(ray);
+    if (error <= tolerance)
     {
-      const double share = error > 0 ? static_cast<double>(error / this->Tolerance) : 0.0;
+      const double share = error > 0 ? static_cast<double>(error / tolerance) : 0.0;
       counts.worst = std::max(counts.worst, share);
     }
     else if (this->isAmbiguous(screen, x, y, value))
@@ -302,9 +314,9 @@ private:
     }
     else
     {
-      counts.worst = std::max(counts.worst, static_cast<double>(error / this->Tolerance));
+      counts.worst = std::max(counts.worst, static_cast<double>(error / tolerance));
       this->Check(false, "pixel ", x, ", ", y, ": ", value, ", not ", sample.value,
-        sample.exists ? "" : " (none)", ", error ", error / this->Tolerance, " of the bound at ",
+        sample.exists ? "" : " (none)", ", error ", error / tolerance, " of the bound at ",
         sample.t, " of ", ray.near, " to ", ray.far, ", ray of length ", ray.far - ray.near,
         ", direction ", ray.direction[0], " ", ray.direction[1], " ", ray.direction[2]);
     }
@@ -334,7 +346,7 @@ private:
     {
       return none && (value == value || least <= largest);
     }
-    const R margin = this->Tolerance;
+    const R margin = this->tolerance(this->Oracle.ray(x, y));
     return (none || largest - least > 6 * margin) &&
       (none || (value >= least - margin && value <= largest + margin));
   }
@@ -343,7 +355,7 @@ private:
   const reference::CellScene<R> Plain;
   const reference::CellOracle<R> Oracle, Coarse;
   Checks& Check;
-  R Low, Range, Tolerance;
+  R Low, Range, Tolerance, ShareTolerance = 0;
   double Lowest;
 };
 
