@@ -151,8 +151,9 @@ struct Counts
     this->ambiguous += other.ambiguous;
     this->worst = std::max(this->worst, other.worst);
   }
-  /// Prints them, and checks that there is something to compare.
-  void report(const std::string& family, Checks& check, double mostAmbiguous = 2e-3) const
+  /// Prints them, and checks that there is something to compare. Ambiguous are about one in 60,000
+  /// pixels of a continuous field, at its silhouette.
+  void report(const std::string& family, Checks& check, double mostAmbiguous = 1e-4) const
   {
     std::cout << std::left << std::setw(28) << family << " pixels " << this->pixels << ", samples "
               << this->samples << ", ambiguous " << this->ambiguous << ", worst error "
@@ -160,7 +161,7 @@ struct Counts
     if (reference::onlyScene().empty())
     {
       check(this->samples > 0, family, ": nothing is seen");
-      check(this->ambiguous <= 20 + mostAmbiguous * this->samples, family, ": ", this->ambiguous,
+      check(this->ambiguous <= 5 + mostAmbiguous * this->samples, family, ": ", this->ambiguous,
         " of ", this->samples, " samples are ambiguous");
     }
   }
@@ -303,23 +304,20 @@ private:
     ++counts.pixels;
     counts.samples += sample.exists;
     const R error = this->error(value, sample), tolerance = this->tolerance(ray);
-    if (error <= tolerance)
-    {
-      const double share = error > 0 ? static_cast<double>(error / tolerance) : 0.0;
-      counts.worst = std::max(counts.worst, share);
-    }
-    else if (this->isAmbiguous(screen, x, y, value))
+    // Also where the error is small enough: what is left tells how precise values are.
+    if (error > tolerance / 2 && this->isAmbiguous(screen, x, y, value))
     {
       ++counts.ambiguous;
+      return;
     }
-    else
+    if (error > 0)
     {
       counts.worst = std::max(counts.worst, static_cast<double>(error / tolerance));
-      this->Check(false, "pixel ", x, ", ", y, ": ", value, ", not ", sample.value,
-        sample.exists ? "" : " (none)", ", error ", error / tolerance, " of the bound at ",
-        sample.t, " of ", ray.near, " to ", ray.far, ", ray of length ", ray.far - ray.near,
-        ", direction ", ray.direction[0], " ", ray.direction[1], " ", ray.direction[2]);
     }
+    this->Check(error <= tolerance, "pixel ", x, ", ", y, ": ", value, ", not ", sample.value,
+      sample.exists ? "" : " (none)", ", error ", error / tolerance, " of the bound at ", sample.t,
+      " of ", ray.near, " to ", ray.far, ", ray of length ", ray.far - ray.near, ", direction ",
+      ray.direction[0], " ", ray.direction[1], " ", ray.direction[2]);
   }
 
   /// Whether rays beside a pixel's own differ by more than a continuous field can, and the engine's
@@ -329,12 +327,13 @@ private:
     const R infinity = std::numeric_limits<R>::infinity();
     R least = infinity, largest = -infinity;
     bool none = false;
-    for (int n = 0; n < 18; ++n)
+    // Where a ray ends at an edge of cells, the shading of what lies beyond depends on the shift.
+    for (int n = 0; n < 26; ++n)
     {
       const glm::dvec3 side(n & 1, n >> 1 & 1, n >> 2 & 1);
-      const glm::dvec3 shift = n < 16 ? Beside<T> * (2.0 * side - 1.0) : glm::dvec3(0.0);
-      const reference::CellRay<R> ray = this->Oracle.ray(x, y, shift);
-      const bool isCoarse = (n >> 3 & 1) || n == 17;
+      const double size = n < 16 ? Beside<T> : n < 24 ? Beside<T> / 64.0 : 0.0;
+      const reference::CellRay<R> ray = this->Oracle.ray(x, y, size * (2.0 * side - 1.0));
+      const bool isCoarse = (n >= 8 && n < 16) || n == 25;
       const Sample sample = !this->crosses(ray, x, y, screen)
         ? Sample()
         : this->expected(isCoarse ? this->Coarse : this->Oracle, ray);
