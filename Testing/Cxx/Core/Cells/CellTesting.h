@@ -320,6 +320,23 @@ private:
       ray.direction[0], " ", ray.direction[1], " ", ray.direction[2]);
   }
 
+  /// Whether rounding may end a ray's part of a cell anywhere in it: it changes the part's middle,
+  /// and its largest value, which negative factors make the least.
+  bool runsAlongFace(const reference::CellRay<R>& ray) const
+  {
+    bool along = false;
+    for (int a = 0; a < 3; ++a)
+    {
+      for (const R t : { ray.near, ray.far })
+      {
+        const R halves = 2 * (ray.start[a] + t * ray.direction[a]);
+        along |= std::fabs(ray.direction[a]) < R(1e-5) &&
+          std::fabs(halves - std::round(halves)) < 4 * R(Beside<T>);
+      }
+    }
+    return along;
+  }
+
   /// Whether rays beside a pixel's own differ by more than a continuous field can, and the engine's
   /// value is in their range.
   bool isAmbiguous(const ScreenScalars& screen, int x, int y, A value) const
@@ -327,13 +344,15 @@ private:
     const R infinity = std::numeric_limits<R>::infinity();
     R least = infinity, largest = -infinity;
     bool none = false;
-    // Where a ray ends at an edge of cells, the shading of what lies beyond depends on the shift.
-    for (int n = 0; n < 26; ++n)
+    // Shading depends on the shift where a ray ends at an edge of cells or crosses a face that it
+    // nearly runs along.
+    constexpr double sizes[] = { 1.0, 1.0, 1.0 / 8.0, 1.0 / 64.0, 0.0, 0.0 };
+    for (int n = 0; n < 48; n += n < 32 ? 1 : 8)
     {
       const glm::dvec3 side(n & 1, n >> 1 & 1, n >> 2 & 1);
-      const double size = n < 16 ? Beside<T> : n < 24 ? Beside<T> / 64.0 : 0.0;
+      const double size = Beside<T> * sizes[n >> 3];
       const reference::CellRay<R> ray = this->Oracle.ray(x, y, size * (2.0 * side - 1.0));
-      const bool isCoarse = (n >= 8 && n < 16) || n == 25;
+      const bool isCoarse = n >> 3 == 1 || n >> 3 == 5;
       const Sample sample = !this->crosses(ray, x, y, screen)
         ? Sample()
         : this->expected(isCoarse ? this->Coarse : this->Oracle, ray);
@@ -345,7 +364,12 @@ private:
     {
       return none && (value == value || least <= largest);
     }
-    const R margin = this->tolerance(this->Oracle.ray(x, y));
+    const reference::CellRay<R> own = this->Oracle.ray(x, y);
+    if (this->ShareTolerance > 0 && this->runsAlongFace(own))
+    {
+      return true;
+    }
+    const R margin = this->tolerance(own);
     return (none || largest - least > 6 * margin) &&
       (none || (value >= least - margin && value <= largest + margin));
   }
