@@ -201,7 +201,7 @@ void testCut(const std::string& name, CutKind kind, int scenes, Checks& check)
       addCut(scene, kind, random);
       counts.add(compareScene(scene, check));
     });
-  counts.report(series, check, 5e-2);
+  counts.report(series, check);
 }
 
 template <class T>

@@ -83,7 +83,7 @@ void testNoise(Checks& check)
       scene.settings.reduction = random.uniform(0, 2) ? Reduction::Maximum : Reduction::Minimum;
       compareDepths(scene, counts, check);
     });
-  counts.report(series, check, 2e-2);
+  counts.report(series, check);
 }
 
 /// Boxes of equal value, one behind the other, on ground of the lowest value.
@@ -117,7 +117,7 @@ void testTies(Checks& check)
       scene.locate = true;
       compareDepths(scene, counts, check);
     });
-  counts.report(series, check, 2e-2);
+  counts.report(series, check);
 }
 }
 

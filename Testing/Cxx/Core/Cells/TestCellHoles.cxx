@@ -91,8 +91,9 @@ void testHoles(const std::string& name, HoleKind kind, Checks& check)
       }
       counts.add(compareScene(scene, check));
     });
-  // Rays along an axis or a diagonal run along the faces of octants.
-  counts.report(series, check, 5e-2);
+  // Rays along an axis or a diagonal run along the faces of octants. Up to 1 % of the samples of a
+  // series are of such a scene.
+  counts.report(series, check, 3e-2);
 }
 
 /// A bright hidden voxel never shows, and a single voxel that is not hidden shows as its box.

@@ -8,7 +8,10 @@
 
 #include <vtkSMPTools.h>
 
-#include <cstring>
+#include <chrono>
+#include <mutex>
+#include <set>
+#include <thread>
 
 namespace
 {
@@ -193,6 +196,21 @@ void testInvariance(Checks& check)
     });
 }
 
+/// How many threads take part in a loop.
+int threadsUsed()
+{
+  std::mutex mutex;
+  std::set<std::thread::id> threads;
+  vtkSMPTools::For(0, 64, 1,
+    [&](vtkIdType, vtkIdType)
+    {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      const std::lock_guard<std::mutex> lock(mutex);
+      threads.insert(std::this_thread::get_id());
+    });
+  return static_cast<int>(threads.size());
+}
+
 /// Pictures of many tiles, and of bricks enough for each thread.
 template <class T>
 void testThreads(Checks& check)
@@ -218,7 +236,14 @@ void testThreads(Checks& check)
         }
         // TBB starts no more threads than there are cores and says so; the others do as told.
         const int threads = backend == std::string("TBB") ? 2 : random.uniform(2, 7);
-        vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads }, [&]() { engine.project(screen); });
+        int used = 0;
+        vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
+          [&]()
+          {
+            used = threadsUsed();
+            engine.project(screen);
+          });
+        check(used > 1 || backend != std::string("STDThread"), backend, " has one thread");
         const Picture<T> picture = pictureOf<T>(scene.view, screen);
         expected = expected.empty() ? picture : expected;
         check(sameBits<T>(expected, picture), backend, " with ", threads, " threads");

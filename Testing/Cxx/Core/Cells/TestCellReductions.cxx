@@ -67,7 +67,36 @@ void testReduction(const std::string& name, Reduction reduction, bool holes, Che
       addCuts<T>(scene.view, random);
       counts.add(compareScene(scene, check));
     });
-  counts.report(series, check, 2e-2);
+  // Cells that a ray only touches are shaded by where it does, as octants have values of their own.
+  // In two of the forty scenes of a series all rays may run along edges.
+  const bool isContinuous = !holes && reduction != Reduction::DepthShaded;
+  isContinuous ? counts.report(series, check) : counts.report(series, check, 5e-2);
+}
+
+/// Shaded samples that are brightest where rays end. Rays end at the sides of the outermost voxels;
+/// what rounding leaves of them beyond shows nothing.
+template <class T>
+void testFieldEnds(Checks& check)
+{
+  const std::string series = coretesting::seriesOf<T>("ends of the field");
+  Counts counts;
+  reference::forScenes(series, 160,
+    [&](int, Random& random)
+    {
+      Scene<T> scene;
+      scene.volume = coretesting::wholeRangeNoise<T>({ 4, 5, 3 }, random);
+      for (std::size_t n = 0; n < scene.volume.voxels.size(); n += 2)
+      {
+        scene.volume.voxels[n] = std::numeric_limits<T>::quiet_NaN();
+      }
+      scene.view = randomCellView(scene.volume.size, 60, random);
+      scene.view.showsBoxes = true;
+      scene.settings.reduction = Reduction::DepthShaded;
+      scene.settings.ambient = 1.0;
+      scene.settings.changeRate = -0.9;
+      counts.add(compareScene(scene, check));
+    });
+  counts.report(series, check, 5e-2);
 }
 
 template <class T>
@@ -86,6 +115,7 @@ int TestCellReductions(int, char*[])
   testAll<std::int16_t>(false, check);
   testAll<float>(false, check);
   testAll<float>(true, check);
+  testFieldEnds<float>(check);
   testAll<std::int64_t>(false, check);
   testAll<double>(true, check);
   return check.result();
