@@ -134,7 +134,8 @@ void ComponentProjector::SetRanks(PieceExchange* ranks)
   }
 }
 
-// Sums of weighted voxels overflow, or of a ray's samples. Exact mode computes products of voxels.
+// Sums of weighted voxels overflow, or of a ray's samples. Exact mode scales voxels by their range,
+// which infinities hide, and computes products of them.
 const char* ComponentProjector::FaultOfVoxels(Quality quality)
 {
   const bool isTooLarge = std::any_of(this->Channels.begin(), this->Channels.end(),

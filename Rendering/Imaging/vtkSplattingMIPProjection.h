@@ -17,8 +17,9 @@
  * Output: a vtkImageData of OutputSize[0] x OutputSize[1] x NumberOfViews points, one slice per
  * view, with as many components as are projected, each projected for itself. Scalars are float, for
  * 32- and 64-bit integers and double double: pictures are interpolated between the pixels of shear
- * images, so that even a preview's pixels lie between voxels, and EXACT interpolates voxels. Pixels that no sample is seen at have
- * BackgroundValue. Rows are the picture's from the bottom to the top.
+ * images, so that even a preview's pixels lie between voxels, and EXACT interpolates voxels. Pixels
+ * that no sample is seen at have BackgroundValue. Rows are the picture's from the bottom to the
+ * top.
  *
  * The output lies where its picture lies in the world: origin, spacing and direction matrix are
  * those of the plane through the focal point across the view, in which perspective views, too, have
@@ -40,8 +41,8 @@
  *
  * The same input gives the same bits, whatever the number of threads or the instruction set; each
  * slice of a turn has those of the single view by the camera of GetViewCamera(). Opposite views of
- * a whole turn with an even number of views share a projection, but not in EXACT, nor if MaximumType
- * depends on the viewer's side.
+ * a whole turn with an even number of views share a projection, but not in EXACT, nor if
+ * MaximumType depends on the viewer's side.
  *
  * Memory besides input and output: see GetIndexMemorySize() and vtkSplattingMIPVolumeMapper. It is
  * kept for the next Update(). Where there is not enough of it, an error says so, the output is
@@ -433,8 +434,8 @@ public:
 
   /**
    * The last shear image of the last Update(), as vtkSplattingMIPVolumeMapper::GetShearImage() has
-   * it, or nullptr; EXACT has none. The last view is the last slice, in whole turns with an even number of views,
-   * too. Costs a copy of the shear image.
+   * it, or nullptr; EXACT has none. The last view is the last slice, in whole turns with an even
+   * number of views, too. Costs a copy of the shear image.
    */
   vtkImageData* GetShearImage();
 

@@ -24,7 +24,7 @@ struct Cuboid
 };
 
 /// The box that the picture shows: all of the voxels' boxes, or voxel centre to voxel centre and a
-/// single voxel's whole thickness. Exact mode's field is known there.
+/// single voxel's whole thickness.
 Cuboid shownBox(const ShearWarp& geometry);
 
 /**

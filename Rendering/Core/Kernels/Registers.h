@@ -221,24 +221,6 @@ inline bool anyOf(const M& mask)
   }
 }
 
-/// Whether any element of a is larger than that of b. Compilers that are asked for anyOf(a > b)
-/// spread the answer over a register first, and gather it again.
-template <class P>
-inline bool anyLarger(P a, P b)
-{
-#if defined(__AVX512F__)
-  if constexpr (std::is_same_v<P, Pack<float>>)
-  {
-    return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ) != 0;
-  }
-  if constexpr (std::is_same_v<P, Pack<double>>)
-  {
-    return _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ) != 0;
-  }
-#endif
-  return anyOf(a > b);
-}
-
 /// The larger; the second if either is NaN.
 template <class P>
 inline P larger(P a, P b)

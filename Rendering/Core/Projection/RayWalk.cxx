@@ -269,8 +269,8 @@ private:
     }
   }
 
-  /// In exact mode cuts can leave a ray slices in which it passes beside the field: then there is
-  /// no sample, and the pixel shows the lowest voxel, as that of a global maximum does.
+  /// Adds the base again. Pixels without a sample show the lowest voxel, as those of a global
+  /// maximum do.
   void addBase(int v0, int v1) const
   {
     const WorksheetLoops<A>& loops = this->Context.kernels;
