@@ -471,6 +471,26 @@ struct RegistersOf<double>
 
 template <class A>
 using Registers = typename RegistersOf<A>::type;
+
+template <class A>
+SPLATTING_INLINE A fused(A a, A b, A c)
+{
+  if constexpr (sizeof(A) == sizeof(float))
+  {
+    return __builtin_fmaf(a, b, c);
+  }
+  else
+  {
+    return __builtin_fma(a, b, c);
+  }
+}
+
+template <class A>
+SPLATTING_INLINE typename Registers<A>::Mask firstLanes(int count)
+{
+  return static_cast<typename Registers<A>::Mask>(
+    count >= Registers<A>::N ? (1u << Registers<A>::N) - 1 : (1u << count) - 1);
+}
 }
 }
 

@@ -12,7 +12,9 @@
 #define splattingCellSplatter_h
 
 #include "Kernels/CellLoops.h"
+#include "Kernels/CellMargins.h"
 #include "Kernels/CellRegisters.h"
+#include "Kernels/ScreenTilePixels.h"
 
 #include <cmath>
 #include <cstring>
@@ -21,136 +23,6 @@ namespace splatting
 {
 namespace
 {
-template <class A>
-SPLATTING_INLINE A fused(A a, A b, A c)
-{
-  if constexpr (sizeof(A) == sizeof(float))
-  {
-    return __builtin_fmaf(a, b, c);
-  }
-  else
-  {
-    return __builtin_fma(a, b, c);
-  }
-}
-
-template <class A>
-SPLATTING_INLINE typename Registers<A>::Mask firstLanes(int count)
-{
-  return static_cast<typename Registers<A>::Mask>(
-    count >= Registers<A>::N ? (1u << Registers<A>::N) - 1 : (1u << count) - 1);
-}
-
-/// The next larger number.
-template <class A>
-inline A nextAbove(A value)
-{
-  std::conditional_t<sizeof(A) == 4, std::int32_t, std::int64_t> bits;
-  if (value == 0 || !(value - value == 0))
-  {
-    return value == 0 ? std::numeric_limits<A>::denorm_min() : value;
-  }
-  std::memcpy(&bits, &value, sizeof bits);
-  bits += value > 0 ? 1 : -1;
-  std::memcpy(&value, &bits, sizeof bits);
-  return value;
-}
-
-/// Cells are wider by this at each side: more than the rounding by which the places of a ray in two
-/// neighbours differ, so that no part of a ray which runs along their face slips through.
-template <class A>
-constexpr A BesideFace = sizeof(A) == sizeof(float) ? A(0x1p-23) : A(0x1p-46);
-
-/// The same where rays never leave a face: these places are as precise as views.
-template <class A>
-constexpr A InFace = sizeof(A) == sizeof(float) ? BesideFace<A> : A(0x1p-42);
-
-/// Parts of rays that are shorter may be there by rounding alone. They are left out where their
-/// neighbours do not have the same values: at cropping's planes and in octants.
-template <class A>
-constexpr A Sliver = 2 * BesideFace<A>;
-
-/// Where a cell begins and ends that is cropped at some place.
-template <class A>
-inline A lowEnd(A low)
-{
-  return low >= 0 ? low : -BesideFace<A>;
-}
-template <class A>
-inline A highEnd(A high)
-{
-  return high <= 1 ? high : 1 + BesideFace<A>;
-}
-
-/// Where rays run along a face, their reciprocal direction is limited to this, so that its products
-/// are finite.
-template <class A>
-constexpr A Steepest = sizeof(A) == sizeof(float) ? A(0x1p60) : A(0x1p200);
-
-/// 0, 1, 2, ...
-template <class A>
-alignas(64) constexpr A Ramp[16] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
-
-template <class A>
-SPLATTING_INLINE void markChanged(ScreenTile<A>& tile, int x, int y)
-{
-  const int row = y >> 2;
-  tile.changed[row] |= 1u << (x >> 2);
-  tile.firstChanged = row < tile.firstChanged ? row : tile.firstChanged;
-  tile.lastChanged = row > tile.lastChanged ? row : tile.lastChanged;
-}
-
-template <class A, bool Located>
-SPLATTING_INLINE void raise(ScreenTile<A>& tile, int x, int y, A value, A depth)
-{
-  const int at = y * tile.Stride + x;
-  A& now = tile.values[at];
-  if (value > now)
-  {
-    const bool bounds = now <= tile.least[(y >> 2) * tile.PatchStride + (x >> 2)];
-    now = value;
-    if (Located)
-    {
-      tile.depths[at] = depth;
-    }
-    if (bounds)
-    {
-      markChanged(tile, x, y);
-    }
-  }
-  else if (Located && value == now && depth < tile.depths[at])
-  {
-    tile.depths[at] = depth;
-  }
-}
-
-template <class A>
-void refresh(ScreenTile<A>& tile)
-{
-  for (int y = tile.firstChanged; y <= tile.lastChanged; ++y)
-  {
-    for (std::uint32_t patches = tile.changed[y]; patches; patches &= patches - 1)
-    {
-      const int x = __builtin_ctz(patches);
-      const A* const p = tile.values + 4 * y * tile.Stride + 4 * x;
-      A least[4];
-      for (int u = 0; u < 4; ++u)
-      {
-        const A *const a = p + u, *const b = a + 2 * tile.Stride;
-        const A m = a[0] < a[tile.Stride] ? a[0] : a[tile.Stride];
-        const A n = b[0] < b[tile.Stride] ? b[0] : b[tile.Stride];
-        least[u] = m < n ? m : n;
-      }
-      const A m = least[0] < least[1] ? least[0] : least[1];
-      const A n = least[2] < least[3] ? least[2] : least[3];
-      tile.least[y * tile.PatchStride + x] = m < n ? m : n;
-    }
-    tile.changed[y] = 0;
-  }
-  tile.firstChanged = tile.Patches;
-  tile.lastChanged = -1;
-}
-
 /**
  * @tparam Cut      whether rays or the field end within the block
  * @tparam Located  whether the parameters of the samples are wanted
