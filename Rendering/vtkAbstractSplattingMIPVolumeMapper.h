@@ -132,9 +132,9 @@ public:
    * sample distance can miss a voxel. There is no shear image. Averages and dependent components
    * are those of HIGH.
    *
-   * In an overview, where pixels are wider than voxels in some direction, a pixel shows the extremum
-   * (of averages the average) over its area instead of the value at its centre. EXACT then shows
-   * voxels, as PREVIEW does. GetQualityModeUsed() returns the mode that is shown.
+   * In an overview, where pixels are wider than voxels in some direction, a pixel shows the
+   * extremum (of averages the average) over its area instead of the value at its centre. EXACT then
+   * shows voxels, as PREVIEW does. GetQualityModeUsed() returns the mode that is shown.
    *
    * In perspective a pixel's area is as wide as rays are apart: nearly a voxel where the volume is
    * farthest from the eye, and less in nearer slices.

@@ -105,8 +105,7 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
   ComponentProjector& components = this->Internal->Data.Components;
   components.GetProjector().setProgress([this](double done) { this->UpdateProgress(done); });
   components.SetObserver([this](double done) { return this->Internal->GoOn(this, done); });
-  components.GetWarper().setObserver(
-    [this](double) { return !this->Internal->IsAborted(); });
+  components.GetWarper().setObserver([this](double) { return !this->Internal->IsAborted(); });
 }
 
 //------------------------------------------------------------------------------

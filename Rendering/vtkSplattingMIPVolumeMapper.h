@@ -74,8 +74,8 @@
  *
  * The interpolation type of the vtkVolumeProperty has no meaning here, and a change costs nothing:
  * the quality mode says how voxels are reconstructed, and shear images are always interpolated
- * between their pixels. (The default of the property is nearest, so that all volumes would look like
- * the preview if it had a meaning.)
+ * between their pixels. (The default of the property is nearest, so that all volumes would look
+ * like the preview if it had a meaning.)
  *
  * Selection by vtkHardwareSelector, and all that uses it (vtkRenderer::PickProp, vtkPropPicker),
  * finds the volume where its picture is not transparent. A volume is one thing there: composite
@@ -103,8 +103,8 @@
  * on the number of threads or on the instruction set: the same input gives the same bits.
  *
  * NaN voxels are no samples: they never win and, in a worksheet, the average is taken over the
- * other voxels. Infinities are ordinary values. In EXACT a cell with a corner that is NaN, hidden or
- * infinite is not interpolated: each of its eight octants has the value of its nearest voxel, or
+ * other voxels. Infinities are ordinary values. In EXACT a cell with a corner that is NaN, hidden
+ * or infinite is not interpolated: each of its eight octants has the value of its nearest voxel, or
  * none if that voxel is hidden or NaN. Finite magnitudes must be at most 1e37 (of double 1e303), in
  * EXACT beside infinities 1e18 (1e150), so that nothing overflows. A ray without a sample is
  * transparent.
@@ -114,19 +114,19 @@
  *
  * Memory. For EXACT the mapper holds the largest voxel of every 4x4x4 and 8x8x8 cells (1/56 of the
  * volume, and as much for minima), else the largest voxel of every brick of 8x4x4 for each axis
- * (3/128 of the volume), a transposed copy of the volume once its first (fastest) image axis was the principal
- * one, chains of voxels where SetAcceleration asks for them, all of this for each component, and a
- * copy of the scalars if they are not stored voxel after voxel, if some are hidden, or if they are
- * resampled. GetIndexMemorySize() counts all, SetIndexMemoryBudget() limits all but that copy
- * and what EXACT holds (components have equal shares). Work space comes on top: per component the shear image; the
- * picture (two with several components); footprints (about 3 kB a slice); for each thread some rows
- * of voxels and the bounds of a band of tiles; per pixel of the shear image up to 9 bytes where
- * rays are cut, 12 for averages, 5 for depth shading and local maxima, 4 for dependent components,
- * 16 for a bounding surface; per pixel of the screen 4 for depths; for each further renderer a copy
- * of one component's shear image, for picks. Where all this does not fit into
- * the machine's memory, an error says so, nothing is drawn, and what the mapper holds is given
- * back; the next frame tries again. (With several ranks std::bad_alloc goes on to the caller as
- * well, for the others wait.)
+ * (3/128 of the volume), a transposed copy of the volume once its first (fastest) image axis was
+ * the principal one, chains of voxels where SetAcceleration asks for them, all of this for each
+ * component, and a copy of the scalars if they are not stored voxel after voxel, if some are
+ * hidden, or if they are resampled. GetIndexMemorySize() counts all, SetIndexMemoryBudget() limits
+ * all but that copy and what EXACT holds (components have equal shares). Work space comes on top:
+ * per component the shear image; the picture (two with several components); footprints (about 3 kB
+ * a slice); for each thread some rows of voxels and the bounds of a band of tiles; per pixel of the
+ * shear image up to 9 bytes where rays are cut, 12 for averages, 5 for depth shading and local
+ * maxima, 4 for dependent components, 16 for a bounding surface; per pixel of the screen 4 for
+ * depths; for each further renderer a copy of one component's shear image, for picks. Where all
+ * this does not fit into the machine's memory, an error says so, nothing is drawn, and what the
+ * mapper holds is given back; the next frame tries again. (With several ranks std::bad_alloc goes
+ * on to the caller as well, for the others wait.)
  *
  * An axis has at most 16384 voxels: walks number the slices along a ray in 16 bits.
  *
@@ -315,8 +315,8 @@ public:
    *
    * A frame costs three or four reductions of 4 bytes and a gathering of about 500 bytes from each
    * rank. If it projects, each shear image, in exact mode the picture's scalars, is reduced as
-   * well: 1 to 8 bytes a pixel in preview, 4 (8 for 32- and 64-bit integers and double) in the other
-   * modes, 4 more for locations, and the memory of one more image.
+   * well: 1 to 8 bytes a pixel in preview, 4 (8 for 32- and 64-bit integers and double) in the
+   * other modes, 4 more for locations, and the memory of one more image.
    */
   virtual void SetController(vtkMultiProcessController*);
   virtual vtkMultiProcessController* GetController();

@@ -224,9 +224,8 @@ bool vtkSplattingMIPProjection::Internals::GoOn(vtkSplattingMIPProjection* self,
 
 //------------------------------------------------------------------------------
 // Projects a view, unless the last one had the same rays. False if it was given up.
-bool vtkSplattingMIPProjection::Internals::ProjectView(
-  vtkSplattingMIPProjection* self, const splatting::View& view,
-  const splatting::ProjectionSettings& settings)
+bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection* self,
+  const splatting::View& view, const splatting::ProjectionSettings& settings)
 {
   if (this->Components.UsesCells(settings))
   {

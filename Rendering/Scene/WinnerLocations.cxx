@@ -203,8 +203,8 @@ bool WinnerLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sam
 {
   const Located& located = frame.located;
   const glm::ivec2& viewport = located.view.viewport;
-  if ((!frame.onScreen && located.geometries->empty()) || pixel.x < 0 || pixel.y < 0 || pixel.x >= viewport.x ||
-    pixel.y >= viewport.y)
+  if ((!frame.onScreen && located.geometries->empty()) || pixel.x < 0 || pixel.y < 0 ||
+    pixel.x >= viewport.x || pixel.y >= viewport.y)
   {
     return false;
   }
@@ -232,7 +232,8 @@ bool WinnerLocations::HasSample(const Frame& frame, const ShearPixel& pixel)
   const double value = valueOf(image, u, v);
   return image.covers(u, v) && value == value &&
     (isInside ||
-      this->Projector.ProjectPixel(located.settings, pixel, *located.geometries, *frame.projectionCuts)
+      this->Projector
+          .ProjectPixel(located.settings, pixel, *located.geometries, *frame.projectionCuts)
           .Images.front()
           .winners[0] >= 0);
 }
@@ -256,8 +257,8 @@ bool WinnerLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sampl
   }
   if (!hasWinners)
   {
-    const PixelProjector::Pixel& alone =
-      this->Projector.ProjectPixel(located.settings, shown, *located.geometries, *frame.projectionCuts);
+    const PixelProjector::Pixel& alone = this->Projector.ProjectPixel(
+      located.settings, shown, *located.geometries, *frame.projectionCuts);
     if (alone.Images.front().winners[0] < 0)
     {
       return false;
@@ -283,8 +284,8 @@ bool WinnerLocations::PickOnScreen(const Frame& frame, const glm::ivec2& pixel, 
   }
   if (!located.screen)
   {
-    located.screen = &this->Projector.ProjectPixelOnScreen(
-      located.view, located.settings, frame.ends, pixel);
+    located.screen =
+      &this->Projector.ProjectPixelOnScreen(located.view, located.settings, frame.ends, pixel);
   }
   const Locator locator(located);
   const Locator::Sample found = locator.onScreen(pixel);

@@ -296,8 +296,8 @@ bool ClosedSurface::contains(const glm::dvec3& point) const
   bool isInside = false;
   for (const glm::ivec3& t : this->Triangles)
   {
-    isInside ^= isMet(this->Points[t[0]] - point, this->Points[t[1]] - point,
-      this->Points[t[2]] - point, false);
+    isInside ^= isMet(
+      this->Points[t[0]] - point, this->Points[t[1]] - point, this->Points[t[2]] - point, false);
   }
   return isInside;
 }

@@ -80,8 +80,7 @@ ShearWarp::ShearWarp(const View& view, Meets meets)
   this->Valid = true;
 }
 
-bool ShearWarp::factorise(
-  const View& view, std::vector<ShearWarp>& images, Meets meets)
+bool ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images, Meets meets)
 {
   if (isParallel(view))
   {
@@ -219,8 +218,7 @@ bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays&
   return true;
 }
 
-bool ShearWarp::placeRays(
-  const View& view, const glm::dmat3& directions, double farthest)
+bool ShearWarp::placeRays(const View& view, const glm::dmat3& directions, double farthest)
 {
   // An odd number of steps has no ray along the axis, which could run between voxels.
   constexpr double narrower = 1.0 + 0x1p-10;
@@ -419,8 +417,8 @@ bool ShearWarp::sameShear(const ShearWarp& other) const
 {
   // The rays hold the shears.
   return this->Valid == other.Valid && this->Met == other.Met && this->Axes == other.Axes &&
-    this->Size == other.Size && this->Pitch == other.Pitch &&
-    this->Reference == other.Reference && this->DepthRange == other.DepthRange &&
-    this->Columns == other.Columns && this->Rows == other.Rows;
+    this->Size == other.Size && this->Pitch == other.Pitch && this->Reference == other.Reference &&
+    this->DepthRange == other.DepthRange && this->Columns == other.Columns &&
+    this->Rows == other.Rows;
 }
 }

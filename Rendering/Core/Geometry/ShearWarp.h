@@ -84,8 +84,7 @@ public:
    * show some of the volume; none if nothing of it can be seen.
    * @return  false if the view flattens the volume to a line or a point; there are no images then
    */
-  static bool factorise(
-    const View& view, std::vector<ShearWarp>& images, Meets meets = Meets::All);
+  static bool factorise(const View& view, std::vector<ShearWarp>& images, Meets meets = Meets::All);
 
   /**
    * Sets `part` to the geometry of a box of this volume's voxels as a volume by itself: voxels,

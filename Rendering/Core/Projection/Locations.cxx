@@ -295,8 +295,8 @@ Locator::Sample Locator::onScreen(const glm::ivec2& pixel) const
     const float depth = screen.depths[std::size_t(p.y) * screen.size.x + p.x];
     sample.exists = depth == depth;
     sample.point = screen.rays.point(pixel.x, pixel.y, depth);
-    sample.voxel = glm::clamp(glm::round(sample.point), glm::dvec3(0.0),
-      glm::dvec3(this->Source.view.dimensions - 1));
+    sample.voxel = glm::clamp(
+      glm::round(sample.point), glm::dvec3(0.0), glm::dvec3(this->Source.view.dimensions - 1));
   }
   return sample;
 }
@@ -399,8 +399,8 @@ void Locator::fill(const glm::ivec2& origin, const glm::ivec2& size, const Array
 {
   if (this->Source.screen)
   {
-    this->fillFrom(origin, size, arrays, [&](const glm::ivec2& pixel, std::size_t)
-      { return this->onScreen(pixel); });
+    this->fillFrom(origin, size, arrays,
+      [&](const glm::ivec2& pixel, std::size_t) { return this->onScreen(pixel); });
     return;
   }
   std::vector<ShearPixel> shown(std::size_t(size.x) * size.y);
@@ -421,8 +421,8 @@ void Locator::fill(const glm::ivec2& origin, const glm::ivec2& size, const Array
       {
         const int width = (*this->Source.images)[from.image].width;
         sample.point = this->point(glm::dvec2(pixel), from);
-        sample.voxel = arrays.voxels ? voxels[from.image][std::size_t(from.v) * width + from.u]
-                                     : glm::ivec3(-1);
+        sample.voxel =
+          arrays.voxels ? voxels[from.image][std::size_t(from.v) * width + from.u] : glm::ivec3(-1);
       }
       return sample;
     });

@@ -168,8 +168,8 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
     return Acceleration::Dense;
   }
   if (wanted >= Acceleration::Lines && !index.range().nonFinite && cuts.none() &&
-    !geometry.isPerspective() && !settings.keepWinners &&
-    &geometry != &this->Memory->part && !this->stopped())
+    !geometry.isPerspective() && !settings.keepWinners && &geometry != &this->Memory->part &&
+    !this->stopped())
   {
     lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),
       [this](double share)

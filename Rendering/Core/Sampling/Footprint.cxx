@@ -137,8 +137,7 @@ void normalise(WeightTable& weights)
 }
 
 /// H of the five voxels around a pixel, at depth z.
-std::array<double, 5> profile(
-  const Kernel& kernel, double fraction, double shear, double z)
+std::array<double, 5> profile(const Kernel& kernel, double fraction, double shear, double z)
 {
   std::array<double, 5> values;
   for (int d = -2; d <= 2; ++d)

@@ -171,12 +171,14 @@ void testBeforeAndBehind(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mappe
   {
     stage.look(direction, up);
     const Pictures before = pictures(stage, mapper, sphere(along(image, direction, -80.0), 20.0));
-    check(before.projections == 0 || !hasShearImage, "Geometry before the volume is a matter of the screen.");
+    check(before.projections == 0 || !hasShearImage,
+      "Geometry before the volume is a matter of the screen.");
     check(differing(before.actor, before.volume) > 0 &&
         before.both == over(before.actor, before.volume),
       "Geometry before the volume hides it.");
     const Pictures behind = pictures(stage, mapper, sphere(along(image, direction, 80.0), 20.0));
-    check(behind.projections == 0 || !hasShearImage, "Geometry behind the volume costs no projection.");
+    check(
+      behind.projections == 0 || !hasShearImage, "Geometry behind the volume costs no projection.");
     check(behind.both == over(behind.volume, behind.actor), "The volume hides what is behind it.");
     mapper->IntermixIntersectingGeometryOff();
     const Pictures off = pictures(stage, mapper, sphere(along(image, direction, -80.0), 20.0));
