@@ -105,8 +105,8 @@ public:
   void Forget() { this->Projected = false; }
 
   /**
-   * Projects all components onto the screen, by cells. Collective. False if the observer has
-   * stopped it or the view has no meaning: there is no picture then.
+   * Projects all components onto the screen, by cells. Collective.
+   * @return  false if the observer has stopped it or the view is invalid; there is no picture then
    */
   bool ProjectOnScreen(const View& view, const ProjectionSettings& settings, const RayEnds& ends);
   /// Whether the last projection was by cells. It needs no geometries.
@@ -127,7 +127,7 @@ public:
    * viewport from the bottom.
    * @param background  of pixels without a sample
    * @param scalars     of type averageType() of the images' type
-   * @return  false if the warper's observer has stopped it: the scalars have no meaning then
+   * @return  false if the warper's observer has stopped it; the scalars are invalid then
    */
   bool WarpScalars(
     const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars);

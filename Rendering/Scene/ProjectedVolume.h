@@ -54,7 +54,7 @@ public:
   /**
    * Projects, unless the last projection shows the same, or better within what is wanted. There is
    * none after an abort.
-   * @return  false if the view has no meaning
+   * @return  false if the view is invalid
    */
   bool Project(const MapperProperties& properties, const View& view, vtkRenderer* renderer,
     vtkVolume* volume, const SceneCuts::DepthReader& readDepth);

@@ -41,7 +41,7 @@ public:
   /// What Find() has found, for each image.
   const std::vector<Cuts>& Get() const { return this->Present; }
 
-  /// The same for projections onto the screen. False if the view has no meaning.
+  /// The same for projections onto the screen. False if the view is invalid.
   bool FindOnScreen(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
     const DepthReader& readDepth);
   /// What FindOnScreen() has found.

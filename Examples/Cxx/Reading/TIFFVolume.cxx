@@ -219,10 +219,10 @@ Volume ReadTIFF(const std::string& path, const ReadSettings& settings, const Qui
   if (layout.Pages.empty() || !hasAll)
   {
     Refuse(path,
-      "its description tells of " + std::to_string(layout.Slices) + " slices, " +
+      "its description and its pages differ: " + std::to_string(layout.Slices) + " slices, " +
         std::to_string(layout.Channels) + " channels and " + std::to_string(layout.Times) +
-        " times, which are not the " + std::to_string(pages.GetCount()) +
-        " pages that there are; save the volume as one file again.");
+        " times, but " + std::to_string(pages.GetCount()) +
+        " pages; save the volume as one file again.");
   }
   CheckChoice(path, "channel", settings.Channel, layout.Channels);
   CheckChoice(path, "volume", settings.Frame, layout.Times);

@@ -254,7 +254,7 @@ class TestDescriptions(splatmip.SplatmipTest):
         for text in (data.replace('IFD="3"', 'IFD="9"'), '<TiffData FirstZ="1" IFD="0"/>'):
             tifffile.imwrite(path, values, photometric="minisblack", metadata=None,
                              description=xml.format(text))
-            self.assert_refused(path, word="its description tells of 4 slices, 1 channels")
+            self.assert_refused(path, word="its description and its pages differ: 4 slices, 1 channels")
 
     def test_channel_of_others(self):
         self.assert_refused(splatmip.write_nrrd(self.path("a.nrrd")), "--channel", "1",

@@ -53,7 +53,7 @@ public:
    * @param settings  quality and acceleration are ignored; not for Reduction::Mean
    * @param locate    whether to find the depths of samples
    * @param within    the rectangle of the viewport that is wanted: origin and size
-   * @return  false if the view has no meaning or the observer has stopped the projection
+   * @return  false if the view is invalid or the observer has stopped the projection
    */
   bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
     const RayEnds& ends, bool locate, ScreenScalars& screen);

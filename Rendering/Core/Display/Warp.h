@@ -47,7 +47,7 @@ public:
    * PixelArea.h, and the picture ends where areas no longer meet the volume.
    * @param images      all of one type; those beyond the number of geometries are left alone
    * @param geometries  as ShearWarp::factorise() gives them
-   * @return  false if the observer has stopped it: the picture has no meaning then
+   * @return  false if the observer has stopped it; the picture is invalid then
    */
   bool warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
     Reduction reduction, const ColorTable& table, const glm::ivec2& viewport,
@@ -66,8 +66,8 @@ public:
     Reduction reduction, const glm::ivec2& viewport, InstructionSet instructionSet,
     double background, void* scalars);
 
-  /// Asked by the thread that warps whether to go on, where pixels show areas. The share that it is
-  /// told has no meaning.
+  /// Sets the function that decides whether to go on. It is called by the thread that warps, only
+  /// where pixels show areas. Its argument is undefined.
   void setObserver(const ProgressObserver::Callback& callback)
   {
     this->Observer.setCallback(callback);
