@@ -13,6 +13,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +36,19 @@ struct CellBox
   glm::dvec3 low() const { return this->middle - this->half; }
   glm::dvec3 high() const { return this->middle + this->half; }
 };
+
+/// The least and the greatest value of h in a box.
+inline glm::dvec2 rangeOf(const glm::dvec4& h, const CellBox& box)
+{
+  const double middle = glm::dot(glm::dvec3(h), box.middle) + h.w;
+  const double reach = glm::dot(glm::abs(glm::dvec3(h)), box.half);
+  return { middle - reach, middle + reach };
+}
+
+inline bool overlap(const CellBox& a, const CellBox& b)
+{
+  return glm::all(glm::lessThanEqual(glm::abs(a.middle - b.middle), a.half + b.half));
+}
 
 /// Pixels, both ends included.
 struct PixelRectangle

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Cells/TileSplatter.h"
 
-#include "Clipping/SceneDepth.h"
+#include "Kernels/Compiler.h"
 
 #include <glm/gtc/matrix_access.hpp>
 
@@ -21,143 +21,14 @@ constexpr int ChecksEvery = 64;
 template <class A>
 constexpr double Flat = sizeof(A) == sizeof(float) ? 1e-9 : 1e-13;
 
-/// The least and the greatest value of h in a box.
-glm::dvec2 rangeOf(const glm::dvec4& h, const CellBox& box)
-{
-  const double middle = glm::dot(glm::dvec3(h), box.middle) + h.w;
-  const double reach = glm::dot(glm::abs(glm::dvec3(h)), box.half);
-  return { middle - reach, middle + reach };
-}
-
 /// Planes that are nearer to a box than this may cut it.
 constexpr double Touches = 1e-6;
-
-bool overlap(const CellBox& a, const CellBox& b)
-{
-  return glm::all(glm::lessThanEqual(glm::abs(a.middle - b.middle), a.half + b.half));
-}
 
 /// Whether b is inside a, not even at a side of it.
 bool isWithin(const CellBox& a, const CellBox& b)
 {
   return glm::all(glm::lessThan(glm::abs(a.middle - b.middle), a.half - b.half));
 }
-
-/// The value of a floor; 0, the lowest voxel, if there is none above that.
-template <class A>
-A leastOf(double floor, const ValueScale<A>& values)
-{
-  const A voxel = static_cast<A>(floor);
-  return std::isfinite(voxel) && !values.minima
-    ? std::max(std::fma(values.scale.factor, voxel, values.scale.offset), A(0))
-    : A(0);
-}
-}
-
-template <class T>
-CellFrame<T>::CellFrame(CellIndex& index, const View& view, const ProjectionSettings& settings,
-  const RayEnds& ends, bool locate, const PixelRectangle& pixels, const PixelRays& pixelRays)
-  : grid(index.grid()),
-    bounds(index.bounds(settings.reduction == Reduction::Minimum)),
-    rays(pixelRays),
-    rectangle(pixels),
-    tiles((pixels.high - pixels.low) / ScreenTile<A>::Side + 1),
-    viewport(view.viewport),
-    kernels(cellKernelsFor(settings.instructionSet)),
-    values(index.range(), settings.reduction),
-    scale(values.scale),
-    lowest(-static_cast<double>(scale.offset) / static_cast<double>(scale.factor)),
-    highest(settings.reduction == Reduction::Minimum ? index.range().low : index.range().high),
-    halfSpaces(view.halfSpaces),
-    regions(view.cropping, grid.low, grid.high),
-    crops(view.cropping.cuts()),
-    depth(ends.depth),
-    least(leastOf<A>(settings.floor, values)),
-    minima(settings.reduction == Reduction::Minimum),
-    locates(locate),
-    shades(settings.reduction == Reduction::DepthShaded),
-    ambient(settings.ambient),
-    rate(settings.changeRate)
-{
-  if (ends.surface)
-  {
-    this->surface.find(*ends.surface, pixelRays, pixels.low, pixels.high - pixels.low + 1);
-  }
-  this->cutsAll = ends.surface || ends.depth;
-  const bool canDarken = this->shades && std::min(this->ambient, this->ambient + this->rate) < 0.0;
-  this->isFinite = !index.range().hasInfinities();
-  this->mayBeEmpty = this->scale.holes || this->crops || canDarken;
-}
-
-template <class T>
-PixelRectangle CellFrame<T>::pixelsOf(int tile) const
-{
-  const glm::ivec2 low = this->rectangle.low +
-    ScreenTile<A>::Side * glm::ivec2(tile % this->tiles.x, tile / this->tiles.x);
-  return { low, glm::min(low + ScreenTile<A>::Side - 1, this->rectangle.high) };
-}
-
-template <class T>
-CellBox CellFrame<T>::boxOfCells(const glm::ivec3& cell, int size) const
-{
-  const glm::ivec3 from = glm::max(cell, this->grid.begin);
-  const glm::ivec3 to = glm::min(cell + size, this->grid.end);
-  return { glm::max(glm::dvec3(from - this->grid.shift), this->grid.low),
-    glm::min(glm::dvec3(to - this->grid.shift), this->grid.high) };
-}
-
-template <class T>
-CellBox CellFrame<T>::boxOfBrick(std::uint32_t brick) const
-{
-  return this->boxOfCells(this->grid.brickCell(brick), BrickCells);
-}
-
-template <class T>
-bool CellFrame<T>::isShown(const CellBox& box) const
-{
-  for (const glm::dvec4& h : this->halfSpaces)
-  {
-    if (rangeOf(h, box).y < 0.0)
-    {
-      return false;
-    }
-  }
-  return !this->crops ||
-    std::any_of(this->regions.boxes.begin(), this->regions.boxes.end(),
-      [&](const CellBox& region) { return overlap(region, box); });
-}
-
-template <class T>
-void CellFrame<T>::findEnds(int x, int y, int count, double* near, double* far) const
-{
-  const bool perspective = this->rays.isPerspective();
-  std::fill_n(near, count, perspective ? 0.0 : -Infinity);
-  std::fill_n(far, count, Infinity);
-  // From column 0 on: the same bits for any first pixel.
-  const glm::dvec3 start = this->rays.start(0, y), forward = this->rays.direction(0, y);
-  const glm::dvec3& across = this->rays.across();
-  const auto step = [&](double change) { return perspective ? 0.0 : change; };
-  const auto turn = [&](double change) { return perspective ? change : 0.0; };
-  for (int a = 0; a < 3; ++a)
-  {
-    this->kernels.within(near, far, x, count, start[a], step(across[a]), forward[a],
-      turn(across[a]), this->grid.low[a], this->grid.high[a]);
-  }
-  for (const glm::dvec4& h : this->halfSpaces)
-  {
-    const glm::dvec3 normal(h);
-    const double change = glm::dot(normal, across);
-    this->kernels.before(near, far, x, count, glm::dot(normal, start) + h.w, step(change),
-      glm::dot(normal, forward), turn(change));
-  }
-  if (!this->surface.empty())
-  {
-    this->surface.cut(x, y, count, near, far);
-  }
-  if (this->depth)
-  {
-    this->depth->endRays(this->rays, x, y, count, far);
-  }
 }
 
 template <class T>
@@ -344,7 +215,6 @@ bool TileSplatter<T>::mayRaise(std::uint32_t brick) const
 template <class T>
 void TileSplatter<T>::prefetch(std::uint32_t brick) const
 {
-#if defined(__GNUC__)
   const CellGrid& grid = this->Frame.grid;
   const glm::ivec3& size = grid.voxels.dimensions;
   const glm::ivec3 cell = this->Frame.grid.brickCell(brick);
@@ -356,13 +226,10 @@ void TileSplatter<T>::prefetch(std::uint32_t brick) const
     for (std::ptrdiff_t j = y.x; j <= y.y; ++j)
     {
       const T* const row = static_cast<const T*>(grid.voxels.voxels) + (k * size.y + j) * size.x;
-      __builtin_prefetch(row + x.x);
-      __builtin_prefetch(row + x.y);
+      splatting::prefetch(row + x.x);
+      splatting::prefetch(row + x.y);
     }
   }
-#else
-  (void)brick;
-#endif
 }
 
 template <class T>
@@ -602,18 +469,14 @@ void TileSplatter<T>::finish(bool finished, ScreenScalars& screen) const
   }
 }
 
-#define SPLATTING_CELLS(T)                                                                         \
-  template struct CellFrame<T>;                                                                    \
-  template class TileSplatter<T>
-SPLATTING_CELLS(std::int8_t);
-SPLATTING_CELLS(std::uint8_t);
-SPLATTING_CELLS(std::int16_t);
-SPLATTING_CELLS(std::uint16_t);
-SPLATTING_CELLS(std::int32_t);
-SPLATTING_CELLS(std::uint32_t);
-SPLATTING_CELLS(std::int64_t);
-SPLATTING_CELLS(std::uint64_t);
-SPLATTING_CELLS(float);
-SPLATTING_CELLS(double);
-#undef SPLATTING_CELLS
+template class TileSplatter<std::int8_t>;
+template class TileSplatter<std::uint8_t>;
+template class TileSplatter<std::int16_t>;
+template class TileSplatter<std::uint16_t>;
+template class TileSplatter<std::int32_t>;
+template class TileSplatter<std::uint32_t>;
+template class TileSplatter<std::int64_t>;
+template class TileSplatter<std::uint64_t>;
+template class TileSplatter<float>;
+template class TileSplatter<double>;
 }

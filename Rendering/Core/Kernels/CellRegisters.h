@@ -8,24 +8,11 @@
 #ifndef splattingCellRegisters_h
 #define splattingCellRegisters_h
 
+#include "Kernels/Compiler.h"
+
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
-
-#if defined(__AVX2__)
-#include <immintrin.h>
-#if defined(__GNUC__) && !defined(__clang__)
-// GCC's own intrinsics start from registers that they leave undefined on purpose.
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#pragma GCC diagnostic ignored "-Wuninitialized"
-#endif
-#endif
-
-#if defined(__GNUC__)
-#define SPLATTING_INLINE __attribute__((always_inline)) inline
-#else
-#define SPLATTING_INLINE inline
-#endif
 
 namespace splatting
 {

@@ -11,6 +11,7 @@
 #ifndef splattingCellSplatter_h
 #define splattingCellSplatter_h
 
+#include "Kernels/CellCubics.h"
 #include "Kernels/CellLoops.h"
 #include "Kernels/CellMargins.h"
 #include "Kernels/CellRegisters.h"
@@ -512,7 +513,13 @@ private:
       return;
     }
     V depth;
-    V value = this->largestOnRay(id, o, d, enter, leave, now, on, depth);
+    V k[8];
+    for (int n = 0; n < 8; ++n)
+    {
+      k[n] = R::pick(this->K[n], id);
+    }
+    V value = largestOnRay<A, Located, Shaded>(
+      k, R::pick(this->Top, id), o, d, enter, leave, now, on, depth);
     depth = Located ? R::add(R::add(depth, middle), R::set(b.reference)) : depth;
     if (Shaded)
     {
@@ -527,73 +534,6 @@ private:
     {
       this->raisePixels(id, value, depth, raised);
     }
-  }
-
-  /// The largest value on the parts of rays between enter and leave, and where it is.
-  SPLATTING_INLINE V largestOnRay(
-    I id, const V o[3], const V d[3], V enter, V leave, V now, M on, V& depth) const
-  {
-    const V k0 = R::pick(this->K[0], id), kx = R::pick(this->K[1], id);
-    const V ky = R::pick(this->K[2], id), kz = R::pick(this->K[3], id);
-    const V kxy = R::pick(this->K[4], id), kxz = R::pick(this->K[5], id);
-    const V kyz = R::pick(this->K[6], id), kxyz = R::pick(this->K[7], id);
-    const V top = R::pick(this->Top, id);
-    const V length = R::sub(leave, enter);
-    const V x = R::fma(d[0], enter, o[0]), y = R::fma(d[1], enter, o[1]);
-    const V z = R::fma(d[2], enter, o[2]);
-    const V ex = R::mul(d[0], length), ey = R::mul(d[1], length), ez = R::mul(d[2], length);
-    // Slopes of the field where the ray enters, and the cubic c0 + c1 s + c2 s^2 + c3 s^3.
-    const V gyz = R::fma(kxyz, x, kyz), gxz = R::fma(kxyz, y, kxz), gxy = R::fma(kxyz, z, kxy);
-    const V hy = R::fma(kxy, x, ky), hz = R::fma(kxz, x, kz);
-    const V gx = R::fma(kxy, y, R::fma(z, gxz, kx)), gy = R::fma(z, gyz, hy);
-    const V gz = R::fma(y, gyz, hz);
-    const V c0 = R::fma(x, kx, R::fma(y, hy, R::fma(z, gz, k0)));
-    const V c1 = R::fma(ex, gx, R::fma(ey, gy, R::mul(ez, gz)));
-    const V exy = R::mul(ex, ey);
-    const V c2 = R::fma(exy, gxy, R::fma(R::mul(ex, ez), gxz, R::mul(R::mul(ey, ez), gyz)));
-    const V c3 = R::mul(R::mul(exy, ez), kxyz);
-    // Its Bernstein coefficients: c0, inner1, inner2, end.
-    const V third = R::set(A(1) / A(3)), two = R::set(2);
-    const V end = R::add(R::add(c0, c1), R::add(c2, c3));
-    const V inner1 = R::fma(c1, third, c0);
-    const V inner2 = R::fma(R::fma(two, c1, c2), third, c0);
-    const V inner = R::larger(inner1, inner2);
-    V value = c0;
-    V where = R::set(0);
-    M more = static_cast<M>(on & R::above(inner, R::larger(c0, end)));
-    if (!Shaded)
-    {
-      more = static_cast<M>(more & (Located ? R::atLeast(inner, now) : R::above(inner, now)));
-    }
-    if (more)
-    {
-      // The root of c1 + 2 c2 s + 3 c3 s^2 at which the cubic has its maximum.
-      const V zero = R::set(0);
-      const V square = R::fma(c2, c2, R::mul(R::mul(R::set(-3), c1), c3));
-      const V root = R::root(R::larger(square, zero));
-      const M falls = R::above(zero, c2);
-      const V s = R::div(R::choose(falls, c1, R::sub(R::sub(zero, c2), root)),
-        R::choose(falls, R::sub(root, c2), R::mul(R::set(3), c3)));
-      V peak = R::fma(s, R::fma(s, R::fma(s, c3, c2), c1), c0);
-      // Rounding must not lift it above what made it worth while to compute.
-      peak = R::smaller(peak, inner);
-      const M found = static_cast<M>(more & R::above(square, zero) & R::above(s, zero) &
-        R::above(R::set(1), s) & R::above(peak, value));
-      value = R::choose(found, peak, value);
-      where = Located ? R::choose(found, s, where) : where;
-    }
-    if (Located)
-    {
-      const M last = R::above(end, value);
-      where = R::choose(last, R::set(1), where);
-      depth = R::fma(where, length, enter);
-    }
-    else
-    {
-      depth = where;
-    }
-    value = R::larger(value, end);
-    return R::smaller(value, top);
   }
 
   SPLATTING_INLINE void raisePixels(I id, V value, V depth, M raised)

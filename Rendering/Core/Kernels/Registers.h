@@ -8,39 +8,12 @@
 #define splattingRegisters_h
 
 #include "Common/ScalarType.h"
-
-#if defined(__AVX2__)
-#include <immintrin.h>
-#if defined(__GNUC__) && !defined(__clang__)
-// GCC's own intrinsics start from registers that they leave undefined on purpose.
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#pragma GCC diagnostic ignored "-Wuninitialized"
-#endif
-#elif defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
-/// For functions of loops in which a call costs more than compilers expect.
-#if defined(__GNUC__)
-#define SPLATTING_INLINE __attribute__((always_inline)) inline
-#else
-#define SPLATTING_INLINE inline
-#endif
+#include "Kernels/Compiler.h"
 
 namespace splatting
 {
 namespace
 {
-/// Has memory fetch what will be needed soon; nothing need be there.
-inline void prefetch(const void* place)
-{
-#if defined(__GNUC__)
-  __builtin_prefetch(place);
-#else
-  (void)place;
-#endif
-}
-
 #if defined(__GNUC__)
 /// A register full of T. Vector extensions of GCC and Clang; elsewhere one element.
 template <class T>

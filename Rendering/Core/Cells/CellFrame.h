@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef splattingCellFrame_h
+#define splattingCellFrame_h
+
+#include "Cells/CellIndex.h"
+#include "Cells/CellPlaces.h"
+#include "Cells/CellProjector.h"
+#include "Clipping/SurfaceOnScreen.h"
+
+#include <glm/vec4.hpp>
+
+#include <vector>
+
+namespace splatting
+{
+/**
+ * What the threads of one projection share.
+ */
+template <class T>
+struct CellFrame
+{
+  using A = Accumulator<T>;
+
+  CellFrame(CellIndex& index, const View& view, const ProjectionSettings& settings,
+    const RayEnds& ends, bool locate, const PixelRectangle& rectangle, const PixelRays& rays);
+
+  int tileCount() const { return this->tiles.x * this->tiles.y; }
+  PixelRectangle pixelsOf(int tile) const;
+
+  CellBox boxOfCells(const glm::ivec3& cell, int size) const;
+  CellBox boxOfBrick(std::uint32_t brick) const;
+  /// Whether half-spaces and cropping leave something of a box.
+  bool isShown(const CellBox& box) const;
+
+  /**
+   * Sets where the rays of pixels in a row begin and end.
+   * @param x  the first pixel
+   */
+  void findEnds(int x, int y, int count, double* near, double* far) const;
+
+  const CellGrid& grid;
+  const CellBounds& bounds;
+  const PixelRays& rays;
+  const PixelRectangle rectangle;
+  const glm::ivec2 tiles;
+  const glm::ivec2 viewport;
+  const CellKernels& kernels;
+  const ValueScale<A> values;
+  const CellScale<A>& scale;
+  const double lowest;  ///< the voxel whose value is 0; 0 if voxels are infinite
+  const double highest; ///< the largest voxel, of minima the least
+  const std::vector<glm::dvec4>& halfSpaces;
+  const ShownRegions regions;
+  const bool crops;
+  const SceneDepth* depth;
+  SurfaceOnScreen surface;
+  const A least; ///< values below need not be told apart, see ProjectionSettings::floor
+  const bool minima, locates, shades;
+  const double ambient, rate;
+  bool cutsAll;    ///< whether rays may end in any block: by a surface or a depth buffer
+  bool mayBeEmpty; ///< whether a ray in the field may have no sample
+  bool isFinite;   ///< whether values are relative to the lowest voxel, none below 0
+};
+
+extern template struct CellFrame<std::int8_t>;
+extern template struct CellFrame<std::uint8_t>;
+extern template struct CellFrame<std::int16_t>;
+extern template struct CellFrame<std::uint16_t>;
+extern template struct CellFrame<std::int32_t>;
+extern template struct CellFrame<std::uint32_t>;
+extern template struct CellFrame<std::int64_t>;
+extern template struct CellFrame<std::uint64_t>;
+extern template struct CellFrame<float>;
+extern template struct CellFrame<double>;
+}
+
+#endif
