@@ -422,44 +422,12 @@ bool ComponentProjector::ProjectOnScreen(
   {
     if (this->Ranks && !channel.Screen.bytes.empty())
     {
-      this->ExchangeScreen(channel);
+      this->Ranks->Reduce(channel.Screen);
+      CellProjector::finish(channel.Cells, channel.Settings, channel.Screen);
     }
   }
   this->Projected = true;
   return true;
-}
-
-// From what a piece shows to what the whole does: of the ranks that have a pixel's value, the depth
-// nearest to the viewer.
-void ComponentProjector::ExchangeScreen(Channel& channel)
-{
-  ScreenScalars& screen = channel.Screen;
-  const std::vector<unsigned char> own =
-    screen.depths.empty() ? std::vector<unsigned char>() : screen.bytes;
-  ShearImage& image = this->Exchanged;
-  image.type = screen.type;
-  image.width = screen.size.x;
-  image.height = screen.size.y;
-  image.spans.assign(screen.size.y, { 0, screen.size.x });
-  image.nonFinite = true; // pixels without a sample are NaN
-  image.bytes.swap(screen.bytes);
-  this->Ranks->Reduce(image, ShearWarp(), Reduction::Maximum);
-  image.bytes.swap(screen.bytes);
-  const std::size_t size = sizeOf(screen.type);
-  for (std::size_t n = 0; n < screen.depths.size(); ++n)
-  {
-    const bool isOwn = std::memcmp(&own[n * size], &screen.bytes[n * size], size) == 0;
-    screen.depths[n] = isOwn && screen.depths[n] == screen.depths[n]
-      ? screen.depths[n]
-      : std::numeric_limits<float>::infinity();
-  }
-  if (!screen.depths.empty())
-  {
-    this->Ranks->Least(screen.depths);
-    std::replace(screen.depths.begin(), screen.depths.end(), std::numeric_limits<float>::infinity(),
-      std::numeric_limits<float>::quiet_NaN());
-  }
-  CellProjector::finish(channel.Cells, channel.Settings, screen);
 }
 
 const ScreenScalars& ComponentProjector::ProjectPixelOnScreen(const View& view,

@@ -189,7 +189,6 @@ private:
   bool ProjectImage(
     std::size_t n, const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts);
   void UpdateCells(Channel& channel, const View& view);
-  void ExchangeScreen(Channel& channel);
   bool ProjectChannel(Channel& channel, ShearImage& image, const ShearWarp& geometry,
     const ProjectionSettings& settings, const Cuts& cuts);
 
@@ -212,7 +211,6 @@ private:
   Picture Layer; // of one component
   std::vector<ShearPixel> Shown;
   std::vector<unsigned char> Plane; // likewise, scalars
-  ShearImage Exchanged;             // scalars of the screen
 };
 }
 

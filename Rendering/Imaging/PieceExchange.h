@@ -3,12 +3,12 @@
 #ifndef PieceExchange_h
 #define PieceExchange_h
 
+#include "Cells/ScreenScalars.h"
 #include "Projection/Project.h"
 
 #include <glm/vec3.hpp>
 
 #include <cstddef>
-#include <vector>
 
 namespace splatting
 {
@@ -29,8 +29,9 @@ public:
   /// Collective. From the image of a piece to that of the whole, but for its spans and mask.
   /// @param geometry  of the whole
   virtual void Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction) = 0;
-  /// Collective. Sets each number to the least that any of them has.
-  virtual void Least(std::vector<float>& numbers) const = 0;
+  /// Collective. From what a piece shows to what the whole does: values, and of the pieces that
+  /// have a pixel's value the least depth.
+  virtual void Reduce(ScreenScalars& screen) = 0;
 };
 }
 

@@ -408,14 +408,6 @@ int RankAgreement::Least(int here) const
   return least;
 }
 
-void RankAgreement::Least(std::vector<float>& numbers) const
-{
-  std::vector<float> least(numbers.size());
-  this->Controller->AllReduce(
-    numbers.data(), least.data(), static_cast<vtkIdType>(numbers.size()), vtkCommunicator::MIN_OP);
-  numbers.swap(least);
-}
-
 void RankAgreement::Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction)
 {
   const ScalarType type = image.type, keys = encode(image, reduction);
@@ -451,6 +443,42 @@ void RankAgreement::ReduceWinners(ShearImage& image, const ShearWarp& geometry)
     geometry.reversed() ? vtkCommunicator::MAX_OP : vtkCommunicator::MIN_OP);
   image.winners.swap(this->ReceivedSteps);
   std::replace(image.winners.begin(), image.winners.end(), behind, std::int32_t(-1));
+}
+
+void RankAgreement::Reduce(ScreenScalars& screen)
+{
+  ShearImage& image = this->Pixels;
+  image.type = screen.type;
+  image.width = screen.size.x;
+  image.height = screen.size.y;
+  image.spans.assign(screen.size.y, { 0, screen.size.x });
+  image.nonFinite = true; // pixels without a sample are NaN
+  image.bytes.swap(screen.bytes);
+  const ScalarType keys = encode(image, Reduction::Maximum);
+  screen.bytes.resize(image.bytes.size());
+  this->Controller->GetCommunicator()->AllReduceVoidArray(image.bytes.data(), screen.bytes.data(),
+    vtkIdType(image.width) * image.height, vtkTypeOf(keys), vtkCommunicator::MAX_OP);
+  if (!screen.depths.empty())
+  {
+    constexpr float behind = std::numeric_limits<float>::infinity();
+    const std::size_t size = sizeOf(screen.type);
+    for (std::size_t pixel = 0; pixel < screen.depths.size(); ++pixel)
+    {
+      float& depth = screen.depths[pixel];
+      const bool wins = depth == depth &&
+        std::memcmp(&image.bytes[pixel * size], &screen.bytes[pixel * size], size) == 0;
+      depth = wins ? depth : behind;
+    }
+    this->ReceivedDepths.resize(screen.depths.size());
+    this->Controller->AllReduce(screen.depths.data(), this->ReceivedDepths.data(),
+      static_cast<vtkIdType>(screen.depths.size()), vtkCommunicator::MIN_OP);
+    screen.depths.swap(this->ReceivedDepths);
+    std::replace(
+      screen.depths.begin(), screen.depths.end(), behind, std::numeric_limits<float>::quiet_NaN());
+  }
+  image.bytes.swap(screen.bytes);
+  decode(image, screen.type, Reduction::Maximum);
+  image.bytes.swap(screen.bytes);
 }
 
 VolumeIndex::Range RankAgreement::RangeOfWhole(std::size_t component) const

@@ -89,8 +89,6 @@ public:
   bool Any(bool here) const override;
   /// Collective.
   int Least(int here) const;
-  /// Collective.
-  void Least(std::vector<float>& numbers) const override;
   /**
    * Collective. From the image of a piece to that of the whole, but for its spans and mask.
    *
@@ -99,6 +97,7 @@ public:
    * the viewer.
    */
   void Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction) override;
+  void Reduce(ScreenScalars& screen) override;
 
 private:
   std::vector<RankReport> Gather(const RankReport& own) const;
@@ -115,6 +114,8 @@ private:
 
   std::vector<unsigned char> Received;
   std::vector<std::int32_t> ReceivedSteps;
+  std::vector<float> ReceivedDepths;
+  ShearImage Pixels; // of a screen
 };
 
 /**

@@ -138,6 +138,9 @@ inline float depthAt(const ScreenScalars& screen, int x, int y)
   return screen.depths[std::size_t(p.y) * screen.size.x + p.x];
 }
 
+/// Of continuous fields up to 0.03 % of a family's samples are ambiguous, at silhouettes and cuts.
+constexpr double MostAmbiguous = 1e-3;
+
 /// What was compared, and how far it was off.
 struct Counts
 {
@@ -151,9 +154,8 @@ struct Counts
     this->ambiguous += other.ambiguous;
     this->worst = std::max(this->worst, other.worst);
   }
-  /// Prints them, and checks that there is something to compare. Of continuous fields up to 0.03 %
-  /// of a series' samples are ambiguous, at silhouettes and cuts.
-  void report(const std::string& family, Checks& check, double mostAmbiguous = 1e-3) const
+  /// Prints them, and checks that there is something to compare.
+  void report(const std::string& family, Checks& check, double mostAmbiguous = MostAmbiguous) const
   {
     std::cout << std::left << std::setw(28) << family << " pixels " << this->pixels << ", samples "
               << this->samples << ", ambiguous " << this->ambiguous << ", worst error "
@@ -166,6 +168,16 @@ struct Counts
     }
   }
 };
+
+/// Compares random scenes, each by f(random, counts), and reports what has been compared.
+template <class T, class F>
+void forFamily(const std::string& family, int scenes, double mostAmbiguous, Checks& check, F&& f)
+{
+  const std::string name = coretesting::seriesOf<T>(family);
+  Counts counts;
+  reference::forScenes(name, scenes, [&](int, Random& random) { f(random, counts); });
+  counts.report(name, check, mostAmbiguous);
+}
 
 template <class T>
 reference::CellScene<Real<T>> oracleScene(const Scene<T>& scene)

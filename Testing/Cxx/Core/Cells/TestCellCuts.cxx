@@ -188,10 +188,8 @@ void addCut(Scene<T>& scene, CutKind kind, Random& random)
 template <class T>
 void testCut(const std::string& name, CutKind kind, int scenes, Checks& check)
 {
-  const std::string series = coretesting::seriesOf<T>(name);
-  Counts counts;
-  reference::forScenes(series, scenes,
-    [&](int, Random& random)
+  forFamily<T>(name, scenes, MostAmbiguous, check,
+    [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
       const std::array<int, 3> size = coretesting::randomSize(random, 18);
@@ -201,7 +199,6 @@ void testCut(const std::string& name, CutKind kind, int scenes, Checks& check)
       addCut(scene, kind, random);
       counts.add(compareScene(scene, check));
     });
-  counts.report(series, check);
 }
 
 template <class T>

@@ -69,10 +69,8 @@ void compareDepths(const Scene<T>& scene, Counts& counts, Checks& check)
 template <class T>
 void testNoise(Checks& check)
 {
-  const std::string series = coretesting::seriesOf<T>("noise");
-  Counts counts;
-  reference::forScenes(series, 80,
-    [&](int, Random& random)
+  forFamily<T>("noise", 80, MostAmbiguous, check,
+    [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
       const std::array<int, 3> size = coretesting::randomSize(random, 14);
@@ -83,17 +81,14 @@ void testNoise(Checks& check)
       scene.settings.reduction = random.uniform(0, 2) ? Reduction::Maximum : Reduction::Minimum;
       compareDepths(scene, counts, check);
     });
-  counts.report(series, check);
 }
 
 /// Boxes of equal value, one behind the other, on ground of the lowest value.
 template <class T>
 void testTies(Checks& check)
 {
-  const std::string series = coretesting::seriesOf<T>("ties");
-  Counts counts;
-  reference::forScenes(series, 120,
-    [&](int, Random& random)
+  forFamily<T>("ties", 120, MostAmbiguous, check,
+    [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
       scene.volume = reference::Volume<T>({ 22, 20, 21 }, T(3));
@@ -117,7 +112,6 @@ void testTies(Checks& check)
       scene.locate = true;
       compareDepths(scene, counts, check);
     });
-  counts.report(series, check);
 }
 }
 

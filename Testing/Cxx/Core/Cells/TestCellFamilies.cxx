@@ -36,10 +36,8 @@ void compareAlong(reference::Volume<T> volume, const glm::dvec3& direction, Rand
 template <class T>
 void testVessels(bool across, Checks& check)
 {
-  const std::string name = coretesting::seriesOf<T>(across ? "vessels across" : "vessels oblique");
-  Counts counts;
-  reference::forScenes(name, 80,
-    [&](int, Random& random)
+  forFamily<T>(across ? "vessels across" : "vessels oblique", 80, MostAmbiguous, check,
+    [&](Random& random, Counts& counts)
     {
       const std::array<int, 3> size = { 21, 19, 22 };
       const glm::dvec3 middle(10.0, 9.0, 10.5);
@@ -57,16 +55,13 @@ void testVessels(bool across, Checks& check)
         volumeOf<T>(size, [&](const glm::dvec3& p) { return std::max(vessel.at(p), plate.at(p)); });
       compareAlong<T>(volume, view, random, counts, check);
     });
-  counts.report(name, check);
 }
 
 template <class T>
 void testSingleVoxels(Checks& check)
 {
-  const std::string name = coretesting::seriesOf<T>("single voxels");
-  Counts counts;
-  reference::forScenes(name, 80,
-    [&](int, Random& random)
+  forFamily<T>("single voxels", 80, MostAmbiguous, check,
+    [&](Random& random, Counts& counts)
     {
       const glm::dvec3 view = glm::normalize(randomDirection(random));
       const glm::dvec3 middle(8.0);
@@ -77,16 +72,13 @@ void testSingleVoxels(Checks& check)
         { 17, 17, 17 }, [&](const glm::dvec3& p) { return p == voxel ? 1.0 : plate.at(p); });
       compareAlong<T>(volume, view, random, counts, check);
     });
-  counts.report(name, check);
 }
 
 template <class T>
 void testTubes(Checks& check)
 {
-  const std::string name = coretesting::seriesOf<T>("tubes along the view");
-  Counts counts;
-  reference::forScenes(name, 60,
-    [&](int, Random& random)
+  forFamily<T>("tubes along the view", 60, MostAmbiguous, check,
+    [&](Random& random, Counts& counts)
     {
       const glm::dvec3 view = glm::normalize(randomDirection(random));
       const double tilt = std::pow(10.0, random.uniform(-6.0, -0.7));
@@ -98,16 +90,13 @@ void testTubes(Checks& check)
         volumeOf<T>({ 18, 16, 17 }, [&](const glm::dvec3& p) { return vessel.at(p); });
       compareAlong<T>(volume, view, random, counts, check);
     });
-  counts.report(name, check);
 }
 
 template <class T>
 void testNoise(Checks& check)
 {
-  const std::string name = coretesting::seriesOf<T>("noise");
-  Counts counts;
-  reference::forScenes(name, 80,
-    [&](int, Random& random)
+  forFamily<T>("noise", 80, MostAmbiguous, check,
+    [&](Random& random, Counts& counts)
     {
       // Sparse noise has few bright voxels.
       const double power = random.uniform(1.0, 20.0);
@@ -115,16 +104,13 @@ void testNoise(Checks& check)
         [&](const glm::dvec3&) { return std::pow(random.uniform(0.0, 1.0), power); });
       compareAlong<T>(std::move(volume), randomDirection(random), random, counts, check);
     });
-  counts.report(name, check);
 }
 
 template <class T>
 void testCheckerboards(Checks& check)
 {
-  const std::string name = coretesting::seriesOf<T>("checkerboards");
-  Counts counts;
-  reference::forScenes(name, 60,
-    [&](int, Random& random)
+  forFamily<T>("checkerboards", 60, MostAmbiguous, check,
+    [&](Random& random, Counts& counts)
     {
       const int width = random.uniform(1, 3);
       const double rise = random.uniform(0, 1) ? 0.0 : 0.01;
@@ -136,7 +122,6 @@ void testCheckerboards(Checks& check)
         });
       compareAlong<T>(std::move(volume), randomDirection(random), random, counts, check);
     });
-  counts.report(name, check);
 }
 
 /// A plate of 600 in slices 8 to 10 and a line of 1000 along x in slice 32, which shows 999.

@@ -68,10 +68,10 @@ void makeHoles(reference::Volume<T>& volume, HoleKind kind, Random& random)
 template <class T>
 void testHoles(const std::string& name, HoleKind kind, Checks& check)
 {
-  const std::string series = coretesting::seriesOf<T>(name);
-  Counts counts;
-  reference::forScenes(series, 320,
-    [&](int, Random& random)
+  // Rays along an axis or a diagonal run along the faces of octants. Up to 1 % of the samples of a
+  // series are of such a scene.
+  forFamily<T>(name, 320, 3e-2, check,
+    [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
       const std::array<int, 3> size = coretesting::randomSize(random, 14);
@@ -91,9 +91,6 @@ void testHoles(const std::string& name, HoleKind kind, Checks& check)
       }
       counts.add(compareScene(scene, check));
     });
-  // Rays along an axis or a diagonal run along the faces of octants. Up to 1 % of the samples of a
-  // series are of such a scene.
-  counts.report(series, check, 3e-2);
 }
 
 /// A bright hidden voxel never shows, and a single voxel that is not hidden shows as its box.

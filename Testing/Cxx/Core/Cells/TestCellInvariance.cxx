@@ -256,10 +256,8 @@ void testThreads(Checks& check)
 template <class T>
 void testLargestValues(Checks& check)
 {
-  const std::string series = coretesting::seriesOf<T>("largest values");
-  Counts counts;
-  reference::forScenes(series, 80,
-    [&](int, Random& random)
+  forFamily<T>("largest values", 80, MostAmbiguous, check,
+    [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
       const std::array<int, 3> size = coretesting::randomSize(random, 14);
@@ -274,7 +272,6 @@ void testLargestValues(Checks& check)
       scene.settings.reduction = random.uniform(0, 1) ? Reduction::Minimum : Reduction::Maximum;
       counts.add(compareScene(scene, check));
     });
-  counts.report(series, check);
 }
 }
 

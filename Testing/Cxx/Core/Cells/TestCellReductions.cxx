@@ -50,10 +50,11 @@ void addCuts(View& view, Random& random)
 template <class T>
 void testReduction(const std::string& name, Reduction reduction, bool holes, Checks& check)
 {
-  const std::string series = coretesting::seriesOf<T>(name + (holes ? ", holes" : ""));
-  Counts counts;
-  reference::forScenes(series, 160,
-    [&](int, Random& random)
+  // Cells that a ray only touches are shaded by where it does, as octants have values of their own.
+  // In two of the forty scenes of a series all rays may run along edges.
+  const bool isContinuous = !holes && reduction != Reduction::DepthShaded;
+  forFamily<T>(name + (holes ? ", holes" : ""), 160, isContinuous ? MostAmbiguous : 5e-2, check,
+    [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
       const std::array<int, 3> size = coretesting::randomSize(random, 18);
@@ -67,10 +68,6 @@ void testReduction(const std::string& name, Reduction reduction, bool holes, Che
       addCuts<T>(scene.view, random);
       counts.add(compareScene(scene, check));
     });
-  // Cells that a ray only touches are shaded by where it does, as octants have values of their own.
-  // In two of the forty scenes of a series all rays may run along edges.
-  const bool isContinuous = !holes && reduction != Reduction::DepthShaded;
-  isContinuous ? counts.report(series, check) : counts.report(series, check, 5e-2);
 }
 
 /// Shaded samples that are brightest where rays end. Rays end at the sides of the outermost voxels;
@@ -78,10 +75,8 @@ void testReduction(const std::string& name, Reduction reduction, bool holes, Che
 template <class T>
 void testFieldEnds(Checks& check)
 {
-  const std::string series = coretesting::seriesOf<T>("ends of the field");
-  Counts counts;
-  reference::forScenes(series, 160,
-    [&](int, Random& random)
+  forFamily<T>("ends of the field", 160, 5e-2, check,
+    [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
       scene.volume = coretesting::wholeRangeNoise<T>({ 4, 5, 3 }, random);
@@ -96,7 +91,6 @@ void testFieldEnds(Checks& check)
       scene.settings.changeRate = -0.9;
       counts.add(compareScene(scene, check));
     });
-  counts.report(series, check, 5e-2);
 }
 
 template <class T>
