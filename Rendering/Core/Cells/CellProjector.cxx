@@ -4,8 +4,8 @@
 
 #include "Cells/LocalMaxima.h"
 #include "Cells/TileSplatter.h"
+#include "Common/Parallel.h"
 
-#include <vtkSMPTools.h>
 
 #include <algorithm>
 #include <cstring>
@@ -137,7 +137,7 @@ void CellProjector::finish(
       using A = Accumulator<std::remove_pointer_t<decltype(null)>>;
       const ValueScale<A> scale(index.range(), settings.reduction);
       A* const values = screen.row<A>(0);
-      vtkSMPTools::For(0, vtkIdType(screen.size.x) * screen.size.y, 1 << 14,
+      parallelFor(0, vtkIdType(screen.size.x) * screen.size.y, 1 << 14,
         [&](vtkIdType begin, vtkIdType end)
         {
           for (vtkIdType n = begin; n < end; ++n)
@@ -179,7 +179,7 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
       const CellFrame<T> frame(index, view, settings, ends, locates, rectangle, screen.rays);
       Scratch& memory = *this->Memory;
       const std::size_t bricks = frame.bounds.order.size();
-      vtkSMPTools::For(0, Scratch::Chunks, 1,
+      parallelFor(0, Scratch::Chunks, 1,
         [&](vtkIdType begin, vtkIdType end)
         {
           for (vtkIdType n = begin; n < end; ++n)
@@ -203,7 +203,7 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
       std::stable_sort(memory.tiles.begin(), memory.tiles.end(),
         [&](int a, int b) { return costs[a] > costs[b]; });
       this->Observer.begin(static_cast<int>(memory.tiles.size()));
-      vtkSMPTools::For(0, static_cast<vtkIdType>(memory.tiles.size()), 1,
+      parallelFor(0, static_cast<vtkIdType>(memory.tiles.size()), 1,
         [&](vtkIdType begin, vtkIdType end)
         {
           std::unique_ptr<ScreenTile<A>> tile = memory.take<A>();

@@ -4,8 +4,8 @@
 
 #include "Cells/CellIndex.h"
 #include "Cells/CellPlaces.h"
+#include "Common/Parallel.h"
 
-#include <vtkSMPTools.h>
 
 #include <type_traits>
 
@@ -34,7 +34,7 @@ void colorRows(const ScreenScalars& screen, const ColorTable& table, const Works
   const auto last = static_cast<std::int32_t>(table.colors.size()) - 1;
   const A low = static_cast<A>(table.low);
   const A scale = static_cast<A>(table.high > table.low ? last / (table.high - table.low) : 0.0);
-  vtkSMPTools::For(0, screen.size.y, 16,
+  parallelFor(0, screen.size.y, 16,
     [&](vtkIdType begin, vtkIdType end)
     {
       for (vtkIdType y = begin; y < end; ++y)

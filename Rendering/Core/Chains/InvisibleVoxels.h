@@ -6,9 +6,9 @@
 #ifndef splattingInvisibleVoxels_h
 #define splattingInvisibleVoxels_h
 
+#include "Common/Parallel.h"
 #include "Projection/ProjectionContext.h"
 
-#include <vtkSMPTools.h>
 
 namespace splatting
 {
@@ -43,7 +43,7 @@ private:
   template <class Body>
   void forRows(Body&& body) const
   {
-    vtkSMPTools::For(0, this->Size.y, 16,
+    parallelFor(0, this->Size.y, 16,
       [&](vtkIdType first, vtkIdType last)
       {
         for (vtkIdType j = first; j < last; ++j)

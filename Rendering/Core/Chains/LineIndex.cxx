@@ -4,6 +4,7 @@
 
 #include "Chains/InvisibleVoxels.h"
 #include "Chains/LineEncoder.h"
+#include "Common/Parallel.h"
 
 #include <vtkSMPTools.h>
 
@@ -56,7 +57,7 @@ template <class T>
 T largestVoxel(const Slices& slices, const glm::ivec3& size)
 {
   std::vector<T> largest(size.z, leastValue<T>());
-  vtkSMPTools::For(0, size.z,
+  parallelFor(0, size.z, 0,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType k = first; k < last; ++k)
@@ -187,7 +188,7 @@ private:
     for (int k = 0; k < this->Size.z; k += chunk)
     {
       std::vector<Encoded> slices(std::min(chunk, this->Size.z - k));
-      vtkSMPTools::For(0, static_cast<vtkIdType>(slices.size()), 1,
+      parallelFor(0, static_cast<vtkIdType>(slices.size()), 1,
         [&](vtkIdType first, vtkIdType last)
         {
           for (vtkIdType s = first; s < last; ++s)

@@ -4,8 +4,8 @@
 
 #include "Clipping/ClosedSurface.h"
 #include "Clipping/SceneDepth.h"
+#include "Common/Parallel.h"
 
-#include <vtkSMPTools.h>
 
 #include <glm/geometric.hpp>
 
@@ -251,7 +251,7 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
     cutting.extents.findVolume(geometry);
   }
   std::atomic<bool> isCut(false);
-  vtkSMPTools::For(0, geometry.height(), 16,
+  parallelFor(0, geometry.height(), 16,
     [&](vtkIdType begin, vtkIdType end)
     {
       RowDepths depths;
@@ -293,7 +293,7 @@ void RayIntervals::findCrossed(
   this->Width = width;
   this->First.resize(std::size_t(width) * height);
   this->Last.resize(this->First.size());
-  vtkSMPTools::For(0, height, 16,
+  parallelFor(0, height, 16,
     [&](vtkIdType begin, vtkIdType end)
     {
       for (int v = static_cast<int>(begin); v < end; ++v)
@@ -315,7 +315,7 @@ void RayIntervals::setShifted(const RayIntervals& other, int firstSlice)
   this->Width = other.Width;
   this->First.resize(other.First.size());
   this->Last.resize(other.Last.size());
-  vtkSMPTools::For(0, static_cast<vtkIdType>(this->First.size()), 1 << 14,
+  parallelFor(0, static_cast<vtkIdType>(this->First.size()), 1 << 14,
     [&](vtkIdType begin, vtkIdType end)
     {
       for (vtkIdType n = begin; n < end; ++n)

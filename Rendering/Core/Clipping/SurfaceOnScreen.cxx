@@ -3,8 +3,8 @@
 #include "Clipping/SurfaceOnScreen.h"
 
 #include "Clipping/ClosedSurface.h"
+#include "Common/Parallel.h"
 
-#include <vtkSMPTools.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -128,7 +128,7 @@ void SurfaceOnScreen::find(const ClosedSurface& surface, const PixelRays& rays,
   std::vector<ScreenTriangle> triangles;
   surface.forTriangles(
     [&](const glm::dvec3(&corners)[3]) { triangles.emplace_back(rays, corners); });
-  vtkSMPTools::For(0, size.y, 8,
+  parallelFor(0, size.y, 8,
     [&](vtkIdType begin, vtkIdType end)
     {
       for (const ScreenTriangle& triangle : triangles)

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Display/Picture.h"
 
+#include "Common/Parallel.h"
 #include "Display/Outline.h"
 
-#include <vtkSMPTools.h>
 
 #include <glm/common.hpp>
 
@@ -68,7 +68,7 @@ void addSaturated(const Picture& layer, Picture& sum)
 {
   const auto* const from = reinterpret_cast<const unsigned char*>(layer.pixels.data());
   auto* const to = reinterpret_cast<unsigned char*>(sum.pixels.data());
-  vtkSMPTools::For(0, static_cast<vtkIdType>(4 * sum.pixels.size()), 1 << 16,
+  parallelFor(0, static_cast<vtkIdType>(4 * sum.pixels.size()), 1 << 16,
     [=](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType n = first; n < last; ++n)
@@ -82,7 +82,7 @@ void multiplyByOpacity(const Picture& opacity, Picture& picture)
 {
   const auto* const from = reinterpret_cast<const unsigned char*>(opacity.pixels.data());
   auto* const to = reinterpret_cast<unsigned char*>(picture.pixels.data());
-  vtkSMPTools::For(0, static_cast<vtkIdType>(picture.pixels.size()), 1 << 14,
+  parallelFor(0, static_cast<vtkIdType>(picture.pixels.size()), 1 << 14,
     [=](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType n = 4 * first; n < 4 * last; ++n)

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Display/ShearPixels.h"
 
+#include "Common/Parallel.h"
 #include "Display/Outline.h"
 #include "Display/PixelArea.h"
 #include "Display/WarpSource.h"
 
-#include <vtkSMPTools.h>
 
 #include <algorithm>
 #include <type_traits>
@@ -76,7 +76,7 @@ void findAreaPixels(const std::vector<ShearImage>& images, const std::vector<She
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
-      vtkSMPTools::For(0, size.y, 16,
+      parallelFor(0, size.y, 16,
         [&](vtkIdType first, vtkIdType last)
         {
           for (vtkIdType n = first * size.x; n < last * size.x; ++n)
@@ -100,7 +100,7 @@ void findShearPixels(const std::vector<ShearImage>& images,
   {
     shown.push_back(shownBy(geometry));
   }
-  vtkSMPTools::For(0, size.y, 16,
+  parallelFor(0, size.y, 16,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType y = first; y < last; ++y)

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Display/Warp.h"
 
+#include "Common/Parallel.h"
 #include "Display/AreaRows.h"
 #include "Display/WarpSource.h"
 
-#include <vtkSMPTools.h>
 
 #include <algorithm>
 #include <cmath>
@@ -104,7 +104,7 @@ public:
     {
       this->Observer.start();
     }
-    vtkSMPTools::For(0, place.size.y, 16,
+    parallelFor(0, place.size.y, 16,
       [&](vtkIdType first, vtkIdType last)
       {
         for (vtkIdType y = first; y < last && (!showsAreas || this->Observer.ask()); ++y)
@@ -301,7 +301,7 @@ void Warper::warpPixels(const std::vector<ShearImage>& images, const std::vector
       using T = std::remove_pointer_t<decltype(null)>;
       using A = Accumulator<T>;
       const ColorSink<A> sink(kernelsFor(instructionSet), table);
-      vtkSMPTools::For(0, static_cast<vtkIdType>(shown.size()), 1 << 12,
+      parallelFor(0, static_cast<vtkIdType>(shown.size()), 1 << 12,
         [&](vtkIdType first, vtkIdType last)
         {
           for (vtkIdType n = first; n < last; ++n)

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Geometry/AxisSteps.h"
 
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
+
 
 #include <algorithm>
 
@@ -43,7 +44,7 @@ void AxisSteps::find(const ShearWarp& geometry, int a, const PerspectiveLoops& l
   this->Tick.resize(steps);
   this->Covers.resize(slices);
   this->Ascends.resize(slices);
-  vtkSMPTools::For(0, slices, 8,
+  parallelFor(0, slices, 8,
     [&](vtkIdType begin, vtkIdType end)
     {
       for (vtkIdType n = begin; n < end; ++n)
@@ -94,7 +95,7 @@ void AxisPicks::find(const AxisSteps& steps, int group, int bytes)
   const int slices = steps.Slices.end - steps.Slices.begin;
   this->Bases.resize(2 * std::size_t(slices) * this->Groups);
   this->Lanes.resize(2 * std::size_t(slices) * steps.Padded * bytes);
-  vtkSMPTools::For(0, 2 * slices, 16,
+  parallelFor(0, 2 * slices, 16,
     [&](vtkIdType begin, vtkIdType end)
     {
       for (vtkIdType row = begin; row < end; ++row)

@@ -3,9 +3,9 @@
 #include "Projection/Locations.h"
 
 #include "Cells/ScreenScalars.h"
+#include "Common/Parallel.h"
 #include "Sampling/ValuesAtWinners.h"
 
-#include <vtkSMPTools.h>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -249,7 +249,7 @@ void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec
       using T = std::remove_pointer_t<decltype(null)>;
       GeneralTable table;
       const VoxelFinder<T> finder(located, geometry, table);
-      vtkSMPTools::For(0, projected.height, 8,
+      parallelFor(0, projected.height, 8,
         [&](vtkIdType first, vtkIdType last)
         {
           for (int v = static_cast<int>(first); v < last; ++v)
@@ -432,7 +432,7 @@ template <class F>
 void Locator::fillFrom(
   const glm::ivec2& origin, const glm::ivec2& size, const Arrays& arrays, F&& sampleOf) const
 {
-  vtkSMPTools::For(0, size.y, 8,
+  parallelFor(0, size.y, 8,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType y = first; y < last; ++y)

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Common/Parallel.h"
 #include "Common/ProgressObserver.h"
 #include "Projection/WalkSpace.h"
 #include "Sampling/SliceSampler.h"
 
-#include <vtkSMPTools.h>
 
 #include <algorithm>
 
@@ -18,7 +18,7 @@ constexpr int ChunkDepth = 8 * BrickDepth;
 
 int bandHeight(int rows)
 {
-  const int share = rows / (4 * vtkSMPTools::GetEstimatedNumberOfThreads());
+  const int share = rows / (4 * numberOfThreads());
   return std::clamp(share / TileHeight * TileHeight, 2 * TileHeight, 8 * TileHeight);
 }
 
@@ -27,7 +27,7 @@ void forBands(
 {
   const int bands = (height + rows - 1) / rows;
   observer.begin(bands);
-  vtkSMPTools::For(0, bands, 1,
+  parallelFor(0, bands, 1,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType b = first; b < last && !observer.stopped(); ++b)

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sampling/Footprint.h"
 
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
+
 
 #include <glm/common.hpp>
 
@@ -269,7 +270,7 @@ void GeneralTable::set(const Kernel& kernel, const glm::dvec2& shear, int sampli
     entries.resize(static_cast<std::size_t>(n) * n);
   }
   this->Sampling = sampling;
-  vtkSMPTools::For(0, 3 * n, 8,
+  parallelFor(0, 3 * n, 8,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType row = first; row < last; ++row)

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sampling/Worksheets.h"
 
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
+
 
 #include <algorithm>
 #include <array>
@@ -79,7 +80,7 @@ void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int samplin
     table.set(kernel, shear, sampling);
   }
   footprints.resize(geometry.size().z);
-  vtkSMPTools::For(0, geometry.size().z, 8,
+  parallelFor(0, geometry.size().z, 8,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType k = first; k < last; ++k)
