@@ -32,6 +32,7 @@ def mip(
     shape: tuple[int, int] | None = None,
     pixel_spacing: float | Sequence[float] | None = None,
     background: float | None = None,
+    views: int | None = None,
 ) -> numpy.ndarray:
     """Return the maximum intensity projection of a volume.
 
@@ -61,11 +62,13 @@ def mip(
     background
         Value of pixels without a sample. By default the least value of the array, for "minimum" the
         greatest.
+    views
+        Number of views of a whole turn about the picture's vertical.
 
     Returns
     -------
     numpy.ndarray
-        Picture, its first row at the top. Maxima and minima have the type of the array: those of
+        Picture, its first row at the top; with `views` an array of pictures. Maxima and minima have the type of the array: those of
         integers are rounded. Means are float32, or float64 for 32- and 64-bit integers and float64.
 
     Raises
@@ -82,19 +85,23 @@ def mip(
     along, up = _view(direction, up)
     across = numpy.cross(up, along)  # to the right; the axes are in reverse order
     down = numpy.cross(across, along)
+    down, across = down / numpy.linalg.norm(down), across / numpy.linalg.norm(across)
+    # Between the outermost voxels, along columns and rows of the picture.
     lengths = (numpy.array(volume.shape) - 1) * spacing
-    axes = [_unit(down), _unit(across)]
-    extents = numpy.array([abs(axis) @ lengths for axis in axes])
-    if pixel_spacing is None:
-        along_axis = numpy.ndim(direction) == 0
-        pixel_spacing = [abs(axis) @ spacing if along_axis else spacing.min() for axis in axes]
-        if shape is not None:
-            needed = max((extents + spacing.min()) / shape)
-            pixel_spacing = [needed, needed]
+    width = abs(across) @ lengths if views is None else numpy.linalg.norm(lengths)
+    extents = numpy.array([abs(down) @ lengths, width])
+    if shape is not None and min(shape) < 1:
+        raise ValueError("shape must be above 0.")
+    if pixel_spacing is None and shape is not None:
+        pixel_spacing = max((extents + spacing.min()) / shape)
+    elif pixel_spacing is None and numpy.ndim(direction) == 0:
+        pixel_spacing = abs(down) @ spacing, abs(across) @ spacing
+    elif pixel_spacing is None:
+        pixel_spacing = spacing.min()
     pixel_spacing = numpy.broadcast_to(numpy.asarray(pixel_spacing, float), 2)
+    if not (pixel_spacing > 0).all():
+        raise ValueError("spacing and pixel_spacing must be above 0.")
     if shape is None:
-        if not (pixel_spacing > 0).all():
-            raise ValueError("pixel_spacing must be above 0.")
         shape = (numpy.ceil(extents / pixel_spacing - 1e-6) + 1).astype(int)
 
     projection = vtksplattingmip.vtkSplattingMIPProjection()
@@ -105,6 +112,9 @@ def mip(
     projection.SetBlendMode(_choice("blend", blend, _BLENDS))
     projection.SetOutputSize(int(shape[1]), int(shape[0]))
     projection.SetOutputSpacing(pixel_spacing[1], pixel_spacing[0])
+    if views is not None:
+        projection.SetNumberOfViews(views)
+        projection.SetRotationAxis(*-down[::-1])
     if background is None and blend == "minimum":
         background = numpy.nanmax(volume)
     elif background is None:
@@ -114,7 +124,9 @@ def mip(
 
     support = vtksplattingmip._vtk_module("util.numpy_support")
     picture = support.vtk_to_numpy(projection.GetOutput().GetPointData().GetScalars())
-    picture = picture.reshape(shape)[::-1]
+    picture = picture.reshape(-1, *shape)[:, ::-1]
+    if views is None:
+        picture = picture[0]
     if blend == "mean":
         return picture.copy()
     if numpy.issubdtype(volume.dtype, numpy.integer):
@@ -164,12 +176,6 @@ def _view(direction, up):
     if not numpy.linalg.norm(numpy.cross(direction, up)) > 0:
         raise ValueError("up must not be along the direction, and neither may be 0.")
     return direction, up
-
-
-def _unit(vector):
-    import numpy
-
-    return vector / numpy.linalg.norm(vector)
 
 
 def _choice(name, value, values):

@@ -85,6 +85,15 @@ class TestMip(unittest.TestCase):
         self.assertEqual(oblique.dtype, numpy.uint8)
         self.assertGreater(min(oblique.shape), 5)
 
+    def test_turn(self):
+        volume = noise("B", (6, 7, 8))
+        turn = mip(volume, direction=1, views=4, mode="preview")
+        self.assertEqual(turn.shape[0], 4)
+        self.assertEqual(turn.dtype, numpy.uint8)
+        self.assertEqual([view.max() for view in turn], [volume.max()] * 4)
+        # Seen from the opposite sides, the picture is mirrored.
+        numpy.testing.assert_array_equal(turn[0], turn[2][:, ::-1])
+
     def test_background(self):
         volume = noise("f") + 7
         around = {"pixel_spacing": 1.0, "shape": (20, 20)}
