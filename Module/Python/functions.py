@@ -196,7 +196,7 @@ def _image(volume, spacing):
 def _update(algorithm):
     """Update an algorithm without Python's lock, and raise its error.
 
-    Update() releases the lock in VTK 9.6 and newer only. A function that ctypes calls does so always.
+    Update() releases the lock in newer VTKs only. A function that ctypes calls does so always.
     """
     errors = []
 
