@@ -4,6 +4,7 @@
 
 import ast
 import importlib
+import multiprocessing
 import pathlib
 import pydoc
 import threading
@@ -157,6 +158,20 @@ class TestMip(unittest.TestCase):
         self.assertEqual(len(found), 4)
         for picture in found:
             numpy.testing.assert_array_equal(picture, expected)
+
+    def test_forked_process(self):
+        """Threads do not survive a fork. A child computes on one where we chose the threads."""
+        tools = vtksplattingmip._vtk_module("vtkCommonCore").vtkSMPTools
+        if tools.GetBackend() != "Sequential":
+            self.skipTest("the program chose the threads")
+        volume = noise("H", (40, 50, 60))
+        expected = mip(volume)
+        context = multiprocessing.get_context("fork")
+        results = context.Queue()
+        child = context.Process(target=lambda: results.put(mip(volume)))
+        child.start()
+        numpy.testing.assert_array_equal(results.get(timeout=60), expected)
+        child.join()
 
 
 class TestPackage(unittest.TestCase):
