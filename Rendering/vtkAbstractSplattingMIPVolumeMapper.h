@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkAbstractSplattingMIPVolumeMapper
- * @brief   the properties of vtkSplattingMIPVolumeMapper
+ * @brief   properties of vtkSplattingMIPVolumeMapper
  *
- * What can be set of a mapper that projects by splatting, but for what vtkVolumeMapper has already:
- * input and scalars, BlendMode (maximum intensity is the default here), AverageIPScalarRange,
- * ClippingPlanes and Cropping. Its subclass renders.
+ * vtkAbstractSplattingMIPVolumeMapper has the properties of a mapper that projects by splatting.
+ * Its subclass renders. Input, scalars, BlendMode (default here: MAXIMUM_INTENSITY),
+ * AverageIPScalarRange, ClippingPlanes and Cropping are those of vtkVolumeMapper.
  *
  * [CS98] is W. Cai and G. Sakas, "Maximum Intensity Projection Using Splatting in Sheared Object
- * Space", Computer Graphics Forum 17(3), 1998.
+ * Space", Computer Graphics Forum 17(3), 1998. Rendering/Documentation/limits.md in the source tree
+ * lists memory, costs and restrictions.
  *
  * @sa vtkSplattingMIPVolumeMapper
  */
@@ -17,14 +18,9 @@
 #define vtkAbstractSplattingMIPVolumeMapper_h
 
 #include "vtkRenderingSplattingMIPModule.h" // for the export macro
+#include "vtkSplattingMIPChoices.h"         // for the enumerations
 #include "vtkVolumeMapper.h"
 
-#include <memory> // for the hidden properties
-
-namespace splatting
-{
-struct MapperProperties;
-}
 class vtkImageData;
 class vtkPolyData;
 class vtkScalarsToColors;
@@ -36,59 +32,20 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * The values of vtkSmartVolumeMapper's VectorMode.
+   * The values of VectorMode, QualityMode, Kernel, MaximumType and Acceleration; see
+   * vtkSplattingMIPChoices.h.
    */
-  enum VectorModes
-  {
-    DISABLED = -1,
-    MAGNITUDE = 0,
-    COMPONENT = 1
-  };
-
-  enum QualityModes
-  {
-    PREVIEW = 0,
-    STANDARD = 1,
-    HIGH = 2,
-    EXACT = 3
-  };
-
-  enum Kernels
-  {
-    TRILINEAR = 0,
-    COSINE_BELL = 1
-  };
-
-  enum MaximumTypes
-  {
-    GLOBAL = 0,
-    DEPTH_SHADED = 1,
-    LOCAL = 2
-  };
-
-  enum Accelerations
-  {
-    AUTO = 0,
-    DENSE = 1,
-    BRICKS = 2,
-    LINES = 3,
-    SORTED_LINES = 4,
-    SORTED_VOLUME = 5
-  };
+  vtkSplattingMIPChoicesMacro();
 
   ///@{
   /**
-   * What is projected of scalars with several components, as in vtkSmartVolumeMapper. Default
-   * DISABLED: all of them (see vtkSplattingMIPVolumeMapper). MAGNITUDE: the Euclidean length, in
-   * float (double for 32- and 64-bit integers and double), so that it neither overflows nor is
-   * rounded to an integer; one component is taken as it is. COMPONENT: the one that VectorComponent
-   * names. Both take the first transfer functions of the property, which they leave alone; they
-   * cost a copy, unless the component is stored by itself.
+   * Set/Get the projected components of scalars that have several, as in vtkSmartVolumeMapper.
+   * Default DISABLED. MAGNITUDE and COMPONENT use the first transfer functions of the property.
+   * Magnitudes are float (double for 32- and 64-bit integers and double). Magnitudes and
+   * interleaved components are copied.
    */
-  virtual void SetVectorMode(int);
-  virtual int GetVectorMode();
-  virtual int GetVectorModeMinValue();
-  virtual int GetVectorModeMaxValue();
+  vtkSetClampMacro(VectorMode, int, DISABLED, COMPONENT);
+  vtkGetMacro(VectorMode, int);
   void SetVectorModeToDisabled() { this->SetVectorMode(DISABLED); }
   void SetVectorModeToMagnitude() { this->SetVectorMode(MAGNITUDE); }
   void SetVectorModeToComponent() { this->SetVectorMode(COMPONENT); }
@@ -97,52 +54,34 @@ public:
 
   ///@{
   /**
-   * The component that VectorMode COMPONENT projects. Default 0, clamped to [0, 3]; scalars with
-   * fewer components give an error.
+   * Set/Get the component that VectorMode COMPONENT projects. Default 0, clamped to [0, 3]. Scalars
+   * without this component are reported as an error.
    */
-  virtual void SetVectorComponent(int);
-  virtual int GetVectorComponent();
-  virtual int GetVectorComponentMinValue();
-  virtual int GetVectorComponentMaxValue();
+  vtkSetClampMacro(VectorComponent, int, 0, 3);
+  vtkGetMacro(VectorComponent, int);
   ///@}
 
   ///@{
   /**
-   * A binary mask, as vtkGPUVolumeRayCastMapper's: voxels where it is 0 are hidden, all others are
-   * shown. Scalars of type unsigned char with one component (of the mask's points, or of its cells
-   * if its points have none), one for each voxel of the input; spacing and origin do not matter.
-   * Default none. Costs the copy that hidden voxels cost.
+   * Set/Get a binary mask, as in vtkGPUVolumeRayCastMapper. Voxels where it is 0 are hidden. The
+   * mask needs scalars of type unsigned char with one component, and one value for each voxel of
+   * the input. Point scalars are used if there are any, else cell scalars. Spacing and origin are
+   * ignored. Default nullptr: no mask. With a mask the volume is copied to floating point.
    */
-  virtual void SetMaskInput(vtkImageData* mask);
-  virtual vtkImageData* GetMaskInput();
+  virtual void SetMaskInput(vtkImageData*);
+  vtkGetObjectMacro(MaskInput, vtkImageData);
   ///@}
 
   ///@{
   /**
-   * What a slice contributes to a pixel of the shear image [CS98, section 2 and 3], or EXACT.
-   *
-   * PREVIEW: the largest of the voxels that the pixel's ray crosses in the slice (up to three), so
-   * that the shear image equals an exact voxel traversal bit for bit. Fastest.
-   * STANDARD: the average of the piecewise constant volume over the pixel's area and the slice's
-   * thickness (3x3 weights).
-   * HIGH: the average of the volume, interpolated with Kernel, over the same region (5x5 weights
-   * from each of three slices).
-   * EXACT (default): the extremum of the trilinearly interpolated volume on the ray of each pixel
-   * of the screen, in closed form, cell by cell [Sakas et al. 1995]. Nothing is averaged, and no
-   * sample distance can miss a voxel. There is no shear image. Averages and dependent components
-   * are those of HIGH.
-   *
-   * In an overview, where pixels are wider than voxels in some direction, a pixel shows the
-   * extremum (of averages the average) over its area instead of the value at its centre. EXACT then
-   * shows voxels, as PREVIEW does. GetQualityModeUsed() returns the mode that is shown.
-   *
-   * In perspective a pixel's area is as wide as rays are apart: nearly a voxel where the volume is
-   * farthest from the eye, and less in nearer slices.
+   * Set/Get the quality mode. Default EXACT, clamped to [PREVIEW, EXACT]. In EXACT no maximum lies
+   * between samples; averages and dependent components are those of HIGH. In an overview, where
+   * pixels are wider than voxels in some direction, a pixel shows the extremum over its area (of
+   * averages the average), and EXACT shows voxels like PREVIEW. GetQualityModeUsed() returns the
+   * mode that is shown.
    */
-  virtual void SetQualityMode(int);
-  virtual int GetQualityMode();
-  virtual int GetQualityModeMinValue();
-  virtual int GetQualityModeMaxValue();
+  vtkSetClampMacro(QualityMode, int, PREVIEW, EXACT);
+  vtkGetMacro(QualityMode, int);
   void SetQualityModeToPreview() { this->SetQualityMode(PREVIEW); }
   void SetQualityModeToStandard() { this->SetQualityMode(STANDARD); }
   void SetQualityModeToHigh() { this->SetQualityMode(HIGH); }
@@ -152,50 +91,37 @@ public:
 
   ///@{
   /**
-   * Whether a faster quality mode takes the place of QualityMode where frames were measured to take
-   * longer than the volume's allocated render time, which follows from the render window's desired
-   * update rate; interactor styles change that during interaction. Each mode is timed, for each
-   * renderer and volume, by frames that project, without the first one and without what is made
-   * once per data set. EXACT gives way to HIGH, HIGH to STANDARD, STANDARD to PREVIEW, and back
-   * once a better mode is expected to take no more than 80 % of the time. A mode that was not
-   * measured yet is taken to fit. So the first frame is in QualityMode, and so is a still one,
-   * which is allowed hours. A shear image in a better mode (up to QualityMode) that shows the view
-   * already is kept. The picture's resolution is never reduced. GetQualityModeUsed() tells. Off:
-   * always QualityMode. Views that are ray cast ignore it. Default on.
+   * Set/Get whether a faster quality mode is used if frames take longer than the allocated render
+   * time of the volume, as during interaction. Measured times decide: EXACT is replaced by HIGH,
+   * HIGH by STANDARD, STANDARD by PREVIEW. The resolution stays. GetQualityModeUsed() returns the
+   * mode. Default on. Is ignored where rays are cast.
    */
-  virtual void SetAutoAdjustSampleDistances(vtkTypeBool);
-  virtual vtkTypeBool GetAutoAdjustSampleDistances();
-  virtual vtkTypeBool GetAutoAdjustSampleDistancesMinValue();
-  virtual vtkTypeBool GetAutoAdjustSampleDistancesMaxValue();
+  vtkSetClampMacro(AutoAdjustSampleDistances, vtkTypeBool, 0, 1);
+  vtkGetMacro(AutoAdjustSampleDistances, vtkTypeBool);
   vtkBooleanMacro(AutoAdjustSampleDistances, vtkTypeBool);
   ///@}
 
   ///@{
   /**
-   * Window and level applied to the picture's colours, for brightness and contrast: a colour c,
-   * from 0 to 1, becomes (c - FinalColorLevel) / FinalColorWindow + 1/2. The opacity A stays, so
-   * that premultiplied colours C become C / FinalColorWindow + A (1/2 - FinalColorLevel /
-   * FinalColorWindow), cut off at 0 and 1, as in VTK's ray casters: bright colours of translucent
-   * pixels may exceed their opacity. Both must be finite; the window may be negative (the picture
-   * is then inverted), but not 0. Default 1 and 0.5, which change nothing. A change costs a new
-   * table of colours; the shear image is used again (unless CullBelowWindow finds another window).
+   * Set/Get the window and the level of the colours, for brightness and contrast. A colour c, from
+   * 0 to 1, becomes (c - FinalColorLevel) / FinalColorWindow + 1/2. The opacity stays. Defaults 1
+   * and 0.5: no change. A negative window inverts the picture. A window of 0, and values that are
+   * not finite, are reported as an error.
    */
-  virtual void SetFinalColorWindow(float);
-  virtual float GetFinalColorWindow();
-  virtual void SetFinalColorLevel(float);
-  virtual float GetFinalColorLevel();
+  vtkSetMacro(FinalColorWindow, float);
+  vtkGetMacro(FinalColorWindow, float);
+  vtkSetMacro(FinalColorLevel, float);
+  vtkGetMacro(FinalColorLevel, float);
   ///@}
 
   ///@{
   /**
-   * The reconstruction kernel h of mode HIGH along each axis, t in voxels [CS98, section 3].
+   * Set/Get the reconstruction kernel h of HIGH along each axis, t in voxels [CS98, section 3].
    * TRILINEAR (default): h(t) = 1-|t| for |t| < 1. COSINE_BELL: h(t) = (1 + cos(pi t / r)) / 2 for
-   * |t| < r = KernelRadius. The other modes ignore it.
+   * |t| < r = KernelRadius. Is ignored in the other modes.
    */
-  virtual void SetKernel(int);
-  virtual int GetKernel();
-  virtual int GetKernelMinValue();
-  virtual int GetKernelMaxValue();
+  vtkSetClampMacro(Kernel, int, TRILINEAR, COSINE_BELL);
+  vtkGetMacro(Kernel, int);
   void SetKernelToTrilinear() { this->SetKernel(TRILINEAR); }
   void SetKernelToCosineBell() { this->SetKernel(COSINE_BELL); }
   const char* GetKernelAsString();
@@ -203,39 +129,23 @@ public:
 
   ///@{
   /**
-   * The radius r of the cosine bell in voxels, default 1, clamped to [0.5, 1.5] (a wider bell would
-   * need more than 5x5 weights). r = 1 sums to one by itself, other radii are normalised. Below
-   * 0.501, FootprintSampling 1 is as 2: the bell would end before a lone sub-pixel's centre.
+   * Set/Get the radius of the cosine bell in voxels. Default 1, clamped to [0.5, 1.5]. Weights are
+   * normalised to a sum of 1. Below 0.501 FootprintSampling 1 is treated as 2, because the bell
+   * would not contain the centre of the only sub-pixel.
    */
-  virtual void SetKernelRadius(double);
-  virtual double GetKernelRadius();
-  virtual double GetKernelRadiusMinValue();
-  virtual double GetKernelRadiusMaxValue();
+  vtkSetClampMacro(KernelRadius, double, 0.5, 1.5);
+  vtkGetMacro(KernelRadius, double);
   ///@}
 
   ///@{
   /**
-   * Which maximum along a ray is shown in blend mode MAXIMUM_INTENSITY. Default GLOBAL. A ray's
-   * samples are, in mode PREVIEW, the voxels that it crosses, and in the other modes the averages
-   * of its slices.
-   *
-   * GLOBAL: the largest of all.
-   * DEPTH_SHADED: each sample is dimmed by its depth before the maximum is taken (DMIP) [Bruckner,
-   * "Performing Maximum Intensity Projection with the Visualization Toolkit", Program 4.3]: a
-   * sample in the n-th of the N slices that the ray crosses inside planes and slab (n = 0 is the
-   * nearest to the viewer) is multiplied by ambient + (1 - n / N) changeRate. Samples count from
-   * the lowest scalar of the volume here, so that Hounsfield units are dimmed like bytes. The shear
-   * image is float (double for 32- and 64-bit integers and double) in all modes. LOCAL: the first
-   * local maximum, seen from the viewer, that is no less than LocalMaximumThreshold, and where
-   * there is none the largest of all [Sato et al. 1998].
-   *
-   * DEPTH_SHADED and LOCAL depend on the side that the viewer is on. They, and the blend modes
-   * MINIMUM_INTENSITY and AVERAGE_INTENSITY, look at every sample: Acceleration has no effect.
+   * Set/Get the maximum along a ray that blend mode MAXIMUM_INTENSITY shows. Default GLOBAL,
+   * clamped to [GLOBAL, LOCAL]. Samples of a ray are the voxels that it crosses in PREVIEW, the
+   * averages of its slices in STANDARD and HIGH, and the interpolated field in EXACT. DEPTH_SHADED
+   * and LOCAL depend on the side of the viewer. DEPTH_SHADED gives shear images of floating point.
    */
-  virtual void SetMaximumType(int);
-  virtual int GetMaximumType();
-  virtual int GetMaximumTypeMinValue();
-  virtual int GetMaximumTypeMaxValue();
+  vtkSetClampMacro(MaximumType, int, GLOBAL, LOCAL);
+  vtkGetMacro(MaximumType, int);
   void SetMaximumTypeToGlobal() { this->SetMaximumType(GLOBAL); }
   void SetMaximumTypeToDepthShaded() { this->SetMaximumType(DEPTH_SHADED); }
   void SetMaximumTypeToLocal() { this->SetMaximumType(LOCAL); }
@@ -244,139 +154,101 @@ public:
 
   ///@{
   /**
-   * Factors of DEPTH_SHADED: the ambient is what is left of a sample at the far end of the ray, the
-   * change rate is what is added to that at the near end. Defaults 0.3 and 0.7: from 30 % to
-   * everything. 1 and 0 give the plain maximum. Their magnitudes must not sum to more than a
-   * million.
+   * Set/Get the factors of DEPTH_SHADED. The height of a sample above the lowest scalar is
+   * multiplied by ambient + (1 - d) changeRate, where d grows from 0 at the near end of the visible
+   * ray to 1 at its far end [Bruckner, "Performing Maximum Intensity Projection with the
+   * Visualization Toolkit", Program 4.3]. Defaults 0.3 and 0.7. Magnitudes that sum to more than
+   * 1e6 are reported as an error.
    */
-  virtual void SetDepthShadingAmbient(double);
-  virtual double GetDepthShadingAmbient();
-  virtual void SetDepthShadingChangeRate(double);
-  virtual double GetDepthShadingChangeRate();
+  vtkSetMacro(DepthShadingAmbient, double);
+  vtkGetMacro(DepthShadingAmbient, double);
+  vtkSetMacro(DepthShadingChangeRate, double);
+  vtkGetMacro(DepthShadingChangeRate, double);
   ///@}
 
   ///@{
   /**
-   * Of local maxima: the scalar from which on they count. Default 0.
+   * Set/Get the least scalar that LOCAL accepts as a local maximum [Sato et al. 1998]. Rays without
+   * one show their largest sample. Default 0. NaN is reported as an error.
    */
-  virtual void SetLocalMaximumThreshold(double);
-  virtual double GetLocalMaximumThreshold();
+  vtkSetMacro(LocalMaximumThreshold, double);
+  vtkGetMacro(LocalMaximumThreshold, double);
   ///@}
 
   ///@{
   /**
-   * Show only a slab across the view (thin-slab or sliding MIP): what lies within SlabThickness / 2
-   * of the plane through SlabCenter, a point of the world, that is orthogonal to the rays, in
-   * perspective parallel to the plane of the picture. Default off. Each new place of the slab is
-   * one projection of the slices in it; nothing is indexed anew. It cuts as ClippingPlanes do: a
-   * ray that has the middle of no slice inside shows the nearest one, so that a thin slab shows one
-   * slice.
+   * Set/Get whether only a slab across the view is shown (thin-slab MIP): the part of the volume
+   * within SlabThickness / 2 of the plane through SlabCenter. The plane is orthogonal to the rays,
+   * in perspective parallel to the image plane. Default off. In modes other than EXACT a slab
+   * thinner than a slice shows one slice.
    */
-  virtual void SetSlab(bool);
-  virtual bool GetSlab();
-  vtkBooleanMacro(Slab, bool);
+  vtkSetMacro(Slab, vtkTypeBool);
+  vtkGetMacro(Slab, vtkTypeBool);
+  vtkBooleanMacro(Slab, vtkTypeBool);
   ///@}
 
   ///@{
   /**
-   * The thickness of the slab in world units, above 0; default 10, the usual slab of clinical
-   * volumes in millimetres.
+   * Set/Get the thickness of the slab in world units. Default 10. A thickness that is not above 0
+   * is reported as an error if Slab is on.
    */
-  virtual void SetSlabThickness(double);
-  virtual double GetSlabThickness();
+  vtkSetMacro(SlabThickness, double);
+  vtkGetMacro(SlabThickness, double);
   ///@}
 
   ///@{
   /**
-   * A point of the world in the middle of the slab, by default (0, 0, 0).
+   * Set/Get the centre of the slab in world coordinates. Default (0, 0, 0). Must be finite.
    */
-  virtual void SetSlabCenter(double x, double y, double z);
-  virtual void SetSlabCenter(const double values[3]);
-  virtual double* GetSlabCenter() VTK_SIZEHINT(3);
-  virtual void GetSlabCenter(double& x, double& y, double& z);
-  virtual void GetSlabCenter(double values[3]);
+  vtkSetVector3Macro(SlabCenter, double);
+  vtkGetVector3Macro(SlabCenter, double);
   ///@}
 
   ///@{
   /**
-   * A closed surface in world coordinates that the volume is shown in, whatever its shape (the
-   * successor of vtkProjectedPolyDataRayBounder); nullptr, the default, for none. Each ray is cut
-   * to the part between its first and its last crossing with the surface, to which hollows and
-   * holes on the ray's way belong; rays that miss it show nothing. Polygons and strips count, in
-   * any orientation. If the surface is not closed, rays that cross it only once show nothing; a
-   * warning says that it is open.
-   *
-   * The surface is drawn in software once for each view direction, about a millisecond for ten
-   * thousand triangles, and only triangulated again when it is modified.
+   * Set/Get a closed surface, in world coordinates, that bounds the visible part of the volume.
+   * Default nullptr: no surface. Rays are cut to the part between their first and last crossing of
+   * the surface; rays that miss it are transparent. Polygons and strips of any orientation are
+   * used. If the surface is open, rays that cross it once are transparent, and a warning is
+   * reported.
    */
-  virtual void SetBoundingSurface(vtkPolyData* surface);
-  virtual vtkPolyData* GetBoundingSurface();
+  virtual void SetBoundingSurface(vtkPolyData*);
+  vtkGetObjectMacro(BoundingSurface, vtkPolyData);
   ///@}
 
   ///@{
   /**
-   * Whether opaque geometry that was rendered before hides what lies behind it; default on. The
-   * depth buffer is read where the volume is seen, if the renderer has rendered other props. What
-   * lies before the volume hides it, pixel by pixel of the screen; what lies inside ends the rays
-   * of the shear image, so that its edges are as soft as the shear image's pixels are large; what
-   * lies behind the volume does not matter, and the shear image is used again. Geometry between a
-   * part that Cropping or BoundingSurface takes away and what is left counts as inside. With
-   * geometry inside, panning and zooming project anew. In EXACT the rays of the screen's pixels end
-   * at the geometry.
+   * Set/Get whether opaque geometry that was rendered before hides the volume behind it. Default
+   * on. Geometry inside the volume ends the rays of the shear image, in EXACT those of the screen's
+   * pixels. In modes other than EXACT its edges are as soft as the pixels of the shear image are
+   * large.
    */
-  virtual void SetIntermixIntersectingGeometry(vtkTypeBool);
-  virtual vtkTypeBool GetIntermixIntersectingGeometry();
+  vtkSetMacro(IntermixIntersectingGeometry, vtkTypeBool);
+  vtkGetMacro(IntermixIntersectingGeometry, vtkTypeBool);
   vtkBooleanMacro(IntermixIntersectingGeometry, vtkTypeBool);
   ///@}
 
   ///@{
   /**
-   * How the footprint weights are obtained. 0 (default): closed form. N in [1, 64]: from the
-   * paper's general table, digitised at N x N sub-pixels per pixel [CS98, section 3], whose weights
-   * tend to the closed form as N grows. Perspective views always have the closed form. A view makes
-   * its table once, for all slices, in time and memory proportional to N^2.
+   * Set/Get how footprint weights are computed in STANDARD and HIGH. 0 (default): in closed form. N
+   * in [1, 64]: from the paper's general table, digitised at N x N sub-pixels per pixel [CS98,
+   * section 3]. Clamped to [0, 64]. A table takes time and memory proportional to N^2 for each
+   * view. Is ignored in perspective views.
    */
-  virtual void SetFootprintSampling(int);
-  virtual int GetFootprintSampling();
-  virtual int GetFootprintSamplingMinValue();
-  virtual int GetFootprintSamplingMaxValue();
+  vtkSetClampMacro(FootprintSampling, int, 0, 64);
+  vtkGetMacro(FootprintSampling, int);
   ///@}
 
   ///@{
   /**
-   * What the projection leaves out and in which order it meets the rest. All give the same picture,
-   * bit for bit (but for LineTolerance, CullBelowWindow and the sign of zeros). Default AUTO. Is
-   * ignored in EXACT, which always uses bricks of 8x8x8 cells.
-   *
-   * DENSE: every voxel, in the order of memory.
-   * BRICKS: the volume is divided into bricks of 8x4x4 voxels. Where no brick behind a tile of 8x4
-   * pixels can exceed the tile's least pixel so far, nothing is splatted; slices with high bricks
-   * come first.
-   * LINES: chains of equal voxels along rows take the place of voxels [CS98, section 4], encoded
-   * once for each principal axis on first need (with ProgressEvents). In modes STANDARD and HIGH
-   * each pixel has a footprint of its own at the chains' ends only.
-   * SORTED_LINES: in mode PREVIEW, the chains of each slice from high to low values. The other
-   * modes use LINES. SORTED_VOLUME: in mode PREVIEW, the chains of all slices from high to low
-   * values; a pixel that has a value is done [CS98, footnote 2]. The other modes use LINES.
-   *
-   * AUTO takes BRICKS, unless their last frame along this principal axis, in this mode and with or
-   * without cuts as now, still had to splat more than a limit of the tiles: 30 % in PREVIEW, 40 %
-   * in STANDARD (50 % in perspective), 60 % in HIGH. With AVX-512 the limit is 30 % in
-   * STANDARD of parallel views, and 50 % in HIGH. Above the limit AUTO takes DENSE for 32
-   * frames, then tries BRICKS again. In HIGH it waits fewer frames the nearer the share
-   * was to the limit: from 0 there to 32 if all tiles were splatted. It never takes chains, which
-   * are slower on all data that we measured (splatmip-paper reports it), but need less memory than
-   * the volume.
-   *
-   * Where rays are cut, in perspective and where voxels are NaN or hidden, BRICKS take the place of
-   * chains. Volumes with infinity are walked densely, as are all when IndexMemoryBudget has no room
-   * for the index, and those with NaN or hidden voxels with RecordLocations; GetAccelerationUsed()
-   * tells.
+   * Set/Get the acceleration of global maxima in PREVIEW, STANDARD and HIGH. Default AUTO, clamped
+   * to [AUTO, SORTED_VOLUME]. The picture has the same bits with all of them, except for
+   * LineTolerance, CullBelowWindow and the sign of zeros. Where an acceleration is not supported,
+   * BRICKS or DENSE is used; see GetAccelerationUsed() and limits.md. Is ignored in EXACT, except
+   * in overviews.
    */
-  virtual void SetAcceleration(int);
-  virtual int GetAcceleration();
-  virtual int GetAccelerationMinValue();
-  virtual int GetAccelerationMaxValue();
+  vtkSetClampMacro(Acceleration, int, AUTO, SORTED_VOLUME);
+  vtkGetMacro(Acceleration, int);
   void SetAccelerationToAuto() { this->SetAcceleration(AUTO); }
   void SetAccelerationToDense() { this->SetAcceleration(DENSE); }
   void SetAccelerationToBricks() { this->SetAcceleration(BRICKS); }
@@ -388,149 +260,142 @@ public:
 
   ///@{
   /**
-   * Delta encoding of the chains [CS98, section 4]: a voxel v may join a chain whose value differs
-   * by up to N (high - v) / 255, where N is LineTolerance and high the largest scalar: N grey
-   * levels of 255 at the lowest scalar, none at the largest, for every scalar type. In the same way
-   * a pixel p of the shear image differs by no more than N (high - p) / 255, in all modes. Fewer
-   * chains, less memory, faster: it pays where neighbours differ by noise, as in nearly all 16-bit
-   * and float data, whose chains have one voxel without it. Default 0 (none), clamped to [0, 64].
-   * Only the accelerations with chains use it; a change encodes anew.
+   * Set/Get the tolerance N of delta encoding [CS98, section 4], in grey levels of 255. A voxel v
+   * may join a chain whose value differs by up to N (high - v) / 255, where high is the largest
+   * scalar. Pixels of the shear image differ by no more. Default 0: no delta encoding. Clamped to
+   * [0, 64]. Is ignored by accelerations without chains.
    */
-  virtual void SetLineTolerance(double);
-  virtual double GetLineTolerance();
-  virtual double GetLineToleranceMinValue();
-  virtual double GetLineToleranceMaxValue();
+  vtkSetClampMacro(LineTolerance, double, 0.0, 64.0);
+  vtkGetMacro(LineTolerance, double);
   ///@}
 
   ///@{
   /**
-   * Leave voxels out of the chains that no ray can see, because a higher voxel lies before or
-   * behind on each [Mroz, Hauser, Groeller 2000]. The picture stays the same, bit for bit. Mode
-   * PREVIEW only; the other modes are encoded with all voxels. Default off: it pays where chains
-   * are used for a turn of a smooth volume.
+   * Set/Get whether scalars below the window are clamped: those, from the lowest one up, that all
+   * have its colour and opacity. What cannot exceed them is skipped. In modes other than EXACT
+   * edges against the background become brighter by up to half a pixel. Default off. Applies to
+   * MaximumType GLOBAL without recorded locations and dependent components.
    */
-  virtual void SetEliminateInvisible(bool);
-  virtual bool GetEliminateInvisible();
-  vtkBooleanMacro(EliminateInvisible, bool);
+  vtkSetMacro(CullBelowWindow, vtkTypeBool);
+  vtkGetMacro(CullBelowWindow, vtkTypeBool);
+  vtkBooleanMacro(CullBelowWindow, vtkTypeBool);
   ///@}
 
   ///@{
   /**
-   * Do not tell apart scalars below the window, that is those, from the lowest one up, that all
-   * have its colour and opacity. What cannot rise above them is left out. No pixel of the shear
-   * image is then below the window's lower end; since the picture interpolates between its pixels,
-   * edges against the background become brighter by up to half a pixel. In EXACT the picture stays
-   * the same. MaximumType GLOBAL only. Default off.
+   * Set/Get how many bytes the index may hold besides the input: bricks, chains, and the transposed
+   * copy for views along the first axis. Default 4 GiB, at least 0. What would exceed the budget is
+   * not made, and a warning is reported. Projections are then slower and have the same result. The
+   * budget does not limit copies of scalars and the bounds of EXACT.
    */
-  virtual void SetCullBelowWindow(bool);
-  virtual bool GetCullBelowWindow();
-  vtkBooleanMacro(CullBelowWindow, bool);
+  vtkSetClampMacro(IndexMemoryBudget, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
+  vtkGetMacro(IndexMemoryBudget, vtkTypeInt64);
   ///@}
 
   ///@{
   /**
-   * Bytes that the index may hold besides the input: bricks (3/128 of the volume), chains, and the
-   * copy (as large as the volume) for views along the first axis, in which rows of memory are rays.
-   * What would exceed them is not made, with one warning: the projection is DENSE, and without the
-   * copy 32 slices at a time are transposed in every frame. The bounds that EXACT holds are always
-   * made. Default 4 GiB. 0: none.
+   * Set/Get whether projections record sample positions for GetLocations(). Default off;
+   * DepthCoding and WriteDepth record them in any case. A ray's sample is the one whose value it
+   * shows, the nearest to the viewer of equal ones. Of independent components the first is
+   * recorded, of dependent ones the last. Averages have no positions and report a warning.
    */
-  virtual void SetIndexMemoryBudget(vtkTypeInt64);
-  virtual vtkTypeInt64 GetIndexMemoryBudget();
-  virtual vtkTypeInt64 GetIndexMemoryBudgetMinValue();
-  virtual vtkTypeInt64 GetIndexMemoryBudgetMaxValue();
+  vtkSetMacro(RecordLocations, vtkTypeBool);
+  vtkGetMacro(RecordLocations, vtkTypeBool);
+  vtkBooleanMacro(RecordLocations, vtkTypeBool);
   ///@}
 
   ///@{
   /**
-   * Find out where the samples lie that the picture shows, for GetLocations(). Default off;
-   * DepthCoding and WriteDepth need it and do it by themselves. Projections take two to three times
-   * as long, previews four to six times. Each pixel of the shear image takes 4 bytes more, and its
-   * own size once again.
-   *
-   * The sample of a ray is the one that its value comes from; of equal ones the nearest to the
-   * viewer, whatever the acceleration and the number of threads. In mode PREVIEW it is a voxel, in
-   * the other modes the average of a slice. A pixel of the picture has the sample of the shear
-   * pixel nearest to it, of those that its value is interpolated between. Averages have none: a
-   * warning says so, once. Of independent components the first one is located, of dependent ones
-   * the last. Blend modes that are ray cast have no locations.
+   * Set/Get whether the picture is coloured by depth. The hue encodes the sample's distance from
+   * the viewer. The brightness is the largest of the red, green and blue that the picture would
+   * have otherwise. The opacity stays. Default off.
    */
-  virtual void SetRecordLocations(bool);
-  virtual bool GetRecordLocations();
-  vtkBooleanMacro(RecordLocations, bool);
+  vtkSetMacro(DepthCoding, vtkTypeBool);
+  vtkGetMacro(DepthCoding, vtkTypeBool);
+  vtkBooleanMacro(DepthCoding, vtkTypeBool);
   ///@}
 
   ///@{
   /**
-   * Colour by depth: the hue says how far the sample is from the viewer, the brightness is that of
-   * the picture as it would be otherwise: the largest of its red, green and blue. Opacity stays.
-   * With a white ramp from black, that is the depth coding of microscopy. Default off. Costs some
-   * milliseconds more per frame than RecordLocations.
+   * Set/Get the colours of DepthCoding. The range of this look-up table or transfer function is
+   * mapped to DepthCodingRange. Default nullptr: from red, the nearest, over green to blue.
    */
-  virtual void SetDepthCoding(bool);
-  virtual bool GetDepthCoding();
-  vtkBooleanMacro(DepthCoding, bool);
+  virtual void SetDepthCodingColors(vtkScalarsToColors*);
+  vtkGetObjectMacro(DepthCodingColors, vtkScalarsToColors);
   ///@}
 
   ///@{
   /**
-   * The colours of DepthCoding: the range of this look-up table or transfer function is stretched
-   * over DepthCodingRange. Default nullptr: from red, the nearest, over green to blue.
+   * Set/Get the depths of the first and the last colour, in the units of GetLocations(). Default
+   * (0, 0). If the first value is not less than the second, the depths of the nearest and the
+   * farthest voxel of the volume are used.
    */
-  virtual void SetDepthCodingColors(vtkScalarsToColors* colors);
-  virtual vtkScalarsToColors* GetDepthCodingColors();
+  vtkSetVector2Macro(DepthCodingRange, double);
+  vtkGetVector2Macro(DepthCodingRange, double);
   ///@}
 
   ///@{
   /**
-   * The depths, as in GetLocations(), that have the first and the last colour. Default (0, 0): as
-   * for all ranges whose first value is not below the second, those of the nearest and the farthest
-   * voxel of the whole volume, which change with the view.
+   * Set/Get whether sample depths are written to the depth buffer, so that the volume hides what is
+   * rendered later. A depth is written where the opacity is at least WriteDepthOpacity and the
+   * depth is less than the one in the buffer. Default off.
    */
-  virtual void SetDepthCodingRange(double x, double y);
-  virtual void SetDepthCodingRange(const double values[2]);
-  virtual double* GetDepthCodingRange() VTK_SIZEHINT(2);
-  virtual void GetDepthCodingRange(double& x, double& y);
-  virtual void GetDepthCodingRange(double values[2]);
+  vtkSetMacro(WriteDepth, vtkTypeBool);
+  vtkGetMacro(WriteDepth, vtkTypeBool);
+  vtkBooleanMacro(WriteDepth, vtkTypeBool);
   ///@}
 
   ///@{
   /**
-   * Write the depth of samples to the depth buffer, so that what is rendered later (other volumes,
-   * overlays, renderers that preserve the depth buffer) is hidden by what is seen of this volume:
-   * pixels whose opacity is WriteDepthOpacity or more. Where the buffer has less depth already it
-   * stays. Default off.
+   * Set/Get the least opacity of pixels whose depth is written. Default 0.5, clamped to [0, 1].
+   * Transparent pixels are never written.
    */
-  virtual void SetWriteDepth(bool);
-  virtual bool GetWriteDepth();
-  vtkBooleanMacro(WriteDepth, bool);
-  ///@}
-
-  ///@{
-  /**
-   * The least opacity of a pixel whose depth is written. Default 0.5, clamped to [0, 1]; fully
-   * transparent pixels have none.
-   */
-  virtual void SetWriteDepthOpacity(double);
-  virtual double GetWriteDepthOpacity();
-  virtual double GetWriteDepthOpacityMinValue();
-  virtual double GetWriteDepthOpacityMaxValue();
+  vtkSetClampMacro(WriteDepthOpacity, double, 0.0, 1.0);
+  vtkGetMacro(WriteDepthOpacity, double);
   ///@}
 
 #ifndef __VTK_WRAP__
   /**
-   * All properties, also those of vtkVolumeMapper, for classes of this module.
+   * Print the settings of this class that change pictures, one per line. Ranks compare the text.
    */
-  const splatting::MapperProperties& ReadProperties();
+  void PrintPictureSettings(ostream& os, vtkIndent indent);
 #endif
 
 protected:
   vtkAbstractSplattingMIPVolumeMapper();
   ~vtkAbstractSplattingMIPVolumeMapper() override;
 
-  std::unique_ptr<splatting::MapperProperties> Properties;
-
 private:
+  int VectorMode = DISABLED;
+  int VectorComponent = 0;
+  vtkImageData* MaskInput = nullptr;
+  int QualityMode = EXACT;
+  vtkTypeBool AutoAdjustSampleDistances = 1;
+  float FinalColorWindow = 1.0f;
+  float FinalColorLevel = 0.5f;
+  int Kernel = TRILINEAR;
+  double KernelRadius = 1.0;
+  int MaximumType = GLOBAL;
+  double DepthShadingAmbient = 0.3;
+  double DepthShadingChangeRate = 0.7;
+  double LocalMaximumThreshold = 0.0;
+  vtkTypeBool Slab = 0;
+  double SlabThickness = 10.0;
+  double SlabCenter[3] = { 0.0, 0.0, 0.0 };
+  vtkPolyData* BoundingSurface = nullptr;
+  vtkTypeBool IntermixIntersectingGeometry = 1;
+  int FootprintSampling = 0;
+  int Acceleration = AUTO;
+  double LineTolerance = 0.0;
+  vtkTypeBool CullBelowWindow = 0;
+  vtkTypeInt64 IndexMemoryBudget = vtkTypeInt64(1) << 32;
+  vtkTypeBool RecordLocations = 0;
+  vtkTypeBool DepthCoding = 0;
+  vtkScalarsToColors* DepthCodingColors = nullptr;
+  double DepthCodingRange[2] = { 0.0, 0.0 };
+  vtkTypeBool WriteDepth = 0;
+  double WriteDepthOpacity = 0.5;
+
   vtkAbstractSplattingMIPVolumeMapper(const vtkAbstractSplattingMIPVolumeMapper&) = delete;
   void operator=(const vtkAbstractSplattingMIPVolumeMapper&) = delete;
 };

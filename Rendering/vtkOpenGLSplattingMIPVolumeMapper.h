@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkOpenGLSplattingMIPVolumeMapper
- * @brief   draws the pictures of vtkSplattingMIPVolumeMapper with OpenGL
+ * @brief   OpenGL display for vtkSplattingMIPVolumeMapper
  *
- * The class that the object factory gives for vtkSplattingMIPVolumeMapper. All it adds is the
- * display: one texture, texel on pixel, blended over what the renderer has drawn before. Where all
- * pixels of large rectangles are opaque they are copied instead, which looks the same and spares an
- * OpenGL without GPU most of the work (not in windows with multisampling, which OpenGL ES does not
- * copy to). It writes depth only where the mapper wants it, by a second texture.
+ * vtkOpenGLSplattingMIPVolumeMapper is the class that the object factory creates for
+ * vtkSplattingMIPVolumeMapper. It adds only the display. The picture is drawn as one texture, one
+ * texel per pixel, and blended over the framebuffer. Large opaque rectangles are copied instead of
+ * blended, which gives the same picture and is faster without a GPU. Windows with multisampling are
+ * not copied to, because OpenGL ES does not support it. Depths are written through a second texture
+ * if WriteDepth is on.
+ *
+ * @sa vtkSplattingMIPVolumeMapper
  */
 #ifndef vtkOpenGLSplattingMIPVolumeMapper_h
 #define vtkOpenGLSplattingMIPVolumeMapper_h

@@ -2,55 +2,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSplattingMIPGPUVolumeRayCastMapper
- * @brief   a vtkGPUVolumeRayCastMapper that splats maximum and minimum intensity projections
+ * @brief   vtkGPUVolumeRayCastMapper that splats maximum and minimum intensity projections
  *
- * For programs that know nothing of vtkSplattingMIPVolumeMapper: after
+ * vtkSplattingMIPGPUVolumeRayCastMapper lets programs use vtkSplattingMIPVolumeMapper without
+ * changes to their mappers. After
  *
  *   vtkSplattingMIPGPUVolumeRayCastMapper::GlobalOverrideOn();
  *
- * VTK's object factory gives this class wherever vtkGPUVolumeRayCastMapper is asked for, as
- * vtkSmartVolumeMapper and, through it, vtkMultiBlockVolumeMapper and vtkAMRVolumeMapper do.
- * (Programs that cannot be changed get it by VTK_AUTOLOAD_PATH; see Module/Autoload.) It hands the
- * blend modes MAXIMUM_INTENSITY and MINIMUM_INTENSITY to a vtkSplattingMIPVolumeMapper and leaves
- * everything else to its superclass:
- *
- * - all other blend modes;
+ * VTK's object factory creates this class in place of vtkGPUVolumeRayCastMapper, also in
+ * vtkSmartVolumeMapper, vtkMultiBlockVolumeMapper and vtkAMRVolumeMapper. Programs that cannot be
+ * changed can load it through VTK_AUTOLOAD_PATH. The blend modes MAXIMUM_INTENSITY and
+ * MINIMUM_INTENSITY are rendered by an internal vtkSplattingMIPVolumeMapper. The superclass renders
+ * - other blend modes;
  * - volumes with several inputs (vtkMultiVolume);
  * - two-dimensional transfer functions;
- * - shader code of the volume's vtkShaderProperty, and render passes that put code of theirs into
- *   the shader, such as vtkDualDepthPeelingPass;
+ * - shader code of vtkShaderProperty and of render passes such as vtkDualDepthPeelingPass;
  * - RenderToImage.
  *
- * Gray functions are left to the superclass as RGB functions of the same values, in a copy of the
- * property: it knows no others, and would put one into the property for good. Of a vtkMultiVolume
+ * Before each render the splatting mapper gets this mapper's input, BlendMode, Cropping,
+ * CroppingRegionPlanes, CroppingRegionFlags, ClippingPlanes, ScalarMode, selected array,
+ * FinalColorWindow, FinalColorLevel, AutoAdjustSampleDistances and binary MaskInput. The picture
+ * has the same bits as that of a vtkSplattingMIPVolumeMapper with these properties. The index is
+ * kept while other blend modes are rendered.
+ *
+ * Splatting ignores SampleDistance, LockSampleDistanceToInputSpacing, UseJittering,
+ * ImageSampleDistance with its minimum and maximum, MaxMemoryInBytes, MaxMemoryFraction,
+ * UseDepthPass, partitions, a shared depth texture, the range types of transfer functions and
+ * label-map masks. With AutoAdjustSampleDistances the quality mode is reduced, not the resolution.
+ *
+ * Selections find the volume as a whole, where its picture is not transparent. Errors and warnings
+ * of the splatting mapper are sent to observers of this mapper. Events are
+ * VolumeMapperRenderStartEvent, VolumeMapperRenderEndEvent and, if ReportProgress is on,
+ * VolumeMapperRenderProgressEvent (call data: pointer to a double from 0 to 1). Changes of the
+ * rendering mapper, with the reason, are logged with vtkLogger::VERBOSITY_1.
+ *
+ * The superclass renders a copy of the property, in which gray functions are RGB functions of the
+ * same values, because it would convert the functions of the property itself. With a vtkMultiVolume
  * it gets the properties themselves.
- *
- * The splatting mapper gets this mapper's input and, before each render, its BlendMode, Cropping,
- * CroppingRegionPlanes, CroppingRegionFlags, ClippingPlanes, ScalarMode, the selected array,
- * FinalColorWindow, FinalColorLevel, AutoAdjustSampleDistances and a binary MaskInput. What does
- * not change keeps its index and its shear image. The picture is that of a
- * vtkSplattingMIPVolumeMapper with these properties, bit for bit.
- *
- * These have no meaning for a splatted projection, which has no samples along rays and no memory of
- * the GPU: SampleDistance, LockSampleDistanceToInputSpacing, UseJittering, ImageSampleDistance and
- * its minimum and maximum, MaxMemoryInBytes, MaxMemoryFraction, UseDepthPass, partitions, a shared
- * depth texture, and the range types of the transfer functions. Nor has a mask of type label map,
- * which has none for VTK's projections either. AutoAdjustSampleDistances lets the quality mode step
- * down where frames take too long, instead of the resolution.
- *
- * Selections find the volume where its picture is not transparent, as one thing and not voxel by
- * voxel.
- *
- * Events are those of vtkGPUVolumeRayCastMapper, VolumeMapperRenderStartEvent and
- * VolumeMapperRenderEndEvent, and VolumeMapperRenderProgressEvent (call data: pointer to double,
- * from 0 to 1) if ReportProgress is on. Errors and warnings of the splatting mapper go to observers
- * of this one. Which mapper renders, and why, is logged with vtkLogger::VERBOSITY_1 whenever it
- * changes.
- *
- * vtkMultiBlockVolumeMapper loads its blocks into the GPU's memory all the same, and blends their
- * projections over each other from back to front, as it does without.
- *
- * The index of the splatting mapper is kept while other blend modes are rendered, for the way back.
  *
  * @sa vtkSplattingMIPVolumeMapper vtkSmartVolumeMapper vtkObjectFactory
  */
@@ -80,9 +68,9 @@ public:
 
   ///@{
   /**
-   * Whether vtkGPUVolumeRayCastMapper::New() gives objects of this class, in the whole program.
-   * Default off. On puts an object factory before all others. Mappers that exist already stay what
-   * they are: call it before a vtkSmartVolumeMapper is made.
+   * Set/Get whether vtkGPUVolumeRayCastMapper::New() creates objects of this class, in the whole
+   * program. Default off. On registers an object factory before all others. Existing mappers are
+   * not replaced, so call it before a vtkSmartVolumeMapper is created.
    */
   static void SetGlobalOverride(bool on);
   static bool GetGlobalOverride();
@@ -92,22 +80,21 @@ public:
 
   ///@{
   /**
-   * The QualityMode of vtkSplattingMIPVolumeMapper that new objects of this class start with, as
-   * vtkSmartVolumeMapper does not show what it has made. Default EXACT, clamped to [PREVIEW,
-   * EXACT].
+   * Set/Get the QualityMode of vtkSplattingMIPVolumeMapper that new objects of this class start
+   * with. Default EXACT, clamped to [PREVIEW, EXACT].
    */
   static void SetGlobalQualityMode(int mode);
   static int GetGlobalQualityMode();
   ///@}
 
   /**
-   * What splats. For the properties that vtkGPUVolumeRayCastMapper does not have, such as
-   * QualityMode, Slab and MaximumType; those that it has are copied over them before each render.
+   * Get the splatting mapper, for properties that vtkGPUVolumeRayCastMapper does not have, such as
+   * QualityMode, Slab and MaximumType. The other properties are overwritten before each render.
    */
   vtkSplattingMIPVolumeMapper* GetSplattingMapper();
 
   /**
-   * Whether the last render was handed to the splatting mapper; false before the first one.
+   * Get whether the splatting mapper did the last render. False before the first one.
    */
   vtkGetMacro(LastRenderUsedSplatting, bool);
 
@@ -123,7 +110,7 @@ protected:
   void GPURender(vtkRenderer* ren, vtkVolume* vol) override;
 
   /**
-   * Why a volume is not splatted, as the end of a sentence, or nullptr.
+   * Get why a volume is not splatted, as the end of a sentence, or nullptr.
    */
   const char* ReasonNotToSplat(vtkVolume* vol);
 

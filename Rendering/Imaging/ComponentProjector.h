@@ -111,12 +111,10 @@ public:
   bool ProjectOnScreen(const View& view, const ProjectionSettings& settings, const RayEnds& ends);
   /// Whether the last projection was by cells. It needs no geometries.
   bool IsOnScreen() const { return this->OnScreen; }
-  /// What that shows, of the component that is located.
-  const ScreenScalars& LocatedScreen() const { return this->LocatedChannel().Screen; }
   /// The same of one pixel of the viewport, with its depth; not of pieces. The reference is valid
   /// until the next call.
-  const ScreenScalars& ProjectPixelOnScreen(const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, const glm::ivec2& pixel);
+  const ScreenScalars& ProjectPixelOnScreen(
+    const View& view, ProjectionSettings settings, const RayEnds& ends, const glm::ivec2& pixel);
 
   /// The picture of the images in a view with these geometries. False if the warper's observer has
   /// stopped it: there is no picture then.
@@ -181,6 +179,10 @@ private:
   ProjectionSettings SettingsOf(const Channel& channel, ProjectionSettings settings) const;
   bool TakesAtWinners(const ProjectionSettings& settings) const;
   const Channel& LocatedChannel() const
+  {
+    return this->Dependent ? this->Channels.back() : this->Channels.front();
+  }
+  Channel& LocatedChannel()
   {
     return this->Dependent ? this->Channels.back() : this->Channels.front();
   }

@@ -4,49 +4,38 @@
  * @class   vtkSplattingMIPProjection
  * @brief   maximum intensity projection of image data to image data, without OpenGL
  *
- * Projects a vtkImageData as vtkSplattingMIPVolumeMapper does [W. Cai and G. Sakas, "Maximum
- * Intensity Projection Using Splatting in Sheared Object Space", Computer Graphics Forum 17(3),
- * 1998], with the same code below it, but gives the maxima themselves, in the input's unit
- * (Hounsfield units stay Hounsfield units), and needs no display, no render window and no OpenGL.
- * One view, or in one call all views of a turn, which share what is made once per data set.
+ * vtkSplattingMIPProjection projects a vtkImageData by the algorithms and properties of
+ * vtkSplattingMIPVolumeMapper. The output has the projected values in the unit of the input, such
+ * as Hounsfield units. It needs no display, no render window and no OpenGL. One Update() computes
+ * one view or all views of a turn.
  *
- * Input: points or cells, 1 to 4 components, any numeric type but bits, any extent, spacing, origin
- * and direction matrix; the array of SetInputArrayToProcess(), by default the scalars. NaN and
- * voxels that ghost arrays hide are no samples.
+ * The input has point or cell scalars of any numeric type but bits, with 1 to 4 components. The
+ * array is that of SetInputArrayToProcess(), by default the scalars. NaN and voxels that ghost
+ * arrays hide are no samples.
  *
- * Output: a vtkImageData of OutputSize[0] x OutputSize[1] x NumberOfViews points, one slice per
- * view, with as many components as are projected, each projected for itself. Scalars are float, for
- * 32- and 64-bit integers and double double: pictures are interpolated between the pixels of shear
- * images, so that even a preview's pixels lie between voxels, and EXACT interpolates voxels. Pixels
- * that no sample is seen at have BackgroundValue. Rows are the picture's from the bottom to the
- * top.
+ * The output is a vtkImageData of OutputSize[0] x OutputSize[1] x NumberOfViews points, one slice
+ * per view. Its scalars are float (double for 32- and 64-bit integers and double), with as many
+ * components as are projected. Pixels without a sample have BackgroundValue.
  *
- * The output lies where its picture lies in the world: origin, spacing and direction matrix are
- * those of the plane through the focal point across the view, in which perspective views, too, have
- * their scale; of a parallel view with a Slab, of the plane in the slab's middle. x goes right, y
- * up and z to the viewer; a slice is as thick as the Slab, else 1. So a slab can be laid over the
- * volume, measured in and written. VTK's XML keeps all of it. vtkNIFTIImageWriter needs it as a
- * matrix (SetQFormMatrix()): the direction matrix D, and in the last column origin - D * origin;
- * the rows of x and y negated where the world is DICOM's. VTK 9.1's vtkMetaImageWriter and image
- * filters drop directions. Of a turn the first view lies right; the array "ViewAngle" of the field
- * data has the degrees by which each slice's view is turned.
+ * Origin, spacing and direction matrix place the output in the world, on the plane through the
+ * focal point across the view. Parallel views with a Slab lie on the slab's middle plane. x is
+ * right, y is up, z points to the viewer. A slice is as thick as the Slab, else 1. The first view
+ * of a turn defines the matrix. The field data array "ViewAngle" has the angle of each view in
+ * degrees. VTK's XML writers keep the placement; vtkNIFTIImageWriter needs it as a matrix, see
+ * contract.md.
  *
- * Rays are parallel, or those of a perspective Camera. They end with the volume: a camera's
- * clipping range means nothing here. Slab and Cropping leave out parts of the volume.
+ * Rays are parallel, or those of a perspective Camera. They end with the volume. Slab and Cropping
+ * cut them.
  *
- * Progress goes from 0 to 1 over all views. AbortExecute is looked at between bands of image rows,
- * with VTK 9.3 and newer that of the filters upstream, too (vtkAlgorithm::CheckAbort()); the output
- * is empty then, and AbortExecuteOff() makes the next Update() project again. What cannot be
- * projected gives one error, a sentence that says what to do, and an empty output.
+ * Progress runs from 0 to 1 over all views. AbortExecute (with VTK 9.3 and newer also that of
+ * filters upstream) is checked while a view is projected; the output is then empty. After
+ * AbortExecuteOff() the next Update() projects again. Errors, also lack of memory, are reported
+ * once and leave the output empty.
  *
- * The same input gives the same bits, whatever the number of threads or the instruction set; each
- * slice of a turn has those of the single view by the camera of GetViewCamera(). Opposite views of
- * a whole turn with an even number of views share a projection, but not in EXACT, nor if
- * MaximumType depends on the viewer's side.
- *
- * Memory besides input and output: see GetIndexMemorySize() and vtkSplattingMIPVolumeMapper. It is
- * kept for the next Update(). Where there is not enough of it, an error says so, the output is
- * empty, and all of it is given back.
+ * The same input gives the same bits for any number of threads and any instruction set. Each slice
+ * has the bits of the single view by the camera of GetViewCamera(). In modes other than EXACT,
+ * opposite views of a whole turn with an even number of views share a projection if MaximumType
+ * does not depend on the viewer's side and RecordLocations is off.
  *
  * @sa vtkSplattingMIPVolumeMapper vtkImageSlabReslice
  */
@@ -55,13 +44,10 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkImagingSplattingMIPModule.h" // for the export macro
+#include "vtkSplattingMIPChoices.h"       // for the enumerations
 
-#include <memory> // for the hidden properties and implementation
+#include <memory> // for the hidden implementation
 
-namespace splatting
-{
-struct ProjectionProperties;
-}
 class vtkCamera;
 
 class VTKIMAGINGSPLATTINGMIP_EXPORT vtkSplattingMIPProjection : public vtkImageAlgorithm
@@ -72,7 +58,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * The values of vtkVolumeMapper's BlendMode.
+   * The values of BlendMode; the same as vtkVolumeMapper's.
    */
   enum BlendModes
   {
@@ -82,52 +68,17 @@ public:
   };
 
   /**
-   * The values of vtkSmartVolumeMapper's VectorMode.
+   * The values of VectorMode, QualityMode, Kernel, MaximumType and Acceleration; see
+   * vtkSplattingMIPChoices.h.
    */
-  enum VectorModes
-  {
-    DISABLED = -1,
-    MAGNITUDE = 0,
-    COMPONENT = 1
-  };
-
-  enum QualityModes
-  {
-    PREVIEW = 0,
-    STANDARD = 1,
-    HIGH = 2,
-    EXACT = 3
-  };
-
-  enum Kernels
-  {
-    TRILINEAR = 0,
-    COSINE_BELL = 1
-  };
-
-  enum MaximumTypes
-  {
-    GLOBAL = 0,
-    DEPTH_SHADED = 1,
-    LOCAL = 2
-  };
-
-  enum Accelerations
-  {
-    AUTO = 0,
-    DENSE = 1,
-    BRICKS = 2,
-    LINES = 3,
-    SORTED_LINES = 4,
-    SORTED_VOLUME = 5
-  };
+  vtkSplattingMIPChoicesMacro();
 
   ///@{
   /**
-   * Looks through a camera of the world, parallel or perspective, in place of ViewDirection, ViewUp
-   * and FocalPoint. Default none. The camera's clipping range means nothing; its scale (or view
-   * angle) does unless OutputSpacing is set. A camera with an explicit projection matrix is
-   * refused.
+   * Set/Get a camera that defines the view, parallel or perspective, in place of ViewDirection,
+   * ViewUp and FocalPoint. Default nullptr: no camera. Its clipping range is ignored; its parallel
+   * scale or view angle is ignored if OutputSpacing is set. A camera with an explicit projection
+   * matrix is reported as an error.
    */
   virtual void SetCamera(vtkCamera* camera);
   vtkGetObjectMacro(Camera, vtkCamera);
@@ -135,9 +86,10 @@ public:
 
   ///@{
   /**
-   * Without a Camera: the direction from the viewer into the world, of any length above 0, and what
-   * is up in the picture, not along the direction. Defaults (0, 1, 0) and (0, 0, 1): in DICOM's
-   * coordinates the patient's front, head up. Views are parallel.
+   * Set/Get the direction from the viewer into the world, and the direction that is up in the
+   * picture. Any length above 0; ViewUp must not be parallel to ViewDirection. Defaults (0, 1, 0)
+   * and (0, 0, 1): in DICOM's coordinates the patient's front, head up. Are ignored with a Camera.
+   * Views are parallel.
    */
   vtkSetVector3Macro(ViewDirection, double);
   vtkGetVector3Macro(ViewDirection, double);
@@ -147,18 +99,18 @@ public:
 
   ///@{
   /**
-   * Without a Camera: whether the middle of the picture, about which turns go, is the middle of the
-   * volume's bounds, whatever FocalPoint is. Default on.
+   * Set/Get whether the centre of the picture, about which views are turned, is the centre of the
+   * volume's bounds instead of FocalPoint. Default on. Is ignored with a Camera.
    */
-  vtkSetMacro(CenterOnVolume, bool);
-  vtkGetMacro(CenterOnVolume, bool);
-  vtkBooleanMacro(CenterOnVolume, bool);
+  vtkSetMacro(CenterOnVolume, vtkTypeBool);
+  vtkGetMacro(CenterOnVolume, vtkTypeBool);
+  vtkBooleanMacro(CenterOnVolume, vtkTypeBool);
   ///@}
 
   ///@{
   /**
-   * Without a Camera and with CenterOnVolume off: the point of the world in the middle of the
-   * picture. Default (0, 0, 0).
+   * Set/Get the world point at the centre of the picture. Default (0, 0, 0). Is ignored with a
+   * Camera, and if CenterOnVolume is on.
    */
   vtkSetVector3Macro(FocalPoint, double);
   vtkGetVector3Macro(FocalPoint, double);
@@ -166,7 +118,8 @@ public:
 
   ///@{
   /**
-   * Pixels of a view, to the right and up. Default 256 x 256; each from 1 to 16384.
+   * Set/Get the width and height of a view in pixels. Default 256 x 256, each from 1 to 16384;
+   * other sizes are reported as an error.
    */
   vtkSetVector2Macro(OutputSize, int);
   vtkGetVector2Macro(OutputSize, int);
@@ -174,10 +127,10 @@ public:
 
   ///@{
   /**
-   * World units from pixel to pixel, in perspective at the focal point, above 0; by default 0 and
-   * 0, which means automatic: as the Camera's parallel scale (or view angle) has it, without a
-   * Camera so that the volume fits into the picture from all directions: the diagonal of its bounds
-   * over the lesser of OutputSize. The output tells what it is.
+   * Set/Get the distance of pixels in world units, in perspective at the focal point. Default (0,
+   * 0): automatic. Then the Camera's parallel scale or view angle defines it. Without a Camera it
+   * is the diagonal of the volume's bounds over the lesser of OutputSize, so that the volume fits
+   * into the picture from all directions.
    */
   vtkSetVector2Macro(OutputSpacing, double);
   vtkGetVector2Macro(OutputSpacing, double);
@@ -185,7 +138,7 @@ public:
 
   ///@{
   /**
-   * How many views a turn has, by default 1, clamped to [1, 36000]. View n is turned by n *
+   * Set/Get the number of views. Default 1, clamped to [1, 36000]. View n is turned by n *
    * TotalAngle / NumberOfViews.
    */
   vtkSetClampMacro(NumberOfViews, int, 1, 36000);
@@ -194,9 +147,9 @@ public:
 
   ///@{
   /**
-   * The direction of the line through the focal point that the viewer goes round, in the world;
-   * (0, 0, 0), the default, for view-up. The sense is that of vtkCamera::Azimuth():
-   * counterclockwise where the axis points to the eye.
+   * Set/Get the direction, in the world, of the line through the focal point about which the viewer
+   * turns: counterclockwise where it points to the eye, as in vtkCamera::Azimuth(). Default (0, 0,
+   * 0): the view-up.
    */
   vtkSetVector3Macro(RotationAxis, double);
   vtkGetVector3Macro(RotationAxis, double);
@@ -204,8 +157,8 @@ public:
 
   ///@{
   /**
-   * How far all views go round in degrees, any number but 0. Default 360. The last view is one step
-   * before that, so that a whole turn can be repeated.
+   * Set/Get the angle in degrees over which the views are spread, any number but 0. Default 360.
+   * The last view is one step before it, so that a whole turn can be repeated.
    */
   vtkSetMacro(TotalAngle, double);
   vtkGetMacro(TotalAngle, double);
@@ -213,7 +166,7 @@ public:
 
   ///@{
   /**
-   * The value of pixels that no sample is seen at; NaN is possible. Default 0.
+   * Set/Get the value of pixels without a sample, which may be NaN. Default 0.
    */
   vtkSetMacro(BackgroundValue, double);
   vtkGetMacro(BackgroundValue, double);
@@ -221,36 +174,26 @@ public:
 
   ///@{
   /**
-   * Maximum (the default), minimum or average along rays, as in
-   * vtkSplattingMIPVolumeMapper::SetBlendMode. Of averages, samples outside AverageIPScalarRange
-   * (default: that of float) do not count; both limits do.
+   * Set/Get the blend mode: maximum, minimum or average intensity, as in vtkVolumeMapper. Default
+   * MAXIMUM_INTENSITY_BLEND. Averages count only samples within AverageIPScalarRange, limits
+   * included. Default range: that of float.
    */
-  virtual void SetBlendMode(int);
-  virtual int GetBlendMode();
-  virtual int GetBlendModeMinValue();
-  virtual int GetBlendModeMaxValue();
+  vtkSetClampMacro(BlendMode, int, MAXIMUM_INTENSITY_BLEND, AVERAGE_INTENSITY_BLEND);
+  vtkGetMacro(BlendMode, int);
   void SetBlendModeToMaximumIntensity() { this->SetBlendMode(MAXIMUM_INTENSITY_BLEND); }
   void SetBlendModeToMinimumIntensity() { this->SetBlendMode(MINIMUM_INTENSITY_BLEND); }
   void SetBlendModeToAverageIntensity() { this->SetBlendMode(AVERAGE_INTENSITY_BLEND); }
-  virtual void SetAverageIPScalarRange(double low, double high);
-  virtual void SetAverageIPScalarRange(const double values[2]);
-  virtual double* GetAverageIPScalarRange() VTK_SIZEHINT(2);
-  virtual void GetAverageIPScalarRange(double& low, double& high);
-  virtual void GetAverageIPScalarRange(double values[2]);
+  vtkSetVector2Macro(AverageIPScalarRange, double);
+  vtkGetVector2Macro(AverageIPScalarRange, double);
   ///@}
 
   ///@{
   /**
-   * What a slice contributes to a pixel. PREVIEW, STANDARD, HIGH: see
-   * vtkSplattingMIPVolumeMapper::SetQualityMode. EXACT (default): the extremum of the trilinearly
-   * interpolated volume on the ray of each pixel; averages are those of HIGH. Pixels that are wider
-   * than voxels show the extremum over their area (of averages the average), in EXACT that of
-   * voxels.
+   * Set/Get the quality mode; see vtkSplattingMIPVolumeMapper::SetQualityMode(). Default EXACT,
+   * clamped to [PREVIEW, EXACT].
    */
-  virtual void SetQualityMode(int);
-  virtual int GetQualityMode();
-  virtual int GetQualityModeMinValue();
-  virtual int GetQualityModeMaxValue();
+  vtkSetClampMacro(QualityMode, int, PREVIEW, EXACT);
+  vtkGetMacro(QualityMode, int);
   void SetQualityModeToPreview() { this->SetQualityMode(PREVIEW); }
   void SetQualityModeToStandard() { this->SetQualityMode(STANDARD); }
   void SetQualityModeToHigh() { this->SetQualityMode(HIGH); }
@@ -259,183 +202,149 @@ public:
 
   ///@{
   /**
-   * As of the mapper: the reconstruction kernel of mode HIGH, default TRILINEAR; the radius of the
-   * cosine bell in voxels, default 1, clamped to [0.5, 1.5]; how footprints are sampled, default 0
-   * (closed form), clamped to [0, 64].
+   * Set/Get the reconstruction kernel of HIGH, the radius of the cosine bell in voxels and the
+   * sampling of footprints; see vtkSplattingMIPVolumeMapper. Defaults TRILINEAR, 1 (clamped to
+   * [0.5, 1.5]) and 0: closed form (clamped to [0, 64]).
    */
-  virtual void SetKernel(int);
-  virtual int GetKernel();
-  virtual int GetKernelMinValue();
-  virtual int GetKernelMaxValue();
+  vtkSetClampMacro(Kernel, int, TRILINEAR, COSINE_BELL);
+  vtkGetMacro(Kernel, int);
   void SetKernelToTrilinear() { this->SetKernel(TRILINEAR); }
   void SetKernelToCosineBell() { this->SetKernel(COSINE_BELL); }
-  virtual void SetKernelRadius(double);
-  virtual double GetKernelRadius();
-  virtual double GetKernelRadiusMinValue();
-  virtual double GetKernelRadiusMaxValue();
-  virtual void SetFootprintSampling(int);
-  virtual int GetFootprintSampling();
-  virtual int GetFootprintSamplingMinValue();
-  virtual int GetFootprintSamplingMaxValue();
+  vtkSetClampMacro(KernelRadius, double, 0.5, 1.5);
+  vtkGetMacro(KernelRadius, double);
+  vtkSetClampMacro(FootprintSampling, int, 0, 64);
+  vtkGetMacro(FootprintSampling, int);
   ///@}
 
   ///@{
   /**
-   * Which maximum along a ray, as of the mapper: the largest (GLOBAL, the default), the largest
-   * after dimming by depth (DEPTH_SHADED, with DepthShadingAmbient 0.3 and DepthShadingChangeRate
-   * 0.7 by default), or the first local one from LocalMaximumThreshold on (LOCAL, default 0).
+   * Set/Get the maximum along a ray and its parameters; see
+   * vtkSplattingMIPVolumeMapper::SetMaximumType(). Defaults: GLOBAL, DepthShadingAmbient 0.3,
+   * DepthShadingChangeRate 0.7, LocalMaximumThreshold 0.
    */
-  virtual void SetMaximumType(int);
-  virtual int GetMaximumType();
-  virtual int GetMaximumTypeMinValue();
-  virtual int GetMaximumTypeMaxValue();
+  vtkSetClampMacro(MaximumType, int, GLOBAL, LOCAL);
+  vtkGetMacro(MaximumType, int);
   void SetMaximumTypeToGlobal() { this->SetMaximumType(GLOBAL); }
   void SetMaximumTypeToDepthShaded() { this->SetMaximumType(DEPTH_SHADED); }
   void SetMaximumTypeToLocal() { this->SetMaximumType(LOCAL); }
-  virtual void SetDepthShadingAmbient(double);
-  virtual double GetDepthShadingAmbient();
-  virtual void SetDepthShadingChangeRate(double);
-  virtual double GetDepthShadingChangeRate();
-  virtual void SetLocalMaximumThreshold(double);
-  virtual double GetLocalMaximumThreshold();
+  vtkSetMacro(DepthShadingAmbient, double);
+  vtkGetMacro(DepthShadingAmbient, double);
+  vtkSetMacro(DepthShadingChangeRate, double);
+  vtkGetMacro(DepthShadingChangeRate, double);
+  vtkSetMacro(LocalMaximumThreshold, double);
+  vtkGetMacro(LocalMaximumThreshold, double);
   ///@}
 
   ///@{
   /**
-   * What is projected of several components, as of the mapper: all (DISABLED, the default), their
-   * Euclidean length, or the one that VectorComponent names (default 0, clamped to [0, 3]).
+   * Set/Get the projected components of scalars that have several; see
+   * vtkSplattingMIPVolumeMapper::SetVectorMode(). Default DISABLED: each component by itself.
+   * VectorComponent is 0 by default, clamped to [0, 3].
    */
-  virtual void SetVectorMode(int);
-  virtual int GetVectorMode();
-  virtual int GetVectorModeMinValue();
-  virtual int GetVectorModeMaxValue();
+  vtkSetClampMacro(VectorMode, int, DISABLED, COMPONENT);
+  vtkGetMacro(VectorMode, int);
   void SetVectorModeToDisabled() { this->SetVectorMode(DISABLED); }
   void SetVectorModeToMagnitude() { this->SetVectorMode(MAGNITUDE); }
   void SetVectorModeToComponent() { this->SetVectorMode(COMPONENT); }
-  virtual void SetVectorComponent(int);
-  virtual int GetVectorComponent();
-  virtual int GetVectorComponentMinValue();
-  virtual int GetVectorComponentMaxValue();
+  vtkSetClampMacro(VectorComponent, int, 0, 3);
+  vtkGetMacro(VectorComponent, int);
   ///@}
 
   ///@{
   /**
-   * Project only a slab across the view, as of the mapper: what lies within SlabThickness / 2
-   * (default 10, in world units, above 0) of the plane through SlabCenter, a point of the world, by
-   * default (0, 0, 0). Default off. In a turn the slab turns with the view.
+   * Set/Get whether only a slab across the view is projected, its thickness in world units and its
+   * centre; see vtkSplattingMIPVolumeMapper::SetSlab(). Defaults: off, 10 and (0, 0, 0). The slab
+   * turns with the view.
    */
-  virtual void SetSlab(bool);
-  virtual bool GetSlab();
-  vtkBooleanMacro(Slab, bool);
-  virtual void SetSlabThickness(double);
-  virtual double GetSlabThickness();
-  virtual void SetSlabCenter(double x, double y, double z);
-  virtual void SetSlabCenter(const double values[3]);
-  virtual double* GetSlabCenter() VTK_SIZEHINT(3);
-  virtual void GetSlabCenter(double& x, double& y, double& z);
-  virtual void GetSlabCenter(double values[3]);
+  vtkSetMacro(Slab, vtkTypeBool);
+  vtkGetMacro(Slab, vtkTypeBool);
+  vtkBooleanMacro(Slab, vtkTypeBool);
+  vtkSetMacro(SlabThickness, double);
+  vtkGetMacro(SlabThickness, double);
+  vtkSetVector3Macro(SlabCenter, double);
+  vtkGetVector3Macro(SlabCenter, double);
   ///@}
 
   ///@{
   /**
-   * VTK's cropping, as of vtkVolumeMapper: which of the 27 regions between six planes, in the
-   * coordinates of the input along its axes, are projected. Default off, all planes 0 and 1, flags
+   * Set/Get cropping as in vtkVolumeMapper: which of the 27 regions between six planes along the
+   * input's axes, in its coordinates, are projected. Defaults: off, planes 0 and 1, flags
    * VTK_CROP_SUBVOLUME (the middle region), clamped to [0, 0x7ffffff].
    */
-  virtual void SetCropping(vtkTypeBool);
-  virtual vtkTypeBool GetCropping();
+  vtkSetMacro(Cropping, vtkTypeBool);
+  vtkGetMacro(Cropping, vtkTypeBool);
   vtkBooleanMacro(Cropping, vtkTypeBool);
-  virtual void SetCroppingRegionPlanes(
-    double xMin, double xMax, double yMin, double yMax, double zMin, double zMax);
-  virtual void SetCroppingRegionPlanes(const double values[6]);
-  virtual double* GetCroppingRegionPlanes() VTK_SIZEHINT(6);
-  virtual void GetCroppingRegionPlanes(
-    double& xMin, double& xMax, double& yMin, double& yMax, double& zMin, double& zMax);
-  virtual void GetCroppingRegionPlanes(double values[6]);
-  virtual void SetCroppingRegionFlags(int);
-  virtual int GetCroppingRegionFlags();
-  virtual int GetCroppingRegionFlagsMinValue();
-  virtual int GetCroppingRegionFlagsMaxValue();
+  vtkSetVector6Macro(CroppingRegionPlanes, double);
+  vtkGetVector6Macro(CroppingRegionPlanes, double);
+  vtkSetClampMacro(CroppingRegionFlags, int, 0, 0x7ffffff);
+  vtkGetMacro(CroppingRegionFlags, int);
   ///@}
 
   ///@{
   /**
-   * What the projection leaves out and in which order it meets the rest, as of the mapper. The
-   * picture is the same but for LineTolerance (default 0, clamped to [0, 64]), the difference that
-   * the chains of LINES and its kin may neglect. Default AUTO; EliminateInvisible default off.
+   * Set/Get the acceleration of global maxima in PREVIEW, STANDARD and HIGH; see
+   * vtkSplattingMIPVolumeMapper::SetAcceleration(). Defaults: AUTO, LineTolerance 0 (clamped to [0,
+   * 64]).
    */
-  virtual void SetAcceleration(int);
-  virtual int GetAcceleration();
-  virtual int GetAccelerationMinValue();
-  virtual int GetAccelerationMaxValue();
+  vtkSetClampMacro(Acceleration, int, AUTO, SORTED_VOLUME);
+  vtkGetMacro(Acceleration, int);
   void SetAccelerationToAuto() { this->SetAcceleration(AUTO); }
   void SetAccelerationToDense() { this->SetAcceleration(DENSE); }
   void SetAccelerationToBricks() { this->SetAcceleration(BRICKS); }
   void SetAccelerationToLines() { this->SetAcceleration(LINES); }
   void SetAccelerationToSortedLines() { this->SetAcceleration(SORTED_LINES); }
   void SetAccelerationToSortedVolume() { this->SetAcceleration(SORTED_VOLUME); }
-  virtual void SetLineTolerance(double);
-  virtual double GetLineTolerance();
-  virtual double GetLineToleranceMinValue();
-  virtual double GetLineToleranceMaxValue();
-  virtual void SetEliminateInvisible(bool);
-  virtual bool GetEliminateInvisible();
-  vtkBooleanMacro(EliminateInvisible, bool);
+  vtkSetClampMacro(LineTolerance, double, 0.0, 64.0);
+  vtkGetMacro(LineTolerance, double);
   ///@}
 
   ///@{
   /**
-   * Whether the output also tells where the samples lie that it shows, as point arrays: "Voxel",
-   * three ints, the input's i, j, k relative to its first voxel, -1 without a sample; "Depth",
-   * float, the distance in world units from the camera's plane, in perspective from the eye;
-   * "Position", three doubles, the point of the world; NaN without a sample. All as of
-   * vtkSplattingMIPVolumeMapper::GetLocations(). Averages have none, which a warning says. Without
-   * a Camera the plane lies the diagonal of the volume's bounds before the focal point. Default
-   * off.
+   * Set/Get whether the output has sample positions as the point arrays "Voxel", "Depth" and
+   * "Position"; see vtkSplattingMIPVolumeMapper::GetLocations(). Default off. Without a Camera,
+   * depths are distances from a plane that lies the diagonal of the volume's bounds before the
+   * focal point. Averages have no positions and report a warning.
    */
-  virtual void SetRecordLocations(bool);
-  virtual bool GetRecordLocations();
-  vtkBooleanMacro(RecordLocations, bool);
+  vtkSetMacro(RecordLocations, vtkTypeBool);
+  vtkGetMacro(RecordLocations, vtkTypeBool);
+  vtkBooleanMacro(RecordLocations, vtkTypeBool);
   ///@}
 
   ///@{
   /**
-   * Bytes that the index may hold besides the input. Default 4 GiB. What would exceed them is not
-   * made: projections are slower then, and the same.
+   * Set/Get how many bytes the index may hold besides the input; see
+   * vtkSplattingMIPVolumeMapper::SetIndexMemoryBudget(). Default 4 GiB, at least 0.
    */
-  virtual void SetIndexMemoryBudget(vtkTypeInt64);
-  virtual vtkTypeInt64 GetIndexMemoryBudget();
-  virtual vtkTypeInt64 GetIndexMemoryBudgetMinValue();
-  virtual vtkTypeInt64 GetIndexMemoryBudgetMaxValue();
+  vtkSetClampMacro(IndexMemoryBudget, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
+  vtkGetMacro(IndexMemoryBudget, vtkTypeInt64);
   ///@}
 
   /**
-   * Bytes held for the input of the last Update(): bricks, chains, copies.
+   * Get how many bytes are held for the last input: bricks, chains, copies and the bounds of EXACT.
    */
   vtkIdType GetIndexMemorySize();
 
   /**
-   * How often the last Update() has projected the volume: NumberOfViews or, where opposite views
-   * share projections, half of it.
+   * Get how often the last Update() projected the volume: NumberOfViews, or half of it if opposite
+   * views share projections.
    */
   vtkGetMacro(NumberOfProjections, vtkIdType);
 
   /**
-   * The instruction set of the loops in use: "baseline", "AVX2", "AVX-512" or "AVX-512 VBMI".
+   * Get the instruction set of the loops in use: "baseline", "AVX2", "AVX-512" or "AVX-512 VBMI".
    */
   const char* GetInstructionSet();
 
   /**
-   * Sets a camera to that of a view of the last Update(), 0 to NumberOfViews - 1, for what is to be
-   * drawn over its slice; its parallel scale or view angle is that of the slice's height. False,
-   * and the camera stays as it is, if there is no such view.
+   * Set a camera to that of a view of the last Update(), from 0 to NumberOfViews - 1, for drawing
+   * over its slice. Its parallel scale or view angle is that of the slice's height. Returns false
+   * and leaves the camera unchanged if there is no such view.
    */
   bool GetViewCamera(int view, vtkCamera* camera);
 
   /**
-   * The last shear image of the last Update(), as vtkSplattingMIPVolumeMapper::GetShearImage() has
-   * it, or nullptr; EXACT has none. The last view is the last slice, in whole turns with an even
-   * number of views, too. Costs a copy of the shear image.
+   * Get the last shear image of the last view; see vtkSplattingMIPVolumeMapper::GetShearImage().
+   * Returns nullptr before the first Update() and in EXACT.
    */
   vtkImageData* GetShearImage();
 
@@ -452,24 +361,45 @@ protected:
   int RequestData(
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
 
-  vtkCamera* Camera;
-  double ViewDirection[3];
-  double ViewUp[3];
-  bool CenterOnVolume;
-  double FocalPoint[3];
-  int OutputSize[2];
-  double OutputSpacing[2];
-  int NumberOfViews;
-  double RotationAxis[3];
-  double TotalAngle;
-  double BackgroundValue;
-  vtkIdType NumberOfProjections;
-
 private:
+  vtkCamera* Camera = nullptr;
+  double ViewDirection[3] = { 0.0, 1.0, 0.0 };
+  double ViewUp[3] = { 0.0, 0.0, 1.0 };
+  vtkTypeBool CenterOnVolume = 1;
+  double FocalPoint[3] = { 0.0, 0.0, 0.0 };
+  int OutputSize[2] = { 256, 256 };
+  double OutputSpacing[2] = { 0.0, 0.0 };
+  int NumberOfViews = 1;
+  double RotationAxis[3] = { 0.0, 0.0, 0.0 };
+  double TotalAngle = 360.0;
+  double BackgroundValue = 0.0;
+  int BlendMode = MAXIMUM_INTENSITY_BLEND;
+  double AverageIPScalarRange[2] = { VTK_FLOAT_MIN, VTK_FLOAT_MAX };
+  int QualityMode = EXACT;
+  int Kernel = TRILINEAR;
+  double KernelRadius = 1.0;
+  int FootprintSampling = 0;
+  int MaximumType = GLOBAL;
+  double DepthShadingAmbient = 0.3;
+  double DepthShadingChangeRate = 0.7;
+  double LocalMaximumThreshold = 0.0;
+  int VectorMode = DISABLED;
+  int VectorComponent = 0;
+  vtkTypeBool Slab = 0;
+  double SlabThickness = 10.0;
+  double SlabCenter[3] = { 0.0, 0.0, 0.0 };
+  vtkTypeBool Cropping = 0;
+  double CroppingRegionPlanes[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  int CroppingRegionFlags = 1 << 13; // VTK_CROP_SUBVOLUME
+  int Acceleration = AUTO;
+  double LineTolerance = 0.0;
+  vtkTypeBool RecordLocations = 0;
+  vtkTypeInt64 IndexMemoryBudget = vtkTypeInt64(1) << 32;
+  vtkIdType NumberOfProjections = 0;
+
   vtkSplattingMIPProjection(const vtkSplattingMIPProjection&) = delete;
   void operator=(const vtkSplattingMIPProjection&) = delete;
 
-  std::unique_ptr<splatting::ProjectionProperties> Properties;
   class Internals;
   std::unique_ptr<Internals> Internal;
 };

@@ -4,7 +4,6 @@
 
 #include "ComponentProjector.h"
 #include "Input/ScalarSource.h"
-#include "MapperProperties.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include "vtkCamera.h"
@@ -98,17 +97,23 @@ void addColors(vtkScalarsToColors* colors, Number& number)
   }
 }
 
-/// All that can change the picture, but masks, which are data.
-void addProperties(const MapperProperties& properties, Number& number)
+/// Adds all settings that change the picture, except masks, which are data.
+void addSettings(vtkSplattingMIPVolumeMapper* mapper, Number& number)
 {
-  const auto add = [&number](const char*, const auto& value, auto...) { number.add(value); };
-  properties.visitInherited(add);
-  properties.visit(add);
-  if (properties.DepthCodingColors)
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  mapper->PrintPictureSettings(text, vtkIndent());
+  number.add(text.str().data(), static_cast<int>(text.str().size()));
+  number.add(mapper->GetBlendMode());
+  number.add(mapper->GetAverageIPScalarRange(), 2);
+  number.add(mapper->GetCropping());
+  number.add(mapper->GetCroppingRegionPlanes(), 6);
+  number.add(mapper->GetCroppingRegionFlags());
+  if (vtkScalarsToColors* const colors = mapper->GetDepthCodingColors())
   {
-    addColors(properties.DepthCodingColors, number);
+    addColors(colors, number);
   }
-  if (vtkPolyData* const surface = properties.BoundingSurface)
+  if (vtkPolyData* const surface = mapper->GetBoundingSurface())
   {
     number.add(surface->GetNumberOfPoints());
     number.add(surface->GetBounds(), 6);
@@ -264,7 +269,7 @@ std::uint64_t viewNumber(
   number.add(camera->GetViewTransformMatrix()->GetData(), 16);
   number.add(volume->GetMatrix()->GetData(), 16);
   number.add(volume->GetProperty()->GetIndependentComponents());
-  addProperties(mapper->ReadProperties(), number);
+  addSettings(mapper, number);
   addScalars(mapper, number);
   addPlanes(mapper->GetClippingPlanes(), number);
   return number.get();
@@ -312,6 +317,7 @@ void RankAgreement::SetWhole(const std::vector<RankReport>& reports)
       range.low = std::min(range.low, report.ranges[c].low);
       range.high = std::max(range.high, report.ranges[c].high);
       range.nonFinite = std::max(range.nonFinite, report.ranges[c].nonFinite);
+      range.magnitude = std::max(range.magnitude, report.ranges[c].magnitude);
     }
   }
   if (!this->Image)
@@ -484,7 +490,7 @@ void RankAgreement::Reduce(ScreenScalars& screen)
 VolumeIndex::Range RankAgreement::RangeOfWhole(std::size_t component) const
 {
   const auto& range = this->All.ranges[component];
-  return { range.low, range.high, range.nonFinite != 0.0 };
+  return { range.low, range.high, range.nonFinite != 0.0, range.magnitude };
 }
 
 void describeScalars(ComponentProjector& components, const ScalarSource& source, RankReport& report)
@@ -496,7 +502,7 @@ void describeScalars(ComponentProjector& components, const ScalarSource& source,
   for (std::size_t c = 0; c < components.NumberOfComponents(); ++c)
   {
     const VolumeIndex::Range& range = components.RangeOfPiece(c);
-    report.ranges[c] = { range.low, range.high, range.nonFinite ? 1.0 : 0.0 };
+    report.ranges[c] = { range.low, range.high, range.nonFinite ? 1.0 : 0.0, range.magnitude };
   }
   if (components.AreDependent())
   {

@@ -15,12 +15,11 @@
 
 class vtkImageData;
 class vtkRenderer;
+class vtkSplattingMIPVolumeMapper;
 class vtkVolume;
 
 namespace splatting
 {
-struct MapperProperties;
-
 /**
  * A mapper's data, and the shear images of its last frame: which of them the next one can show
  * again, and in which quality mode the others are projected.
@@ -48,7 +47,7 @@ public:
   void ForgetTimes() { this->Times.clear(); }
 
   /// Makes indices and colours of data that can be projected.
-  void Prepare(const MapperProperties& properties, const View& view, vtkVolume* volume,
+  void Prepare(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkVolume* volume,
     const FinalColor& finalColor);
 
   /**
@@ -56,7 +55,7 @@ public:
    * none after an abort.
    * @return  false if the view is invalid
    */
-  bool Project(const MapperProperties& properties, const View& view, vtkRenderer* renderer,
+  bool Project(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkRenderer* renderer,
     vtkVolume* volume, const SceneCuts::DepthReader& readDepth);
 
   /// Gives back all memory, after a frame that there was not enough for.
@@ -78,8 +77,8 @@ public:
   }
 
 private:
-  int ChooseMode(const MapperProperties& properties, vtkRenderer* renderer, vtkVolume* volume);
-  bool FindCuts(const MapperProperties& properties, const View& view, vtkRenderer* renderer,
+  int ChooseMode(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume);
+  bool FindCuts(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkRenderer* renderer,
     vtkVolume* volume, const SceneCuts::DepthReader& readDepth, const ProjectionSettings& settings);
   bool Shows(const View& view, const ProjectionSettings& settings) const;
 

@@ -56,8 +56,6 @@ public:
   void Keep() { std::swap(this->Present, this->Kept); }
   /// Those that were kept.
   const std::vector<Cuts>& OfProjection() const { return this->Kept; }
-  /// The depths of other things in the present frame, or nullptr.
-  const SceneDepth* SceneDepths() const { return this->Seen ? &this->Seen->depth : nullptr; }
 
   /// Clears the pixels of a picture that other things hide.
   void Hide(Picture& picture) const;

@@ -117,6 +117,7 @@ public:
   {
     double low = 0.0, high = 0.0; ///< of all voxels but NaN; low > high if there are none
     bool nonFinite = false;       ///< whether there are NaN or infinities
+    double magnitude = 0.0;       ///< the largest one of finite voxels
 
     bool hasInfinities() const
     {
@@ -128,9 +129,6 @@ public:
   /// If the voxels are a piece of a volume: the range of that, which range() is from now on. It
   /// holds the voxels' own.
   void setRangeOfWhole(const Range& range);
-
-  /// The largest magnitude of finite voxels. Of a piece, of its own.
-  double largestMagnitude();
 
   /// Whether there are bricks: the budget has room for them, and there are no infinities.
   bool hasBricks();
@@ -168,7 +166,6 @@ private:
   std::unique_ptr<unsigned char[]> Copy;
   std::size_t CopySize = 0;
   Range ValueRange;
-  double Magnitude = 0.0;
   std::array<BrickMaxima, 3> Bricks;
   std::array<std::array<LineIndex, 2>, 3> Lines;
   std::array<std::array<std::optional<LineEncoding>, 2>, 3> Unmade; // encodings that had no room
