@@ -164,7 +164,7 @@ template <class T, bool Minima>
 void survey(const CellGrid& grid, T* blocks, T* bricks)
 {
   parallelFor(0, grid.bricks.z, 1,
-    [&](vtkIdType begin, vtkIdType end)
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       Survey<T, Minima> survey(grid, blocks);
       for (int z = static_cast<int>(begin); z < end; ++z)

@@ -277,7 +277,7 @@ void findLocalMaxima(const CellFrame<T>& frame, double threshold, ScreenScalars&
   const double range = scale * frame.highest - scale * frame.lowest;
   const double rounding = std::isfinite(range) ? 0x1p-40 * range : 0.0;
   parallelFor(0, screen.size.y, 1,
-    [&](vtkIdType begin, vtkIdType end)
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       std::vector<double> near(screen.size.x), far(screen.size.x);
       for (int y = static_cast<int>(begin); y < end; ++y)

@@ -40,9 +40,9 @@ void colorRows(const ScreenScalars& screen, const ColorTable& table, const Works
   const A low = static_cast<A>(table.low);
   const A scale = static_cast<A>(table.high > table.low ? last / (table.high - table.low) : 0.0);
   parallelFor(0, screen.size.y, 16,
-    [&](vtkIdType begin, vtkIdType end)
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
-      for (vtkIdType y = begin; y < end; ++y)
+      for (std::ptrdiff_t y = begin; y < end; ++y)
       {
         const A* const values = screen.row<A>(static_cast<int>(y));
         std::uint32_t* const pixels = picture.pixels.data() + y * screen.size.x;

@@ -44,9 +44,9 @@ private:
   void forRows(Body&& body) const
   {
     parallelFor(0, this->Size.y, 16,
-      [&](vtkIdType first, vtkIdType last)
+      [&](std::ptrdiff_t first, std::ptrdiff_t last)
       {
-        for (vtkIdType j = first; j < last; ++j)
+        for (std::ptrdiff_t j = first; j < last; ++j)
         {
           body(static_cast<int>(j));
         }

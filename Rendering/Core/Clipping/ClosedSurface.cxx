@@ -348,7 +348,7 @@ void ClosedSurface::findDepths(SurfaceDepths& depths) const
   depths.Near.resize(width * geometry.height());
   depths.Far.resize(depths.Near.size());
   parallelFor(0, geometry.height(), 32,
-    [&](vtkIdType begin, vtkIdType end)
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       std::fill_n(&depths.Near[begin * width], (end - begin) * width, beginning.x);
       std::fill_n(&depths.Far[begin * width], (end - begin) * width, beginning.y);

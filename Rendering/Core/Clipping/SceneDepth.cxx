@@ -206,7 +206,7 @@ void SceneDepth::hide(Picture& picture) const
     return;
   }
   parallelFor(begin.y, end.y, 16,
-    [&](vtkIdType first, vtkIdType last)
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
       for (int y = static_cast<int>(first); y < last; ++y)
       {

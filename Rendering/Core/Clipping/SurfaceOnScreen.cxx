@@ -129,11 +129,11 @@ void SurfaceOnScreen::find(const ClosedSurface& surface, const PixelRays& rays,
   surface.forTriangles(
     [&](const glm::dvec3(&corners)[3]) { triangles.emplace_back(rays, corners); });
   parallelFor(0, size.y, 8,
-    [&](vtkIdType begin, vtkIdType end)
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       for (const ScreenTriangle& triangle : triangles)
       {
-        for (vtkIdType y = begin; y < end; ++y)
+        for (std::ptrdiff_t y = begin; y < end; ++y)
         {
           const std::ptrdiff_t row = y * size.x - origin.x;
           triangle.cover(static_cast<int>(origin.y + y), origin.x, origin.x + size.x - 1,

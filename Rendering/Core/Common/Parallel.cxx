@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Common/Parallel.h"
 
+#include <vtkSMPTools.h>
+
 #include <atomic>
 #include <cstdlib>
 #if __has_include(<unistd.h>)
@@ -24,7 +26,6 @@ bool isForked()
   return false;
 #endif
 }
-}
 
 bool usesOwnThreads()
 {
@@ -34,23 +35,15 @@ bool usesOwnThreads()
     !isForked();
 }
 
-int numberOfThreads()
-{
 #if VTK_SMP_ENABLE_STDTHREAD
-  if (usesOwnThreads())
-  {
-    return ownThreads().GetEstimatedNumberOfThreads();
-  }
-#endif
-  return vtkSMPTools::GetEstimatedNumberOfThreads();
-}
+using Threads = smp::vtkSMPToolsImpl<smp::BackendType::STDThread>;
 
-#if VTK_SMP_ENABLE_STDTHREAD
-OwnThreads& ownThreads()
+/// With the number of threads that the program chose.
+Threads& ownThreads()
 {
-  static struct Threads : OwnThreads
+  static struct Unnested : Threads
   {
-    Threads() { this->SetNestedParallelism(false); }
+    Unnested() { this->SetNestedParallelism(false); }
   } threads;
   // Each backend has a number of its own, and Initialize(n) sets that of the current backend.
   static std::atomic<int> number{ 0 };
@@ -60,6 +53,55 @@ OwnThreads& ownThreads()
     threads.Initialize(wanted);
   }
   return threads;
+}
+#endif
+}
+
+void parallelFor(
+  std::ptrdiff_t first, std::ptrdiff_t last, std::ptrdiff_t grain, const LoopBody& body)
+{
+  if (usesOwnThreads())
+  {
+    forInOwnThreads(first, last, grain, body);
+    return;
+  }
+  vtkSMPTools::For(first, last, grain, body);
+}
+
+int numberOfThreads()
+{
+  return usesOwnThreads() ? numberOfOwnThreads() : vtkSMPTools::GetEstimatedNumberOfThreads();
+}
+
+#if VTK_SMP_ENABLE_STDTHREAD
+void forInOwnThreads(
+  std::ptrdiff_t first, std::ptrdiff_t last, std::ptrdiff_t grain, const LoopBody& body)
+{
+  struct
+  {
+    const LoopBody& body;
+    void Execute(vtkIdType begin, vtkIdType end) const { this->body(begin, end); }
+  } functor{ body };
+  ownThreads().For(first, last, grain, functor);
+}
+
+int numberOfOwnThreads()
+{
+  return ownThreads().GetEstimatedNumberOfThreads();
+}
+#else
+void forInOwnThreads(
+  std::ptrdiff_t first, std::ptrdiff_t last, std::ptrdiff_t, const LoopBody& body)
+{
+  if (first < last)
+  {
+    body(first, last);
+  }
+}
+
+int numberOfOwnThreads()
+{
+  return 1;
 }
 #endif
 }

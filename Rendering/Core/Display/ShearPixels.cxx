@@ -77,9 +77,9 @@ void findAreaPixels(const std::vector<ShearImage>& images, const std::vector<She
     {
       using T = std::remove_pointer_t<decltype(null)>;
       parallelFor(0, size.y, 16,
-        [&](vtkIdType first, vtkIdType last)
+        [&](std::ptrdiff_t first, std::ptrdiff_t last)
         {
-          for (vtkIdType n = first * size.x; n < last * size.x; ++n)
+          for (std::ptrdiff_t n = first * size.x; n < last * size.x; ++n)
           {
             const glm::dvec3 pixel(origin.x + static_cast<double>(n % size.x),
               origin.y + static_cast<double>(n / size.x), 1.0);
@@ -101,9 +101,9 @@ void findShearPixels(const std::vector<ShearImage>& images,
     shown.push_back(shownBy(geometry));
   }
   parallelFor(0, size.y, 16,
-    [&](vtkIdType first, vtkIdType last)
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
-      for (vtkIdType y = first; y < last; ++y)
+      for (std::ptrdiff_t y = first; y < last; ++y)
       {
         // From the viewport's edge on, so that a pixel that two images show is the same one's in
         // any rectangle.

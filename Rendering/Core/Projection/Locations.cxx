@@ -249,7 +249,7 @@ void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec
       GeneralTable table;
       const VoxelFinder<T> finder(located, geometry, table);
       parallelFor(0, projected.height, 8,
-        [&](vtkIdType first, vtkIdType last)
+        [&](std::ptrdiff_t first, std::ptrdiff_t last)
         {
           for (int v = static_cast<int>(first); v < last; ++v)
           {
@@ -427,9 +427,9 @@ void Locator::fillFrom(
   const glm::ivec2& origin, const glm::ivec2& size, const Arrays& arrays, F&& sampleOf) const
 {
   parallelFor(0, size.y, 8,
-    [&](vtkIdType first, vtkIdType last)
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
-      for (vtkIdType y = first; y < last; ++y)
+      for (std::ptrdiff_t y = first; y < last; ++y)
       {
         for (int x = 0; x < size.x; ++x)
         {

@@ -131,7 +131,7 @@ template <class T, class F>
 void forRows(ShearImage& image, F&& f)
 {
   parallelFor(0, image.height, 16,
-    [&](vtkIdType begin, vtkIdType end)
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       for (int v = static_cast<int>(begin); v < end; ++v)
       {

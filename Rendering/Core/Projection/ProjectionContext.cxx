@@ -383,7 +383,7 @@ void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& s
   }
   space.crossed.reset(slices, image.width);
   parallelFor(0, image.height, 16,
-    [&](vtkIdType begin, vtkIdType end)
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       SamplesLeft samples(slices, space.crossed, cuts, image.width, space.rows.Local());
       for (int v = static_cast<int>(begin); v < end; ++v)

@@ -28,9 +28,9 @@ void forBands(
   const int bands = (height + rows - 1) / rows;
   observer.begin(bands);
   parallelFor(0, bands, 1,
-    [&](vtkIdType first, vtkIdType last)
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
-      for (vtkIdType b = first; b < last && !observer.stopped(); ++b)
+      for (std::ptrdiff_t b = first; b < last && !observer.stopped(); ++b)
       {
         const int v0 = static_cast<int>(b) * rows;
         body(v0, std::min(v0 + rows, height));

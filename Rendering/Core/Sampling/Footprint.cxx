@@ -271,9 +271,9 @@ void GeneralTable::set(const Kernel& kernel, const glm::dvec2& shear, int sampli
   }
   this->Sampling = sampling;
   parallelFor(0, 3 * n, 8,
-    [&](vtkIdType first, vtkIdType last)
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
-      for (vtkIdType row = first; row < last; ++row)
+      for (std::ptrdiff_t row = first; row < last; ++row)
       {
         const int part = static_cast<int>(row / n), y = static_cast<int>(row % n);
         for (int x = 0; x < n; ++x)

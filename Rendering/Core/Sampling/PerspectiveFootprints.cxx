@@ -78,7 +78,7 @@ void AxisFootprints<A>::find(const ShearWarp& whole, const ShearWarp& geometry, 
   this->Bases.resize(all * this->Padded / this->Group);
   this->Lanes.resize(all * this->Padded * sizeof(A));
   parallelFor(this->Slices.begin, this->Slices.end, 8,
-    [&](vtkIdType begin, vtkIdType end)
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       for (int k = static_cast<int>(begin); k < end; ++k)
       {

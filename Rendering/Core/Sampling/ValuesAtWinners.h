@@ -126,7 +126,7 @@ void fillAtWinners(const AtWinners& c, const F& valueAt)
     }
   };
   parallelFor(0, image.height, TileHeight,
-    [&](vtkIdType begin, vtkIdType end)
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       for (int v = static_cast<int>(begin); v < end; ++v)
       {

@@ -81,9 +81,9 @@ void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int samplin
   }
   footprints.resize(geometry.size().z);
   parallelFor(0, geometry.size().z, 8,
-    [&](vtkIdType first, vtkIdType last)
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
-      for (vtkIdType k = first; k < last; ++k)
+      for (std::ptrdiff_t k = first; k < last; ++k)
       {
         auto& footprint = footprints[k];
         const glm::dvec2 position = geometry.position(static_cast<double>(k));

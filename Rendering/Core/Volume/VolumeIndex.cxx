@@ -57,7 +57,7 @@ void transpose(const T* in, T* out, const glm::ivec3& size, int begin, int end)
   constexpr int block = 64;
   const std::ptrdiff_t nx = size.x, ny = size.y, nz = size.z;
   parallelFor(0, nz, 0,
-    [=](vtkIdType first, vtkIdType last)
+    [=](std::ptrdiff_t first, std::ptrdiff_t last)
     {
       for (std::ptrdiff_t z = first; z < last; ++z)
       {
@@ -111,10 +111,10 @@ public:
   {
     const int pairs = (this->Count.y + 1) / 2;
     parallelFor(0, std::ptrdiff_t(pairs) * this->Count.z, 0,
-      [&](vtkIdType first, vtkIdType last)
+      [&](std::ptrdiff_t first, std::ptrdiff_t last)
       {
         Scratch& scratch = this->Scratches.Local();
-        for (vtkIdType n = first; n < last; ++n)
+        for (std::ptrdiff_t n = first; n < last; ++n)
         {
           this->lookAt(static_cast<int>(n % pairs), static_cast<int>(n / pairs), scratch);
         }

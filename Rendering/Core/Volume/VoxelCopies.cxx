@@ -18,7 +18,7 @@ template <class Body>
 void forAll(std::ptrdiff_t count, std::ptrdiff_t grain, Body&& body)
 {
   parallelFor(0, count, grain,
-    [&](vtkIdType first, vtkIdType last)
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
       for (std::ptrdiff_t n = first; n < last; ++n)
       {

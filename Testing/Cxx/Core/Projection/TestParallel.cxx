@@ -7,6 +7,8 @@
 
 #include "Common/Parallel.h"
 
+#include <vtkSMPTools.h>
+
 #include <atomic>
 #include <set>
 #include <string>
@@ -16,26 +18,25 @@ using namespace splatting;
 
 namespace
 {
-#if VTK_SMP_ENABLE_STDTHREAD
 void testLoops(coretesting::Checks& check)
 {
-  for (const vtkIdType count : { 0, 1, 7, 1000 })
+  for (const std::ptrdiff_t count : { 0, 1, 7, 1000 })
   {
-    for (const vtkIdType grain : { 0, 1, 3, 2000 })
+    for (const std::ptrdiff_t grain : { 0, 1, 3, 2000 })
     {
       std::vector<std::atomic<int>> met(count);
-      PerThread<vtkIdType> sums;
+      PerThread<std::ptrdiff_t> sums;
       forInOwnThreads(0, count, grain,
-        [&](vtkIdType first, vtkIdType last)
+        [&](std::ptrdiff_t first, std::ptrdiff_t last)
         {
           sums.Local() += last - first;
-          for (vtkIdType n = first; n < last; ++n)
+          for (std::ptrdiff_t n = first; n < last; ++n)
           {
             ++met[n];
           }
         });
-      vtkIdType sum = 0, once = 0;
-      sums.forAll([&](vtkIdType part) { sum += part; });
+      std::ptrdiff_t sum = 0, once = 0;
+      sums.forAll([&](std::ptrdiff_t part) { sum += part; });
       for (const std::atomic<int>& times : met)
       {
         once += times == 1;
@@ -50,11 +51,11 @@ void testNestedLoops(coretesting::Checks& check)
 {
   std::atomic<int> moved{ 0 };
   forInOwnThreads(0, 8, 1,
-    [&](vtkIdType, vtkIdType)
+    [&](std::ptrdiff_t, std::ptrdiff_t)
     {
       const std::thread::id outer = std::this_thread::get_id();
       forInOwnThreads(
-        0, 8, 1, [&](vtkIdType, vtkIdType) { moved += std::this_thread::get_id() != outer; });
+        0, 8, 1, [&](std::ptrdiff_t, std::ptrdiff_t) { moved += std::this_thread::get_id() != outer; });
     });
   check(moved == 0, "a loop in a loop stays on its thread");
 }
@@ -62,20 +63,17 @@ void testNestedLoops(coretesting::Checks& check)
 void testNumberOfThreads(coretesting::Checks& check)
 {
   vtkSMPTools::Initialize(1);
-  check(ownThreads().GetEstimatedNumberOfThreads() == 1, "one thread");
+  check(numberOfOwnThreads() == 1, "one thread");
   vtkSMPTools::Initialize(0);
 }
-#endif
 }
 
 int TestParallel(int, char*[])
 {
   coretesting::Checks check;
-#if VTK_SMP_ENABLE_STDTHREAD
   testLoops(check);
   testNestedLoops(check);
   testNumberOfThreads(check);
-#endif
   check(numberOfThreads() >= 1, "there is a thread");
   return check.result();
 }
