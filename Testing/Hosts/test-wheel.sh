@@ -24,7 +24,7 @@ cd "$work"
 
 apt-get update -qq
 DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
-  ninja-build ccache g++ python3-dev python3-venv xvfb xauth libgl1 libegl1 libgl1-mesa-dri libxrender1 >/dev/null
+  cmake ninja-build ccache g++ python3-dev python3-venv xvfb xauth libgl1 libegl1 libgl1-mesa-dri libxrender1 >/dev/null
 
 failures=0
 # check WHAT FOUND EXPECTED
