@@ -14,7 +14,7 @@ namespace splatting
 {
 namespace
 {
-/// What is wrong with clipping planes, or nullptr.
+/// Returns what is wrong with clipping planes, or nullptr.
 const char* faultOfPlanes(vtkPlaneCollection* planes)
 {
   for (int n = 0; planes && n < planes->GetNumberOfItems(); ++n)

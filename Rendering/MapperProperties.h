@@ -17,8 +17,7 @@ class vtkVolumeProperty;
 namespace splatting
 {
 /**
- * The properties of vtkSplattingMIPVolumeMapper: those that it shares with the filter, and those of
- * pictures in a scene.
+ * The properties of vtkSplattingMIPVolumeMapper: those shared with the filter, and its own.
  */
 struct MapperProperties : ProjectionProperties
 {
@@ -37,7 +36,7 @@ struct MapperProperties : ProjectionProperties
   vtkSmartPointer<vtkScalarsToColors> DepthCodingColors;
   vtkSmartPointer<vtkMultiProcessController> Controller;
 
-  /// As in ProjectionProperties, the mapper's own properties after the shared ones.
+  /// As in ProjectionProperties: the shared properties, then the mapper's own.
   template <class Visitor>
   void visit(Visitor&& visitor) const
   {
@@ -68,19 +67,19 @@ struct MapperProperties : ProjectionProperties
     visitor("Controller", this->Controller.Get());
   }
 
-  /// Whether anything needs to know where samples lie.
+  /// Whether a property requires sample positions.
   bool needsLocations() const
   {
     return this->RecordLocations || this->DepthCoding || this->WriteDepth;
   }
 };
 
-/// As for ProjectionProperties; looks at the mapper's clipping planes, too, and in blend mode
-/// SLICE at the property's slice function.
+/// As for ProjectionProperties. Also validates the mapper's clipping planes and, in blend mode
+/// SLICE, the property's slice function.
 const char* faultOf(
   const MapperProperties& properties, vtkPlaneCollection* planes, vtkVolumeProperty* property);
 
-/// As of ProjectionProperties, with locations if anything needs them.
+/// As for ProjectionProperties. Requests locations if a property requires them.
 ProjectionSettings settingsOf(const MapperProperties& properties, int mode, const View& view);
 }
 

@@ -50,7 +50,7 @@ bool isProjection(int blendMode)
     blendMode == vtkVolumeMapper::AVERAGE_INTENSITY_BLEND;
 }
 
-/// Sets a pointer for as long as this lives, whatever is thrown.
+/// Sets a pointer during its lifetime, also if exceptions are thrown.
 class During
 {
 public:
@@ -83,18 +83,18 @@ public:
   void ReportAbsence(vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
 
   ReportedProblems Reported;
-  std::set<std::string> Announced;   // what ray casting leads to, and was told
-  bool BudgetReported = false;       // as in: since it was no problem
+  std::set<std::string> Announced;   // warnings that were reported
+  bool BudgetReported = false;       // until the problem disappears
   bool OpenSurfaceReported = false;  // likewise
-  vtkRenderWindow* Window = nullptr; // which may abort, during a render
+  vtkRenderWindow* Window = nullptr; // during a render; may abort it
 
-  FrameAttendance Attendance; // of several ranks
+  FrameAttendance Attendance; // for several ranks
   ProjectedVolume Data;
   WinnerLocations Locations{ Data.Source, Data.Components, Data.Cuts, Data.Images };
   splatting::Picture Picture;
   double Shear[2] = { 0.0, 0.0 };
 
-  std::unique_ptr<RayCastFallback> RayCaster; // made when first needed: it is megabytes large
+  std::unique_ptr<RayCastFallback> RayCaster; // created on demand, because it takes megabytes
 };
 
 //------------------------------------------------------------------------------
@@ -143,14 +143,14 @@ double* vtkSplattingMIPVolumeMapper::GetBounds()
   }
   if (!ranks.Whole())
   {
-    return nullptr; // what has no bounds is not culled
+    return nullptr; // volumes without bounds are not culled
   }
   ranks.Whole()->GetBounds(this->Bounds);
   return this->Bounds;
 }
 
 //------------------------------------------------------------------------------
-// Tells how much of the projection is done and whether the window wants the rest.
+// Reports progress. Returns whether the window wants to continue.
 bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* self, double done)
 {
   done = this->Data.Components.ShareOfAll(done);
@@ -165,7 +165,7 @@ bool vtkSplattingMIPVolumeMapper::Internals::IsAborted() const
 }
 
 //------------------------------------------------------------------------------
-// The other ranks wait for this one, which has rendered a frame without the volume.
+// Reports a frame without the volume to the other ranks, which wait.
 void vtkSplattingMIPVolumeMapper::Internals::ReportAbsence(
   vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume)
 {
@@ -181,7 +181,7 @@ void vtkSplattingMIPVolumeMapper::Internals::ReportAbsence(
 }
 
 //------------------------------------------------------------------------------
-// What is set but means nothing where rays are cast.
+// Warns of properties that ray casting ignores.
 void vtkSplattingMIPVolumeMapper::Internals::WarnOfIgnored(vtkSplattingMIPVolumeMapper* self)
 {
   if ((self->GetSlab() || self->GetBoundingSurface()) && this->Announced.insert("ignored").second)
@@ -220,7 +220,7 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfBudget(vtkSplattingMIPVolumeM
 }
 
 //------------------------------------------------------------------------------
-// Holds nothing, after a frame that there was no memory for.
+// Releases memory, after a frame that ran out of memory.
 void vtkSplattingMIPVolumeMapper::Internals::GiveBack()
 {
   this->Data.Clear();
@@ -281,7 +281,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   {
     vtkErrorMacro(<< problem);
   }
-  // The old scalars would stay in memory with it.
+  // It would keep the old scalars in memory.
   if (!this->LastRenderUsedRayCasting && !in.Data.Source.HasImage())
   {
     in.DropRayCaster();
@@ -293,14 +293,14 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 }
 
 //------------------------------------------------------------------------------
-// Returns what is wrong, or an empty string.
+// Returns an error message, or an empty string.
 const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
   ProjectedVolume& data = in.Data;
   const MapperProperties& properties = this->ReadProperties();
   splatting::View view = makeView(data.Grid(), vol, ren, this);
-  // Nothing can be seen in a window that is not shown yet.
+  // A window that is not shown yet has no pixels.
   if (view.viewport.x < 1 || view.viewport.y < 1)
   {
     return "";
@@ -353,7 +353,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 }
 
 //------------------------------------------------------------------------------
-// The picture, in the colours of depths if they are wanted, and depths.
+// Displays the picture, coloured by depth if DepthCoding is on, and its depths.
 void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
 {
   Internals& in = *this->Internal;
@@ -404,8 +404,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
                     << (isForGpu ? "vtkGPUVolumeRayCastMapper" : "vtkFixedPointVolumeRayCastMapper")
                     << ", because the blend mode is no intensity projection.");
   }
-  // The ray caster's constructor needs an implementation of the display and does not ask whether
-  // there is one.
+  // The ray caster's constructor needs an implementation of the display, and does not check it.
   if (!in.RayCaster && !vtkSmartPointer<vtkRayCastImageDisplayHelper>::New())
   {
     vtkErrorMacro(<< "There is no OpenGL for vtkFixedPointVolumeRayCastMapper, which is needed "
@@ -450,7 +449,7 @@ void vtkSplattingMIPVolumeMapper::DisplayImage(
 }
 
 //------------------------------------------------------------------------------
-// DisplayImage() has said that there is nothing to draw with.
+// DisplayImage() has reported the error.
 void vtkSplattingMIPVolumeMapper::DisplayDepths(vtkRenderer*, const int*, const int*, const float*)
 {
 }

@@ -12,7 +12,7 @@
 
 namespace splatting
 {
-/// Of one volume in one renderer.
+/// Observes one volume in one renderer.
 class FrameAttendance::Watch
 {
 public:

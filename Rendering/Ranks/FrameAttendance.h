@@ -13,22 +13,22 @@ class vtkVolume;
 namespace splatting
 {
 /**
- * Observes the frames of renderers that have rendered a volume, because a mapper is not called
- * where its volume is invisible or culled.
+ * Detects frames of a renderer that do not render a volume which earlier frames rendered. A mapper
+ * cannot detect them, because it is not called if its volume is invisible or culled.
  */
 class FrameAttendance
 {
 public:
   using Callback = std::function<void(vtkRenderer*, vtkVolume*)>;
 
-  /// @param absent  called at the end of each frame that has not rendered a volume which the
-  ///                renderer still has; not for the passes of a selector
+  /// @param absent  is called at the end of each frame that has not rendered a volume of the
+  ///                renderer; not in the passes of a selector
   explicit FrameAttendance(Callback absent);
   ~FrameAttendance();
   FrameAttendance(const FrameAttendance&) = delete;
   FrameAttendance& operator=(const FrameAttendance&) = delete;
 
-  /// The present frame of a renderer renders the volume.
+  /// Call it when the current frame of a renderer renders the volume.
   void Attend(vtkRenderer* renderer, vtkVolume* volume);
 
 private:

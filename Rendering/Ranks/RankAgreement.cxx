@@ -34,7 +34,7 @@ static_assert(std::is_trivially_copyable<RankReport>::value, "reports are sent a
 
 namespace
 {
-/// VTK's name for the numbers that images are reduced as.
+/// VTK's type of the numbers that images are reduced as.
 int vtkTypeOf(ScalarType type)
 {
   static const int types[] = { VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_UNSIGNED_SHORT,
@@ -42,7 +42,7 @@ int vtkTypeOf(ScalarType type)
   return types[static_cast<int>(type)];
 }
 
-/// FNV-1a of numbers.
+/// FNV-1a hash of numbers.
 class Number
 {
 public:
@@ -86,7 +86,7 @@ void addScalars(vtkSplattingMIPVolumeMapper* mapper, Number& number)
   }
 }
 
-/// A part of the table: all of its colours would take too long.
+/// Adds some entries of a table, because all of them would take too long.
 void addColors(vtkScalarsToColors* colors, Number& number)
 {
   constexpr int samples = 64;
@@ -98,7 +98,7 @@ void addColors(vtkScalarsToColors* colors, Number& number)
   }
 }
 
-/// All that can change the picture, but masks, which are data.
+/// Adds all properties that can change the picture, except masks, which are data.
 void addProperties(const MapperProperties& properties, Number& number)
 {
   const auto add = [&number](const char*, const auto& value, auto...) { number.add(value); };
@@ -136,7 +136,7 @@ bool sameScalars(const RankReport& a, const RankReport& b)
   return a.cells == b.cells && a.type == b.type && a.components == b.components;
 }
 
-/// The first rank that holds something.
+/// The report of the first rank with a piece.
 const RankReport* firstPiece(const std::vector<RankReport>& reports)
 {
   const auto first = std::find_if(
@@ -144,8 +144,8 @@ const RankReport* firstPiece(const std::vector<RankReport>& reports)
   return first == reports.end() ? nullptr : &*first;
 }
 
-/// The first problem that a rank has, or that all have together; of their grids alone, or also of
-/// views and scalars.
+/// The first error of a rank or of all ranks together: of their grids alone, or also of views and
+/// scalars.
 std::string problemOf(const std::vector<RankReport>& reports, bool ofGrids)
 {
   const auto absent = std::find_if(
@@ -219,7 +219,7 @@ RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& prob
 {
   RankReport report;
   report.setProblem(problem);
-  // EXACT gives way to HIGH, which reaches farther, where it takes too long.
+  // EXACT is replaced by HIGH, which needs more layers, if it takes too long.
   const int mode = mapper->GetAutoAdjustSampleDistances()
     ? std::min<int>(mapper->GetQualityMode(), vtkSplattingMIPVolumeMapper::HIGH)
     : mapper->GetQualityMode();
@@ -295,7 +295,7 @@ std::vector<RankReport> RankAgreement::Gather(const RankReport& own) const
   return reports;
 }
 
-// All reports are of one grid.
+// All reports must have the same grid.
 void RankAgreement::SetWhole(const std::vector<RankReport>& reports)
 {
   this->All = *firstPiece(reports);
@@ -324,7 +324,7 @@ void RankAgreement::SetWhole(const std::vector<RankReport>& reports)
   this->Image->SetDirectionMatrix(this->All.direction);
 }
 
-// In voxels of the whole.
+// In voxels of the whole volume.
 Box RankAgreement::BoxOf(const RankReport& report) const
 {
   Box box;
@@ -415,7 +415,7 @@ void RankAgreement::Reduce(ShearImage& image, const ShearWarp& geometry, Reducti
   this->Controller->GetCommunicator()->AllReduceVoidArray(image.bytes.data(), this->Received.data(),
     vtkIdType(image.width) * image.height, vtkTypeOf(keys),
     reduction == Reduction::Minimum ? vtkCommunicator::MIN_OP : vtkCommunicator::MAX_OP);
-  image.bytes.swap(this->Received); // which is now what this rank had
+  image.bytes.swap(this->Received); // Received now has the pixels of this rank.
   if (!image.winners.empty())
   {
     this->ReduceWinners(image, geometry);
@@ -423,7 +423,8 @@ void RankAgreement::Reduce(ShearImage& image, const ShearWarp& geometry, Reducti
   decode(image, type, reduction);
 }
 
-// Steps are counted from the first slice of this rank's piece, and shall be from that of the whole.
+// Steps are counted from the first slice of this rank's piece. They are converted to steps from the
+// first slice of the whole.
 void RankAgreement::ReduceWinners(ShearImage& image, const ShearWarp& geometry)
 {
   constexpr std::int32_t behind = std::numeric_limits<std::int32_t>::max();

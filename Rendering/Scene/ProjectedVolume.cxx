@@ -23,7 +23,7 @@ void ProjectedVolume::BeginFrame()
 
 void ProjectedVolume::EndFrame(vtkRenderer* renderer, vtkVolume* volume, double seconds)
 {
-  // Frames that re-use an image say nothing about the next ones, nor does what is made once.
+  // Times of frames that reuse a projection, and of what is made once, predict nothing.
   if (this->Projections != this->ProjectionsBefore)
   {
     this->Times.add(
@@ -37,7 +37,7 @@ void ProjectedVolume::Prepare(const MapperProperties& properties, const View& vi
   const vtkIdType version = this->Source.Version();
   if (!this->Ranks.AreMany() && this->Components.SetSource(this->Source))
   {
-    this->ForgetTimes(); // changed data of the same kind take what the last ones took
+    this->ForgetTimes(); // data of the same kind take the same time
   }
   this->Components.SetBudget(static_cast<std::size_t>(properties.IndexMemoryBudget));
   this->Components.SetRanks(this->Ranks.AreMany() ? &this->Ranks : nullptr);
@@ -47,7 +47,7 @@ void ProjectedVolume::Prepare(const MapperProperties& properties, const View& vi
   this->Components.SetCullBelowWindow(properties.CullBelowWindow);
 }
 
-// Selection is by what is seen.
+// A selection uses the mode of the visible picture.
 int ProjectedVolume::ChooseMode(
   const MapperProperties& properties, vtkRenderer* renderer, vtkVolume* volume)
 {
@@ -59,8 +59,8 @@ int ProjectedVolume::ChooseMode(
   return this->Ranks.AreMany() ? this->Ranks.Least(mode) : mode;
 }
 
-// What cuts the rays of a view and, unless they are projected onto the screen, its images; false if
-// it has no meaning.
+// Computes the cuts of a view and, unless it is projected onto the screen, its images. Returns
+// false for an invalid view.
 bool ProjectedVolume::FindCuts(const MapperProperties& properties, const View& view,
   vtkRenderer* renderer, vtkVolume* volume, const SceneCuts::DepthReader& readDepth,
   const ProjectionSettings& settings)
@@ -85,7 +85,7 @@ bool ProjectedVolume::FindCuts(const MapperProperties& properties, const View& v
   return hasMeaning;
 }
 
-// Whether the last projection is this frame's.
+// Whether the last projection shows this frame.
 bool ProjectedVolume::Shows(const View& view, const ProjectionSettings& settings) const
 {
   if (this->Components.UsesCells(settings))
@@ -94,7 +94,7 @@ bool ProjectedVolume::Shows(const View& view, const ProjectionSettings& settings
       this->Components.Shows(settings);
   }
   const bool ordered = isOrdered(settings.reduction) || settings.keepWinners ||
-    this->Source.AreDependent(); // the nearest of equal samples wins
+    this->Source.AreDependent(); // of equal samples the nearest is located
   return haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts.AreKept() &&
     this->Components.Shows(settings);
 }
@@ -111,7 +111,7 @@ bool ProjectedVolume::Project(const MapperProperties& properties, const View& vi
     return false;
   }
   const bool isShown = this->Shows(view, best);
-  // Where one rank projects all do.
+  // If one rank projects, all ranks project.
   if (this->Ranks.AreMany() ? !this->Ranks.Any(!isShown) : isShown)
   {
     return true;

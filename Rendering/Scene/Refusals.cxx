@@ -34,7 +34,7 @@ std::string problemOfInput(
   choice.mask = properties.MaskInput;
   if (data.Ranks.Use(mapper->GetController()) && !pieceOf(mapper))
   {
-    return ""; // a rank may hold nothing
+    return ""; // a rank may have no piece
   }
   std::string problem = data.Source.Examine(mapper->GetInput(), choice);
   if (problem.empty() && isFlat(data.Source.Grid(), volume))
@@ -45,7 +45,7 @@ std::string problemOfInput(
   return problem;
 }
 
-/// What any rank has to say, once each has looked at its piece. Collective.
+/// The error of any rank, after each has checked its piece. Collective.
 std::string problemOfRanks(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer,
   vtkVolume* volume, ProjectedVolume& data, const std::string& problemOfPiece)
 {
@@ -75,7 +75,7 @@ std::string problemOfRanks(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* ren
   return problem;
 }
 
-/// Of the mapper's own properties, once the input is known to be good.
+/// The error of the mapper's own properties, for valid input.
 std::string problemOfProperties(
   vtkSplattingMIPVolumeMapper* mapper, vtkVolume* volume, ProjectedVolume& data)
 {

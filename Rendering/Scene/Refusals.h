@@ -14,9 +14,9 @@ namespace splatting
 class ProjectedVolume;
 
 /**
- * The gate: a sentence that says why a mapper cannot render its input as this volume and what to
- * do, or nothing. Looks at the input, then at what all ranks have to say (collective if there are
- * several), then at properties. Afterwards `data` is about the input.
+ * Validates a mapper's input, then the reports of all ranks (collective if there are several), then
+ * its properties. Loads the input into `data`.
+ * @return an error message that says what to do, or an empty string
  */
 std::string refusalOf(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
   ProjectedVolume& data);

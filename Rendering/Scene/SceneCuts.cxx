@@ -25,7 +25,7 @@ void SceneCuts::Find(const View& view, const std::vector<ShearWarp>& images, vtk
   }
 }
 
-// What other things hide where the volume will be seen.
+// Finds what hides the volume in the scene.
 void SceneCuts::FindScene(const View& view, vtkRenderer* renderer, vtkVolume* volume,
   bool intermixes, const DepthReader& readDepth)
 {
@@ -84,8 +84,8 @@ void SceneCuts::Hide(Picture& picture) const
   }
 }
 
-// Selection is by what is seen: its passes draw other depths than frames. What no frame has shown,
-// as after the camera has moved, is not known.
+// Passes of a selection draw other depths than frames, so a selection uses the depths of the last
+// frame. If no frame has shown this view, as after the camera has moved, there are none.
 SceneCuts::Scene* SceneCuts::RememberScene(
   const View& view, const vtkRenderer* renderer, const vtkVolume* volume, bool intermixes)
 {
@@ -98,15 +98,15 @@ SceneCuts::Scene* SceneCuts::RememberScene(
   return intermixes && scene != this->Scenes.end() ? &*scene : nullptr;
 }
 
-// What has been rendered where the volume will be seen, if there is anything.
+// Reads the depths that were rendered before the volume, if there are any.
 SceneCuts::Scene* SceneCuts::LookAtScene(
   vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
 {
   Scene& scene = this->SceneOf(renderer, volume);
   scene.depth.clear();
   const glm::ivec2& size = this->Area.size;
-  // Renderers that keep the depths of a lower layer have something to intermix with, too. Render
-  // passes do not count what they render.
+  // Renderers that keep the depths of a lower layer have depths, too. Render passes do not count
+  // the props that they render.
   const bool hasDepths = renderer->GetNumberOfPropsRendered() > 0 ||
     renderer->GetPreserveDepthBuffer() || renderer->GetPass();
   if (!intermixes || !hasDepths || size.x < 1 || size.y < 1)
@@ -124,7 +124,7 @@ SceneCuts::Scene* SceneCuts::LookAtScene(
   return &scene;
 }
 
-// A renderer's and volume's own, in the place of one that has not been rendered for long.
+// The scene of a renderer and a volume. Removes scenes that have not been rendered for long.
 SceneCuts::Scene& SceneCuts::SceneOf(const vtkRenderer* renderer, const vtkVolume* volume)
 {
   ++this->Frame;
