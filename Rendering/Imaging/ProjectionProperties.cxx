@@ -73,7 +73,7 @@ const char* faultOf(const ProjectionProperties& properties)
   const auto finite = [](const double* values, int count)
   { return std::all_of(values, values + count, [](double x) { return std::isfinite(x); }); };
   const bool isMaximum = properties.BlendMode == Names::MAXIMUM_INTENSITY_BLEND;
-  // Beyond that, the differences of shaded floats are no longer finite.
+  // Above it, differences of shaded floats are infinite.
   constexpr double mostShading = 1e6;
   const struct
   {
@@ -123,8 +123,8 @@ ProjectionSettings settingsOf(const ProjectionProperties& properties, int mode, 
   }
   if (mode == Names::EXACT && isOverview(view))
   {
-    // The field is nowhere larger than at a voxel, and pixels show areas. Where they are wider than
-    // voxels in all directions, one voxel a slice is enough to lose none.
+    // The field is nowhere larger than at a voxel, and pixels show areas. If pixels are wider than
+    // voxels in all directions, one voxel per slice shows all of them.
     mode = Names::PREVIEW;
     settings.meets = isCoarse(view) ? Meets::Nearest : Meets::All;
   }

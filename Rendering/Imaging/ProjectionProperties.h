@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The properties of vtkSplattingMIPProjection and vtkSplattingMIPVolumeMapper: names, meaning and
- * enumerators are those of their setters. A new one needs a member with its default, a line in a
- * visit function, a line in PropertyMethods.h with its range, and its declaration, with the
- * documentation, in the class.
+ * The properties of vtkSplattingMIPProjection and vtkSplattingMIPVolumeMapper, with the names and
+ * values of their setters. A new property needs a member with its default, a line in a visit
+ * function, a line in PropertyMethods.h with its range, and its declaration with documentation in
+ * the class.
  */
 #ifndef ProjectionProperties_h
 #define ProjectionProperties_h
@@ -21,7 +21,7 @@
 namespace splatting
 {
 /**
- * Those that the mapper inherits from vtkVolumeMapper.
+ * Properties that the mapper inherits from vtkVolumeMapper.
  */
 struct InheritedProperties
 {
@@ -31,7 +31,7 @@ struct InheritedProperties
   double CroppingRegionPlanes[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
   int CroppingRegionFlags = 1 << 13; ///< VTK_CROP_SUBVOLUME
 
-  /// Calls visitor(name, value) for each.
+  /// Calls visitor(name, value) for each property.
   template <class Visitor>
   void visitInherited(Visitor&& visitor) const
   {
@@ -43,7 +43,7 @@ struct InheritedProperties
   }
 };
 
-/// What enumerators are called.
+/// Names of enumerators.
 const char* nameOfQualityMode(int mode);
 const char* nameOfKernel(int kernel);
 const char* nameOfMaximumType(int type);
@@ -51,7 +51,7 @@ const char* nameOfVectorMode(int mode);
 const char* nameOfAcceleration(int acceleration);
 
 /**
- * Those that mapper and filter share.
+ * Properties that mapper and filter share.
  */
 struct ProjectionProperties : InheritedProperties
 {
@@ -74,8 +74,8 @@ struct ProjectionProperties : InheritedProperties
   bool RecordLocations = false;
   vtkTypeInt64 IndexMemoryBudget = vtkTypeInt64(1) << 32;
 
-  /// Calls visitor(name, value), or visitor(name, value, what enumerators are called), for each
-  /// that can change a picture, ...
+  /// Calls visitor(name, value), or visitor(name, value, function that names enumerators), for each
+  /// property that can change a picture ...
   template <class Visitor>
   void visit(Visitor&& visitor) const
   {
@@ -98,7 +98,7 @@ struct ProjectionProperties : InheritedProperties
     visitor("RecordLocations", this->RecordLocations);
   }
 
-  /// ... and for each that cannot, so that several processes may differ in it.
+  /// ... and for each property that cannot, and may therefore differ between processes.
   template <class Visitor>
   void visitIndifferent(Visitor&& visitor) const
   {
@@ -107,19 +107,19 @@ struct ProjectionProperties : InheritedProperties
 };
 
 /**
- * A sentence that says which property has no meaning and what to do, or nullptr. What has no effect
- * may be anything.
+ * An error message that says which property is invalid and what to do, or nullptr. Properties
+ * without effect may have any value.
  */
 const char* faultOf(const ProjectionProperties& properties);
 
 /**
- * What the properties mean to a projection of a view in a quality mode. What has no effect is as by
- * default, so that its changes project nothing.
+ * Converts the properties to settings for the projection of a view in a quality mode. Properties
+ * without effect are set to their defaults, so that their changes do not project again.
  */
 ProjectionSettings settingsOf(const ProjectionProperties& properties, int mode, const View& view);
 
 /**
- * Prints properties as VTK's classes do.
+ * Prints properties in the format of VTK's classes.
  */
 struct PropertyPrinter
 {

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Set and Get of VTK's classes for properties in a struct that their headers do not know,
- * `this->Properties`: what vtkSetMacro and its kin do, for source files. Headers declare what is
- * defined here.
+ * Defines Set and Get methods of VTK's classes for properties in a struct `this->Properties` that
+ * is not declared in their headers, as vtkSetMacro does. Headers declare the methods.
  */
 #ifndef PropertyMethods_h
 #define PropertyMethods_h
@@ -13,7 +12,7 @@
 
 namespace splatting
 {
-/// Changes a property and the time of its object, if the value is another one.
+/// Sets a property and modifies its object, if the value differs.
 template <class Object, class T>
 void change(Object* object, T& property, const T& value)
 {
@@ -34,7 +33,7 @@ void changeArray(Object* object, T (&property)[N], const T* values)
   }
 }
 
-/// Copies each value to where it is wanted.
+/// Copies each value to its reference.
 template <class T, std::size_t N, class... To>
 void copyTo(const T (&values)[N], To&... to)
 {
@@ -43,7 +42,7 @@ void copyTo(const T (&values)[N], To&... to)
   ((to = values[n++]), ...);
 }
 
-/// NaN stays.
+/// Keeps NaN.
 template <class T>
 T clamped(T value, T least, T most)
 {
@@ -84,7 +83,7 @@ T clamped(T value, T least, T most)
         splatting::clamped<Type>(value, Least, Most)));                                            \
   }
 
-/// What methods of vectors have in common.
+/// Common methods of vectors.
 #define splattingArrayMethods(Class, Name, Count)                                                  \
   double* Class::Get##Name()                                                                       \
   {                                                                                                \

@@ -73,7 +73,7 @@ public:
   ComponentProjector Components;
   ProjectionProperties Properties; // of the last Update()
   TurnOfViews Turn;
-  splatting::Locator::Arrays Locations;                   // of locations, in the output
+  splatting::Locator::Arrays Locations;                   // of the output
   std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last view and the one before
   std::vector<splatting::Cuts> Cuts, CutsBefore;          // likewise
   int ViewsDone = 0;
@@ -126,7 +126,7 @@ vtkMTimeType vtkSplattingMIPProjection::GetMTime()
 }
 
 //------------------------------------------------------------------------------
-// The array to process, as a mapper's ScalarMode names it.
+// Converts the array to process to a mapper's ScalarMode.
 ScalarChoice vtkSplattingMIPProjection::Internals::ScalarsOf(
   vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input) const
 {
@@ -182,7 +182,7 @@ TurnSettings vtkSplattingMIPProjection::Internals::TurnOf(
 }
 
 //------------------------------------------------------------------------------
-// The gate: a sentence that says what is wrong and what to do, or nothing.
+// Validates input and settings. Returns an error message that says what to do, or an empty string.
 std::string vtkSplattingMIPProjection::Internals::Problem(
   vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input)
 {
@@ -208,12 +208,12 @@ std::string vtkSplattingMIPProjection::Internals::Problem(
 }
 
 //------------------------------------------------------------------------------
-// Tells how much of all views is done and whether the rest is wanted.
+// Reports progress. Returns whether to continue.
 bool vtkSplattingMIPProjection::Internals::GoOn(vtkSplattingMIPProjection* self, double done)
 {
   const double share =
     (this->ViewsDone + this->Components.ShareOfAll(done)) / std::max(1, this->Turn.Views());
-  // Observers need not see every band of every view.
+  // At most 100 events in all.
   if (share >= this->Told + 0.01)
   {
     this->Told = share;
@@ -223,7 +223,7 @@ bool vtkSplattingMIPProjection::Internals::GoOn(vtkSplattingMIPProjection* self,
 }
 
 //------------------------------------------------------------------------------
-// Projects a view, unless the last one had the same rays. False if it was given up.
+// Projects a view, unless the last one had the same rays. Returns false if it was stopped.
 bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection* self,
   const splatting::View& view, const splatting::ProjectionSettings& settings)
 {
@@ -238,7 +238,7 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection
     this->Cuts[n].cropping = view.cropping;
     this->Cuts[n].intervals.find(this->Images[n], view.halfSpaces);
   }
-  // Of equal samples the nearest wins.
+  // The nearest of equal samples is located.
   const bool ordered = splatting::isOrdered(settings.reduction) || settings.keepWinners;
   if (haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts == this->CutsBefore &&
     this->Components.Shows(settings))
@@ -255,8 +255,8 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection
 }
 
 //------------------------------------------------------------------------------
-// Where the output's points lie, and the arrays that views are written to. False if there is no
-// memory for them.
+// Sets the geometry of the output and allocates its arrays. Returns false if there is not enough
+// memory.
 bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
 {
   vtkDataArray* const scalars = this->Source.Scalars();
@@ -265,8 +265,8 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
   const glm::ivec2& size = this->Turn.Size();
   output->SetExtent(0, size.x - 1, 0, size.y - 1, 0, this->Turn.Views() - 1);
   this->Turn.Place(output);
-  // VTK would say it in several sentences, or throw. Compilers may leave out a new-expression whose
-  // memory nobody uses, but not a call.
+  // VTK would report it in several messages, or throw. Compilers may remove an unused
+  // new-expression, but not a call.
   constexpr std::size_t located = 3 * sizeof(int) + sizeof(float) + 3 * sizeof(double);
   const std::size_t bytes = (std::size_t(vtkDataArray::GetDataTypeSize(type)) * components +
                               (this->Properties.RecordLocations ? located : 0)) *
@@ -287,7 +287,7 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
 }
 
 //------------------------------------------------------------------------------
-// The projections of an input that passed the gate. Returns what is wrong, or nothing.
+// Projects a valid input. Returns an error message, or an empty string.
 std::string vtkSplattingMIPProjection::Internals::ProjectInput(
   vtkSplattingMIPProjection* self, vtkImageData* output)
 {
@@ -304,8 +304,8 @@ std::string vtkSplattingMIPProjection::Internals::ProjectInput(
 }
 
 //------------------------------------------------------------------------------
-// Fills the slices of the output. Returns what is wrong, or nothing; not all are filled after an
-// abort.
+// Fills the slices of the output. Returns an error message, or an empty string. After an abort some
+// slices are missing.
 std::string vtkSplattingMIPProjection::Internals::ProjectViews(
   vtkSplattingMIPProjection* self, vtkImageData* output)
 {
@@ -316,7 +316,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
   {
     splatting::View view =
       viewOf(this->Source.Grid(), toWorld, this->Turn.WorldToClip(n), this->Turn.Size());
-    view.halfSpaces.clear(); // the camera's clipping range
+    view.halfSpaces.clear(); // the camera's clipping range is ignored
     if (!splatting::isFinite(view))
     {
       return TurnOfViews::Degenerate;
@@ -361,7 +361,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
 }
 
 //------------------------------------------------------------------------------
-// Where the samples of view n lie, as the last projection shows them.
+// Writes the sample positions of view n, from the last projection.
 void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, int n)
 {
   if (this->Images.empty() && !this->Components.IsOnScreen())
@@ -387,7 +387,7 @@ void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, i
 }
 
 //------------------------------------------------------------------------------
-// Where the output will lie, for filters and writers that ask before they have it.
+// Sets the geometry of the output for RequestInformation().
 void vtkSplattingMIPProjection::Internals::TellPlace(
   vtkSplattingMIPProjection* self, vtkInformation* input, vtkInformation* output) const
 {
@@ -432,7 +432,7 @@ int vtkSplattingMIPProjection::RequestInformation(
 int vtkSplattingMIPProjection::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
 {
-  // Every pixel may see every voxel.
+  // Every pixel may depend on every voxel.
   vtkInformation* const info = input[0]->GetInformationObject(0);
   int whole[6] = { 0, -1, 0, -1, 0, -1 };
   info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
