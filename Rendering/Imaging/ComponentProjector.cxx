@@ -145,7 +145,7 @@ const char* ComponentProjector::FaultOfVoxels(Quality quality)
       const double most = isExact && channel.Index.range().hasInfinities()
         ? (isDouble ? 1e150 : 1e18)
         : (isDouble ? 1e303 : 1e37);
-      return channel.Index.largestMagnitude() > most;
+      return channel.Index.range().magnitude > most;
     });
   return isTooLarge
     ? "The scalars have magnitudes above 1e37 (of double 1e303; in exact mode beside "
@@ -346,8 +346,7 @@ bool ComponentProjector::CanProjectPixels() const
 const PixelProjector::Pixel& ComponentProjector::ProjectPixel(const ProjectionSettings& settings,
   const ShearPixel& pixel, const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts)
 {
-  Channel& channel = this->Dependent ? this->Channels.back() : this->Channels.front();
-  return this->Pixels.Project(channel.Index, settings, pixel, geometries, cuts);
+  return this->Pixels.Project(this->LocatedChannel().Index, settings, pixel, geometries, cuts);
 }
 
 // Turns the images of pieces into those of the whole.
@@ -430,12 +429,17 @@ bool ComponentProjector::ProjectOnScreen(
   return true;
 }
 
-const ScreenScalars& ComponentProjector::ProjectPixelOnScreen(const View& view,
-  const ProjectionSettings& settings, const RayEnds& ends, const glm::ivec2& pixel)
+const ScreenScalars& ComponentProjector::ProjectPixelOnScreen(
+  const View& view, ProjectionSettings settings, const RayEnds& ends, const glm::ivec2& pixel)
 {
-  Channel& channel = this->Dependent ? this->Channels.back() : this->Channels.front();
+  settings.floor = ProjectionSettings().floor; // samples below the window are located, too
+  Channel& channel = this->LocatedChannel();
   this->UpdateCells(channel, view);
+<<<<<<< HEAD
   CellProjector projector; // without observer
+=======
+  CellProjector projector; // without an observer
+>>>>>>> main
   if (!projector.project(
         channel.Cells, view, settings, ends, true, { pixel, glm::ivec2(1) }, this->PixelOnScreen))
   {

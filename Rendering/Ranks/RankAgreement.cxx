@@ -312,6 +312,7 @@ void RankAgreement::SetWhole(const std::vector<RankReport>& reports)
       range.low = std::min(range.low, report.ranges[c].low);
       range.high = std::max(range.high, report.ranges[c].high);
       range.nonFinite = std::max(range.nonFinite, report.ranges[c].nonFinite);
+      range.magnitude = std::max(range.magnitude, report.ranges[c].magnitude);
     }
   }
   if (!this->Image)
@@ -485,7 +486,7 @@ void RankAgreement::Reduce(ScreenScalars& screen)
 VolumeIndex::Range RankAgreement::RangeOfWhole(std::size_t component) const
 {
   const auto& range = this->All.ranges[component];
-  return { range.low, range.high, range.nonFinite != 0.0 };
+  return { range.low, range.high, range.nonFinite != 0.0, range.magnitude };
 }
 
 void describeScalars(ComponentProjector& components, const ScalarSource& source, RankReport& report)
@@ -497,7 +498,7 @@ void describeScalars(ComponentProjector& components, const ScalarSource& source,
   for (std::size_t c = 0; c < components.NumberOfComponents(); ++c)
   {
     const VolumeIndex::Range& range = components.RangeOfPiece(c);
-    report.ranges[c] = { range.low, range.high, range.nonFinite ? 1.0 : 0.0 };
+    report.ranges[c] = { range.low, range.high, range.nonFinite ? 1.0 : 0.0, range.magnitude };
   }
   if (components.AreDependent())
   {

@@ -37,7 +37,7 @@ struct RankReport
   double origin[3] = {}, spacing[3] = {}, direction[9] = {};
   struct
   {
-    double low, high, nonFinite;
+    double low, high, nonFinite, magnitude;
   } ranges[MostComponents] = {};
   std::uint64_t view = 0; ///< a hash of view and settings
 

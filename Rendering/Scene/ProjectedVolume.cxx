@@ -59,19 +59,24 @@ int ProjectedVolume::ChooseMode(
   return this->Ranks.AreMany() ? this->Ranks.Least(mode) : mode;
 }
 
+<<<<<<< HEAD
 // Computes the cuts of a view and, unless it is projected onto the screen, its images. Returns
 // false for an invalid view.
+=======
+// What cuts the rays of a view and, unless they are projected onto the screen, its images; false if
+// the view is invalid.
+>>>>>>> main
 bool ProjectedVolume::FindCuts(const MapperProperties& properties, const View& view,
   vtkRenderer* renderer, vtkVolume* volume, const SceneCuts::DepthReader& readDepth,
   const ProjectionSettings& settings)
 {
   const double start = vtkTimerLog::GetUniversalTime();
   const bool intermixes = properties.IntermixIntersectingGeometry;
-  bool hasMeaning = true;
+  bool isValid = true;
   if (this->Components.UsesCells(settings))
   {
     this->Images.clear();
-    hasMeaning = this->Cuts.FindOnScreen(view, renderer, volume, intermixes, readDepth);
+    isValid = this->Cuts.FindOnScreen(view, renderer, volume, intermixes, readDepth);
   }
   else if (ShearWarp::factorise(view, this->Images, settings.meets))
   {
@@ -79,10 +84,10 @@ bool ProjectedVolume::FindCuts(const MapperProperties& properties, const View& v
   }
   else
   {
-    hasMeaning = false;
+    isValid = false;
   }
   this->CutTime = vtkTimerLog::GetUniversalTime() - start;
-  return hasMeaning;
+  return isValid;
 }
 
 // Whether the last projection shows this frame.
@@ -90,7 +95,7 @@ bool ProjectedVolume::Shows(const View& view, const ProjectionSettings& settings
 {
   if (this->Components.UsesCells(settings))
   {
-    return this->Components.IsOnScreen() && this->Cuts.AreKeptOnScreen(view) &&
+    return this->Cuts.AreKeptOnScreen(view) &&
       this->Components.Shows(settings);
   }
   const bool ordered = isOrdered(settings.reduction) || settings.keepWinners ||

@@ -57,11 +57,6 @@ std::string problemOfRanks(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* ren
       data.ForgetTimes();
     }
     describeScalars(data.Components, data.Source, report);
-    if (const char* const fault =
-          data.Components.FaultOfVoxels(static_cast<Quality>(mapper->GetQualityMode())))
-    {
-      report.setProblem(fault);
-    }
   }
   report.view = viewNumber(mapper, renderer, volume);
   std::string problem = data.Ranks.Agree(report);

@@ -41,19 +41,17 @@ void SceneCuts::FindScene(const View& view, vtkRenderer* renderer, vtkVolume* vo
 bool SceneCuts::FindOnScreen(const View& view, vtkRenderer* renderer, vtkVolume* volume,
   bool intermixes, const DepthReader& readDepth)
 {
-  PixelRays rays;
-  if (!rays.find(view))
+  if (!placePicture(view, this->Area))
   {
     return false;
   }
-  placePicture(view, this->Area);
   this->FindScene(view, renderer, volume, intermixes, readDepth);
   return true;
 }
 
 RayEnds SceneCuts::OnScreen()
 {
-  return { this->Bounds.Get(), this->SceneDepths() };
+  return { this->Bounds.Get(), this->Seen ? &this->Seen->depth : nullptr };
 }
 
 bool SceneCuts::AreKeptOnScreen(const View& view) const

@@ -57,8 +57,6 @@ public:
   void Keep() { std::swap(this->Present, this->Kept); }
   /// The cuts of Keep().
   const std::vector<Cuts>& OfProjection() const { return this->Kept; }
-  /// The depths of the scene in the current frame, or nullptr.
-  const SceneDepth* SceneDepths() const { return this->Seen ? &this->Seen->depth : nullptr; }
 
   /// Clears the pixels of a picture that the scene hides.
   void Hide(Picture& picture) const;

@@ -269,7 +269,7 @@ bool WinnerLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sampl
   }
   const Locator locator(located);
   sample.position = locator.inWorld(locator.point(glm::dvec2(pixel), shown));
-  sample.voxel = locator.voxel(glm::dvec2(pixel), shown);
+  sample.voxel = findVoxel(located, shown);
   sample.value = valueOf((*located.images)[shown.image], shown.u, shown.v);
   return true;
 }

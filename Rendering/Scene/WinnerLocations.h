@@ -16,7 +16,6 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 

@@ -470,6 +470,12 @@ void testProblems(Ranks& ranks)
   large->GetPointData()->GetScalars()->SetComponent(0, 0, last ? 3e38 : 0.0);
   many.mapper->SetInputDataObject(large);
   wrong("a piece with large scalars", "magnitudes above", expected);
+  // Each piece alone could be projected.
+  const auto wide = cropped(wholeImage(VTK_FLOAT, 1, false), withGhosts(own, whole, 2));
+  wide->GetPointData()->GetScalars()->SetComponent(
+    0, 0, last ? std::numeric_limits<double>::infinity() : 1e20);
+  many.mapper->SetInputDataObject(wide);
+  wrong("large scalars, and infinities in another piece", "magnitudes above", expected);
   many.mapper->SetInputDataObject(good);
   many.renderer->GetActiveCamera()->SetParallelScale(last ? 20.0 : 21.0);
   wrong("another camera", "in different ways", expected);

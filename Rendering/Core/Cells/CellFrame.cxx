@@ -29,6 +29,7 @@ template <class T>
 CellFrame<T>::CellFrame(CellIndex& index, const View& view, const ProjectionSettings& settings,
   const RayEnds& ends, bool locate, const PixelRectangle& pixels, const PixelRays& pixelRays)
   : grid(index.grid()),
+    field(grid.low, grid.high),
     bounds(index.bounds(settings.reduction == Reduction::Minimum)),
     rays(pixelRays),
     rectangle(pixels),
@@ -36,15 +37,13 @@ CellFrame<T>::CellFrame(CellIndex& index, const View& view, const ProjectionSett
     viewport(view.viewport),
     kernels(cellKernelsFor(settings.instructionSet)),
     values(index.range(), settings.reduction),
-    scale(values.scale),
-    lowest(-static_cast<double>(scale.offset) / static_cast<double>(scale.factor)),
+    lowest(-static_cast<double>(values.scale.offset) / static_cast<double>(values.scale.factor)),
     highest(settings.reduction == Reduction::Minimum ? index.range().low : index.range().high),
     halfSpaces(view.halfSpaces),
     regions(view.cropping, grid.low, grid.high),
     crops(view.cropping.cuts()),
     depth(ends.depth),
     least(leastOf<A>(settings.floor, values)),
-    minima(settings.reduction == Reduction::Minimum),
     locates(locate),
     shades(settings.reduction == Reduction::DepthShaded),
     ambient(settings.ambient),
@@ -57,7 +56,7 @@ CellFrame<T>::CellFrame(CellIndex& index, const View& view, const ProjectionSett
   this->cutsAll = ends.surface || ends.depth;
   const bool canDarken = this->shades && std::min(this->ambient, this->ambient + this->rate) < 0.0;
   this->isFinite = !index.range().hasInfinities();
-  this->mayBeEmpty = this->scale.holes || this->crops || canDarken;
+  this->mayBeEmpty = this->values.scale.holes || this->crops || canDarken;
 }
 
 template <class T>

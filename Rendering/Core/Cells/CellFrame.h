@@ -40,6 +40,7 @@ struct CellFrame
   void findEnds(int x, int y, int count, double* near, double* far) const;
 
   const CellGrid& grid;
+  const CellBox field;
   const CellBounds& bounds;
   const PixelRays& rays;
   const PixelRectangle rectangle;
@@ -47,7 +48,6 @@ struct CellFrame
   const glm::ivec2 viewport;
   const CellKernels& kernels;
   const ValueScale<A> values;
-  const CellScale<A>& scale;
   const double lowest;  ///< the voxel whose value is 0; 0 if voxels are infinite
   const double highest; ///< the largest voxel, of minima the least
   const std::vector<glm::dvec4>& halfSpaces;
@@ -55,8 +55,8 @@ struct CellFrame
   const bool crops;
   const SceneDepth* depth;
   SurfaceOnScreen surface;
-  const A least; ///< values below need not be told apart, see ProjectionSettings::floor
-  const bool minima, locates, shades;
+  const A least; ///< smaller values need not be distinguished, see ProjectionSettings::floor
+  const bool locates, shades;
   const double ambient, rate;
   bool cutsAll;    ///< whether rays may end in any block: by a surface or a depth buffer
   bool mayBeEmpty; ///< whether a ray in the field may have no sample

@@ -292,6 +292,9 @@ std::size_t CellIndex::memorySize() const
   return size;
 }
 
+namespace
+{
+/// See CellLoops.h.
 template <class A>
 CellScale<A> scaleOf(const VolumeIndex::Range& range, bool minima)
 {
@@ -310,9 +313,7 @@ CellScale<A> scaleOf(const VolumeIndex::Range& range, bool minima)
   scale.holes = range.nonFinite;
   return scale;
 }
-
-template CellScale<float> scaleOf<float>(const VolumeIndex::Range&, bool);
-template CellScale<double> scaleOf<double>(const VolumeIndex::Range&, bool);
+}
 
 template <class A>
 ValueScale<A>::ValueScale(const VolumeIndex::Range& range, Reduction reduction)

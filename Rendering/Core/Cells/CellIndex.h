@@ -83,8 +83,8 @@ struct CellBounds
 };
 
 /**
- * What exact projections know of a volume: made on first need, kept until the data change. Takes
- * about 1/64 of the volume's memory for maxima, and as much for minima.
+ * Bounds of a volume's cells, made on first need and kept until the data change. They take about
+ * 1/57 of the volume's memory for maxima, and as much for minima.
  */
 class CellIndex
 {
@@ -114,17 +114,11 @@ private:
   double Seconds = 0.0;
 };
 
-/// From voxels to the values of the kernels: see CellLoops.h. For minima these are negative voxels.
-template <class A>
-CellScale<A> scaleOf(const VolumeIndex::Range& range, bool minima);
-extern template CellScale<float> scaleOf<float>(const VolumeIndex::Range&, bool);
-extern template CellScale<double> scaleOf<double>(const VolumeIndex::Range&, bool);
-
 /// From the values of the kernels to voxels.
 template <class A>
 struct ValueScale
 {
-  CellScale<A> scale;
+  CellScale<A> scale; ///< from voxels to values; for minima these are negative
   A highest; ///< the largest voxel, of minima the least
   bool minima;
   bool shades; ///< whether voxels may be above the largest

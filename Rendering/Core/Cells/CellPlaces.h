@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace splatting
@@ -67,11 +66,11 @@ public:
     const glm::dmat3& m = rays.toPixel();
     const glm::dvec3 q = m * (box.middle - rays.origin());
     this->T = q.z;
-    this->Reach = this->reachOf(2, 0.0, 2);
+    this->Reach = this->reachOf(2, 0.0);
     if (!rays.isPerspective())
     {
       this->Pixel = glm::dvec2(q);
-      this->Spread = { this->reachOf(0, 0.0, 2), this->reachOf(1, 0.0, 2) };
+      this->Spread = { this->reachOf(0, 0.0), this->reachOf(1, 0.0) };
       return;
     }
     // Where the box may contain the eye, or what lies beside it, pixels have no bounds.
@@ -80,12 +79,12 @@ public:
     {
       this->Pixel = glm::dvec2(q) / q.z;
       this->Spread =
-        glm::dvec2(this->reachOf(0, this->Pixel.x, 2), this->reachOf(1, this->Pixel.y, 2)) /
+        glm::dvec2(this->reachOf(0, this->Pixel.x), this->reachOf(1, this->Pixel.y)) /
         (this->T - this->Reach);
     }
   }
 
-  /// Whether the box is so near to the eye that pixel() and spread() have no meaning.
+  /// Whether the box is so near to the eye that pixel() and spread() are invalid.
   bool isNear() const { return this->Near; }
   const glm::dvec2& pixel() const { return this->Pixel; }
   const glm::dvec2& spread() const { return this->Spread; }
@@ -109,14 +108,14 @@ public:
   }
 
 private:
-  /// How much row r, less `share` times another row, changes within the box.
-  double reachOf(int r, double share, int other) const
+  /// How much row r, less `share` times the last one, changes within the box.
+  double reachOf(int r, double share) const
   {
     const glm::dmat3& m = this->Rays.toPixel();
     double reach = 0.0;
     for (int a = 0; a < 3; ++a)
     {
-      reach += std::abs(m[a][r] - share * m[a][other]) * this->Box.half[a];
+      reach += std::abs(m[a][r] - share * m[a][2]) * this->Box.half[a];
     }
     return reach;
   }
@@ -133,8 +132,8 @@ private:
     for (int a = 0; a < 2; ++a)
     {
       const double low = pixels.low[a] - 0.01, high = pixels.high[a] + 0.01;
-      if (q[a] - low * q.z + this->reachOf(a, low, 2) < 0.0 ||
-        high * q.z - q[a] + this->reachOf(a, high, 2) < 0.0)
+      if (q[a] - low * q.z + this->reachOf(a, low) < 0.0 ||
+        high * q.z - q[a] + this->reachOf(a, high) < 0.0)
       {
         return true;
       }
@@ -149,14 +148,12 @@ private:
   glm::dvec2 Pixel{ 0.0 }, Spread{ 0.0 };
 };
 
-/**
- * A box of the view's cropping regions, of which all is shown.
- */
+/// The parts of the field that cropping shows, as boxes.
 struct ShownRegions
 {
   std::vector<CellBox> boxes;
 
-  /// The parts of the field that cropping shows; neighbouring regions along x are one.
+  /// Neighbouring regions along x become one box.
   ShownRegions(const Cropping& cropping, const glm::dvec3& low, const glm::dvec3& high)
   {
     if (!cropping.cuts())

@@ -8,29 +8,19 @@
 #include <vtkSMPTools.h>
 
 #include <algorithm>
-#include <cstring>
 #include <mutex>
 #include <numeric>
 #include <type_traits>
 
 namespace splatting
 {
-namespace
-{
-/// The rectangle of the viewport in which a box may be seen.
-PixelRectangle rectangleOf(
-  const PixelRays& rays, const CellBox& box, const PixelRectangle& viewport)
-{
-  return SeenBox(rays, box).within(viewport);
-}
-}
-
 struct CellProjector::Scratch
 {
   /// The bricks that tiles see: of each chunk of bricks, for each tile.
   static constexpr int Chunks = 16;
   std::vector<std::vector<std::uint32_t>> seen[Chunks];
-  std::vector<int> tiles; // those with most bricks first
+  std::vector<int> tiles;         // those with most bricks first
+  std::vector<std::size_t> costs; // bricks of each tile
   std::mutex mutex;
   std::vector<std::unique_ptr<ScreenTile<float>>> floats;
   std::vector<std::unique_ptr<ScreenTile<double>>> doubles;
@@ -159,7 +149,8 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
   const CellGrid& grid = index.grid();
   const PixelRectangle wanted{ glm::max(within.origin, glm::ivec2(0)),
     glm::min(within.origin + within.size, view.viewport) - 1 };
-  const PixelRectangle rectangle = rectangleOf(screen.rays, CellBox(grid.low, grid.high), wanted);
+  const CellBox field(grid.low, grid.high);
+  const PixelRectangle rectangle = SeenBox(screen.rays, field).within(wanted);
   screen.origin = rectangle.low;
   screen.size = rectangle.empty() ? glm::ivec2(0) : rectangle.high - rectangle.low + 1;
   return dispatch(grid.voxels.type,
@@ -190,18 +181,15 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
         });
       memory.tiles.resize(frame.tileCount());
       std::iota(memory.tiles.begin(), memory.tiles.end(), 0);
-      const auto cost = [&](int tile)
-      {
-        return std::accumulate(std::begin(memory.seen), std::end(memory.seen), std::size_t(0),
-          [&](std::size_t sum, const auto& seen) { return sum + seen[tile].size(); });
-      };
-      std::vector<std::size_t> costs;
+      memory.costs.clear();
       for (int tile : memory.tiles)
       {
-        costs.push_back(cost(tile));
+        memory.costs.push_back(std::accumulate(std::begin(memory.seen), std::end(memory.seen),
+          std::size_t(0),
+          [&](std::size_t sum, const auto& seen) { return sum + seen[tile].size(); }));
       }
-      std::stable_sort(memory.tiles.begin(), memory.tiles.end(),
-        [&](int a, int b) { return costs[a] > costs[b]; });
+      std::sort(memory.tiles.begin(), memory.tiles.end(),
+        [&](int a, int b) { return memory.costs[a] > memory.costs[b]; });
       this->Observer.begin(static_cast<int>(memory.tiles.size()));
       vtkSMPTools::For(0, static_cast<vtkIdType>(memory.tiles.size()), 1,
         [&](vtkIdType begin, vtkIdType end)

@@ -52,11 +52,12 @@ public:
    * @param index     of the volume, or of a piece of it
    * @param settings  quality and acceleration are ignored; not for Reduction::Mean
    * @param locate    whether to find the depths of samples
-   * @param within    the rectangle of the viewport that is wanted: origin and size
    * @return  false if the view is invalid or the observer has stopped the projection
    */
   bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
     const RayEnds& ends, bool locate, ScreenScalars& screen);
+  /// The same for a part of the viewport only.
+  /// @param within  the part's origin and size
   bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
     const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], ScreenScalars& screen);
 

@@ -160,7 +160,7 @@ public:
       Start(start + glm::dvec3(frame.grid.shift)), // in cells
       Direction(direction),
       Threshold(threshold),
-      Scale(std::abs(static_cast<double>(frame.scale.factor)))
+      Scale(std::abs(static_cast<double>(frame.values.scale.factor)))
   {
   }
 
@@ -272,7 +272,7 @@ template <class T>
 void findLocalMaxima(const CellFrame<T>& frame, double threshold, ScreenScalars& screen)
 {
   using A = Accumulator<T>;
-  const double scale = std::abs(static_cast<double>(frame.scale.factor));
+  const double scale = std::abs(static_cast<double>(frame.values.scale.factor));
   const double range = scale * frame.highest - scale * frame.lowest;
   const double rounding = std::isfinite(range) ? 0x1p-40 * range : 0.0;
   vtkSMPTools::For(0, screen.size.y, 1,

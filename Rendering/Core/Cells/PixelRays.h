@@ -49,12 +49,6 @@ public:
   /// From p - origin() to (x, y, t), in perspective (x t, y t, t).
   const glm::dmat3& toPixel() const { return this->ToPixel; }
 
-  bool operator==(const PixelRays& other) const
-  {
-    return this->Perspective == other.Perspective && this->Origin == other.Origin &&
-      this->Across == other.Across && this->Up == other.Up && this->Forward == other.Forward;
-  }
-
 private:
   bool Perspective = false;
   glm::dvec3 Origin{ 0.0 }, Across{ 1.0, 0.0, 0.0 }, Up{ 0.0, 1.0, 0.0 }, Forward{ 0.0, 0.0, 1.0 };

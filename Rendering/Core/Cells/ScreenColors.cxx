@@ -11,18 +11,23 @@
 
 namespace splatting
 {
-void placePicture(const View& view, Picture& picture)
+bool placePicture(const View& view, Picture& picture)
 {
   PixelRays rays;
   picture.origin = picture.size = glm::ivec2(0);
-  if (rays.find(view))
+  if (!rays.find(view))
   {
-    const CellGrid grid({}, glm::ivec3(0), view.dimensions, view.showsBoxes);
-    const CellBox box(grid.low, grid.high);
-    const PixelRectangle pixels = SeenBox(rays, box).within({ glm::ivec2(0), view.viewport - 1 });
-    picture.origin = pixels.empty() ? glm::ivec2(0) : pixels.low;
-    picture.size = pixels.empty() ? glm::ivec2(0) : pixels.high - pixels.low + 1;
+    return false;
   }
+  const CellGrid grid({}, glm::ivec3(0), view.dimensions, view.showsBoxes);
+  const CellBox box(grid.low, grid.high);
+  const PixelRectangle pixels = SeenBox(rays, box).within({ glm::ivec2(0), view.viewport - 1 });
+  if (!pixels.empty())
+  {
+    picture.origin = pixels.low;
+    picture.size = pixels.high - pixels.low + 1;
+  }
+  return true;
 }
 
 namespace

@@ -9,8 +9,9 @@
 
 namespace splatting
 {
-/// Sets the picture's origin and size to the rectangle of the viewport that shows the field.
-void placePicture(const View& view, Picture& picture);
+/// Sets the picture's origin and size to the rectangle of the viewport that shows the field. False
+/// if the view is invalid.
+bool placePicture(const View& view, Picture& picture);
 
 /// Fills the picture with the colours of scalars. Pixels without a sample are transparent.
 void colorScreen(const ScreenScalars& screen, const ColorTable& table,

@@ -15,7 +15,7 @@ namespace splatting
 namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
-/// Bricks between two looks at whether the tile is done.
+/// Bricks between two tests of whether the tile is done.
 constexpr int ChecksEvery = 64;
 /// Directions below this do not change a coordinate within a block.
 template <class A>
@@ -38,14 +38,13 @@ TileSplatter<T>::TileSplatter(const CellFrame<T>& frame, ScreenTile<A>& tile)
     Loops(frame.kernels)
 {
   CellBlock<A>& block = this->Block;
-  block.holes = frame.scale.holes;
+  block.holes = frame.values.scale.holes;
   block.perspective = frame.rays.isPerspective();
   block.located = frame.locates;
   block.tiesFrom = frame.mayBeEmpty ? CellValue<A>::None : std::numeric_limits<A>::denorm_min();
   block.shaded = frame.shades;
   block.ambient = static_cast<A>(frame.ambient);
   block.rate = static_cast<A>(frame.rate);
-  block.mostFactor = 1;
   const PixelRays& rays = frame.rays;
   for (int a = 0; a < 3; ++a)
   {
@@ -173,33 +172,33 @@ bool TileSplatter<T>::splat(const std::vector<std::uint32_t>& bricks)
   return !isDone;
 }
 
-// Whether no brick from this one on can raise a pixel of the tile; looked at now and then.
+// Whether no brick from this one on can raise a pixel of the tile; tested now and then.
 template <class T>
 bool TileSplatter<T>::isDone(std::uint32_t brick)
 {
   const CellFrame<T>& f = this->Frame;
-  if (++this->SinceCheck < ChecksEvery)
+  if (!f.isFinite || ++this->SinceCheck < ChecksEvery)
   {
     return false;
   }
   this->SinceCheck = 0;
   // The order of bricks is right to within a thousandth of the range.
-  const A bound = boundOf<T>(f.bounds.template brick<T>()[brick], f.scale);
+  const A bound = boundOf<T>(f.bounds.template brick<T>()[brick], f.values.scale);
   const double rest = 1.0 + 0x1p-9;
   const double factor = f.shades ? std::max({ f.ambient, f.ambient + f.rate, 0.0 }) : 1.0;
-  const double range = std::abs(static_cast<double>(f.scale.factor) * (f.highest - f.lowest));
+  const double range = std::abs(static_cast<double>(f.values.scale.factor) * (f.highest - f.lowest));
   const A most =
     static_cast<A>((static_cast<double>(bound) * rest + 0x1p-9 * range) * factor * (1.0 + 1e-5));
   const A least =
     this->Loops.least(this->Tile, 0, ScreenTile<A>::Side - 1, 0, ScreenTile<A>::Side - 1);
-  return f.isFinite && most < least;
+  return most < least;
 }
 
 template <class T>
 bool TileSplatter<T>::mayRaise(std::uint32_t brick) const
 {
   const CellFrame<T>& f = this->Frame;
-  const A bound = boundOf<T>(f.bounds.template brick<T>()[brick], f.scale);
+  const A bound = boundOf<T>(f.bounds.template brick<T>()[brick], f.values.scale);
   const CellBox box = f.boxOfBrick(brick);
   const SeenBox seen(f.rays, box);
   const PixelRectangle pixels = seen.within(this->Pixels);
@@ -239,11 +238,11 @@ void TileSplatter<T>::splatBrick(std::uint32_t brick)
   // The blocks with the largest voxels first.
   const T* const blocks = f.bounds.template block<T>() + 8 * std::size_t(brick);
   A bounds[8];
-  int order[8], count = 0;
+  int order[8];
   for (int b = 0; b < 8; ++b)
   {
-    bounds[b] = boundOf<T>(blocks[b], f.scale);
-    int place = count++;
+    bounds[b] = boundOf<T>(blocks[b], f.values.scale);
+    int place = b;
     for (; place > 0 && bounds[order[place - 1]] < bounds[b]; --place)
     {
       order[place] = order[place - 1];
@@ -254,9 +253,8 @@ void TileSplatter<T>::splatBrick(std::uint32_t brick)
   const glm::dvec3 first(cell - f.grid.shift);
   const bool isCut =
     f.cutsAll || this->isCutByHalfSpace(CellBox(first, first + double(BrickCells)));
-  for (int n = 0; n < count; ++n)
+  for (int b : order)
   {
-    const int b = order[n];
     this->splatBlock(cell + BlockCells * glm::ivec3(b & 1, b >> 1 & 1, b >> 2), bounds[b], isCut);
   }
 }
@@ -308,9 +306,8 @@ void TileSplatter<T>::splatBlock(const glm::ivec3& cell, A bound, bool isCut)
   // Of the block, not of what the volume has of it: the same for all pieces.
   const CellBox whole(middle - 0.5 * BlockCells, middle + 0.5 * BlockCells);
   isCut = seen.isNear() || (isCut && (f.cutsAll || this->isCutByHalfSpace(whole)));
-  const CellBox field(f.grid.low, f.grid.high);
   // Rays begin and end where the field does: cells are too wide for that by rounding.
-  isCut = isCut || !isWithin(field, whole);
+  isCut = isCut || !isWithin(f.field, whole);
   for (int a = 0; a < 3; ++a)
   {
     block.fieldLow[a] = static_cast<A>(f.grid.low[a] - middle[a]);
@@ -362,7 +359,7 @@ void TileSplatter<T>::load(const glm::ivec3& cell)
     this->Block.end[a] = std::min(grid.end[a] - cell[a], BlockCells);
   }
   static_cast<const BlockLoops<T>&>(this->Frame.kernels)
-    .load(rows, x, this->Frame.scale, this->Block);
+    .load(rows, x, this->Frame.values.scale, this->Block);
 }
 
 // The rays of the pixels around one that sees the block's middle, from points beside that on.

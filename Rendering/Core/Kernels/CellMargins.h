@@ -6,8 +6,6 @@
 #ifndef splattingCellMargins_h
 #define splattingCellMargins_h
 
-#include "Kernels/CellRegisters.h"
-
 #include <cstdint>
 #include <cstring>
 #include <limits>

@@ -12,7 +12,6 @@
 
 #include <cstdint>
 #include <cstring>
-#include <type_traits>
 
 namespace splatting
 {
@@ -21,6 +20,31 @@ namespace
 /// Lanes of a register of A that has no type of its own below.
 template <class A>
 constexpr int lanesOf = SPLATTING_VECTOR_BYTES / static_cast<int>(sizeof(A));
+
+template <class A>
+SPLATTING_INLINE A fused(A a, A b, A c)
+{
+  if constexpr (sizeof(A) == sizeof(float))
+  {
+    return __builtin_fmaf(a, b, c);
+  }
+  else
+  {
+    return __builtin_fma(a, b, c);
+  }
+}
+
+/// Stores from + n step, for the lanes n of a mask only, one after the other. Returns how many there
+/// are.
+inline int storeLanes(std::int32_t* p, std::int32_t from, std::int32_t step, unsigned lanes)
+{
+  int count = 0;
+  for (; lanes; lanes &= lanes - 1)
+  {
+    p[count++] = from + step * __builtin_ctz(lanes);
+  }
+  return count;
+}
 
 /// Any type and any width, lane by lane.
 template <class A>
@@ -84,18 +108,7 @@ struct PlainRegisters
   }
   static SPLATTING_INLINE Value fma(Value a, Value b, Value c)
   {
-    return each(
-      [&](int n)
-      {
-        if constexpr (sizeof(A) == sizeof(float))
-        {
-          return __builtin_fmaf(a.lane[n], b.lane[n], c.lane[n]);
-        }
-        else
-        {
-          return __builtin_fma(a.lane[n], b.lane[n], c.lane[n]);
-        }
-      });
+    return each([&](int n) { return fused(a.lane[n], b.lane[n], c.lane[n]); });
   }
   static SPLATTING_INLINE Value root(Value a)
   {
@@ -136,10 +149,6 @@ struct PlainRegisters
   {
     return eachBit([&](int n) { return a.lane[n] >= b.lane[n]; });
   }
-  static SPLATTING_INLINE Mask equal(Value a, Value b)
-  {
-    return eachBit([&](int n) { return a.lane[n] == b.lane[n]; });
-  }
   static SPLATTING_INLINE Value choose(Mask m, Value a, Value b)
   {
     return each([&](int n) { return m >> n & 1 ? a.lane[n] : b.lane[n]; });
@@ -166,24 +175,11 @@ struct PlainRegisters
     return each(
       [&](int n) { return m >> n & 1 ? p[static_cast<std::int32_t>(at.lane[n])] : other.lane[n]; });
   }
-  static SPLATTING_INLINE void storeIntegers(std::int32_t* p, Value a)
-  {
-    for (int n = 0; n < N; ++n)
-    {
-      p[n] = static_cast<std::int32_t>(a.lane[n]);
-    }
-  }
-  /// Stores from + n step, for the lanes of the mask only, one after the other, and more. Returns
-  /// how many there are.
+  /// storeLanes(), which may write up to N numbers.
   static SPLATTING_INLINE int compress(
     std::int32_t* p, std::int32_t from, std::int32_t step, Mask m)
   {
-    int count = 0;
-    for (; m; m &= m - 1)
-    {
-      p[count++] = from + step * __builtin_ctz(m);
-    }
-    return count;
+    return storeLanes(p, from, step, m);
   }
   /// The same of values.
   static SPLATTING_INLINE int compress(std::int32_t* p, Value a, Mask m)
@@ -232,10 +228,6 @@ struct FloatRegisters
   {
     return _mm512_cmp_ps_mask(a, b, _CMP_GE_OQ);
   }
-  static SPLATTING_INLINE Mask equal(Value a, Value b)
-  {
-    return _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ);
-  }
   static SPLATTING_INLINE Value choose(Mask m, Value a, Value b)
   {
     return _mm512_mask_blend_ps(m, b, a);
@@ -253,10 +245,6 @@ struct FloatRegisters
   static SPLATTING_INLINE Value gather(const float* p, Value at, Mask m, Value other)
   {
     return _mm512_mask_i32gather_ps(other, m, _mm512_cvtps_epi32(at), p, 4);
-  }
-  static SPLATTING_INLINE void storeIntegers(std::int32_t* p, Value a)
-  {
-    _mm512_storeu_si512(p, _mm512_cvtps_epi32(a));
   }
   static SPLATTING_INLINE int compress(
     std::int32_t* p, std::int32_t from, std::int32_t step, Mask m)
@@ -314,10 +302,6 @@ struct FloatRegisters
   {
     return bits(_mm256_cmp_ps(a, b, _CMP_GE_OQ));
   }
-  static SPLATTING_INLINE Mask equal(Value a, Value b)
-  {
-    return bits(_mm256_cmp_ps(a, b, _CMP_EQ_OQ));
-  }
   static SPLATTING_INLINE Value choose(Mask m, Value a, Value b)
   {
     return _mm256_blendv_ps(b, a, lanes(m));
@@ -348,12 +332,7 @@ struct FloatRegisters
   static SPLATTING_INLINE int compress(
     std::int32_t* p, std::int32_t from, std::int32_t step, Mask m)
   {
-    int count = 0;
-    for (; m; m &= m - 1)
-    {
-      p[count++] = from + step * __builtin_ctz(m);
-    }
-    return count;
+    return storeLanes(p, from, step, m);
   }
   static SPLATTING_INLINE int compress(std::int32_t* p, Value a, Mask m)
   {
@@ -403,10 +382,6 @@ struct DoubleRegisters
   {
     return _mm512_cmp_pd_mask(a, b, _CMP_GE_OQ);
   }
-  static SPLATTING_INLINE Mask equal(Value a, Value b)
-  {
-    return _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ);
-  }
   static SPLATTING_INLINE Value choose(Mask m, Value a, Value b)
   {
     return _mm512_mask_blend_pd(m, b, a);
@@ -428,10 +403,6 @@ struct DoubleRegisters
   static SPLATTING_INLINE Value gather(const double* p, Value at, Mask m, Value other)
   {
     return _mm512_mask_i32gather_pd(other, m, _mm512_cvtpd_epi32(at), p, 8);
-  }
-  static SPLATTING_INLINE void storeIntegers(std::int32_t* p, Value a)
-  {
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), _mm512_cvtpd_epi32(a));
   }
   static SPLATTING_INLINE int compress(
     std::int32_t* p, std::int32_t from, std::int32_t step, Mask m)
@@ -458,19 +429,6 @@ struct RegistersOf<double>
 
 template <class A>
 using Registers = typename RegistersOf<A>::type;
-
-template <class A>
-SPLATTING_INLINE A fused(A a, A b, A c)
-{
-  if constexpr (sizeof(A) == sizeof(float))
-  {
-    return __builtin_fmaf(a, b, c);
-  }
-  else
-  {
-    return __builtin_fma(a, b, c);
-  }
-}
 
 template <class A>
 SPLATTING_INLINE typename Registers<A>::Mask firstLanes(int count)

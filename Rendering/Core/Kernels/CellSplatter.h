@@ -27,7 +27,7 @@ namespace
 /**
  * @tparam Cut      whether rays or the field end within the block
  * @tparam Located  whether the parameters of the samples are wanted
- * @tparam Shaded   whether samples are shaded by their depth; needs the ends of rays
+ * @tparam Shaded   whether samples are shaded by their depth; only with Cut, which has rays' ends
  */
 template <class A, bool Perspective, bool Cut, bool Located, bool Shaded>
 class CellSplatter
@@ -38,6 +38,7 @@ class CellSplatter
   using I = typename R::Index;
   static constexpr int Cells = 16;
   static constexpr bool Split = sizeof(A) < sizeof(double);
+  static_assert(Cut || !Shaded);
 
   /// See CellSum.
   struct Sum
@@ -486,7 +487,7 @@ private:
     }
     V enter = R::set(-std::numeric_limits<A>::max()), leave = R::set(std::numeric_limits<A>::max());
     V near = enter, far = leave;
-    if (Cut || Shaded)
+    if (Cut)
     {
       const V zero = R::set(0), reference = R::set(b.reference);
       near = R::sub(R::sub(R::gather(this->Tile.nears, at, on, zero), reference), middle);
@@ -654,7 +655,7 @@ private:
     }
     Segment ray{ -std::numeric_limits<A>::max(), std::numeric_limits<A>::max() };
     A near = 0, far = 0;
-    if (Cut || Shaded)
+    if (Cut)
     {
       near = this->Tile.nears[at] - b.reference - middle + this->Tile.nearRests[at];
       far = this->Tile.fars[at] - b.reference - middle + this->Tile.farRests[at];

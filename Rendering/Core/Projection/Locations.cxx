@@ -12,7 +12,6 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
 
 namespace splatting
 {
@@ -273,11 +272,6 @@ double Locator::depthOf(const ShearPixel& shown) const
 {
   const ShearImage& image = (*this->Source.images)[shown.image];
   return image.winners[std::size_t(shown.v) * image.width + shown.u] / StepsPerSlice;
-}
-
-glm::ivec3 Locator::voxel(const glm::dvec2&, const ShearPixel& shown) const
-{
-  return findVoxel(this->Source, shown);
 }
 
 glm::dvec3 Locator::point(const glm::dvec2& pixel, const ShearPixel& shown) const

@@ -55,8 +55,6 @@ public:
   /// The point of index space that a viewport pixel (centre at integers) shows by way of its shear
   /// pixel, which must not be none.
   glm::dvec3 point(const glm::dvec2& pixel, const ShearPixel& shown) const;
-  /// The voxel that it shows.
-  glm::ivec3 voxel(const glm::dvec2& pixel, const ShearPixel& shown) const;
 
   /// A sample, if there is one.
   struct Sample

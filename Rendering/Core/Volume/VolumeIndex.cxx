@@ -257,9 +257,14 @@ void VolumeIndex::survey()
   const bool fits = this->brickSize() <= this->Budget;
   const Extremes<T> extremes = Survey<T>(this->Volume, fits ? this->Bricks.data() : nullptr)();
   this->ValueRange = { static_cast<double>(extremes.low), static_cast<double>(extremes.high),
+<<<<<<< HEAD
     extremes.nonFinite };
   this->Magnitude = largestMagnitudeOf(this->Volume, extremes);
   // Walks of volumes with infinities skip nothing.
+=======
+    extremes.nonFinite, largestMagnitudeOf(this->Volume, extremes) };
+  // Walks of volumes with infinities leave nothing out.
+>>>>>>> main
   this->BricksMade = fits && !this->ValueRange.hasInfinities();
   if (!this->BricksMade)
   {
@@ -379,12 +384,6 @@ const VolumeIndex::Range& VolumeIndex::range()
     this->Surveyed = true;
   }
   return this->ValueRange;
-}
-
-double VolumeIndex::largestMagnitude()
-{
-  this->range();
-  return this->Magnitude;
 }
 
 void VolumeIndex::setRangeOfWhole(const Range& range)

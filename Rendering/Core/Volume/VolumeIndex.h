@@ -117,6 +117,7 @@ public:
   {
     double low = 0.0, high = 0.0; ///< of all voxels except NaN; low > high if there are none
     bool nonFinite = false;       ///< whether there are NaN or infinities
+    double magnitude = 0.0;       ///< the largest one of finite voxels
 
     bool hasInfinities() const
     {
@@ -129,9 +130,12 @@ public:
   /// that of the piece.
   void setRangeOfWhole(const Range& range);
 
+<<<<<<< HEAD
   /// The largest magnitude of finite voxels; for a piece that of its own voxels.
   double largestMagnitude();
 
+=======
+>>>>>>> main
   /// Whether there are bricks: the budget has room for them, and there are no infinities.
   bool hasBricks();
   /// The bricks along an axis; 3/128 of the volume for all axes together.
@@ -167,7 +171,6 @@ private:
   std::unique_ptr<unsigned char[]> Copy;
   std::size_t CopySize = 0;
   Range ValueRange;
-  double Magnitude = 0.0;
   std::array<BrickMaxima, 3> Bricks;
   std::array<std::array<LineIndex, 2>, 3> Lines;
   std::array<std::array<std::optional<LineEncoding>, 2>, 3>

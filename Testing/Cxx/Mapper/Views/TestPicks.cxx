@@ -85,6 +85,9 @@ void chooseAtRandom(
   mapper->SetBlendMode(random.uniform(0, 2) ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
                                             : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
   stage::chooseSamples(mapper, image, random);
+  mapper->SetCullBelowWindow(random.uniform(0, 1));
+  mapper->SetFinalColorLevel(random.uniform(0, 1) ? 0.5 : 0.9);
+  mapper->SetFinalColorWindow(0.2);
   mapper->RemoveAllClippingPlanes();
   if (random.uniform(0, 1))
   {
