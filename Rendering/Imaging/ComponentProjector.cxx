@@ -435,11 +435,7 @@ const ScreenScalars& ComponentProjector::ProjectPixelOnScreen(
   settings.floor = ProjectionSettings().floor; // samples below the window are located, too
   Channel& channel = this->LocatedChannel();
   this->UpdateCells(channel, view);
-<<<<<<< HEAD
-  CellProjector projector; // without observer
-=======
   CellProjector projector; // without an observer
->>>>>>> main
   if (!projector.project(
         channel.Cells, view, settings, ends, true, { pixel, glm::ivec2(1) }, this->PixelOnScreen))
   {

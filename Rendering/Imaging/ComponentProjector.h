@@ -110,19 +110,10 @@ public:
   bool ProjectOnScreen(const View& view, const ProjectionSettings& settings, const RayEnds& ends);
   /// Whether the last projection was by cells, and needs no geometries.
   bool IsOnScreen() const { return this->OnScreen; }
-<<<<<<< HEAD
-  /// The values of the located component.
-  const ScreenScalars& LocatedScreen() const { return this->LocatedChannel().Screen; }
   /// As ProjectOnScreen(), for one pixel of the viewport, with its depth. Not for pieces. The
   /// result is valid until the next call.
-  const ScreenScalars& ProjectPixelOnScreen(const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, const glm::ivec2& pixel);
-=======
-  /// The same of one pixel of the viewport, with its depth; not of pieces. The reference is valid
-  /// until the next call.
   const ScreenScalars& ProjectPixelOnScreen(
     const View& view, ProjectionSettings settings, const RayEnds& ends, const glm::ivec2& pixel);
->>>>>>> main
 
   /// Makes the picture of a view. Returns false, without a picture, if the warper's observer has
   /// stopped it.

@@ -59,13 +59,8 @@ int ProjectedVolume::ChooseMode(
   return this->Ranks.AreMany() ? this->Ranks.Least(mode) : mode;
 }
 
-<<<<<<< HEAD
-// Computes the cuts of a view and, unless it is projected onto the screen, its images. Returns
-// false for an invalid view.
-=======
-// What cuts the rays of a view and, unless they are projected onto the screen, its images; false if
-// the view is invalid.
->>>>>>> main
+// Computes the cuts of a view and, unless it is projected onto the screen, its images. Returns false
+// if the view is invalid.
 bool ProjectedVolume::FindCuts(const MapperProperties& properties, const View& view,
   vtkRenderer* renderer, vtkVolume* volume, const SceneCuts::DepthReader& readDepth,
   const ProjectionSettings& settings)
@@ -95,8 +90,7 @@ bool ProjectedVolume::Shows(const View& view, const ProjectionSettings& settings
 {
   if (this->Components.UsesCells(settings))
   {
-    return this->Cuts.AreKeptOnScreen(view) &&
-      this->Components.Shows(settings);
+    return this->Cuts.AreKeptOnScreen(view) && this->Components.Shows(settings);
   }
   const bool ordered = isOrdered(settings.reduction) || settings.keepWinners ||
     this->Source.AreDependent(); // of equal samples the nearest is located

@@ -257,14 +257,8 @@ void VolumeIndex::survey()
   const bool fits = this->brickSize() <= this->Budget;
   const Extremes<T> extremes = Survey<T>(this->Volume, fits ? this->Bricks.data() : nullptr)();
   this->ValueRange = { static_cast<double>(extremes.low), static_cast<double>(extremes.high),
-<<<<<<< HEAD
-    extremes.nonFinite };
-  this->Magnitude = largestMagnitudeOf(this->Volume, extremes);
-  // Walks of volumes with infinities skip nothing.
-=======
     extremes.nonFinite, largestMagnitudeOf(this->Volume, extremes) };
-  // Walks of volumes with infinities leave nothing out.
->>>>>>> main
+  // Walks of volumes with infinities skip nothing.
   this->BricksMade = fits && !this->ValueRange.hasInfinities();
   if (!this->BricksMade)
   {

@@ -130,12 +130,6 @@ public:
   /// that of the piece.
   void setRangeOfWhole(const Range& range);
 
-<<<<<<< HEAD
-  /// The largest magnitude of finite voxels; for a piece that of its own voxels.
-  double largestMagnitude();
-
-=======
->>>>>>> main
   /// Whether there are bricks: the budget has room for them, and there are no infinities.
   bool hasBricks();
   /// The bricks along an axis; 3/128 of the volume for all axes together.
