@@ -53,8 +53,8 @@ private:
       });
   }
 
-  /// From slice to slice; the guard of a voxel is what every ray through it meets in the slices
-  /// that came before.
+  /// From slice to slice. The guard of a voxel is the least value that every ray through it crosses
+  /// in the previous slices.
   template <class Hides>
   void sweep(int first, int end, int step, Hides&& hides)
   {
@@ -77,7 +77,7 @@ private:
             covers[i] = std::max(values[i], guards[i]);
           }
         });
-      // Beside the outermost voxels rays leave the volume: nothing guards these.
+      // Rays leave the volume beside the outermost voxels, which therefore have no guard.
       this->forRows(
         [&](int j)
         {

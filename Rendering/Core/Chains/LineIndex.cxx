@@ -14,7 +14,7 @@ namespace splatting
 {
 namespace
 {
-/// A chain that is still to be sorted.
+/// A chain before sorting.
 template <class T, class Chain>
 struct Item
 {
@@ -31,7 +31,7 @@ int sliceOf(const VolumeChain& chain)
   return chain.k;
 }
 
-/// High values first; chains of equal value in the order of memory.
+/// Descending values; chains of equal value in memory order.
 template <class T, class Chain>
 bool precedes(const Item<T, Chain>& a, const Item<T, Chain>& b)
 {
@@ -73,7 +73,7 @@ T largestVoxel(const Slices& slices, const glm::ivec3& size)
 }
 }
 
-/// Encodes some slices at a time in parallel and appends them in order.
+/// Encodes some slices at a time in parallel, and appends them in order.
 template <class T>
 class LineIndex::Builder
 {
@@ -260,7 +260,7 @@ private:
     }
   }
 
-  /// Ends the last slice and gives spare memory back.
+  /// Ends the last slice, and releases spare memory.
   void finish()
   {
     LineIndex& index = this->Index;

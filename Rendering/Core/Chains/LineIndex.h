@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The line-encoded index [CS98, section 4]: the rows of all slices along one principal axis, cut
- * into chains of voxels with the same value.
+ * The line-encoded index [CS98, section 4]: the rows of all slices along one principal axis,
+ * divided into chains of voxels with the same value.
  */
 #ifndef splattingLineIndex_h
 #define splattingLineIndex_h
@@ -21,12 +21,12 @@ namespace splatting
 {
 struct Slices;
 
-/// How chains are stored.
+/// The order of chains.
 enum class LineOrder
 {
   Lines,       ///< row by row
-  SortedLines, ///< slice by slice, high values first
-  SortedVolume ///< all of them, high values first
+  SortedLines, ///< slice by slice, descending values
+  SortedVolume ///< all of them, descending values
 };
 
 /**
@@ -64,7 +64,7 @@ struct LineEncoding
 {
   LineOrder order = LineOrder::Lines;
   double tolerance = 0.0; ///< of delta encoding, 0 to 255; 0: chains of equal voxels
-  bool eliminate = false; ///< whether invisible voxels are left out
+  bool eliminate = false; ///< whether invisible voxels are omitted
 
   bool operator==(const LineEncoding& other) const
   {
@@ -73,12 +73,12 @@ struct LineEncoding
   }
 };
 
-/// Chains of one row of voxels, side by side.
+/// Chains of one row of voxels.
 template <class T>
 struct LineRow
 {
-  const T* values;          ///< leastValue where voxels were left out
-  const std::uint8_t* last; ///< the chain's length less one
+  const T* values;          ///< leastValue for omitted voxels
+  const std::uint8_t* last; ///< the chain's length minus one
   std::ptrdiff_t count;
 };
 
@@ -104,17 +104,17 @@ struct ChainRun
 };
 
 /**
- * The index of a volume without NaN and infinities along one axis. Chains of the lowest value that
- * the type has cannot change a picture, and sorted orders have none.
+ * The index of a volume without NaN and infinities along one axis. Chains of the lowest value of
+ * the type cannot change a picture, and are omitted by sorted orders.
  */
 class LineIndex
 {
 public:
-  /// Voxels along each axis of a volume that sorted orders can hold.
+  /// The largest number of voxels along an axis for sorted orders.
   static constexpr int MostSorted = 1 << 16;
 
-  /// Told how much is done, from 0 to 1, by the thread that builds; returns whether to go on. An
-  /// index that was given up holds no encoding.
+  /// Gets the completed share, from 0 to 1, on the building thread. Returns whether to continue. A
+  /// stopped index holds no encoding.
   using Progress = std::function<bool(double)>;
 
   LineIndex() = default;
@@ -127,7 +127,7 @@ public:
   }
   const LineEncoding& encoding() const { return this->Encoding; }
   std::size_t chainCount() const;
-  /// Invisible voxels that were left out.
+  /// The number of omitted invisible voxels.
   std::size_t invisibleCount() const { return this->InvisibleCount; }
   std::size_t memorySize() const;
 
