@@ -19,9 +19,9 @@
 
 namespace
 {
-/// VTK registers the factory that this library returns after all others. The factory of VTK's OpenGL
-/// classes, which this library loads, precedes it. The override therefore has another factory, which
-/// is registered before all others.
+/// VTK registers the factory that this library returns after all others. The factory of VTK's
+/// OpenGL classes, which this library loads, precedes it. The override therefore has another
+/// factory, which is registered before all others.
 class EmptyFactory : public vtkObjectFactory
 {
 public:
