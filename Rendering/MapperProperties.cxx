@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MapperProperties.h"
 
+#include "ProjectionProperties.h"
+#include "vtkSplattingMIPVolumeMapper.h"
+
 #include "vtkMath.h"
 #include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
-#include "vtkVolumeMapper.h"
 #include "vtkVolumeProperty.h"
 
 #include <cmath>
@@ -32,25 +34,26 @@ const char* faultOfPlanes(vtkPlaneCollection* planes)
 }
 }
 
-const char* faultOf(
-  const MapperProperties& properties, vtkPlaneCollection* planes, vtkVolumeProperty* property)
+const char* faultOf(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* property)
 {
-  const ProjectionProperties& projection = properties;
-  if (const char* const fault = faultOf(projection))
+  if (const char* const fault = faultOf(*mapper))
   {
     return fault;
   }
-  if (properties.BlendMode == vtkVolumeMapper::SLICE_BLEND && !property->GetSliceFunction())
+  if (mapper->GetBlendMode() == vtkVolumeMapper::SLICE_BLEND && !property->GetSliceFunction())
   {
     return "There is no slice to show: give the vtkVolumeProperty a plane with SetSliceFunction.";
   }
-  return faultOfPlanes(planes);
+  return faultOfPlanes(mapper->GetClippingPlanes());
 }
 
-ProjectionSettings settingsOf(const MapperProperties& properties, int mode, const View& view)
+bool needsLocations(vtkSplattingMIPVolumeMapper* mapper)
 {
-  ProjectionProperties projection = properties;
-  projection.RecordLocations = properties.needsLocations();
-  return settingsOf(projection, mode, view);
+  return mapper->GetRecordLocations() || mapper->GetDepthCoding() || mapper->GetWriteDepth();
+}
+
+ProjectionSettings settingsOf(vtkSplattingMIPVolumeMapper* mapper, int mode, const View& view)
+{
+  return settingsOf(*mapper, mode, view, needsLocations(mapper));
 }
 }

@@ -2,106 +2,103 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAbstractSplattingMIPVolumeMapper.h"
 
-#include "MapperProperties.h"
-#include "PropertyMethods.h"
-#include "vtkSplattingMIPProjection.h"
+#include "ProjectionProperties.h"
 
-#include <algorithm>
+#include "vtkImageData.h"
+#include "vtkPolyData.h"
+#include "vtkScalarsToColors.h"
 
-namespace
-{
-using Mapper = vtkAbstractSplattingMIPVolumeMapper;
-using Filter = vtkSplattingMIPProjection;
-constexpr bool same(int mapper, int filter)
-{
-  return mapper == filter;
-}
-static_assert(same(Mapper::MAXIMUM_INTENSITY_BLEND, Filter::MAXIMUM_INTENSITY_BLEND) &&
-    same(Mapper::MINIMUM_INTENSITY_BLEND, Filter::MINIMUM_INTENSITY_BLEND) &&
-    same(Mapper::AVERAGE_INTENSITY_BLEND, Filter::AVERAGE_INTENSITY_BLEND) &&
-    same(Mapper::DEPTH_SHADED, Filter::DEPTH_SHADED) && same(Mapper::LOCAL, Filter::LOCAL) &&
-    same(Mapper::PREVIEW, Filter::PREVIEW) && same(Mapper::STANDARD, Filter::STANDARD) &&
-    same(Mapper::HIGH, Filter::HIGH) && same(Mapper::EXACT, Filter::EXACT) &&
-    same(Mapper::COSINE_BELL, Filter::COSINE_BELL) && same(Mapper::LINES, Filter::LINES) &&
-    same(Mapper::SORTED_VOLUME, Filter::SORTED_VOLUME) &&
-    same(Mapper::MAGNITUDE, Filter::MAGNITUDE) && same(Mapper::COMPONENT, Filter::COMPONENT),
-  "The mapper's choices are those of the filter.");
-}
+using namespace splatting;
+
+//------------------------------------------------------------------------------
+vtkCxxSetObjectMacro(vtkAbstractSplattingMIPVolumeMapper, MaskInput, vtkImageData);
+vtkCxxSetObjectMacro(vtkAbstractSplattingMIPVolumeMapper, BoundingSurface, vtkPolyData);
+vtkCxxSetObjectMacro(vtkAbstractSplattingMIPVolumeMapper, DepthCodingColors, vtkScalarsToColors);
 
 //------------------------------------------------------------------------------
 vtkAbstractSplattingMIPVolumeMapper::vtkAbstractSplattingMIPVolumeMapper()
-  : Properties(new splatting::MapperProperties)
 {
   this->BlendMode = MAXIMUM_INTENSITY_BLEND;
 }
 
 //------------------------------------------------------------------------------
-vtkAbstractSplattingMIPVolumeMapper::~vtkAbstractSplattingMIPVolumeMapper() = default;
-
-//------------------------------------------------------------------------------
-splattingProjectionMethods(vtkAbstractSplattingMIPVolumeMapper);
-splattingClampMethods(
-  vtkAbstractSplattingMIPVolumeMapper, vtkTypeBool, AutoAdjustSampleDistances, 0, 1);
-splattingMethods(vtkAbstractSplattingMIPVolumeMapper, float, FinalColorWindow);
-splattingMethods(vtkAbstractSplattingMIPVolumeMapper, float, FinalColorLevel);
-splattingMethods(vtkAbstractSplattingMIPVolumeMapper, vtkTypeBool, IntermixIntersectingGeometry);
-splattingMethods(vtkAbstractSplattingMIPVolumeMapper, bool, CullBelowWindow);
-splattingMethods(vtkAbstractSplattingMIPVolumeMapper, bool, DepthCoding);
-splattingVector2Methods(vtkAbstractSplattingMIPVolumeMapper, DepthCodingRange);
-splattingMethods(vtkAbstractSplattingMIPVolumeMapper, bool, WriteDepth);
-splattingClampMethods(vtkAbstractSplattingMIPVolumeMapper, double, WriteDepthOpacity, 0.0, 1.0);
-splattingObjectMethods(vtkAbstractSplattingMIPVolumeMapper, vtkImageData, MaskInput);
-splattingObjectMethods(vtkAbstractSplattingMIPVolumeMapper, vtkPolyData, BoundingSurface);
-splattingObjectMethods(vtkAbstractSplattingMIPVolumeMapper, vtkScalarsToColors, DepthCodingColors);
-
-//------------------------------------------------------------------------------
-const splatting::MapperProperties& vtkAbstractSplattingMIPVolumeMapper::ReadProperties()
+vtkAbstractSplattingMIPVolumeMapper::~vtkAbstractSplattingMIPVolumeMapper()
 {
-  splatting::MapperProperties& all = *this->Properties;
-  all.BlendMode = this->BlendMode;
-  std::copy_n(this->AverageIPScalarRange, 2, all.AverageIPScalarRange);
-  all.Cropping = this->Cropping != 0;
-  std::copy_n(this->CroppingRegionPlanes, 6, all.CroppingRegionPlanes);
-  all.CroppingRegionFlags = this->CroppingRegionFlags;
-  return all;
+  this->SetMaskInput(nullptr);
+  this->SetBoundingSurface(nullptr);
+  this->SetDepthCodingColors(nullptr);
 }
 
 //------------------------------------------------------------------------------
 const char* vtkAbstractSplattingMIPVolumeMapper::GetVectorModeAsString()
 {
-  return splatting::nameOfVectorMode(this->GetVectorMode());
+  return nameOfVectorMode(this->VectorMode);
 }
 
 //------------------------------------------------------------------------------
 const char* vtkAbstractSplattingMIPVolumeMapper::GetQualityModeAsString()
 {
-  return splatting::nameOfQualityMode(this->GetQualityMode());
+  return nameOfQualityMode(this->QualityMode);
 }
 
 //------------------------------------------------------------------------------
 const char* vtkAbstractSplattingMIPVolumeMapper::GetKernelAsString()
 {
-  return splatting::nameOfKernel(this->GetKernel());
+  return nameOfKernel(this->Kernel);
 }
 
 //------------------------------------------------------------------------------
 const char* vtkAbstractSplattingMIPVolumeMapper::GetMaximumTypeAsString()
 {
-  return splatting::nameOfMaximumType(this->GetMaximumType());
+  return nameOfMaximumType(this->MaximumType);
 }
 
 //------------------------------------------------------------------------------
 const char* vtkAbstractSplattingMIPVolumeMapper::GetAccelerationAsString()
 {
-  return splatting::nameOfAcceleration(this->GetAcceleration());
+  return nameOfAcceleration(this->Acceleration);
+}
+
+//------------------------------------------------------------------------------
+void vtkAbstractSplattingMIPVolumeMapper::PrintPictureSettings(ostream& os, vtkIndent indent)
+{
+  const auto onOff = [](vtkTypeBool value) { return value ? "On\n" : "Off\n"; };
+  os << indent << "VectorMode: " << this->GetVectorModeAsString() << "\n";
+  os << indent << "VectorComponent: " << this->VectorComponent << "\n";
+  os << indent << "QualityMode: " << this->GetQualityModeAsString() << "\n";
+  os << indent << "AutoAdjustSampleDistances: " << onOff(this->AutoAdjustSampleDistances);
+  os << indent << "FinalColorWindow: " << this->FinalColorWindow << "\n";
+  os << indent << "FinalColorLevel: " << this->FinalColorLevel << "\n";
+  os << indent << "Kernel: " << this->GetKernelAsString() << "\n";
+  os << indent << "KernelRadius: " << this->KernelRadius << "\n";
+  os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";
+  os << indent << "MaximumType: " << this->GetMaximumTypeAsString() << "\n";
+  os << indent << "DepthShadingAmbient: " << this->DepthShadingAmbient << "\n";
+  os << indent << "DepthShadingChangeRate: " << this->DepthShadingChangeRate << "\n";
+  os << indent << "LocalMaximumThreshold: " << this->LocalMaximumThreshold << "\n";
+  os << indent << "Slab: " << onOff(this->Slab);
+  os << indent << "SlabThickness: " << this->SlabThickness << "\n";
+  os << indent << "SlabCenter: (" << this->SlabCenter[0] << ", " << this->SlabCenter[1] << ", "
+     << this->SlabCenter[2] << ")\n";
+  os << indent << "IntermixIntersectingGeometry: " << onOff(this->IntermixIntersectingGeometry);
+  os << indent << "Acceleration: " << this->GetAccelerationAsString() << "\n";
+  os << indent << "LineTolerance: " << this->LineTolerance << "\n";
+  os << indent << "CullBelowWindow: " << onOff(this->CullBelowWindow);
+  os << indent << "RecordLocations: " << onOff(this->RecordLocations);
+  os << indent << "DepthCoding: " << onOff(this->DepthCoding);
+  os << indent << "DepthCodingRange: (" << this->DepthCodingRange[0] << ", "
+     << this->DepthCodingRange[1] << ")\n";
+  os << indent << "WriteDepth: " << onOff(this->WriteDepth);
+  os << indent << "WriteDepthOpacity: " << this->WriteDepthOpacity << "\n";
 }
 
 //------------------------------------------------------------------------------
 void vtkAbstractSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  const splatting::PropertyPrinter print{ os, indent };
-  this->Properties->visit(print);
-  this->Properties->visitIndifferent(print);
-  this->Properties->visitObjects(print);
+  this->PrintPictureSettings(os, indent);
+  os << indent << "IndexMemoryBudget: " << this->IndexMemoryBudget << "\n";
+  os << indent << "MaskInput: " << this->MaskInput << "\n";
+  os << indent << "BoundingSurface: " << this->BoundingSurface << "\n";
+  os << indent << "DepthCodingColors: " << this->DepthCodingColors << "\n";
 }

@@ -18,14 +18,9 @@
 #define vtkAbstractSplattingMIPVolumeMapper_h
 
 #include "vtkRenderingSplattingMIPModule.h" // for the export macro
+#include "vtkSplattingMIPChoices.h"         // for the enumerations
 #include "vtkVolumeMapper.h"
 
-#include <memory> // for the hidden properties
-
-namespace splatting
-{
-struct MapperProperties;
-}
 class vtkImageData;
 class vtkPolyData;
 class vtkScalarsToColors;
@@ -37,59 +32,10 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * The values of VectorMode; the same as vtkSmartVolumeMapper's.
+   * The values of VectorMode, QualityMode, Kernel, MaximumType and Acceleration; see
+   * vtkSplattingMIPChoices.h.
    */
-  enum VectorModes
-  {
-    DISABLED = -1, ///< all components
-    MAGNITUDE = 0, ///< their Euclidean length; a single component itself
-    COMPONENT = 1  ///< the component that VectorComponent names
-  };
-
-  /**
-   * What a pixel shows [CS98, sections 2 and 3]. Modes from PREVIEW to HIGH compute the pixels of a
-   * shear image. EXACT computes the pixels of the screen, cell by cell.
-   */
-  enum QualityModes
-  {
-    PREVIEW = 0,  ///< the largest voxel that the ray crosses: an exact voxel traversal
-    STANDARD = 1, ///< the largest average of a slice of boxes over the pixel's area (3x3 weights)
-    HIGH = 2,     ///< the same of the volume interpolated with Kernel (5x5 weights, three slices)
-    EXACT = 3     ///< the extremum of the trilinear volume on the ray [Sakas et al. 1995]
-  };
-
-  /**
-   * Reconstruction kernels of HIGH; see SetKernel().
-   */
-  enum Kernels
-  {
-    TRILINEAR = 0,
-    COSINE_BELL = 1
-  };
-
-  /**
-   * Maxima along a ray.
-   */
-  enum MaximumTypes
-  {
-    GLOBAL = 0,       ///< the largest sample
-    DEPTH_SHADED = 1, ///< the largest sample after dimming by depth (DMIP)
-    LOCAL = 2         ///< the first local maximum, from the viewer, that reaches a threshold
-  };
-
-  /**
-   * Which voxels a projection skips, and in which order it processes the others. Chains are equal
-   * voxels along rows [CS98, section 4]. Sorted chains are used in PREVIEW, LINES in other modes.
-   */
-  enum Accelerations
-  {
-    AUTO = 0,         ///< BRICKS where they skip enough tiles, else DENSE
-    DENSE = 1,        ///< all voxels, in memory order
-    BRICKS = 2,       ///< skips tiles of 8x4 pixels that no brick of 8x4x4 voxels can raise
-    LINES = 3,        ///< chains in the order of slices and rows
-    SORTED_LINES = 4, ///< the chains of each slice in descending order
-    SORTED_VOLUME = 5 ///< the chains of all slices in descending order
-  };
+  vtkSplattingMIPChoicesMacro();
 
   ///@{
   /**
@@ -98,10 +44,8 @@ public:
    * Magnitudes are float (double for 32- and 64-bit integers and double). Magnitudes and
    * interleaved components are copied.
    */
-  virtual void SetVectorMode(int);
-  virtual int GetVectorMode();
-  virtual int GetVectorModeMinValue();
-  virtual int GetVectorModeMaxValue();
+  vtkSetClampMacro(VectorMode, int, DISABLED, COMPONENT);
+  vtkGetMacro(VectorMode, int);
   void SetVectorModeToDisabled() { this->SetVectorMode(DISABLED); }
   void SetVectorModeToMagnitude() { this->SetVectorMode(MAGNITUDE); }
   void SetVectorModeToComponent() { this->SetVectorMode(COMPONENT); }
@@ -113,10 +57,8 @@ public:
    * Set/Get the component that VectorMode COMPONENT projects. Default 0, clamped to [0, 3]. Scalars
    * without this component are reported as an error.
    */
-  virtual void SetVectorComponent(int);
-  virtual int GetVectorComponent();
-  virtual int GetVectorComponentMinValue();
-  virtual int GetVectorComponentMaxValue();
+  vtkSetClampMacro(VectorComponent, int, 0, 3);
+  vtkGetMacro(VectorComponent, int);
   ///@}
 
   ///@{
@@ -126,8 +68,8 @@ public:
    * the input. Point scalars are used if there are any, else cell scalars. Spacing and origin are
    * ignored. Default nullptr: no mask. With a mask the volume is copied to floating point.
    */
-  virtual void SetMaskInput(vtkImageData* mask);
-  virtual vtkImageData* GetMaskInput();
+  virtual void SetMaskInput(vtkImageData*);
+  vtkGetObjectMacro(MaskInput, vtkImageData);
   ///@}
 
   ///@{
@@ -138,10 +80,8 @@ public:
    * averages the average), and EXACT shows voxels like PREVIEW. GetQualityModeUsed() returns the
    * mode that is shown.
    */
-  virtual void SetQualityMode(int);
-  virtual int GetQualityMode();
-  virtual int GetQualityModeMinValue();
-  virtual int GetQualityModeMaxValue();
+  vtkSetClampMacro(QualityMode, int, PREVIEW, EXACT);
+  vtkGetMacro(QualityMode, int);
   void SetQualityModeToPreview() { this->SetQualityMode(PREVIEW); }
   void SetQualityModeToStandard() { this->SetQualityMode(STANDARD); }
   void SetQualityModeToHigh() { this->SetQualityMode(HIGH); }
@@ -156,10 +96,8 @@ public:
    * HIGH by STANDARD, STANDARD by PREVIEW. The resolution stays. GetQualityModeUsed() returns the
    * mode. Default on. Is ignored where rays are cast.
    */
-  virtual void SetAutoAdjustSampleDistances(vtkTypeBool);
-  virtual vtkTypeBool GetAutoAdjustSampleDistances();
-  virtual vtkTypeBool GetAutoAdjustSampleDistancesMinValue();
-  virtual vtkTypeBool GetAutoAdjustSampleDistancesMaxValue();
+  vtkSetClampMacro(AutoAdjustSampleDistances, vtkTypeBool, 0, 1);
+  vtkGetMacro(AutoAdjustSampleDistances, vtkTypeBool);
   vtkBooleanMacro(AutoAdjustSampleDistances, vtkTypeBool);
   ///@}
 
@@ -170,10 +108,10 @@ public:
    * and 0.5: no change. A negative window inverts the picture. A window of 0, and values that are
    * not finite, are reported as an error.
    */
-  virtual void SetFinalColorWindow(float);
-  virtual float GetFinalColorWindow();
-  virtual void SetFinalColorLevel(float);
-  virtual float GetFinalColorLevel();
+  vtkSetMacro(FinalColorWindow, float);
+  vtkGetMacro(FinalColorWindow, float);
+  vtkSetMacro(FinalColorLevel, float);
+  vtkGetMacro(FinalColorLevel, float);
   ///@}
 
   ///@{
@@ -182,10 +120,8 @@ public:
    * TRILINEAR (default): h(t) = 1-|t| for |t| < 1. COSINE_BELL: h(t) = (1 + cos(pi t / r)) / 2 for
    * |t| < r = KernelRadius. Is ignored in the other modes.
    */
-  virtual void SetKernel(int);
-  virtual int GetKernel();
-  virtual int GetKernelMinValue();
-  virtual int GetKernelMaxValue();
+  vtkSetClampMacro(Kernel, int, TRILINEAR, COSINE_BELL);
+  vtkGetMacro(Kernel, int);
   void SetKernelToTrilinear() { this->SetKernel(TRILINEAR); }
   void SetKernelToCosineBell() { this->SetKernel(COSINE_BELL); }
   const char* GetKernelAsString();
@@ -197,10 +133,8 @@ public:
    * normalised to a sum of 1. Below 0.501 FootprintSampling 1 is treated as 2, because the bell
    * would not contain the centre of the only sub-pixel.
    */
-  virtual void SetKernelRadius(double);
-  virtual double GetKernelRadius();
-  virtual double GetKernelRadiusMinValue();
-  virtual double GetKernelRadiusMaxValue();
+  vtkSetClampMacro(KernelRadius, double, 0.5, 1.5);
+  vtkGetMacro(KernelRadius, double);
   ///@}
 
   ///@{
@@ -210,10 +144,8 @@ public:
    * averages of its slices in STANDARD and HIGH, and the interpolated field in EXACT. DEPTH_SHADED
    * and LOCAL depend on the side of the viewer. DEPTH_SHADED gives shear images of floating point.
    */
-  virtual void SetMaximumType(int);
-  virtual int GetMaximumType();
-  virtual int GetMaximumTypeMinValue();
-  virtual int GetMaximumTypeMaxValue();
+  vtkSetClampMacro(MaximumType, int, GLOBAL, LOCAL);
+  vtkGetMacro(MaximumType, int);
   void SetMaximumTypeToGlobal() { this->SetMaximumType(GLOBAL); }
   void SetMaximumTypeToDepthShaded() { this->SetMaximumType(DEPTH_SHADED); }
   void SetMaximumTypeToLocal() { this->SetMaximumType(LOCAL); }
@@ -228,10 +160,10 @@ public:
    * Visualization Toolkit", Program 4.3]. Defaults 0.3 and 0.7. Magnitudes that sum to more than
    * 1e6 are reported as an error.
    */
-  virtual void SetDepthShadingAmbient(double);
-  virtual double GetDepthShadingAmbient();
-  virtual void SetDepthShadingChangeRate(double);
-  virtual double GetDepthShadingChangeRate();
+  vtkSetMacro(DepthShadingAmbient, double);
+  vtkGetMacro(DepthShadingAmbient, double);
+  vtkSetMacro(DepthShadingChangeRate, double);
+  vtkGetMacro(DepthShadingChangeRate, double);
   ///@}
 
   ///@{
@@ -239,8 +171,8 @@ public:
    * Set/Get the least scalar that LOCAL accepts as a local maximum [Sato et al. 1998]. Rays without
    * one show their largest sample. Default 0. NaN is reported as an error.
    */
-  virtual void SetLocalMaximumThreshold(double);
-  virtual double GetLocalMaximumThreshold();
+  vtkSetMacro(LocalMaximumThreshold, double);
+  vtkGetMacro(LocalMaximumThreshold, double);
   ///@}
 
   ///@{
@@ -250,9 +182,9 @@ public:
    * in perspective parallel to the image plane. Default off. In modes other than EXACT a slab
    * thinner than a slice shows one slice.
    */
-  virtual void SetSlab(bool);
-  virtual bool GetSlab();
-  vtkBooleanMacro(Slab, bool);
+  vtkSetMacro(Slab, vtkTypeBool);
+  vtkGetMacro(Slab, vtkTypeBool);
+  vtkBooleanMacro(Slab, vtkTypeBool);
   ///@}
 
   ///@{
@@ -260,19 +192,16 @@ public:
    * Set/Get the thickness of the slab in world units. Default 10. A thickness that is not above 0
    * is reported as an error if Slab is on.
    */
-  virtual void SetSlabThickness(double);
-  virtual double GetSlabThickness();
+  vtkSetMacro(SlabThickness, double);
+  vtkGetMacro(SlabThickness, double);
   ///@}
 
   ///@{
   /**
    * Set/Get the centre of the slab in world coordinates. Default (0, 0, 0). Must be finite.
    */
-  virtual void SetSlabCenter(double x, double y, double z);
-  virtual void SetSlabCenter(const double values[3]);
-  virtual double* GetSlabCenter() VTK_SIZEHINT(3);
-  virtual void GetSlabCenter(double& x, double& y, double& z);
-  virtual void GetSlabCenter(double values[3]);
+  vtkSetVector3Macro(SlabCenter, double);
+  vtkGetVector3Macro(SlabCenter, double);
   ///@}
 
   ///@{
@@ -283,8 +212,8 @@ public:
    * used. If the surface is open, rays that cross it once are transparent, and a warning is
    * reported.
    */
-  virtual void SetBoundingSurface(vtkPolyData* surface);
-  virtual vtkPolyData* GetBoundingSurface();
+  virtual void SetBoundingSurface(vtkPolyData*);
+  vtkGetObjectMacro(BoundingSurface, vtkPolyData);
   ///@}
 
   ///@{
@@ -294,8 +223,8 @@ public:
    * pixels. In modes other than EXACT its edges are as soft as the pixels of the shear image are
    * large.
    */
-  virtual void SetIntermixIntersectingGeometry(vtkTypeBool);
-  virtual vtkTypeBool GetIntermixIntersectingGeometry();
+  vtkSetMacro(IntermixIntersectingGeometry, vtkTypeBool);
+  vtkGetMacro(IntermixIntersectingGeometry, vtkTypeBool);
   vtkBooleanMacro(IntermixIntersectingGeometry, vtkTypeBool);
   ///@}
 
@@ -306,10 +235,8 @@ public:
    * section 3]. Clamped to [0, 64]. A table takes time and memory proportional to N^2 for each
    * view. Is ignored in perspective views.
    */
-  virtual void SetFootprintSampling(int);
-  virtual int GetFootprintSampling();
-  virtual int GetFootprintSamplingMinValue();
-  virtual int GetFootprintSamplingMaxValue();
+  vtkSetClampMacro(FootprintSampling, int, 0, 64);
+  vtkGetMacro(FootprintSampling, int);
   ///@}
 
   ///@{
@@ -320,10 +247,8 @@ public:
    * BRICKS or DENSE is used; see GetAccelerationUsed() and limits.md. Is ignored in EXACT, except
    * in overviews.
    */
-  virtual void SetAcceleration(int);
-  virtual int GetAcceleration();
-  virtual int GetAccelerationMinValue();
-  virtual int GetAccelerationMaxValue();
+  vtkSetClampMacro(Acceleration, int, AUTO, SORTED_VOLUME);
+  vtkGetMacro(Acceleration, int);
   void SetAccelerationToAuto() { this->SetAcceleration(AUTO); }
   void SetAccelerationToDense() { this->SetAcceleration(DENSE); }
   void SetAccelerationToBricks() { this->SetAcceleration(BRICKS); }
@@ -340,21 +265,8 @@ public:
    * scalar. Pixels of the shear image differ by no more. Default 0: no delta encoding. Clamped to
    * [0, 64]. Is ignored by accelerations without chains.
    */
-  virtual void SetLineTolerance(double);
-  virtual double GetLineTolerance();
-  virtual double GetLineToleranceMinValue();
-  virtual double GetLineToleranceMaxValue();
-  ///@}
-
-  ///@{
-  /**
-   * Set/Get whether chains omit voxels that no ray can show, because each ray crosses a higher
-   * voxel beside them [Mroz, Hauser, Groeller 2000]. The picture has the same bits. Default off. Is
-   * ignored in modes other than PREVIEW.
-   */
-  virtual void SetEliminateInvisible(bool);
-  virtual bool GetEliminateInvisible();
-  vtkBooleanMacro(EliminateInvisible, bool);
+  vtkSetClampMacro(LineTolerance, double, 0.0, 64.0);
+  vtkGetMacro(LineTolerance, double);
   ///@}
 
   ///@{
@@ -364,9 +276,9 @@ public:
    * edges against the background become brighter by up to half a pixel. Default off. Applies to
    * MaximumType GLOBAL without recorded locations and dependent components.
    */
-  virtual void SetCullBelowWindow(bool);
-  virtual bool GetCullBelowWindow();
-  vtkBooleanMacro(CullBelowWindow, bool);
+  vtkSetMacro(CullBelowWindow, vtkTypeBool);
+  vtkGetMacro(CullBelowWindow, vtkTypeBool);
+  vtkBooleanMacro(CullBelowWindow, vtkTypeBool);
   ///@}
 
   ///@{
@@ -376,10 +288,8 @@ public:
    * not made, and a warning is reported. Projections are then slower and have the same result. The
    * budget does not limit copies of scalars and the bounds of EXACT.
    */
-  virtual void SetIndexMemoryBudget(vtkTypeInt64);
-  virtual vtkTypeInt64 GetIndexMemoryBudget();
-  virtual vtkTypeInt64 GetIndexMemoryBudgetMinValue();
-  virtual vtkTypeInt64 GetIndexMemoryBudgetMaxValue();
+  vtkSetClampMacro(IndexMemoryBudget, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
+  vtkGetMacro(IndexMemoryBudget, vtkTypeInt64);
   ///@}
 
   ///@{
@@ -389,9 +299,9 @@ public:
    * shows, the nearest to the viewer of equal ones. Of independent components the first is
    * recorded, of dependent ones the last. Averages have no positions and report a warning.
    */
-  virtual void SetRecordLocations(bool);
-  virtual bool GetRecordLocations();
-  vtkBooleanMacro(RecordLocations, bool);
+  vtkSetMacro(RecordLocations, vtkTypeBool);
+  vtkGetMacro(RecordLocations, vtkTypeBool);
+  vtkBooleanMacro(RecordLocations, vtkTypeBool);
   ///@}
 
   ///@{
@@ -400,9 +310,9 @@ public:
    * the viewer. The brightness is the largest of the red, green and blue that the picture would
    * have otherwise. The opacity stays. Default off.
    */
-  virtual void SetDepthCoding(bool);
-  virtual bool GetDepthCoding();
-  vtkBooleanMacro(DepthCoding, bool);
+  vtkSetMacro(DepthCoding, vtkTypeBool);
+  vtkGetMacro(DepthCoding, vtkTypeBool);
+  vtkBooleanMacro(DepthCoding, vtkTypeBool);
   ///@}
 
   ///@{
@@ -410,8 +320,8 @@ public:
    * Set/Get the colours of DepthCoding. The range of this look-up table or transfer function is
    * mapped to DepthCodingRange. Default nullptr: from red, the nearest, over green to blue.
    */
-  virtual void SetDepthCodingColors(vtkScalarsToColors* colors);
-  virtual vtkScalarsToColors* GetDepthCodingColors();
+  virtual void SetDepthCodingColors(vtkScalarsToColors*);
+  vtkGetObjectMacro(DepthCodingColors, vtkScalarsToColors);
   ///@}
 
   ///@{
@@ -420,11 +330,8 @@ public:
    * (0, 0). If the first value is not less than the second, the depths of the nearest and the
    * farthest voxel of the volume are used.
    */
-  virtual void SetDepthCodingRange(double x, double y);
-  virtual void SetDepthCodingRange(const double values[2]);
-  virtual double* GetDepthCodingRange() VTK_SIZEHINT(2);
-  virtual void GetDepthCodingRange(double& x, double& y);
-  virtual void GetDepthCodingRange(double values[2]);
+  vtkSetVector2Macro(DepthCodingRange, double);
+  vtkGetVector2Macro(DepthCodingRange, double);
   ///@}
 
   ///@{
@@ -433,9 +340,9 @@ public:
    * rendered later. A depth is written where the opacity is at least WriteDepthOpacity and the
    * depth is less than the one in the buffer. Default off.
    */
-  virtual void SetWriteDepth(bool);
-  virtual bool GetWriteDepth();
-  vtkBooleanMacro(WriteDepth, bool);
+  vtkSetMacro(WriteDepth, vtkTypeBool);
+  vtkGetMacro(WriteDepth, vtkTypeBool);
+  vtkBooleanMacro(WriteDepth, vtkTypeBool);
   ///@}
 
   ///@{
@@ -443,26 +350,52 @@ public:
    * Set/Get the least opacity of pixels whose depth is written. Default 0.5, clamped to [0, 1].
    * Transparent pixels are never written.
    */
-  virtual void SetWriteDepthOpacity(double);
-  virtual double GetWriteDepthOpacity();
-  virtual double GetWriteDepthOpacityMinValue();
-  virtual double GetWriteDepthOpacityMaxValue();
+  vtkSetClampMacro(WriteDepthOpacity, double, 0.0, 1.0);
+  vtkGetMacro(WriteDepthOpacity, double);
   ///@}
 
 #ifndef __VTK_WRAP__
   /**
-   * Get all properties, also those of vtkVolumeMapper. For classes of this module.
+   * Print the settings of this class that change pictures, one per line. Ranks compare the text.
    */
-  const splatting::MapperProperties& ReadProperties();
+  void PrintPictureSettings(ostream& os, vtkIndent indent);
 #endif
 
 protected:
   vtkAbstractSplattingMIPVolumeMapper();
   ~vtkAbstractSplattingMIPVolumeMapper() override;
 
-  std::unique_ptr<splatting::MapperProperties> Properties;
-
 private:
+  int VectorMode = DISABLED;
+  int VectorComponent = 0;
+  vtkImageData* MaskInput = nullptr;
+  int QualityMode = EXACT;
+  vtkTypeBool AutoAdjustSampleDistances = 1;
+  float FinalColorWindow = 1.0f;
+  float FinalColorLevel = 0.5f;
+  int Kernel = TRILINEAR;
+  double KernelRadius = 1.0;
+  int MaximumType = GLOBAL;
+  double DepthShadingAmbient = 0.3;
+  double DepthShadingChangeRate = 0.7;
+  double LocalMaximumThreshold = 0.0;
+  vtkTypeBool Slab = 0;
+  double SlabThickness = 10.0;
+  double SlabCenter[3] = { 0.0, 0.0, 0.0 };
+  vtkPolyData* BoundingSurface = nullptr;
+  vtkTypeBool IntermixIntersectingGeometry = 1;
+  int FootprintSampling = 0;
+  int Acceleration = AUTO;
+  double LineTolerance = 0.0;
+  vtkTypeBool CullBelowWindow = 0;
+  vtkTypeInt64 IndexMemoryBudget = vtkTypeInt64(1) << 32;
+  vtkTypeBool RecordLocations = 0;
+  vtkTypeBool DepthCoding = 0;
+  vtkScalarsToColors* DepthCodingColors = nullptr;
+  double DepthCodingRange[2] = { 0.0, 0.0 };
+  vtkTypeBool WriteDepth = 0;
+  double WriteDepthOpacity = 0.5;
+
   vtkAbstractSplattingMIPVolumeMapper(const vtkAbstractSplattingMIPVolumeMapper&) = delete;
   void operator=(const vtkAbstractSplattingMIPVolumeMapper&) = delete;
 };

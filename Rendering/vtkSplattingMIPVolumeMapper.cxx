@@ -3,7 +3,7 @@
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include "MapperProperties.h"
-#include "PropertyMethods.h"
+#include "ProjectionProperties.h"
 #include "Ranks/FrameAttendance.h"
 #include "ReportedProblems.h"
 #include "Scene/ProjectedVolume.h"
@@ -34,8 +34,7 @@
 using namespace splatting;
 
 vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
-splattingObjectMethods(vtkSplattingMIPVolumeMapper, vtkMultiProcessController, Controller);
-splattingMethods(vtkSplattingMIPVolumeMapper, bool, DisplayOnRootOnly);
+vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, Controller, vtkMultiProcessController);
 
 namespace
 {
@@ -98,9 +97,7 @@ public:
 };
 
 //------------------------------------------------------------------------------
-vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
-  : LastRenderUsedRayCasting(false),
-    Internal(new Internals(this))
+vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper() : Internal(new Internals(this))
 {
   ComponentProjector& components = this->Internal->Data.Components;
   components.GetProjector().setProgress([this](double done) { this->UpdateProgress(done); });
@@ -109,7 +106,10 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper()
 }
 
 //------------------------------------------------------------------------------
-vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper() = default;
+vtkSplattingMIPVolumeMapper::~vtkSplattingMIPVolumeMapper()
+{
+  this->SetController(nullptr);
+}
 
 //------------------------------------------------------------------------------
 bool vtkSplattingMIPVolumeMapper::UpdateWhole()
@@ -298,14 +298,13 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 {
   Internals& in = *this->Internal;
   ProjectedVolume& data = in.Data;
-  const MapperProperties& properties = this->ReadProperties();
   splatting::View view = makeView(data.Grid(), vol, ren, this);
   // A window that is not shown yet has no pixels.
   if (view.viewport.x < 1 || view.viewport.y < 1)
   {
     return "";
   }
-  const FinalColor finalColor = { properties.FinalColorWindow, properties.FinalColorLevel };
+  const FinalColor finalColor = { this->GetFinalColorWindow(), this->GetFinalColorLevel() };
   if (!finalColor.isValid())
   {
     return NoColors;
@@ -324,25 +323,25 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     this->RenderByRayCasting(ren, vol);
     return "";
   }
-  if (properties.Slab)
+  if (this->GetSlab())
   {
-    addSlab(view, data.Grid(), vol, properties.SlabCenter, properties.SlabThickness);
+    addSlab(view, data.Grid(), vol, this->GetSlabCenter(), this->GetSlabThickness());
   }
   in.WarnOfSurface(this);
-  data.Prepare(properties, view, vol, finalColor);
+  data.Prepare(this, view, vol, finalColor);
   if (const char* const fault =
-        data.Components.FaultOfVoxels(static_cast<Quality>(properties.QualityMode)))
+        data.Components.FaultOfVoxels(static_cast<Quality>(this->GetQualityMode())))
   {
     return fault;
   }
   const auto readDepth = [this, ren](const int origin[2], const int size[2], float* depths)
   { return this->ReadDepth(ren, origin, size, depths); };
-  if (!data.Project(properties, view, ren, vol, readDepth))
+  if (!data.Project(this, view, ren, vol, readDepth))
   {
     return TurnOfViews::Degenerate;
   }
   in.WarnOfBudget(this);
-  if (data.Components.IsProjected() && (!properties.DisplayOnRootOnly || data.Ranks.IsRoot()) &&
+  if (data.Components.IsProjected() && (!this->DisplayOnRootOnly || data.Ranks.IsRoot()) &&
     data.Components.Warp(data.Images, view, in.Picture))
   {
     data.Cuts.Hide(in.Picture);
@@ -357,23 +356,22 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
 {
   Internals& in = *this->Internal;
-  const MapperProperties& properties = this->ReadProperties();
-  if (properties.needsLocations() && this->BlendMode == AVERAGE_INTENSITY_BLEND &&
+  if (needsLocations(this) && this->BlendMode == AVERAGE_INTENSITY_BLEND &&
     in.Announced.insert("mean").second)
   {
     vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
                        "one, no depth coding and no depths: choose another blend mode.");
   }
-  if (properties.DepthCoding && !ren->GetSelector())
+  if (this->GetDepthCoding() && !ren->GetSelector())
   {
     in.Locations.ColorByDepth(
-      in.Picture, properties.DepthCodingColors, properties.DepthCodingRange);
+      in.Picture, this->GetDepthCodingColors(), this->GetDepthCodingRange());
   }
   this->DisplayPicture(ren);
-  if (properties.WriteDepth && !in.Picture.pixels.empty())
+  if (this->GetWriteDepth() && !in.Picture.pixels.empty())
   {
     this->DisplayDepths(ren, &in.Picture.origin.x, &in.Picture.size.x,
-      in.Locations.ClipDepths(in.Picture, properties.WriteDepthOpacity).data());
+      in.Locations.ClipDepths(in.Picture, this->GetWriteDepthOpacity()).data());
   }
 }
 
@@ -592,17 +590,18 @@ int vtkSplattingMIPVolumeMapper::GetQualityModeUsed()
 void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  const PropertyPrinter print{ os, indent };
-  print("QualityModeUsed", this->GetQualityModeUsed(), nameOfQualityMode);
-  print("AccelerationUsed", this->GetAccelerationUsed(), nameOfAcceleration);
+  const double* const shear = this->GetShear();
+  os << indent << "Controller: " << this->Controller << "\n";
+  os << indent << "DisplayOnRootOnly: " << (this->DisplayOnRootOnly ? "On\n" : "Off\n");
+  os << indent << "QualityModeUsed: " << nameOfQualityMode(this->GetQualityModeUsed()) << "\n";
+  os << indent << "AccelerationUsed: " << nameOfAcceleration(this->GetAccelerationUsed()) << "\n";
   os << indent << "LastRenderUsedRayCasting: " << (this->LastRenderUsedRayCasting ? "Yes" : "No")
      << "\n";
-  print("PrincipalAxis", this->GetPrincipalAxis());
-  this->GetShear(this->Internal->Shear);
-  print("Shear", this->Internal->Shear);
-  print("IndexMemorySize", this->GetIndexMemorySize());
-  print("IndexTime", this->GetIndexTime());
-  print("NumberOfProjections", this->GetNumberOfProjections());
-  print("ProjectionTime", this->GetProjectionTime());
-  print("InstructionSet", this->GetInstructionSet());
+  os << indent << "PrincipalAxis: " << this->GetPrincipalAxis() << "\n";
+  os << indent << "Shear: (" << shear[0] << ", " << shear[1] << ")\n";
+  os << indent << "IndexMemorySize: " << this->GetIndexMemorySize() << "\n";
+  os << indent << "IndexTime: " << this->GetIndexTime() << "\n";
+  os << indent << "NumberOfProjections: " << this->GetNumberOfProjections() << "\n";
+  os << indent << "ProjectionTime: " << this->GetProjectionTime() << "\n";
+  os << indent << "InstructionSet: " << this->GetInstructionSet() << "\n";
 }

@@ -170,7 +170,7 @@ public:
    * picture has the same bits as that of one rank. See ranks.md for restrictions.
    */
   virtual void SetController(vtkMultiProcessController*);
-  virtual vtkMultiProcessController* GetController();
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
   ///@{
@@ -178,9 +178,9 @@ public:
    * Set/Get whether only the first of several ranks shows the picture, for compositors such as IceT
    * that blend the pictures of ranks. Default off: all ranks show the same picture.
    */
-  virtual void SetDisplayOnRootOnly(bool);
-  virtual bool GetDisplayOnRootOnly();
-  vtkBooleanMacro(DisplayOnRootOnly, bool);
+  vtkSetMacro(DisplayOnRootOnly, vtkTypeBool);
+  vtkGetMacro(DisplayOnRootOnly, vtkTypeBool);
+  vtkBooleanMacro(DisplayOnRootOnly, vtkTypeBool);
   ///@}
 
   /**
@@ -238,9 +238,11 @@ protected:
    */
   virtual bool ReadDepth(vtkRenderer* ren, const int origin[2], const int size[2], float* depths);
 
-  bool LastRenderUsedRayCasting;
-
 private:
+  bool LastRenderUsedRayCasting = false;
+  vtkMultiProcessController* Controller = nullptr;
+  vtkTypeBool DisplayOnRootOnly = 0;
+
   vtkSplattingMIPVolumeMapper(const vtkSplattingMIPVolumeMapper&) = delete;
   void operator=(const vtkSplattingMIPVolumeMapper&) = delete;
 

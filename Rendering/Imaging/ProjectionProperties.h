@@ -1,49 +1,21 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The properties of vtkSplattingMIPProjection and vtkSplattingMIPVolumeMapper, with the names and
- * values of their setters. A new property needs a member with its default, a line in a visit
- * function, a line in PropertyMethods.h with its range, and its declaration with documentation in
- * the class.
+ * Converts the properties of vtkSplattingMIPProjection and vtkSplattingMIPVolumeMapper to settings
+ * of a projection. The functions read properties through the classes' Get methods.
  */
 #ifndef ProjectionProperties_h
 #define ProjectionProperties_h
 
+#include "Geometry/Magnification.h"
 #include "Projection/Project.h"
 
-#include "vtkIndent.h"
-#include "vtkObjectBase.h"
-#include "vtkType.h"
-
-#include <ostream>
-#include <type_traits>
+#include <algorithm>
+#include <cmath>
 
 namespace splatting
 {
-/**
- * Properties that the mapper inherits from vtkVolumeMapper.
- */
-struct InheritedProperties
-{
-  int BlendMode = 1;
-  double AverageIPScalarRange[2] = { VTK_FLOAT_MIN, VTK_FLOAT_MAX };
-  bool Cropping = false;
-  double CroppingRegionPlanes[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
-  int CroppingRegionFlags = 1 << 13; ///< VTK_CROP_SUBVOLUME
-
-  /// Calls visitor(name, value) for each property.
-  template <class Visitor>
-  void visitInherited(Visitor&& visitor) const
-  {
-    visitor("BlendMode", this->BlendMode);
-    visitor("AverageIPScalarRange", this->AverageIPScalarRange);
-    visitor("Cropping", this->Cropping);
-    visitor("CroppingRegionPlanes", this->CroppingRegionPlanes);
-    visitor("CroppingRegionFlags", this->CroppingRegionFlags);
-  }
-};
-
-/// Names of enumerators.
+/// The names of enumerators, see vtkSplattingMIPChoices.h.
 const char* nameOfQualityMode(int mode);
 const char* nameOfKernel(int kernel);
 const char* nameOfMaximumType(int type);
@@ -51,111 +23,131 @@ const char* nameOfVectorMode(int mode);
 const char* nameOfAcceleration(int acceleration);
 
 /**
- * Properties that mapper and filter share.
+ * Returns an error message that says which property is invalid and what to do, or nullptr.
+ * Properties without effect are not checked.
  */
-struct ProjectionProperties : InheritedProperties
+template <class Object>
+const char* faultOf(Object& object)
 {
-  int QualityMode = 3;
-  int Kernel = 0;
-  double KernelRadius = 1.0;
-  int FootprintSampling = 0;
-  int MaximumType = 0;
-  double DepthShadingAmbient = 0.3;
-  double DepthShadingChangeRate = 0.7;
-  double LocalMaximumThreshold = 0.0;
-  int VectorMode = -1;
-  int VectorComponent = 0;
-  bool Slab = false;
-  double SlabThickness = 10.0;
-  double SlabCenter[3] = { 0.0, 0.0, 0.0 };
-  int Acceleration = 0;
-  double LineTolerance = 0.0;
-  bool EliminateInvisible = false;
-  bool RecordLocations = false;
-  vtkTypeInt64 IndexMemoryBudget = vtkTypeInt64(1) << 32;
-
-  /// Calls visitor(name, value), or visitor(name, value, function that names enumerators), for each
-  /// property that can change a picture ...
-  template <class Visitor>
-  void visit(Visitor&& visitor) const
+  const auto finite = [](const double* values, int count)
+  { return std::all_of(values, values + count, [](double x) { return std::isfinite(x); }); };
+  const bool isMaximum = object.GetBlendMode() == Object::MAXIMUM_INTENSITY_BLEND;
+  const double* const range = object.GetAverageIPScalarRange();
+  // Above it, differences of shaded floats are infinite.
+  constexpr double mostShading = 1e6;
+  const struct
   {
-    visitor("QualityMode", this->QualityMode, nameOfQualityMode);
-    visitor("Kernel", this->Kernel, nameOfKernel);
-    visitor("KernelRadius", this->KernelRadius);
-    visitor("FootprintSampling", this->FootprintSampling);
-    visitor("MaximumType", this->MaximumType, nameOfMaximumType);
-    visitor("DepthShadingAmbient", this->DepthShadingAmbient);
-    visitor("DepthShadingChangeRate", this->DepthShadingChangeRate);
-    visitor("LocalMaximumThreshold", this->LocalMaximumThreshold);
-    visitor("VectorMode", this->VectorMode, nameOfVectorMode);
-    visitor("VectorComponent", this->VectorComponent);
-    visitor("Slab", this->Slab);
-    visitor("SlabThickness", this->SlabThickness);
-    visitor("SlabCenter", this->SlabCenter);
-    visitor("Acceleration", this->Acceleration, nameOfAcceleration);
-    visitor("LineTolerance", this->LineTolerance);
-    visitor("EliminateInvisible", this->EliminateInvisible);
-    visitor("RecordLocations", this->RecordLocations);
-  }
-
-  /// ... and for each property that cannot, and may therefore differ between processes.
-  template <class Visitor>
-  void visitIndifferent(Visitor&& visitor) const
+    bool holds;
+    const char* sentence;
+  } problems[] = {
+    { object.GetSlab() && !(object.GetSlabThickness() > 0.0),
+      "The slab is not thicker than 0: give it a SlabThickness in world units." },
+    { object.GetSlab() && !finite(object.GetSlabCenter(), 3),
+      "The slab's centre is not finite: set SlabCenter to a point of the world." },
+    { object.GetCropping() && !finite(object.GetCroppingRegionPlanes(), 6),
+      "CroppingRegionPlanes are not finite: set them to places along the image's axes." },
+    { !std::isfinite(object.GetKernelRadius()),
+      "KernelRadius is not a number: set it to 0.5 to 1.5." },
+    { !std::isfinite(object.GetLineTolerance()),
+      "LineTolerance is not a number: set it to 0 to 64." },
+    { isMaximum && object.GetMaximumType() == Object::LOCAL &&
+        std::isnan(object.GetLocalMaximumThreshold()),
+      "LocalMaximumThreshold is not a number: set it to the least scalar of local maxima." },
+    { isMaximum && object.GetMaximumType() == Object::DEPTH_SHADED &&
+        !(std::abs(object.GetDepthShadingAmbient()) +
+            std::abs(object.GetDepthShadingChangeRate()) <=
+          mostShading),
+      "DepthShadingAmbient and DepthShadingChangeRate must be numbers whose magnitudes sum to no "
+      "more than a million." },
+    { object.GetBlendMode() == Object::AVERAGE_INTENSITY_BLEND && !(range[0] <= range[1]),
+      "AverageIPScalarRange is empty: its first value must not be above its second." },
+  };
+  for (const auto& problem : problems)
   {
-    visitor("IndexMemoryBudget", this->IndexMemoryBudget);
-  }
-};
-
-/**
- * An error message that says which property is invalid and what to do, or nullptr. Properties
- * without effect may have any value.
- */
-const char* faultOf(const ProjectionProperties& properties);
-
-/**
- * Converts the properties to settings for the projection of a view in a quality mode. Properties
- * without effect are set to their defaults, so that their changes do not project again.
- */
-ProjectionSettings settingsOf(const ProjectionProperties& properties, int mode, const View& view);
-
-/**
- * Prints properties in the format of VTK's classes.
- */
-struct PropertyPrinter
-{
-  std::ostream& os;
-  vtkIndent indent;
-
-  template <class T>
-  void operator()(const char* name, const T& value) const
-  {
-    this->os << this->indent << name << ": ";
-    if constexpr (std::is_array_v<T>)
+    if (problem.holds)
     {
-      for (std::size_t n = 0; n < std::extent_v<T>; ++n)
+      return problem.sentence;
+    }
+  }
+  return nullptr;
+}
+
+template <class Object>
+Reduction reductionOf(Object& object)
+{
+  if (object.GetBlendMode() == Object::MINIMUM_INTENSITY_BLEND)
+  {
+    return Reduction::Minimum;
+  }
+  if (object.GetBlendMode() == Object::AVERAGE_INTENSITY_BLEND)
+  {
+    return Reduction::Mean;
+  }
+  return object.GetMaximumType() == Object::DEPTH_SHADED ? Reduction::DepthShaded
+    : object.GetMaximumType() == Object::LOCAL           ? Reduction::Local
+                                                         : Reduction::Maximum;
+}
+
+/**
+ * Returns the settings of a projection of a view in a quality mode. Those that have no effect are
+ * the defaults, so that changing them does not project again.
+ * @param locate  whether sample positions are needed
+ */
+template <class Object>
+ProjectionSettings settingsOf(Object& object, int mode, const View& view, bool locate)
+{
+  ProjectionSettings settings;
+  settings.reduction = reductionOf(object);
+  if (mode == Object::EXACT && settings.reduction == Reduction::Mean)
+  {
+    mode = Object::HIGH;
+  }
+  if (mode == Object::EXACT && isOverview(view))
+  {
+    // The field is nowhere larger than at a voxel, and pixels show areas. If pixels are wider than
+    // voxels in all directions, one voxel per slice shows all of them.
+    mode = Object::PREVIEW;
+    settings.meets = isCoarse(view) ? Meets::Nearest : Meets::All;
+  }
+  settings.quality = static_cast<Quality>(mode);
+  switch (settings.reduction)
+  {
+    case Reduction::DepthShaded:
+      settings.ambient = object.GetDepthShadingAmbient();
+      settings.changeRate = object.GetDepthShadingChangeRate();
+      break;
+    case Reduction::Local:
+      settings.threshold = object.GetLocalMaximumThreshold();
+      break;
+    case Reduction::Mean:
+      settings.meanLow = object.GetAverageIPScalarRange()[0];
+      settings.meanHigh = object.GetAverageIPScalarRange()[1];
+      break;
+    case Reduction::Maximum:
+      if (mode == Object::EXACT)
       {
-        this->os << (n ? ", " : "") << value[n];
+        break;
       }
-    }
-    else if constexpr (std::is_same_v<T, bool>)
-    {
-      this->os << (value ? "On" : "Off");
-    }
-    else if constexpr (std::is_convertible_v<T, vtkObjectBase*>)
-    {
-      value ? this->os << value : this->os << "(none)";
-    }
-    else
-    {
-      this->os << value;
-    }
-    this->os << "\n";
+      settings.acceleration = static_cast<Acceleration>(object.GetAcceleration());
+      if (settings.acceleration >= Acceleration::Lines)
+      {
+        settings.lineTolerance = object.GetLineTolerance();
+      }
+      break;
+    case Reduction::Minimum:
+      break;
   }
-  void operator()(const char* name, int value, const char* (*nameOf)(int)) const
+  settings.keepWinners = locate && settings.reduction != Reduction::Mean;
+  if (mode == Object::HIGH && object.GetKernel() == Object::COSINE_BELL)
   {
-    (*this)(name, nameOf(value));
+    settings.kernel = { Reconstruction::CosineBell, object.GetKernelRadius() };
   }
-};
+  if (mode == Object::STANDARD || mode == Object::HIGH)
+  {
+    settings.footprintSampling = object.GetFootprintSampling();
+  }
+  return settings;
+}
 }
 
 #endif

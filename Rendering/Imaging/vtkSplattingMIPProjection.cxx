@@ -7,7 +7,6 @@
 #include "Input/WorldView.h"
 #include "LocationArrays.h"
 #include "ProjectionProperties.h"
-#include "PropertyMethods.h"
 #include "TurnOfViews.h"
 
 #include "vtkAbstractMapper.h"
@@ -64,14 +63,13 @@ public:
   bool GoOn(vtkSplattingMIPProjection* self, double done);
   bool ProjectView(vtkSplattingMIPProjection* self, const splatting::View& view,
     const splatting::ProjectionSettings& settings);
-  bool PlaceOutput(vtkImageData* output);
+  bool PlaceOutput(vtkImageData* output, bool locate);
   void Locate(const splatting::View& view, int n);
   std::string ProjectInput(vtkSplattingMIPProjection* self, vtkImageData* output);
   std::string ProjectViews(vtkSplattingMIPProjection* self, vtkImageData* output);
 
   ScalarSource Source;
   ComponentProjector Components;
-  ProjectionProperties Properties; // of the last Update()
   TurnOfViews Turn;
   splatting::Locator::Arrays Locations;                   // of the output
   std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last view and the one before
@@ -82,21 +80,7 @@ public:
 };
 
 //------------------------------------------------------------------------------
-vtkSplattingMIPProjection::vtkSplattingMIPProjection()
-  : Camera(nullptr),
-    ViewDirection{ 0.0, 1.0, 0.0 },
-    ViewUp{ 0.0, 0.0, 1.0 },
-    CenterOnVolume(true),
-    FocalPoint{ 0.0, 0.0, 0.0 },
-    OutputSize{ 256, 256 },
-    OutputSpacing{ 0.0, 0.0 },
-    NumberOfViews(1),
-    RotationAxis{ 0.0, 0.0, 0.0 },
-    TotalAngle(360.0),
-    BackgroundValue(0.0),
-    NumberOfProjections(0),
-    Properties(new ProjectionProperties),
-    Internal(new Internals)
+vtkSplattingMIPProjection::vtkSplattingMIPProjection() : Internal(new Internals)
 {
   this->Internal->Components.SetObserver(
     [this](double done) { return this->Internal->GoOn(this, done); });
@@ -108,15 +92,6 @@ vtkSplattingMIPProjection::~vtkSplattingMIPProjection()
 {
   this->SetCamera(nullptr);
 }
-
-//------------------------------------------------------------------------------
-splattingProjectionMethods(vtkSplattingMIPProjection);
-splattingClampMethods(
-  vtkSplattingMIPProjection, int, BlendMode, MAXIMUM_INTENSITY_BLEND, AVERAGE_INTENSITY_BLEND);
-splattingVector2Methods(vtkSplattingMIPProjection, AverageIPScalarRange);
-splattingMethods(vtkSplattingMIPProjection, vtkTypeBool, Cropping);
-splattingVector6Methods(vtkSplattingMIPProjection, CroppingRegionPlanes);
-splattingClampMethods(vtkSplattingMIPProjection, int, CroppingRegionFlags, 0, 0x7ffffff);
 
 //------------------------------------------------------------------------------
 vtkMTimeType vtkSplattingMIPProjection::GetMTime()
@@ -131,8 +106,8 @@ ScalarChoice vtkSplattingMIPProjection::Internals::ScalarsOf(
   vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input) const
 {
   ScalarChoice choice;
-  choice.vectorMode = self->Properties->VectorMode;
-  choice.vectorComponent = self->Properties->VectorComponent;
+  choice.vectorMode = self->VectorMode;
+  choice.vectorComponent = self->VectorComponent;
   const bool ofCells = association == vtkDataObject::FIELD_ASSOCIATION_CELLS;
   vtkDataSetAttributes* const arrays =
     input->GetAttributes(ofCells ? vtkDataObject::CELL : vtkDataObject::POINT);
@@ -162,11 +137,9 @@ TurnSettings vtkSplattingMIPProjection::Internals::TurnOf(
   turn.views = self->NumberOfViews;
   turn.axis = { self->RotationAxis[0], self->RotationAxis[1], self->RotationAxis[2] };
   turn.angle = self->TotalAngle;
-  const ProjectionProperties& properties = *self->Properties;
-  turn.slab = properties.Slab;
-  turn.slabCenter = { properties.SlabCenter[0], properties.SlabCenter[1],
-    properties.SlabCenter[2] };
-  turn.slabThickness = properties.SlabThickness;
+  turn.slab = self->Slab != 0;
+  turn.slabCenter = { self->SlabCenter[0], self->SlabCenter[1], self->SlabCenter[2] };
+  turn.slabThickness = self->SlabThickness;
   const double* const bounds = input->GetBounds();
   const glm::dvec3 low(bounds[0], bounds[2], bounds[4]), high(bounds[1], bounds[3], bounds[5]);
   turn.focalPoint = self->CenterOnVolume
@@ -198,8 +171,7 @@ std::string vtkSplattingMIPProjection::Internals::Problem(
   {
     problem = "Spacing and direction matrix flatten the volume: neither may be singular.";
   }
-  this->Properties = *self->Properties;
-  const char* fault = problem.empty() ? faultOf(this->Properties) : nullptr;
+  const char* fault = problem.empty() ? faultOf(*self) : nullptr;
   if (problem.empty() && !fault)
   {
     fault = this->Turn.Set(this->TurnOf(self, input));
@@ -257,7 +229,7 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection
 //------------------------------------------------------------------------------
 // Sets the geometry of the output and allocates its arrays. Returns false if there is not enough
 // memory.
-bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
+bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output, bool locate)
 {
   vtkDataArray* const scalars = this->Source.Scalars();
   const int type = ScalarSource::AverageVtkType(scalars->GetDataType());
@@ -268,8 +240,8 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
   // VTK would report it in several messages, or throw. Compilers may remove an unused
   // new-expression, but not a call.
   constexpr std::size_t located = 3 * sizeof(int) + sizeof(float) + 3 * sizeof(double);
-  const std::size_t bytes = (std::size_t(vtkDataArray::GetDataTypeSize(type)) * components +
-                              (this->Properties.RecordLocations ? located : 0)) *
+  const std::size_t bytes =
+    (std::size_t(vtkDataArray::GetDataTypeSize(type)) * components + (locate ? located : 0)) *
     static_cast<std::size_t>(output->GetNumberOfPoints());
   void* const memory = ::operator new(bytes, std::nothrow);
   ::operator delete(memory);
@@ -279,7 +251,7 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output)
   }
   output->AllocateScalars(type, components);
   output->GetPointData()->GetScalars()->SetName(scalars->GetName());
-  if (this->Properties.RecordLocations)
+  if (locate)
   {
     this->Locations = addLocationArrays(output);
   }
@@ -292,13 +264,13 @@ std::string vtkSplattingMIPProjection::Internals::ProjectInput(
   vtkSplattingMIPProjection* self, vtkImageData* output)
 {
   this->Components.SetSource(this->Source);
-  this->Components.SetBudget(static_cast<std::size_t>(this->Properties.IndexMemoryBudget));
+  this->Components.SetBudget(static_cast<std::size_t>(self->IndexMemoryBudget));
   if (const char* const fault =
-        this->Components.FaultOfVoxels(static_cast<Quality>(this->Properties.QualityMode)))
+        this->Components.FaultOfVoxels(static_cast<Quality>(self->QualityMode)))
   {
     return fault;
   }
-  return this->PlaceOutput(output)
+  return this->PlaceOutput(output, self->RecordLocations != 0)
     ? this->ProjectViews(self, output)
     : "There is no memory for the output: choose fewer pixels or views.";
 }
@@ -321,24 +293,24 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     {
       return TurnOfViews::Degenerate;
     }
-    if (this->Properties.Slab)
+    if (self->Slab)
     {
-      addSlab(view, toWorld, this->Properties.SlabCenter, this->Properties.SlabThickness);
+      addSlab(view, toWorld, self->SlabCenter, self->SlabThickness);
     }
-    if (this->Properties.Cropping)
+    if (self->Cropping)
     {
-      view.cropping = croppingOf(this->Source.Grid(), this->Properties.CroppingRegionPlanes,
-        this->Properties.CroppingRegionFlags);
+      view.cropping =
+        croppingOf(this->Source.Grid(), self->CroppingRegionPlanes, self->CroppingRegionFlags);
     }
     std::swap(this->Images, this->ImagesBefore);
     const splatting::ProjectionSettings settings =
-      settingsOf(this->Properties, this->Properties.QualityMode, view);
+      settingsOf(*self, self->QualityMode, view, self->RecordLocations != 0);
     this->Images.clear();
     splatting::PixelRays rays;
-    const bool hasMeaning = this->Components.UsesCells(settings)
+    const bool isValid = this->Components.UsesCells(settings)
       ? rays.find(view)
       : splatting::ShearWarp::factorise(view, this->Images, settings.meets);
-    if (!hasMeaning)
+    if (!isValid)
     {
       return TurnOfViews::Degenerate;
     }
@@ -351,7 +323,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     {
       return {};
     }
-    if (this->Properties.RecordLocations && this->Components.HasWinners())
+    if (self->RecordLocations && this->Components.HasWinners())
     {
       this->Locate(view, n);
     }
@@ -420,7 +392,7 @@ int vtkSplattingMIPProjection::RequestInformation(
     type = ScalarSource::AverageVtkType(array->Get(vtkDataObject::FIELD_ARRAY_TYPE()));
   }
   if (array && array->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()) &&
-    this->Properties->VectorMode == DISABLED)
+    this->VectorMode == DISABLED)
   {
     components = array->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS());
   }
@@ -467,7 +439,7 @@ int vtkSplattingMIPProjection::RequestData(
   {
     vtkErrorMacro(<< problem);
   }
-  else if (in.Properties.RecordLocations && in.Properties.BlendMode == AVERAGE_INTENSITY_BLEND)
+  else if (this->RecordLocations && this->BlendMode == AVERAGE_INTENSITY_BLEND)
   {
     vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
                        "them: choose maxima or minima, or turn RecordLocations off.");
@@ -524,22 +496,52 @@ vtkImageData* vtkSplattingMIPProjection::GetShearImage()
 void vtkSplattingMIPProjection::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  const PropertyPrinter print{ os, indent };
-  print("Camera", this->Camera);
-  print("ViewDirection", this->ViewDirection);
-  print("ViewUp", this->ViewUp);
-  print("CenterOnVolume", this->CenterOnVolume);
-  print("FocalPoint", this->FocalPoint);
-  print("OutputSize", this->OutputSize);
-  print("OutputSpacing", this->OutputSpacing);
-  print("NumberOfViews", this->NumberOfViews);
-  print("RotationAxis", this->RotationAxis);
-  print("TotalAngle", this->TotalAngle);
-  print("BackgroundValue", this->BackgroundValue);
-  this->Properties->visitInherited(print);
-  this->Properties->visit(print);
-  this->Properties->visitIndifferent(print);
-  print("NumberOfProjections", this->NumberOfProjections);
-  print("IndexMemorySize", this->GetIndexMemorySize());
-  print("InstructionSet", this->GetInstructionSet());
+  const auto onOff = [](vtkTypeBool value) { return value ? "On\n" : "Off\n"; };
+  const auto numbers = [&](const char* name, const auto& values)
+  {
+    const char* before = ": (";
+    os << indent << name;
+    for (const auto value : values)
+    {
+      os << before << value;
+      before = ", ";
+    }
+    os << ")\n";
+  };
+  os << indent << "Camera: " << this->Camera << "\n";
+  numbers("ViewDirection", this->ViewDirection);
+  numbers("ViewUp", this->ViewUp);
+  os << indent << "CenterOnVolume: " << onOff(this->CenterOnVolume);
+  numbers("FocalPoint", this->FocalPoint);
+  numbers("OutputSize", this->OutputSize);
+  numbers("OutputSpacing", this->OutputSpacing);
+  os << indent << "NumberOfViews: " << this->NumberOfViews << "\n";
+  numbers("RotationAxis", this->RotationAxis);
+  os << indent << "TotalAngle: " << this->TotalAngle << "\n";
+  os << indent << "BackgroundValue: " << this->BackgroundValue << "\n";
+  os << indent << "BlendMode: " << this->BlendMode << "\n";
+  numbers("AverageIPScalarRange", this->AverageIPScalarRange);
+  os << indent << "QualityMode: " << nameOfQualityMode(this->QualityMode) << "\n";
+  os << indent << "Kernel: " << nameOfKernel(this->Kernel) << "\n";
+  os << indent << "KernelRadius: " << this->KernelRadius << "\n";
+  os << indent << "FootprintSampling: " << this->FootprintSampling << "\n";
+  os << indent << "MaximumType: " << nameOfMaximumType(this->MaximumType) << "\n";
+  os << indent << "DepthShadingAmbient: " << this->DepthShadingAmbient << "\n";
+  os << indent << "DepthShadingChangeRate: " << this->DepthShadingChangeRate << "\n";
+  os << indent << "LocalMaximumThreshold: " << this->LocalMaximumThreshold << "\n";
+  os << indent << "VectorMode: " << nameOfVectorMode(this->VectorMode) << "\n";
+  os << indent << "VectorComponent: " << this->VectorComponent << "\n";
+  os << indent << "Slab: " << onOff(this->Slab);
+  os << indent << "SlabThickness: " << this->SlabThickness << "\n";
+  numbers("SlabCenter", this->SlabCenter);
+  os << indent << "Cropping: " << onOff(this->Cropping);
+  numbers("CroppingRegionPlanes", this->CroppingRegionPlanes);
+  os << indent << "CroppingRegionFlags: " << this->CroppingRegionFlags << "\n";
+  os << indent << "Acceleration: " << nameOfAcceleration(this->Acceleration) << "\n";
+  os << indent << "LineTolerance: " << this->LineTolerance << "\n";
+  os << indent << "RecordLocations: " << onOff(this->RecordLocations);
+  os << indent << "IndexMemoryBudget: " << this->IndexMemoryBudget << "\n";
+  os << indent << "NumberOfProjections: " << this->NumberOfProjections << "\n";
+  os << indent << "IndexMemorySize: " << this->GetIndexMemorySize() << "\n";
+  os << indent << "InstructionSet: " << this->GetInstructionSet() << "\n";
 }

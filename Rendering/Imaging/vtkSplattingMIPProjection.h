@@ -44,13 +44,10 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkImagingSplattingMIPModule.h" // for the export macro
+#include "vtkSplattingMIPChoices.h"       // for the enumerations
 
-#include <memory> // for the hidden properties and implementation
+#include <memory> // for the hidden implementation
 
-namespace splatting
-{
-struct ProjectionProperties;
-}
 class vtkCamera;
 
 class VTKIMAGINGSPLATTINGMIP_EXPORT vtkSplattingMIPProjection : public vtkImageAlgorithm
@@ -71,50 +68,10 @@ public:
   };
 
   /**
-   * The values of VectorMode; the same as vtkSmartVolumeMapper's.
+   * The values of VectorMode, QualityMode, Kernel, MaximumType and Acceleration; see
+   * vtkSplattingMIPChoices.h.
    */
-  enum VectorModes
-  {
-    DISABLED = -1,
-    MAGNITUDE = 0,
-    COMPONENT = 1
-  };
-
-  ///@{
-  /**
-   * The values of the properties of the same names; see vtkAbstractSplattingMIPVolumeMapper.
-   */
-  enum QualityModes
-  {
-    PREVIEW = 0,
-    STANDARD = 1,
-    HIGH = 2,
-    EXACT = 3
-  };
-
-  enum Kernels
-  {
-    TRILINEAR = 0,
-    COSINE_BELL = 1
-  };
-
-  enum MaximumTypes
-  {
-    GLOBAL = 0,
-    DEPTH_SHADED = 1,
-    LOCAL = 2
-  };
-
-  enum Accelerations
-  {
-    AUTO = 0,
-    DENSE = 1,
-    BRICKS = 2,
-    LINES = 3,
-    SORTED_LINES = 4,
-    SORTED_VOLUME = 5
-  };
-  ///@}
+  vtkSplattingMIPChoicesMacro();
 
   ///@{
   /**
@@ -145,9 +102,9 @@ public:
    * Set/Get whether the centre of the picture, about which views are turned, is the centre of the
    * volume's bounds instead of FocalPoint. Default on. Is ignored with a Camera.
    */
-  vtkSetMacro(CenterOnVolume, bool);
-  vtkGetMacro(CenterOnVolume, bool);
-  vtkBooleanMacro(CenterOnVolume, bool);
+  vtkSetMacro(CenterOnVolume, vtkTypeBool);
+  vtkGetMacro(CenterOnVolume, vtkTypeBool);
+  vtkBooleanMacro(CenterOnVolume, vtkTypeBool);
   ///@}
 
   ///@{
@@ -221,18 +178,13 @@ public:
    * MAXIMUM_INTENSITY_BLEND. Averages count only samples within AverageIPScalarRange, limits
    * included. Default range: that of float.
    */
-  virtual void SetBlendMode(int);
-  virtual int GetBlendMode();
-  virtual int GetBlendModeMinValue();
-  virtual int GetBlendModeMaxValue();
+  vtkSetClampMacro(BlendMode, int, MAXIMUM_INTENSITY_BLEND, AVERAGE_INTENSITY_BLEND);
+  vtkGetMacro(BlendMode, int);
   void SetBlendModeToMaximumIntensity() { this->SetBlendMode(MAXIMUM_INTENSITY_BLEND); }
   void SetBlendModeToMinimumIntensity() { this->SetBlendMode(MINIMUM_INTENSITY_BLEND); }
   void SetBlendModeToAverageIntensity() { this->SetBlendMode(AVERAGE_INTENSITY_BLEND); }
-  virtual void SetAverageIPScalarRange(double low, double high);
-  virtual void SetAverageIPScalarRange(const double values[2]);
-  virtual double* GetAverageIPScalarRange() VTK_SIZEHINT(2);
-  virtual void GetAverageIPScalarRange(double& low, double& high);
-  virtual void GetAverageIPScalarRange(double values[2]);
+  vtkSetVector2Macro(AverageIPScalarRange, double);
+  vtkGetVector2Macro(AverageIPScalarRange, double);
   ///@}
 
   ///@{
@@ -240,10 +192,8 @@ public:
    * Set/Get the quality mode; see vtkSplattingMIPVolumeMapper::SetQualityMode(). Default EXACT,
    * clamped to [PREVIEW, EXACT].
    */
-  virtual void SetQualityMode(int);
-  virtual int GetQualityMode();
-  virtual int GetQualityModeMinValue();
-  virtual int GetQualityModeMaxValue();
+  vtkSetClampMacro(QualityMode, int, PREVIEW, EXACT);
+  vtkGetMacro(QualityMode, int);
   void SetQualityModeToPreview() { this->SetQualityMode(PREVIEW); }
   void SetQualityModeToStandard() { this->SetQualityMode(STANDARD); }
   void SetQualityModeToHigh() { this->SetQualityMode(HIGH); }
@@ -256,20 +206,14 @@ public:
    * sampling of footprints; see vtkSplattingMIPVolumeMapper. Defaults TRILINEAR, 1 (clamped to
    * [0.5, 1.5]) and 0: closed form (clamped to [0, 64]).
    */
-  virtual void SetKernel(int);
-  virtual int GetKernel();
-  virtual int GetKernelMinValue();
-  virtual int GetKernelMaxValue();
+  vtkSetClampMacro(Kernel, int, TRILINEAR, COSINE_BELL);
+  vtkGetMacro(Kernel, int);
   void SetKernelToTrilinear() { this->SetKernel(TRILINEAR); }
   void SetKernelToCosineBell() { this->SetKernel(COSINE_BELL); }
-  virtual void SetKernelRadius(double);
-  virtual double GetKernelRadius();
-  virtual double GetKernelRadiusMinValue();
-  virtual double GetKernelRadiusMaxValue();
-  virtual void SetFootprintSampling(int);
-  virtual int GetFootprintSampling();
-  virtual int GetFootprintSamplingMinValue();
-  virtual int GetFootprintSamplingMaxValue();
+  vtkSetClampMacro(KernelRadius, double, 0.5, 1.5);
+  vtkGetMacro(KernelRadius, double);
+  vtkSetClampMacro(FootprintSampling, int, 0, 64);
+  vtkGetMacro(FootprintSampling, int);
   ///@}
 
   ///@{
@@ -278,19 +222,17 @@ public:
    * vtkSplattingMIPVolumeMapper::SetMaximumType(). Defaults: GLOBAL, DepthShadingAmbient 0.3,
    * DepthShadingChangeRate 0.7, LocalMaximumThreshold 0.
    */
-  virtual void SetMaximumType(int);
-  virtual int GetMaximumType();
-  virtual int GetMaximumTypeMinValue();
-  virtual int GetMaximumTypeMaxValue();
+  vtkSetClampMacro(MaximumType, int, GLOBAL, LOCAL);
+  vtkGetMacro(MaximumType, int);
   void SetMaximumTypeToGlobal() { this->SetMaximumType(GLOBAL); }
   void SetMaximumTypeToDepthShaded() { this->SetMaximumType(DEPTH_SHADED); }
   void SetMaximumTypeToLocal() { this->SetMaximumType(LOCAL); }
-  virtual void SetDepthShadingAmbient(double);
-  virtual double GetDepthShadingAmbient();
-  virtual void SetDepthShadingChangeRate(double);
-  virtual double GetDepthShadingChangeRate();
-  virtual void SetLocalMaximumThreshold(double);
-  virtual double GetLocalMaximumThreshold();
+  vtkSetMacro(DepthShadingAmbient, double);
+  vtkGetMacro(DepthShadingAmbient, double);
+  vtkSetMacro(DepthShadingChangeRate, double);
+  vtkGetMacro(DepthShadingChangeRate, double);
+  vtkSetMacro(LocalMaximumThreshold, double);
+  vtkGetMacro(LocalMaximumThreshold, double);
   ///@}
 
   ///@{
@@ -299,17 +241,13 @@ public:
    * vtkSplattingMIPVolumeMapper::SetVectorMode(). Default DISABLED: each component by itself.
    * VectorComponent is 0 by default, clamped to [0, 3].
    */
-  virtual void SetVectorMode(int);
-  virtual int GetVectorMode();
-  virtual int GetVectorModeMinValue();
-  virtual int GetVectorModeMaxValue();
+  vtkSetClampMacro(VectorMode, int, DISABLED, COMPONENT);
+  vtkGetMacro(VectorMode, int);
   void SetVectorModeToDisabled() { this->SetVectorMode(DISABLED); }
   void SetVectorModeToMagnitude() { this->SetVectorMode(MAGNITUDE); }
   void SetVectorModeToComponent() { this->SetVectorMode(COMPONENT); }
-  virtual void SetVectorComponent(int);
-  virtual int GetVectorComponent();
-  virtual int GetVectorComponentMinValue();
-  virtual int GetVectorComponentMaxValue();
+  vtkSetClampMacro(VectorComponent, int, 0, 3);
+  vtkGetMacro(VectorComponent, int);
   ///@}
 
   ///@{
@@ -318,16 +256,13 @@ public:
    * centre; see vtkSplattingMIPVolumeMapper::SetSlab(). Defaults: off, 10 and (0, 0, 0). The slab
    * turns with the view.
    */
-  virtual void SetSlab(bool);
-  virtual bool GetSlab();
-  vtkBooleanMacro(Slab, bool);
-  virtual void SetSlabThickness(double);
-  virtual double GetSlabThickness();
-  virtual void SetSlabCenter(double x, double y, double z);
-  virtual void SetSlabCenter(const double values[3]);
-  virtual double* GetSlabCenter() VTK_SIZEHINT(3);
-  virtual void GetSlabCenter(double& x, double& y, double& z);
-  virtual void GetSlabCenter(double values[3]);
+  vtkSetMacro(Slab, vtkTypeBool);
+  vtkGetMacro(Slab, vtkTypeBool);
+  vtkBooleanMacro(Slab, vtkTypeBool);
+  vtkSetMacro(SlabThickness, double);
+  vtkGetMacro(SlabThickness, double);
+  vtkSetVector3Macro(SlabCenter, double);
+  vtkGetVector3Macro(SlabCenter, double);
   ///@}
 
   ///@{
@@ -336,45 +271,31 @@ public:
    * input's axes, in its coordinates, are projected. Defaults: off, planes 0 and 1, flags
    * VTK_CROP_SUBVOLUME (the middle region), clamped to [0, 0x7ffffff].
    */
-  virtual void SetCropping(vtkTypeBool);
-  virtual vtkTypeBool GetCropping();
+  vtkSetMacro(Cropping, vtkTypeBool);
+  vtkGetMacro(Cropping, vtkTypeBool);
   vtkBooleanMacro(Cropping, vtkTypeBool);
-  virtual void SetCroppingRegionPlanes(
-    double xMin, double xMax, double yMin, double yMax, double zMin, double zMax);
-  virtual void SetCroppingRegionPlanes(const double values[6]);
-  virtual double* GetCroppingRegionPlanes() VTK_SIZEHINT(6);
-  virtual void GetCroppingRegionPlanes(
-    double& xMin, double& xMax, double& yMin, double& yMax, double& zMin, double& zMax);
-  virtual void GetCroppingRegionPlanes(double values[6]);
-  virtual void SetCroppingRegionFlags(int);
-  virtual int GetCroppingRegionFlags();
-  virtual int GetCroppingRegionFlagsMinValue();
-  virtual int GetCroppingRegionFlagsMaxValue();
+  vtkSetVector6Macro(CroppingRegionPlanes, double);
+  vtkGetVector6Macro(CroppingRegionPlanes, double);
+  vtkSetClampMacro(CroppingRegionFlags, int, 0, 0x7ffffff);
+  vtkGetMacro(CroppingRegionFlags, int);
   ///@}
 
   ///@{
   /**
    * Set/Get the acceleration of global maxima in PREVIEW, STANDARD and HIGH; see
    * vtkSplattingMIPVolumeMapper::SetAcceleration(). Defaults: AUTO, LineTolerance 0 (clamped to [0,
-   * 64]), EliminateInvisible off.
+   * 64]).
    */
-  virtual void SetAcceleration(int);
-  virtual int GetAcceleration();
-  virtual int GetAccelerationMinValue();
-  virtual int GetAccelerationMaxValue();
+  vtkSetClampMacro(Acceleration, int, AUTO, SORTED_VOLUME);
+  vtkGetMacro(Acceleration, int);
   void SetAccelerationToAuto() { this->SetAcceleration(AUTO); }
   void SetAccelerationToDense() { this->SetAcceleration(DENSE); }
   void SetAccelerationToBricks() { this->SetAcceleration(BRICKS); }
   void SetAccelerationToLines() { this->SetAcceleration(LINES); }
   void SetAccelerationToSortedLines() { this->SetAcceleration(SORTED_LINES); }
   void SetAccelerationToSortedVolume() { this->SetAcceleration(SORTED_VOLUME); }
-  virtual void SetLineTolerance(double);
-  virtual double GetLineTolerance();
-  virtual double GetLineToleranceMinValue();
-  virtual double GetLineToleranceMaxValue();
-  virtual void SetEliminateInvisible(bool);
-  virtual bool GetEliminateInvisible();
-  vtkBooleanMacro(EliminateInvisible, bool);
+  vtkSetClampMacro(LineTolerance, double, 0.0, 64.0);
+  vtkGetMacro(LineTolerance, double);
   ///@}
 
   ///@{
@@ -384,9 +305,9 @@ public:
    * depths are distances from a plane that lies the diagonal of the volume's bounds before the
    * focal point. Averages have no positions and report a warning.
    */
-  virtual void SetRecordLocations(bool);
-  virtual bool GetRecordLocations();
-  vtkBooleanMacro(RecordLocations, bool);
+  vtkSetMacro(RecordLocations, vtkTypeBool);
+  vtkGetMacro(RecordLocations, vtkTypeBool);
+  vtkBooleanMacro(RecordLocations, vtkTypeBool);
   ///@}
 
   ///@{
@@ -394,10 +315,8 @@ public:
    * Set/Get how many bytes the index may hold besides the input; see
    * vtkSplattingMIPVolumeMapper::SetIndexMemoryBudget(). Default 4 GiB, at least 0.
    */
-  virtual void SetIndexMemoryBudget(vtkTypeInt64);
-  virtual vtkTypeInt64 GetIndexMemoryBudget();
-  virtual vtkTypeInt64 GetIndexMemoryBudgetMinValue();
-  virtual vtkTypeInt64 GetIndexMemoryBudgetMaxValue();
+  vtkSetClampMacro(IndexMemoryBudget, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
+  vtkGetMacro(IndexMemoryBudget, vtkTypeInt64);
   ///@}
 
   /**
@@ -442,24 +361,45 @@ protected:
   int RequestData(
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
 
-  vtkCamera* Camera;
-  double ViewDirection[3];
-  double ViewUp[3];
-  bool CenterOnVolume;
-  double FocalPoint[3];
-  int OutputSize[2];
-  double OutputSpacing[2];
-  int NumberOfViews;
-  double RotationAxis[3];
-  double TotalAngle;
-  double BackgroundValue;
-  vtkIdType NumberOfProjections;
-
 private:
+  vtkCamera* Camera = nullptr;
+  double ViewDirection[3] = { 0.0, 1.0, 0.0 };
+  double ViewUp[3] = { 0.0, 0.0, 1.0 };
+  vtkTypeBool CenterOnVolume = 1;
+  double FocalPoint[3] = { 0.0, 0.0, 0.0 };
+  int OutputSize[2] = { 256, 256 };
+  double OutputSpacing[2] = { 0.0, 0.0 };
+  int NumberOfViews = 1;
+  double RotationAxis[3] = { 0.0, 0.0, 0.0 };
+  double TotalAngle = 360.0;
+  double BackgroundValue = 0.0;
+  int BlendMode = MAXIMUM_INTENSITY_BLEND;
+  double AverageIPScalarRange[2] = { VTK_FLOAT_MIN, VTK_FLOAT_MAX };
+  int QualityMode = EXACT;
+  int Kernel = TRILINEAR;
+  double KernelRadius = 1.0;
+  int FootprintSampling = 0;
+  int MaximumType = GLOBAL;
+  double DepthShadingAmbient = 0.3;
+  double DepthShadingChangeRate = 0.7;
+  double LocalMaximumThreshold = 0.0;
+  int VectorMode = DISABLED;
+  int VectorComponent = 0;
+  vtkTypeBool Slab = 0;
+  double SlabThickness = 10.0;
+  double SlabCenter[3] = { 0.0, 0.0, 0.0 };
+  vtkTypeBool Cropping = 0;
+  double CroppingRegionPlanes[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  int CroppingRegionFlags = 1 << 13; // VTK_CROP_SUBVOLUME
+  int Acceleration = AUTO;
+  double LineTolerance = 0.0;
+  vtkTypeBool RecordLocations = 0;
+  vtkTypeInt64 IndexMemoryBudget = vtkTypeInt64(1) << 32;
+  vtkIdType NumberOfProjections = 0;
+
   vtkSplattingMIPProjection(const vtkSplattingMIPProjection&) = delete;
   void operator=(const vtkSplattingMIPProjection&) = delete;
 
-  std::unique_ptr<splatting::ProjectionProperties> Properties;
   class Internals;
   std::unique_ptr<Internals> Internal;
 };

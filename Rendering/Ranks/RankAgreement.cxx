@@ -4,7 +4,6 @@
 
 #include "ComponentProjector.h"
 #include "Input/ScalarSource.h"
-#include "MapperProperties.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include "vtkCamera.h"
@@ -98,17 +97,23 @@ void addColors(vtkScalarsToColors* colors, Number& number)
   }
 }
 
-/// Adds all properties that can change the picture, except masks, which are data.
-void addProperties(const MapperProperties& properties, Number& number)
+/// Adds all settings that change the picture, except masks, which are data.
+void addSettings(vtkSplattingMIPVolumeMapper* mapper, Number& number)
 {
-  const auto add = [&number](const char*, const auto& value, auto...) { number.add(value); };
-  properties.visitInherited(add);
-  properties.visit(add);
-  if (properties.DepthCodingColors)
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  mapper->PrintPictureSettings(text, vtkIndent());
+  number.add(text.str().data(), static_cast<int>(text.str().size()));
+  number.add(mapper->GetBlendMode());
+  number.add(mapper->GetAverageIPScalarRange(), 2);
+  number.add(mapper->GetCropping());
+  number.add(mapper->GetCroppingRegionPlanes(), 6);
+  number.add(mapper->GetCroppingRegionFlags());
+  if (vtkScalarsToColors* const colors = mapper->GetDepthCodingColors())
   {
-    addColors(properties.DepthCodingColors, number);
+    addColors(colors, number);
   }
-  if (vtkPolyData* const surface = properties.BoundingSurface)
+  if (vtkPolyData* const surface = mapper->GetBoundingSurface())
   {
     number.add(surface->GetNumberOfPoints());
     number.add(surface->GetBounds(), 6);
@@ -264,7 +269,7 @@ std::uint64_t viewNumber(
   number.add(camera->GetViewTransformMatrix()->GetData(), 16);
   number.add(volume->GetMatrix()->GetData(), 16);
   number.add(volume->GetProperty()->GetIndependentComponents());
-  addProperties(mapper->ReadProperties(), number);
+  addSettings(mapper, number);
   addScalars(mapper, number);
   addPlanes(mapper->GetClippingPlanes(), number);
   return number.get();

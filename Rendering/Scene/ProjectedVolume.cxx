@@ -31,7 +31,7 @@ void ProjectedVolume::EndFrame(vtkRenderer* renderer, vtkVolume* volume, double 
   }
 }
 
-void ProjectedVolume::Prepare(const MapperProperties& properties, const View& view,
+void ProjectedVolume::Prepare(vtkSplattingMIPVolumeMapper* mapper, const View& view,
   vtkVolume* volume, const FinalColor& finalColor)
 {
   const vtkIdType version = this->Source.Version();
@@ -39,34 +39,34 @@ void ProjectedVolume::Prepare(const MapperProperties& properties, const View& vi
   {
     this->ForgetTimes(); // data of the same kind take the same time
   }
-  this->Components.SetBudget(static_cast<std::size_t>(properties.IndexMemoryBudget));
+  this->Components.SetBudget(static_cast<std::size_t>(mapper->GetIndexMemoryBudget()));
   this->Components.SetRanks(this->Ranks.AreMany() ? &this->Ranks : nullptr);
   this->IndexTimeBefore = this->Source.Version() == version ? this->IndexTime() : 0.0;
   this->Components.UpdateColors(volume->GetProperty(), finalColor,
-    settingsOf(properties, vtkSplattingMIPVolumeMapper::PREVIEW, view));
-  this->Components.SetCullBelowWindow(properties.CullBelowWindow);
+    settingsOf(mapper, vtkSplattingMIPVolumeMapper::PREVIEW, view));
+  this->Components.SetCullBelowWindow(mapper->GetCullBelowWindow() != 0);
 }
 
 // A selection uses the mode of the visible picture.
 int ProjectedVolume::ChooseMode(
-  const MapperProperties& properties, vtkRenderer* renderer, vtkVolume* volume)
+  vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume)
 {
-  const int best = properties.QualityMode;
-  const int mode = !properties.AutoAdjustSampleDistances ? best
+  const int best = mapper->GetQualityMode();
+  const int mode = !mapper->GetAutoAdjustSampleDistances() ? best
     : renderer->GetSelector()
     ? std::min(this->ModeUsed, best)
     : this->Times.choose({ renderer, volume }, best, volume->GetAllocatedRenderTime());
   return this->Ranks.AreMany() ? this->Ranks.Least(mode) : mode;
 }
 
-// Computes the cuts of a view and, unless it is projected onto the screen, its images. Returns false
-// if the view is invalid.
-bool ProjectedVolume::FindCuts(const MapperProperties& properties, const View& view,
+// Computes the cuts of a view and, unless it is projected onto the screen, its images. Returns
+// false if the view is invalid.
+bool ProjectedVolume::FindCuts(vtkSplattingMIPVolumeMapper* mapper, const View& view,
   vtkRenderer* renderer, vtkVolume* volume, const SceneCuts::DepthReader& readDepth,
   const ProjectionSettings& settings)
 {
   const double start = vtkTimerLog::GetUniversalTime();
-  const bool intermixes = properties.IntermixIntersectingGeometry;
+  const bool intermixes = mapper->GetIntermixIntersectingGeometry() != 0;
   bool isValid = true;
   if (this->Components.UsesCells(settings))
   {
@@ -98,14 +98,14 @@ bool ProjectedVolume::Shows(const View& view, const ProjectionSettings& settings
     this->Components.Shows(settings);
 }
 
-bool ProjectedVolume::Project(const MapperProperties& properties, const View& view,
+bool ProjectedVolume::Project(vtkSplattingMIPVolumeMapper* mapper, const View& view,
   vtkRenderer* renderer, vtkVolume* volume, const SceneCuts::DepthReader& readDepth)
 {
-  const int mode = this->ChooseMode(properties, renderer, volume);
-  const int usable = std::clamp(this->ModeUsed, mode, properties.QualityMode);
-  const ProjectionSettings best = settingsOf(properties, usable, view);
+  const int mode = this->ChooseMode(mapper, renderer, volume);
+  const int usable = std::clamp(this->ModeUsed, mode, mapper->GetQualityMode());
+  const ProjectionSettings best = settingsOf(mapper, usable, view);
   std::swap(this->Images, this->ImagesBefore);
-  if (!this->FindCuts(properties, view, renderer, volume, readDepth, best))
+  if (!this->FindCuts(mapper, view, renderer, volume, readDepth, best))
   {
     return false;
   }
@@ -115,11 +115,11 @@ bool ProjectedVolume::Project(const MapperProperties& properties, const View& vi
   {
     return true;
   }
-  const ProjectionSettings wanted = settingsOf(properties, mode, view);
+  const ProjectionSettings wanted = settingsOf(mapper, mode, view);
   const bool onScreen = this->Components.UsesCells(wanted);
   if (onScreen != this->Components.UsesCells(best) || wanted.meets != best.meets)
   {
-    this->FindCuts(properties, view, renderer, volume, readDepth, wanted);
+    this->FindCuts(mapper, view, renderer, volume, readDepth, wanted);
   }
   const double start = vtkTimerLog::GetUniversalTime();
   this->ShearImageOutput = nullptr;

@@ -15,12 +15,11 @@
 
 class vtkImageData;
 class vtkRenderer;
+class vtkSplattingMIPVolumeMapper;
 class vtkVolume;
 
 namespace splatting
 {
-struct MapperProperties;
-
 /**
  * A mapper's data and its last projection. Decides whether a frame reuses it, and in which quality
  * mode a frame projects.
@@ -49,7 +48,7 @@ public:
   void ForgetTimes() { this->Times.clear(); }
 
   /// Makes indices and colours.
-  void Prepare(const MapperProperties& properties, const View& view, vtkVolume* volume,
+  void Prepare(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkVolume* volume,
     const FinalColor& finalColor);
 
   /**
@@ -57,7 +56,7 @@ public:
    * up to QualityMode. There is no projection after an abort.
    * @return  false if the view is invalid
    */
-  bool Project(const MapperProperties& properties, const View& view, vtkRenderer* renderer,
+  bool Project(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkRenderer* renderer,
     vtkVolume* volume, const SceneCuts::DepthReader& readDepth);
 
   /// Releases all memory, after a frame that ran out of memory.
@@ -79,8 +78,8 @@ public:
   }
 
 private:
-  int ChooseMode(const MapperProperties& properties, vtkRenderer* renderer, vtkVolume* volume);
-  bool FindCuts(const MapperProperties& properties, const View& view, vtkRenderer* renderer,
+  int ChooseMode(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume);
+  bool FindCuts(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkRenderer* renderer,
     vtkVolume* volume, const SceneCuts::DepthReader& readDepth, const ProjectionSettings& settings);
   bool Shows(const View& view, const ProjectionSettings& settings) const;
 

@@ -8,6 +8,8 @@
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include "vtkDataSet.h"
+#include "vtkImageData.h"
+#include "vtkPolyData.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
@@ -22,16 +24,15 @@ std::string problemOfInput(
   {
     return "A vtkMultiVolume cannot be splatted: give each of its volumes a mapper of its own.";
   }
-  const MapperProperties& properties = mapper->ReadProperties();
   ScalarChoice choice;
   choice.scalarMode = mapper->GetScalarMode();
   choice.arrayAccessMode = mapper->GetArrayAccessMode();
   choice.arrayId = mapper->GetArrayId();
   choice.arrayName = mapper->GetArrayName();
-  choice.vectorMode = properties.VectorMode;
-  choice.vectorComponent = properties.VectorComponent;
+  choice.vectorMode = mapper->GetVectorMode();
+  choice.vectorComponent = mapper->GetVectorComponent();
   choice.independentComponents = volume->GetProperty()->GetIndependentComponents() != 0;
-  choice.mask = properties.MaskInput;
+  choice.mask = mapper->GetMaskInput();
   if (data.Ranks.Use(mapper->GetController()) && !pieceOf(mapper))
   {
     return ""; // a rank may have no piece
@@ -74,15 +75,13 @@ std::string problemOfRanks(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* ren
 std::string problemOfProperties(
   vtkSplattingMIPVolumeMapper* mapper, vtkVolume* volume, ProjectedVolume& data)
 {
-  const MapperProperties& properties = mapper->ReadProperties();
-  if (const char* const fault =
-        faultOf(properties, mapper->GetClippingPlanes(), volume->GetProperty()))
+  if (const char* const fault = faultOf(mapper, volume->GetProperty()))
   {
     return fault;
   }
-  const glm::dmat4 toIndex =
-    properties.BoundingSurface ? worldToIndex(data.Grid(), volume) : glm::dmat4(1.0);
-  const char* const fault = data.Cuts.Surface().Update(properties.BoundingSurface, toIndex);
+  vtkPolyData* const surface = mapper->GetBoundingSurface();
+  const glm::dmat4 toIndex = surface ? worldToIndex(data.Grid(), volume) : glm::dmat4(1.0);
+  const char* const fault = data.Cuts.Surface().Update(surface, toIndex);
   return fault ? fault : "";
 }
 }

@@ -84,7 +84,6 @@ class TestProjections(Stage.Test):
         self.display.MIPIndexMemoryBudget = 0
         self.expect(lambda lines: lines.max(axis=0))
         self.display.MIPIndexMemoryBudget = 4096
-        self.display.MIPEliminateInvisible = 1
         for acceleration in ["Dense", "Bricks", "Lines", "Sorted Lines", "Sorted Volume"]:
             self.display.MIPAcceleration = acceleration
             self.expect(lambda lines: lines.max(axis=0))

@@ -25,7 +25,6 @@ SETTINGS = {
     "MIPSlabCenter": [19.0, 18.0, 20.0],
     "MIPAcceleration": "Lines",
     "MIPLineTolerance": 3.0,
-    "MIPEliminateInvisible": 1,
     "MIPCullBelowWindow": 1,
     "MIPIndexMemoryBudget": 512,
     "MIPUseCropping": 1,

@@ -14,7 +14,7 @@ from vtkmodules.vtkRenderingCore import (
 )
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkRenderingVolume import vtkFixedPointVolumeRayCastMapper
-from vtksplattingmip import vtkSplattingMIPVolumeMapper
+from vtksplattingmip import vtkSplattingMIPProjection, vtkSplattingMIPVolumeMapper
 
 SIZE = 200
 
@@ -85,6 +85,18 @@ class TestRender(unittest.TestCase):
         self.assertIn(mapper.GetPrincipalAxis(), (0, 1, 2))
         self.assertLessEqual(max(abs(s) for s in mapper.GetShear()), 1.0)
         self.assertFalse(mapper.GetLastRenderUsedRayCasting())
+
+
+class TestProperties(unittest.TestCase):
+    def test_every_property_is_printed(self):
+        for printed in (vtkSplattingMIPVolumeMapper(), vtkSplattingMIPProjection()):
+            methods = {name for kind in type(printed).mro() if "SplattingMIP" in kind.__name__
+                       for name in vars(kind)}
+            properties = [name[3:] for name in methods
+                          if name.startswith("Set") and "Get" + name[3:] in methods]
+            self.assertGreater(len(properties), 20)
+            for name in properties:
+                self.assertIn(f"{name}: ", str(printed))
 
 
 if __name__ == "__main__":

@@ -223,11 +223,6 @@ void vtkSplattingMIPRepresentation::SetLineTolerance(double tolerance)
   this->GetSplattingMapper()->SetLineTolerance(tolerance);
 }
 
-void vtkSplattingMIPRepresentation::SetEliminateInvisible(bool eliminate)
-{
-  this->GetSplattingMapper()->SetEliminateInvisible(eliminate);
-}
-
 void vtkSplattingMIPRepresentation::SetCullBelowWindow(bool cull)
 {
   this->GetSplattingMapper()->SetCullBelowWindow(cull);

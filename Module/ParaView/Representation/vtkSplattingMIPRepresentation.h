@@ -88,7 +88,6 @@ public:
   void SetSlabCenter(double x, double y, double z);
   void SetAcceleration(int acceleration);
   void SetLineTolerance(double tolerance);
-  void SetEliminateInvisible(bool eliminate);
   void SetCullBelowWindow(bool cull);
   ///@}
 

@@ -15,39 +15,34 @@ namespace
 {
 using coretesting::Checks;
 using namespace splatting;
-using Names = vtkSplattingMIPProjection;
+using Filter = vtkSplattingMIPProjection;
 
-bool isRefused(const ProjectionProperties& properties, const std::string& word)
+template <class Change>
+bool isRefused(const std::string& word, Change&& change)
 {
-  const char* const fault = faultOf(properties);
+  vtkNew<Filter> filter;
+  filter->SetSlabThickness(-1.0);
+  filter->SetCroppingRegionPlanes(0.0, 1.0, 0.0, NAN, 0.0, 1.0);
+  filter->SetLocalMaximumThreshold(NAN);
+  filter->SetDepthShadingAmbient(INFINITY);
+  filter->SetAverageIPScalarRange(9.0, 8.0);
+  change(filter.Get());
+  const char* const fault = faultOf(*filter);
   return fault && std::string(fault).find(word) != std::string::npos;
 }
 
 void testFaults(Checks& check)
 {
-  check(!faultOf(ProjectionProperties()), "defaults are refused");
-  ProjectionProperties properties;
-  properties.SlabThickness = -1.0;
-  properties.CroppingRegionPlanes[3] = NAN;
-  properties.LocalMaximumThreshold = NAN;
-  properties.DepthShadingAmbient = INFINITY;
-  properties.AverageIPScalarRange[0] = 9.0;
-  properties.AverageIPScalarRange[1] = 8.0;
-  check(!faultOf(properties), "what has no effect is refused");
-  const auto with = [&](auto change)
-  {
-    ProjectionProperties changed = properties;
-    change(changed);
-    return changed;
-  };
-  check(isRefused(with([](auto& c) { c.Slab = true; }), "SlabThickness"), "a thin slab");
-  check(isRefused(with([](auto& c) { c.Cropping = true; }), "CroppingRegionPlanes"), "NaN planes");
-  check(isRefused(with([](auto& c) { c.MaximumType = Names::LOCAL; }), "LocalMaximumThreshold"),
+  vtkNew<Filter> filter;
+  check(!faultOf(*filter), "defaults are refused");
+  check(!isRefused("", [](Filter*) {}), "what has no effect is refused");
+  check(isRefused("SlabThickness", [](Filter* f) { f->SlabOn(); }), "a thin slab");
+  check(isRefused("CroppingRegionPlanes", [](Filter* f) { f->CroppingOn(); }), "NaN planes");
+  check(isRefused("LocalMaximumThreshold", [](Filter* f) { f->SetMaximumTypeToLocal(); }),
     "a NaN threshold");
-  check(isRefused(with([](auto& c) { c.MaximumType = Names::DEPTH_SHADED; }), "DepthShading"),
+  check(isRefused("DepthShading", [](Filter* f) { f->SetMaximumTypeToDepthShaded(); }),
     "endless shading");
-  check(isRefused(with([](auto& c) { c.BlendMode = Names::AVERAGE_INTENSITY_BLEND; }),
-          "AverageIPScalarRange"),
+  check(isRefused("AverageIPScalarRange", [](Filter* f) { f->SetBlendModeToAverageIntensity(); }),
     "an empty range");
 }
 
@@ -61,7 +56,7 @@ void testMethods(Checks& check)
   filter->SetCropping(1);
   const vtkMTimeType time = filter->GetMTime();
   filter->SetCroppingRegionPlanes(planes);
-  filter->SetBlendMode(Names::AVERAGE_INTENSITY_BLEND);
+  filter->SetBlendMode(Filter::AVERAGE_INTENSITY_BLEND);
   filter->SetCropping(1);
   check(filter->GetMTime() == time, "what is set again is a change");
   double values[6] = {};
@@ -70,7 +65,7 @@ void testMethods(Checks& check)
       std::equal(planes, planes + 6, filter->GetCroppingRegionPlanes()),
     "the planes are others");
   check(filter->GetCropping() == 1 && filter->GetBlendMode() == filter->GetBlendModeMaxValue() &&
-      filter->GetBlendModeMinValue() == Names::MAXIMUM_INTENSITY_BLEND,
+      filter->GetBlendModeMinValue() == Filter::MAXIMUM_INTENSITY_BLEND,
     "the blend mode is not clamped");
   filter->SetAverageIPScalarRange(2.0, 5.0);
   check(filter->GetMTime() > time && filter->GetAverageIPScalarRange()[1] == 5.0,
@@ -81,38 +76,44 @@ void testMethods(Checks& check)
 /// does not.
 void testEffects(Checks& check)
 {
-  for (int mode = Names::PREVIEW; mode <= Names::EXACT; ++mode)
+  for (int mode = Filter::PREVIEW; mode <= Filter::EXACT; ++mode)
   {
     for (int n = 0; n < 5; ++n)
     {
-      ProjectionProperties properties;
-      properties.BlendMode = n == 3 ? Names::MINIMUM_INTENSITY_BLEND
-        : n == 4                    ? Names::AVERAGE_INTENSITY_BLEND
-                                    : Names::MAXIMUM_INTENSITY_BLEND;
-      properties.MaximumType = n == 1 ? Names::DEPTH_SHADED : n == 2 ? Names::LOCAL : 0;
-      const auto before = settingsOf(properties, mode, coretesting::magnifiedView());
+      const auto settings = [&](auto change)
+      {
+        vtkNew<Filter> filter;
+        filter->SetBlendMode(n == 3 ? Filter::MINIMUM_INTENSITY_BLEND
+            : n == 4                ? Filter::AVERAGE_INTENSITY_BLEND
+                                    : Filter::MAXIMUM_INTENSITY_BLEND);
+        filter->SetMaximumType(n == 1 ? Filter::DEPTH_SHADED : n == 2 ? Filter::LOCAL : 0);
+        change(filter.Get());
+        return settingsOf(
+          *filter, mode, coretesting::magnifiedView(), filter->GetRecordLocations() != 0);
+      };
+      const auto before = settings([](Filter*) {});
       const auto test = [&](const char* name, bool expected, auto change)
       {
-        ProjectionProperties changed = properties;
-        change(changed);
-        check((settingsOf(changed, mode, coretesting::magnifiedView()) == before) != expected, name,
-          " in mode ", mode, ", reduction ", n, expected ? ": has no effect" : ": has an effect");
+        check((settings(change) == before) != expected, name, " in mode ", mode, ", reduction ", n,
+          expected ? ": has no effect" : ": has an effect");
       };
       // Exact are extrema only; means are those of high mode then.
-      const bool isExact = mode == Names::EXACT && n < 4;
-      const bool isHigh = mode == Names::HIGH || (mode == Names::EXACT && !isExact);
-      test("shading", n == 1, [](auto& c) { c.DepthShadingAmbient = 0.1; });
-      test("threshold", n == 2, [](auto& c) { c.LocalMaximumThreshold = 5.0; });
-      test("range", n == 4, [](auto& c) { c.AverageIPScalarRange[1] = 7.0; });
-      test("acceleration", n == 0 && !isExact, [](auto& c) { c.Acceleration = Names::LINES; });
-      test("locations", n != 4, [](auto& c) { c.RecordLocations = true; });
-      test("kernel", isHigh, [](auto& c) { c.Kernel = Names::COSINE_BELL; });
-      test("radius", false, [](auto& c) { c.KernelRadius = 0.7; });
+      const bool isExact = mode == Filter::EXACT && n < 4;
+      const bool isHigh = mode == Filter::HIGH || (mode == Filter::EXACT && !isExact);
+      test("shading", n == 1, [](Filter* f) { f->SetDepthShadingAmbient(0.1); });
+      test("threshold", n == 2, [](Filter* f) { f->SetLocalMaximumThreshold(5.0); });
+      test("range", n == 4, [](Filter* f) { f->SetAverageIPScalarRange(0.0, 7.0); });
       test(
-        "footprints", isHigh || mode == Names::STANDARD, [](auto& c) { c.FootprintSampling = 5; });
+        "acceleration", n == 0 && !isExact, [](Filter* f) { f->SetAcceleration(Filter::LINES); });
+      test("locations", n != 4, [](Filter* f) { f->RecordLocationsOn(); });
+      test("kernel", isHigh, [](Filter* f) { f->SetKernel(Filter::COSINE_BELL); });
+      test("radius", false, [](Filter* f) { f->SetKernelRadius(0.7); });
+      test("footprints", isHigh || mode == Filter::STANDARD,
+        [](Filter* f) { f->SetFootprintSampling(5); });
       test("blend mode", true,
-        [n](auto& c) {
-          c.BlendMode = n == 3 ? Names::AVERAGE_INTENSITY_BLEND : Names::MINIMUM_INTENSITY_BLEND;
+        [n](Filter* f) {
+          f->SetBlendMode(
+            n == 3 ? Filter::AVERAGE_INTENSITY_BLEND : Filter::MINIMUM_INTENSITY_BLEND);
         });
     }
   }

@@ -11,7 +11,9 @@
 #include "vtkSmartVolumeMapper.h"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
+#include <string>
 
 namespace
 {
@@ -40,7 +42,7 @@ void testDefaults(Mapper* mapper, stage::Checks& check)
   check(mapper->GetAcceleration() == Mapper::AUTO, "Default acceleration is automatic.");
   check(mapper->GetAccelerationUsed() == Mapper::DENSE, "A new mapper has used no acceleration.");
   check(mapper->GetLineTolerance() == 0.0, "Default encoding is lossless.");
-  check(!mapper->GetEliminateInvisible() && !mapper->GetCullBelowWindow(), "Default keeps all.");
+  check(!mapper->GetCullBelowWindow(), "Default keeps all.");
   check(mapper->GetIndexMemoryBudget() == vtkTypeInt64(1) << 32, "Default budget is 4 GiB.");
   check(mapper->GetVectorMode() == Mapper::DISABLED && mapper->GetVectorComponent() == 0,
     "Default is all components.");
@@ -202,13 +204,36 @@ void testPrinting(Mapper* mapper, stage::Checks& check)
   for (const char* variable : { "QualityMode: exact", "Kernel: trilinear",
          "KernelRadius: ", "FootprintSampling: ", "LastRenderUsedRayCasting: ", "PrincipalAxis: ",
          "Shear: ", "IndexMemorySize: ", "NumberOfProjections: ", "ProjectionTime: ",
-         "InstructionSet: ", "Acceleration: auto", "AccelerationUsed: dense",
-         "LineTolerance: ", "EliminateInvisible: ", "QualityModeUsed: exact",
-         "AutoAdjustSampleDistances: On", "FinalColorWindow: 1", "FinalColorLevel: 0.5",
-         "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend", "VectorMode: disabled",
-         "VectorComponent: ", "MaskInput: ", "Cropping" })
+         "InstructionSet: ", "Acceleration: auto", "AccelerationUsed: dense", "LineTolerance: ",
+         "QualityModeUsed: exact", "AutoAdjustSampleDistances: On", "FinalColorWindow: 1",
+         "FinalColorLevel: 0.5", "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend",
+         "VectorMode: disabled", "VectorComponent: ", "MaskInput: ", "Cropping" })
   {
     check(text.find(variable) != std::string::npos, std::string("PrintSelf names ") + variable);
+  }
+}
+
+/// Ranks compare what PrintPictureSettings() prints. What else the class prints cannot change a
+/// picture or is compared by itself.
+void testPictureSettings(Mapper* mapper, stage::Checks& check)
+{
+  std::ostringstream all, some;
+  mapper->vtkAbstractSplattingMIPVolumeMapper::PrintSelf(all, vtkIndent());
+  mapper->PrintPictureSettings(some, vtkIndent());
+  const std::string text = all.str();
+  const std::size_t at = text.find(some.str());
+  check(at != std::string::npos, "PrintSelf() prints the settings that change pictures.");
+  if (at == std::string::npos)
+  {
+    return;
+  }
+  std::istringstream rest(text.substr(at + some.str().size()));
+  const std::set<std::string> others{ "IndexMemoryBudget", "MaskInput", "BoundingSurface",
+    "DepthCodingColors" };
+  for (std::string line; std::getline(rest, line);)
+  {
+    check(others.count(line.substr(0, line.find(':'))) == 1,
+      "Ranks do not compare the setting " + line);
   }
 }
 }
@@ -221,6 +246,7 @@ int TestMapperContract(int, char*[])
   const auto mapper = vtkSmartPointer<Mapper>::New();
   testDefaults(mapper, check);
   testPrinting(mapper, check);
+  testPictureSettings(mapper, check);
   testClamping(mapper, check);
   testClampingOfAcceleration(mapper, check);
   testRanges(mapper, check);

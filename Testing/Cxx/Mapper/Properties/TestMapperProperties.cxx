@@ -28,8 +28,7 @@ void testRefusals(Mapper* mapper, Checks& check)
 {
   vtkNew<vtkVolumeProperty> property;
   mapper->SetBlendModeToMaximumIntensity();
-  const auto fault = [&]
-  { return faultOf(mapper->ReadProperties(), mapper->GetClippingPlanes(), property); };
+  const auto fault = [&] { return faultOf(mapper, property); };
   const auto refuses = [&](const std::string& word)
   {
     const char* const sentence = fault();
@@ -57,7 +56,7 @@ void testRefusals(Mapper* mapper, Checks& check)
 void testSettings(Mapper* mapper, Checks& check)
 {
   const auto settings = [&](int mode)
-  { return settingsOf(mapper->ReadProperties(), mode, coretesting::magnifiedView()); };
+  { return settingsOf(mapper, mode, coretesting::magnifiedView()); };
   const auto changes = [&](int mode, auto change)
   {
     const auto before = settings(mode);

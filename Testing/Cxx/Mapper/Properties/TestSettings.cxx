@@ -117,7 +117,6 @@ void testWithoutEffect(stage::Stage& stage, stage::Checks& check)
     { "AverageIPScalarRange", [](Mapper* m) { m->SetAverageIPScalarRange(3.0, 2.0); } },
     { "KernelRadius of another kernel", [](Mapper* m) { m->SetKernelRadius(0.7); } },
     { "LineTolerance without chains", [](Mapper* m) { m->SetLineTolerance(5.0); } },
-    { "EliminateInvisible without chains", [](Mapper* m) { m->EliminateInvisibleOn(); } },
   };
   const auto mapper = noiseMapper(stage);
   const stage::Pixels before = stage.pixels();

@@ -151,7 +151,6 @@ void addProjectionSettings(Settings<Object>& all, const Of& of)
       p->SetLineTolerance(v[0]);
       p->SetIndexMemoryBudget(static_cast<vtkTypeInt64>(v[1]));
     });
-  add("EliminateInvisible", onOrOff(), [](auto* p, V v) { p->SetEliminateInvisible(v[0] != 0.0); });
   add("RecordLocations", onOrOff(), [](auto* p, V v) { p->SetRecordLocations(v[0] != 0.0); });
 }
 
