@@ -4,12 +4,12 @@
 
 #include "MapperProperties.h"
 #include "ProjectionProperties.h"
-#include "Ranks/FrameAttendance.h"
+#include "Ranks/FrameObserver.h"
 #include "ReportedProblems.h"
 #include "Scene/ProjectedVolume.h"
 #include "Scene/RayCastFallback.h"
-#include "Scene/Refusals.h"
 #include "Scene/Selection.h"
+#include "Scene/Validation.h"
 #include "Scene/ViewOfVolume.h"
 #include "Scene/WinnerLocations.h"
 #include "TurnOfViews.h"
@@ -39,7 +39,7 @@ vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, Controller, vtkMultiProcessCon
 namespace
 {
 const char* const NoColors =
-  "FinalColorWindow and FinalColorLevel give no colours: both must be finite and the window not 0.";
+  "FinalColorWindow and FinalColorLevel are invalid: both must be finite and the window not 0.";
 
 /// Whether a blend mode is splatted; others are ray cast.
 bool isProjection(int blendMode)
@@ -50,13 +50,16 @@ bool isProjection(int blendMode)
 }
 
 /// Sets a pointer during its lifetime, also if exceptions are thrown.
-class During
+class ScopedWindow
 {
 public:
-  During(vtkRenderWindow*& pointer, vtkRenderWindow* value) : Pointer(pointer) { pointer = value; }
-  ~During() { this->Pointer = nullptr; }
-  During(const During&) = delete;
-  During& operator=(const During&) = delete;
+  ScopedWindow(vtkRenderWindow*& pointer, vtkRenderWindow* value) : Pointer(pointer)
+  {
+    pointer = value;
+  }
+  ~ScopedWindow() { this->Pointer = nullptr; }
+  ScopedWindow(const ScopedWindow&) = delete;
+  ScopedWindow& operator=(const ScopedWindow&) = delete;
 
 private:
   vtkRenderWindow*& Pointer;
@@ -68,26 +71,26 @@ class vtkSplattingMIPVolumeMapper::Internals
 {
 public:
   explicit Internals(vtkSplattingMIPVolumeMapper* self)
-    : Attendance([=](vtkRenderer* renderer, vtkVolume* volume)
+    : Observer([=](vtkRenderer* renderer, vtkVolume* volume)
         { this->ReportAbsence(self, renderer, volume); })
   {
   }
-  void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
-  void WarnOfSurface(vtkSplattingMIPVolumeMapper* self);
-  void WarnOfBudget(vtkSplattingMIPVolumeMapper* self);
-  void GiveBack();
+  void WarnAboutIgnoredProperties(vtkSplattingMIPVolumeMapper* self);
+  void WarnAboutSurface(vtkSplattingMIPVolumeMapper* self);
+  void WarnAboutBudget(vtkSplattingMIPVolumeMapper* self);
+  void ReleaseMemory();
   void DropRayCaster();
-  bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
+  bool ReportProgress(vtkSplattingMIPVolumeMapper* self, double done);
   bool IsAborted() const;
   void ReportAbsence(vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
 
   ReportedProblems Reported;
-  std::set<std::string> Announced;   // warnings that were reported
+  std::set<std::string> Warned;      // warnings that were reported
   bool BudgetReported = false;       // until the problem disappears
   bool OpenSurfaceReported = false;  // likewise
   vtkRenderWindow* Window = nullptr; // during a render; may abort it
 
-  FrameAttendance Attendance; // for several ranks
+  FrameObserver Observer; // for several ranks
   ProjectedVolume Data;
   WinnerLocations Locations{ Data.Source, Data.Components, Data.Cuts, Data.Images };
   splatting::Picture Picture;
@@ -101,7 +104,8 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper() : Internal(new Intern
 {
   ComponentProjector& components = this->Internal->Data.Components;
   components.GetProjector().setProgress([this](double done) { this->UpdateProgress(done); });
-  components.SetObserver([this](double done) { return this->Internal->GoOn(this, done); });
+  components.SetObserver(
+    [this](double done) { return this->Internal->ReportProgress(this, done); });
   components.GetWarper().setObserver([this](double) { return !this->Internal->IsAborted(); });
 }
 
@@ -151,9 +155,10 @@ double* vtkSplattingMIPVolumeMapper::GetBounds()
 
 //------------------------------------------------------------------------------
 // Reports progress. Returns whether the window wants to continue.
-bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* self, double done)
+bool vtkSplattingMIPVolumeMapper::Internals::ReportProgress(
+  vtkSplattingMIPVolumeMapper* self, double done)
 {
-  done = this->Data.Components.ShareOfAll(done);
+  done = this->Data.Components.OverallProgress(done);
   self->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &done);
   return !this->IsAborted();
 }
@@ -173,7 +178,7 @@ void vtkSplattingMIPVolumeMapper::Internals::ReportAbsence(
   {
     return;
   }
-  const std::string problem = this->Data.Ranks.AgreeOnAbsence();
+  const std::string problem = this->Data.Ranks.ReportMissingFrame();
   if (this->Reported.Update(renderer, volume, problem))
   {
     vtkErrorWithObjectMacro(self, << problem);
@@ -182,18 +187,19 @@ void vtkSplattingMIPVolumeMapper::Internals::ReportAbsence(
 
 //------------------------------------------------------------------------------
 // Warns of properties that ray casting ignores.
-void vtkSplattingMIPVolumeMapper::Internals::WarnOfIgnored(vtkSplattingMIPVolumeMapper* self)
+void vtkSplattingMIPVolumeMapper::Internals::WarnAboutIgnoredProperties(
+  vtkSplattingMIPVolumeMapper* self)
 {
-  if ((self->GetSlab() || self->GetBoundingSurface()) && this->Announced.insert("ignored").second)
+  if ((self->GetSlab() || self->GetBoundingSurface()) && this->Warned.insert("ignored").second)
   {
     vtkWarningWithObjectMacro(self,
-      << "Slab and BoundingSurface mean nothing where a volume is ray cast: it is shown without "
-         "them.");
+      << "Slab and BoundingSurface are ignored by ray casters: choose an intensity projection as "
+         "the blend mode.");
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::Internals::WarnOfSurface(vtkSplattingMIPVolumeMapper* self)
+void vtkSplattingMIPVolumeMapper::Internals::WarnAboutSurface(vtkSplattingMIPVolumeMapper* self)
 {
   const bool isOpen = this->Data.Cuts.Surface().IsOpen();
   if (isOpen && !this->OpenSurfaceReported)
@@ -206,7 +212,7 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfSurface(vtkSplattingMIPVolume
 }
 
 //------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::Internals::WarnOfBudget(vtkSplattingMIPVolumeMapper* self)
+void vtkSplattingMIPVolumeMapper::Internals::WarnAboutBudget(vtkSplattingMIPVolumeMapper* self)
 {
   const bool exceeds = this->Data.Components.ExceedsBudget();
   if (exceeds && !this->BudgetReported)
@@ -221,7 +227,7 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfBudget(vtkSplattingMIPVolumeM
 
 //------------------------------------------------------------------------------
 // Releases memory, after a frame that ran out of memory.
-void vtkSplattingMIPVolumeMapper::Internals::GiveBack()
+void vtkSplattingMIPVolumeMapper::Internals::ReleaseMemory()
 {
   this->Data.Clear();
   this->Locations.Forget();
@@ -248,7 +254,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< "An observer of this mapper's render events must not render with it.");
     return;
   }
-  const During during(in.Window, ren->GetRenderWindow());
+  const ScopedWindow scoped(in.Window, ren->GetRenderWindow());
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
@@ -259,9 +265,9 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     in.Locations.BeginFrame(ren);
     if (in.Data.Ranks.Use(this->GetController()))
     {
-      in.Attendance.Attend(ren, vol);
+      in.Observer.MarkRendered(ren, vol);
     }
-    problem = refusalOf(this, ren, vol, in.Data);
+    problem = loadAndValidate(this, ren, vol, in.Data);
     if (problem.empty())
     {
       problem = this->RenderBySplatting(ren, vol);
@@ -270,7 +276,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   catch (const std::bad_alloc&)
   {
     problem = ScalarSource::NoMemory;
-    in.GiveBack();
+    in.ReleaseMemory();
     if (in.Data.Ranks.AreMany())
     {
       vtkErrorMacro(<< problem);
@@ -313,7 +319,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return TurnOfViews::Degenerate;
   }
-  if (data.Source.IsCoarse() && in.Announced.insert("coarse").second)
+  if (data.Source.IsCoarse() && in.Warned.insert("coarse").second)
   {
     vtkWarningMacro(<< "The rectilinear grid is resampled to larger steps than its least, which is "
                        "too small for that: small cells may be lost. Extract a part of it.");
@@ -327,10 +333,10 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     addSlab(view, data.Grid(), vol, this->GetSlabCenter(), this->GetSlabThickness());
   }
-  in.WarnOfSurface(this);
+  in.WarnAboutSurface(this);
   data.Prepare(this, view, vol, finalColor);
   if (const char* const fault =
-        data.Components.FaultOfVoxels(static_cast<Quality>(this->GetQualityMode())))
+        data.Components.ValidateVoxels(static_cast<Quality>(this->GetQualityMode())))
   {
     return fault;
   }
@@ -340,7 +346,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return TurnOfViews::Degenerate;
   }
-  in.WarnOfBudget(this);
+  in.WarnAboutBudget(this);
   if (data.Components.IsProjected() && (!this->DisplayOnRootOnly || data.Ranks.IsRoot()) &&
     data.Components.Warp(data.Images, view, in.Picture))
   {
@@ -357,7 +363,7 @@ void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
 {
   Internals& in = *this->Internal;
   if (needsLocations(this) && this->BlendMode == AVERAGE_INTENSITY_BLEND &&
-    in.Announced.insert("mean").second)
+    in.Warned.insert("mean").second)
   {
     vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
                        "one, no depth coding and no depths: choose another blend mode.");
@@ -396,7 +402,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
 {
   Internals& in = *this->Internal;
   const bool isForGpu = RayCastFallback::IsForGpu(this->BlendMode);
-  if (in.Announced.insert("ray casting").second)
+  if (in.Warned.insert("ray casting").second)
   {
     vtkWarningMacro(<< "Rendering by "
                     << (isForGpu ? "vtkGPUVolumeRayCastMapper" : "vtkFixedPointVolumeRayCastMapper")
@@ -411,7 +417,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
                      "VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2).");
     return;
   }
-  in.WarnOfIgnored(this);
+  in.WarnAboutIgnoredProperties(this);
   this->LastRenderUsedRayCasting = true;
   vtkImageData* const image = in.Data.Source.Image();
   if (!image)

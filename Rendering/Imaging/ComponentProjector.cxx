@@ -136,7 +136,7 @@ void ComponentProjector::SetRanks(PieceExchange* ranks)
 
 // Sums of weighted voxels, or of a ray's samples, would overflow. Exact mode scales voxels by their
 // range, which is unknown beside infinities, and multiplies them.
-const char* ComponentProjector::FaultOfVoxels(Quality quality)
+const char* ComponentProjector::ValidateVoxels(Quality quality)
 {
   const bool isTooLarge = std::any_of(this->Channels.begin(), this->Channels.end(),
     [isExact = quality == Quality::Exact](Channel& channel)
@@ -226,7 +226,7 @@ ProjectionSettings ComponentProjector::SettingsOf(
   return settings;
 }
 
-bool ComponentProjector::Shows(const ProjectionSettings& settings) const
+bool ComponentProjector::IsUpToDate(const ProjectionSettings& settings) const
 {
   return this->Projected &&
     std::all_of(this->Channels.begin(), this->Channels.end(),
@@ -367,7 +367,7 @@ void ComponentProjector::Exchange(const std::vector<ShearWarp>& geometries,
   }
 }
 
-double ComponentProjector::ShareOfAll(double done) const
+double ComponentProjector::OverallProgress(double done) const
 {
   const std::size_t channels = this->TakesAtWinners(this->Settings()) ? 1 : this->Channels.size();
   return (this->Done + done) /

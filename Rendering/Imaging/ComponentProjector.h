@@ -63,7 +63,7 @@ public:
   void SetRanks(PieceExchange* ranks);
 
   /// An error message if voxels are too large for the arithmetic, or nullptr.
-  const char* FaultOfVoxels(Quality quality);
+  const char* ValidateVoxels(Quality quality);
 
   /// Sets the memory budget, which the components share equally. A change discards all indices.
   /// Returns whether it has changed.
@@ -89,7 +89,7 @@ public:
   /**
    * Whether the last projection has these settings, regardless of the viewer's side.
    */
-  bool Shows(const ProjectionSettings& settings) const;
+  bool IsUpToDate(const ProjectionSettings& settings) const;
 
   /**
    * Projects all components into all images of a view, each with its cuts. Returns false, without
@@ -156,7 +156,7 @@ public:
   Acceleration Used() const { return this->Channels.front().Used; }
 
   /// Converts the completed share of the current projection to that of all components and images.
-  double ShareOfAll(double done) const;
+  double OverallProgress(double done) const;
 
   splatting::Projector& GetProjector() { return this->Projector; }
   splatting::Warper& GetWarper() { return this->Warper; }

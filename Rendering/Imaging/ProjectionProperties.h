@@ -27,7 +27,7 @@ const char* nameOfAcceleration(int acceleration);
  * Properties without effect are not checked.
  */
 template <class Object>
-const char* faultOf(Object& object)
+const char* validate(Object& object)
 {
   const auto finite = [](const double* values, int count)
   { return std::all_of(values, values + count, [](double x) { return std::isfinite(x); }); };

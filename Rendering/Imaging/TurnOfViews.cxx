@@ -47,7 +47,7 @@ glm::dvec3 vector(const double* v)
 }
 
 /// Returns an error message, or nullptr.
-const char* faultOf(const TurnSettings& s)
+const char* validate(const TurnSettings& s)
 {
   const bool automatic = s.spacing == glm::dvec2(0.0);
   const struct
@@ -56,16 +56,16 @@ const char* faultOf(const TurnSettings& s)
     const char* sentence;
   } problems[] = {
     { s.size.x < 1 || s.size.y < 1 || std::max(s.size.x, s.size.y) > TurnOfViews::MostPixels,
-      "OutputSize has no meaning: set both numbers of pixels to 1 to 16384." },
+      "OutputSize is invalid: set both numbers of pixels to 1 to 16384." },
     { !automatic &&
         !(s.spacing.x > 0.0 && s.spacing.y > 0.0 && std::isfinite(s.spacing.x + s.spacing.y)),
-      "OutputSpacing has no meaning: set both to world units above 0, or both to 0 for "
+      "OutputSpacing is invalid: set both to world units above 0, or both to 0 for "
       "automatic." },
     { !isFinite(s.axis),
       "RotationAxis is not finite: set it to a direction of the world, or to 0, 0, 0 for "
       "view-up." },
     { !std::isfinite(s.angle) || s.angle == 0.0,
-      "TotalAngle has no meaning: set it to degrees other than 0." },
+      "TotalAngle is invalid: set it to degrees other than 0." },
     { !s.camera && !isDirection(s.direction),
       "ViewDirection is no direction: set it to finite numbers that are not all 0." },
     { !s.camera &&
@@ -94,7 +94,7 @@ const char* const TurnOfViews::Degenerate =
 
 const char* TurnOfViews::Set(const TurnSettings& settings)
 {
-  if (const char* const fault = faultOf(settings))
+  if (const char* const fault = validate(settings))
   {
     return fault;
   }

@@ -56,11 +56,11 @@ public:
   ScalarChoice ScalarsOf(vtkSplattingMIPProjection* self, vtkDataArray* array, int association,
     vtkImageData* input) const;
   TurnSettings TurnOf(vtkSplattingMIPProjection* self, vtkImageData* input) const;
-  void TellPlace(
+  void SetOutputGeometry(
     vtkSplattingMIPProjection* self, vtkInformation* input, vtkInformation* output) const;
-  std::string Problem(
+  std::string Validate(
     vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input);
-  bool GoOn(vtkSplattingMIPProjection* self, double done);
+  bool ReportProgress(vtkSplattingMIPProjection* self, double done);
   bool ProjectView(vtkSplattingMIPProjection* self, const splatting::View& view,
     const splatting::ProjectionSettings& settings);
   bool PlaceOutput(vtkImageData* output, bool locate);
@@ -75,7 +75,7 @@ public:
   std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last view and the one before
   std::vector<splatting::Cuts> Cuts, CutsBefore;          // likewise
   int ViewsDone = 0;
-  double Told = 0.0; // progress
+  double Reported = 0.0; // progress
   vtkSmartPointer<vtkImageData> ShearImageOutput;
 };
 
@@ -83,7 +83,7 @@ public:
 vtkSplattingMIPProjection::vtkSplattingMIPProjection() : Internal(new Internals)
 {
   this->Internal->Components.SetObserver(
-    [this](double done) { return this->Internal->GoOn(this, done); });
+    [this](double done) { return this->Internal->ReportProgress(this, done); });
   this->Internal->Components.GetWarper().setObserver([this](double) { return !isAborted(this); });
 }
 
@@ -156,7 +156,7 @@ TurnSettings vtkSplattingMIPProjection::Internals::TurnOf(
 
 //------------------------------------------------------------------------------
 // Validates input and settings. Returns an error message that says what to do, or an empty string.
-std::string vtkSplattingMIPProjection::Internals::Problem(
+std::string vtkSplattingMIPProjection::Internals::Validate(
   vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input)
 {
   vtkInformation* const wanted = self->GetInputArrayInformation(0);
@@ -171,7 +171,7 @@ std::string vtkSplattingMIPProjection::Internals::Problem(
   {
     problem = "Spacing and direction matrix flatten the volume: neither may be singular.";
   }
-  const char* fault = problem.empty() ? faultOf(*self) : nullptr;
+  const char* fault = problem.empty() ? validate(*self) : nullptr;
   if (problem.empty() && !fault)
   {
     fault = this->Turn.Set(this->TurnOf(self, input));
@@ -181,14 +181,15 @@ std::string vtkSplattingMIPProjection::Internals::Problem(
 
 //------------------------------------------------------------------------------
 // Reports progress. Returns whether to continue.
-bool vtkSplattingMIPProjection::Internals::GoOn(vtkSplattingMIPProjection* self, double done)
+bool vtkSplattingMIPProjection::Internals::ReportProgress(
+  vtkSplattingMIPProjection* self, double done)
 {
   const double share =
-    (this->ViewsDone + this->Components.ShareOfAll(done)) / std::max(1, this->Turn.Views());
+    (this->ViewsDone + this->Components.OverallProgress(done)) / std::max(1, this->Turn.Views());
   // At most 100 events in all.
-  if (share >= this->Told + 0.01)
+  if (share >= this->Reported + 0.01)
   {
-    this->Told = share;
+    this->Reported = share;
     self->UpdateProgress(std::min(share, 1.0));
   }
   return !isAborted(self);
@@ -213,7 +214,7 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection
   // The nearest of equal samples is located.
   const bool ordered = splatting::isOrdered(settings.reduction) || settings.keepWinners;
   if (haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts == this->CutsBefore &&
-    this->Components.Shows(settings))
+    this->Components.IsUpToDate(settings))
   {
     return true;
   }
@@ -266,7 +267,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectInput(
   this->Components.SetSource(this->Source);
   this->Components.SetBudget(static_cast<std::size_t>(self->IndexMemoryBudget));
   if (const char* const fault =
-        this->Components.FaultOfVoxels(static_cast<Quality>(self->QualityMode)))
+        this->Components.ValidateVoxels(static_cast<Quality>(self->QualityMode)))
   {
     return fault;
   }
@@ -283,7 +284,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
 {
   const glm::dmat4& toWorld = this->Source.Grid().indexToPhysical;
   this->ViewsDone = 0;
-  this->Told = 0.0;
+  this->Reported = 0.0;
   for (const int n : this->Turn.Order())
   {
     splatting::View view =
@@ -314,7 +315,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     {
       return TurnOfViews::Degenerate;
     }
-    if (!this->ProjectView(self, view, settings) || !this->GoOn(self, 0.0))
+    if (!this->ProjectView(self, view, settings) || !this->ReportProgress(self, 0.0))
     {
       return {};
     }
@@ -360,7 +361,7 @@ void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, i
 
 //------------------------------------------------------------------------------
 // Sets the geometry of the output for RequestInformation().
-void vtkSplattingMIPProjection::Internals::TellPlace(
+void vtkSplattingMIPProjection::Internals::SetOutputGeometry(
   vtkSplattingMIPProjection* self, vtkInformation* input, vtkInformation* output) const
 {
   vtkNew<vtkImageData> volume, picture;
@@ -384,7 +385,7 @@ int vtkSplattingMIPProjection::RequestInformation(
   const int whole[6] = { 0, std::clamp(this->OutputSize[0], 1, TurnOfViews::MostPixels) - 1, 0,
     std::clamp(this->OutputSize[1], 1, TurnOfViews::MostPixels) - 1, 0, this->NumberOfViews - 1 };
   info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole, 6);
-  this->Internal->TellPlace(this, input[0]->GetInformationObject(0), info);
+  this->Internal->SetOutputGeometry(this, input[0]->GetInformationObject(0), info);
   vtkInformation* const array = this->GetInputArrayFieldInformation(0, input);
   int type = VTK_FLOAT, components = 1;
   if (array && array->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
@@ -426,7 +427,7 @@ int vtkSplattingMIPProjection::RequestData(
   std::string problem;
   try
   {
-    problem = in.Problem(this, array, association, input);
+    problem = in.Validate(this, array, association, input);
     problem = problem.empty() ? in.ProjectInput(this, output) : problem;
   }
   catch (const std::bad_alloc&)

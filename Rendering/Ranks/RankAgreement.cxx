@@ -42,7 +42,7 @@ int vtkTypeOf(ScalarType type)
 }
 
 /// FNV-1a hash of numbers.
-class Number
+class Hash
 {
 public:
   template <class T>
@@ -71,61 +71,61 @@ private:
   std::uint64_t Value = 14695981039346656037u;
 };
 
-void addScalars(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+void addScalars(vtkSplattingMIPVolumeMapper* mapper, Hash& hash)
 {
-  number.add(mapper->GetScalarMode());
-  number.add(mapper->GetArrayAccessMode());
+  hash.add(mapper->GetScalarMode());
+  hash.add(mapper->GetArrayAccessMode());
   if (mapper->GetArrayAccessMode() == VTK_GET_ARRAY_BY_ID)
   {
-    number.add(mapper->GetArrayId());
+    hash.add(mapper->GetArrayId());
   }
   else if (const char* const name = mapper->GetArrayName())
   {
-    number.add(name, static_cast<int>(std::strlen(name)));
+    hash.add(name, static_cast<int>(std::strlen(name)));
   }
 }
 
 /// Adds some entries of a table, because all of them would take too long.
-void addColors(vtkScalarsToColors* colors, Number& number)
+void addColors(vtkScalarsToColors* colors, Hash& hash)
 {
   constexpr int samples = 64;
   const double* const range = colors->GetRange();
-  number.add(range, 2);
+  hash.add(range, 2);
   for (int n = 0; n <= samples; ++n)
   {
-    number.add(colors->MapValue(range[0] + (range[1] - range[0]) * n / samples), 4);
+    hash.add(colors->MapValue(range[0] + (range[1] - range[0]) * n / samples), 4);
   }
 }
 
 /// Adds all settings that change the picture, except masks, which are data.
-void addSettings(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+void addSettings(vtkSplattingMIPVolumeMapper* mapper, Hash& hash)
 {
   std::ostringstream text;
   text.precision(std::numeric_limits<double>::max_digits10);
   mapper->PrintPictureSettings(text, vtkIndent());
-  number.add(text.str().data(), static_cast<int>(text.str().size()));
-  number.add(mapper->GetBlendMode());
-  number.add(mapper->GetAverageIPScalarRange(), 2);
-  number.add(mapper->GetCropping());
-  number.add(mapper->GetCroppingRegionPlanes(), 6);
-  number.add(mapper->GetCroppingRegionFlags());
+  hash.add(text.str().data(), static_cast<int>(text.str().size()));
+  hash.add(mapper->GetBlendMode());
+  hash.add(mapper->GetAverageIPScalarRange(), 2);
+  hash.add(mapper->GetCropping());
+  hash.add(mapper->GetCroppingRegionPlanes(), 6);
+  hash.add(mapper->GetCroppingRegionFlags());
   if (vtkScalarsToColors* const colors = mapper->GetDepthCodingColors())
   {
-    addColors(colors, number);
+    addColors(colors, hash);
   }
   if (vtkPolyData* const surface = mapper->GetBoundingSurface())
   {
-    number.add(surface->GetNumberOfPoints());
-    number.add(surface->GetBounds(), 6);
+    hash.add(surface->GetNumberOfPoints());
+    hash.add(surface->GetBounds(), 6);
   }
 }
 
-void addPlanes(vtkPlaneCollection* planes, Number& number)
+void addPlanes(vtkPlaneCollection* planes, Hash& hash)
 {
   for (int n = 0; planes && n < planes->GetNumberOfItems(); ++n)
   {
-    number.add(planes->GetItem(n)->GetNormal(), 3);
-    number.add(planes->GetItem(n)->GetOrigin(), 3);
+    hash.add(planes->GetItem(n)->GetNormal(), 3);
+    hash.add(planes->GetItem(n)->GetOrigin(), 3);
   }
 }
 
@@ -177,7 +177,7 @@ std::string problemOf(const std::vector<RankReport>& reports, bool ofGrids)
   { return std::any_of(reports.begin(), reports.end(), isOther); };
   if (!ofGrids && any([&](const RankReport& r) { return r.view != first->view; }))
   {
-    return "The ranks see the volume in different ways: give their cameras, windows and mappers "
+    return "Views or settings differ between ranks: give their cameras, windows and mappers "
            "the same settings.";
   }
   if (any([&](const RankReport& r) { return !r.isEmpty() && !sameGrid(r, *first); }))
@@ -187,7 +187,7 @@ std::string problemOf(const std::vector<RankReport>& reports, bool ofGrids)
   }
   if (!ofGrids && any([&](const RankReport& r) { return !r.isEmpty() && !sameScalars(r, *first); }))
   {
-    return "The ranks' scalars differ in type, number of components, or in being of cells or "
+    return "The ranks' scalars differ in type, hash of components, or in being of cells or "
            "points (pieces with hidden voxels are float): give all pieces the same.";
   }
   return {};
@@ -255,24 +255,24 @@ RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& prob
   return report;
 }
 
-std::uint64_t viewNumber(
+std::uint64_t viewHash(
   vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume)
 {
-  Number number;
+  Hash hash;
   int size[2], origin[2];
   renderer->GetTiledSizeAndOrigin(&size[0], &size[1], &origin[0], &origin[1]);
-  number.add(size, 2);
+  hash.add(size, 2);
   vtkCamera* const camera = renderer->GetActiveCamera();
-  number.add(
+  hash.add(
     camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0)->GetData(),
     16);
-  number.add(camera->GetViewTransformMatrix()->GetData(), 16);
-  number.add(volume->GetMatrix()->GetData(), 16);
-  number.add(volume->GetProperty()->GetIndependentComponents());
-  addSettings(mapper, number);
-  addScalars(mapper, number);
-  addPlanes(mapper->GetClippingPlanes(), number);
-  return number.get();
+  hash.add(camera->GetViewTransformMatrix()->GetData(), 16);
+  hash.add(volume->GetMatrix()->GetData(), 16);
+  hash.add(volume->GetProperty()->GetIndependentComponents());
+  addSettings(mapper, hash);
+  addScalars(mapper, hash);
+  addPlanes(mapper->GetClippingPlanes(), hash);
+  return hash.get();
 }
 
 bool RankAgreement::Use(vtkMultiProcessController* controller)
@@ -382,7 +382,7 @@ std::string RankAgreement::Agree(const RankReport& own)
   {
     problem = "The ranks' pieces do not cover the image: each needs " + std::to_string(own.layers) +
       (own.layers == 1 ? " layer" : " layers") +
-      " of its neighbours' voxels in this quality mode. Ask the pipeline for as many ghost "
+      " of its neighbours' voxels in this quality mode. Request as many ghost "
       "layers.";
   }
   if (!own.isEmpty())
@@ -392,7 +392,7 @@ std::string RankAgreement::Agree(const RankReport& own)
   return problem;
 }
 
-std::string RankAgreement::AgreeOnAbsence() const
+std::string RankAgreement::ReportMissingFrame() const
 {
   RankReport own;
   own.absent = 1;

@@ -72,7 +72,7 @@ public:
    * Collective. Replaces Agree() on a rank that has rendered a frame without the volume.
    * @return an error message, the same on all ranks, or an empty string if no rank has rendered it
    */
-  std::string AgreeOnAbsence() const;
+  std::string ReportMissingFrame() const;
   /// Collective. As Agree(), for the grid alone.
   std::string AgreeOnGrid(const RankReport& own);
 
@@ -129,7 +129,7 @@ void describeScalars(
   ComponentProjector& components, const ScalarSource& source, RankReport& report);
 
 /// A hash of the view and the settings, which must be the same on all ranks.
-std::uint64_t viewNumber(
+std::uint64_t viewHash(
   vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume);
 
 /// The vtkImageData of which a mapper projects a piece; nullptr if it has none, or no points.

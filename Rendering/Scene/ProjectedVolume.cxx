@@ -86,16 +86,16 @@ bool ProjectedVolume::FindCuts(vtkSplattingMIPVolumeMapper* mapper, const View& 
 }
 
 // Whether the last projection shows this frame.
-bool ProjectedVolume::Shows(const View& view, const ProjectionSettings& settings) const
+bool ProjectedVolume::IsUpToDate(const View& view, const ProjectionSettings& settings) const
 {
   if (this->Components.UsesCells(settings))
   {
-    return this->Cuts.AreKeptOnScreen(view) && this->Components.Shows(settings);
+    return this->Cuts.AreKeptOnScreen(view) && this->Components.IsUpToDate(settings);
   }
   const bool ordered = isOrdered(settings.reduction) || settings.keepWinners ||
     this->Source.AreDependent(); // of equal samples the nearest is located
   return haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts.AreKept() &&
-    this->Components.Shows(settings);
+    this->Components.IsUpToDate(settings);
 }
 
 bool ProjectedVolume::Project(vtkSplattingMIPVolumeMapper* mapper, const View& view,
@@ -109,7 +109,7 @@ bool ProjectedVolume::Project(vtkSplattingMIPVolumeMapper* mapper, const View& v
   {
     return false;
   }
-  const bool isShown = this->Shows(view, best);
+  const bool isShown = this->IsUpToDate(view, best);
   // If one rank projects, all ranks project.
   if (this->Ranks.AreMany() ? !this->Ranks.Any(!isShown) : isShown)
   {

@@ -81,7 +81,7 @@ private:
   int ChooseMode(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume);
   bool FindCuts(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkRenderer* renderer,
     vtkVolume* volume, const SceneCuts::DepthReader& readDepth, const ProjectionSettings& settings);
-  bool Shows(const View& view, const ProjectionSettings& settings) const;
+  bool IsUpToDate(const View& view, const ProjectionSettings& settings) const;
 
   std::vector<ShearWarp> ImagesBefore; // of the frame before
   vtkIdType Projections = 0, ProjectionsBefore = 0;

@@ -29,8 +29,9 @@ void SceneCuts::Find(const View& view, const std::vector<ShearWarp>& images, vtk
 void SceneCuts::FindScene(const View& view, vtkRenderer* renderer, vtkVolume* volume,
   bool intermixes, const DepthReader& readDepth)
 {
-  this->Seen = renderer->GetSelector() ? this->RememberScene(view, renderer, volume, intermixes)
-                                       : this->LookAtScene(renderer, volume, intermixes, readDepth);
+  this->Seen = renderer->GetSelector()
+    ? this->FindLastScene(view, renderer, volume, intermixes)
+    : this->ReadSceneDepth(renderer, volume, intermixes, readDepth);
   if (this->Seen)
   {
     this->Seen->indexToClip = view.indexToClip;
@@ -84,7 +85,7 @@ void SceneCuts::Hide(Picture& picture) const
 
 // Passes of a selection draw other depths than frames, so a selection uses the depths of the last
 // frame. If no frame has shown this view, as after the camera has moved, there are none.
-SceneCuts::Scene* SceneCuts::RememberScene(
+SceneCuts::Scene* SceneCuts::FindLastScene(
   const View& view, const vtkRenderer* renderer, const vtkVolume* volume, bool intermixes)
 {
   const auto scene = std::find_if(this->Scenes.begin(), this->Scenes.end(),
@@ -97,7 +98,7 @@ SceneCuts::Scene* SceneCuts::RememberScene(
 }
 
 // Reads the depths that were rendered before the volume, if there are any.
-SceneCuts::Scene* SceneCuts::LookAtScene(
+SceneCuts::Scene* SceneCuts::ReadSceneDepth(
   vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
 {
   Scene& scene = this->SceneOf(renderer, volume);

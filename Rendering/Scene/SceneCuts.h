@@ -76,9 +76,9 @@ private:
 
   void FindScene(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
     const DepthReader& readDepth);
-  Scene* RememberScene(
+  Scene* FindLastScene(
     const View& view, const vtkRenderer* renderer, const vtkVolume* volume, bool intermixes);
-  Scene* LookAtScene(
+  Scene* ReadSceneDepth(
     vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
   Scene& SceneOf(const vtkRenderer* renderer, const vtkVolume* volume);
 

@@ -25,10 +25,10 @@ namespace splatting
 namespace
 {
 const char* const NoPolygons =
-  "The bounding surface has no polygons: give it some, or take it away with "
+  "The bounding surface has no polygons: add some, or remove the surface with "
   "SetBoundingSurface(nullptr).";
 const char* const NoArea =
-  "The polygons of the bounding surface have no area: give it some that have, or take it away with "
+  "The polygons of the bounding surface have no area: add larger ones, or remove the surface with "
   "SetBoundingSurface(nullptr).";
 const char* const NoPlaces =
   "The bounding surface has points that are not finite, or farther away than 1e12 voxels: give it "

@@ -106,7 +106,7 @@ vtkMTimeType timeOf(vtkDataSet* input)
 }
 
 /// The error of the data set, except for its arrays and geometry.
-std::string problemOfInput(vtkDataSet* input)
+std::string loadInput(vtkDataSet* input)
 {
   if (!input)
   {
@@ -183,9 +183,9 @@ ScalarType scalarTypeOfVtk(int vtkType)
   return ScalarType::Float32;
 }
 
-const char* const ScalarSource::NoMemory =
-  "There is not enough memory to project this volume: make room, lower IndexMemoryBudget, or show "
-  "a part of the volume or fewer components.";
+const char* const ScalarSource::NoMemory = "There is not enough memory to project this volume: "
+                                           "free memory, lower IndexMemoryBudget, or show "
+                                           "a part of the volume or fewer components.";
 
 ScalarSource::ScalarSource() = default;
 
@@ -224,7 +224,7 @@ void* ScalarSource::Copy::Allocate(std::ptrdiff_t voxels, ScalarType type)
 std::string ScalarSource::Examine(vtkDataSet* input, const ScalarChoice& choice)
 {
   Key key;
-  std::string problem = problemOfInput(input);
+  std::string problem = loadInput(input);
   if (problem.empty())
   {
     problem = this->FindScalars(input, choice, key);

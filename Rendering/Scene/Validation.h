@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef Refusals_h
-#define Refusals_h
+#ifndef Validation_h
+#define Validation_h
 
 #include <string>
 
@@ -18,8 +18,8 @@ class ProjectedVolume;
  * its properties. Loads the input into `data`.
  * @return an error message that says what to do, or an empty string
  */
-std::string refusalOf(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
-  ProjectedVolume& data);
+std::string loadAndValidate(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer,
+  vtkVolume* volume, ProjectedVolume& data);
 }
 
 #endif
