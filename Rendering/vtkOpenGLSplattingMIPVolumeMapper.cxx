@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkOpenGLSplattingMIPVolumeMapper.h"
 
+#include "Common/Parallel.h"
+
 #include "vtkObjectFactory.h"
 #include "vtkOpenGLFramebufferObject.h"
 #include "vtkOpenGLQuadHelper.h"
@@ -9,7 +11,6 @@
 #include "vtkOpenGLShaderCache.h"
 #include "vtkOpenGLState.h"
 #include "vtkRenderer.h"
-#include "vtkSMPTools.h"
 #include "vtkShaderProgram.h"
 #include "vtkTextureObject.h"
 #if __has_include("vtk_glad.h") // since VTK 9.4
@@ -139,7 +140,7 @@ using Parts = std::array<Rectangle, Bands>;
 Parts opaqueParts(const unsigned char* rgba, const int size[2])
 {
   Parts parts;
-  vtkSMPTools::For(0, Bands, 1,
+  splatting::parallelFor(0, Bands, 1,
     [&](vtkIdType first, vtkIdType last)
     {
       for (int b = static_cast<int>(first); b < last; ++b)

@@ -24,7 +24,7 @@
 #   paraview          the plugin in ParaView 5.11 (Debian 12); warnings are errors
 #   paraview-debian13 the plugin in ParaView 5.13 (Debian 13)
 #   packages          Debian packages, on Debian 12 and 13
-#   wheel             a wheel for VTK 9.3.0 from PyPI
+#   wheel             wheels for vtk 9.3.0 and 9.6.2 of PyPI, and for cvista if there is a python3.12
 set -euo pipefail
 
 testing_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -165,7 +165,16 @@ part_packages() {
 }
 
 part_wheel() {
-  bash "$testing_dir/Hosts/test-wheel.sh" 9.3.0 /usr/bin/python3
+  local python
+  for python in /usr/bin/python3 python3.12 python3.13; do
+    if ! "$python" --version; then
+      echo "Skipped: there is no $python"
+      continue
+    fi
+    [[ $python == /usr/bin/python3 ]] || bash "$testing_dir/Hosts/test-wheel.sh" cvista "$python"
+    bash "$testing_dir/Hosts/test-wheel.sh" 9.3.0 "$python"
+    bash "$testing_dir/Hosts/test-wheel.sh" 9.6.2 "$python"
+  done
 }
 
 if (($# == 0)); then

@@ -3,29 +3,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Maximum intensity projections from NumPy to NumPy; needs neither a display nor OpenGL."""
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtksplattingmip import vtkSplattingMIPProjection
+from vtksplattingmip import mip
 
+dot = numpy.full((40, 50, 60), -1000, numpy.int16)  # air, in Hounsfield units
+dot[18:23, 22:27, 27:32] = 700
+spacing = (2.0, 0.7, 0.7)  # of slices, rows and columns, in millimetres
 
-def mip(volume, spacing=(1.0, 1.0, 1.0), views=1, size=(256, 256)):
-    """volume[z, y, x] to pictures[view, row, column], the top row first, values in the same unit."""
-    image = vtkImageData()
-    image.SetDimensions(volume.shape[::-1])
-    image.SetSpacing(spacing)
-    image.GetPointData().SetScalars(numpy_to_vtk(volume.ravel()))
-    projection = vtkSplattingMIPProjection()
-    projection.SetInputData(image)
-    projection.SetNumberOfViews(views)
-    projection.SetOutputSize(size)
-    projection.SetBackgroundValue(volume.min())
-    projection.Update()
-    return vtk_to_numpy(projection.GetOutput().GetPointData().GetScalars()).reshape(
-        views, size[1], size[0])[:, ::-1].copy()
-
-
-if __name__ == "__main__":
-    dot = numpy.full((40, 50, 60), -1000, numpy.int16)  # air, in Hounsfield units
-    dot[18:23, 22:27, 27:32] = 700
-    pictures = mip(dot, views=4)
+front = mip(dot, spacing, direction=1)  # the same as dot.max(axis=1)
+oblique = mip(dot, spacing, direction=(0.2, -1, 0.5), shape=(256, 256))
+turn = mip(dot, spacing, direction=1, mode="preview", views=36)
+for pictures in front, oblique, turn:
     print("pictures:", pictures.shape, pictures.dtype, "from", pictures.min(), "to", pictures.max())

@@ -12,10 +12,10 @@ import pathlib
 import time
 
 import numpy
-from numpy_mip import mip
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtksplattingmip import mip
 
 SPACING = (4.0, 4.0, 4.0)  # mm, as PET scanners have it
 # Standardised uptake value, middle and half axes in voxels (x to the patient's left, y to the back,
@@ -65,7 +65,7 @@ arguments.output.mkdir(parents=True, exist_ok=True)
 
 volume = phantom()
 start = time.perf_counter()
-pictures = mip(volume, SPACING, arguments.views, (256, 384))
+pictures = mip(volume, SPACING, (0, 1, 0), up=(1, 0, 0), views=arguments.views)
 seconds = time.perf_counter() - start
 print(f"{arguments.views} views of {volume.shape} in {seconds:.2f} s, SUV up to {pictures.max():.1f}")
 gray = (255.0 - numpy.clip(pictures / 8.0, 0.0, 1.0) * 255.0).astype(numpy.uint8)

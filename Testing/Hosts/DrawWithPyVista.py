@@ -13,8 +13,7 @@ import sys
 
 import numpy
 import pyvista
-from vtkmodules.vtkCommonCore import vtkLogger
-from vtksplattingmip import vtkSplattingMIPGPUVolumeRayCastMapper, vtkSplattingMIPVolumeMapper
+import vtksplattingmip
 
 SIZE = (28, 24, 20)  # of the volume in x, y and z
 PIXELS = 9  # along a voxel's side: an odd number, so that a pixel's ray meets the voxel's centre
@@ -30,7 +29,7 @@ def check(what, passed):
         failures.append(what)
 
 
-def picture(volume, view, right, up):
+def picture(volume, view, right, up, one_volume):
     """The gray picture of the maximum in a view of which axes of the volume lie to the right and upward."""
     image = pyvista.ImageData(dimensions=SIZE)
     image.point_data["scalars"] = volume.ravel()  # x runs fastest
@@ -38,7 +37,7 @@ def picture(volume, view, right, up):
         off_screen=True, window_size=(PIXELS * SIZE[right], PIXELS * SIZE[up])
     )
     plotter.background_color = "black"
-    plotter.add_volume(
+    actor = plotter.add_volume(
         image,
         blending="maximum",
         mapper="smart",
@@ -47,6 +46,8 @@ def picture(volume, view, right, up):
         opacity=[1.0, 1.0],
         show_scalar_bar=False,
     )
+    if one_volume:
+        vtksplattingmip.use_for(actor, "preview")
     getattr(plotter, view)()
     plotter.enable_parallel_projection()
     plotter.camera.parallel_scale = SIZE[up] / 2
@@ -55,28 +56,34 @@ def picture(volume, view, right, up):
     return pixels[::-1, :, 0].astype(int)  # the lowest row first
 
 
-vtkSplattingMIPGPUVolumeRayCastMapper.GlobalOverrideOn()
-vtkSplattingMIPGPUVolumeRayCastMapper.SetGlobalQualityMode(vtkSplattingMIPVolumeMapper.PREVIEW)
+def check_pictures(what, one_volume=False):
+    # Most values are small, so that the maxima of 20 and more differ much.
+    volume = (256 * numpy.random.default_rng().random(SIZE[::-1]) ** 20).astype(numpy.uint8)
+    for view, right, up, along in (("view_xy", 0, 1, 2), ("view_xz", 0, 2, 1), ("view_yz", 1, 2, 0)):
+        found = picture(volume, view, right, up, one_volume)[PIXELS // 2 :: PIXELS, PIXELS // 2 :: PIXELS]
+        expected = volume.max(axis=2 - along)  # NumPy's axes are z, y, x
+        # A colour is looked up in a table and rounded to a byte, each by half a level at most.
+        error = abs(found - expected)[1:-1, 1:-1].max()
+        check(f"{what}, along axis {along}, draws NumPy's maximum (largest difference {error})", error <= 1)
+
+
+vtkLogger = vtksplattingmip._vtk_module("vtkCommonCore").vtkLogger
 log = FOLDER / "log.txt"
 vtkLogger.SetInternalVerbosityLevel(vtkLogger.VERBOSITY_1)
 vtkLogger.LogToFile(str(log), vtkLogger.TRUNCATE, vtkLogger.VERBOSITY_1)
-
-# Most values are small, so that the maxima of 20 and more differ much.
-volume = (256 * numpy.random.default_rng().random(SIZE[::-1]) ** 20).astype(numpy.uint8)
-for view, right, up, along in (("view_xy", 0, 1, 2), ("view_xz", 0, 2, 1), ("view_yz", 1, 2, 0)):
-    found = picture(volume, view, right, up)[PIXELS // 2 :: PIXELS, PIXELS // 2 :: PIXELS]
-    expected = volume.max(axis=2 - along)  # NumPy's axes are z, y, x
-    # A colour is looked up in a table and rounded to a byte, each by half a level at most.
-    error = abs(found - expected)[1:-1, 1:-1].max()
-    check(f"along axis {along} the picture is NumPy's maximum (largest difference {error})", error <= 1)
-
+vtksplattingmip.enable("preview")
+check_pictures("enable()")
+vtksplattingmip.disable()
 vtkLogger.EndLogToFile(str(log))
 renderers = re.findall(r"renders by .*", log.read_text())
 check(
     f"the log says that {len(renderers)} renders were by the splatting mapper",
     len(renderers) >= 3 and set(renderers) == {SPLATTED},
 )
+check_pictures("use_for()", one_volume=True)
 maps = pathlib.Path("/proc/self/maps").read_text()
 foreign = {line for line in re.findall(r"/\S*libvtk\S*", maps) if not line.startswith(sys.prefix)}
 check(f"all of VTK comes from the environment ({sorted(foreign)} does not)", not foreign)
+packages = set(re.findall(r"/(cvista|vtkmodules)/libvtk", maps))
+check(f"there is one VTK ({', '.join(sorted(packages))})", len(packages) == 1)
 sys.exit(len(failures))

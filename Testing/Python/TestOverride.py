@@ -4,8 +4,12 @@
 
 import unittest
 
+from vtkmodules.vtkCommonDataModel import vtkPlane
+from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkRenderingVolume import vtkGPUVolumeRayCastMapper
 from vtkmodules.vtkRenderingVolumeOpenGL2 import vtkSmartVolumeMapper
+from vtkmodules.vtkRenderingCore import vtkVolume
+import vtksplattingmip
 from vtksplattingmip import (
     vtkSplattingMIPGPUVolumeRayCastMapper,
     vtkSplattingMIPVolumeMapper,
@@ -36,6 +40,41 @@ class TestOverride(unittest.TestCase):
         preview.SetQualityModeToPreview()
         self.assertEqual(picture(mapper), picture(preview))
         self.assertTrue(mapper.GetLastRenderUsedSplatting())
+
+    def test_functions(self):
+        preview = vtkSplattingMIPVolumeMapper()
+        preview.SetQualityModeToPreview()
+        expected = picture(preview)
+        vtksplattingmip.enable("preview")
+        self.assertEqual(picture(vtkSmartVolumeMapper()), expected)
+        vtksplattingmip.disable()
+        self.assertNotEqual(picture(vtkSmartVolumeMapper()), expected)
+        self.assertRaises(ValueError, vtksplattingmip.enable, "best")
+
+    def test_one_volume(self):
+        """use_for() keeps what the mapper before had."""
+        old = vtkSmartVolumeMapper()
+        old.SetInputConnection(vtkRTAnalyticSource().GetOutputPort())
+        old.SetBlendModeToMinimumIntensity()
+        old.SelectScalarArray("RTData")
+        old.SetScalarModeToUsePointFieldData()
+        old.CroppingOn()
+        old.SetCroppingRegionPlanes(1, 2, 3, 4, 5, 6)
+        old.SetCroppingRegionFlagsToFence()
+        old.AddClippingPlane(vtkPlane())
+        volume = vtkVolume()
+        volume.SetMapper(old)
+        new = vtksplattingmip.use_for(volume, "high")
+        self.assertIs(volume.GetMapper(), new)
+        self.assertEqual(new.GetQualityMode(), new.HIGH)
+        for name in (
+            "InputConnection", "BlendMode", "ArrayName", "ScalarMode", "Cropping", "CroppingRegionPlanes",
+            "CroppingRegionFlags", "ClippingPlanes",
+        ):
+            arguments = (0, 0) if name == "InputConnection" else ()
+            self.assertEqual(
+                getattr(new, f"Get{name}")(*arguments), getattr(old, f"Get{name}")(*arguments), name
+            )
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ endforeach ()
 
 # libvtkCommonCore-9.3.so is VTK::CommonCore, libvtksys.so is VTK::vtksys, and
 # libvtkWrappingPythonCore3.11.so is VTK::WrappingPythonCore.
-file(GLOB libraries "${SPLATTINGMIP_VTK_WHEEL}/vtkmodules/libvtk*.so")
+file(GLOB libraries "$ENV{SPLATTINGMIP_VTK_WHEEL}/vtkmodules/libvtk*.so")
 foreach (library IN LISTS libraries)
   get_filename_component(file "${library}" NAME)
   if (NOT file MATCHES "^libvtk([A-Za-z0-9_]+)(3\\.[0-9]+)?(-[0-9.]+)?\\.so$")
@@ -41,5 +41,5 @@ foreach (library IN LISTS libraries)
 endforeach ()
 
 foreach (tool IN ITEMS WrapHierarchy WrapPython WrapPythonInit)
-  set_property(TARGET "VTK::${tool}" PROPERTY IMPORTED_LOCATION "${SPLATTINGMIP_VTK_TOOLS}/${tool}")
+  set_property(TARGET "VTK::${tool}" PROPERTY IMPORTED_LOCATION "$ENV{SPLATTINGMIP_VTK_TOOLS}/${tool}")
 endforeach ()

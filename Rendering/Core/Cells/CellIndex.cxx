@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Cells/CellIndex.h"
 
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
+
 
 #include <glm/common.hpp>
 
@@ -162,8 +163,8 @@ private:
 template <class T, bool Minima>
 void survey(const CellGrid& grid, T* blocks, T* bricks)
 {
-  vtkSMPTools::For(0, grid.bricks.z, 1,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, grid.bricks.z, 1,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       Survey<T, Minima> survey(grid, blocks);
       for (int z = static_cast<int>(begin); z < end; ++z)

@@ -4,8 +4,8 @@
 
 #include "Cells/LocalMaxima.h"
 #include "Cells/TileSplatter.h"
+#include "Common/Parallel.h"
 
-#include <vtkSMPTools.h>
 
 #include <algorithm>
 #include <mutex>
@@ -127,10 +127,10 @@ void CellProjector::finish(
       using A = Accumulator<std::remove_pointer_t<decltype(null)>>;
       const ValueScale<A> scale(index.range(), settings.reduction);
       A* const values = screen.row<A>(0);
-      vtkSMPTools::For(0, vtkIdType(screen.size.x) * screen.size.y, 1 << 14,
-        [&](vtkIdType begin, vtkIdType end)
+      parallelFor(0, std::ptrdiff_t(screen.size.x) * screen.size.y, 1 << 14,
+        [&](std::ptrdiff_t begin, std::ptrdiff_t end)
         {
-          for (vtkIdType n = begin; n < end; ++n)
+          for (std::ptrdiff_t n = begin; n < end; ++n)
           {
             values[n] = scale.voxelOf(values[n]);
           }
@@ -170,10 +170,10 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
       const CellFrame<T> frame(index, view, settings, ends, locates, rectangle, screen.rays);
       Scratch& memory = *this->Memory;
       const std::size_t bricks = frame.bounds.order.size();
-      vtkSMPTools::For(0, Scratch::Chunks, 1,
-        [&](vtkIdType begin, vtkIdType end)
+      parallelFor(0, Scratch::Chunks, 1,
+        [&](std::ptrdiff_t begin, std::ptrdiff_t end)
         {
-          for (vtkIdType n = begin; n < end; ++n)
+          for (std::ptrdiff_t n = begin; n < end; ++n)
           {
             assignBricks(frame, bricks * n / Scratch::Chunks, bricks * (n + 1) / Scratch::Chunks,
               memory.seen[n]);
@@ -191,12 +191,12 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
       std::sort(memory.tiles.begin(), memory.tiles.end(),
         [&](int a, int b) { return memory.costs[a] > memory.costs[b]; });
       this->Observer.begin(static_cast<int>(memory.tiles.size()));
-      vtkSMPTools::For(0, static_cast<vtkIdType>(memory.tiles.size()), 1,
-        [&](vtkIdType begin, vtkIdType end)
+      parallelFor(0, static_cast<std::ptrdiff_t>(memory.tiles.size()), 1,
+        [&](std::ptrdiff_t begin, std::ptrdiff_t end)
         {
           std::unique_ptr<ScreenTile<A>> tile = memory.take<A>();
           TileSplatter<T> splatter(frame, *tile);
-          for (vtkIdType n = begin; n < end && !this->Observer.stopped(); ++n)
+          for (std::ptrdiff_t n = begin; n < end && !this->Observer.stopped(); ++n)
           {
             splatter.open(memory.tiles[n]);
             for (const auto& seen : memory.seen)

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Cells/LocalMaxima.h"
 
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
+
 
 #include <algorithm>
 #include <array>
@@ -275,8 +276,8 @@ void findLocalMaxima(const CellFrame<T>& frame, double threshold, ScreenScalars&
   const double scale = std::abs(static_cast<double>(frame.values.scale.factor));
   const double range = scale * frame.highest - scale * frame.lowest;
   const double rounding = std::isfinite(range) ? 0x1p-40 * range : 0.0;
-  vtkSMPTools::For(0, screen.size.y, 1,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, screen.size.y, 1,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       std::vector<double> near(screen.size.x), far(screen.size.x);
       for (int y = static_cast<int>(begin); y < end; ++y)

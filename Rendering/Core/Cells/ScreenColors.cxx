@@ -4,8 +4,7 @@
 
 #include "Cells/BoxProjection.h"
 #include "Cells/CellIndex.h"
-
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
 
 #include <type_traits>
 
@@ -40,10 +39,10 @@ void colorRows(const ScreenScalars& screen, const ColorTable& table, const Works
   const auto last = static_cast<std::int32_t>(table.colors.size()) - 1;
   const A low = static_cast<A>(table.low);
   const A scale = static_cast<A>(table.high > table.low ? last / (table.high - table.low) : 0.0);
-  vtkSMPTools::For(0, screen.size.y, 16,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, screen.size.y, 16,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
-      for (vtkIdType y = begin; y < end; ++y)
+      for (std::ptrdiff_t y = begin; y < end; ++y)
       {
         const A* const values = screen.row<A>(static_cast<int>(y));
         std::uint32_t* const pixels = picture.pixels.data() + y * screen.size.x;

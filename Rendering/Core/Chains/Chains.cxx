@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Chains/LineWalk.h"
 #include "Chains/LineWorksheets.h"
+#include "Common/Parallel.h"
 
-#include <vtkSMPThreadLocal.h>
-#include <vtkSMPTools.h>
 
 #include <memory>
 #include <vector>
@@ -34,7 +33,7 @@ private:
   {
     const LinePreview<T> preview(context, *context.lines, this->Paths);
     // All bands search the sorted chains, so there must be no more bands than threads.
-    const int height = context.image.height, threads = vtkSMPTools::GetEstimatedNumberOfThreads();
+    const int height = context.image.height, threads = numberOfThreads();
     const int rows = context.lines->encoding().order == LineOrder::Lines
       ? bandHeight(height)
       : (height + threads - 1) / threads;
@@ -57,7 +56,7 @@ private:
   }
 
   std::vector<PathRows> Paths;
-  vtkSMPThreadLocal<LineScratch> Scratch;
+  PerThread<LineScratch> Scratch;
   WorksheetSpace<A> Space;
 };
 }

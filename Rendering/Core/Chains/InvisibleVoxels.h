@@ -6,9 +6,9 @@
 #ifndef splattingInvisibleVoxels_h
 #define splattingInvisibleVoxels_h
 
+#include "Common/Parallel.h"
 #include "Projection/ProjectionContext.h"
 
-#include <vtkSMPTools.h>
 
 namespace splatting
 {
@@ -43,10 +43,10 @@ private:
   template <class Body>
   void forRows(Body&& body) const
   {
-    vtkSMPTools::For(0, this->Size.y, 16,
-      [&](vtkIdType first, vtkIdType last)
+    parallelFor(0, this->Size.y, 16,
+      [&](std::ptrdiff_t first, std::ptrdiff_t last)
       {
-        for (vtkIdType j = first; j < last; ++j)
+        for (std::ptrdiff_t j = first; j < last; ++j)
         {
           body(static_cast<int>(j));
         }

@@ -4,6 +4,7 @@
 
 #include "Chains/InvisibleVoxels.h"
 #include "Chains/LineEncoder.h"
+#include "Common/Parallel.h"
 
 #include <vtkSMPTools.h>
 
@@ -56,10 +57,10 @@ template <class T>
 T largestVoxel(const Slices& slices, const glm::ivec3& size)
 {
   std::vector<T> largest(size.z, leastValue<T>());
-  vtkSMPTools::For(0, size.z,
-    [&](vtkIdType first, vtkIdType last)
+  parallelFor(0, size.z, 0,
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
-      for (vtkIdType k = first; k < last; ++k)
+      for (std::ptrdiff_t k = first; k < last; ++k)
       {
         for (int j = 0; j < size.y; ++j)
         {
@@ -187,10 +188,10 @@ private:
     for (int k = 0; k < this->Size.z; k += chunk)
     {
       std::vector<Encoded> slices(std::min(chunk, this->Size.z - k));
-      vtkSMPTools::For(0, static_cast<vtkIdType>(slices.size()), 1,
-        [&](vtkIdType first, vtkIdType last)
+      parallelFor(0, static_cast<std::ptrdiff_t>(slices.size()), 1,
+        [&](std::ptrdiff_t first, std::ptrdiff_t last)
         {
-          for (vtkIdType s = first; s < last; ++s)
+          for (std::ptrdiff_t s = first; s < last; ++s)
           {
             this->encodeSlice(k + static_cast<int>(s), slices[s]);
           }

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Clipping/ClosedSurface.h"
 
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
+
 
 #include <glm/geometric.hpp>
 
@@ -347,8 +348,8 @@ void ClosedSurface::findDepths(SurfaceDepths& depths) const
   const glm::dvec2 beginning = this->beginning(geometry);
   depths.Near.resize(width * geometry.height());
   depths.Far.resize(depths.Near.size());
-  vtkSMPTools::For(0, geometry.height(), 32,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, geometry.height(), 32,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       std::fill_n(&depths.Near[begin * width], (end - begin) * width, beginning.x);
       std::fill_n(&depths.Far[begin * width], (end - begin) * width, beginning.y);

@@ -4,8 +4,8 @@
 
 #include "Clipping/ClosedSurface.h"
 #include "Clipping/SceneDepth.h"
+#include "Common/Parallel.h"
 
-#include <vtkSMPTools.h>
 
 #include <glm/geometric.hpp>
 
@@ -252,8 +252,8 @@ void RayIntervals::find(const ShearWarp& geometry, const std::vector<glm::dvec4>
     cutting.extents.findVolume(geometry);
   }
   std::atomic<bool> isCut(false);
-  vtkSMPTools::For(0, geometry.height(), 16,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, geometry.height(), 16,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       RowDepths depths;
       bool lost = false;
@@ -294,8 +294,8 @@ void RayIntervals::findCrossed(
   this->Width = width;
   this->First.resize(std::size_t(width) * height);
   this->Last.resize(this->First.size());
-  vtkSMPTools::For(0, height, 16,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, height, 16,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       for (int v = static_cast<int>(begin); v < end; ++v)
       {
@@ -316,10 +316,10 @@ void RayIntervals::setShifted(const RayIntervals& other, int firstSlice)
   this->Width = other.Width;
   this->First.resize(other.First.size());
   this->Last.resize(other.Last.size());
-  vtkSMPTools::For(0, static_cast<vtkIdType>(this->First.size()), 1 << 14,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, static_cast<std::ptrdiff_t>(this->First.size()), 1 << 14,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
-      for (vtkIdType n = begin; n < end; ++n)
+      for (std::ptrdiff_t n = begin; n < end; ++n)
       {
         this->First[n] = static_cast<std::int16_t>(other.First[n] - firstSlice);
         this->Last[n] = static_cast<std::int16_t>(other.Last[n] - firstSlice);

@@ -3,8 +3,8 @@
 #include "Clipping/SceneDepth.h"
 
 #include "Cells/PixelRays.h"
+#include "Common/Parallel.h"
 
-#include <vtkSMPTools.h>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -205,8 +205,8 @@ void SceneDepth::hide(Picture& picture) const
   {
     return;
   }
-  vtkSMPTools::For(begin.y, end.y, 16,
-    [&](vtkIdType first, vtkIdType last)
+  parallelFor(begin.y, end.y, 16,
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
       for (int y = static_cast<int>(first); y < last; ++y)
       {

@@ -3,8 +3,8 @@
 #include "Clipping/SurfaceOnScreen.h"
 
 #include "Clipping/ClosedSurface.h"
+#include "Common/Parallel.h"
 
-#include <vtkSMPTools.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -128,12 +128,12 @@ void SurfaceOnScreen::find(const ClosedSurface& surface, const PixelRays& rays,
   std::vector<ScreenTriangle> triangles;
   surface.forTriangles(
     [&](const glm::dvec3(&corners)[3]) { triangles.emplace_back(rays, corners); });
-  vtkSMPTools::For(0, size.y, 8,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, size.y, 8,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       for (const ScreenTriangle& triangle : triangles)
       {
-        for (vtkIdType y = begin; y < end; ++y)
+        for (std::ptrdiff_t y = begin; y < end; ++y)
         {
           const std::ptrdiff_t row = y * size.x - origin.x;
           triangle.cover(static_cast<int>(origin.y + y), origin.x, origin.x + size.x - 1,

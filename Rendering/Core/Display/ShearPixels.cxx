@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Display/ShearPixels.h"
 
+#include "Common/Parallel.h"
 #include "Display/Outline.h"
 #include "Display/PixelArea.h"
 #include "Display/WarpSource.h"
 
-#include <vtkSMPTools.h>
 
 #include <algorithm>
 #include <type_traits>
@@ -76,10 +76,10 @@ void findAreaPixels(const std::vector<ShearImage>& images, const std::vector<She
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
-      vtkSMPTools::For(0, size.y, 16,
-        [&](vtkIdType first, vtkIdType last)
+      parallelFor(0, size.y, 16,
+        [&](std::ptrdiff_t first, std::ptrdiff_t last)
         {
-          for (vtkIdType n = first * size.x; n < last * size.x; ++n)
+          for (std::ptrdiff_t n = first * size.x; n < last * size.x; ++n)
           {
             const glm::dvec3 pixel(origin.x + static_cast<double>(n % size.x),
               origin.y + static_cast<double>(n / size.x), 1.0);
@@ -100,10 +100,10 @@ void findShearPixels(const std::vector<ShearImage>& images,
   {
     shown.push_back(shownBy(geometry));
   }
-  vtkSMPTools::For(0, size.y, 16,
-    [&](vtkIdType first, vtkIdType last)
+  parallelFor(0, size.y, 16,
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
-      for (vtkIdType y = first; y < last; ++y)
+      for (std::ptrdiff_t y = first; y < last; ++y)
       {
         // From the viewport's edge on, so that a pixel of two images has the same one in any
         // rectangle.

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Display/Warp.h"
 
+#include "Common/Parallel.h"
 #include "Display/AreaRows.h"
 #include "Display/WarpSource.h"
 
-#include <vtkSMPTools.h>
 
 #include <algorithm>
 #include <cmath>
@@ -104,10 +104,10 @@ public:
     {
       this->Observer.start();
     }
-    vtkSMPTools::For(0, place.size.y, 16,
-      [&](vtkIdType first, vtkIdType last)
+    parallelFor(0, place.size.y, 16,
+      [&](std::ptrdiff_t first, std::ptrdiff_t last)
       {
-        for (vtkIdType y = first; y < last && (!showsAreas || this->Observer.ask()); ++y)
+        for (std::ptrdiff_t y = first; y < last && (!showsAreas || this->Observer.ask()); ++y)
         {
           const glm::dvec3 start(place.origin.x, place.origin.y + static_cast<double>(y), 1.0);
           Pixel* const out = pixels + y * stride;
@@ -301,10 +301,10 @@ void Warper::warpPixels(const std::vector<ShearImage>& images, const std::vector
       using T = std::remove_pointer_t<decltype(null)>;
       using A = Accumulator<T>;
       const ColorSink<A> sink(kernelsFor(instructionSet), table);
-      vtkSMPTools::For(0, static_cast<vtkIdType>(shown.size()), 1 << 12,
-        [&](vtkIdType first, vtkIdType last)
+      parallelFor(0, static_cast<std::ptrdiff_t>(shown.size()), 1 << 12,
+        [&](std::ptrdiff_t first, std::ptrdiff_t last)
         {
-          for (vtkIdType n = first; n < last; ++n)
+          for (std::ptrdiff_t n = first; n < last; ++n)
           {
             const ShearPixel& from = shown[n];
             const A value = from.image < 0

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Geometry/AxisSteps.h"
 
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
+
 
 #include <algorithm>
 
@@ -43,10 +44,10 @@ void AxisSteps::find(const ShearWarp& geometry, int a, const PerspectiveLoops& l
   this->Tick.resize(steps);
   this->Covers.resize(slices);
   this->Ascends.resize(slices);
-  vtkSMPTools::For(0, slices, 8,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, slices, 8,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
-      for (vtkIdType n = begin; n < end; ++n)
+      for (std::ptrdiff_t n = begin; n < end; ++n)
       {
         const glm::dvec2 faces =
           geometry.passage(this->Slices.begin + static_cast<int>(n)) - geometry.reference();
@@ -94,10 +95,10 @@ void AxisPicks::find(const AxisSteps& steps, int group, int bytes)
   const int slices = steps.Slices.end - steps.Slices.begin;
   this->Bases.resize(2 * std::size_t(slices) * this->Groups);
   this->Lanes.resize(2 * std::size_t(slices) * steps.Padded * bytes);
-  vtkSMPTools::For(0, 2 * slices, 16,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, 2 * slices, 16,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
-      for (vtkIdType row = begin; row < end; ++row)
+      for (std::ptrdiff_t row = begin; row < end; ++row)
       {
         const std::int32_t* const voxels =
           (row % 2 ? steps.Last : steps.First).data() + row / 2 * steps.Padded;

@@ -303,12 +303,13 @@ void walkBands(ProjectionContext& context, const SliceSampler<T, P>& sampler)
           }
         });
     });
-  for (BandScratch& band : context.space.bands)
-  {
-    context.count.met += band.count.met;
-    context.count.splatted += band.count.splatted;
-    band.count = {};
-  }
+  context.space.bands.forAll(
+    [&](BandScratch& band)
+    {
+      context.count.met += band.count.met;
+      context.count.splatted += band.count.splatted;
+      band.count = {};
+    });
   if (findsWinners)
   {
     findWinners(context, sampler);

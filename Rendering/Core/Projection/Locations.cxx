@@ -3,9 +3,9 @@
 #include "Projection/Locations.h"
 
 #include "Cells/ScreenScalars.h"
+#include "Common/Parallel.h"
 #include "Sampling/ValuesAtWinners.h"
 
-#include <vtkSMPTools.h>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -248,8 +248,8 @@ void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec
       using T = std::remove_pointer_t<decltype(null)>;
       GeneralTable table;
       const VoxelFinder<T> finder(located, geometry, table);
-      vtkSMPTools::For(0, projected.height, 8,
-        [&](vtkIdType first, vtkIdType last)
+      parallelFor(0, projected.height, 8,
+        [&](std::ptrdiff_t first, std::ptrdiff_t last)
         {
           for (int v = static_cast<int>(first); v < last; ++v)
           {
@@ -426,10 +426,10 @@ template <class F>
 void Locator::fillFrom(
   const glm::ivec2& origin, const glm::ivec2& size, const Arrays& arrays, F&& sampleOf) const
 {
-  vtkSMPTools::For(0, size.y, 8,
-    [&](vtkIdType first, vtkIdType last)
+  parallelFor(0, size.y, 8,
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
-      for (vtkIdType y = first; y < last; ++y)
+      for (std::ptrdiff_t y = first; y < last; ++y)
       {
         for (int x = 0; x < size.x; ++x)
         {

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Projection/Piece.h"
 
+#include "Common/Parallel.h"
 #include "Volume/VoxelCopies.h"
 
-#include <vtkSMPTools.h>
 
 #include <glm/common.hpp>
 
@@ -130,8 +130,8 @@ constexpr Key none(Reduction reduction)
 template <class T, class F>
 void forRows(ShearImage& image, F&& f)
 {
-  vtkSMPTools::For(0, image.height, 16,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, image.height, 16,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       for (int v = static_cast<int>(begin); v < end; ++v)
       {

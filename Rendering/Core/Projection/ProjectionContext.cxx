@@ -3,9 +3,9 @@
 #include "Projection/ProjectionContext.h"
 
 #include "Clipping/Cuts.h"
+#include "Common/Parallel.h"
 #include "Projection/WalkSpace.h"
 
-#include <vtkSMPTools.h>
 
 namespace splatting
 {
@@ -382,8 +382,8 @@ void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& s
     return;
   }
   space.crossed.reset(slices, image.width);
-  vtkSMPTools::For(0, image.height, 16,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, image.height, 16,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       SamplesLeft samples(slices, space.crossed, cuts, image.width, space.rows.Local());
       for (int v = static_cast<int>(begin); v < end; ++v)

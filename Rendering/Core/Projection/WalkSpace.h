@@ -8,11 +8,11 @@
 
 #include "Clipping/Cuts.h"
 #include "Clipping/RayIntervals.h"
+#include "Common/Parallel.h"
 #include "Projection/ProjectionContext.h"
 #include "Projection/TileRuns.h"
 #include "Sampling/SliceSampler.h"
 
-#include <vtkSMPThreadLocal.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -30,7 +30,7 @@ struct OutlineSpace
     std::vector<unsigned char> slice;
   };
   CrossedSlices crossed;
-  vtkSMPThreadLocal<Rows> rows;
+  PerThread<Rows> rows;
 };
 
 /// Copies of pixels, into which samples are taken apart from the image.
@@ -82,8 +82,8 @@ struct RayState
 
 struct WalkSpace
 {
-  vtkSMPThreadLocal<BandScratch> bands;
-  vtkSMPThreadLocal<RayScratch> rayBands;
+  PerThread<BandScratch> bands;
+  PerThread<RayScratch> rayBands;
   RayState rays;
   OutlineSpace outline;
   std::vector<unsigned char> limits; ///< of all pixels, for WinnerWalk

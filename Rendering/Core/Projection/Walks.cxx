@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Common/Parallel.h"
 #include "Common/ProgressObserver.h"
 #include "Projection/WalkSpace.h"
 #include "Sampling/SliceSampler.h"
 
-#include <vtkSMPTools.h>
 
 #include <algorithm>
 
@@ -18,7 +18,7 @@ constexpr int ChunkDepth = 8 * BrickDepth;
 
 int bandHeight(int rows)
 {
-  const int share = rows / (4 * vtkSMPTools::GetEstimatedNumberOfThreads());
+  const int share = rows / (4 * numberOfThreads());
   return std::clamp(share / TileHeight * TileHeight, 2 * TileHeight, 8 * TileHeight);
 }
 
@@ -27,10 +27,10 @@ void forBands(
 {
   const int bands = (height + rows - 1) / rows;
   observer.begin(bands);
-  vtkSMPTools::For(0, bands, 1,
-    [&](vtkIdType first, vtkIdType last)
+  parallelFor(0, bands, 1,
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
-      for (vtkIdType b = first; b < last && !observer.stopped(); ++b)
+      for (std::ptrdiff_t b = first; b < last && !observer.stopped(); ++b)
       {
         const int v0 = static_cast<int>(b) * rows;
         body(v0, std::min(v0 + rows, height));

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sampling/Footprint.h"
 
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
+
 
 #include <glm/common.hpp>
 
@@ -269,10 +270,10 @@ void GeneralTable::set(const Kernel& kernel, const glm::dvec2& shear, int sampli
     entries.resize(static_cast<std::size_t>(n) * n);
   }
   this->Sampling = sampling;
-  vtkSMPTools::For(0, 3 * n, 8,
-    [&](vtkIdType first, vtkIdType last)
+  parallelFor(0, 3 * n, 8,
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
-      for (vtkIdType row = first; row < last; ++row)
+      for (std::ptrdiff_t row = first; row < last; ++row)
       {
         const int part = static_cast<int>(row / n), y = static_cast<int>(row % n);
         for (int x = 0; x < n; ++x)

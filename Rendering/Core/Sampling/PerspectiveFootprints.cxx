@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sampling/PerspectiveFootprints.h"
 
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
+
 
 #include <algorithm>
 #include <cmath>
@@ -76,8 +77,8 @@ void AxisFootprints<A>::find(const ShearWarp& whole, const ShearWarp& geometry, 
   this->Weights.resize(all * this->Room * this->Padded);
   this->Bases.resize(all * this->Padded / this->Group);
   this->Lanes.resize(all * this->Padded * sizeof(A));
-  vtkSMPTools::For(this->Slices.begin, this->Slices.end, 8,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(this->Slices.begin, this->Slices.end, 8,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       for (int k = static_cast<int>(begin); k < end; ++k)
       {

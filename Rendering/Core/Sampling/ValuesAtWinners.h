@@ -7,11 +7,11 @@
 #ifndef splattingValuesAtWinners_h
 #define splattingValuesAtWinners_h
 
+#include "Common/Parallel.h"
 #include "Sampling/PerspectiveFootprints.h"
 #include "Sampling/SliceSampler.h"
 #include "Sampling/Worksheets.h"
 
-#include <vtkSMPTools.h>
 
 namespace splatting
 {
@@ -124,8 +124,8 @@ void fillAtWinners(const AtWinners& c, const F& valueAt)
       row[u] = winners[u] < 0 ? P(0) : static_cast<P>(valueAt(voxels, u, v, winners[u]));
     }
   };
-  vtkSMPTools::For(0, image.height, TileHeight,
-    [&](vtkIdType begin, vtkIdType end)
+  parallelFor(0, image.height, TileHeight,
+    [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
       for (int v = static_cast<int>(begin); v < end; ++v)
       {

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sampling/Worksheets.h"
 
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
+
 
 #include <algorithm>
 #include <array>
@@ -79,10 +80,10 @@ void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int samplin
     table.set(kernel, shear, sampling);
   }
   footprints.resize(geometry.size().z);
-  vtkSMPTools::For(0, geometry.size().z, 8,
-    [&](vtkIdType first, vtkIdType last)
+  parallelFor(0, geometry.size().z, 8,
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
-      for (vtkIdType k = first; k < last; ++k)
+      for (std::ptrdiff_t k = first; k < last; ++k)
       {
         auto& footprint = footprints[k];
         const glm::dvec2 position = geometry.position(static_cast<double>(k));

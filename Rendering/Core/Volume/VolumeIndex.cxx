@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Volume/VolumeIndex.h"
 
+#include "Common/Parallel.h"
 #include "Kernels/Kernels.h"
 
-#include <vtkSMPThreadLocal.h>
-#include <vtkSMPTools.h>
 
 #include <algorithm>
 #include <chrono>
@@ -57,8 +56,8 @@ void transpose(const T* in, T* out, const glm::ivec3& size, int begin, int end)
 {
   constexpr int block = 64;
   const std::ptrdiff_t nx = size.x, ny = size.y, nz = size.z;
-  vtkSMPTools::For(0, nz,
-    [=](vtkIdType first, vtkIdType last)
+  parallelFor(0, nz, 0,
+    [=](std::ptrdiff_t first, std::ptrdiff_t last)
     {
       for (std::ptrdiff_t z = first; z < last; ++z)
       {
@@ -111,23 +110,24 @@ public:
   Extremes<T> operator()()
   {
     const int pairs = (this->Count.y + 1) / 2;
-    vtkSMPTools::For(0, std::ptrdiff_t(pairs) * this->Count.z,
-      [&](vtkIdType first, vtkIdType last)
+    parallelFor(0, std::ptrdiff_t(pairs) * this->Count.z, 0,
+      [&](std::ptrdiff_t first, std::ptrdiff_t last)
       {
         Scratch& scratch = this->Scratches.Local();
-        for (vtkIdType n = first; n < last; ++n)
+        for (std::ptrdiff_t n = first; n < last; ++n)
         {
           this->lookAt(static_cast<int>(n % pairs), static_cast<int>(n / pairs), scratch);
         }
       });
     Extremes<T> all;
-    for (const Scratch& scratch : this->Scratches)
-    {
-      const Extremes<T>& part = scratch.extremes;
-      all.low = std::min(all.low, part.low);
-      all.high = std::max(all.high, part.high);
-      all.nonFinite = all.nonFinite || part.nonFinite;
-    }
+    this->Scratches.forAll(
+      [&](const Scratch& scratch)
+      {
+        const Extremes<T>& part = scratch.extremes;
+        all.low = std::min(all.low, part.low);
+        all.high = std::max(all.high, part.high);
+        all.nonFinite = all.nonFinite || part.nonFinite;
+      });
     return all;
   }
 
@@ -227,7 +227,7 @@ private:
   const VoxelArray& Volume;
   BrickMaxima* Bricks;
   glm::ivec3 Count; ///< of cubes
-  vtkSMPThreadLocal<Scratch> Scratches;
+  PerThread<Scratch> Scratches;
 };
 
 template <class T>

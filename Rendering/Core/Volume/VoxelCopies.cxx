@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Volume/VoxelCopies.h"
 
-#include <vtkSMPTools.h>
+#include "Common/Parallel.h"
+
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +17,8 @@ namespace
 template <class Body>
 void forAll(std::ptrdiff_t count, std::ptrdiff_t grain, Body&& body)
 {
-  vtkSMPTools::For(0, count, grain,
-    [&](vtkIdType first, vtkIdType last)
+  parallelFor(0, count, grain,
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
     {
       for (std::ptrdiff_t n = first; n < last; ++n)
       {

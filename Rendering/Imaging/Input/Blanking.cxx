@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Input/Blanking.h"
 
+#include "Common/Parallel.h"
+
 #include "vtkAbstractMapper.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 #include "vtkRectilinearGrid.h"
-#include "vtkSMPTools.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -72,7 +73,7 @@ vtkUnsignedCharArray* withBit(vtkUnsignedCharArray* flags, unsigned char bit)
 template <class Body>
 void forVoxels(const Size& size, Body&& body)
 {
-  vtkSMPTools::For(0, size[1] * size[2], 64,
+  parallelFor(0, size[1] * size[2], 64,
     [&](vtkIdType first, vtkIdType last)
     {
       for (vtkIdType row = first; row < last; ++row)

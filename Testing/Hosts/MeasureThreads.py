@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Exact frames use all cores by default, and a program's choice holds.
+
+    MeasureThreads.py               measures each choice in a process of its own, and checks it
+    MeasureThreads.py CHOICE        prints seconds per frame, backend, busy cores and a checksum
+
+A frame is the exact projection of 160³ voxels of noise and vessels, from another direction each time. Prints
+a line for each check; fails if one does.
+"""
+
+import hashlib
+import os
+import subprocess
+import sys
+import time
+
+FRAMES = 5
+ROUNDS = 4  # the least time counts: a busy machine only adds
+# How a program chooses: statements before the first projection, and variables of the environment.
+CHOICES = {
+    "default": ("", {"VTK_SMP_MAX_THREADS": "2"}),
+    "one thread": ("", {"VTK_SMP_MAX_THREADS": "1"}),
+    "Initialize(1)": ("vtkSMPTools.Initialize(1)", {}),
+    "Initialize(2)": ("vtkSMPTools.Initialize(2)", {}),
+    "Sequential": ("", {"VTK_SMP_BACKEND_IN_USE": "Sequential"}),
+    "STDThread": ("vtkSMPTools.SetBackend('STDThread')", {"VTK_SMP_MAX_THREADS": "2"}),
+}
+IS_PARALLEL = {"default", "Initialize(2)", "STDThread"}
+
+
+def measure(choice):
+    import numpy
+    import vtksplattingmip.functions
+
+    vtkSMPTools = vtksplattingmip._vtk_module("vtkCommonCore").vtkSMPTools
+    exec(CHOICES[choice][0], {"vtkSMPTools": vtkSMPTools})
+    backend = vtkSMPTools.GetBackend()
+    volume = numpy.random.default_rng(1).integers(0, 200, (160, 160, 160), numpy.uint8)
+    for n in range(20):
+        volume[:, 8 * n, (37 * n) % 160] = 255
+    image = vtksplattingmip.functions._image(volume, (1, 1, 1))
+    projection = vtksplattingmip.vtkSplattingMIPProjection()
+    projection.SetInputData(image)
+    projection.SetOutputSize(512, 512)
+    projection.Update()
+    support = vtksplattingmip._vtk_module("util.numpy_support")
+    checksum = hashlib.sha256()
+    wall, busy = time.perf_counter(), time.process_time()
+    for n in range(FRAMES):
+        projection.SetViewDirection(1, 0.1 * n, 0.3)
+        projection.Update()
+        checksum.update(support.vtk_to_numpy(projection.GetOutput().GetPointData().GetScalars()))
+    wall, busy = time.perf_counter() - wall, time.process_time() - busy
+    if vtkSMPTools.GetBackend() != backend:
+        sys.exit(f"The backend was {backend} and is {vtkSMPTools.GetBackend()}.")
+    print(f"{wall / FRAMES:.4f} {backend} {busy / wall:.2f} {checksum.hexdigest()[:12]}")
+
+
+def best(choice, rounds=ROUNDS):
+    """The output of the fastest process."""
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("VTK_SMP")}
+    return min(
+        (
+            subprocess.run(
+                [sys.executable, __file__, choice],
+                env={**environment, **CHOICES[choice][1]},
+                capture_output=True,
+                text=True,
+                check=True,
+            ).stdout.split()
+            for _ in range(rounds)
+        ),
+        key=lambda words: float(words[0]),
+    )
+
+
+def main():
+    failures = 0
+    found = {choice: best(choice) for choice in CHOICES}
+    one = float(found["one thread"][0])
+    for choice, (seconds, backend, busy, checksum) in found.items():
+        ratio = float(seconds) / one
+        passed = checksum == found["default"][3]
+        if choice in IS_PARALLEL:
+            passed = passed and ratio <= 0.65
+        else:
+            passed = passed and ratio >= 0.8 and float(busy) < 1.1
+        print(
+            "ok:" if passed else "FAILED:",
+            f"{choice}: {1000 * float(seconds):.1f} ms per frame, {ratio:.2f} of one thread's, "
+            f"{busy} cores busy, backend {backend}, checksum {checksum}",
+        )
+        failures += not passed
+    sys.exit(failures)
+
+
+if __name__ == "__main__":
+    measure(sys.argv[1]) if len(sys.argv) > 1 else main()
