@@ -88,9 +88,6 @@ struct ProjectionSettings
   Acceleration acceleration = Acceleration::Auto;
   /// Delta encoding of lines: see LineEncoding. 0 gives the same bits as Dense.
   double lineTolerance = 0.0;
-  /// Lines without voxels that cannot be seen: the same bits, fewer chains. For Quality::Preview,
-  /// else ignored.
-  bool eliminateInvisible = false;
   /// Whether the image tells its winners: of equal samples the nearest to the viewer. Means have
   /// none: not for Reduction::Mean. Lines and its sorted kin are Bricks then.
   bool keepWinners = false;
@@ -109,9 +106,8 @@ struct ProjectionSettings
       this->meanHigh == other.meanHigh && this->kernel == other.kernel &&
       this->footprintSampling == other.footprintSampling &&
       this->instructionSet == other.instructionSet && this->acceleration == other.acceleration &&
-      this->lineTolerance == other.lineTolerance &&
-      this->eliminateInvisible == other.eliminateInvisible &&
-      this->keepWinners == other.keepWinners && this->floor == other.floor;
+      this->lineTolerance == other.lineTolerance && this->keepWinners == other.keepWinners &&
+      this->floor == other.floor;
   }
 };
 
