@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Chains/LineIndex.h"
 
-#include "Chains/InvisibleVoxels.h"
 #include "Chains/LineEncoder.h"
 #include "Common/Parallel.h"
+#include "Projection/ProjectionContext.h"
 
 #include <vtkSMPTools.h>
 
-#include <memory>
+#include <algorithm>
 #include <tuple>
 
 namespace splatting
@@ -86,11 +86,6 @@ public:
       Limit(index.Encoding.tolerance,
         index.Encoding.tolerance > 0.0 ? largestVoxel<T>(slices, size) : T())
   {
-    if (index.Encoding.eliminate)
-    {
-      this->Invisible.reset(new InvisibleVoxels<T>(slices, size));
-      index.InvisibleCount = this->Invisible->count();
-    }
   }
 
   void build(const Progress& progress)
@@ -216,32 +211,21 @@ private:
       slice.startRow(j);
       this->encodeRow(static_cast<const T*>(this->Source.voxels) + j * this->Source.rowStride +
           k * this->Source.sliceStride,
-        this->Invisible ? this->Invisible->row(j, k) : nullptr, slice);
+        slice);
     }
     slice.finish(k);
   }
 
   template <class Encoded>
-  void encodeRow(const T* row, const unsigned char* invisible, Encoded& slice) const
+  void encodeRow(const T* row, Encoded& slice) const
   {
     const int width = this->Size.x;
     for (int i = 0; i < width;)
     {
-      const int end = invisible
-        ? static_cast<int>(std::find(invisible + i, invisible + width, !invisible[i]) - invisible)
-        : width;
-      if (invisible && invisible[i])
-      {
-        slice.add(leastValue<T>(), i, end);
-        i = end;
-      }
-      while (i < end)
-      {
-        T value;
-        const int next = chainEnd(row, i, end, this->Limit, value);
-        slice.add(value, i, next);
-        i = next;
-      }
+      T value;
+      const int end = chainEnd(row, i, width, this->Limit, value);
+      slice.add(value, i, end);
+      i = end;
     }
   }
 
@@ -279,7 +263,6 @@ private:
   const Slices& Source;
   glm::ivec3 Size;
   Tolerance<T> Limit;
-  std::unique_ptr<InvisibleVoxels<T>> Invisible;
 };
 
 LineIndex::LineIndex(ScalarType type, const Slices& slices, const glm::ivec3& size,

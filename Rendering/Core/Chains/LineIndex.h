@@ -43,33 +43,15 @@ enum class LineOrder
  * non-negative and sum to one, and with maxima, so that the same bounds hold for worksheets, with x
  * replaced by the exact worksheet, and then for pixels. (Standard and high mode add the rounding
  * errors of their sums.)
- *
- * Elimination of invisible voxels [Mroz, Hauser, Groeller 2000]. Left out is what cannot change the
- * preview along this axis from any direction, exactly. Let
- *
- *   up(i, j, k) = min over the 3 x 3 voxels (i', j') around (i, j) of
- *                 max(value(i', j', k + 1), up(i', j', k + 1)),
- *
- * voxels beyond the volume counting as the lowest value, and down() likewise towards k - 1. A ray
- * that crosses voxel (i, j, k) over a positive length is at less than 3/2 from (i, j) in each
- * direction when it enters slice k + 1, because it moves by at most one voxel per slice: it enters
- * by one of the 3 x 3, which the preview counts. By induction every ray through the voxel meets a
- * value of at least up() in the slices above and of at least down() in those below. A voxel is left
- * out if up() >= value or down() > value. The voxel that outdoes it on a ray may be left out as
- * well, but has a greater value, or the same value in a higher slice; so some voxel at the end of
- * this chain stays. Where half-spaces cut samples away, and where voxels are averaged, this is not
- * valid.
  */
 struct LineEncoding
 {
   LineOrder order = LineOrder::Lines;
   double tolerance = 0.0; ///< of delta encoding, 0 to 255; 0: chains of equal voxels
-  bool eliminate = false; ///< whether invisible voxels are omitted
 
   bool operator==(const LineEncoding& other) const
   {
-    return this->order == other.order && this->tolerance == other.tolerance &&
-      this->eliminate == other.eliminate;
+    return this->order == other.order && this->tolerance == other.tolerance;
   }
 };
 
@@ -77,7 +59,7 @@ struct LineEncoding
 template <class T>
 struct LineRow
 {
-  const T* values;          ///< leastValue for omitted voxels
+  const T* values;
   const std::uint8_t* last; ///< the chain's length minus one
   std::ptrdiff_t count;
 };
@@ -127,8 +109,6 @@ public:
   }
   const LineEncoding& encoding() const { return this->Encoding; }
   std::size_t chainCount() const;
-  /// The number of omitted invisible voxels.
-  std::size_t invisibleCount() const { return this->InvisibleCount; }
   std::size_t memorySize() const;
 
   /// LineOrder::Lines: a row of a slice.
@@ -165,7 +145,6 @@ private:
   LineEncoding Encoding;
   bool Made = false;
   int Height = 0;
-  std::size_t InvisibleCount = 0;
   std::vector<unsigned char> Values;    // of chains or, if sorted, of runs
   std::vector<std::size_t> SliceStarts; // each slice's first chain or run
   std::vector<std::uint32_t> RowStarts; // each row's first chain in its slice

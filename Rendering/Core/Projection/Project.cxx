@@ -24,7 +24,6 @@ LineEncoding encodingFor(const ProjectionSettings& settings, const glm::ivec3& s
   encoding.tolerance = settings.lineTolerance;
   if (settings.quality == Quality::Preview)
   {
-    encoding.eliminate = settings.eliminateInvisible;
     if (std::max({ size.x, size.y, size.z }) <= LineIndex::MostSorted)
     {
       encoding.order = settings.acceleration == Acceleration::SortedLines ? LineOrder::SortedLines

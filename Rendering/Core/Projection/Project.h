@@ -87,9 +87,6 @@ struct ProjectionSettings
   Acceleration acceleration = Acceleration::Auto;
   /// Delta encoding of lines: see LineEncoding. 0 gives the same bits as Dense.
   double lineTolerance = 0.0;
-  /// Whether chains omit invisible voxels: fewer chains, the same bits. Is ignored outside
-  /// Quality::Preview.
-  bool eliminateInvisible = false;
   /// Whether the image has winners: of equal samples the nearest to the viewer. Not for
   /// Reduction::Mean. Bricks then replace chains.
   bool keepWinners = false;
@@ -107,9 +104,8 @@ struct ProjectionSettings
       this->meanHigh == other.meanHigh && this->kernel == other.kernel &&
       this->footprintSampling == other.footprintSampling &&
       this->instructionSet == other.instructionSet && this->acceleration == other.acceleration &&
-      this->lineTolerance == other.lineTolerance &&
-      this->eliminateInvisible == other.eliminateInvisible &&
-      this->keepWinners == other.keepWinners && this->floor == other.floor;
+      this->lineTolerance == other.lineTolerance && this->keepWinners == other.keepWinners &&
+      this->floor == other.floor;
   }
 };
 

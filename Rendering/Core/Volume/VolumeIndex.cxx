@@ -400,7 +400,7 @@ const BrickMaxima& VolumeIndex::bricks(int principalAxis)
 const LineIndex* VolumeIndex::lines(
   int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress)
 {
-  const bool plain = encoding.order == LineOrder::Lines && !encoding.eliminate;
+  const bool plain = encoding.order == LineOrder::Lines;
   LineIndex& lines = this->Lines[principalAxis][plain ? 0 : 1];
   std::optional<LineEncoding>& tooLarge = this->Unmade[principalAxis][plain ? 0 : 1];
   if (lines.holds(encoding))
