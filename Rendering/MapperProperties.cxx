@@ -16,8 +16,8 @@ namespace splatting
 {
 namespace
 {
-/// What is wrong with clipping planes, or nullptr.
-const char* faultOfPlanes(vtkPlaneCollection* planes)
+/// Returns what is wrong with clipping planes, or nullptr.
+const char* validatePlanes(vtkPlaneCollection* planes)
 {
   for (int n = 0; planes && n < planes->GetNumberOfItems(); ++n)
   {
@@ -27,16 +27,17 @@ const char* faultOfPlanes(vtkPlaneCollection* planes)
     const double length = vtkMath::Norm(normal);
     if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(vtkMath::Norm(origin)))
     {
-      return "A clipping plane has no place: its normal must not be 0, and its numbers finite.";
+      return "A clipping plane is invalid: its normal must not be 0, and its numbers must be "
+             "finite.";
     }
   }
   return nullptr;
 }
 }
 
-const char* faultOf(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* property)
+const char* validate(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* property)
 {
-  if (const char* const fault = faultOf(*mapper))
+  if (const char* const fault = validate(*mapper))
   {
     return fault;
   }
@@ -44,7 +45,7 @@ const char* faultOf(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* prop
   {
     return "There is no slice to show: give the vtkVolumeProperty a plane with SetSliceFunction.";
   }
-  return faultOfPlanes(mapper->GetClippingPlanes());
+  return validatePlanes(mapper->GetClippingPlanes());
 }
 
 bool needsLocations(vtkSplattingMIPVolumeMapper* mapper)

@@ -12,7 +12,7 @@ namespace splatting
 {
 /// As in ProjectionProperties.h. Checks the mapper's clipping planes, too, and in blend mode SLICE
 /// the property's slice function.
-const char* faultOf(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* property);
+const char* validate(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* property);
 
 /// Returns whether sample positions are needed.
 bool needsLocations(vtkSplattingMIPVolumeMapper* mapper);

@@ -14,13 +14,13 @@ class vtkVolume;
 namespace splatting
 {
 /**
- * Why the last frames of views are missing, so that each reason is told once: not in every frame,
- * nor in every view that has the same.
+ * The errors of the last frames of views, so that each error is reported once, and not in each
+ * frame or view.
  */
 class ReportedProblems
 {
 public:
-  /// Takes what is wrong with a view, or an empty string, and returns whether to tell it.
+  /// Sets the error of a view, or none (an empty string). Returns whether to report it.
   bool Update(vtkRenderer* renderer, vtkVolume* volume, const std::string& problem);
 
 private:

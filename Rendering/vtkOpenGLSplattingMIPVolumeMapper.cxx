@@ -28,7 +28,7 @@ vtkStandardNewMacro(vtkOpenGLSplattingMIPVolumeMapper);
 
 namespace
 {
-/// Texels on the viewport's pixels from `corner` on; above 1 there is no depth.
+/// One texel per pixel of the viewport, from `corner` on. Values above 1 are no depths.
 const char* const DepthShader = R"(//VTK::System::Dec
 //VTK::Output::Dec
 in vec2 texCoord;
@@ -53,7 +53,7 @@ void main()
 }
 )";
 
-/// A texture of this window, texel by texel.
+/// Prepares a texture of this window without interpolation.
 void prepare(vtkTextureObject* texture, vtkOpenGLRenderWindow* window)
 {
   vtkOpenGLRenderWindow* const before = texture->GetContext();
@@ -62,12 +62,12 @@ void prepare(vtkTextureObject* texture, vtkOpenGLRenderWindow* window)
     texture->ReleaseGraphicsResources(before);
   }
   texture->SetContext(window);
-  // Texels lie exactly on pixels; linear filtering would only add rounding.
+  // Texels coincide with pixels, and linear filtering would add rounding errors.
   texture->SetMinificationFilter(vtkTextureObject::Nearest);
   texture->SetMagnificationFilter(vtkTextureObject::Nearest);
 }
 
-/// Pixels of an image, without the last ones.
+/// Pixels of an image; the ends are exclusive.
 struct Rectangle
 {
   int x0, y0, x1, y1;
@@ -75,10 +75,10 @@ struct Rectangle
   bool empty() const { return this->x0 >= this->x1 || this->y0 >= this->y1; }
 };
 
-/// Into how many bands of rows an image is divided, each with one rectangle of opaque pixels. More
-/// would fit a convex outline better, and take more calls.
+/// Bands of rows of an image, each with one rectangle of opaque pixels. More bands would fit a
+/// convex outline better, but need more calls.
 constexpr int Bands = 12;
-/// Pixels that are looked at together, and columns that are worth a copy.
+/// Pixels that are tested together, and the least number of columns of a copy.
 constexpr int Together = 16, LeastColumns = 64;
 
 bool areOpaque(const unsigned char* rgba)
@@ -95,7 +95,7 @@ bool areOpaque(const unsigned char* rgba)
   return bytes[3] == 255;
 }
 
-/// Narrows columns on both sides of the middle to those that are opaque in row y.
+/// Narrows the columns on both sides of the centre to those that are opaque in row y.
 void narrow(const unsigned char* rgba, int width, int y, int& before, int& after)
 {
   const unsigned char* const middle = rgba + 4 * (std::ptrdiff_t(y) * width + width / 2);
@@ -110,7 +110,7 @@ void narrow(const unsigned char* rgba, int width, int y, int& before, int& after
   after = n;
 }
 
-/// A rectangle of opaque pixels in some rows. At both ends it leaves out rows that have few.
+/// A rectangle of opaque pixels in some rows, without rows at both ends that have few.
 Rectangle opaquePart(const unsigned char* rgba, int width, int y0, int y1)
 {
   const auto isNarrow = [=](int y)
@@ -136,7 +136,7 @@ Rectangle opaquePart(const unsigned char* rgba, int width, int y0, int y1)
 
 using Parts = std::array<Rectangle, Bands>;
 
-/// Each band's, from the bottom to the top; empty if it is not worth a copy.
+/// The rectangle of each band, from bottom to top; empty if a copy does not pay.
 Parts opaqueParts(const unsigned char* rgba, const int size[2])
 {
   Parts parts;
@@ -163,7 +163,7 @@ struct DrawArea
   int origin[2], size[2];     // of the viewport
 };
 
-/// Whether copied pixels arrive as drawn ones do: only there, at their places, and as they are.
+/// Whether copied pixels have the place and the colours of drawn ones, and no others are written.
 bool takesCopies(vtkOpenGLRenderWindow* window, DrawArea& area)
 {
   vtkOpenGLState* const state = window->GetState();
@@ -189,7 +189,7 @@ void draw(vtkTextureObject* texture, const Rectangle& part, const DrawArea& area
     return;
   }
   const int low[2] = { part.x0, part.y0 }, high[2] = { part.x1, part.y1 };
-  float t[2][2], c[2][2]; // of the texture and of the viewport; low and high
+  float t[2][2], c[2][2]; // low and high, of the texture and of the viewport
   for (int a = 0; a < 2; ++a)
   {
     t[0][a] = float(low[a]) / area.size[a];
@@ -203,7 +203,7 @@ void draw(vtkTextureObject* texture, const Rectangle& part, const DrawArea& area
   texture->CopyToFrameBuffer(texels, corners, nullptr, nullptr);
 }
 
-/// All but some parts.
+/// Draws all pixels outside some parts.
 void drawBeside(vtkTextureObject* texture, const Parts& parts, const DrawArea& area)
 {
   const int width = area.size[0];
@@ -221,7 +221,7 @@ void drawBeside(vtkTextureObject* texture, const Parts& parts, const DrawArea& a
   draw(texture, { 0, row, width, area.size[1] }, area);
 }
 
-/// Copies parts by a framebuffer object that is used for nothing else.
+/// Copies parts through a framebuffer object of their own.
 void copy(vtkTextureObject* texture, vtkOpenGLFramebufferObject* buffer, const Parts& parts,
   const DrawArea& area)
 {
@@ -262,7 +262,7 @@ void vtkOpenGLSplattingMIPVolumeMapper::DisplayImage(
   }
   if (this->TextureBuffer->GetContext() && this->Texture->GetContext() != window)
   {
-    // It would go on to read the texture of that window, which ends now.
+    // Otherwise it would read the texture of that window, which is released now.
     this->TextureBuffer->ReleaseGraphicsResources(this->TextureBuffer->GetContext());
   }
   prepare(this->Texture, window);
@@ -279,7 +279,7 @@ void vtkOpenGLSplattingMIPVolumeMapper::DisplayImage(
   state->vtkglEnable(GL_BLEND);
   state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
 
-  // In the current viewport, which is the renderer's, not the whole window.
+  // In the current viewport, which is that of the renderer.
   DrawArea area;
   ren->GetTiledSizeAndOrigin(
     &area.viewport[0], &area.viewport[1], &area.corner[0], &area.corner[1]);

@@ -35,8 +35,8 @@ int globalQualityMode = vtkSplattingMIPVolumeMapper::EXACT;
 
 VTK_CREATE_CREATE_FUNCTION(vtkSplattingMIPGPUVolumeRayCastMapper);
 
-/// The factory that the module generates gives the mappers that a program asks for by name. This
-/// one takes the place of others, so that it is registered on request only.
+/// The module's generated factory creates mappers that a program requests by name. This factory
+/// replaces other mappers, so it is registered on request only.
 class OverrideFactory : public vtkObjectFactory
 {
 public:
@@ -61,7 +61,7 @@ bool hasCode(vtkShaderProperty* shader)
       shader->HasGeometryShaderCode() || shader->GetNumberOfShaderReplacements() > 0);
 }
 
-/// The first of all registered factories that can give the replacement, or nullptr.
+/// The first registered factory that can create the replacement, or nullptr.
 vtkObjectFactory* registeredFactory()
 {
   vtkObjectFactoryCollection* const factories = vtkObjectFactory::GetRegisteredFactories();
@@ -77,7 +77,7 @@ vtkObjectFactory* registeredFactory()
   return nullptr;
 }
 
-/// The first factory wins, and that of VTK's OpenGL classes may be there already.
+/// VTK uses the first factory, and that of its OpenGL classes may be registered already.
 void registerFirst(vtkObjectFactory* factory)
 {
   vtkObjectFactory::RegisterFactory(factory);
@@ -173,12 +173,12 @@ const char* vtkSplattingMIPGPUVolumeRayCastMapper::ReasonNotToSplat(vtkVolume* v
 }
 
 //------------------------------------------------------------------------------
-// Setters that change nothing cost nothing, and the splatting mapper finds out by itself what of
-// its results a change touches.
+// Setters without a change cost nothing, and the splatting mapper detects which results a change
+// invalidates.
 void vtkSplattingMIPGPUVolumeRayCastMapper::CopySettings()
 {
   vtkSplattingMIPVolumeMapper* const to = this->SplattingMapper;
-  // Not by a connection: VTK's garbage collector does not see that two mappers in one share it.
+  // Not a connection, because VTK's garbage collector does not detect that both mappers share it.
   to->SetInputDataObject(this->GetInput(0));
   to->SetBlendMode(this->BlendMode);
   to->SetCropping(this->Cropping);
@@ -201,8 +201,8 @@ void vtkSplattingMIPGPUVolumeRayCastMapper::CopySettings()
 }
 
 //------------------------------------------------------------------------------
-// Whether a component is shown by a gray function, which the superclass would replace for good. The
-// volumes of a vtkMultiVolume are VTK's business.
+// Whether a component has a gray function, which the superclass would replace permanently. Volumes
+// of a vtkMultiVolume are excluded.
 bool vtkSplattingMIPGPUVolumeRayCastMapper::HasGrays(vtkVolume* vol)
 {
   int cells = 0;
@@ -225,10 +225,11 @@ bool vtkSplattingMIPGPUVolumeRayCastMapper::HasGrays(vtkVolume* vol)
 }
 
 //------------------------------------------------------------------------------
-// The superclass's Render() has brought the input up to date and invokes the events.
+// The superclass's Render() updates the input and invokes the events.
 void vtkSplattingMIPGPUVolumeRayCastMapper::GPURender(vtkRenderer* ren, vtkVolume* vol)
 {
-  // In all modes, or the splatting mapper would hold on to data that are no longer rendered.
+  // In all modes, because the splatting mapper would otherwise keep data that are no longer
+  // rendered.
   this->CopySettings();
   const char* const reason = this->ReasonNotToSplat(vol);
   if (reason != this->LoggedReason)

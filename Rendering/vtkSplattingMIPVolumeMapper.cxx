@@ -4,12 +4,12 @@
 
 #include "MapperProperties.h"
 #include "ProjectionProperties.h"
-#include "Ranks/FrameAttendance.h"
+#include "Ranks/FrameObserver.h"
 #include "ReportedProblems.h"
 #include "Scene/ProjectedVolume.h"
 #include "Scene/RayCastFallback.h"
-#include "Scene/Refusals.h"
 #include "Scene/Selection.h"
+#include "Scene/Validation.h"
 #include "Scene/ViewOfVolume.h"
 #include "Scene/WinnerLocations.h"
 #include "TurnOfViews.h"
@@ -39,7 +39,7 @@ vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, Controller, vtkMultiProcessCon
 namespace
 {
 const char* const NoColors =
-  "FinalColorWindow and FinalColorLevel give no colours: both must be finite and the window not 0.";
+  "FinalColorWindow and FinalColorLevel are invalid: both must be finite and the window not 0.";
 
 /// Whether a blend mode is splatted; others are ray cast.
 bool isProjection(int blendMode)
@@ -49,14 +49,17 @@ bool isProjection(int blendMode)
     blendMode == vtkVolumeMapper::AVERAGE_INTENSITY_BLEND;
 }
 
-/// Sets a pointer for as long as this lives, whatever is thrown.
-class During
+/// Sets a pointer during its lifetime, also if exceptions are thrown.
+class ScopedWindow
 {
 public:
-  During(vtkRenderWindow*& pointer, vtkRenderWindow* value) : Pointer(pointer) { pointer = value; }
-  ~During() { this->Pointer = nullptr; }
-  During(const During&) = delete;
-  During& operator=(const During&) = delete;
+  ScopedWindow(vtkRenderWindow*& pointer, vtkRenderWindow* value) : Pointer(pointer)
+  {
+    pointer = value;
+  }
+  ~ScopedWindow() { this->Pointer = nullptr; }
+  ScopedWindow(const ScopedWindow&) = delete;
+  ScopedWindow& operator=(const ScopedWindow&) = delete;
 
 private:
   vtkRenderWindow*& Pointer;
@@ -68,32 +71,32 @@ class vtkSplattingMIPVolumeMapper::Internals
 {
 public:
   explicit Internals(vtkSplattingMIPVolumeMapper* self)
-    : Attendance([=](vtkRenderer* renderer, vtkVolume* volume)
+    : Observer([=](vtkRenderer* renderer, vtkVolume* volume)
         { this->ReportAbsence(self, renderer, volume); })
   {
   }
-  void WarnOfIgnored(vtkSplattingMIPVolumeMapper* self);
-  void WarnOfSurface(vtkSplattingMIPVolumeMapper* self);
-  void WarnOfBudget(vtkSplattingMIPVolumeMapper* self);
-  void GiveBack();
+  void WarnAboutIgnoredProperties(vtkSplattingMIPVolumeMapper* self);
+  void WarnAboutSurface(vtkSplattingMIPVolumeMapper* self);
+  void WarnAboutBudget(vtkSplattingMIPVolumeMapper* self);
+  void ReleaseMemory();
   void DropRayCaster();
-  bool GoOn(vtkSplattingMIPVolumeMapper* self, double done);
+  bool ReportProgress(vtkSplattingMIPVolumeMapper* self, double done);
   bool IsAborted() const;
   void ReportAbsence(vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
 
   ReportedProblems Reported;
-  std::set<std::string> Announced;   // what ray casting leads to, and was told
-  bool BudgetReported = false;       // as in: since it was no problem
+  std::set<std::string> Warned;      // warnings that were reported
+  bool BudgetReported = false;       // until the problem disappears
   bool OpenSurfaceReported = false;  // likewise
-  vtkRenderWindow* Window = nullptr; // which may abort, during a render
+  vtkRenderWindow* Window = nullptr; // during a render; may abort it
 
-  FrameAttendance Attendance; // of several ranks
+  FrameObserver Observer; // for several ranks
   ProjectedVolume Data;
   WinnerLocations Locations{ Data.Source, Data.Components, Data.Cuts, Data.Images };
   splatting::Picture Picture;
   double Shear[2] = { 0.0, 0.0 };
 
-  std::unique_ptr<RayCastFallback> RayCaster; // made when first needed: it is megabytes large
+  std::unique_ptr<RayCastFallback> RayCaster; // created on demand, because it takes megabytes
 };
 
 //------------------------------------------------------------------------------
@@ -101,7 +104,8 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper() : Internal(new Intern
 {
   ComponentProjector& components = this->Internal->Data.Components;
   components.GetProjector().setProgress([this](double done) { this->UpdateProgress(done); });
-  components.SetObserver([this](double done) { return this->Internal->GoOn(this, done); });
+  components.SetObserver(
+    [this](double done) { return this->Internal->ReportProgress(this, done); });
   components.GetWarper().setObserver([this](double) { return !this->Internal->IsAborted(); });
 }
 
@@ -143,17 +147,18 @@ double* vtkSplattingMIPVolumeMapper::GetBounds()
   }
   if (!ranks.Whole())
   {
-    return nullptr; // what has no bounds is not culled
+    return nullptr; // volumes without bounds are not culled
   }
   ranks.Whole()->GetBounds(this->Bounds);
   return this->Bounds;
 }
 
 //------------------------------------------------------------------------------
-// Tells how much of the projection is done and whether the window wants the rest.
-bool vtkSplattingMIPVolumeMapper::Internals::GoOn(vtkSplattingMIPVolumeMapper* self, double done)
+// Reports progress. Returns whether the window wants to continue.
+bool vtkSplattingMIPVolumeMapper::Internals::ReportProgress(
+  vtkSplattingMIPVolumeMapper* self, double done)
 {
-  done = this->Data.Components.ShareOfAll(done);
+  done = this->Data.Components.OverallProgress(done);
   self->InvokeEvent(vtkCommand::VolumeMapperRenderProgressEvent, &done);
   return !this->IsAborted();
 }
@@ -165,7 +170,7 @@ bool vtkSplattingMIPVolumeMapper::Internals::IsAborted() const
 }
 
 //------------------------------------------------------------------------------
-// The other ranks wait for this one, which has rendered a frame without the volume.
+// Reports a frame without the volume to the other ranks, which wait.
 void vtkSplattingMIPVolumeMapper::Internals::ReportAbsence(
   vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume)
 {
@@ -173,7 +178,7 @@ void vtkSplattingMIPVolumeMapper::Internals::ReportAbsence(
   {
     return;
   }
-  const std::string problem = this->Data.Ranks.AgreeOnAbsence();
+  const std::string problem = this->Data.Ranks.ReportMissingFrame();
   if (this->Reported.Update(renderer, volume, problem))
   {
     vtkErrorWithObjectMacro(self, << problem);
@@ -181,19 +186,20 @@ void vtkSplattingMIPVolumeMapper::Internals::ReportAbsence(
 }
 
 //------------------------------------------------------------------------------
-// What is set but means nothing where rays are cast.
-void vtkSplattingMIPVolumeMapper::Internals::WarnOfIgnored(vtkSplattingMIPVolumeMapper* self)
+// Warns of properties that ray casting ignores.
+void vtkSplattingMIPVolumeMapper::Internals::WarnAboutIgnoredProperties(
+  vtkSplattingMIPVolumeMapper* self)
 {
-  if ((self->GetSlab() || self->GetBoundingSurface()) && this->Announced.insert("ignored").second)
+  if ((self->GetSlab() || self->GetBoundingSurface()) && this->Warned.insert("ignored").second)
   {
     vtkWarningWithObjectMacro(self,
-      << "Slab and BoundingSurface mean nothing where a volume is ray cast: it is shown without "
-         "them.");
+      << "Slab and BoundingSurface are ignored by ray casters: choose an intensity projection as "
+         "the blend mode.");
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::Internals::WarnOfSurface(vtkSplattingMIPVolumeMapper* self)
+void vtkSplattingMIPVolumeMapper::Internals::WarnAboutSurface(vtkSplattingMIPVolumeMapper* self)
 {
   const bool isOpen = this->Data.Cuts.Surface().IsOpen();
   if (isOpen && !this->OpenSurfaceReported)
@@ -206,7 +212,7 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfSurface(vtkSplattingMIPVolume
 }
 
 //------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::Internals::WarnOfBudget(vtkSplattingMIPVolumeMapper* self)
+void vtkSplattingMIPVolumeMapper::Internals::WarnAboutBudget(vtkSplattingMIPVolumeMapper* self)
 {
   const bool exceeds = this->Data.Components.ExceedsBudget();
   if (exceeds && !this->BudgetReported)
@@ -220,8 +226,8 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnOfBudget(vtkSplattingMIPVolumeM
 }
 
 //------------------------------------------------------------------------------
-// Holds nothing, after a frame that there was no memory for.
-void vtkSplattingMIPVolumeMapper::Internals::GiveBack()
+// Releases memory, after a frame that ran out of memory.
+void vtkSplattingMIPVolumeMapper::Internals::ReleaseMemory()
 {
   this->Data.Clear();
   this->Locations.Forget();
@@ -248,7 +254,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     vtkErrorMacro(<< "An observer of this mapper's render events must not render with it.");
     return;
   }
-  const During during(in.Window, ren->GetRenderWindow());
+  const ScopedWindow scoped(in.Window, ren->GetRenderWindow());
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent);
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
@@ -259,9 +265,9 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
     in.Locations.BeginFrame(ren);
     if (in.Data.Ranks.Use(this->GetController()))
     {
-      in.Attendance.Attend(ren, vol);
+      in.Observer.MarkRendered(ren, vol);
     }
-    problem = refusalOf(this, ren, vol, in.Data);
+    problem = loadAndValidate(this, ren, vol, in.Data);
     if (problem.empty())
     {
       problem = this->RenderBySplatting(ren, vol);
@@ -270,7 +276,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   catch (const std::bad_alloc&)
   {
     problem = ScalarSource::NoMemory;
-    in.GiveBack();
+    in.ReleaseMemory();
     if (in.Data.Ranks.AreMany())
     {
       vtkErrorMacro(<< problem);
@@ -281,7 +287,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   {
     vtkErrorMacro(<< problem);
   }
-  // The old scalars would stay in memory with it.
+  // It would keep the old scalars in memory.
   if (!this->LastRenderUsedRayCasting && !in.Data.Source.HasImage())
   {
     in.DropRayCaster();
@@ -293,13 +299,13 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 }
 
 //------------------------------------------------------------------------------
-// Returns what is wrong, or an empty string.
+// Returns an error message, or an empty string.
 const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
   ProjectedVolume& data = in.Data;
   splatting::View view = makeView(data.Grid(), vol, ren, this);
-  // Nothing can be seen in a window that is not shown yet.
+  // A window that is not shown yet has no pixels.
   if (view.viewport.x < 1 || view.viewport.y < 1)
   {
     return "";
@@ -313,7 +319,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return TurnOfViews::Degenerate;
   }
-  if (data.Source.IsCoarse() && in.Announced.insert("coarse").second)
+  if (data.Source.IsCoarse() && in.Warned.insert("coarse").second)
   {
     vtkWarningMacro(<< "The rectilinear grid is resampled to larger steps than its least, which is "
                        "too small for that: small cells may be lost. Extract a part of it.");
@@ -327,10 +333,10 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     addSlab(view, data.Grid(), vol, this->GetSlabCenter(), this->GetSlabThickness());
   }
-  in.WarnOfSurface(this);
+  in.WarnAboutSurface(this);
   data.Prepare(this, view, vol, finalColor);
   if (const char* const fault =
-        data.Components.FaultOfVoxels(static_cast<Quality>(this->GetQualityMode())))
+        data.Components.ValidateVoxels(static_cast<Quality>(this->GetQualityMode())))
   {
     return fault;
   }
@@ -340,7 +346,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return TurnOfViews::Degenerate;
   }
-  in.WarnOfBudget(this);
+  in.WarnAboutBudget(this);
   if (data.Components.IsProjected() && (!this->DisplayOnRootOnly || data.Ranks.IsRoot()) &&
     data.Components.Warp(data.Images, view, in.Picture))
   {
@@ -352,12 +358,12 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 }
 
 //------------------------------------------------------------------------------
-// The picture, in the colours of depths if they are wanted, and depths.
+// Displays the picture, coloured by depth if DepthCoding is on, and its depths.
 void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
 {
   Internals& in = *this->Internal;
   if (needsLocations(this) && this->BlendMode == AVERAGE_INTENSITY_BLEND &&
-    in.Announced.insert("mean").second)
+    in.Warned.insert("mean").second)
   {
     vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
                        "one, no depth coding and no depths: choose another blend mode.");
@@ -396,14 +402,13 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
 {
   Internals& in = *this->Internal;
   const bool isForGpu = RayCastFallback::IsForGpu(this->BlendMode);
-  if (in.Announced.insert("ray casting").second)
+  if (in.Warned.insert("ray casting").second)
   {
     vtkWarningMacro(<< "Rendering by "
                     << (isForGpu ? "vtkGPUVolumeRayCastMapper" : "vtkFixedPointVolumeRayCastMapper")
                     << ", because the blend mode is no intensity projection.");
   }
-  // The ray caster's constructor needs an implementation of the display and does not ask whether
-  // there is one.
+  // The ray caster's constructor needs an implementation of the display, and does not check it.
   if (!in.RayCaster && !vtkSmartPointer<vtkRayCastImageDisplayHelper>::New())
   {
     vtkErrorMacro(<< "There is no OpenGL for vtkFixedPointVolumeRayCastMapper, which is needed "
@@ -412,7 +417,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
                      "VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2).");
     return;
   }
-  in.WarnOfIgnored(this);
+  in.WarnAboutIgnoredProperties(this);
   this->LastRenderUsedRayCasting = true;
   vtkImageData* const image = in.Data.Source.Image();
   if (!image)
@@ -448,7 +453,7 @@ void vtkSplattingMIPVolumeMapper::DisplayImage(
 }
 
 //------------------------------------------------------------------------------
-// DisplayImage() has said that there is nothing to draw with.
+// DisplayImage() has reported the error.
 void vtkSplattingMIPVolumeMapper::DisplayDepths(vtkRenderer*, const int*, const int*, const float*)
 {
 }

@@ -101,17 +101,17 @@ public:
   ///@}
 
   /**
-   * Get the last shear image, in perspective the largest, or nullptr before the first render and in
-   * EXACT. The caller must not change it. Coordinates are voxel indices on the middle slice along
-   * the principal axis: the ray of pixel (u, v) crosses slice k at origin + spacing * (u, v) -
-   * GetShear() * (k - (slices - 1) / 2). Pixels without a sample are hidden in the ghost array. See
-   * contract.md for axes, scalars and perspective views.
+   * Get the last shear image, in perspective the largest. Returns nullptr before the first render
+   * and if GetQualityModeUsed() is EXACT. The caller must not change it. Coordinates are voxel
+   * indices on the middle slice along the principal axis: the ray of pixel (u, v) crosses slice k
+   * at origin + spacing * (u, v) - GetShear() * (k - (slices - 1) / 2). Pixels without a sample are
+   * hidden in the ghost array. See contract.md for axes, scalars and perspective views.
    */
   vtkImageData* GetShearImage();
 
   /**
    * Get the image axis (0, 1 or 2) along which the last render projected, in perspective that of
-   * GetShearImage(). -1 before the first render and in EXACT.
+   * GetShearImage(). Returns -1 if there is no shear image.
    */
   int GetPrincipalAxis();
 
@@ -119,7 +119,8 @@ public:
   /**
    * Get the shears of the last render along x and y of the shear image, in pixels per slice. Slice
    * k is moved by shear * k. Magnitudes are at most 1, in multiples of 2^-24. In perspective they
-   * are the slopes of the middle pixel's ray, in voxels per slice. 0 in EXACT.
+   * are the slopes of the middle pixel's ray, in voxels per slice. Returns 0 if there is no shear
+   * image.
    */
   void GetShear(double shear[2]);
   double* GetShear() VTK_SIZEHINT(2);
@@ -137,10 +138,9 @@ public:
   double GetIndexTime();
 
   /**
-   * Get how often this mapper has projected the volume. A render that changes colours or opacity
-   * reuses the last projection. In modes other than EXACT, renders that change zoom, position or
-   * roll of a parallel camera reuse it as well, and so do most views from the opposite side. See
-   * contract.md for the conditions.
+   * Get how often this mapper has projected the volume. A render that changes only colours or
+   * opacity reuses the last projection. In modes other than EXACT, changes of zoom, pan and roll
+   * reuse it, too, and so does the view from the opposite side. See contract.md for all conditions.
    */
   vtkIdType GetNumberOfProjections();
 
@@ -164,11 +164,10 @@ public:
   ///@{
   /**
    * Set/Get the controller of the ranks among which the image is distributed. Default nullptr: the
-   * input is the whole volume. With several ranks rendering is collective. Each rank needs a
-   * mapper, camera and renderer with the same settings and its piece of one vtkImageData, with 0
-   * (PREVIEW), 1 (STANDARD, EXACT) or 2 ghost layers (HIGH, and EXACT with
-   * AutoAdjustSampleDistances). The picture has the same bits as that of one rank. See ranks.md for
-   * setup and restrictions.
+   * input is the whole volume. With several ranks rendering is collective, and the input is a piece
+   * of one vtkImageData with 0 (PREVIEW), 1 (STANDARD, EXACT) or 2 ghost layers (HIGH, and EXACT
+   * with AutoAdjustSampleDistances). Settings, camera and window must be the same on all ranks. The
+   * picture has the same bits as that of one rank. See ranks.md for restrictions.
    */
   virtual void SetController(vtkMultiProcessController*);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);

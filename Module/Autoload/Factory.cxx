@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Switches the override of vtkSplattingMIPGPUVolumeRayCastMapper on in programs that know nothing
-// of it, when VTK loads libraries from VTK_AUTOLOAD_PATH. The environment says what programs
-// otherwise say by calls:
+// Turns on the override of vtkSplattingMIPGPUVolumeRayCastMapper in unchanged programs, when VTK
+// loads libraries from VTK_AUTOLOAD_PATH. Environment variables replace calls:
 //
 // SPLATTINGMIP_QUALITY  preview, standard, high or exact (the default)
-// SPLATTINGMIP_LOG      a file, in a folder that is there, to which VTK's log of verbosity up to 1
-//                       is appended: which mapper renders, beside all warnings and errors
+// SPLATTINGMIP_LOG      a file in an existing folder. VTK's log of verbosity up to 1 is appended
+//                       to it: the mapper that renders, and all warnings and errors
 #include "vtkLogger.h"
 #include "vtkObjectFactory.h"
 #include "vtkSplattingMIPGPUVolumeRayCastMapper.h"
@@ -20,8 +19,9 @@
 
 namespace
 {
-/// VTK wants one of its own to register, last of all. By then this library has brought VTK's OpenGL
-/// classes with it, whose factory comes before; so the override has a factory that is put first.
+/// VTK registers the factory that this library returns after all others. The factory of VTK's
+/// OpenGL classes, which this library loads, precedes it. The override therefore has another
+/// factory, which is registered before all others.
 class EmptyFactory : public vtkObjectFactory
 {
 public:
@@ -38,7 +38,7 @@ std::string valueOf(const char* variable)
   return value ? value : "";
 }
 
-/// VTK's logger would make folders that are missing.
+/// VTK's logger would create missing folders.
 void setLog(const std::string& file)
 {
   if (file.empty())

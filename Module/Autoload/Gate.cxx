@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What VTK loads from VTK_AUTOLOAD_PATH, into any program that uses any VTK. It links nothing of
-// VTK, which would bring a second one into programs with another version, and opens the factory
-// only if that links the very library that calls.
+// The library that VTK loads from VTK_AUTOLOAD_PATH, into any program with any VTK. It does not
+// link VTK, because this would load a second VTK into programs with another version. It opens the
+// factory only if that links the very library that calls.
 //
-// VTK compares the string of vtkGetFactoryVersion() with its own version. Where they differ, it
-// warns with both, says which file this was, and goes on without it; so that is the place for all
-// reasons not to serve.
+// VTK compares the string of vtkGetFactoryVersion() with its own version. If they differ, it
+// reports a warning with both and the name of this file, and continues without it. The string
+// therefore reports all reasons not to serve.
 #include "vtkVersionMacros.h"
 
 #include <dlfcn.h>
@@ -25,14 +25,14 @@ std::string fileOf(void* address)
   return dladdr(address, &info) && info.dli_fname ? info.dli_fname : "";
 }
 
-/// Whether code at an address belongs to the library that goes by a name in this program.
+/// Whether code at an address belongs to the library that this program finds under a name.
 bool belongsTo(void* address, const std::string& name)
 {
   void* const library = dlopen(name.c_str(), RTLD_LAZY | RTLD_NOLOAD);
   return library && library == dlopen(fileOf(address).c_str(), RTLD_LAZY | RTLD_NOLOAD);
 }
 
-/// Opens the factory. Returns what VTK is to take for its version.
+/// Opens the factory. Returns the version string for VTK.
 std::string open(void* caller)
 {
   const std::string version = VTK_SOURCE_VERSION;
@@ -57,7 +57,7 @@ extern "C" __attribute__((visibility("default"))) const char* vtkGetFactoryVersi
   return version.c_str();
 }
 
-/// Called where the versions agree.
+/// Called if the versions are equal.
 extern "C" __attribute__((visibility("default"))) void* vtkLoad()
 {
   return newFactory();

@@ -12,7 +12,7 @@ namespace splatting
 {
 namespace
 {
-/// @param component  of so many
+/// @param component  one of `components`
 ColorTable tableOf(vtkVolumeProperty* property, const FinalColor& finalColor, bool dependent,
   int component, int components, const ScalarRange& scalars)
 {
@@ -30,7 +30,7 @@ ColorTable tableOf(vtkVolumeProperty* property, const FinalColor& finalColor, bo
 }
 }
 
-// Of what is projected: depth shading can leave the range of the voxels.
+// The range of the projected values: depth shading can exceed the range of the voxels.
 ScalarRange ComponentColors::RangeOf(VolumeIndex& component) const
 {
   const VolumeIndex::Range& range = component.range();

@@ -16,13 +16,13 @@ class vtkVolumeProperty;
 namespace splatting
 {
 /**
- * A property's transfer functions as tables, one for each component of a data set.
+ * The colour tables of all components, from a property's transfer functions.
  */
 class ComponentColors
 {
 public:
   /**
-   * Tabulates the functions for what these settings project, anew if something changed.
+   * Makes the tables for the values that these settings project, if anything has changed.
    * @param components  their volumes
    * @param dependent   whether the last component is the opacity of the others
    */
@@ -30,11 +30,11 @@ public:
     const ProjectionSettings& settings, const std::vector<VolumeIndex*>& components,
     bool dependent);
 
-  /// The components have changed.
+  /// Call it if the components have changed.
   void Forget() { this->Known = false; }
 
   const ColorTable& Of(std::size_t component) const { return this->Tables[component]; }
-  /// The scalar up to which all have the colour of the lowest.
+  /// The largest scalar such that all scalars up to it have the colour of the lowest.
   double FloorOfWindow(std::size_t component) const;
 
 private:
@@ -42,10 +42,10 @@ private:
 
   std::vector<ColorTable> Tables;
   bool Known = false;
-  vtkVolumeProperty* Property = nullptr; // only compared
+  vtkVolumeProperty* Property = nullptr; // compared only
   vtkMTimeType Time = 0;                 // of the property
   FinalColor Final;
-  double Shading[2] = { 0.0, 1.0 }; // of all samples, the least and the greatest factor
+  double Shading[2] = { 0.0, 1.0 }; // the least and the greatest factor of samples
 };
 }
 

@@ -113,7 +113,7 @@ void ComponentProjector::SetRanks(PieceExchange* ranks)
     Channel& channel = this->Channels[c];
     if (!ranks)
     {
-      if (channel.Whole) // what the index knows is of that
+      if (channel.Whole) // the index has the range of the whole
       {
         channel.Index.reset(channel.Index.volume());
         channel.Whole.reset();
@@ -130,13 +130,13 @@ void ComponentProjector::SetRanks(PieceExchange* ranks)
       this->Projected = false;
     }
     channel.Whole = range;
-    channel.Index.setRangeOfWhole(*channel.Whole); // again if the budget has changed
+    channel.Index.setRangeOfWhole(*channel.Whole); // also if the budget has changed
   }
 }
 
-// Sums of weighted voxels overflow, or of a ray's samples. Exact mode scales voxels by their range,
-// which infinities hide, and computes products of them.
-const char* ComponentProjector::FaultOfVoxels(Quality quality)
+// Sums of weighted voxels, or of a ray's samples, would overflow. Exact mode scales voxels by their
+// range, which is unknown beside infinities, and multiplies them.
+const char* ComponentProjector::ValidateVoxels(Quality quality)
 {
   const bool isTooLarge = std::any_of(this->Channels.begin(), this->Channels.end(),
     [isExact = quality == Quality::Exact](Channel& channel)
@@ -161,7 +161,7 @@ bool ComponentProjector::SetBudget(std::size_t bytes)
   {
     changed = channel.Index.setBudget(bytes / this->Channels.size()) || changed;
   }
-  this->Projected = this->Projected && !changed; // so that the answer to "what was used" is right
+  this->Projected = this->Projected && !changed; // so that Used() is updated
   return changed;
 }
 
@@ -202,7 +202,7 @@ void ComponentProjector::UpdateColors(
   this->Colors.Update(property, finalColor, settings, components, this->Dependent);
 }
 
-// Whether all but the last component go with the winners.
+// Whether all components but the last are taken from the samples of the last.
 bool ComponentProjector::TakesAtWinners(const ProjectionSettings& settings) const
 {
   return this->Dependent && settings.reduction != Reduction::Mean;
@@ -211,14 +211,14 @@ bool ComponentProjector::TakesAtWinners(const ProjectionSettings& settings) cons
 ProjectionSettings ComponentProjector::SettingsOf(
   const Channel& channel, ProjectionSettings settings) const
 {
-  // Whether locations are wanted is the mapper's affair.
+  // Only the mapper's located component needs winners.
   settings.keepWinners =
     this->TakesAtWinners(settings) || (settings.keepWinners && &channel == &this->LocatedChannel());
   if (this->TakesAtWinners(settings) && settings.quality == Quality::Exact)
   {
-    settings.quality = Quality::High; // what is taken at winners is an average
+    settings.quality = Quality::High; // takeAtWinners() takes averages
   }
-  // Colours taken at winners, and locations, matter below the window, too.
+  // Other components and locations need samples below the window, too.
   if (this->Cull && !settings.keepWinners && settings.reduction == Reduction::Maximum)
   {
     settings.floor = this->Colors.FloorOfWindow(&channel - this->Channels.data());
@@ -226,7 +226,7 @@ ProjectionSettings ComponentProjector::SettingsOf(
   return settings;
 }
 
-bool ComponentProjector::Shows(const ProjectionSettings& settings) const
+bool ComponentProjector::IsUpToDate(const ProjectionSettings& settings) const
 {
   return this->Projected &&
     std::all_of(this->Channels.begin(), this->Channels.end(),
@@ -257,8 +257,8 @@ bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
   return true;
 }
 
-// One image of all channels: what is taken at winners needs the projector as the projection has
-// left it.
+// Projects one image of all components. takeAtWinners() must follow the projection directly,
+// because it uses the projector's state.
 bool ComponentProjector::ProjectImage(
   std::size_t n, const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts)
 {
@@ -297,14 +297,14 @@ bool ComponentProjector::Project(const std::vector<ShearWarp>& geometries,
   for (Channel& channel : this->Channels)
   {
     channel.Images.resize(std::max(channel.Images.size(), geometries.size()));
-    channel.Settings = this->SettingsOf(channel, settings); // there may be no image
+    channel.Settings = this->SettingsOf(channel, settings); // also if there is no image
   }
   bool done = true;
   for (std::size_t n = 0; n < geometries.size() && done; ++n)
   {
     done = this->ProjectImage(n, geometries[n], settings, cuts[n]);
   }
-  // Where one rank has stopped all do.
+  // If one rank stops, all ranks stop.
   if (this->Ranks ? this->Ranks->Any(!done) : !done)
   {
     return false;
@@ -330,7 +330,7 @@ void ComponentProjector::Describe(Located& located) const
   located.volume = channel.Index.volume();
   if (this->Ranks)
   {
-    located.volume.voxels = nullptr; // a piece tells nothing of others' pixels
+    located.volume.voxels = nullptr; // a piece does not contain all voxels
   }
   located.settings = channel.Settings;
   located.low = std::isfinite(channel.Range.low) ? channel.Range.low : 0.0;
@@ -349,7 +349,7 @@ const PixelProjector::Pixel& ComponentProjector::ProjectPixel(const ProjectionSe
   return this->Pixels.Project(this->LocatedChannel().Index, settings, pixel, geometries, cuts);
 }
 
-// From the images of pieces to those of the whole.
+// Turns the images of pieces into those of the whole.
 void ComponentProjector::Exchange(const std::vector<ShearWarp>& geometries,
   const ProjectionSettings& settings, const std::vector<Cuts>& cuts)
 {
@@ -367,7 +367,7 @@ void ComponentProjector::Exchange(const std::vector<ShearWarp>& geometries,
   }
 }
 
-double ComponentProjector::ShareOfAll(double done) const
+double ComponentProjector::OverallProgress(double done) const
 {
   const std::size_t channels = this->TakesAtWinners(this->Settings()) ? 1 : this->Channels.size();
   return (this->Done + done) /
@@ -412,7 +412,7 @@ bool ComponentProjector::ProjectOnScreen(
       ++this->Done;
     }
   }
-  // Where one rank has stopped all do.
+  // If one rank stops, all ranks stop.
   if (this->Ranks ? this->Ranks->Any(!done) : !done)
   {
     return false;
@@ -444,7 +444,7 @@ const ScreenScalars& ComponentProjector::ProjectPixelOnScreen(
   return this->PixelOnScreen;
 }
 
-// Where areas are shown, the other components are those of the sample that wins in the area.
+// In overviews the other components are taken from the sample that the area shows.
 void ComponentProjector::FindShown(const std::vector<ShearWarp>& geometries, const View& view)
 {
   const Channel& last = this->Channels.back();

@@ -25,139 +25,138 @@ namespace splatting
 class PieceExchange;
 class ScalarSource;
 
-/// The largest of a view's images, of which there is at least one.
+/// The index of the largest image; there must be one.
 std::size_t mainImage(const std::vector<ShearWarp>& images);
 
-/// Whether two views have the same rays, in images as sharp, and from the same side if they are
-/// ordered.
+/// Whether two views have the same rays and equally sharp images, and, if `ordered`, the same side
+/// of the viewer.
 bool haveSameRays(const std::vector<ShearWarp>& a, const std::vector<ShearWarp>& b, bool ordered);
 
 /**
- * From the volumes of a data set's components to one picture.
+ * Projects the components of a data set and combines them to one picture.
  *
- * Independent components are projected and coloured one by one, and their colours add up. Of
- * dependent ones the last, the opacity, is projected, and the others, one colour index or red,
- * green and blue, are those of the samples that win; means are taken of each.
+ * Independent components are projected and coloured one by one, and their colours are added. Of
+ * dependent components the last one, the opacity, is projected. The others, a colour index or red,
+ * green and blue, are taken from the same samples. Averages are taken of each component.
  */
 class ComponentProjector
 {
 public:
-  /// Points the indices at the source's volumes, anew if these changed. Returns whether other times
-  /// are to be expected now, because there are more voxels, larger ones or other components.
+  /// Sets the source's volumes. Returns whether projection times will differ, because the number of
+  /// voxels, their type or the number of components has changed.
   bool SetSource(ScalarSource& source);
 
-  /// In place of SetSource() on a rank that holds nothing of a volume of this type.
+  /// Replaces SetSource() on a rank without voxels, for a volume of this type.
   void SetEmpty(ScalarType type, std::size_t components);
 
-  /// As before the first volume: gives back what it holds, whatever state that is in.
+  /// Releases all memory, also in an invalid state.
   void Clear();
 
-  /// What volumes hold, and of a piece the range of its own voxels.
+  /// Number, kind and type of the components; the range of a piece's own voxels.
   std::size_t NumberOfComponents() const { return this->Channels.size(); }
   bool AreDependent() const { return this->Dependent; }
   ScalarType VolumeType() const { return this->Channels.front().Index.volume().type; }
   const VolumeIndex::Range& RangeOfPiece(std::size_t component);
 
-  /// From now on the volumes are pieces, of which the images are exchanged; nullptr: they are
-  /// whole. Must outlive its use.
+  /// Sets the interface to the other ranks, if the volumes are pieces; nullptr: they are whole. It
+  /// must outlive its use.
   void SetRanks(PieceExchange* ranks);
 
-  /// What is wrong with voxels that are too large to be computed with, or nullptr.
-  const char* FaultOfVoxels(Quality quality);
+  /// An error message if voxels are too large for the arithmetic, or nullptr.
+  const char* ValidateVoxels(Quality quality);
 
-  /// Every component gets the same share. A change gives up what is there; returns whether it has
-  /// changed.
+  /// Sets the memory budget, which the components share equally. A change discards all indices.
+  /// Returns whether it has changed.
   bool SetBudget(std::size_t bytes);
   bool ExceedsBudget() const;
   /// Bytes and seconds of all indices.
   std::size_t MemorySize() const;
   double Time() const;
 
-  /// Tables of colours for what these settings project, anew if something changed.
+  /// Updates the colour tables for these settings.
   void UpdateColors(
     vtkVolumeProperty* property, const FinalColor& finalColor, const ProjectionSettings& settings);
 
-  /// Whether scalars at or below the window are told apart: see CullBelowWindow. Needs
-  /// UpdateColors().
+  /// Sets whether scalars below the window are clamped; see CullBelowWindow. Needs UpdateColors().
   void SetCullBelowWindow(bool cull) { this->Cull = cull; }
 
-  /// Whether these settings are projected by ProjectOnScreen(), not by Project().
+  /// Whether ProjectOnScreen() projects these settings, not Project().
   bool UsesCells(const ProjectionSettings& settings) const
   {
     return settings.quality == Quality::Exact && !this->TakesAtWinners(settings);
   }
 
   /**
-   * Whether the images are those that project() would make, the viewer's side aside.
+   * Whether the last projection has these settings, regardless of the viewer's side.
    */
-  bool Shows(const ProjectionSettings& settings) const;
+  bool IsUpToDate(const ProjectionSettings& settings) const;
 
   /**
-   * Projects all components into all images of a view, each with its cuts. False if the projector's
-   * observer has stopped it: there are no images then.
+   * Projects all components into all images of a view, each with its cuts. Returns false, without
+   * images, if the observer has stopped it.
    */
   bool Project(const std::vector<ShearWarp>& geometries, const ProjectionSettings& settings,
     const std::vector<Cuts>& cuts);
 
-  /// Whether there are images.
+  /// Whether there is a projection.
   bool IsProjected() const { return this->Projected; }
-  /// The images no longer show what they should.
+  /// Marks the projection as outdated.
   void Forget() { this->Projected = false; }
 
   /**
    * Projects all components onto the screen, by cells. Collective.
-   * @return  false if the observer has stopped it or the view is invalid; there is no picture then
+   * @return  false, without a projection, if the observer has stopped it or the view is invalid
    */
   bool ProjectOnScreen(const View& view, const ProjectionSettings& settings, const RayEnds& ends);
-  /// Whether the last projection was by cells. It needs no geometries.
+  /// Whether the last projection was by cells, and needs no geometries.
   bool IsOnScreen() const { return this->OnScreen; }
-  /// The same of one pixel of the viewport, with its depth; not of pieces. The reference is valid
-  /// until the next call.
+  /// As ProjectOnScreen(), for one pixel of the viewport, with its depth. Not for pieces. The
+  /// result is valid until the next call.
   const ScreenScalars& ProjectPixelOnScreen(
     const View& view, ProjectionSettings settings, const RayEnds& ends, const glm::ivec2& pixel);
 
-  /// The picture of the images in a view with these geometries. False if the warper's observer has
-  /// stopped it: there is no picture then.
+  /// Makes the picture of a view. Returns false, without a picture, if the warper's observer has
+  /// stopped it.
   bool Warp(const std::vector<ShearWarp>& geometries, const View& view, Picture& picture);
 
   /**
-   * The same as scalars, component after component of each pixel, row after row of the whole
+   * Writes scalars instead of colours: all components of each pixel, row by row of the whole
    * viewport from the bottom.
-   * @param background  of pixels without a sample
+   * @param background  the value of pixels without a sample
    * @param scalars     of type averageType() of the images' type
-   * @return  false if the warper's observer has stopped it; the scalars are invalid then
+   * @return  false, with invalid scalars, if the warper's observer has stopped it
    */
   bool WarpScalars(
     const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars);
 
-  /// Told the share of a projection that is done; returns whether to go on.
+  /// Sets the function that gets the completed share of a projection and returns whether to
+  /// continue.
   void SetObserver(const ProgressObserver::Callback& callback);
 
-  /// The largest image, with all components. Its ghost array hides pixels without a sample. There
-  /// must be images.
+  /// The largest shear image, with all components. Its ghost array hides pixels without a sample.
+  /// There must be images.
   vtkSmartPointer<vtkImageData> MakeShearImage(
     const std::vector<ShearWarp>& geometries, const ScalarSource& source) const;
 
-  /// Whether the images tell where their samples lie: those of the component that is located, the
-  /// last of dependent ones, else the first.
+  /// Whether there are sample positions of the located component: the last of dependent ones, else
+  /// the first.
   bool HasWinners() const;
-  /// Sets what is located: images, volume and its range, settings. There must be winners.
+  /// Sets images, volume, range and settings of the located component. It must have winners.
   void Describe(Located& located) const;
 
-  /// See PixelProjector: not of pieces, nor of means.
+  /// See PixelProjector: not for pieces and averages.
   bool CanProjectPixels() const;
-  /// @param settings  of the projection that is located
+  /// @param settings  of the located projection
   const PixelProjector::Pixel& ProjectPixel(const ProjectionSettings& settings,
     const ShearPixel& pixel, const std::vector<ShearWarp>& geometries,
     const std::vector<Cuts>& cuts);
 
-  /// Of the last projection.
+  /// Settings and acceleration of the last projection.
   const ProjectionSettings& Settings() const { return this->Channels.front().Settings; }
   Acceleration Used() const { return this->Channels.front().Used; }
 
-  /// From the share that is done of the projection in progress to the share of all components' and
-  /// images'.
-  double ShareOfAll(double done) const;
+  /// Converts the completed share of the current projection to that of all components and images.
+  double OverallProgress(double done) const;
 
   splatting::Projector& GetProjector() { return this->Projector; }
   splatting::Warper& GetWarper() { return this->Warper; }
@@ -171,7 +170,7 @@ private:
     std::vector<ShearImage> Images; // at least as many as the view has
     CellIndex Cells;
     ScreenScalars Screen;     // of projections by cells
-    VolumeIndex::Range Range; // of what was projected
+    VolumeIndex::Range Range; // of the projected volume
     Acceleration Used = Acceleration::Dense;
   };
 
@@ -199,8 +198,8 @@ private:
   bool Cull = false;
   bool Projected = false;
   bool OnScreen = false;
-  int Done = 0;          // of the present projection's images of channels
-  std::size_t Parts = 1; // images of a channel
+  int Done = 0;          // completed images of components
+  std::size_t Parts = 1; // images of a component
   vtkIdType Version = 0; // of the source
   PieceExchange* Ranks = nullptr;
 
@@ -210,9 +209,9 @@ private:
   PixelProjector Pixels;
   ScreenScalars PixelOnScreen;
   splatting::Warper Warper;
-  Picture Layer; // of one component
+  Picture Layer; // picture of one component
   std::vector<ShearPixel> Shown;
-  std::vector<unsigned char> Plane; // likewise, scalars
+  std::vector<unsigned char> Plane; // scalars of one component
 };
 }
 

@@ -10,8 +10,8 @@ class vtkImageData;
 namespace splatting
 {
 /**
- * Gives an image the point arrays "Voxel" (three ints), "Depth" (float) and "Position" (three
- * doubles), for now those of pixels without a sample: -1 and NaN. Returns where to write others.
+ * Adds the point arrays "Voxel" (three ints), "Depth" (float) and "Position" (three doubles) to an
+ * image, with the values of pixels without a sample: -1 and NaN. Returns their addresses.
  */
 Locator::Arrays addLocationArrays(vtkImageData* image);
 }

@@ -13,24 +13,25 @@
 namespace splatting
 {
 /**
- * What the projector of a piece of a volume needs of those that have the other pieces.
+ * The interface through which the projector of a piece exchanges data with those of the other
+ * pieces.
  */
 class PieceExchange
 {
 public:
   virtual ~PieceExchange() = default;
 
-  /// Where the piece's voxels begin in the whole.
+  /// The first voxel of the piece in the whole.
   virtual const glm::ivec3& First() const = 0;
   virtual VolumeIndex::Range RangeOfWhole(std::size_t component) const = 0;
 
-  /// Collective: all must call it. Whether something is so with any of them.
+  /// Collective: all ranks must call it. Whether the argument is true on any rank.
   virtual bool Any(bool here) const = 0;
-  /// Collective. From the image of a piece to that of the whole, but for its spans and mask.
+  /// Collective. Turns the image of a piece into that of the whole, except for its spans and mask.
   /// @param geometry  of the whole
   virtual void Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction) = 0;
-  /// Collective. From what a piece shows to what the whole does: values, and of the pieces that
-  /// have a pixel's value the least depth.
+  /// Collective. Turns the values of a piece into those of the whole, with the least depth of the
+  /// pieces that have a pixel's value.
   virtual void Reduce(ScreenScalars& screen) = 0;
 };
 }

@@ -22,7 +22,7 @@ const PixelProjector::Pixel& PixelProjector::Project(VolumeIndex& index,
   settings.keepWinners = true;
   settings.floor = ProjectionSettings().floor;
   settings.acceleration = Acceleration::Dense;
-  // What frames have learnt is for frames.
+  // Single pixels must not change the statistics of frames.
   SkipStatistics& statistics = index.statistics(
     geometry.principalAxis(), static_cast<int>(settings.quality), !this->Alone.Cuts.none());
   const SkipStatistics kept = statistics;

@@ -11,13 +11,13 @@
 namespace splatting
 {
 /**
- * Projects single pixels of a view's images once more, with their winners: what a pick looks at
- * where the images tell none.
+ * Projects single pixels of a view's images again, with their winners, for picks without recorded
+ * locations.
  */
 class PixelProjector
 {
 public:
-  /// The image of one pixel, alone.
+  /// The image of one pixel.
   struct Pixel
   {
     std::vector<ShearWarp> Geometries = std::vector<ShearWarp>(1);
@@ -27,7 +27,7 @@ public:
 
   /**
    * @param index       of the whole volume
-   * @param settings    of the images; not for means
+   * @param settings    of the images; not for averages
    * @param geometries  of the images, and the cuts of each
    */
   const Pixel& Project(VolumeIndex& index, ProjectionSettings settings, const ShearPixel& pixel,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What the properties of vtkSplattingMIPProjection and vtkSplattingMIPVolumeMapper mean to a
- * projection. The functions read the properties through the classes' Get methods.
+ * Converts the properties of vtkSplattingMIPProjection and vtkSplattingMIPVolumeMapper to settings
+ * of a projection. The functions read properties through the classes' Get methods.
  */
 #ifndef ProjectionProperties_h
 #define ProjectionProperties_h
@@ -23,17 +23,17 @@ const char* nameOfVectorMode(int mode);
 const char* nameOfAcceleration(int acceleration);
 
 /**
- * Returns a sentence that says which property is invalid and what to do, or nullptr. Properties
- * without effect are not checked.
+ * Returns an error message that says which property is invalid and what to do, or nullptr.
+ * Properties without effect are not checked.
  */
 template <class Object>
-const char* faultOf(Object& object)
+const char* validate(Object& object)
 {
   const auto finite = [](const double* values, int count)
   { return std::all_of(values, values + count, [](double x) { return std::isfinite(x); }); };
   const bool isMaximum = object.GetBlendMode() == Object::MAXIMUM_INTENSITY_BLEND;
   const double* const range = object.GetAverageIPScalarRange();
-  // Beyond that, the differences of shaded floats are no longer finite.
+  // Above it, differences of shaded floats are infinite.
   constexpr double mostShading = 1e6;
   const struct
   {
@@ -104,8 +104,8 @@ ProjectionSettings settingsOf(Object& object, int mode, const View& view, bool l
   }
   if (mode == Object::EXACT && isOverview(view))
   {
-    // The field is nowhere larger than at a voxel, and pixels show areas. Where they are wider than
-    // voxels in all directions, one voxel a slice is enough to lose none.
+    // The field is nowhere larger than at a voxel, and pixels show areas. If pixels are wider than
+    // voxels in all directions, one voxel per slice shows all of them.
     mode = Object::PREVIEW;
     settings.meets = isCoarse(view) ? Meets::Nearest : Meets::All;
   }

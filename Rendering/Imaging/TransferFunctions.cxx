@@ -37,7 +37,7 @@ std::uint32_t premultiplied(
   return color;
 }
 
-/// Widens [low, high] by the nodes of a function; beyond them it is constant.
+/// Widens [low, high] by the nodes of a function, which is constant beyond them.
 template <class Function>
 void addNodes(Function* function, double& low, double& high)
 {
@@ -49,8 +49,8 @@ void addNodes(Function* function, double& low, double& high)
   }
 }
 
-/// The table spends its entries where the functions vary: between their nodes, as far as the data
-/// go. Functions that do not clamp vanish beyond their nodes, so there it covers all data.
+/// The entries of a table lie between the nodes of the functions, within the data. Functions that
+/// do not clamp vanish beyond their nodes, so their tables cover all data.
 template <class ColorFunction>
 void chooseRange(vtkPiecewiseFunction* opacity, ColorFunction* colors, double& low, double& high)
 {
@@ -72,7 +72,7 @@ void chooseRange(vtkPiecewiseFunction* opacity, ColorFunction* colors, double& l
 void sample(vtkColorTransferFunction* colors, double low, double high, std::vector<float>& rgb)
 {
   colors->GetTable(low, high, static_cast<int>(rgb.size() / 3), rgb.data());
-  // VTK makes the last entry black where it lies on the function's only node.
+  // VTK makes the last entry black if it coincides with the function's only node.
   double last[3];
   colors->GetColor(high, last);
   std::transform(
@@ -95,7 +95,7 @@ ColorTable tabulate(vtkPiecewiseFunction* opacity, ColorFunction* colors, float 
   chooseRange(opacity, colors, low, high);
   const double wanted = range.integers ? 16.0 * (high - low) + 1.0 : 65536.0;
   const int entries = high > low ? static_cast<int>(std::clamp(wanted, 2.0, 65536.0)) : 1;
-  const double end = high > low ? high : low + 1.0; // the functions want a range
+  const double end = high > low ? high : low + 1.0; // the functions need a range
   const int sampled = std::max(entries, 2);
   std::vector<float> alpha(sampled), rgb(3 * static_cast<std::size_t>(sampled));
   opacity->GetTable(low, end, sampled, alpha.data());
@@ -159,7 +159,7 @@ ColorTable tabulatePrimary(int primary, const FinalColor& finalColor)
   colors->AddRGBPoint(255.0, primary == 0, primary == 1, primary == 2);
   ColorTable table =
     tabulate<vtkColorTransferFunction>(constantOne(bytes), colors, 1.0f, bytes, finalColor);
-  // The others are added to it: a level must not show in their colours.
+  // Other components are added to it, so the level must not change their colours.
   for (std::uint32_t& color : table.colors)
   {
     unsigned char rgba[4];

@@ -10,9 +10,9 @@ class vtkVolumeProperty;
 namespace splatting
 {
 /**
- * Window and level of the picture: a colour c from 0 to 1, before it is multiplied by its opacity,
- * becomes (c - level) / window + 1/2. The opacity stays. Premultiplied colours are cut off at 0 and
- * 1, so that one above its opacity adds to what is behind, as in VTK's ray casters.
+ * Window and level of the picture. A colour c from 0 to 1, before it is multiplied by its opacity,
+ * becomes (c - level) / window + 1/2. The opacity stays. Premultiplied colours are clamped to [0,
+ * 1], so a colour above its opacity adds to the background, as in VTK's ray casters.
  */
 struct FinalColor
 {
@@ -23,12 +23,12 @@ struct FinalColor
   {
     return this->window == other.window && this->level == other.level;
   }
-  /// Whether there are such colours: finite numbers, and the window is not 0.
+  /// Whether both numbers are finite and the window is not 0.
   bool isValid() const;
 };
 
 /**
- * The values that a table is for.
+ * The range of a table.
  */
 struct ScalarRange
 {
@@ -38,9 +38,9 @@ struct ScalarRange
 };
 
 /**
- * The colour and opacity functions of one of a property's components, as a table; opacities are
- * multiplied by the weight. Integers get sixteen entries per grey level, at most 65536 in all;
- * other values get 65536.
+ * The colour and opacity functions of one component as a table. Opacities are multiplied by the
+ * weight. Integers have sixteen entries per grey level, at most 65536 in all; other types have
+ * 65536.
  */
 ColorTable tabulateColors(vtkVolumeProperty* property, int component, double weight,
   const ScalarRange& range, const FinalColor& finalColor);
@@ -51,7 +51,7 @@ ColorTable tabulateOpaque(
   vtkVolumeProperty* property, const ScalarRange& range, const FinalColor& finalColor);
 /// The opacities, as premultiplied white.
 ColorTable tabulateOpacity(vtkVolumeProperty* property, const ScalarRange& range);
-/// Unsigned char as shades of red (0), green (1) or blue (2).
+/// Unsigned char values as shades of red (0), green (1) or blue (2).
 ColorTable tabulatePrimary(int primary, const FinalColor& finalColor);
 }
 

@@ -34,7 +34,7 @@ bool isDirection(const glm::dvec3& v)
   return isFinite(v) && glm::length(v) > 0.0;
 }
 
-/// Turned counterclockwise about an axis of length 1 [Rodrigues].
+/// Rotates counterclockwise about an axis of length 1 [Rodrigues].
 glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double radians)
 {
   const double c = std::cos(radians), s = std::sin(radians);
@@ -46,8 +46,8 @@ glm::dvec3 vector(const double* v)
   return { v[0], v[1], v[2] };
 }
 
-/// What is wrong, or nullptr.
-const char* faultOf(const TurnSettings& s)
+/// Returns an error message, or nullptr.
+const char* validate(const TurnSettings& s)
 {
   const bool automatic = s.spacing == glm::dvec2(0.0);
   const struct
@@ -56,16 +56,16 @@ const char* faultOf(const TurnSettings& s)
     const char* sentence;
   } problems[] = {
     { s.size.x < 1 || s.size.y < 1 || std::max(s.size.x, s.size.y) > TurnOfViews::MostPixels,
-      "OutputSize has no meaning: set both numbers of pixels to 1 to 16384." },
+      "OutputSize is invalid: set both numbers of pixels to 1 to 16384." },
     { !automatic &&
         !(s.spacing.x > 0.0 && s.spacing.y > 0.0 && std::isfinite(s.spacing.x + s.spacing.y)),
-      "OutputSpacing has no meaning: set both to world units above 0, or both to 0 for "
+      "OutputSpacing is invalid: set both to world units above 0, or both to 0 for "
       "automatic." },
     { !isFinite(s.axis),
       "RotationAxis is not finite: set it to a direction of the world, or to 0, 0, 0 for "
       "view-up." },
     { !std::isfinite(s.angle) || s.angle == 0.0,
-      "TotalAngle has no meaning: set it to degrees other than 0." },
+      "TotalAngle is invalid: set it to degrees other than 0." },
     { !s.camera && !isDirection(s.direction),
       "ViewDirection is no direction: set it to finite numbers that are not all 0." },
     { !s.camera &&
@@ -94,12 +94,12 @@ const char* const TurnOfViews::Degenerate =
 
 const char* TurnOfViews::Set(const TurnSettings& settings)
 {
-  if (const char* const fault = faultOf(settings))
+  if (const char* const fault = validate(settings))
   {
     return fault;
   }
   this->Settings = settings;
-  this->Settings.camera = nullptr; // which need not live longer
+  this->Settings.camera = nullptr; // it need not outlive this call
   if (settings.camera)
   {
     this->First->DeepCopy(settings.camera);
@@ -113,7 +113,7 @@ const char* TurnOfViews::Set(const TurnSettings& settings)
                                                                                    : Degenerate;
 }
 
-// Without a camera: a parallel one, outside the volume.
+// Makes a parallel camera outside the volume, if there is no camera.
 void TurnOfViews::PlaceCamera()
 {
   const vtkNew<vtkCamera> plain;
@@ -131,7 +131,7 @@ void TurnOfViews::PlaceCamera()
   }
 }
 
-// Makes spacing what it was set to, or finds what the camera makes it.
+// Applies the spacing, or computes it from the camera.
 void TurnOfViews::ScaleCamera()
 {
   vtkCamera* const camera = this->First;
@@ -139,7 +139,7 @@ void TurnOfViews::ScaleCamera()
   glm::dvec2& spacing = this->Settings.spacing;
   this->Aspect = size.x / size.y;
   const double distance = camera->GetDistance();
-  // Only its numbers matter: they must not be far from those of the view.
+  // Only its precision matters: it must be near the numbers of the view.
   camera->SetClippingRange(0.01 * distance, 100.0 * distance);
   if (spacing == glm::dvec2(0.0))
   {
@@ -150,7 +150,7 @@ void TurnOfViews::ScaleCamera()
         : 2.0 * tangent * distance / (wide ? size.x : size.y));
     return;
   }
-  // Equal steps must give the numbers that the camera of GetViewCamera() gives.
+  // Equal steps must give the same bits as the camera of GetViewCamera().
   this->Aspect *= spacing.x == spacing.y ? 1.0 : spacing.x / spacing.y;
   const double half = 0.5 * size.y * spacing.y;
   camera->SetUseHorizontalViewAngle(0);
@@ -166,7 +166,7 @@ double TurnOfViews::Angle(int view) const
   return view * this->Settings.angle / this->Settings.views;
 }
 
-// By the matrices of the view, because they know of shifts and of what a user adds to a camera.
+// Uses the matrices of the view, which include shifts and the camera's user transforms.
 void TurnOfViews::Place(vtkImageData* picture) const
 {
   const TurnSettings& s = this->Settings;
@@ -184,7 +184,7 @@ void TurnOfViews::Place(vtkImageData* picture) const
   glm::dvec3 axes[3], spacing(0.0, 0.0, s.slab ? s.slabThickness : 1.0);
   for (int a = 0; a < 2; ++a)
   {
-    // Over the whole picture, so that rounding does not count.
+    // Over the whole picture, to reduce the effect of rounding.
     glm::dvec2 end(0.0);
     end[a] = s.size[a];
     const glm::dvec3 side = find(end) - first;
@@ -239,7 +239,7 @@ void TurnOfViews::SetCamera(int view, vtkCamera* camera) const
   camera->DeepCopy(this->First);
   if (view == 0)
   {
-    return; // as it was given
+    return; // the order that was given
   }
   const glm::dvec3 up = vector(camera->GetViewUp()), focus = vector(camera->GetFocalPoint());
   const glm::dvec3 axis =

@@ -17,8 +17,8 @@ class vtkImageData;
 namespace splatting
 {
 /**
- * As the properties of vtkSplattingMIPProjection; where there is a camera, direction, up, focal
- * point and diagonal mean nothing.
+ * The properties of vtkSplattingMIPProjection. With a camera, direction, up, focal point and
+ * diagonal are ignored.
  */
 struct TurnSettings
 {
@@ -36,27 +36,27 @@ struct TurnSettings
 };
 
 /**
- * The cameras of views that go round a volume, and how pixels lie in them.
+ * The cameras of a turn about a volume, and the placement of their pixels.
  */
 class TurnOfViews
 {
 public:
   static constexpr int MostPixels = 16384;
-  /// What is wrong with a camera whose matrices have no meaning.
+  /// The error message for cameras with invalid matrices.
   static const char* const Degenerate;
 
-  /// Returns what is wrong, or nullptr. What follows is about the last settings without fault.
+  /// Returns an error message, or nullptr. The other methods use the last valid settings.
   const char* Set(const TurnSettings& settings);
 
   const glm::ivec2& Size() const { return this->Settings.size; }
   int Views() const { return this->Settings.views; }
 
-  /// Gives an image the spacing, origin and directions of the first view in the world and the
-  /// angles of all, as vtkSplattingMIPProjection says of its output.
+  /// Sets spacing, origin and directions of an image to those of the first view in the world, and
+  /// adds the angles of all views; see vtkSplattingMIPProjection.
   void Place(vtkImageData* picture) const;
 
-  /// In which order views are to be projected: opposite ones, which share rays, one after the
-  /// other, and the last one last.
+  /// The order in which views are projected: opposite views, which share rays, in succession, and
+  /// the last view last.
   std::vector<int> Order() const;
 
   glm::dmat4 WorldToClip(int view) const;

@@ -56,11 +56,11 @@ public:
   ScalarChoice ScalarsOf(vtkSplattingMIPProjection* self, vtkDataArray* array, int association,
     vtkImageData* input) const;
   TurnSettings TurnOf(vtkSplattingMIPProjection* self, vtkImageData* input) const;
-  void TellPlace(
+  void SetOutputGeometry(
     vtkSplattingMIPProjection* self, vtkInformation* input, vtkInformation* output) const;
-  std::string Problem(
+  std::string Validate(
     vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input);
-  bool GoOn(vtkSplattingMIPProjection* self, double done);
+  bool ReportProgress(vtkSplattingMIPProjection* self, double done);
   bool ProjectView(vtkSplattingMIPProjection* self, const splatting::View& view,
     const splatting::ProjectionSettings& settings);
   bool PlaceOutput(vtkImageData* output, bool locate);
@@ -71,11 +71,11 @@ public:
   ScalarSource Source;
   ComponentProjector Components;
   TurnOfViews Turn;
-  splatting::Locator::Arrays Locations;                   // of locations, in the output
+  splatting::Locator::Arrays Locations;                   // of the output
   std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last view and the one before
   std::vector<splatting::Cuts> Cuts, CutsBefore;          // likewise
   int ViewsDone = 0;
-  double Told = 0.0; // progress
+  double Reported = 0.0; // progress
   vtkSmartPointer<vtkImageData> ShearImageOutput;
 };
 
@@ -83,7 +83,7 @@ public:
 vtkSplattingMIPProjection::vtkSplattingMIPProjection() : Internal(new Internals)
 {
   this->Internal->Components.SetObserver(
-    [this](double done) { return this->Internal->GoOn(this, done); });
+    [this](double done) { return this->Internal->ReportProgress(this, done); });
   this->Internal->Components.GetWarper().setObserver([this](double) { return !isAborted(this); });
 }
 
@@ -101,7 +101,7 @@ vtkMTimeType vtkSplattingMIPProjection::GetMTime()
 }
 
 //------------------------------------------------------------------------------
-// The array to process, as a mapper's ScalarMode names it.
+// Converts the array to process to a mapper's ScalarMode.
 ScalarChoice vtkSplattingMIPProjection::Internals::ScalarsOf(
   vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input) const
 {
@@ -155,8 +155,8 @@ TurnSettings vtkSplattingMIPProjection::Internals::TurnOf(
 }
 
 //------------------------------------------------------------------------------
-// The gate: a sentence that says what is wrong and what to do, or nothing.
-std::string vtkSplattingMIPProjection::Internals::Problem(
+// Validates input and settings. Returns an error message that says what to do, or an empty string.
+std::string vtkSplattingMIPProjection::Internals::Validate(
   vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input)
 {
   vtkInformation* const wanted = self->GetInputArrayInformation(0);
@@ -171,7 +171,7 @@ std::string vtkSplattingMIPProjection::Internals::Problem(
   {
     problem = "Spacing and direction matrix flatten the volume: neither may be singular.";
   }
-  const char* fault = problem.empty() ? faultOf(*self) : nullptr;
+  const char* fault = problem.empty() ? validate(*self) : nullptr;
   if (problem.empty() && !fault)
   {
     fault = this->Turn.Set(this->TurnOf(self, input));
@@ -180,22 +180,23 @@ std::string vtkSplattingMIPProjection::Internals::Problem(
 }
 
 //------------------------------------------------------------------------------
-// Tells how much of all views is done and whether the rest is wanted.
-bool vtkSplattingMIPProjection::Internals::GoOn(vtkSplattingMIPProjection* self, double done)
+// Reports progress. Returns whether to continue.
+bool vtkSplattingMIPProjection::Internals::ReportProgress(
+  vtkSplattingMIPProjection* self, double done)
 {
   const double share =
-    (this->ViewsDone + this->Components.ShareOfAll(done)) / std::max(1, this->Turn.Views());
-  // Observers need not see every band of every view.
-  if (share >= this->Told + 0.01)
+    (this->ViewsDone + this->Components.OverallProgress(done)) / std::max(1, this->Turn.Views());
+  // At most 100 events in all.
+  if (share >= this->Reported + 0.01)
   {
-    this->Told = share;
+    this->Reported = share;
     self->UpdateProgress(std::min(share, 1.0));
   }
   return !isAborted(self);
 }
 
 //------------------------------------------------------------------------------
-// Projects a view, unless the last one had the same rays. False if it was given up.
+// Projects a view, unless the last one had the same rays. Returns false if it was stopped.
 bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection* self,
   const splatting::View& view, const splatting::ProjectionSettings& settings)
 {
@@ -210,10 +211,10 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection
     this->Cuts[n].cropping = view.cropping;
     this->Cuts[n].intervals.find(this->Images[n], view.halfSpaces);
   }
-  // Of equal samples the nearest wins.
+  // The nearest of equal samples is located.
   const bool ordered = splatting::isOrdered(settings.reduction) || settings.keepWinners;
   if (haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts == this->CutsBefore &&
-    this->Components.Shows(settings))
+    this->Components.IsUpToDate(settings))
   {
     return true;
   }
@@ -227,8 +228,8 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection
 }
 
 //------------------------------------------------------------------------------
-// Where the output's points lie, and the arrays that views are written to. False if there is no
-// memory for them.
+// Sets the geometry of the output and allocates its arrays. Returns false if there is not enough
+// memory.
 bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output, bool locate)
 {
   vtkDataArray* const scalars = this->Source.Scalars();
@@ -237,8 +238,8 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output, boo
   const glm::ivec2& size = this->Turn.Size();
   output->SetExtent(0, size.x - 1, 0, size.y - 1, 0, this->Turn.Views() - 1);
   this->Turn.Place(output);
-  // VTK would say it in several sentences, or throw. Compilers may leave out a new-expression whose
-  // memory nobody uses, but not a call.
+  // VTK would report it in several messages, or throw. Compilers may remove an unused
+  // new-expression, but not a call.
   constexpr std::size_t located = 3 * sizeof(int) + sizeof(float) + 3 * sizeof(double);
   const std::size_t bytes =
     (std::size_t(vtkDataArray::GetDataTypeSize(type)) * components + (locate ? located : 0)) *
@@ -259,14 +260,14 @@ bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output, boo
 }
 
 //------------------------------------------------------------------------------
-// The projections of an input that passed the gate. Returns what is wrong, or nothing.
+// Projects a valid input. Returns an error message, or an empty string.
 std::string vtkSplattingMIPProjection::Internals::ProjectInput(
   vtkSplattingMIPProjection* self, vtkImageData* output)
 {
   this->Components.SetSource(this->Source);
   this->Components.SetBudget(static_cast<std::size_t>(self->IndexMemoryBudget));
   if (const char* const fault =
-        this->Components.FaultOfVoxels(static_cast<Quality>(self->QualityMode)))
+        this->Components.ValidateVoxels(static_cast<Quality>(self->QualityMode)))
   {
     return fault;
   }
@@ -276,19 +277,19 @@ std::string vtkSplattingMIPProjection::Internals::ProjectInput(
 }
 
 //------------------------------------------------------------------------------
-// Fills the slices of the output. Returns what is wrong, or nothing; not all are filled after an
-// abort.
+// Fills the slices of the output. Returns an error message, or an empty string. After an abort some
+// slices are missing.
 std::string vtkSplattingMIPProjection::Internals::ProjectViews(
   vtkSplattingMIPProjection* self, vtkImageData* output)
 {
   const glm::dmat4& toWorld = this->Source.Grid().indexToPhysical;
   this->ViewsDone = 0;
-  this->Told = 0.0;
+  this->Reported = 0.0;
   for (const int n : this->Turn.Order())
   {
     splatting::View view =
       viewOf(this->Source.Grid(), toWorld, this->Turn.WorldToClip(n), this->Turn.Size());
-    view.halfSpaces.clear(); // the camera's clipping range
+    view.halfSpaces.clear(); // the camera's clipping range is ignored
     if (!splatting::isFinite(view))
     {
       return TurnOfViews::Degenerate;
@@ -314,7 +315,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     {
       return TurnOfViews::Degenerate;
     }
-    if (!this->ProjectView(self, view, settings) || !this->GoOn(self, 0.0))
+    if (!this->ProjectView(self, view, settings) || !this->ReportProgress(self, 0.0))
     {
       return {};
     }
@@ -333,7 +334,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
 }
 
 //------------------------------------------------------------------------------
-// Where the samples of view n lie, as the last projection shows them.
+// Writes the sample positions of view n, from the last projection.
 void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, int n)
 {
   if (this->Images.empty() && !this->Components.IsOnScreen())
@@ -359,8 +360,8 @@ void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, i
 }
 
 //------------------------------------------------------------------------------
-// Where the output will lie, for filters and writers that ask before they have it.
-void vtkSplattingMIPProjection::Internals::TellPlace(
+// Sets the geometry of the output for RequestInformation().
+void vtkSplattingMIPProjection::Internals::SetOutputGeometry(
   vtkSplattingMIPProjection* self, vtkInformation* input, vtkInformation* output) const
 {
   vtkNew<vtkImageData> volume, picture;
@@ -384,7 +385,7 @@ int vtkSplattingMIPProjection::RequestInformation(
   const int whole[6] = { 0, std::clamp(this->OutputSize[0], 1, TurnOfViews::MostPixels) - 1, 0,
     std::clamp(this->OutputSize[1], 1, TurnOfViews::MostPixels) - 1, 0, this->NumberOfViews - 1 };
   info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole, 6);
-  this->Internal->TellPlace(this, input[0]->GetInformationObject(0), info);
+  this->Internal->SetOutputGeometry(this, input[0]->GetInformationObject(0), info);
   vtkInformation* const array = this->GetInputArrayFieldInformation(0, input);
   int type = VTK_FLOAT, components = 1;
   if (array && array->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
@@ -404,7 +405,7 @@ int vtkSplattingMIPProjection::RequestInformation(
 int vtkSplattingMIPProjection::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
 {
-  // Every pixel may see every voxel.
+  // Every pixel may depend on every voxel.
   vtkInformation* const info = input[0]->GetInformationObject(0);
   int whole[6] = { 0, -1, 0, -1, 0, -1 };
   info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
@@ -426,7 +427,7 @@ int vtkSplattingMIPProjection::RequestData(
   std::string problem;
   try
   {
-    problem = in.Problem(this, array, association, input);
+    problem = in.Validate(this, array, association, input);
     problem = problem.empty() ? in.ProjectInput(this, output) : problem;
   }
   catch (const std::bad_alloc&)

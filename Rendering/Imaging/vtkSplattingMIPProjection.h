@@ -127,10 +127,10 @@ public:
 
   ///@{
   /**
-   * Set/Get the distance of pixels in world units, in perspective at the focal point. Default (0,
-   * 0): automatic. Then the Camera's parallel scale or view angle defines it. Without a Camera it
-   * is the diagonal of the volume's bounds over the lesser of OutputSize, so that the volume fits
-   * into the picture from all directions.
+   * Set/Get the distance between pixels in world units, in perspective at the focal point. Default
+   * (0, 0): automatic. Then the Camera's parallel scale or view angle defines it. Without a Camera
+   * it is the diagonal of the volume's bounds divided by the lesser of OutputSize, so that the
+   * volume fits into the picture from all directions.
    */
   vtkSetVector2Macro(OutputSpacing, double);
   vtkGetVector2Macro(OutputSpacing, double);
@@ -344,7 +344,7 @@ public:
 
   /**
    * Get the last shear image of the last view; see vtkSplattingMIPVolumeMapper::GetShearImage().
-   * Returns nullptr before the first Update() and in EXACT.
+   * Returns nullptr before the first Update() and in EXACT, except in overviews and for averages.
    */
   vtkImageData* GetShearImage();
 

@@ -33,7 +33,7 @@ static_assert(std::is_trivially_copyable<RankReport>::value, "reports are sent a
 
 namespace
 {
-/// VTK's name for the numbers that images are reduced as.
+/// VTK's type of the numbers that images are reduced as.
 int vtkTypeOf(ScalarType type)
 {
   static const int types[] = { VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_UNSIGNED_SHORT,
@@ -41,8 +41,8 @@ int vtkTypeOf(ScalarType type)
   return types[static_cast<int>(type)];
 }
 
-/// FNV-1a of numbers.
-class Number
+/// FNV-1a hash of numbers.
+class Hash
 {
 public:
   template <class T>
@@ -71,61 +71,61 @@ private:
   std::uint64_t Value = 14695981039346656037u;
 };
 
-void addScalars(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+void addScalars(vtkSplattingMIPVolumeMapper* mapper, Hash& hash)
 {
-  number.add(mapper->GetScalarMode());
-  number.add(mapper->GetArrayAccessMode());
+  hash.add(mapper->GetScalarMode());
+  hash.add(mapper->GetArrayAccessMode());
   if (mapper->GetArrayAccessMode() == VTK_GET_ARRAY_BY_ID)
   {
-    number.add(mapper->GetArrayId());
+    hash.add(mapper->GetArrayId());
   }
   else if (const char* const name = mapper->GetArrayName())
   {
-    number.add(name, static_cast<int>(std::strlen(name)));
+    hash.add(name, static_cast<int>(std::strlen(name)));
   }
 }
 
-/// A part of the table: all of its colours would take too long.
-void addColors(vtkScalarsToColors* colors, Number& number)
+/// Adds some entries of a table, because all of them would take too long.
+void addColors(vtkScalarsToColors* colors, Hash& hash)
 {
   constexpr int samples = 64;
   const double* const range = colors->GetRange();
-  number.add(range, 2);
+  hash.add(range, 2);
   for (int n = 0; n <= samples; ++n)
   {
-    number.add(colors->MapValue(range[0] + (range[1] - range[0]) * n / samples), 4);
+    hash.add(colors->MapValue(range[0] + (range[1] - range[0]) * n / samples), 4);
   }
 }
 
 /// Adds all settings that change the picture, except masks, which are data.
-void addSettings(vtkSplattingMIPVolumeMapper* mapper, Number& number)
+void addSettings(vtkSplattingMIPVolumeMapper* mapper, Hash& hash)
 {
   std::ostringstream text;
   text.precision(std::numeric_limits<double>::max_digits10);
   mapper->PrintPictureSettings(text, vtkIndent());
-  number.add(text.str().data(), static_cast<int>(text.str().size()));
-  number.add(mapper->GetBlendMode());
-  number.add(mapper->GetAverageIPScalarRange(), 2);
-  number.add(mapper->GetCropping());
-  number.add(mapper->GetCroppingRegionPlanes(), 6);
-  number.add(mapper->GetCroppingRegionFlags());
+  hash.add(text.str().data(), static_cast<int>(text.str().size()));
+  hash.add(mapper->GetBlendMode());
+  hash.add(mapper->GetAverageIPScalarRange(), 2);
+  hash.add(mapper->GetCropping());
+  hash.add(mapper->GetCroppingRegionPlanes(), 6);
+  hash.add(mapper->GetCroppingRegionFlags());
   if (vtkScalarsToColors* const colors = mapper->GetDepthCodingColors())
   {
-    addColors(colors, number);
+    addColors(colors, hash);
   }
   if (vtkPolyData* const surface = mapper->GetBoundingSurface())
   {
-    number.add(surface->GetNumberOfPoints());
-    number.add(surface->GetBounds(), 6);
+    hash.add(surface->GetNumberOfPoints());
+    hash.add(surface->GetBounds(), 6);
   }
 }
 
-void addPlanes(vtkPlaneCollection* planes, Number& number)
+void addPlanes(vtkPlaneCollection* planes, Hash& hash)
 {
   for (int n = 0; planes && n < planes->GetNumberOfItems(); ++n)
   {
-    number.add(planes->GetItem(n)->GetNormal(), 3);
-    number.add(planes->GetItem(n)->GetOrigin(), 3);
+    hash.add(planes->GetItem(n)->GetNormal(), 3);
+    hash.add(planes->GetItem(n)->GetOrigin(), 3);
   }
 }
 
@@ -141,7 +141,7 @@ bool sameScalars(const RankReport& a, const RankReport& b)
   return a.cells == b.cells && a.type == b.type && a.components == b.components;
 }
 
-/// The first rank that holds something.
+/// The report of the first rank with a piece.
 const RankReport* firstPiece(const std::vector<RankReport>& reports)
 {
   const auto first = std::find_if(
@@ -149,8 +149,8 @@ const RankReport* firstPiece(const std::vector<RankReport>& reports)
   return first == reports.end() ? nullptr : &*first;
 }
 
-/// The first problem that a rank has, or that all have together; of their grids alone, or also of
-/// views and scalars.
+/// The first error of a rank or of all ranks together: of their grids alone, or also of views and
+/// scalars.
 std::string problemOf(const std::vector<RankReport>& reports, bool ofGrids)
 {
   const auto absent = std::find_if(
@@ -177,7 +177,7 @@ std::string problemOf(const std::vector<RankReport>& reports, bool ofGrids)
   { return std::any_of(reports.begin(), reports.end(), isOther); };
   if (!ofGrids && any([&](const RankReport& r) { return r.view != first->view; }))
   {
-    return "The ranks see the volume in different ways: give their cameras, windows and mappers "
+    return "Views or settings differ between ranks: give their cameras, windows and mappers "
            "the same settings.";
   }
   if (any([&](const RankReport& r) { return !r.isEmpty() && !sameGrid(r, *first); }))
@@ -187,7 +187,7 @@ std::string problemOf(const std::vector<RankReport>& reports, bool ofGrids)
   }
   if (!ofGrids && any([&](const RankReport& r) { return !r.isEmpty() && !sameScalars(r, *first); }))
   {
-    return "The ranks' scalars differ in type, number of components, or in being of cells or "
+    return "The ranks' scalars differ in type, hash of components, or in being of cells or "
            "points (pieces with hidden voxels are float): give all pieces the same.";
   }
   return {};
@@ -224,7 +224,7 @@ RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& prob
 {
   RankReport report;
   report.setProblem(problem);
-  // EXACT gives way to HIGH, which reaches farther, where it takes too long.
+  // EXACT is replaced by HIGH, which needs more layers, if it takes too long.
   const int mode = mapper->GetAutoAdjustSampleDistances()
     ? std::min<int>(mapper->GetQualityMode(), vtkSplattingMIPVolumeMapper::HIGH)
     : mapper->GetQualityMode();
@@ -255,24 +255,24 @@ RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& prob
   return report;
 }
 
-std::uint64_t viewNumber(
+std::uint64_t viewHash(
   vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume)
 {
-  Number number;
+  Hash hash;
   int size[2], origin[2];
   renderer->GetTiledSizeAndOrigin(&size[0], &size[1], &origin[0], &origin[1]);
-  number.add(size, 2);
+  hash.add(size, 2);
   vtkCamera* const camera = renderer->GetActiveCamera();
-  number.add(
+  hash.add(
     camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0)->GetData(),
     16);
-  number.add(camera->GetViewTransformMatrix()->GetData(), 16);
-  number.add(volume->GetMatrix()->GetData(), 16);
-  number.add(volume->GetProperty()->GetIndependentComponents());
-  addSettings(mapper, number);
-  addScalars(mapper, number);
-  addPlanes(mapper->GetClippingPlanes(), number);
-  return number.get();
+  hash.add(camera->GetViewTransformMatrix()->GetData(), 16);
+  hash.add(volume->GetMatrix()->GetData(), 16);
+  hash.add(volume->GetProperty()->GetIndependentComponents());
+  addSettings(mapper, hash);
+  addScalars(mapper, hash);
+  addPlanes(mapper->GetClippingPlanes(), hash);
+  return hash.get();
 }
 
 bool RankAgreement::Use(vtkMultiProcessController* controller)
@@ -300,7 +300,7 @@ std::vector<RankReport> RankAgreement::Gather(const RankReport& own) const
   return reports;
 }
 
-// All reports are of one grid.
+// All reports must have the same grid.
 void RankAgreement::SetWhole(const std::vector<RankReport>& reports)
 {
   this->All = *firstPiece(reports);
@@ -330,7 +330,7 @@ void RankAgreement::SetWhole(const std::vector<RankReport>& reports)
   this->Image->SetDirectionMatrix(this->All.direction);
 }
 
-// In voxels of the whole.
+// In voxels of the whole volume.
 Box RankAgreement::BoxOf(const RankReport& report) const
 {
   Box box;
@@ -382,7 +382,7 @@ std::string RankAgreement::Agree(const RankReport& own)
   {
     problem = "The ranks' pieces do not cover the image: each needs " + std::to_string(own.layers) +
       (own.layers == 1 ? " layer" : " layers") +
-      " of its neighbours' voxels in this quality mode. Ask the pipeline for as many ghost "
+      " of its neighbours' voxels in this quality mode. Request as many ghost "
       "layers.";
   }
   if (!own.isEmpty())
@@ -392,7 +392,7 @@ std::string RankAgreement::Agree(const RankReport& own)
   return problem;
 }
 
-std::string RankAgreement::AgreeOnAbsence() const
+std::string RankAgreement::ReportMissingFrame() const
 {
   RankReport own;
   own.absent = 1;
@@ -421,7 +421,7 @@ void RankAgreement::Reduce(ShearImage& image, const ShearWarp& geometry, Reducti
   this->Controller->GetCommunicator()->AllReduceVoidArray(image.bytes.data(), this->Received.data(),
     vtkIdType(image.width) * image.height, vtkTypeOf(keys),
     reduction == Reduction::Minimum ? vtkCommunicator::MIN_OP : vtkCommunicator::MAX_OP);
-  image.bytes.swap(this->Received); // which is now what this rank had
+  image.bytes.swap(this->Received); // Received now has the pixels of this rank.
   if (!image.winners.empty())
   {
     this->ReduceWinners(image, geometry);
@@ -429,7 +429,8 @@ void RankAgreement::Reduce(ShearImage& image, const ShearWarp& geometry, Reducti
   decode(image, type, reduction);
 }
 
-// Steps are counted from the first slice of this rank's piece, and shall be from that of the whole.
+// Steps are counted from the first slice of this rank's piece. They are converted to steps from the
+// first slice of the whole.
 void RankAgreement::ReduceWinners(ShearImage& image, const ShearWarp& geometry)
 {
   constexpr std::int32_t behind = std::numeric_limits<std::int32_t>::max();

@@ -24,16 +24,15 @@ namespace splatting
 class ComponentProjector;
 class ScalarSource;
 
-/// What one rank says of its piece, as plain bytes, and what all of them make of it.
+/// The report of one rank on its piece, as plain bytes, and the common report of all ranks.
 struct RankReport
 {
   static constexpr int MostComponents = 4;
 
-  char problem[240] = {}; ///< a sentence, or nothing
-  std::int32_t extent[6] = { 0, -1, 0, -1, 0,
-    -1 }; ///< of points; the rank holds nothing if it is empty
+  char problem[240] = {};                           ///< an error message, or empty
+  std::int32_t extent[6] = { 0, -1, 0, -1, 0, -1 }; ///< of points; empty if the rank has no piece
   std::int32_t cells = 0, vtkType = 0, type = 0, components = 0;
-  std::int32_t layers = 0; ///< of ghosts, that the quality mode needs
+  std::int32_t layers = 0; ///< ghost layers that the quality mode needs
   std::int32_t absent = 0; ///< whether the rank has rendered a frame without the volume
   double origin[3] = {}, spacing[3] = {}, direction[9] = {};
   struct
@@ -44,57 +43,58 @@ struct RankReport
 
   bool isEmpty() const;
   void setProblem(const std::string& sentence);
-  /// Where the data set lies.
+  /// Sets extent, origin, spacing and direction.
   void setGrid(vtkImageData* image);
 };
 
 /**
- * The ranks of a controller, each of which holds a piece of one image.
+ * The ranks of a controller, each of which has a piece of one image.
  *
- * All methods that say so are collective: each rank must call them, in the same order. They come to
- * the same result everywhere, so that all ranks go on or none does.
+ * Collective methods must be called by each rank, in the same order. They have the same result on
+ * all ranks, so either all ranks continue or none.
  */
 class RankAgreement : public PieceExchange
 {
 public:
-  /// Whether there are several ranks. Forgets the whole if the controller is another one.
+  /// Returns whether there are several ranks. Discards the whole grid if the controller has
+  /// changed.
   bool Use(vtkMultiProcessController* controller);
   bool AreMany() const { return this->Controller != nullptr; }
-  /// Of the controller's ranks, the first.
+  /// Whether this is the first of the controller's ranks.
   bool IsRoot() const;
 
   /**
-   * Collective. Finds the whole of all pieces.
-   * @return what is wrong, the same on all ranks, or an empty string
+   * Collective. Finds the grid of the whole from all pieces.
+   * @return an error message, the same on all ranks, or an empty string
    */
   std::string Agree(const RankReport& own);
   /**
-   * Collective, in place of Agree(), on a rank that has rendered a frame without the volume.
-   * @return what is wrong, the same on all ranks, or an empty string if none has rendered it
+   * Collective. Replaces Agree() on a rank that has rendered a frame without the volume.
+   * @return an error message, the same on all ranks, or an empty string if no rank has rendered it
    */
-  std::string AgreeOnAbsence() const;
-  /// Collective. The same of the grid alone.
+  std::string ReportMissingFrame() const;
+  /// Collective. As Agree(), for the grid alone.
   std::string AgreeOnGrid(const RankReport& own);
 
-  /// The grid of the whole; without scalars. nullptr before it is known.
+  /// The grid of the whole, without scalars; nullptr before it is found.
   vtkImageData* Whole() const { return this->Image; }
   const VolumeGrid& Grid() const { return this->Layout.grid; }
-  /// Types, components and the ranges of the whole.
+  /// Types, components and ranges of the whole.
   const RankReport& Common() const { return this->All; }
-  /// Where this rank's voxels begin.
+  /// The first voxel of this rank's piece.
   const glm::ivec3& First() const override { return this->FirstVoxel; }
   VolumeIndex::Range RangeOfWhole(std::size_t component) const override;
 
-  /// Collective. Whether something is so on any rank.
+  /// Collective. Whether the argument is true on any rank.
   bool Any(bool here) const override;
-  /// Collective.
+  /// Collective. The smallest argument of all ranks.
   int Least(int here) const;
   /**
-   * Collective. From the image of a piece to that of the whole, but for its spans and mask.
+   * Collective. Turns the image of a piece into that of the whole, except for its spans and mask.
    *
-   * Each rank sends and gets the pixels once (vtkCommunicator::AllReduce), and once more four bytes
-   * of each if the image has winners: of the ranks whose pixel is the whole's, the step nearest to
-   * the viewer.
+   * Each rank sends and receives the pixels once (vtkCommunicator::AllReduce). With winners it
+   * sends and receives four more bytes for each pixel: the step nearest to the viewer among the
+   * ranks that have the pixel of the whole.
    */
   void Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction) override;
   void Reduce(ScreenScalars& screen) override;
@@ -105,7 +105,7 @@ private:
   bool IsCovered(const std::vector<RankReport>& reports) const;
   Box BoxOf(const RankReport& report) const;
 
-  vtkMultiProcessController* Controller = nullptr; // only if there are several ranks
+  vtkMultiProcessController* Controller = nullptr; // nullptr unless there are several ranks
   RankReport All;
   GridOfDataSet Layout;
   glm::ivec3 FirstVoxel{ 0 };
@@ -115,24 +115,24 @@ private:
   std::vector<unsigned char> Received;
   std::vector<std::int32_t> ReceivedSteps;
   std::vector<float> ReceivedDepths;
-  ShearImage Pixels; // of a screen
+  ShearImage Pixels; // of a ScreenScalars, for encode() and decode()
 };
 
 /**
- * What a rank reports of its mapper's input: where it lies, and what is wrong with it, or would be
- * with several ranks. describeScalars() adds the scalars.
+ * The report of a rank on its mapper's input: its grid and its errors, also those that only concern
+ * several ranks. describeScalars() adds the scalars.
  */
 RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& problem);
 
-/// Adds the scalars of a piece.
+/// Adds the scalars of a piece to a report.
 void describeScalars(
   ComponentProjector& components, const ScalarSource& source, RankReport& report);
 
-/// A hash of how a mapper sees a volume, which all ranks must have in common.
-std::uint64_t viewNumber(
+/// A hash of the view and the settings, which must be the same on all ranks.
+std::uint64_t viewHash(
   vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume);
 
-/// The vtkImageData that a mapper projects a piece of; nullptr if it has none, or no points.
+/// The vtkImageData of which a mapper projects a piece; nullptr if it has none, or no points.
 vtkImageData* pieceOf(vtkSplattingMIPVolumeMapper* mapper);
 }
 

@@ -23,7 +23,7 @@ void ProjectedVolume::BeginFrame()
 
 void ProjectedVolume::EndFrame(vtkRenderer* renderer, vtkVolume* volume, double seconds)
 {
-  // Frames that re-use an image say nothing about the next ones, nor does what is made once.
+  // Times of frames that reuse a projection, and of what is made once, predict nothing.
   if (this->Projections != this->ProjectionsBefore)
   {
     this->Times.add(
@@ -37,7 +37,7 @@ void ProjectedVolume::Prepare(vtkSplattingMIPVolumeMapper* mapper, const View& v
   const vtkIdType version = this->Source.Version();
   if (!this->Ranks.AreMany() && this->Components.SetSource(this->Source))
   {
-    this->ForgetTimes(); // changed data of the same kind take what the last ones took
+    this->ForgetTimes(); // data of the same kind take the same time
   }
   this->Components.SetBudget(static_cast<std::size_t>(mapper->GetIndexMemoryBudget()));
   this->Components.SetRanks(this->Ranks.AreMany() ? &this->Ranks : nullptr);
@@ -47,7 +47,7 @@ void ProjectedVolume::Prepare(vtkSplattingMIPVolumeMapper* mapper, const View& v
   this->Components.SetCullBelowWindow(mapper->GetCullBelowWindow() != 0);
 }
 
-// Selection is by what is seen.
+// A selection uses the mode of the visible picture.
 int ProjectedVolume::ChooseMode(
   vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume)
 {
@@ -59,8 +59,8 @@ int ProjectedVolume::ChooseMode(
   return this->Ranks.AreMany() ? this->Ranks.Least(mode) : mode;
 }
 
-// What cuts the rays of a view and, unless they are projected onto the screen, its images; false if
-// the view is invalid.
+// Computes the cuts of a view and, unless it is projected onto the screen, its images. Returns
+// false if the view is invalid.
 bool ProjectedVolume::FindCuts(vtkSplattingMIPVolumeMapper* mapper, const View& view,
   vtkRenderer* renderer, vtkVolume* volume, const SceneCuts::DepthReader& readDepth,
   const ProjectionSettings& settings)
@@ -85,17 +85,17 @@ bool ProjectedVolume::FindCuts(vtkSplattingMIPVolumeMapper* mapper, const View& 
   return isValid;
 }
 
-// Whether the last projection is this frame's.
-bool ProjectedVolume::Shows(const View& view, const ProjectionSettings& settings) const
+// Whether the last projection shows this frame.
+bool ProjectedVolume::IsUpToDate(const View& view, const ProjectionSettings& settings) const
 {
   if (this->Components.UsesCells(settings))
   {
-    return this->Cuts.AreKeptOnScreen(view) && this->Components.Shows(settings);
+    return this->Cuts.AreKeptOnScreen(view) && this->Components.IsUpToDate(settings);
   }
   const bool ordered = isOrdered(settings.reduction) || settings.keepWinners ||
-    this->Source.AreDependent(); // the nearest of equal samples wins
+    this->Source.AreDependent(); // of equal samples the nearest is located
   return haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts.AreKept() &&
-    this->Components.Shows(settings);
+    this->Components.IsUpToDate(settings);
 }
 
 bool ProjectedVolume::Project(vtkSplattingMIPVolumeMapper* mapper, const View& view,
@@ -109,8 +109,8 @@ bool ProjectedVolume::Project(vtkSplattingMIPVolumeMapper* mapper, const View& v
   {
     return false;
   }
-  const bool isShown = this->Shows(view, best);
-  // Where one rank projects all do.
+  const bool isShown = this->IsUpToDate(view, best);
+  // If one rank projects, all ranks project.
   if (this->Ranks.AreMany() ? !this->Ranks.Any(!isShown) : isShown)
   {
     return true;

@@ -21,8 +21,8 @@ class vtkVolume;
 namespace splatting
 {
 /**
- * A mapper's data, and the shear images of its last frame: which of them the next one can show
- * again, and in which quality mode the others are projected.
+ * A mapper's data and its last projection. Decides whether a frame reuses it, and in which quality
+ * mode a frame projects.
  */
 class ProjectedVolume
 {
@@ -33,40 +33,41 @@ public:
   SceneCuts Cuts;
   std::vector<ShearWarp> Images;
 
-  /// Where the voxels lie, of several ranks those of the whole.
+  /// The voxel grid; with several ranks that of the whole.
   const VolumeGrid& Grid() const
   {
     return this->Ranks.AreMany() ? this->Ranks.Grid() : this->Source.Grid();
   }
 
-  /// To be called before and after a frame is rendered, which took so many seconds.
+  /// Call them before and after a frame.
+  /// @param seconds  the time of the frame
   void BeginFrame();
   void EndFrame(vtkRenderer* renderer, vtkVolume* volume, double seconds);
 
-  /// The components are others, from which other times are to be expected.
+  /// Discards frame times, after a change of the components.
   void ForgetTimes() { this->Times.clear(); }
 
-  /// Makes indices and colours of data that can be projected.
+  /// Makes indices and colours.
   void Prepare(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkVolume* volume,
     const FinalColor& finalColor);
 
   /**
-   * Projects, unless the last projection shows the same, or better within what is wanted. There is
-   * none after an abort.
+   * Projects, unless the last projection shows the same, in the mode that is chosen or a better one
+   * up to QualityMode. There is no projection after an abort.
    * @return  false if the view is invalid
    */
   bool Project(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkRenderer* renderer,
     vtkVolume* volume, const SceneCuts::DepthReader& readDepth);
 
-  /// Gives back all memory, after a frame that there was not enough for.
+  /// Releases all memory, after a frame that ran out of memory.
   void Clear();
 
-  /// The largest image; nullptr if there is none.
+  /// The largest shear image; nullptr if there is none.
   const ShearWarp* MainImage() const;
-  /// The same as vtkSplattingMIPVolumeMapper::GetShearImage() gives it.
+  /// See vtkSplattingMIPVolumeMapper::GetShearImage().
   vtkImageData* ShearImage();
 
-  /// As the mapper's methods of these names.
+  /// See the mapper's methods of these names.
   vtkIdType NumberOfProjections() const { return this->Projections; }
   int QualityModeUsed() const;
   double ProjectionTime() const { return this->TimeToProject; }
@@ -80,15 +81,15 @@ private:
   int ChooseMode(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume);
   bool FindCuts(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkRenderer* renderer,
     vtkVolume* volume, const SceneCuts::DepthReader& readDepth, const ProjectionSettings& settings);
-  bool Shows(const View& view, const ProjectionSettings& settings) const;
+  bool IsUpToDate(const View& view, const ProjectionSettings& settings) const;
 
-  std::vector<ShearWarp> ImagesBefore; // of the frame before the last
+  std::vector<ShearWarp> ImagesBefore; // of the frame before
   vtkIdType Projections = 0, ProjectionsBefore = 0;
-  int ModeUsed = 3; // in the last projection that was not aborted
+  int ModeUsed = 3; // in the last complete projection
   double TimeToProject = 0.0;
-  double CutTime = 0.0; // of it, to find what cuts the present images
+  double CutTime = 0.0; // the part of TimeToProject for the current cuts
   RenderTimes Times;
-  double IndexTimeBefore = 0.0; // before what the present frame makes of the index
+  double IndexTimeBefore = 0.0; // before this frame
   vtkSmartPointer<vtkImageData> ShearImageOutput;
 };
 }

@@ -26,7 +26,7 @@ float smallestStep(vtkImageData* image)
     std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) }));
 }
 
-/// What both ray casters have, though not from a common base.
+/// Sets properties that both ray casters have, but no common base class.
 template <class Mapper>
 void copySettings(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, Mapper* mapper)
 {
@@ -72,7 +72,7 @@ void RayCastFallback::RenderOnGpu(vtkSplattingMIPVolumeMapper* settings, vtkImag
 {
   if (!this->GpuMapper)
   {
-    // VTK's own: the object factory may give one that would hand the volume back.
+    // Not through the object factory, which may create a mapper that passes the volume back.
     this->GpuMapper = vtkSmartPointer<vtkOpenGLGPUVolumeRayCastMapper>::New();
     this->GpuMapper->AutoAdjustSampleDistancesOff();
   }
@@ -94,7 +94,7 @@ void RayCastFallback::FindMask(vtkSplattingMIPVolumeMapper* settings, vtkImageDa
   rays->GetImageOrigin(&mask.origin.x);
   rays->GetImageInUseSize(&mask.size.x);
   mask.pixels.resize(std::size_t(mask.size.x) * mask.size.y);
-  constexpr int visible = 32767 / 510 + 1; // of 32767, what is shown as 1 of 255 or more
+  constexpr int visible = 32767 / 510 + 1; // of 32767, the least that is shown as 1 of 255
   const int rowLength = rays->GetImageMemorySize()[0];
   for (int y = 0; y < mask.size.y; ++y)
   {
@@ -138,7 +138,8 @@ void RayCastFallback::UpdateImage(vtkImageData* image)
 
 void RayCastFallback::UpdateMatrix(vtkImageData* image, vtkVolume* volume)
 {
-  // The ray caster ignores direction matrices: the turn about the origin goes into the prop.
+  // The ray caster ignores direction matrices, so the rotation about the origin is applied to the
+  // prop.
   const double* const origin = image->GetOrigin();
   vtkNew<vtkMatrix4x4> turn;
   for (int r = 0; r < 3; ++r)
@@ -153,13 +154,13 @@ void RayCastFallback::UpdateMatrix(vtkImageData* image, vtkVolume* volume)
     turn->SetElement(r, 3, moved);
   }
   vtkMatrix4x4::Multiply4x4(volume->GetMatrix(), turn, this->Matrix);
-  this->Matrix->Modified(); // the product is written behind its back
+  this->Matrix->Modified(); // the product bypasses its setters
 }
 
 void RayCastFallback::UpdateSettings(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image)
 {
   copySettings(settings, image, this->Mapper.Get());
-  // Where it crops, it takes the first voxel to lie at the origin, whatever the extent (VTK 9.1).
+  // The ray caster crops as if the first voxel were at the origin, whatever the extent (VTK 9.1).
   double planes[6];
   for (int plane = 0; plane < 6; ++plane)
   {

@@ -22,29 +22,29 @@ class vtkWindow;
 namespace splatting
 {
 /**
- * Renders what vtkSplattingMIPVolumeMapper does not splat, with the same settings: by
- * vtkFixedPointVolumeRayCastMapper, on a stand-in for the volume that it renders rightly, or, if it
- * does not have the blend mode, by vtkGPUVolumeRayCastMapper.
+ * Renders blend modes that vtkSplattingMIPVolumeMapper does not splat, with the same settings: by
+ * vtkFixedPointVolumeRayCastMapper, with a VolumeStandIn, or by vtkGPUVolumeRayCastMapper if the
+ * former does not support the blend mode.
  */
 class RayCastFallback
 {
 public:
-  /// For images with so many components only: VTK's ray casters keep tables for as many, and write
-  /// beyond them where there are more.
+  /// @param components  the only number of components that it may render, because VTK's ray casters
+  ///   write beyond their tables otherwise
   explicit RayCastFallback(int components);
   ~RayCastFallback();
 
-  /// Render the image's point scalars as the mapper, the volume's property and its matrix ask. The
-  /// property is only read.
+  /// Renders the image's point scalars with the settings of the mapper, the volume's property and
+  /// its matrix. The property is not changed.
   void Render(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, vtkRenderer* renderer,
     vtkVolume* volume);
-  /// The picture that Render() would draw: white where it is not transparent. Takes as long.
+  /// The picture that Render() would draw: white where it is not transparent. Takes as long as
+  /// Render().
   void FindMask(vtkSplattingMIPVolumeMapper* settings, vtkImageData* image, vtkRenderer* renderer,
     vtkVolume* volume, Picture& mask);
   void ReleaseGraphicsResources(vtkWindow* window);
 
-  /// Whether the mapper for a blend mode is vtkGPUVolumeRayCastMapper, which draws into selections
-  /// by itself.
+  /// Whether the blend mode needs vtkGPUVolumeRayCastMapper, which draws into selections itself.
   static bool IsForGpu(int blendMode);
 
   const int Components;
@@ -63,7 +63,7 @@ private:
   vtkNew<vtkMatrix4x4> Matrix;
   vtkNew<vtkVolume> Volume;
   VolumeStandIn StandIn;
-  // What Image was copied from, and when: the ray caster prepares anew what changes.
+  // The source of Image and its time, because the ray caster prepares changed images again.
   vtkImageData* ImageSource = nullptr;
   vtkMTimeType ImageTime = 0;
 };

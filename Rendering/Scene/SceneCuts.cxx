@@ -25,12 +25,13 @@ void SceneCuts::Find(const View& view, const std::vector<ShearWarp>& images, vtk
   }
 }
 
-// What other things hide where the volume will be seen.
+// Finds what hides the volume in the scene.
 void SceneCuts::FindScene(const View& view, vtkRenderer* renderer, vtkVolume* volume,
   bool intermixes, const DepthReader& readDepth)
 {
-  this->Seen = renderer->GetSelector() ? this->RememberScene(view, renderer, volume, intermixes)
-                                       : this->LookAtScene(renderer, volume, intermixes, readDepth);
+  this->Seen = renderer->GetSelector()
+    ? this->FindLastScene(view, renderer, volume, intermixes)
+    : this->ReadSceneDepth(renderer, volume, intermixes, readDepth);
   if (this->Seen)
   {
     this->Seen->indexToClip = view.indexToClip;
@@ -82,9 +83,9 @@ void SceneCuts::Hide(Picture& picture) const
   }
 }
 
-// Selection is by what is seen: its passes draw other depths than frames. What no frame has shown,
-// as after the camera has moved, is not known.
-SceneCuts::Scene* SceneCuts::RememberScene(
+// Passes of a selection draw other depths than frames, so a selection uses the depths of the last
+// frame. If no frame has shown this view, as after the camera has moved, there are none.
+SceneCuts::Scene* SceneCuts::FindLastScene(
   const View& view, const vtkRenderer* renderer, const vtkVolume* volume, bool intermixes)
 {
   const auto scene = std::find_if(this->Scenes.begin(), this->Scenes.end(),
@@ -96,15 +97,15 @@ SceneCuts::Scene* SceneCuts::RememberScene(
   return intermixes && scene != this->Scenes.end() ? &*scene : nullptr;
 }
 
-// What has been rendered where the volume will be seen, if there is anything.
-SceneCuts::Scene* SceneCuts::LookAtScene(
+// Reads the depths that were rendered before the volume, if there are any.
+SceneCuts::Scene* SceneCuts::ReadSceneDepth(
   vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
 {
   Scene& scene = this->SceneOf(renderer, volume);
   scene.depth.clear();
   const glm::ivec2& size = this->Area.size;
-  // Renderers that keep the depths of a lower layer have something to intermix with, too. Render
-  // passes do not count what they render.
+  // Renderers that keep the depths of a lower layer have depths, too. Render passes do not count
+  // the props that they render.
   const bool hasDepths = renderer->GetNumberOfPropsRendered() > 0 ||
     renderer->GetPreserveDepthBuffer() || renderer->GetPass();
   if (!intermixes || !hasDepths || size.x < 1 || size.y < 1)
@@ -122,7 +123,7 @@ SceneCuts::Scene* SceneCuts::LookAtScene(
   return &scene;
 }
 
-// A renderer's and volume's own, in the place of one that has not been rendered for long.
+// The scene of a renderer and a volume. Removes scenes that have not been rendered for long.
 SceneCuts::Scene& SceneCuts::SceneOf(const vtkRenderer* renderer, const vtkVolume* volume)
 {
   ++this->Frame;

@@ -21,8 +21,8 @@ class vtkVolume;
 namespace splatting
 {
 /**
- * What clipping, cropping, a bounding surface and other things in the scene leave of a volume, and
- * whether that has changed since the last projection.
+ * The cuts of a volume by clipping, cropping, a bounding surface and the scene, and whether they
+ * have changed since the last projection.
  */
 class SceneCuts
 {
@@ -33,51 +33,52 @@ public:
   using DepthReader = std::function<bool(const int origin[2], const int size[2], float* depths)>;
 
   /**
+   * Computes the cuts of all images of a view.
    * @param intermixes  whether geometry in the scene hides the volume and ends rays in it
    */
   void Find(const View& view, const std::vector<ShearWarp>& images, vtkRenderer* renderer,
     vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
 
-  /// What Find() has found, for each image.
+  /// The cuts of each image, from Find().
   const std::vector<Cuts>& Get() const { return this->Present; }
 
-  /// The same for projections onto the screen. False if the view is invalid.
+  /// As Find(), for projections onto the screen. Returns false if the view is invalid.
   bool FindOnScreen(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
     const DepthReader& readDepth);
-  /// What FindOnScreen() has found.
+  /// The cuts from FindOnScreen().
   RayEnds OnScreen();
-  /// Whether that, and the view, is what it was when it was last kept.
+  /// Whether these cuts and the view equal those of KeepOnScreen().
   bool AreKeptOnScreen(const View& view) const;
   void KeepOnScreen(const View& view);
 
-  /// Whether Get() is what it was when it was last kept.
+  /// Whether Get() equals the cuts of Keep().
   bool AreKept() const { return this->Present == this->Kept; }
-  /// Keeps the present cuts as those of a projection. Get() has no meaning until the next Find().
+  /// Stores the current cuts as those of a projection. Get() is invalid until the next Find().
   void Keep() { std::swap(this->Present, this->Kept); }
-  /// Those that were kept.
+  /// The cuts of Keep().
   const std::vector<Cuts>& OfProjection() const { return this->Kept; }
 
-  /// Clears the pixels of a picture that other things hide.
+  /// Clears the pixels of a picture that the scene hides.
   void Hide(Picture& picture) const;
 
 private:
-  /// What a renderer's last frame had rendered before a volume was.
+  /// Depths that a renderer's last frame rendered before a volume.
   struct Scene
   {
-    const vtkRenderer* renderer; // only compared, so that they may be gone
+    const vtkRenderer* renderer; // compared, never dereferenced
     const vtkVolume* volume;
     vtkTypeInt64 lastFrame = 0;
     glm::dmat4 indexToClip{ 0.0 };
     SceneDepth depth{};
   };
-  /// A scene that was not rendered in so many frames is forgotten.
+  /// Frames after which an unused scene is removed.
   static constexpr vtkTypeInt64 FramesKept = 64;
 
   void FindScene(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
     const DepthReader& readDepth);
-  Scene* RememberScene(
+  Scene* FindLastScene(
     const View& view, const vtkRenderer* renderer, const vtkVolume* volume, bool intermixes);
-  Scene* LookAtScene(
+  Scene* ReadSceneDepth(
     vtkRenderer* renderer, vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
   Scene& SceneOf(const vtkRenderer* renderer, const vtkVolume* volume);
 
@@ -88,9 +89,9 @@ private:
   vtkIdType KeptSurface = 0;
   SceneDepth KeptDepth;
   std::vector<Scene> Scenes;
-  Scene* Seen = nullptr; // in the present frame, if there is anything
+  Scene* Seen = nullptr; // of the current frame, or nullptr
   vtkTypeInt64 Frame = 0;
-  Picture Area; // where the volume will be seen
+  Picture Area; // rectangle of the viewport that shows the volume
 };
 }
 

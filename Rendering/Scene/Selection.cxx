@@ -18,15 +18,15 @@ void chooseIdentifier(vtkHardwareSelector* selector)
   {
     case vtkHardwareSelector::ACTOR_PASS:
     case vtkHardwareSelector::PROCESS_PASS:
-      break; // the selector has chosen it
+      break; // set by the selector
     case vtkHardwareSelector::COMPOSITE_INDEX_PASS:
       selector->RenderCompositeIndex(1);
       break;
     case vtkHardwareSelector::POINT_ID_LOW24:
     case vtkHardwareSelector::CELL_ID_LOW24:
-      selector->SetPropColorValue(vtkIdType(0)); // the identifier, which it draws as 1
+      selector->SetPropColorValue(vtkIdType(0)); // drawn by the selector as 1
       break;
-    default: // the upper bits; black over whatever is behind the volume
+    default: // the upper bits; black hides what is behind the volume
       selector->SetPropColorValue(0.0f, 0.0f, 0.0f);
   }
 }

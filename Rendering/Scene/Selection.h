@@ -10,9 +10,9 @@ class vtkHardwareSelector;
 namespace splatting
 {
 /**
- * Makes a picture what the selector's current pass wants to see: opaque identifiers where the
- * picture is not transparent. A volume is one thing: it has the prop's and the process's
- * identifier, composite index 1 (as vtkPolyData's mapper has) and point and cell 0.
+ * Replaces a picture by the identifiers of the selector's current pass, opaque where the picture is
+ * not transparent. A volume is selected as a whole: prop, process, composite index 1 (as in
+ * vtkPolyDataMapper), point 0 and cell 0.
  */
 void drawIdentifiers(vtkHardwareSelector* selector, Picture& picture);
 }

@@ -45,7 +45,7 @@ bool ShownVolume::IsShown() const
 
 void ShownVolume::StartFrame()
 {
-  // A renderer with a backing store may show its last picture again and render nothing.
+  // A renderer with a backing store may show its last picture without rendering.
   this->IsRendered = this->IsRendered && this->ItsRenderer->GetBackingStore();
 }
 }

@@ -12,8 +12,8 @@ class vtkRenderWindow;
 namespace splatting
 {
 /**
- * Whether the last frame of a renderer shows a volume. Observes the renderer, because a volume that
- * is invisible, removed or culled is not rendered and cannot report that itself.
+ * Whether the last frame of a renderer shows a volume. Observes the renderer, because the mapper of
+ * an invisible, removed or culled volume is not called.
  */
 class ShownVolume
 {
@@ -23,17 +23,17 @@ public:
   ShownVolume(const ShownVolume&) = delete;
   ShownVolume& operator=(const ShownVolume&) = delete;
 
-  /// The present frame of a renderer shows the volume.
+  /// Call it when the current frame of a renderer shows the volume.
   void Set(vtkRenderer* renderer, vtkVolume* volume);
-  /// It no longer does.
+  /// The frame no longer shows the volume.
   void Drop() { this->IsRendered = false; }
 
   const vtkRenderer* Renderer() const { return this->ItsRenderer; }
-  /// Only to be compared: it may be deleted.
+  /// May be deleted: compare it only.
   const vtkRenderWindow* Window() const { return this->ItsWindow; }
 
-  /// Whether the renderer has rendered no frame without the volume since, and both still exist, are
-  /// in their place and visible.
+  /// Whether no later frame of the renderer omitted the volume, and both exist, are still combined
+  /// and visible.
   bool IsShown() const;
 
 private:
@@ -44,7 +44,7 @@ private:
   vtkWeakPointer<vtkVolume> ItsVolume;
   const vtkRenderWindow* ItsWindow = nullptr;
   unsigned long Observer = 0;
-  bool IsViewProp = false; // not a part of another prop
+  bool IsViewProp = false; // false for a part of another prop
   bool IsRendered = false;
 };
 }

@@ -29,7 +29,7 @@ View makeView(
 {
   int width, height, left, bottom;
   renderer->GetTiledSizeAndOrigin(&width, &height, &left, &bottom);
-  // The camera's composite matrix leaves stereo out.
+  // The camera's composite matrix omits stereo.
   vtkCamera* const camera = renderer->GetActiveCamera();
   const glm::dmat4 worldToClip =
     toGlm(camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0)) *

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * How a renderer sees a volume: WorldView.h for VTK's scene.
+ * The view of a volume by a renderer: WorldView.h for VTK's scene.
  */
 #ifndef ViewOfVolume_h
 #define ViewOfVolume_h
@@ -16,13 +16,13 @@ class vtkVolumeMapper;
 namespace splatting
 {
 /**
- * Whether spacing, direction and prop matrix flatten the volume, or have no meaning (NaN).
+ * Whether spacing, direction and prop matrix are singular or not finite.
  */
 bool isFlat(const VolumeGrid& grid, vtkVolume* volume);
 
 /**
- * The view of the renderer's active camera. Half-spaces: those of the mapper's clipping planes and
- * of the near and far plane that cut into the volume. Cropping: the mapper's.
+ * The view of the renderer's active camera, with the half-spaces of the mapper's clipping planes
+ * and of the near and far plane that cut the volume, and the mapper's cropping.
  */
 View makeView(
   const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer, vtkVolumeMapper* mapper);
@@ -33,7 +33,7 @@ View makeView(
 glm::dmat4 indexToWorld(const VolumeGrid& grid, vtkVolume* volume);
 
 /**
- * World space to index space, of a volume that is not flat.
+ * World space to index space. The volume must not be flat.
  */
 glm::dmat4 worldToIndex(const VolumeGrid& grid, vtkVolume* volume);
 

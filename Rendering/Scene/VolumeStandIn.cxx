@@ -17,7 +17,7 @@ namespace splatting
 {
 namespace
 {
-/// Both kinds of functions share the meaning of nodes, midpoints and sharpness.
+/// Nodes, midpoints and sharpness have the same meaning in both kinds of functions.
 vtkNew<vtkColorTransferFunction> colorsOf(vtkPiecewiseFunction* grays)
 {
   vtkNew<vtkColorTransferFunction> colors;
@@ -40,7 +40,7 @@ void copyProperty(vtkVolumeProperty* from, vtkVolumeProperty* to)
     {
       to->SetColor(i, colorsOf(from->GetGrayTransferFunction(i)).Get());
     }
-    // What DeepCopy() leaves out.
+    // DeepCopy() omits it.
     to->SetTransferFunction2D(i, from->GetTransferFunction2D(i));
   }
   to->SetTransferFunctionMode(from->GetTransferFunctionMode());
@@ -68,7 +68,7 @@ vtkVolumeProperty* VolumeStandIn::Property(vtkVolume* volume)
   {
     copyProperty(source, this->Copy);
     this->Source = source;
-    this->SourceTime = source->GetMTime(); // functions by default are made when they are asked for
+    this->SourceTime = source->GetMTime(); // default functions are created by their getters
   }
   this->Copy->SetSliceFunction(source->GetSliceFunction());
   return this->Copy;

@@ -14,11 +14,10 @@ class vtkVolumeProperty;
 namespace splatting
 {
 /**
- * What VTK's ray casters are given in place of a volume, because vtkGPUVolumeRayCastMapper knows no
- * gray functions: it puts an RGB function into the property that it is given, which no longer is
- * gray then, for good. The stand-in's property is a copy, in which gray functions are RGB functions
- * of the same values. It is modified only where the original is, so that nothing is prepared anew
- * in vain.
+ * A replacement of a volume for VTK's ray casters. vtkGPUVolumeRayCastMapper replaces gray
+ * functions of the property that it renders by RGB functions. The replacement has a copy of the
+ * property, in which gray functions are RGB functions of the same values. The copy is modified only
+ * if the original is, so that ray casters prepare nothing again.
  */
 class VolumeStandIn
 {
@@ -26,16 +25,16 @@ public:
   VolumeStandIn();
   ~VolumeStandIn();
 
-  /// A copy of the volume's property, up to date.
+  /// An updated copy of the volume's property.
   vtkVolumeProperty* Property(vtkVolume* volume);
-  /// A volume with that property, at the same place. It has no mapper.
+  /// A volume with this property and the same matrix. It has no mapper.
   vtkVolume* Volume(vtkVolume* volume, vtkRenderer* renderer);
 
 private:
   vtkNew<vtkVolumeProperty> Copy;
   vtkNew<vtkMatrix4x4> Matrix;
   vtkNew<vtkVolume> Prop;
-  // What Copy was made of, and when.
+  // The source of Copy, and its time.
   vtkVolumeProperty* Source = nullptr;
   vtkMTimeType SourceTime = 0;
 };

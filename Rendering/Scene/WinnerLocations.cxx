@@ -133,7 +133,7 @@ void WinnerLocations::BeginFrame(vtkRenderer* renderer)
   }
 }
 
-// Of a renderer, which becomes the first.
+// The frame of a renderer, which is moved to the front.
 WinnerLocations::Frame& WinnerLocations::FrameOf(vtkRenderer* renderer)
 {
   auto frame = std::find_if(this->Frames.begin(), this->Frames.end(),
@@ -198,7 +198,7 @@ bool WinnerLocations::Pick(int x, int y, Sample& sample)
     });
 }
 
-// Of a pixel of the viewport, which may lie outside.
+// @param pixel  of the viewport, may be outside
 bool WinnerLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
 {
   const Located& located = frame.located;
@@ -221,7 +221,7 @@ bool WinnerLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sam
                     : this->PickRay(frame, pixel, sample));
 }
 
-// Only at the image's rim rounding can let rays meet the volume that have no sample.
+// At the border of the image, rays without a sample may touch the volume by rounding.
 bool WinnerLocations::HasSample(const Frame& frame, const ShearPixel& pixel)
 {
   const Located& located = frame.located;
@@ -238,7 +238,7 @@ bool WinnerLocations::HasSample(const Frame& frame, const ShearPixel& pixel)
           .winners[0] >= 0);
 }
 
-// Of a pixel of the viewport.
+// @param pixel  of the viewport
 bool WinnerLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
 {
   Located located = frame.located;
@@ -274,7 +274,8 @@ bool WinnerLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sampl
   return true;
 }
 
-// Of a pixel of the viewport. Without depths the pixel is projected once more.
+// Projects the pixel again if there are no depths.
+// @param pixel  of the viewport
 bool WinnerLocations::PickOnScreen(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
 {
   Located located = frame.located;
@@ -323,7 +324,7 @@ vtkImageData* WinnerLocations::Image()
   }
   const Locator locator(frame->located);
   this->Output = makeLocationImage(&locator, extent);
-  // What other things hide is not seen.
+  // Clears the pixels that the scene hides.
   Picture seen;
   seen.size = viewport;
   seen.pixels.assign(std::size_t(viewport.x) * viewport.y, 1u);

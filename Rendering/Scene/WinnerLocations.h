@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Where the samples lie that a volume's last picture shows, in VTK's terms.
+ * Sample positions of a volume's last picture, in VTK's terms.
  */
 #ifndef WinnerLocations_h
 #define WinnerLocations_h
@@ -32,9 +32,9 @@ class SceneCuts;
 struct VolumeGrid;
 
 /**
- * Arrays "Voxel" (three ints, -1 for none), "Depth" (float, NaN for none) and "Position" (three
- * doubles, NaN for none) for the pixels of a viewport, as an image with this extent, whose first
- * pixel is the viewport's lower left one. Free of OpenGL.
+ * Makes an image with the arrays "Voxel" (three ints, -1 for none), "Depth" (float, NaN for none)
+ * and "Position" (three doubles, NaN for none). Its first pixel is the viewport's lower left one.
+ * Independent of OpenGL.
  *
  * @param locator  nullptr: there are no samples
  */
@@ -42,13 +42,13 @@ vtkSmartPointer<vtkImageData> makeLocationImage(const Locator* locator, const in
 
 /**
  * 256 colours, from the nearest to the farthest depth: those of a look-up table or transfer
- * function over its range, or, without one, the hues from red over green to blue.
+ * function over its range, or by default the hues from red over green to blue.
  */
 std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors);
 
 /**
- * The locations of the last frame of each renderer. Looks at projector and cuts as the last frame
- * of all has left them. Before a frame of another renderer it copies what picks need of them.
+ * Sample positions of the last frame of each renderer. Uses projector and cuts as the last frame
+ * left them. Before a frame of another renderer it copies the data that picks need.
  */
 class WinnerLocations
 {
@@ -62,16 +62,16 @@ public:
   {
   }
 
-  /// Forgets all frames.
+  /// Removes all frames.
   void Forget();
-  /// To be called before a frame of a renderer, whose last one is no longer shown.
+  /// Call it before a frame of a renderer, whose last frame is then no longer shown.
   void BeginFrame(vtkRenderer* renderer);
-  /// Remembers how this frame has seen the volume.
+  /// Stores how this frame views the volume.
   void Remember(const View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer);
 
-  /// What a pixel of the window of the last frame shows: point of the world, voxel and value. False
-  /// if no picture has a sample there that is still shown and whose voxels exist. Without winners,
-  /// looks along rays.
+  /// The sample of a pixel of the last frame's window. Pick() returns false if no picture that is
+  /// still shown, and whose voxels exist, has a sample there. Without winners it projects the
+  /// pixel.
   struct Sample
   {
     glm::dvec3 position;
@@ -79,14 +79,14 @@ public:
     double value;
   };
   bool Pick(int x, int y, Sample& sample);
-  /// See makeLocationImage(), of the last frame, its extent in pixels of the window; nullptr before
-  /// the first frame, and if the picture is no longer shown or its voxels are gone.
+  /// See makeLocationImage(): the last frame, in pixels of the window. nullptr before the first
+  /// frame, and if the picture is no longer shown or its voxels are gone.
   vtkImageData* Image();
 
-  /// Gives each pixel of a picture its depth's colour, as bright as the picture is.
+  /// Gives each pixel of a picture the colour of its depth, with its brightness.
   void ColorByDepth(Picture& picture, vtkScalarsToColors* colors, const double range[2]);
-  /// For each pixel of a picture its depth, 0 to 1, if it is at least this opaque and has a sample;
-  /// else 2.
+  /// The depth, 0 to 1, of each pixel of a picture with at least this opacity and a sample; 2 for
+  /// other pixels.
   const std::vector<float>& ClipDepths(const Picture& picture, double opacity);
 
 private:
@@ -97,11 +97,11 @@ private:
     vtkIdType version = 0; // of the source
     Located located;
     int left = 0, bottom = 0;
-    bool onScreen = false; // whether the projection was by cells
-    RayEnds ends;          // of those
+    bool onScreen = false; // whether the last projection was by cells
+    RayEnds ends;          // of projections by cells
     const std::vector<Cuts>* projectionCuts = nullptr;
     bool canProject = false;
-    // What the members above point at, once it is copied.
+    // Owners of the data above, after Copy().
     std::vector<ShearImage> images;
     std::vector<ShearWarp> geometries;
     std::vector<Cuts> cuts;
@@ -125,8 +125,8 @@ private:
   ComponentProjector& Projector;
   splatting::SceneCuts& SceneCuts;
   const std::vector<ShearWarp>& Images;
-  std::vector<std::unique_ptr<Frame>> Frames; // the last one first
-  bool HasLast = false;                       // whether projector and cuts are of the first
+  std::vector<std::unique_ptr<Frame>> Frames; // the last frame first
+  bool HasLast = false; // whether projector and cuts belong to the first frame
   std::vector<float> Depths;
   vtkSmartPointer<vtkImageData> Output;
 };

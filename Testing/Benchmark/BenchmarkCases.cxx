@@ -10,7 +10,6 @@
 #include "vtkNew.h"
 #include "vtkPlane.h"
 #include "vtkPointData.h"
-#include "vtkSplattingMIPProjection.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include <algorithm>
@@ -41,11 +40,11 @@ double Median(std::vector<double> values)
   return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// The seconds that each view took, pass by pass, and the image axis that it was projected along.
+/// The seconds that each view took, pass by pass.
 class ViewTimes
 {
 public:
-  explicit ViewTimes(int views) : Seconds(views), Axes(views, -1) {}
+  explicit ViewTimes(int views) : Seconds(views) {}
 
   /// The frame counts through the views, pass by pass; this is the stage's number of the view.
   int GetView(std::size_t frame) const
@@ -55,30 +54,17 @@ public:
     return static_cast<int>(middle * BenchmarkStage::NumberOfViews / (2 * views));
   }
 
-  /// @param axis  -1 if there is none
-  void Add(std::size_t frame, double seconds, int axis)
+  void Add(std::size_t frame, double seconds)
   {
     this->Seconds[frame % this->Seconds.size()].push_back(seconds);
-    this->Axes[frame % this->Axes.size()] = axis;
   }
 
   void Report(benchmark::State& state) const
   {
-    std::vector<double> views, ofAxes[3];
-    for (std::size_t view = 0; view < this->Seconds.size(); ++view)
+    std::vector<double> views;
+    for (const std::vector<double>& passes : this->Seconds)
     {
-      views.push_back(1e3 * Median(this->Seconds[view]));
-      if (this->Axes[view] >= 0)
-      {
-        ofAxes[this->Axes[view]].push_back(views.back());
-      }
-    }
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (!ofAxes[axis].empty())
-      {
-        state.counters["axis" + std::to_string(axis) + "_ms"] = Median(ofAxes[axis]);
-      }
+      views.push_back(1e3 * Median(passes));
     }
     state.counters["views"] = static_cast<double>(views.size());
     state.counters["median_ms"] = Median(views);
@@ -87,13 +73,7 @@ public:
 
 private:
   std::vector<std::vector<double>> Seconds;
-  std::vector<int> Axes;
 };
-
-int GetAxis(vtkSplattingMIPVolumeMapper* splatting)
-{
-  return splatting ? splatting->GetPrincipalAxis() : -1;
-}
 
 /// Draws a frame that is not measured with every kind of mapper, because shaders are compiled once
 /// in the life of a program, and whoever came first would pay for it.
@@ -170,7 +150,7 @@ void Rotate(benchmark::State& state, const BenchmarkRotation& rotation, Function
     stage.LookFrom(times.GetView(frame));
     const double seconds = chooseSeconds(stage.MeasureFrame());
     state.SetIterationTime(seconds);
-    times.Add(frame++, seconds, GetAxis(splatting));
+    times.Add(frame++, seconds);
   }
   times.Report(state);
   if (const char* fault = FindFault(splatting, before + frame))
@@ -215,9 +195,6 @@ void AddCut(vtkVolumeMapper* mapper, vtkImageData* image, BenchmarkCut cut)
   switch (cut)
   {
     case BenchmarkCut::NONE:
-      break;
-    case BenchmarkCut::AROUND:
-      AddBox(mapper, image->GetBounds(), -0.1);
       break;
     case BenchmarkCut::PLANE:
       AddPlane(mapper, image->GetCenter(), 1.0, 0.0, 1.0);
@@ -296,7 +273,7 @@ void MeasureRecoloring(benchmark::State& state, const BenchmarkVolume& volume, i
     stage.SetWhite(frame % 2 ? 1.0 : 0.8);
     const double seconds = stage.MeasureFrame();
     state.SetIterationTime(seconds);
-    times.Add(frame++, seconds, GetAxis(splatting));
+    times.Add(frame++, seconds);
   }
   times.Report(state);
   state.counters["share"] = state.counters["median_ms"] / Median(turns);
@@ -338,18 +315,6 @@ void MeasureLocations(benchmark::State& state, const BenchmarkVolume& volume,
   splatting->RecordLocationsOn();
   ShowEachAxis();
   Rotate(state, rotation, [=](double) { return splatting->GetProjectionTime(); });
-  // Apart, as they would leave other things in the caches than the projections beside these find.
-  std::vector<double> arrays;
-  for (int view = 0; view < rotation.Views; ++view)
-  {
-    stage.LookFrom(view);
-    stage.MeasureFrame();
-    const auto start = std::chrono::steady_clock::now();
-    benchmark::DoNotOptimize(splatting->GetLocations());
-    const auto end = std::chrono::steady_clock::now();
-    arrays.push_back(1e3 * std::chrono::duration<double>(end - start).count());
-  }
-  state.counters["arrays_ms"] = Median(arrays);
   stage.Clear();
 }
 
@@ -366,7 +331,7 @@ void MeasureIndex(benchmark::State& state, const BenchmarkVolume& volume)
   std::vector<double> times;
   for (auto _ : state)
   {
-    stage.SetMapper(GetBenchmarkAccelerations()[0], image);
+    stage.SetMapper(GetBenchmarkMappers()[0], image);
     stage.LookFrom(BenchmarkStage::ViewsOfAxes[2]); // not along the axis that needs a copy
     stage.MeasureFrame();
     times.push_back(vtkSplattingMIPVolumeMapper::SafeDownCast(stage.GetMapper())->GetIndexTime());
@@ -422,39 +387,6 @@ void MeasureFloor(benchmark::State& state, const BenchmarkVolume& volume)
   const double median = Median(times);
   state.counters["median_ms"] = 1e3 * median;
   state.counters["GB_per_s"] = 1e-9 * static_cast<double>(count) / median;
-}
-
-//------------------------------------------------------------------------------
-void MeasureTurns(
-  benchmark::State& state, const BenchmarkVolume& volume, const BenchmarkMapper& mapper, int views)
-{
-  vtkImageData* image = LoadOrFail(state, volume);
-  if (!image)
-  {
-    return;
-  }
-  std::vector<double> times;
-  for (auto _ : state)
-  {
-    vtkNew<vtkSplattingMIPProjection> projection;
-    projection->SetInputData(image);
-    projection->SetQualityMode(mapper.QualityMode);
-    projection->SetNumberOfViews(views);
-    const auto start = std::chrono::steady_clock::now();
-    projection->Update();
-    const auto end = std::chrono::steady_clock::now();
-    times.push_back(std::chrono::duration<double>(end - start).count());
-    state.SetIterationTime(times.back());
-    if (projection->GetOutput()->GetDimensions()[2] != views)
-    {
-      Fail(state, "the turn is not complete");
-      return;
-    }
-  }
-  const double median = Median(times);
-  state.counters["median_ms"] = 1e3 * median;
-  state.counters["views"] = views;
-  state.counters["views_per_s"] = views / median;
 }
 
 //------------------------------------------------------------------------------

@@ -45,9 +45,8 @@ void MeasureRecoloring(benchmark::State& state, const BenchmarkVolume& volume, i
 enum class BenchmarkCut
 {
   NONE,
-  AROUND, // a box around the volume, that leaves nothing out
-  PLANE,  // through the middle, at 45 degrees to two axes
-  BOX     // six planes, with a fifth of the volume's size beyond each
+  PLANE, // through the middle, at 45 degrees to two axes
+  BOX    // six planes, with a fifth of the volume's size beyond each
 };
 
 /**
@@ -59,8 +58,7 @@ void MeasureProjections(benchmark::State& state, const BenchmarkVolume& volume,
   BenchmarkCut cut = BenchmarkCut::NONE);
 
 /**
- * The same with RecordLocations, and the samples' locations in a window of 64 x 64 pixels in
- * counter arrays_ms, the median of the views, which is not in the projection's time.
+ * The same with RecordLocations.
  */
 void MeasureLocations(benchmark::State& state, const BenchmarkVolume& volume,
   const BenchmarkMapper& mapper, const BenchmarkRotation& rotation);
@@ -80,14 +78,6 @@ void MeasureFirst(
  * The largest byte of the volume. Counters median_ms and GB_per_s (10^9 bytes).
  */
 void MeasureFloor(benchmark::State& state, const BenchmarkVolume& volume);
-
-/**
- * A turn of vtkSplattingMIPProjection about the vertical axis, pictures of 256 x 256 pixels, by a
- * fresh filter that has to make its index, too: Update() from the volume to all pictures. Counters
- * median_ms of the turns, views of each, and views_per_s.
- */
-void MeasureTurns(
-  benchmark::State& state, const BenchmarkVolume& volume, const BenchmarkMapper& mapper, int views);
 
 /**
  * Whether a benchmark has failed so far.

@@ -26,7 +26,6 @@ vtkSmartPointer<vtkVolumeMapper> MakeSplatting(const BenchmarkMapper& kind)
 {
   auto mapper = vtkSmartPointer<vtkSplattingMIPVolumeMapper>::New();
   mapper->SetQualityMode(kind.QualityMode);
-  mapper->SetAcceleration(kind.Acceleration);
   return mapper;
 }
 
@@ -53,7 +52,7 @@ vtkSmartPointer<vtkVolumeMapper> MakeGPURayCasting(double distance)
 vtkSmartPointer<vtkVolumeMapper> MakeMapper(const BenchmarkMapper& kind, vtkImageData* image)
 {
   const double* spacing = image->GetSpacing();
-  const double distance = kind.SampleDistance * *std::min_element(spacing, spacing + 3);
+  const double distance = *std::min_element(spacing, spacing + 3);
   vtkSmartPointer<vtkVolumeMapper> mapper;
   switch (kind.Kind)
   {
@@ -91,42 +90,16 @@ const std::vector<BenchmarkMapper>& GetBenchmarkMappers()
   using Mapper = BenchmarkMapper;
   using Splatting = vtkSplattingMIPVolumeMapper;
   constexpr int nearest = VTK_NEAREST_INTERPOLATION, linear = VTK_LINEAR_INTERPOLATION;
-  constexpr int automatic = Splatting::AUTO;
   static const std::vector<Mapper> mappers = {
-    { "preview", Mapper::SPLATTING, Splatting::PREVIEW, automatic, linear, "raycast-nearest" },
-    { "standard", Mapper::SPLATTING, Splatting::STANDARD, automatic, linear, "raycast-linear" },
-    { "high", Mapper::SPLATTING, Splatting::HIGH, automatic, linear, "raycast-linear" },
-    { "exact", Mapper::SPLATTING, Splatting::EXACT, automatic, linear, "raycast-linear" },
-    { "raycast-nearest", Mapper::CPU_RAY_CASTING, 0, 0, nearest, "" },
-    { "raycast-linear", Mapper::CPU_RAY_CASTING, 0, 0, linear, "" },
-    { "raycast-fine", Mapper::CPU_RAY_CASTING, 0, 0, linear, "", 0.05 },
-    { "gpu", Mapper::GPU_RAY_CASTING, 0, 0, linear, "" },
+    { "preview", Mapper::SPLATTING, Splatting::PREVIEW, linear },
+    { "standard", Mapper::SPLATTING, Splatting::STANDARD, linear },
+    { "high", Mapper::SPLATTING, Splatting::HIGH, linear },
+    { "exact", Mapper::SPLATTING, Splatting::EXACT, linear },
+    { "raycast-nearest", Mapper::CPU_RAY_CASTING, 0, nearest },
+    { "raycast-linear", Mapper::CPU_RAY_CASTING, 0, linear },
+    { "gpu", Mapper::GPU_RAY_CASTING, 0, linear },
   };
   return mappers;
-}
-
-//------------------------------------------------------------------------------
-const std::vector<BenchmarkMapper>& GetBenchmarkAccelerations()
-{
-  static const std::vector<BenchmarkMapper> accelerations = []
-  {
-    std::vector<BenchmarkMapper> all;
-    for (const BenchmarkMapper& mapper : GetBenchmarkMappers())
-    {
-      if (mapper.Kind == BenchmarkMapper::SPLATTING)
-      {
-        all.push_back(mapper);
-        all.push_back(mapper);
-        all.back().Name += "-dense";
-        all.back().Acceleration = vtkSplattingMIPVolumeMapper::DENSE;
-        all.push_back(mapper);
-        all.back().Name += "-bricks";
-        all.back().Acceleration = vtkSplattingMIPVolumeMapper::BRICKS;
-      }
-    }
-    return all;
-  }();
-  return accelerations;
 }
 
 //------------------------------------------------------------------------------

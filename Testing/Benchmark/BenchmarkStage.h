@@ -31,23 +31,14 @@ struct BenchmarkMapper
 
   std::string Name;
   Kinds Kind;
-  int QualityMode;             // of the splatting mapper
-  int Acceleration;            // likewise
-  int Interpolation;           // of the ray casters
-  std::string Rival;           // the ray caster that shows the most similar picture, or ""
-  double SampleDistance = 1.0; // of the ray casters, in voxels
+  int QualityMode;   // of the splatting mapper
+  int Interpolation; // of the ray casters
 };
 
 /**
- * preview, standard, high, exact; raycast-nearest, raycast-linear; raycast-fine, which is linear
- * with twenty samples per voxel; gpu.
+ * preview, standard, high, exact; raycast-nearest, raycast-linear; gpu.
  */
 const std::vector<BenchmarkMapper>& GetBenchmarkMappers();
-
-/**
- * The modes by the mapper's own choice, and forced: preview-dense, preview-bricks, ...
- */
-const std::vector<BenchmarkMapper>& GetBenchmarkAccelerations();
 
 /**
  * The window, the camera and the volume's look, the same for all mappers: off screen, no

@@ -4,11 +4,9 @@
 
 #include "Volume.h"
 
-#include "vtkNIFTIImageReader.h"
 #include "vtkNew.h"
 #include "vtkNrrdReader.h"
 #include "vtkType.h"
-#include "vtkTypeTraits.h"
 #include "vtkXMLImageDataReader.h"
 
 #include <algorithm>
@@ -17,39 +15,23 @@
 
 namespace
 {
-/// The phantom's bytes v become slope * v + offset.
-template <class T>
-vtkSmartPointer<vtkImageData> MakeVessels(int n, double slope = 1.0, double offset = 0.0)
+vtkSmartPointer<vtkImageData> MakeVessels(int n)
 {
   const reference::Volume<std::uint8_t> phantom = reference::noiseAndVessels(n);
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetDimensions(n, n, n);
-  image->AllocateScalars(vtkTypeTraits<T>::VTK_TYPE_ID, 1);
-  std::transform(phantom.voxels.begin(), phantom.voxels.end(),
-    static_cast<T*>(image->GetScalarPointer()),
-    [=](std::uint8_t value) { return static_cast<T>(slope * value + offset); });
-  return image;
-}
-
-template <class T>
-BenchmarkVolume Vessels(int n, const std::string& type, double slope = 1.0, double offset = 0.0)
-{
-  BenchmarkVolume volume;
-  volume.Name = "vessels" + std::to_string(n) + "-" + type;
-  volume.Load = [=] { return MakeVessels<T>(n, slope, offset); };
-  return volume;
-}
-
-/// Nothing but noise, in which nothing can be left out.
-vtkSmartPointer<vtkImageData> MakeNoise(int n)
-{
-  const auto noise = reference::uniformNoise<std::uint8_t>({ n, n, n }, 1, 0, 255);
-  auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(n, n, n);
   image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
-  std::copy(noise.voxels.begin(), noise.voxels.end(),
+  std::copy(phantom.voxels.begin(), phantom.voxels.end(),
     static_cast<unsigned char*>(image->GetScalarPointer()));
   return image;
+}
+
+BenchmarkVolume Vessels(int n)
+{
+  BenchmarkVolume volume;
+  volume.Name = "vessels" + std::to_string(n) + "-uint8";
+  volume.Load = [=] { return MakeVessels(n); };
+  return volume;
 }
 
 template <class Reader>
@@ -87,19 +69,8 @@ void AddFile(std::vector<BenchmarkVolume>& volumes, std::vector<std::string>& mi
 std::vector<BenchmarkVolume> ListVolumes(
   const std::string& folder, std::vector<std::string>& missing)
 {
-  std::vector<BenchmarkVolume> volumes = { Vessels<unsigned char>(128, "uint8"),
-    Vessels<unsigned char>(256, "uint8"), Vessels<short>(256, "int16", 8.0, -1024.0),
-    Vessels<float>(256, "float", 1.0 / 255.0), Vessels<unsigned char>(512, "uint8") };
-  volumes[2].ForAllMappers = volumes[3].ForAllMappers = false;
-  volumes[4].IsBig = true;
-  BenchmarkVolume noise;
-  noise.Name = "noise256-uint8";
-  noise.Load = [] { return MakeNoise(256); };
-  noise.ForAllMappers = false;
-  volumes.push_back(noise);
+  std::vector<BenchmarkVolume> volumes = { Vessels(256) };
   AddFile<vtkXMLImageDataReader>(volumes, missing, "aorta-int16", SPLATTINGMIP_AORTA, false);
-  AddFile<vtkNIFTIImageReader>(
-    volumes, missing, "ch2better-uint8", "/usr/share/mricron/templates/ch2better.nii.gz", true);
   AddFile<vtkNrrdReader>(volumes, missing, "lidc0314-int16",
     std::filesystem::path(folder) / "lidc-idri-0314.nrrd", true);
   return volumes;
@@ -108,7 +79,7 @@ std::vector<BenchmarkVolume> ListVolumes(
 //------------------------------------------------------------------------------
 std::vector<BenchmarkVolume> ListQuickVolumes()
 {
-  return { Vessels<unsigned char>(64, "uint8") };
+  return { Vessels(64) };
 }
 
 //------------------------------------------------------------------------------

@@ -17,8 +17,7 @@ struct BenchmarkVolume
 {
   std::string Name; // what-type
   std::function<vtkSmartPointer<vtkImageData>()> Load;
-  bool IsBig = false;        // slow mappers get fewer views
-  bool ForAllMappers = true; // or for the splatting mapper alone
+  bool IsBig = false; // slow mappers get fewer views
 };
 
 /**

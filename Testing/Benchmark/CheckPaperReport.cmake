@@ -10,7 +10,7 @@ endif ()
 
 file(READ "${FOLDER}/report.md" report)
 foreach (section IN ITEMS
-    "Data" "Tables 1 to 4: times" "Ratios of the mean times" "Table 5: memory" "Invisible voxels"
+    "Data" "Tables 1 to 4: times" "Ratios of the mean times" "Table 5: memory"
     "Figure 10: the modes" "Figure 11: the methods" "Figure 12: line encoding"
     "Figure 13: two resolutions" "Accuracy")
   # A section is its heading and something below that is not the next heading.

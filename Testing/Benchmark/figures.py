@@ -117,7 +117,7 @@ class Tables:
                 across = self.get(f"projection/{volume}/{mode}", "perspective")
                 row.append(f"{number(value)} ({times(across, value)})")
             rows.append(row + [number(self.get(f"index/{volume}"))])
-        return table(["volume", "floor", *MODES, "index"], rows)
+        return table(["volume", "memory pass", *MODES, "index"], rows)
 
     def prices(self):
         rows = []

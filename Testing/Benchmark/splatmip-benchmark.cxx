@@ -7,7 +7,6 @@
 #include "BenchmarkStage.h"
 #include "BenchmarkVolumes.h"
 #include "ProcessorName.h"
-#include "SummaryReporter.h"
 
 #include "vtkSMPTools.h"
 #include "vtkSmartPointer.h"
@@ -33,7 +32,6 @@ struct Options
   double ViewAngle = 0.0;
   int Threads = 0;
   bool Quick = false;
-  bool IsConsole = true; // what Google Benchmark prints is meant for people
 };
 
 void PrintHelp()
@@ -43,35 +41,28 @@ void PrintHelp()
 
   frame/VOLUME/WINDOW/MAPPER  a whole frame, render and read-back
   recolor/VOLUME/WINDOW/MODE  a whole frame of a view that is shown already, in another window/level
-  projection/VOLUME/MODE[-ACCELERATION]  the projection alone, volume to shear image
-  where/VOLUME/MODE[-ACCELERATION]       the same with RecordLocations
+  projection/VOLUME/MODE      the projection alone, volume to shear image
+  where/VOLUME/MODE           the same with RecordLocations
   cut/VOLUME/MODE/CUT         the projection alone, cut by clipping planes
-  first/VOLUME/MODE[-ACCELERATION]       the slowest of the first frames along the three axes, 300^2
+  first/VOLUME/MODE           the slowest of the first frames along the three axes, 300^2
   index/VOLUME                making the bricks: one survey of the voxels
-  turn/VOLUME/MODE            a turn of 360 views without OpenGL, 256^2 pixels, the index included
   floor/VOLUME                the largest byte of the volume, read once by all threads
 
-VOLUME   vessels128-uint8, vessels256-uint8, -int16, -float, vessels512-uint8 (noise and vessels),
-         noise256-uint8, aorta-int16, and if they are there ch2better-uint8 (Debian: mricron-data) and
-         lidc0314-int16
+VOLUME   vessels256-uint8 (noise and vessels), aorta-int16 and, if it is there, lidc0314-int16
 WINDOW   300 or 1024 pixels along each side
-ACCELERATION  dense or bricks; without it the mapper chooses
-CUT      none; around: planes that leave nothing out; plane: through the middle; box: six planes
+CUT      none; plane: through the middle; box: six planes
 MAPPER   preview, standard, high, exact: the modes of vtkSplattingMIPVolumeMapper
-         raycast-nearest, raycast-linear: vtkFixedPointVolumeRayCastMapper; raycast-fine: with 20
-         samples per voxel, of vessels256-uint8 and aorta-int16 at 1024 only, as it takes a minute
+         raycast-nearest, raycast-linear: vtkFixedPointVolumeRayCastMapper
          gpu: vtkOpenGLGPUVolumeRayCastMapper, linear
 
 Everything goes through the same two turns of the camera, 36 views in all; slow mappers and big
-volumes through a part of them, evenly spaced (counter views); counters axis0_ms to axis2_ms are the
-medians over the views along each axis of the image. The summary comes last; where
---benchmark_format is not console, on the standard error stream. It is made from the single runs,
-so there is none with --benchmark_report_aggregates_only.
+volumes through a part of them, evenly spaced (counter views). Counter median_ms is the median over
+the views. figures.py makes the tables of the documents.
 
   --quick        64^3 voxels, 100 pixels, few views: whether it works, in a few seconds
   --data=DIR     where lidc-idri-0314.nrrd lies
   --threads=N    threads of vtkSMPTools and of the ray caster on the CPU
-  --perspective=DEGREES  perspective cameras with this view angle, for all but floor, index and turn
+  --perspective=DEGREES  perspective cameras with this view angle, for all but floor and index
 
   For JSON, too: --benchmark_out=FILE. The rows that matter most:
     splatmip-benchmark --benchmark_filter='frame/vessels256-uint8/[0-9]+/[^g]'
@@ -118,10 +109,6 @@ Options TakeOptions(int& argc, char** argv)
     }
     else
     {
-      if (Starts(argv[i], "--benchmark_format=", value))
-      {
-        options.IsConsole = value == "console";
-      }
       argv[kept++] = argv[i];
     }
   }
@@ -178,20 +165,10 @@ void RegisterFrames(const BenchmarkVolume& volume, int window, bool isQuick)
 {
   for (const BenchmarkMapper& mapper : GetBenchmarkMappers())
   {
-    const bool isFine = mapper.SampleDistance < 1.0;
-    const bool isForFine = volume.Name == "vessels256-uint8" || volume.Name == "aorta-int16";
-    if (isFine && (isQuick || window < 1024 || !isForFine))
-    {
-      continue;
-    }
-    if (mapper.Kind == BenchmarkMapper::SPLATTING || volume.ForAllMappers)
-    {
-      const BenchmarkRotation rotation =
-        isFine ? BenchmarkRotation{ 3, 1 } : ChooseRotation(mapper, volume.IsBig, isQuick);
-      Register("frame/" + volume.Name + "/" + std::to_string(window) + "/" + mapper.Name,
-        rotation.Views * rotation.Passes,
-        [=](benchmark::State& state) { MeasureFrames(state, volume, window, mapper, rotation); });
-    }
+    const BenchmarkRotation rotation = ChooseRotation(mapper, volume.IsBig, isQuick);
+    Register("frame/" + volume.Name + "/" + std::to_string(window) + "/" + mapper.Name,
+      rotation.Views * rotation.Passes,
+      [=](benchmark::State& state) { MeasureFrames(state, volume, window, mapper, rotation); });
     if (mapper.Kind == BenchmarkMapper::SPLATTING)
     {
       const BenchmarkRotation rotation = { isQuick ? 4 : 9, 1 };
@@ -214,26 +191,12 @@ void RegisterCuts(const BenchmarkVolume& volume, bool isQuick)
     const BenchmarkRotation rotation = ChooseRotation(mapper, volume.IsBig, isQuick);
     for (const auto& [name, cut] :
       { std::pair<const char*, BenchmarkCut>("none", BenchmarkCut::NONE),
-        { "around", BenchmarkCut::AROUND }, { "plane", BenchmarkCut::PLANE },
-        { "box", BenchmarkCut::BOX } })
+        { "plane", BenchmarkCut::PLANE }, { "box", BenchmarkCut::BOX } })
     {
       Register("cut/" + volume.Name + "/" + mapper.Name + "/" + name,
         rotation.Views * rotation.Passes,
         [=, kind = cut](benchmark::State& state)
         { MeasureProjections(state, volume, mapper, rotation, kind); });
-    }
-  }
-}
-
-void RegisterTurns(const BenchmarkVolume& volume, bool isQuick)
-{
-  const int views = isQuick ? 8 : 360;
-  for (const BenchmarkMapper& mapper : GetBenchmarkMappers())
-  {
-    if (mapper.Kind == BenchmarkMapper::SPLATTING)
-    {
-      Register("turn/" + volume.Name + "/" + mapper.Name, isQuick ? 1 : 3,
-        [=](benchmark::State& state) { MeasureTurns(state, volume, mapper, views); });
     }
   }
 }
@@ -244,8 +207,12 @@ void RegisterVolume(const BenchmarkVolume& volume, bool isQuick)
     "floor/" + volume.Name, 30, [=](benchmark::State& state) { MeasureFloor(state, volume); });
   Register("index/" + volume.Name, isQuick ? 2 : 10,
     [=](benchmark::State& state) { MeasureIndex(state, volume); });
-  for (const BenchmarkMapper& mapper : GetBenchmarkAccelerations())
+  for (const BenchmarkMapper& mapper : GetBenchmarkMappers())
   {
+    if (mapper.Kind != BenchmarkMapper::SPLATTING)
+    {
+      continue;
+    }
     const BenchmarkRotation rotation = ChooseRotation(mapper, volume.IsBig, isQuick);
     Register("projection/" + volume.Name + "/" + mapper.Name, rotation.Views * rotation.Passes,
       [=](benchmark::State& state) { MeasureProjections(state, volume, mapper, rotation); });
@@ -255,7 +222,6 @@ void RegisterVolume(const BenchmarkVolume& volume, bool isQuick)
       [=](benchmark::State& state) { MeasureFirst(state, volume, mapper); });
   }
   RegisterCuts(volume, isQuick);
-  RegisterTurns(volume, isQuick);
   for (int window : isQuick ? std::vector<int>{ 100 } : std::vector<int>{ 300, 1024 })
   {
     RegisterFrames(volume, window, isQuick);
@@ -292,14 +258,11 @@ int main(int argc, char** argv)
   }
   BenchmarkStage::GetInstance().SetViewAngle(options.ViewAngle);
   RegisterAll(options);
-  const Facts machine = DescribeMachine();
-  for (const auto& fact : machine)
+  for (const auto& fact : DescribeMachine())
   {
     benchmark::AddCustomContext(fact.first, fact.second);
   }
-  SummaryReporter reporter;
-  benchmark::RunSpecifiedBenchmarks(&reporter);
-  reporter.PrintSummary(options.IsConsole ? std::cout : std::cerr, machine);
+  benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return HasFailedBenchmark() ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -478,7 +478,7 @@ void testProblems(Ranks& ranks)
   wrong("large scalars, and infinities in another piece", "magnitudes above", expected);
   many.mapper->SetInputDataObject(good);
   many.renderer->GetActiveCamera()->SetParallelScale(last ? 20.0 : 21.0);
-  wrong("another camera", "in different ways", expected);
+  wrong("another camera", "differ between ranks", expected);
   many.mapper->SetInputDataObject(vtkSmartPointer<vtkImageData>::New());
   wrong("ranks with nothing", "No rank has any voxels", expected);
   testRefusals(ranks, many, expected);

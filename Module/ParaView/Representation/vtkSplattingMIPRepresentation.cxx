@@ -31,15 +31,15 @@
 #include <utility>
 #include <vector>
 
-// ParaView initialises no modules of plugins: this tells the object factory of the mapper's
-// drawing.
+// ParaView does not initialise modules of plugins. This registers the object factory of the
+// mapper's display.
 VTK_MODULE_INIT(vtkRenderingSplattingMIP)
 
 namespace
 {
 constexpr int largestComponent = 3; // of vtkSplattingMIPVolumeMapper::SetVectorComponent()
 
-// The one volume in the input, or nullptr and why there is none.
+// The only volume in the input, or nullptr and an error message.
 vtkDataSet* findVolume(vtkDataObject* input, std::string& problem)
 {
   std::vector<vtkDataSet*> volumes;
@@ -59,8 +59,8 @@ vtkDataSet* findVolume(vtkDataObject* input, std::string& problem)
   return volumes.front();
 }
 
-// The same piece, of which no voxel says that it is another rank's, too: the superclass would cut
-// these off, which are there because they were asked for.
+// The piece without marks of duplicate voxels. The superclass would remove these ghost layers,
+// which were requested.
 vtkSmartPointer<vtkDataSet> keptWhole(vtkDataSet* piece)
 {
   vtkSmartPointer<vtkDataSet> whole = vtk::TakeSmartPointer(piece->NewInstance());
@@ -95,7 +95,7 @@ vtkSmartPointer<vtkDataSet> keptWhole(vtkDataSet* piece)
 
 bool isInteractive(vtkInformation* request)
 {
-  // ParaView asks for 5 frames a second in interactive renders, and for 0.002 in still ones.
+  // ParaView requests 5 frames a second in interactive renders, and 0.002 in still ones.
   auto view = vtkPVRenderView::SafeDownCast(request->Get(vtkPVView::VIEW()));
   return view && view->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
 }
@@ -112,7 +112,7 @@ vtkSplattingMIPRepresentation::vtkSplattingMIPRepresentation()
   {
     vtkSplattingMIPVolumeMapper* mapper = this->GetSplattingMapper();
     mapper->SetController(ranks);
-    // A compositor blends what the ranks show.
+    // A compositor blends the pictures of the ranks.
     mapper->DisplayOnRootOnlyOn();
     mapper->IntermixIntersectingGeometryOff();
   }
@@ -140,7 +140,7 @@ vtkSplattingMIPVolumeMapper* vtkSplattingMIPRepresentation::GetSplattingMapper()
   return static_cast<vtkSplattingMIPVolumeMapper*>(this->VolumeMapper.Get());
 }
 
-// The ranks that this process is one of; nullptr if it is alone.
+// The controller of this process and other ranks; nullptr if there are none.
 vtkMultiProcessController* vtkSplattingMIPRepresentation::GetSeveralRanks()
 {
   vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
@@ -155,7 +155,7 @@ int vtkSplattingMIPRepresentation::RequestUpdateExtent(
   for (int i = 0; this->GetSeveralRanks() && i < inputVector[0]->GetNumberOfInformationObjects();
        ++i)
   {
-    // What high mode needs: a change of the mode does not ask again.
+    // As many as high mode needs, so that a change of the mode requests no others.
     vtkInformation* const info = inputVector[0]->GetInformationObject(i);
     info->Set(ghosts, std::max(info->Get(ghosts), 2));
   }
@@ -233,7 +233,7 @@ void vtkSplattingMIPRepresentation::SetIndexMemoryBudget(int mebibytes)
   this->GetSplattingMapper()->SetIndexMemoryBudget(vtkTypeInt64(mebibytes) << 20);
 }
 
-// A problem is told when it appears, not in every frame.
+// Reports an error when it appears, not in every frame.
 void vtkSplattingMIPRepresentation::Complain(std::string& last, const std::string& problem)
 {
   if (!problem.empty() && problem != last)
@@ -253,7 +253,7 @@ int vtkSplattingMIPRepresentation::ProcessViewRequest(
   return this->Superclass::ProcessViewRequest(request, inInfo, outInfo);
 }
 
-// Why there is no separate opacity; empty if there is. The superclass relies on all of this.
+// Why there is no separate opacity array, or an empty string. The superclass does not check this.
 std::string vtkSplattingMIPRepresentation::CheckOpacityArray(vtkDataSet* volume)
 {
   const int association = this->OpacityArrayFieldAssociation;
@@ -309,7 +309,7 @@ int vtkSplattingMIPRepresentation::RequestData(
   }
   this->Complain(this->InputProblem, problem);
 
-  // The superclass sees the volume itself, whatever it was part of.
+  // The superclass gets the volume itself, without the composite data.
   vtkNew<vtkInformation> volumeInfo;
   volumeInfo->Copy(inputInfo);
   volumeInfo->Set(vtkDataObject::DATA_OBJECT(), volume);
@@ -323,8 +323,8 @@ int vtkSplattingMIPRepresentation::RequestData(
   return result;
 }
 
-// The array that the mapper has been told to show, or, where there is none to colour by, the active
-// scalars or else the first array; which the mapper is told then.
+// The array of the mapper. Without an array to colour by, sets it to the active scalars or else the
+// first array.
 vtkDataArray* vtkSplattingMIPRepresentation::FindScalars(vtkDataSet* volume, bool isColored)
 {
   vtkVolumeMapper* mapper = this->VolumeMapper;
@@ -358,13 +358,13 @@ vtkDataArray* vtkSplattingMIPRepresentation::FindScalars(vtkDataSet* volume, boo
   return nullptr;
 }
 
-// Opaque gray over the range of the scalars.
+// Sets opaque gray functions over the range of the scalars.
 void vtkSplattingMIPRepresentation::ShowInGray(const double rangeOfScalars[2], int components)
 {
   double range[2] = { rangeOfScalars[0], rangeOfScalars[1] };
   if (!(range[0] < range[1]))
   {
-    range[0] = range[0] <= range[1] ? range[0] : 0.0; // one value, or none at all
+    range[0] = range[0] <= range[1] ? range[0] : 0.0; // one value, or none
     range[1] = range[0] + 1.0;
   }
   vtkColorTransferFunction* colors = this->GrayProperty->GetRGBTransferFunction();
@@ -383,8 +383,8 @@ void vtkSplattingMIPRepresentation::ShowInGray(const double rangeOfScalars[2], i
       : vtkSplattingMIPVolumeMapper::MAGNITUDE);
 }
 
-// The component or magnitude that the colour map is for. Returns what is wrong with it, if
-// anything.
+// Selects the component or magnitude of the colour map. Returns an error message, or an empty
+// string.
 std::string vtkSplattingMIPRepresentation::SelectComponents(vtkDataArray* scalars)
 {
   vtkSplattingMIPVolumeMapper* mapper = this->GetSplattingMapper();
@@ -411,7 +411,7 @@ std::string vtkSplattingMIPRepresentation::SelectComponents(vtkDataArray* scalar
 
 void vtkSplattingMIPRepresentation::UpdateMapperParameters()
 {
-  // The superclass relies on arrays for opacity and colour that may not be there.
+  // The superclass requires arrays for opacity and colour that may be missing.
   const bool wantsOpacityArray = this->UseSeparateOpacityArray;
   this->UseSeparateOpacityArray = this->OpacityArrayIsUsable;
   this->Superclass::UpdateMapperParameters();
@@ -428,11 +428,11 @@ void vtkSplattingMIPRepresentation::UpdateMapperParameters()
   {
     vtkNew<vtkImageData> nothing;
     mapper->SetInputDataObject(nothing);
-    volume = nothing; // which the mapper keeps
+    volume = nothing; // owned by the mapper
   }
   if (!volume)
   {
-    // A client, whose server has the data: it gets a stand-in, and draws the outline at most.
+    // A client without data gets an empty input, and draws at most the outline.
     mapper->RemoveAllInputs();
     this->Actor->SetVisibility(true);
     return;
@@ -467,13 +467,14 @@ void vtkSplattingMIPRepresentation::UpdateMapperParameters()
   }
 }
 
-// What all ranks must do alike: show the volume or not, its bounds, and its range in gray.
+// Agrees with other ranks on whether to show the volume, its bounds, and its range in gray.
 void vtkSplattingMIPRepresentation::ShowWithOthers(
   vtkDataSet* volume, vtkDataArray* scalars, bool isColored, bool isWrong)
 {
   vtkMultiProcessController* const ranks = this->GetSeveralRanks();
   constexpr double far = VTK_DOUBLE_MAX;
-  // Least range, negative greatest one, components of ranks with scalars, and whether all is well.
+  // Least range, negative greatest one, components of ranks with scalars, and whether there is no
+  // error.
   double here[4] = { far, far, -1.0, isWrong ? 0.0 : 1.0 }, all[4];
   if (scalars && volume->GetNumberOfPoints() > 0)
   {

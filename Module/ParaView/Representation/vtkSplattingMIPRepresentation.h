@@ -2,26 +2,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSplattingMIPRepresentation
- * @brief   shows image data in ParaView as a projection made by vtkSplattingMIPVolumeMapper
+ * @brief   ParaView representation of image data that uses vtkSplattingMIPVolumeMapper
  *
- * vtkImageVolumeRepresentation with another mapper. Array, transfer functions, vector component,
- * separate opacity array, cropping and the actor's transform come from there; what the properties
- * below mean is said in vtkSplattingMIPVolumeMapper. What differs:
+ * vtkSplattingMIPRepresentation is a vtkImageVolumeRepresentation with another mapper. Array,
+ * transfer functions, vector component, separate opacity array, cropping and the actor's transform
+ * are those of the superclass. The properties below are documented in vtkSplattingMIPVolumeMapper.
  *
- * Without an array to colour by ("Solid Color") the active scalars, or the first array that there
- * is, are shown in opaque gray, black at their least and white at their largest value.
+ * Without an array to colour by ("Solid Color") the active scalars, or else the first array, are
+ * shown in opaque gray, from black at their least to white at their largest value.
  *
- * Input is vtkImageData, vtkRectilinearGrid, or composite data that hold exactly one of either; a
- * projection of several is not the projections of each, blended. Anything else gives one error that
- * says so, and an empty picture, until the input changes.
+ * The input is vtkImageData, vtkRectilinearGrid, or composite data with exactly one of them. Other
+ * input is reported by one error, and nothing is shown until the input changes.
  *
- * As with all volumes in ParaView, the process that has the data renders it: with a server the
- * picture is made there, whatever the threshold for remote rendering.
+ * The process that has the data renders it, as for all volumes in ParaView, whatever the threshold
+ * for remote rendering.
  *
- * The ranks of a server project their pieces of the image with the ghost layers that this asks the
- * pipeline for, and the first of them shows the picture of the whole (see
- * vtkSplattingMIPVolumeMapper::SetController), which ParaView's compositor then finds on that rank
- * alone. Opaque geometry, which is on other ranks as well, does not cut rays there.
+ * The ranks of a server project their pieces of the image, for which the representation requests
+ * ghost layers from the pipeline. The first rank shows the picture of the whole (see
+ * vtkSplattingMIPVolumeMapper::SetController). ParaView's compositor therefore finds it on that
+ * rank alone. Opaque geometry, which is also on other ranks, does not cut rays then.
  */
 #ifndef vtkSplattingMIPRepresentation_h
 #define vtkSplattingMIPRepresentation_h
@@ -59,16 +58,15 @@ public:
   };
 
   /**
-   * Which of a ray's samples is shown: the mapper's BlendMode and MaximumType in one. Default
-   * MAXIMUM.
+   * Set the projection: the mapper's BlendMode and MaximumType in one. Default MAXIMUM.
    */
   void SetProjection(int projection);
 
   ///@{
   /**
-   * The mapper's QualityMode in still and in interactive renders. Defaults EXACT and AUTOMATIC. In
-   * interactive renders AUTOMATIC is the best mode up to the still one that is expected to fit into
-   * the time that ParaView allows for a frame.
+   * Set/Get the mapper's QualityMode in still and in interactive renders. Defaults EXACT and
+   * AUTOMATIC. In interactive renders AUTOMATIC is the best mode, up to that of still renders, that
+   * is expected to fit into ParaView's time for a frame.
    */
   vtkSetClampMacro(QualityMode, int, 0, 3);
   vtkGetMacro(QualityMode, int);
@@ -78,7 +76,7 @@ public:
 
   ///@{
   /**
-   * Passed on to the mapper.
+   * Set properties of the mapper.
    */
   void SetKernel(int kernel);
   void SetKernelRadius(double radius);
@@ -94,7 +92,7 @@ public:
   ///@}
 
   /**
-   * The mapper's IndexMemoryBudget in MiB; default 4096.
+   * Set the mapper's IndexMemoryBudget in MiB. Default 4096.
    */
   void SetIndexMemoryBudget(int mebibytes);
 
@@ -127,7 +125,7 @@ protected:
   bool OpacityArrayIsUsable = false;
   vtkNew<vtkVolumeProperty> GrayProperty;
 
-  // What has been told, so that it is told once.
+  // the last reported error
   std::string InputProblem;
   std::string ArrayProblem;
 

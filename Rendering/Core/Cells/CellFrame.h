@@ -3,8 +3,8 @@
 #ifndef splattingCellFrame_h
 #define splattingCellFrame_h
 
+#include "Cells/BoxProjection.h"
 #include "Cells/CellIndex.h"
-#include "Cells/CellPlaces.h"
 #include "Cells/CellProjector.h"
 #include "Clipping/SurfaceOnScreen.h"
 

@@ -70,7 +70,7 @@ void assignBricks(const CellFrame<T>& frame, std::size_t first, std::size_t last
     {
       continue;
     }
-    const SeenBox seen(frame.rays, box);
+    const ProjectedBox seen(frame.rays, box);
     const PixelRectangle pixels = seen.within(frame.rectangle);
     if (pixels.empty())
     {
@@ -150,7 +150,7 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
   const PixelRectangle wanted{ glm::max(within.origin, glm::ivec2(0)),
     glm::min(within.origin + within.size, view.viewport) - 1 };
   const CellBox field(grid.low, grid.high);
-  const PixelRectangle rectangle = SeenBox(screen.rays, field).within(wanted);
+  const PixelRectangle rectangle = ProjectedBox(screen.rays, field).within(wanted);
   screen.origin = rectangle.low;
   screen.size = rectangle.empty() ? glm::ivec2(0) : rectangle.high - rectangle.low + 1;
   return dispatch(grid.voxels.type,
@@ -184,9 +184,9 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
       memory.costs.clear();
       for (int tile : memory.tiles)
       {
-        memory.costs.push_back(std::accumulate(std::begin(memory.seen), std::end(memory.seen),
-          std::size_t(0),
-          [&](std::size_t sum, const auto& seen) { return sum + seen[tile].size(); }));
+        memory.costs.push_back(
+          std::accumulate(std::begin(memory.seen), std::end(memory.seen), std::size_t(0),
+            [&](std::size_t sum, const auto& seen) { return sum + seen[tile].size(); }));
       }
       std::sort(memory.tiles.begin(), memory.tiles.end(),
         [&](int a, int b) { return memory.costs[a] > memory.costs[b]; });

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Cells/ScreenColors.h"
 
+#include "Cells/BoxProjection.h"
 #include "Cells/CellIndex.h"
-#include "Cells/CellPlaces.h"
 #include "Common/Parallel.h"
-
 
 #include <type_traits>
 
@@ -21,7 +20,8 @@ bool placePicture(const View& view, Picture& picture)
   }
   const CellGrid grid({}, glm::ivec3(0), view.dimensions, view.showsBoxes);
   const CellBox box(grid.low, grid.high);
-  const PixelRectangle pixels = SeenBox(rays, box).within({ glm::ivec2(0), view.viewport - 1 });
+  const PixelRectangle pixels =
+    ProjectedBox(rays, box).within({ glm::ivec2(0), view.viewport - 1 });
   if (!pixels.empty())
   {
     picture.origin = pixels.low;

@@ -130,7 +130,7 @@ bool TileSplatter<T>::reaches(A bound, A least, A factor) const
 
 // The largest factor by which samples of a box are shaded.
 template <class T>
-typename TileSplatter<T>::A TileSplatter<T>::mostFactor(const SeenBox& seen) const
+typename TileSplatter<T>::A TileSplatter<T>::mostFactor(const ProjectedBox& seen) const
 {
   const CellFrame<T>& f = this->Frame;
   const auto share = [](double t, double near, double far)
@@ -186,7 +186,8 @@ bool TileSplatter<T>::isDone(std::uint32_t brick)
   const A bound = boundOf<T>(f.bounds.template brick<T>()[brick], f.values.scale);
   const double rest = 1.0 + 0x1p-9;
   const double factor = f.shades ? std::max({ f.ambient, f.ambient + f.rate, 0.0 }) : 1.0;
-  const double range = std::abs(static_cast<double>(f.values.scale.factor) * (f.highest - f.lowest));
+  const double range =
+    std::abs(static_cast<double>(f.values.scale.factor) * (f.highest - f.lowest));
   const A most =
     static_cast<A>((static_cast<double>(bound) * rest + 0x1p-9 * range) * factor * (1.0 + 1e-5));
   const A least =
@@ -200,7 +201,7 @@ bool TileSplatter<T>::mayRaise(std::uint32_t brick) const
   const CellFrame<T>& f = this->Frame;
   const A bound = boundOf<T>(f.bounds.template brick<T>()[brick], f.values.scale);
   const CellBox box = f.boxOfBrick(brick);
-  const SeenBox seen(f.rays, box);
+  const ProjectedBox seen(f.rays, box);
   const PixelRectangle pixels = seen.within(this->Pixels);
   if (pixels.empty())
   {
@@ -276,7 +277,7 @@ void TileSplatter<T>::splatBlock(const glm::ivec3& cell, A bound, bool isCut)
     return;
   }
   const CellBox box = f.boxOfCells(cell, BlockCells);
-  const SeenBox seen(f.rays, box);
+  const ProjectedBox seen(f.rays, box);
   const PixelRectangle pixels = seen.within(this->Pixels);
   if (pixels.empty())
   {
@@ -364,13 +365,13 @@ void TileSplatter<T>::load(const glm::ivec3& cell)
 
 // The rays of the pixels around one that sees the block's middle, from points beside that on.
 template <class T>
-void TileSplatter<T>::placeRays(const SeenBox& seen, const glm::dvec3& middle)
+void TileSplatter<T>::placeRays(const ProjectedBox& seen, const glm::dvec3& middle)
 {
   const PixelRays& rays = this->Frame.rays;
   CellBlock<A>& b = this->Block;
   // Of the block, not of what the volume has of it: the same for all pieces.
   const CellBox box(middle - 0.5 * BlockCells, middle + 0.5 * BlockCells);
-  const SeenBox whole(rays, box);
+  const ProjectedBox whole(rays, box);
   const bool perspective = rays.isPerspective(), near = whole.isNear();
   const glm::ivec2 pixel = near ? this->Frame.viewport / 2 : glm::ivec2(glm::floor(whole.pixel()));
   b.reference = near ? A(0) : static_cast<A>(whole.t());
@@ -431,7 +432,7 @@ void TileSplatter<T>::findSeenCells(const glm::ivec3& cell)
   {
     const glm::dvec3 low(cell + glm::ivec3(n & 3, n >> 2 & 3, n >> 4) - this->Frame.grid.shift);
     const CellBox box(low, low + 1.0);
-    const PixelRectangle pixels = SeenBox(this->Frame.rays, box).within(block);
+    const PixelRectangle pixels = ProjectedBox(this->Frame.rays, box).within(block);
     this->Seen[n][0] = pixels.low.x - this->Pixels.low.x;
     this->Seen[n][1] = pixels.high.x - this->Pixels.low.x;
     this->Seen[n][2] = pixels.low.y - this->Pixels.low.y;

@@ -34,10 +34,10 @@ private:
   void splatBrick(std::uint32_t brick);
   void splatBlock(const glm::ivec3& cell, A bound, bool isCut);
   bool reaches(A bound, A least, A factor) const;
-  void placeRays(const SeenBox& seen, const glm::dvec3& middle);
+  void placeRays(const ProjectedBox& seen, const glm::dvec3& middle);
   void load(const glm::ivec3& cell);
   void findSeenCells(const glm::ivec3& cell);
-  A mostFactor(const SeenBox& seen) const;
+  A mostFactor(const ProjectedBox& seen) const;
   bool isCutByHalfSpace(const CellBox& box) const;
 
   const CellFrame<T>& Frame;

@@ -32,7 +32,7 @@ private:
   void preview(ProjectionContext& context)
   {
     const LinePreview<T> preview(context, *context.lines, this->Paths);
-    // All bands look through sorted chains: there must be no more bands than threads.
+    // All bands search the sorted chains, so there must be no more bands than threads.
     const int height = context.image.height, threads = numberOfThreads();
     const int rows = context.lines->encoding().order == LineOrder::Lines
       ? bandHeight(height)

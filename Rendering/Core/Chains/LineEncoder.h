@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Where chains end: at other values, or at the end of a tolerance.
+ * The ends of chains: at other values, or at the limit of the tolerance.
  */
 #ifndef splattingLineEncoder_h
 #define splattingLineEncoder_h
@@ -14,7 +14,7 @@
 
 namespace splatting
 {
-/// The values that a chain may have instead of a voxel's; see LineEncoding.
+/// The values that a chain may have instead of a voxel's value; see LineEncoding.
 template <class T>
 class Tolerance
 {
@@ -24,7 +24,7 @@ public:
 
   bool exact() const { return !(this->Levels > 0.0); }
 
-  /// The least and the greatest value that may stand for x; neither lies beyond the type's range.
+  /// The least and the greatest value that may replace x, within the type's range.
   T least(T x) const
   {
     if constexpr (Whole)
@@ -51,7 +51,7 @@ public:
     }
   }
 
-  /// Half-way from a to b >= a, and never beyond.
+  /// The middle of a and b >= a, never above b.
   static T middle(T a, T b)
   {
     if constexpr (Whole)
@@ -73,9 +73,9 @@ private:
     return static_cast<Unsigned>(static_cast<Unsigned>(b) - static_cast<Unsigned>(a));
   }
 
-  /// dv(x), and never more: integers are rounded down, and three other roundings may add less than
-  /// what is taken off beforehand. (Up to 32 bits only the quotient is rounded if the tolerance is
-  /// a whole number, and not beyond an integer.) Not beyond high - x either.
+  /// dv(x), or slightly less: integers are rounded down, and three other roundings add less than
+  /// the margin. (Up to 32 bits only the quotient is rounded if the tolerance is a whole number,
+  /// and not beyond an integer.) At most high - x.
   std::conditional_t<Whole, Unsigned, double> allowed(T x) const
   {
     if constexpr (Whole)
@@ -97,7 +97,7 @@ private:
 template <class T>
 bool sameBits(const T& a, const T& b)
 {
-  return std::memcmp(&a, &b, sizeof(T)) == 0; // zeros differ in sign
+  return std::memcmp(&a, &b, sizeof(T)) == 0; // distinguishes the signs of zeros
 }
 
 /// The end of the chain that starts at `begin` and ends before `end`; sets its value.
@@ -129,7 +129,7 @@ int chainEnd(const T* row, int begin, int end, const Tolerance<T>& tolerance, T&
     low = std::min(low, row[n]);
     high = std::max(high, row[n]);
   }
-  // Never empty: the least values lie at or below all voxels, the greatest at or above them.
+  // Never empty: the least values are not above any voxel, the greatest not below.
   value = Tolerance<T>::middle(std::max(least, low), std::min(greatest, high));
   return n;
 }

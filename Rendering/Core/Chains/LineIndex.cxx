@@ -2,20 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Chains/LineIndex.h"
 
-#include "Chains/InvisibleVoxels.h"
 #include "Chains/LineEncoder.h"
 #include "Common/Parallel.h"
+#include "Projection/ProjectionContext.h"
 
 #include <vtkSMPTools.h>
 
-#include <memory>
+#include <algorithm>
 #include <tuple>
 
 namespace splatting
 {
 namespace
 {
-/// A chain that is still to be sorted.
+/// A chain before sorting.
 template <class T, class Chain>
 struct Item
 {
@@ -32,7 +32,7 @@ int sliceOf(const VolumeChain& chain)
   return chain.k;
 }
 
-/// High values first; chains of equal value in the order of memory.
+/// Descending values; chains of equal value in memory order.
 template <class T, class Chain>
 bool precedes(const Item<T, Chain>& a, const Item<T, Chain>& b)
 {
@@ -74,7 +74,7 @@ T largestVoxel(const Slices& slices, const glm::ivec3& size)
 }
 }
 
-/// Encodes some slices at a time in parallel and appends them in order.
+/// Encodes some slices at a time in parallel, and appends them in order.
 template <class T>
 class LineIndex::Builder
 {
@@ -86,11 +86,6 @@ public:
       Limit(index.Encoding.tolerance,
         index.Encoding.tolerance > 0.0 ? largestVoxel<T>(slices, size) : T())
   {
-    if (index.Encoding.eliminate)
-    {
-      this->Invisible.reset(new InvisibleVoxels<T>(slices, size));
-      index.InvisibleCount = this->Invisible->count();
-    }
   }
 
   void build(const Progress& progress)
@@ -216,32 +211,21 @@ private:
       slice.startRow(j);
       this->encodeRow(static_cast<const T*>(this->Source.voxels) + j * this->Source.rowStride +
           k * this->Source.sliceStride,
-        this->Invisible ? this->Invisible->row(j, k) : nullptr, slice);
+        slice);
     }
     slice.finish(k);
   }
 
   template <class Encoded>
-  void encodeRow(const T* row, const unsigned char* invisible, Encoded& slice) const
+  void encodeRow(const T* row, Encoded& slice) const
   {
     const int width = this->Size.x;
     for (int i = 0; i < width;)
     {
-      const int end = invisible
-        ? static_cast<int>(std::find(invisible + i, invisible + width, !invisible[i]) - invisible)
-        : width;
-      if (invisible && invisible[i])
-      {
-        slice.add(leastValue<T>(), i, end);
-        i = end;
-      }
-      while (i < end)
-      {
-        T value;
-        const int next = chainEnd(row, i, end, this->Limit, value);
-        slice.add(value, i, next);
-        i = next;
-      }
+      T value;
+      const int end = chainEnd(row, i, width, this->Limit, value);
+      slice.add(value, i, end);
+      i = end;
     }
   }
 
@@ -261,7 +245,7 @@ private:
     }
   }
 
-  /// Ends the last slice and gives spare memory back.
+  /// Ends the last slice, and releases spare memory.
   void finish()
   {
     LineIndex& index = this->Index;
@@ -279,7 +263,6 @@ private:
   const Slices& Source;
   glm::ivec3 Size;
   Tolerance<T> Limit;
-  std::unique_ptr<InvisibleVoxels<T>> Invisible;
 };
 
 LineIndex::LineIndex(ScalarType type, const Slices& slices, const glm::ivec3& size,

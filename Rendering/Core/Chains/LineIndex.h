@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The line-encoded index [CS98, section 4]: the rows of all slices along one principal axis, cut
- * into chains of voxels with the same value.
+ * The line-encoded index [CS98, section 4]: the rows of all slices along one principal axis,
+ * divided into chains of voxels with the same value.
  */
 #ifndef splattingLineIndex_h
 #define splattingLineIndex_h
@@ -21,12 +21,12 @@ namespace splatting
 {
 struct Slices;
 
-/// How chains are stored.
+/// The order of chains.
 enum class LineOrder
 {
   Lines,       ///< row by row
-  SortedLines, ///< slice by slice, high values first
-  SortedVolume ///< all of them, high values first
+  SortedLines, ///< slice by slice, descending values
+  SortedVolume ///< all of them, descending values
 };
 
 /**
@@ -43,42 +43,24 @@ enum class LineOrder
  * non-negative and sum to one, and with maxima, so that the same bounds hold for worksheets, with x
  * replaced by the exact worksheet, and then for pixels. (Standard and high mode add the rounding
  * errors of their sums.)
- *
- * Elimination of invisible voxels [Mroz, Hauser, Groeller 2000]. Left out is what cannot change the
- * preview along this axis from any direction, exactly. Let
- *
- *   up(i, j, k) = min over the 3 x 3 voxels (i', j') around (i, j) of
- *                 max(value(i', j', k + 1), up(i', j', k + 1)),
- *
- * voxels beyond the volume counting as the lowest value, and down() likewise towards k - 1. A ray
- * that crosses voxel (i, j, k) over a positive length is at less than 3/2 from (i, j) in each
- * direction when it enters slice k + 1, because it moves by at most one voxel per slice: it enters
- * by one of the 3 x 3, which the preview counts. By induction every ray through the voxel meets a
- * value of at least up() in the slices above and of at least down() in those below. A voxel is left
- * out if up() >= value or down() > value. The voxel that outdoes it on a ray may be left out as
- * well, but has a greater value, or the same value in a higher slice; so some voxel at the end of
- * this chain stays. Where half-spaces cut samples away, and where voxels are averaged, this is not
- * valid.
  */
 struct LineEncoding
 {
   LineOrder order = LineOrder::Lines;
   double tolerance = 0.0; ///< of delta encoding, 0 to 255; 0: chains of equal voxels
-  bool eliminate = false; ///< whether invisible voxels are left out
 
   bool operator==(const LineEncoding& other) const
   {
-    return this->order == other.order && this->tolerance == other.tolerance &&
-      this->eliminate == other.eliminate;
+    return this->order == other.order && this->tolerance == other.tolerance;
   }
 };
 
-/// Chains of one row of voxels, side by side.
+/// Chains of one row of voxels.
 template <class T>
 struct LineRow
 {
-  const T* values;          ///< leastValue where voxels were left out
-  const std::uint8_t* last; ///< the chain's length less one
+  const T* values;
+  const std::uint8_t* last; ///< the chain's length minus one
   std::ptrdiff_t count;
 };
 
@@ -104,17 +86,17 @@ struct ChainRun
 };
 
 /**
- * The index of a volume without NaN and infinities along one axis. Chains of the lowest value that
- * the type has cannot change a picture, and sorted orders have none.
+ * The index of a volume without NaN and infinities along one axis. Chains of the lowest value of
+ * the type cannot change a picture, and are omitted by sorted orders.
  */
 class LineIndex
 {
 public:
-  /// Voxels along each axis of a volume that sorted orders can hold.
+  /// The largest number of voxels along an axis for sorted orders.
   static constexpr int MostSorted = 1 << 16;
 
-  /// Told how much is done, from 0 to 1, by the thread that builds; returns whether to go on. An
-  /// index that was given up holds no encoding.
+  /// Gets the completed share, from 0 to 1, on the building thread. Returns whether to continue. A
+  /// stopped index holds no encoding.
   using Progress = std::function<bool(double)>;
 
   LineIndex() = default;
@@ -127,8 +109,6 @@ public:
   }
   const LineEncoding& encoding() const { return this->Encoding; }
   std::size_t chainCount() const;
-  /// Invisible voxels that were left out.
-  std::size_t invisibleCount() const { return this->InvisibleCount; }
   std::size_t memorySize() const;
 
   /// LineOrder::Lines: a row of a slice.
@@ -165,7 +145,6 @@ private:
   LineEncoding Encoding;
   bool Made = false;
   int Height = 0;
-  std::size_t InvisibleCount = 0;
   std::vector<unsigned char> Values;    // of chains or, if sorted, of runs
   std::vector<std::size_t> SliceStarts; // each slice's first chain or run
   std::vector<std::uint32_t> RowStarts; // each row's first chain in its slice

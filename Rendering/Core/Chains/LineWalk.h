@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Previews from chains of voxels: a chain raises a run of pixels, as long as itself and its row's
+ * Previews from chains of voxels. A chain raises a run of pixels, as long as itself and its row's
  * ray path, to one value.
  */
 #ifndef splattingLineWalk_h
@@ -14,8 +14,8 @@
 
 namespace splatting
 {
-/// The pixels that see voxels of one slice: voxel (i, j) is seen from row j - dj, there by the
-/// pixels i - iMax to i - iMin.
+/// The pixels that show voxels of one slice: voxel (i, j) is visible in row j - dj, in pixels i -
+/// iMax to i - iMin.
 struct PathRows
 {
   struct Row
@@ -39,21 +39,21 @@ inline PathRows rowsOf(const RayPath& path)
       *row = { path.dj[t], path.di[t], path.di[t] };
       ++found.count;
     }
-    // The voxels of a path are neighbours: there is none between the first and the last of a row.
+    // The voxels of a path are neighbours, so those of a row are consecutive.
     row->iMin = std::min(row->iMin, path.di[t]);
     row->iMax = std::max(row->iMax, path.di[t]);
   }
   return found;
 }
 
-/// A thread's work space: per pixel of a band, the next one of its row that has no value yet.
+/// Work space of a thread: for each pixel of a band, the next one of its row without a value.
 using LineScratch = std::vector<int>;
 
 template <class T>
 class LinePreview
 {
 public:
-  /// @param storage  outlives this, and is kept for the next frame
+  /// @param storage  outlives this, and is reused by the next frame
   LinePreview(
     const ProjectionContext& context, const LineIndex& index, std::vector<PathRows>& storage)
     : Context(context),
@@ -96,7 +96,7 @@ private:
     }
   }
 
-  /// Calls raise(v, span) for the pixels of rows [v0, v1) that see voxels [begin, end) of a row.
+  /// Calls raise(v, span) for the pixels of rows [v0, v1) that show voxels [begin, end) of a row.
   template <class Raise>
   void forPixels(int begin, int end, int j, int k, int v0, int v1, Raise&& raise) const
   {
@@ -147,7 +147,7 @@ private:
     }
   }
 
-  /// The least of the pixels that a ray's sample can reach: the others have the greatest value.
+  /// The least of the pixels with samples; other pixels have the greatest value.
   T leastPixel(int v0, int v1) const
   {
     constexpr int most = 64;
@@ -187,7 +187,7 @@ private:
     }
   }
 
-  /// A slice's chains above a value.
+  /// Takes a slice's chains above a value.
   void splatSortedSlice(int k, int v0, int v1, T least) const
   {
     const PathRows& path = this->Paths[k];
@@ -213,7 +213,7 @@ private:
     }
   }
 
-  /// A pixel's first value is its last: all pixels still without one are linked per row.
+  /// A pixel's first value is final. Pixels without one are linked in each row.
   void splatSortedVolume(int v0, int v1, LineScratch& scratch) const
   {
     const std::ptrdiff_t length = this->Context.image.width + 1;
@@ -254,7 +254,7 @@ private:
     }
   }
 
-  /// Returns how many there are: those that a ray's sample reaches.
+  /// Returns the number of pixels with samples.
   std::ptrdiff_t linkOpenPixels(int v0, int v1, LineScratch& scratch) const
   {
     const ShearImage& image = this->Context.image;
@@ -275,7 +275,7 @@ private:
     return open;
   }
 
-  /// The first pixel from u on that has no value yet; halves the way for the next search.
+  /// The first pixel from u on without a value. Halves the path for the next search.
   static int findOpen(int* next, int u)
   {
     while (next[u] != u)

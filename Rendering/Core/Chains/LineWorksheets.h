@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Standard and high mode from chains of voxels [CS98, section 4]: the full footprint where chains
- * begin and end. Between, where each row that it reads lies in one chain, pixels side by side have
- * the same worksheet: it is computed once, by the same operations in the same order, and so has the
+ * Standard and high mode from chains of voxels [CS98, section 4]: the full footprint at the ends of
+ * chains. Between ends, where each row of the footprint is in one chain, neighbouring pixels have
+ * the same worksheet. It is computed once, by the same operations in the same order, and so has the
  * same bits.
  */
 #ifndef splattingLineWorksheets_h
@@ -52,7 +52,7 @@ protected:
     }
   }
 
-  /// Chains need not have the volume's own voxels.
+  /// Chains may differ from the volume's voxels.
   bool splatOwn(int, int, int, int, const Span&, const Target&, LoadedVoxels&) const override
   {
     return false;
@@ -68,13 +68,12 @@ protected:
   }
 
 private:
-  /// Rows of pixels whose footprints are looked at together: as many as a register block has.
+  /// Rows of pixels whose footprints are tested together, as many as a register block has.
   static constexpr int StripHeight = 4;
-  /// Pixels from which on a run of the same worksheet pays, and those of a register.
+  /// The number of pixels from which a run of the same worksheet pays, and that of a register.
   static constexpr int LeastRun = 32, Register = 16;
 
-  /// Voxels that the footprint reads in one row of those that are loaded, seen from the strip's
-  /// first pixel.
+  /// The voxels of the footprint in one loaded row, relative to the strip's first pixel.
   struct ReadRow
   {
     const std::uint16_t* ends;
@@ -86,7 +85,7 @@ private:
     int count = 0;
   };
 
-  /// Writes the columns of a sheet, and for each of them where the run of its value ends.
+  /// Writes the columns of a sheet and, for each of them, the end of the run of its value.
   void decode(const LineRow<T>& chains, const LoadedVoxels::Sheet& sheet, A* voxels,
     std::uint16_t* ends) const
   {
@@ -169,7 +168,7 @@ private:
     return result;
   }
 
-  /// Pixels with worksheets of their own: a whole register of them if the span has as many.
+  /// Splats pixels with individual worksheets: a whole register if the span has as many.
   void splatMixed(int k, int v0, int v1, Span pixels, const Span& span, const Target& target,
     LoadedVoxels& loaded) const
   {
@@ -181,7 +180,7 @@ private:
     }
   }
 
-  /// Pixels with the same worksheet in each row.
+  /// Splats pixels with the same worksheet in each row.
   void splatRun(
     int k, int v0, int v1, const Span& run, const Target& target, LoadedVoxels& loaded) const
   {

@@ -18,7 +18,7 @@ namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
-/// The integers in [low, high], cut to [0, size). Both bounds may be infinite.
+/// The integers in [low, high], limited to [0, size). Bounds may be infinite.
 Span integersIn(double low, double high, int size)
 {
   const double limit = size;
@@ -26,8 +26,8 @@ Span integersIn(double low, double high, int size)
     static_cast<int>(std::floor(std::clamp(high, -1.0, limit - 1.0))) + 1 };
 }
 
-/// The largest rounding error of what rays pass at the reference, and of their slopes: those of a
-/// ray and of two that it is interpolated between.
+/// The largest rounding errors of rays' positions at the reference, and of their slopes: of a ray
+/// and of the two that it is interpolated between.
 constexpr double PlaceRounding = 0x1p-20, SlopeRounding = 0x1p-24;
 
 double largest(const glm::dvec3& p)
@@ -41,7 +41,7 @@ struct SurfaceRows
   double *near, *far;
 };
 
-/// A point of (i, j, k) where parallel rays, which are moved to run along k, see it.
+/// A point (i, j, k), sheared so that parallel rays run along k.
 glm::dvec3 asSeen(const ShearWarp& geometry, const glm::dvec3& p)
 {
   if (geometry.isPerspective())
@@ -52,7 +52,7 @@ glm::dvec3 asSeen(const ShearWarp& geometry, const glm::dvec3& p)
   return { p.x - geometry.columns().slope[0] * depth, p.y - geometry.rows().slope[0] * depth, p.z };
 }
 
-/// A triangle of (i, j, k), and how the rays of an image meet it.
+/// A triangle of (i, j, k), and its crossings with the rays of an image.
 class Triangle
 {
 public:
@@ -80,11 +80,11 @@ public:
     {
       this->Facing = this->Normal.z;
     }
-    // Larger than what rounding does to the distance between a ray and an edge.
+    // Larger than the rounding error of the distance between a ray and an edge.
     this->Margin += 1e-9 * (1.0 + reach);
   }
 
-  /// Whether no ray meets the triangle, or the neighbour at its longest edge has what rays meet.
+  /// Whether no ray crosses the triangle, or the neighbour at its longest edge covers all that do.
   bool isUnseen() const
   {
     const double longest = std::max({ this->length(0), this->length(1), this->length(2) });
@@ -92,13 +92,13 @@ public:
       this->Low > this->High;
   }
 
-  /// The rows of pixels that may see the triangle.
+  /// The rows of pixels that may cross the triangle.
   Span rows() const { return this->extent(1, this->Geometry.height()); }
 
   /// Widens the depths of the pixels that the triangle covers in some rows.
   void cover(const Span& rows, SurfaceRows depths) const
   {
-    // Rays that graze the triangle are near the lines of its edges far beyond its corners, too.
+    // Grazing rays are near the lines of its edges also far beyond its corners.
     const Span columns = this->extent(0, this->Geometry.width());
     if (columns.empty())
     {
@@ -113,21 +113,22 @@ public:
   }
 
 private:
-  /// Of what parallel rays see, which is flat, so that margins are distances in the image.
+  /// Of parallel views the sheared edge, so that margins are distances in the image.
   glm::dvec3 edge(int e) const
   {
     const glm::dvec3 edge = this->Corners[(e + 1) % 3] - this->Corners[e];
     return this->Geometry.isPerspective() ? edge : glm::dvec3(edge.x, edge.y, 0.0);
   }
 
-  /// How far a corner of a perspective view is before the eye.
+  /// The distance of a corner before the eye, in perspective views.
   double ahead(int c) const
   {
     const double depth = this->Corners[c].z - this->Geometry.eye().z;
     return this->Geometry.reversed() ? -depth : depth;
   }
 
-  /// How long rays see an edge at most: times its distance from a ray, the volume between them.
+  /// An upper bound of the length of an edge across rays. Multiplied by the distance from a ray it
+  /// is the volume between them.
   double length(int e) const
   {
     const glm::dvec3 edge = this->edge(e);
@@ -137,7 +138,7 @@ private:
     }
     const double nearest = std::min(this->ahead(e), this->ahead((e + 1) % 3));
     const glm::dvec3 area = glm::cross(edge, this->Corners[e] - this->Geometry.eye());
-    // No slope of rays is much above 1.
+    // Slopes of rays are not much above 1.
     const double most = 4.0 * glm::dot(edge, edge), seen = glm::dot(area, area);
     return std::sqrt(nearest > 0.0 ? std::min(most, seen / (nearest * nearest)) : most);
   }
@@ -147,7 +148,7 @@ private:
     return this->Geometry.isPerspective() ? rays.slope[n] : 0.0;
   }
 
-  /// The columns (a = 0) or rows (1) of pixels from corner to corner, out of so many.
+  /// The columns (a = 0) or rows (1) of pixels from corner to corner.
   Span extent(int a, int size) const
   {
     double low = Infinity, high = -Infinity;
@@ -160,7 +161,7 @@ private:
     return integersIn(low, high, size);
   }
 
-  /// Between which columns or rows a corner is seen: all if it does not lie well before the eye.
+  /// The columns or rows between which a corner is visible: all unless it is well before the eye.
   glm::dvec2 rangeOf(const glm::dvec3& corner, int a) const
   {
     const double first = (a == 0 ? this->Geometry.columns() : this->Geometry.rows()).at[0];
@@ -178,28 +179,28 @@ private:
     }
     const double pitch = this->Geometry.pitch();
     const double place = (eye[a] + way[a] * ratio - first) / pitch;
-    // Rounding matters most near the eye, where rays are close together.
+    // Rounding errors are largest near the eye, where rays are close together.
     const double rounding =
       (this->Margin + SlopeRounding * std::abs(far)) * std::max(ratio, 1.0) / pitch;
     return { place - rounding, place + rounding };
   }
 
-  /// What rays are compared with an edge by.
+  /// Coefficients that compare rays with an edge.
   struct Side
   {
-    glm::dvec3 corner, edge; // in the sense of rotation in which rays see it
+    glm::dvec3 corner, edge; // in the direction of rotation that rays see
     double depth, tolerance;
   };
 
   Side side(int e) const
   {
-    // Twice the margin: one for a neighbour that is left out.
+    // Twice the margin, to include that of an omitted neighbour.
     const glm::dvec3 edge = this->Facing > 0.0 ? this->edge(e) : -this->edge(e);
     return { this->Corners[e], edge, this->Corners[e].z - this->Geometry.reference(),
       2.0 * this->Margin * this->length(e) };
   }
 
-  /// The pixels of row v that the triangle covers, out of some columns.
+  /// The pixels of row v, out of some columns, that the triangle covers.
   Span pixels(const Side (&sides)[3], int v, const Span& some) const
   {
     const AxisRays &columns = this->Geometry.columns(), &rows = this->Geometry.rows();
@@ -208,7 +209,7 @@ private:
     for (const Side& s : sides)
     {
       // The volume between a ray and an edge is not negative if the ray passes inside. Along the
-      // row it is linear, but for what the rays are rounded by.
+      // row it is linear, except for rounding errors of rays.
       const double q = rows.at[v] + this->slope(rows, v) * s.depth - s.corner.y;
       const double across = s.edge.z * this->slope(rows, v) - s.edge.y;
       const double turned = across * s.depth - s.edge.z * q;
@@ -243,7 +244,7 @@ private:
     for (int u = pixels.begin; u < pixels.end; ++u)
     {
       const double distance = n.x * (columns.at[u] + this->slope(columns, u) * depth - a.x) + rest;
-      // Steep triangles would leave their own depths beside their edges.
+      // Limits depths of steep triangles, whose planes are far away beside their edges.
       const double z =
         std::clamp(a.z - distance / (n.x * this->slope(columns, u) + speed), this->Low, this->High);
       near[u] = std::min(near[u], z);
@@ -254,13 +255,13 @@ private:
   const ShearWarp& Geometry;
   glm::dvec3 Corners[3];
   glm::dvec3 Normal;
-  double Facing;        // more than 0 if rays see the corners in the sense of rotation from i to j
-  double Nearest = 1.0; // of a perspective view, how far the nearest corner is before the eye
+  double Facing;        // positive if rays see the corners in the direction of rotation from i to j
+  double Nearest = 1.0; // in perspective views, the distance of the nearest corner before the eye
   double Margin = 0.0, Low, High;
 };
 
-/// Whether a half-line from the origin along +z, or -z, meets a triangle. All triangles that share
-/// an edge decide in the same way on which side of it the line passes, however it is rounded.
+/// Whether a half-line from the origin along +z, or -z, crosses a triangle. All triangles at an
+/// edge decide in the same way on which side of it the line passes, regardless of rounding.
 bool isMet(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, bool reversed)
 {
   const glm::dvec3* const corners[] = { &a, &b, &c };
@@ -367,7 +368,7 @@ void ClosedSurface::findDepths(SurfaceDepths& depths) const
     });
 }
 
-/// What the near and far depths of all rays begin with.
+/// Initial near and far depths of all rays.
 glm::dvec2 ClosedSurface::beginning(const ShearWarp& geometry) const
 {
   glm::dvec2 result(Infinity, -Infinity);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Where rays enter and leave a closed surface of triangles.
+ * The depths at which rays enter and leave a closed surface of triangles.
  */
 #ifndef splattingClosedSurface_h
 #define splattingClosedSurface_h
@@ -16,14 +16,14 @@
 namespace splatting
 {
 /**
- * For each pixel of a shear image the least and the greatest depth, in slices, at which its ray
- * meets a surface: of surfaces that a ray meets more than twice, the hull along the ray. A ray that
- * begins inside the surface, at the eye of a perspective view, meets it there.
+ * The least and the greatest depth, in slices, at which the ray of each pixel of a shear image
+ * crosses a surface. With more than two crossings this is the hull along the ray. A ray that begins
+ * inside the surface, at the eye of a perspective view, crosses it there.
  */
 class SurfaceDepths
 {
 public:
-  /// For each pixel of a row the two depths; near > far where the ray misses the surface.
+  /// The two depths of each pixel of a row; near > far if the ray misses the surface.
   const double* near(int v) const { return &this->Near[std::size_t(v) * this->Geometry.width()]; }
   const double* far(int v) const { return &this->Far[std::size_t(v) * this->Geometry.width()]; }
 
@@ -38,18 +38,19 @@ private:
 /**
  * A surface of triangles.
  *
- * A triangle has its edges, and what lies within 1e-9 pixels (relative to its coordinates) of them,
- * so that no ray slips through between neighbours; in perspective views also what the rounding of
- * rays (see ShearWarp) may take away. No ray beside all columns or all rows of its corners meets
- * it. Triangles that rays see narrower than that are left out: the neighbour at the longest edge
- * has them. The eye is inside where a line from it meets the surface an odd number of times.
+ * A triangle includes its edges, and points within 1e-9 pixels (relative to its coordinates) of
+ * them, so that no ray passes between neighbours; in perspective views also the rounding errors of
+ * rays (see ShearWarp). No ray outside the columns or rows of its corners crosses it. Triangles
+ * that appear narrower than that are omitted, because the neighbour at the longest edge covers
+ * them. The eye is inside if a line from it crosses the surface an odd number of times.
  */
 class ClosedSurface
 {
 public:
   bool empty() const { return this->Triangles.empty(); }
   void clear() { this->reset({}, {}); }
-  /// Points in index space, with coordinates of at most 1e12, and three of them for each triangle.
+  /// Sets points in index space, with coordinates of at most 1e12, and three of them for each
+  /// triangle.
   void reset(std::vector<glm::dvec3> points, std::vector<glm::ivec3> triangles);
 
   /// Calls f(corners) for each triangle.
@@ -62,11 +63,11 @@ public:
     }
   }
 
-  /// Whether a line from a point meets the surface an odd number of times.
+  /// Whether a line from a point crosses the surface an odd number of times.
   bool contains(const glm::dvec3& point) const;
 
-  /// Finds the depths, unless the last call for an image with this direction was for the same rays.
-  /// They stay until the next call for one.
+  /// Computes the depths, unless the last call for an image with this direction had the same rays.
+  /// They are valid until the next call for this direction.
   const SurfaceDepths& project(const ShearWarp& geometry);
 
 private:
@@ -78,8 +79,8 @@ private:
   std::vector<glm::dvec3> Points;
   std::vector<glm::ivec3> Triangles;
   std::vector<glm::dvec3> Positions; // the points in the order of the image's axes
-  std::vector<Span> Rows;            // that each triangle may have pixels in
-  /// Of perspective images by their direction; of parallel ones the first.
+  std::vector<Span> Rows;            // that may have pixels of each triangle
+  /// Of perspective images by their direction; of parallel images the first.
   std::array<SurfaceDepths, 6> Projections;
 };
 }

@@ -9,7 +9,7 @@ namespace splatting
 {
 namespace
 {
-/// A plane that lies on a voxel's centre, but for rounding, has it on its inner side.
+/// Moves a plane within rounding of a voxel's centre outwards, so that the voxel is inside.
 glm::dvec2 widened(const glm::dvec2& planes)
 {
   constexpr double rounding = 1e-9;
@@ -27,7 +27,7 @@ std::array<int, 2> boundaries(const glm::dvec2& planes, double shift)
   return { begin, std::max(begin, end) };
 }
 
-/// The same for the rays of a perspective image at `depth` from the reference: the first of them.
+/// The same for the rays of a perspective image at `depth` from the reference: the first rays.
 std::array<int, 2> boundaries(const glm::dvec2& planes, const AxisRays& rays, double depth)
 {
   const auto countBefore = [&](auto isBefore)

@@ -16,10 +16,10 @@ namespace splatting
 /// The regions of one slice, in pixels of the shear image.
 struct SliceRegions
 {
-  std::array<int, 2> u, v;      ///< where the middle region begins, and the highest one
+  std::array<int, 2> u, v;      ///< first pixels of the middle and of the highest region
   std::array<unsigned, 3> rows; ///< for each region along v: bit i is region i along u
 
-  /// Those of region i along u.
+  /// The pixels of region i along u.
   Span pixels(int i) const
   {
     constexpr int far = 1 << 30;
@@ -32,13 +32,13 @@ struct SliceRegions
 };
 
 /**
- * A sample of slice k counts if the point where the ray crosses the middle of the slice lies in a
- * region that is shown. Where the middle region is thinner than a slice and has the middle of none,
- * the nearest slice is in it. Of slices that do not lie before the eye no region is shown.
+ * The sample of slice k is visible if the ray crosses the middle of the slice in a region that is
+ * shown. If a middle region is thinner than a slice and contains no slice's middle, it contains the
+ * nearest slice. Slices behind the eye have no visible region.
  */
 SliceRegions regionsOf(const Cropping& cropping, const ShearWarp& geometry, int k);
 
-/// The same of one ray, `at` being (i, j) where it crosses the middle of slice k.
+/// The same for one ray, which crosses the middle of slice k at `at` = (i, j).
 bool isShown(const Cropping& cropping, const ShearWarp& geometry, const glm::dvec2& at, int k);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Which samples count, a sample being a pixel of the shear image and a slice.
+ * Visible samples; a sample is a pixel of the shear image and a slice.
  */
 #ifndef splattingCuts_h
 #define splattingCuts_h
@@ -13,7 +13,7 @@
 
 namespace splatting
 {
-/// All that leaves samples out.
+/// All cuts of a volume.
 struct Cuts
 {
   RayIntervals intervals;
@@ -26,11 +26,11 @@ struct Cuts
   }
 };
 
-/// The cuts of one projection, as its walks ask for them.
+/// The cuts of one projection, in the form that walks need.
 class CutMap
 {
 public:
-  /// The cuts must outlive their use.
+  /// Sets the cuts, which must outlive their use.
   /// @param geometry  of the whole volume
   /// @param slices    of it, the first of which is slice 0 of the cuts' intervals and of the map
   void reset(const Cuts& cuts, const ShearWarp& geometry, const Span& slices);
@@ -39,8 +39,8 @@ public:
   bool crops() const { return !this->Regions.empty(); }
   const SliceRegions& regions(int k) const { return this->Regions[k]; }
 
-  /// mask[x] = whether the sample of slice k counts for pixel pixels.begin + x of row v. False if
-  /// there is none.
+  /// Sets mask[x] to whether the sample of slice k is visible at pixel pixels.begin + x of row v.
+  /// Returns false if none is.
   bool findMask(int k, int v, const Span& pixels, unsigned char* mask) const;
 
 private:
@@ -48,7 +48,7 @@ private:
   std::vector<SliceRegions> Regions; // of all slices, if cropping cuts
 };
 
-/// Leaves out of a mask what is not present, if that is known.
+/// Clears the mask of samples that are not present; `present` may be nullptr.
 inline void narrow(unsigned char* mask, const unsigned char* present, const Span& pixels)
 {
   for (int x = 0; present && x < pixels.end - pixels.begin; ++x)
@@ -57,7 +57,7 @@ inline void narrow(unsigned char* mask, const unsigned char* present, const Span
   }
 }
 
-/// How much of a tile's samples counts.
+/// The visible share of a tile's samples.
 enum TileShare : unsigned char
 {
   NoSamples,
@@ -65,12 +65,12 @@ enum TileShare : unsigned char
   AllSamples
 };
 
-/// The cuts of a band of rows, tile by tile, in groups of some rows. A thread's work space.
+/// The cuts of a band of rows, tile by tile, in groups of rows. Work space of a thread.
 class TileShares
 {
 public:
   void reset(const CutMap& map, const CutLoops& loops, int v0, int v1, int width, int height);
-  /// For each tile of a group a TileShare of its samples in some slices.
+  /// The TileShare of the samples of some slices, for each tile of a group.
   const unsigned char* find(const Span& slices, int group);
 
 private:
@@ -80,7 +80,7 @@ private:
   const CutMap* Map = nullptr;
   const CutLoops* Loops = nullptr;
   int V0 = 0, V1 = 0, Width = 0, Height = 0, Tiles = 0;
-  std::vector<std::int16_t> Extremes; // four arrays of them for each group
+  std::vector<std::int16_t> Extremes; // four arrays for each group
   std::vector<unsigned char> Shares, Any;
 };
 }

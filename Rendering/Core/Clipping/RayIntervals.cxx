@@ -21,7 +21,7 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Rounding = DepthLimits::Rounding;
 constexpr double Beyond = DepthLimits::Beyond;
 
-/// The half-spaces as RowDepths::cut() and cutPerspective() take them.
+/// Converts half-spaces for RowDepths::cut() and cutPerspective().
 std::vector<glm::dvec4> asSeen(const ShearWarp& geometry, const std::vector<glm::dvec4>& halfSpaces)
 {
   const std::array<int, 3>& axes = geometry.axes();
@@ -45,7 +45,7 @@ struct RowDepths
     std::fill_n(this->far, count, high);
   }
 
-  /// By a half-space of the pixels of a parallel image.
+  /// Cuts by a half-space of the pixels of a parallel image.
   void cut(const CutLoops& loops, const glm::dvec4 h, int u0, int v, int count)
   {
     // h.x u + rest + h.z z >= 0
@@ -65,7 +65,7 @@ struct RowDepths
               : loops.endAtPlane(plane, this->far, count);
   }
 
-  /// By a half-space of (i, j, k), for the rays of a perspective image.
+  /// Cuts by a half-space of (i, j, k), for the rays of a perspective image.
   void cutPerspective(const glm::dvec4 h, const ShearWarp& geometry, int u0, int v, int count)
   {
     // (h.x slope + rest) (z - reference) + h.x at + start >= 0
@@ -76,7 +76,7 @@ struct RowDepths
     const double start = h.y * geometry.rows().at[v] + h.z * reference + h.w;
     const double size = glm::length(glm::dvec3(h));
     const double level = 1e-14 * size, least = -Rounding * (size + std::abs(h.w));
-    // Most planes bound a whole row in the same sense; speeds change linearly along its rays.
+    // Most planes bound all rays of a row at the same end; speeds change linearly along the row.
     const int last = std::clamp(geometry.rayCount().x - 1 - u0, 0, count - 1);
     const double speeds[] = { h.x * slope[0] + rest, h.x * slope[last] + rest };
     const bool begins = std::min(speeds[0], speeds[1]) > level;
@@ -114,7 +114,8 @@ struct RowDepths
   double near[Most], far[Most];
 };
 
-/// Where rays begin and end, and where they enter and leave the voxels' boxes.
+/// The depths at which rays begin and end, and at which they enter and leave the boxes of the
+/// voxels.
 class RayExtents
 {
 public:
@@ -127,7 +128,7 @@ public:
     }
   }
 
-  /// To be called before openWhole().
+  /// Call it before openWhole().
   void findVolume(const ShearWarp& geometry)
   {
     const Span& slices = geometry.slices();
@@ -136,7 +137,7 @@ public:
     find(geometry.rows(), geometry.reference(), geometry.size().y, this->Rows);
   }
 
-  /// The depths between which there are rays at all.
+  /// The depths between which rays exist.
   const glm::dvec2& ends() const { return this->Ends; }
 
   /// Opens the rays that lose no sample, or have none.
@@ -148,7 +149,7 @@ public:
     {
       const glm::dvec2& column = this->Columns[u0 + x];
       const double enter = std::max(row.x, column.x), leave = std::min(row.y, column.y);
-      // Voxels that a ray crosses are centred up to half a slice outside its reach.
+      // Voxels that a ray crosses have centres up to half a slice outside the ray's extent.
       const bool coversStart = depths.near[x] <= std::max(enter - 0.5, this->Ends.x);
       const bool coversEnd = depths.far[x] >= std::min(leave + 0.5, this->Ends.y);
       const bool whole = (enter >= leave) | (coversStart & coversEnd);
@@ -158,7 +159,7 @@ public:
   }
 
 private:
-  /// Between which depths the rays of each column (or row) are in the volume's.
+  /// The depths between which the rays of each column (or row) are in the volume's.
   static void find(const AxisRays& rays, double reference, int size, std::vector<glm::dvec2>& reach)
   {
     reach.resize(rays.at.size());
@@ -181,10 +182,10 @@ private:
   glm::dvec2 Ends{ DepthLimits::Before, Beyond }, All{ 0.0 };
   std::vector<glm::dvec2> Columns, Rows;
 };
-/// What cuts the rays of an image.
+/// All cuts of the rays of an image.
 struct Cutting
 {
-  /// The depths between which some pixels of a row are seen.
+  /// The depths between which some pixels of a row are visible.
   void find(int u, int v, int count, RowDepths& depths) const
   {
     depths.reset(this->extents.ends().x, this->extents.ends().y, count);
@@ -209,7 +210,7 @@ struct Cutting
     }
     if (this->hull || this->depth)
     {
-      // Half-spaces that cut nothing are not there in the first place.
+      // Half-spaces that cut nothing have been removed.
       this->extents.openWhole(u, v, count, depths);
     }
   }

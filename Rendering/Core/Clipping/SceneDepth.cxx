@@ -23,7 +23,7 @@ constexpr double Rounding = 0x1p-21;
 
 float* SceneDepth::allocate(const glm::ivec2& origin, const glm::ivec2& size)
 {
-  this->clear(); // in case there is no memory
+  this->clear(); // in case of std::bad_alloc
   this->Samples.resize(std::size_t(std::max(size.x, 0)) * std::max(size.y, 0));
   this->Origin = origin;
   this->Size = size;
@@ -32,7 +32,7 @@ float* SceneDepth::allocate(const glm::ivec2& origin, const glm::ivec2& size)
 
 void SceneDepth::place(const View& view)
 {
-  // What lies before the eye has a positive w.
+  // w is positive before the eye.
   const glm::dmat4 m = view.indexToClip / (isParallel(view) ? view.indexToClip[3][3] : 1.0);
   this->Viewport = view.viewport;
   this->ClipToIndex = glm::inverse(m);
@@ -50,7 +50,7 @@ void SceneDepth::place(const View& view)
     }
   }
   this->addBox(-half, last + half, this->Voxels);
-  // An axis with one voxel is as thick as that voxel.
+  // An axis with one voxel has that voxel's thickness.
   const glm::dvec3 thin =
     view.showsBoxes ? glm::dvec3(1.0) : glm::dvec3(glm::equal(last, glm::dvec3(0.0)));
   this->addBox(-half * thin, last + half * thin, this->Shown);
@@ -76,7 +76,7 @@ void SceneDepth::addHalfSpace(const glm::dvec4& h, Body& body) const
   const glm::dvec4& deeper = this->ClipToIndex[2];
   const double rounding = 1e-12 *
     (glm::length(glm::dvec3(h)) * glm::length(glm::dvec3(deeper)) + std::abs(h.w * deeper.w));
-  // Rays that run along a plane, or begin in it, neither enter nor leave through it.
+  // Rays along a plane, or from it, neither enter nor leave through it.
   if (!(std::abs(plane.z) > rounding))
   {
     return;
@@ -120,7 +120,7 @@ bool SceneDepth::endsRay(const glm::ivec2& pixel, double depth) const
   double entry = this->Shown.entry(p), exit = this->Shown.exit(p);
   if (entry > exit)
   {
-    // Beside the picture, where pixels at its rim interpolate.
+    // Outside the picture, for interpolation at its border.
     entry = this->Voxels.entry(p);
     exit = this->Voxels.exit(p);
   }
@@ -135,7 +135,7 @@ void SceneDepth::endRay(const ShearWarp& geometry, const glm::ivec2& pixel, cons
   {
     return;
   }
-  // What is deeper than that, a half-space, along the ray.
+  // The half-space of larger depths, along the ray.
   const std::array<int, 3>& axes = geometry.axes();
   const glm::dvec4 deeper = this->ClipZ - (2.0 * depth - 1.0) * this->ClipW;
   const glm::dvec3 h(deeper[axes[0]], deeper[axes[1]], deeper[axes[2]]);
@@ -188,7 +188,7 @@ void SceneDepth::endRays(const PixelRays& rays, int x, int y, int count, double*
     const double depth = this->at({ u, y });
     if (depth < 1.0)
     {
-      // What is deeper than that, a half-space.
+      // The half-space of larger depths.
       const glm::dvec4 deeper = this->ClipZ - (2.0 * depth - 1.0) * this->ClipW;
       const double start = glm::dot(deeper, glm::dvec4(rays.start(u, y), 1.0));
       const double speed = glm::dot(glm::dvec3(deeper), rays.direction(u, y));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What a viewport's depth buffer hides of a volume.
+ * Depths of the scene that hide a volume.
  */
 #ifndef splattingSceneDepth_h
 #define splattingSceneDepth_h
@@ -17,28 +17,27 @@ namespace splatting
 class PixelRays;
 
 /**
- * Depths of other things in the scene, one per screen pixel, and where the volume lies among them.
+ * Depths of the scene, one per screen pixel, and the position of the volume relative to them.
  *
- * A volume is the box that its picture shows (see Warper), in the view's half-spaces. What lies
- * before it hides it, pixel by pixel of the screen (hide()); what lies inside ends the rays of the
- * shear image (endRays()), each at the depth of the screen pixel nearest to it. A pixel that is
- * hidden does not end its ray: its neighbours on the screen interpolate with the whole one.
+ * The volume is the box that its picture shows (see Warper), in the view's half-spaces. Depths
+ * before it hide it, pixel by pixel of the screen (hide()). Depths inside end the rays of the shear
+ * image (endRays()), each at the depth of the nearest screen pixel. A hidden pixel does not end its
+ * ray, because its neighbours on the screen interpolate with the uncut ray.
  *
- * Depths within 2^-21 of the depth range count as equal to that of the box, to be before it at the
- * front and behind it at the back: depth buffers have 24 bits, and vertices are transformed in
- * single precision.
+ * Depths within 2^-21 of the depth range of the box are before it at the front and behind it at the
+ * back, because depth buffers have 24 bits, and vertices are transformed in single precision.
  */
 class SceneDepth
 {
 public:
-  /// Whether the same depths are known.
+  /// Whether the depths are equal.
   bool operator==(const SceneDepth& other) const
   {
     return this->Origin == other.Origin && this->Size == other.Size &&
       this->Samples == other.Samples;
   }
 
-  /// Nothing is known.
+  /// Removes all depths.
   void clear()
   {
     this->Size = {};
@@ -46,37 +45,37 @@ public:
   }
   bool empty() const { return this->Size.x < 1 || this->Size.y < 1; }
 
-  /// Whether depths of this rectangle are known.
+  /// Whether there are depths of this rectangle.
   bool isOf(const glm::ivec2& origin, const glm::ivec2& size) const
   {
     return !this->empty() && this->Origin == origin && this->Size == size;
   }
 
-  /// The depths of a rectangle of viewport pixels, 0 at the near and 1 at the far plane, row by row
-  /// from the bottom, to be filled by the caller.
+  /// Allocates the depths of a rectangle of viewport pixels, 0 at the near and 1 at the far plane,
+  /// row by row from the bottom. The caller sets them.
   float* allocate(const glm::ivec2& origin, const glm::ivec2& size);
 
-  /// Says how the volume lies in the view that the depths were drawn with.
+  /// Sets the view that the depths were rendered with.
   void place(const View& view);
 
-  /// Cuts the near and far depths, in slices, of the rays of `count` pixels from (u, v) on of a
+  /// Limits the near and far depths, in slices, of the rays of `count` pixels from (u, v) on of a
   /// shear image of this view.
   void endRays(const ShearWarp& geometry, int u, int v, int count, double* near, double* far) const;
 
-  /// The same for a ray that passes at + slope (z - the geometry's reference) at depth z, by the
-  /// depth of one pixel of the viewport.
+  /// The same by the depth of one pixel of the viewport, for a ray at position at + slope (z -
+  /// reference) at depth z.
   void endRay(const ShearWarp& geometry, const glm::ivec2& pixel, const glm::dvec2& at,
     const glm::dvec2& slope, double& near, double& far) const;
 
-  /// Ends the rays of the pixels (x, y), (x + 1, y), ... of this view where other things lie.
+  /// Ends the rays of the pixels (x, y), (x + 1, y), ... of this view at their depths.
   void endRays(const PixelRays& rays, int x, int y, int count, double* far) const;
 
-  /// Clears the pixels of a picture that are hidden.
+  /// Clears the hidden pixels of a picture.
   void hide(Picture& picture) const;
 
 private:
-  /// Depths where rays enter and leave a convex body, each an affine function of screen pixels: in
-  /// perspective, too, where that of what lies behind the eye is deeper than anything before it.
+  /// The depths at which rays enter and leave a convex body, as affine functions of screen pixels;
+  /// in perspective, depths behind the eye are larger than all others.
   struct Body
   {
     std::vector<glm::dvec3> fronts, backs;
@@ -94,7 +93,7 @@ private:
   std::vector<float> Samples;
   glm::dmat4 ClipToIndex{ 1.0 };
   glm::dvec4 ClipZ{ 0.0 }, ClipW{ 0.0 }; // of (x, y, z, 1)
-  Body Shown, Voxels;                    // the latter with the voxels' outer halves
+  Body Shown, Voxels;                    // the latter with the outer halves of the voxels
 };
 }
 

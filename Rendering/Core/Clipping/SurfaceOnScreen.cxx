@@ -18,8 +18,8 @@ namespace splatting
 namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
-/// How far beside an edge a ray still meets a triangle, as a share of what is compared: no ray
-/// slips through between neighbours.
+/// The distance beside an edge at which a ray still crosses a triangle, relative to the compared
+/// numbers, so that no ray passes between neighbours.
 constexpr double Beside = 1e-11;
 
 /// a x + b y + c over the pixels of a viewport.
@@ -30,7 +30,7 @@ struct Linear
   double at(double x, double y) const { return this->a * x + (this->b * y + this->c); }
 };
 
-/// A triangle, and how the rays of pixels meet it.
+/// A triangle, and its crossings with the rays of pixels.
 class ScreenTriangle
 {
 public:
@@ -49,7 +49,7 @@ public:
     for (int e = 0; e < 3; ++e)
     {
       const glm::dvec3 a = corners[e] - rays.origin(), b = corners[(e + 1) % 3] - rays.origin();
-      // Positive if a ray that runs along the normal passes inside.
+      // Positive if a ray along the normal passes inside.
       const glm::dvec3 side =
         this->Perspective ? glm::cross(a, b) : glm::cross(rays.forward(), b - a);
       this->Edges[e] = { glm::dot(side, rays.across()), glm::dot(side, rays.up()),
@@ -73,7 +73,7 @@ public:
         const double size = std::abs(edge.a * x) + std::abs(edge.b * y) + std::abs(edge.c);
         inside = inside && sense * edge.at(x, y) >= -Beside * size;
       }
-      // Rays that graze a triangle would meet its plane far away from it.
+      // Grazing rays would cross the triangle's plane far away from it.
       const double t = std::clamp(this->Distance.at(x, y) / speed, this->First, this->Last);
       if (inside && (!this->Perspective || t > 0.0))
       {
@@ -99,7 +99,7 @@ private:
       low = glm::min(low, pixel);
       high = glm::max(high, pixel);
     }
-    // Edges beside the eye are seen anywhere.
+    // Edges beside the eye can be visible in any pixel.
     if (this->Perspective && !(this->First > 1e-6 * this->Last))
     {
       low = glm::dvec2(-limit);

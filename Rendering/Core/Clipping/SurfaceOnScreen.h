@@ -14,19 +14,19 @@ namespace splatting
 class ClosedSurface;
 
 /**
- * Where the rays of the screen's pixels enter and leave a closed surface of triangles: the least
- * and the greatest parameter t at which a ray meets it. Rays that begin inside enter at their
+ * The parameters t at which the rays of the screen's pixels enter and leave a closed surface of
+ * triangles: the least and the greatest of their crossings. Rays that begin inside enter at their
  * beginning.
  */
 class SurfaceOnScreen
 {
 public:
-  /// Finds them for a rectangle of the viewport.
+  /// Computes them for a rectangle of the viewport.
   void find(const ClosedSurface& surface, const PixelRays& rays, const glm::ivec2& origin,
     const glm::ivec2& size);
   bool empty() const { return this->Near.empty(); }
 
-  /// Limits the rays of pixels (x, y), (x + 1, y), ... to the part between.
+  /// Limits the rays of pixels (x, y), (x + 1, y), ... to the part inside.
   void cut(int x, int y, int count, double* near, double* far) const;
 
 private:

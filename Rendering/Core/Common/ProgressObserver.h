@@ -10,19 +10,19 @@
 namespace splatting
 {
 /**
- * Tells whoever wants a projection how far it is, and asks whether to go on. Only the thread that
- * wants it is asked, between its own bands of rows; the others see a flag. If a
- * thread pool gives that thread no bands, it is asked when all are done.
+ * Reports the progress of a projection to its caller, and asks whether to continue. The callback
+ * runs only on the calling thread, between its own bands of rows; the other threads test a flag. If
+ * a thread pool gives the calling thread no bands, the callback runs when all are done.
  */
 class ProgressObserver
 {
 public:
-  /// Told the share that is done, 0 to 1, never less than before; returns whether to go on.
+  /// Gets the completed share, 0 to 1, in ascending order. Returns whether to continue.
   using Callback = std::function<bool(double)>;
 
   void setCallback(const Callback& callback) { this->Told = callback; }
 
-  /// To be called by the thread that wants the projection, before all else.
+  /// Call it first, on the thread that wants the projection.
   void start()
   {
     this->Owner = std::this_thread::get_id();
@@ -32,30 +32,29 @@ public:
     this->ask();
   }
 
-  /// What follows is this part of the whole work, from one share to another. Without a call it is
-  /// all.
+  /// Sets the part of the whole work that follows, from one share to another. Default: all of it.
   void setPart(double from, double to)
   {
     this->From = from;
     this->To = to;
   }
 
-  /// This part consists of the so many bands that follow.
+  /// Starts a part that consists of some bands.
   void begin(int bands)
   {
     this->Done = 0;
     this->Step = (this->To - this->From) / bands;
   }
 
-  /// A band is done, by any thread.
+  /// Call it when a band is done, on any thread.
   void bandDone()
   {
     ++this->Done;
     this->ask();
   }
 
-  /// Asks, if this is the thread to ask. The callback may start parallel work, in which this
-  /// thread may finish bands of this projection; it is not asked again from within.
+  /// Runs the callback on the owner's thread. The callback may start parallel work in which this
+  /// thread finishes bands of this projection; it is not called recursively.
   bool ask()
   {
     if (this->Told && std::this_thread::get_id() == this->Owner && !this->Asking)
@@ -76,7 +75,7 @@ private:
   Callback Told;
   std::thread::id Owner;
   std::atomic<bool> Stopped{ false };
-  bool Asking = false; // by the owner, who alone looks at it
+  bool Asking = false; // of the owner, which alone uses it
   std::atomic<int> Done{ 0 };
   double From = 0.0;
   double To = 1.0;

@@ -37,7 +37,7 @@ int RenderTimes::choose(const View& view, int wanted, double allocated)
 
 void RenderTimes::add(const View& view, int mode, double seconds)
 {
-  if (!(seconds > 0.0)) // a clock may be turned back
+  if (!(seconds > 0.0)) // clocks may be set back
   {
     return;
   }

@@ -10,17 +10,17 @@
 namespace splatting
 {
 /**
- * Chooses the quality mode that fits into the time for a frame, by the times that frames took.
- * Modes are numbers from 0, the fastest; a mode that has not been timed is taken to fit.
+ * Chooses the quality mode that fits into the time for a frame, from measured times. Modes are
+ * numbers from 0, the fastest. A mode without measurement is assumed to fit.
  */
 class RenderTimes
 {
 public:
   static constexpr int Modes = 4;
-  /// So many views are remembered; beyond them the one that was added first is forgotten.
+  /// Views that are stored. If there are more, the one that was added first is removed.
   static constexpr std::size_t MostViews = 64;
 
-  /// Who sees what: only compared, so that they may be gone.
+  /// A renderer and a volume; compared, never dereferenced.
   struct View
   {
     const void* renderer;
@@ -33,28 +33,29 @@ public:
   };
 
   /**
-   * The best mode up to the wanted one that is expected to take no longer than the allocated
-   * seconds: 80 % of them to go up again, so that modes do not alternate. Mode 0 if none does.
+   * The best mode, up to the wanted one, that is expected to take no longer than the allocated
+   * seconds. A better mode than the last one must fit into 80 % of them, so that modes do not
+   * alternate. Mode 0 if none fits.
    */
   int choose(const View& view, int wanted, double allocated);
 
   /**
-   * A frame with a projection took so many seconds. The first frame of a view is not counted: that
-   * is when memory, textures and shaders come into being. What made another slower or faster than
-   * the last one in this mode is expected to do the same to the other modes; so modes that are not
-   * in use keep up when the volume's share of the window or the load of the machine changes.
+   * Adds the time of a frame with a projection. The first frame of a view is not counted, because
+   * it allocates memory, textures and shaders. A change of the time of one mode is applied to the
+   * other modes, which therefore follow the volume's share of the window and the load of the
+   * machine.
    */
   void add(const View& view, int mode, double seconds);
 
-  /// Volumes of another size, other times.
+  /// Call it for volumes of another size.
   void clear() { this->Entries.clear(); }
 
 private:
   struct Entry
   {
     View view;
-    std::array<double, Modes> seconds{}; // 0: not known
-    int last = Modes - 1;                // what was chosen last
+    std::array<double, Modes> seconds{}; // 0: unknown
+    int last = Modes - 1;                // the last choice
     bool begun = false;                  // whether there was a first frame
   };
   Entry& find(const View& view);

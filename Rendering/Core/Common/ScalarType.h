@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The voxel types below the mapper: VTK's thirteen numeric types are ten by size and sign.
+ * The voxel types of the core: VTK's thirteen numeric types are ten by size and sign.
  */
 #ifndef splattingScalarType_h
 #define splattingScalarType_h
@@ -27,8 +27,8 @@ enum class ScalarType
 };
 
 /**
- * The type in which worksheets are summed: float holds 8- and 16-bit integers exactly, wider types
- * need double.
+ * The type in which worksheets are summed: float for 8- and 16-bit integers, which it holds
+ * exactly, and float; double for wider types.
  */
 template <class T>
 struct AccumulatorOf
@@ -64,7 +64,7 @@ template <> constexpr ScalarType scalarTypeOf<double>() { return ScalarType::Flo
 // clang-format on
 
 /**
- * Calls f with a null pointer to the C++ type that `type` names and returns what it returns.
+ * Calls f with a null pointer to the C++ type of `type`, and returns its result.
  */
 template <class F>
 decltype(auto) dispatch(ScalarType type, F&& f)

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What the screen's pixels show, row by row, where they are wider than the shear images': see
- * PixelArea.h.
+ * Values of the screen's pixels by area, row by row, for pixels wider than those of the shear
+ * images; see PixelArea.h.
  */
 #ifndef splattingAreaRows_h
 #define splattingAreaRows_h
@@ -17,7 +17,7 @@
 namespace splatting
 {
 /**
- * The areas of pixels in all images of a view that they meet.
+ * The areas of pixels in all images of a view that they overlap.
  */
 template <class A>
 class AreaRows
@@ -34,7 +34,8 @@ public:
     }
   }
 
-  /// The values of a row's pixels [x, x + n), `start` being the row's first; NaN where nothing is.
+  /// The values of a row's pixels [x, x + n). `start` is the row's first pixel. NaN without a
+  /// sample.
   void find(const glm::dvec3& start, int x, int n, A* values) const
   {
     this->Reduced == Reduction::Mean ? this->findAverages(start, x, n, values)
@@ -76,8 +77,8 @@ private:
     }
   }
 
-  /// Of pixel p of a row. Where no point is between samples, as in volumes of one voxel's
-  /// thickness, of the samples themselves.
+  /// The average of pixel p of a row. If no point is between samples, as in volumes one voxel
+  /// thick, that of the samples.
   AreaMean averageOf(const glm::dvec3& start, int p) const
   {
     AreaMean points, samples;
@@ -100,7 +101,7 @@ private:
 
   const std::vector<WarpSource<A>>& Images;
   Reduction Reduced;
-  std::vector<Outline> Met; // by areas, of each image
+  std::vector<Outline> Met; // of areas, for each image
 };
 }
 

@@ -21,7 +21,7 @@ Cuboid shownBox(const ShearWarp& geometry)
 
 namespace
 {
-/// A box that pixels have samples in whose rays cross it.
+/// A box whose pixels have samples: those whose rays cross it.
 Cuboid sampledBox(const ShearWarp& geometry)
 {
   const Span& slices = geometry.slices();
@@ -30,7 +30,7 @@ Cuboid sampledBox(const ShearWarp& geometry)
   box.high.z = geometry.faces(slices.end - 1).y;
   if (geometry.isPerspective())
   {
-    // Rays are rounded: by 2^-21 of a voxel, and 2^-25 for each slice from the farthest one. With
+    // Rays are rounded by 2^-21 of a voxel, and by 2^-25 for each slice from the farthest one. With
     // twice as much they cross voxels over a positive length.
     const double rounding = 0x1p-20 + 0x1p-24 * geometry.size().z;
     box.low += glm::dvec3(rounding, rounding, 0.0);
@@ -48,7 +48,8 @@ void Outline::add(glm::dvec3 line, double inset)
 
 void Outline::add(const Cuboid& box, double inset)
 {
-  // Its outline are the edges between faces of which the viewer sees one; none from inside.
+  // The outline consists of the edges between a visible and a hidden face; from inside there are
+  // none.
   for (int edge = 0; edge < 12; ++edge)
   {
     const int a = edge / 4, b = (a + 1) % 3, c = (a + 2) % 3;
@@ -111,7 +112,7 @@ std::vector<glm::dvec3> Outline::cut(std::vector<glm::dvec3> polygon) const
   return polygon;
 }
 
-/// Whether the viewer is beyond a face of a box, or on it.
+/// Whether the viewer is on or beyond a face of a box.
 bool Outline::faces(const Cuboid& box, int axis, bool high) const
 {
   if (this->Geometry.isPerspective())
@@ -125,16 +126,16 @@ bool Outline::faces(const Cuboid& box, int axis, bool high) const
 
 namespace
 {
-/// What an image shows of the volume, and so many of its pixels beyond.
+/// The pixels that show an image of the volume, and some pixels of the image beyond.
 Outline shownWith(const ShearWarp& geometry, double beyond)
 {
-  // Rims that fall on pixel centres must not flicker with rounding errors.
+  // Borders on pixel centres must not flicker with rounding errors.
   constexpr double rounding = 1e-8;
   Outline shown(geometry);
   shown.add(shownBox(geometry), -beyond - rounding);
   if (geometry.isPerspective())
   {
-    // Where slopes are at most 1. Both images have what lies between two.
+    // Limits slopes to 1. Both images have the pixels on their common border.
     const double forwards = geometry.reversed() ? -1.0 : 1.0;
     const glm::dvec3 low = geometry.pixelOf(geometry.eye() + glm::dvec3(-1.0, -1.0, forwards));
     const glm::dvec3 high = geometry.pixelOf(geometry.eye() + glm::dvec3(1.0, 1.0, forwards));
@@ -155,7 +156,7 @@ Outline shownBy(const ShearWarp& geometry)
 
 Outline metByAreas(const ShearWarp& geometry)
 {
-  // No voxel is farther from the pixel whose ray passes nearest to it.
+  // No voxel is farther than this from the pixel whose ray passes nearest to it.
   Outline met = shownWith(geometry, 0.5);
   met.growOnScreen(0.5);
   return met;

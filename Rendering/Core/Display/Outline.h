@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Which pixels of the screen show a box, row by row.
+ * The pixels of the screen that show a box, row by row.
  */
 #ifndef splattingOutline_h
 #define splattingOutline_h
@@ -23,8 +23,8 @@ struct Cuboid
   glm::dvec3 low, high;
 };
 
-/// The box that the picture shows: all of the voxels' boxes, or voxel centre to voxel centre and a
-/// single voxel's whole thickness.
+/// The box that the picture shows: the boxes of all voxels, or from voxel centre to voxel centre,
+/// with the thickness of a single voxel.
 Cuboid shownBox(const ShearWarp& geometry);
 
 /**
@@ -36,20 +36,20 @@ public:
   /// Of the screen pixels that an image shows. The geometry must outlive its use.
   explicit Outline(const ShearWarp& geometry) : Geometry(geometry) {}
 
-  /// Keeps pixels of the image where a u + b v + c >= 0, off the line by `inset` along both u and
-  /// v.
+  /// Limits the outline to pixels of the image where a u + b v + c >= 0, moved inwards by `inset`
+  /// along both u and v.
   void add(glm::dvec3 line, double inset);
 
-  /// Keeps what the image shows of a box.
+  /// Limits the outline to the image of a box.
   void add(const Cuboid& box, double inset);
 
-  /// Moves all lines outwards by so many pixels of the screen along both x and y.
+  /// Moves all lines outwards by some pixels of the screen along both x and y.
   void growOnScreen(double pixels);
 
   /// The x in `row` for which the point (x, 0, 0) from `start` is inside.
   Span cut(Span row, const glm::dvec3& start) const;
 
-  /// What is inside of a polygon of pixels (x, y, 1).
+  /// The part of a polygon of pixels (x, y, 1) inside.
   std::vector<glm::dvec3> cut(std::vector<glm::dvec3> polygon) const;
 
 private:
@@ -59,11 +59,11 @@ private:
   std::vector<glm::dvec3> Lines;
 };
 
-/// The pixels of the screen that an image shows something in.
+/// The pixels of the screen that show an image.
 Outline shownBy(const ShearWarp& geometry);
 
-/// The pixels of the screen whose areas meet something that an image shows: all in which a voxel
-/// can be seen, and some beside them.
+/// The pixels of the screen whose areas overlap an image: all in which a voxel can be visible, and
+/// some beside them.
 Outline metByAreas(const ShearWarp& geometry);
 
 /// The pixels of the screen whose four neighbours in the image are samples, if it has no holes.
@@ -72,13 +72,13 @@ Outline withinSamples(const ShearWarp& geometry);
 /// Of a view: one for each direction of each axis.
 inline constexpr std::size_t MostImages = 6;
 
-/// Calls show(n, row) for the pixels of a row, `start` being the first, that image n shows, and
-/// skip(row) for those that none does. What is shown of image n is within shownOf(n).
+/// Calls show(n, row) for the pixels of a row that show image n, and skip(row) for the others.
+/// `start` is the first pixel. Pixels of image n are within shownOf(n).
 template <class ShownOf, class Show, class Skip>
 void forSpans(std::size_t count, const glm::dvec3& start, int width, const ShownOf& shownOf,
   const Show& show, const Skip& skip)
 {
-  // Images meet at lines: the one that begins first has the pixels that two show.
+  // Images share their borders: pixels of two images belong to the one that begins first.
   std::array<std::size_t, MostImages> order;
   std::array<Span, MostImages> spans;
   for (std::size_t n = 0; n < count; ++n)

@@ -20,12 +20,12 @@ struct Rectangle
   glm::dvec2 low, high;
 };
 
-/// Has all pixels that an image shows something in, and perhaps some beside them.
+/// Contains all pixels that show an image, and perhaps some beside them.
 Rectangle boundsOf(const ShearWarp& geometry, const glm::dvec2& viewport)
 {
   if (!geometry.isPerspective() && !geometry.isOverview())
   {
-    // What the image shows is symmetric about the middle of the volume.
+    // The box is symmetric about the centre of the volume.
     const Cuboid box = shownBox(geometry);
     const glm::dvec3 size = box.high - box.low;
     const glm::dvec2 s = glm::abs(geometry.shear());

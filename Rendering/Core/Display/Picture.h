@@ -30,13 +30,12 @@ void placePicture(
   const std::vector<ShearWarp>& images, const glm::ivec2& viewport, Picture& picture);
 
 /**
- * Adds a picture of the same size and place, byte by byte, no further than 255.
+ * Adds a picture of the same size and position, byte by byte, clamped to 255.
  */
 void addSaturated(const Picture& layer, Picture& sum);
 
 /**
- * Multiplies a picture without transparency by the opacities of another one of the same size and
- * place.
+ * Multiplies an opaque picture by the opacities of another one of the same size and position.
  */
 void multiplyByOpacity(const Picture& opacity, Picture& picture);
 }

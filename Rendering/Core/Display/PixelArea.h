@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What a pixel of the screen shows where it is wider than those of the shear image: not the value
- * at its centre, but the largest one (of minima the least, of averages the average) over its area.
+ * The value of a pixel of the screen that is wider than those of the shear image: the largest value
+ * over its area (of minima the least, of averages the average), instead of that at its centre.
  *
- * The shear image is interpolated bilinearly between its samples. Its extremum is sought among the
- * samples in the area and where the area's outline meets the lines between samples, and its
- * corners. So no sample is lost between pixels, and what the pixel shows changes steadily with the
- * view: a sample that comes in is seen coming.
+ * The shear image is interpolated bilinearly between its samples. Its extremum is that of the
+ * samples in the area, of the values where the area's outline crosses the lines between samples,
+ * and of the values at its corners. No sample is therefore lost between pixels, and a pixel changes
+ * continuously with the view.
  */
 #ifndef splattingPixelArea_h
 #define splattingPixelArea_h
@@ -27,7 +27,7 @@
 
 namespace splatting
 {
-/// A convex part of a shear image, its corners in order; none if it is empty.
+/// A convex part of a shear image, with its corners in order; may be empty.
 struct PixelArea
 {
   std::array<glm::dvec2, 8> corners;
@@ -37,8 +37,8 @@ struct PixelArea
   const glm::dvec2* end() const { return this->corners.data() + this->count; }
 };
 
-/// The part of the viewport pixel (x, y)'s area that lies in the image or at most a sample beside
-/// it. In perspective views the rest may reach behind the eye.
+/// The part of the area of viewport pixel (x, y) that is in the image, or at most a sample beside
+/// it. In perspective views the rest may extend behind the eye.
 inline PixelArea areaOf(const ShearWarp& geometry, double x, double y)
 {
   const glm::dmat3& m = geometry.screenToShear();
@@ -68,13 +68,13 @@ inline PixelArea areaOf(const ShearWarp& geometry, double x, double y)
   {
     rest = clipped(rest, side);
   }
-  // Where corners lie on sides, rounding may double some.
+  // Rounding may duplicate corners on sides.
   rest.resize(std::min(rest.size(), area.corners.size()));
   std::for_each(rest.begin(), rest.end(), add);
   return area;
 }
 
-/// What of an area lies at one height v: from one u to another, if that is more than a point.
+/// The interval of u of an area at height v, if it has a length.
 inline glm::dvec2 rowOf(const PixelArea& area, double v)
 {
   glm::dvec2 row(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
@@ -90,15 +90,16 @@ inline glm::dvec2 rowOf(const PixelArea& area, double v)
   return row;
 }
 
-/// Into how many parts to divide a length, so that none is longer than a sample is wide.
+/// The number of parts of a length, none longer than a sample is wide.
 inline int partsOf(double length)
 {
-  // A length of some samples is not longer by rounding.
+  // Excludes rounding errors of lengths that are whole numbers of samples.
   constexpr double rounding = 1e-9;
   return std::max(static_cast<int>(std::ceil(length - rounding)), 1);
 }
 
-/// A value of an area, and the sample that it comes from, or of two or four the nearest.
+/// A value of an area, and its sample, or the nearest of the two or four that it is interpolated
+/// from.
 template <class A>
 struct AreaValue
 {
@@ -106,7 +107,7 @@ struct AreaValue
   int u = 0, v = 0;
 
   bool found() const { return this->value == this->value; }
-  /// Takes another one if it is larger, or less. Returns whether it is.
+  /// Takes another value if it is larger, or less. Returns whether it does.
   bool take(const AreaValue& other, bool least)
   {
     const bool better = (least ? other.value < this->value : other.value > this->value) ||
@@ -116,14 +117,14 @@ struct AreaValue
   }
 };
 
-/// The extremum of an area's samples, and that of what it shows between samples.
+/// The extremum of an area's samples, and that of its values between samples.
 template <class A>
 struct AreaExtrema
 {
   AreaValue<A> sample, between;
 };
 
-/// The mean of values, each with a weight.
+/// The weighted mean of values.
 struct AreaMean
 {
   double sum = 0.0, weights = 0.0;
@@ -136,7 +137,7 @@ struct AreaMean
 };
 
 /**
- * Finds what areas of one image show, whose pixels are of type T.
+ * Computes the values of areas in one image, with pixels of type T.
  */
 template <class T>
 class PixelAreas
@@ -167,10 +168,9 @@ public:
   }
 
   /**
-   * Adds the image at points that are spread evenly over an area, no farther apart than samples,
-   * each with the part of the screen that it stands for. Points that are not between samples do not
-   * count. There are at most about as many points as samples in the area, however wide the pixel
-   * is.
+   * Adds the image at points spread evenly over an area, no farther apart than samples, each
+   * weighted by its part of the screen. Points that are not between samples are skipped. There are
+   * at most about as many points as samples in the area, however wide the pixel is.
    */
   void addAverage(const ShearWarp& geometry, const PixelArea& area, AreaMean& mean) const
   {
@@ -200,7 +200,7 @@ public:
     }
   }
 
-  /// Adds the samples in an area, as where no point of it is between samples.
+  /// Adds the samples in an area, for areas without a point between samples.
   void addSamples(const PixelArea& area, AreaMean& mean) const
   {
     const glm::dvec2 heights = this->heightsOf(area);
@@ -219,7 +219,7 @@ public:
   }
 
 private:
-  /// The rows of the image that an area extends over.
+  /// The rows of the image that an area overlaps.
   glm::dvec2 heightsOf(const PixelArea& area) const
   {
     const double last = this->Image.height - 1;
@@ -237,7 +237,8 @@ private:
     return static_cast<A>(this->Pixels[std::ptrdiff_t(v) * this->Image.width + u]);
   }
 
-  /// Between two neighbours, where both are samples: a share of the way from the first.
+  /// Interpolates between two neighbouring samples.
+  /// @param share  of the way from the first
   AreaValue<A> between(int u0, int v0, int u1, int v1, double share) const
   {
     if (!this->Image.covers(u0, v0) || !this->Image.covers(u1, v1))
@@ -248,7 +249,7 @@ private:
     return { static_cast<A>(value), share < 0.5 ? u0 : u1, share < 0.5 ? v0 : v1 };
   }
 
-  /// Between four; none where one of them is not a sample.
+  /// Interpolates between four neighbours; none if one of them is not a sample.
   AreaValue<A> interpolated(const glm::dvec2& p) const
   {
     const int u = static_cast<int>(std::floor(p.x)), v = static_cast<int>(std::floor(p.y));
@@ -261,8 +262,8 @@ private:
   }
 
   /**
-   * Takes the samples in the area, and the values at both ends, of each row of the image (of each
-   * column the ends alone: the samples are the rows').
+   * Takes the samples in the area, and the values at both ends, of each row of the image (for
+   * columns only the values at the ends, because the rows have the samples).
    */
   template <int Along>
   void takeLines(const PixelArea& area, bool least, AreaExtrema<A>& best) const

@@ -15,7 +15,7 @@ namespace splatting
 {
 namespace
 {
-/// Of the shear pixels that a point's value is interpolated between, the nearest.
+/// The nearest of the shear pixels that a point's value is interpolated from.
 ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& homogeneous,
   const std::function<bool(const ShearPixel&)>& hasSample)
 {
@@ -40,14 +40,14 @@ ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& h
   return lost > 0.5 ? ShearPixel{} : nearest;
 }
 
-/// Where pixels show areas: none of their samples is passed over for one beside them.
+/// For areas. A sample in the area precedes one beside it.
 template <class T>
 ShearPixel shownOfArea(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, const std::vector<Outline>& met, bool least,
   const glm::dvec3& pixel)
 {
   AreaExtrema<Accumulator<T>> best;
-  int sampled = -1, between = -1; // the images that they are of
+  int sampled = -1, between = -1; // the images of these
   for (std::size_t n = 0; n < geometries.size(); ++n)
   {
     if (met[n].cut({ 0, 1 }, pixel).empty())
@@ -63,7 +63,7 @@ ShearPixel shownOfArea(const std::vector<ShearImage>& images,
                       : ShearPixel{ between, best.between.u, best.between.v };
 }
 
-/// Of those that have one.
+/// Of pixels that have one.
 void findAreaPixels(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   bool least, const glm::ivec2& origin, const glm::ivec2& size, ShearPixel* out)
 {
@@ -105,8 +105,8 @@ void findShearPixels(const std::vector<ShearImage>& images,
     {
       for (std::ptrdiff_t y = first; y < last; ++y)
       {
-        // From the viewport's edge on, so that a pixel that two images show is the same one's in
-        // any rectangle.
+        // From the viewport's edge on, so that a pixel of two images has the same one in any
+        // rectangle.
         const glm::dvec3 start(0.0, origin.y + static_cast<double>(y), 1.0);
         ShearPixel* const row = out + y * size.x;
         forSpans(

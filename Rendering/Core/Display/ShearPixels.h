@@ -24,11 +24,11 @@ struct ShearPixel
 
 /**
  * For each pixel of a rectangle of the viewport, row by row from the bottom, the shear pixel whose
- * location stands for it: the nearest of those that Warper interpolates its value between, where
- * areas are shown the largest (of minima the least) in the area, or without any the nearest to
- * where the area's value comes from; none where the picture has no sample.
+ * location it shows: the nearest of those that Warper interpolates its value from. In overviews the
+ * largest (of minima the least) in the area, or without any the nearest to the position of the
+ * area's value. None if the picture has no sample.
  * @param images     as in Warper::warp()
- * @param hasSample  whether a shear pixel has one; without it, whether it has a winner
+ * @param hasSample  whether a shear pixel has a sample; by default whether it has a winner
  */
 void findShearPixels(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& origin,

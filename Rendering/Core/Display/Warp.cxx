@@ -16,7 +16,7 @@ namespace splatting
 {
 namespace
 {
-/// What becomes of the rows' scalars: their colours, ...
+/// Converts the rows' scalars to colours ...
 template <class A>
 struct ColorSink
 {
@@ -44,7 +44,7 @@ struct ColorSink
   }
 };
 
-/// ... or they themselves.
+/// ... or copies them.
 template <class A>
 struct ScalarSink
 {
@@ -56,7 +56,7 @@ struct ScalarSink
   void put(const A* values, Pixel* out, std::ptrdiff_t n) const { std::copy_n(values, n, out); }
 };
 
-/// What becomes of values, NaN being none.
+/// Converts values; NaN is no value.
 template <class A, class Sink>
 void putValues(const Sink& sink, const A* values, typename Sink::Pixel* out, int n)
 {
@@ -78,7 +78,7 @@ void putValues(const Sink& sink, const A* values, typename Sink::Pixel* out, int
   }
 }
 
-/// Brings the images of a view to rows of pixels.
+/// Warps the images of a view to rows of pixels.
 template <class A, class Sink>
 class RowWarp
 {
@@ -95,8 +95,8 @@ public:
   {
   }
 
-  /// The pixels of a part of a viewport, of which `pixels` is the first and the next row lies a
-  /// stride further. False if the observer has stopped it.
+  /// Warps to a part of a viewport. `pixels` is its first pixel, and `stride` the distance of rows.
+  /// Returns false if the observer has stopped it.
   bool warp(const Picture& place, Pixel* pixels, std::ptrdiff_t stride) const
   {
     const bool showsAreas = this->Images.front().geometry.isOverview();
@@ -119,7 +119,7 @@ public:
   }
 
 private:
-  static constexpr int Chunk = 256; // stays in the first-level cache
+  static constexpr int Chunk = 256; // fits the first-level cache
 
   void warpAreas(const glm::dvec3& start, int width, Pixel* out) const
   {
@@ -141,7 +141,7 @@ private:
       [&](const Span& row) { std::fill(out + row.begin, out + row.end, this->To.empty); });
   }
 
-  /// The pixels of a row, `start` being the first, that one image shows.
+  /// Warps the pixels of a row that show one image. `start` is the first.
   void warpSpan(
     const WarpSource<A>& source, const glm::dvec3& start, const Span& row, Pixel* out) const
   {
@@ -157,7 +157,7 @@ private:
     this->warpPoints(source, first, { inside.end, row.end }, out);
   }
 
-  /// Where neighbours may lie outside the volume.
+  /// For pixels with neighbours outside the volume.
   void warpPoints(
     const WarpSource<A>& source, const glm::dvec3& first, const Span& row, Pixel* out) const
   {
@@ -171,8 +171,8 @@ private:
       });
   }
 
-  /// Where all four neighbours are pixels of the volume. Where one has no sample, or is infinite,
-  /// interpolation gives no finite value.
+  /// For pixels whose four neighbours are in the volume. If a neighbour has no sample, or is
+  /// infinite, the interpolated value is not finite.
   void warpInside(
     const WarpSource<A>& source, const glm::dvec3& first, const Span& row, Pixel* out) const
   {
@@ -218,8 +218,8 @@ private:
   AreaRows<A> Areas;
 };
 
-/// The pixels of an image in the accumulator's type, NaN where cuts have left no sample; `copied`
-/// being a place for them.
+/// The pixels of an image in the accumulator's type, NaN where cuts have left no sample. `copied`
+/// is a buffer for them.
 template <class T>
 const Accumulator<T>* samplesOf(
   const ShearImage& image, const VoxelLoops<T>& loops, std::vector<unsigned char>& copied)
@@ -247,7 +247,7 @@ const Accumulator<T>* samplesOf(
   return pixels;
 }
 
-/// Warps images of voxels of type T, which are copied to `copied` where that is needed.
+/// Warps images of voxels of type T. `copied` is a buffer for copies, if they are needed.
 template <class T, class Sink>
 bool warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   Reduction reduction, const Kernels& kernels, const Sink& sink,

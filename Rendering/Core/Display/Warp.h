@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Shear image to viewport: the scalar is interpolated, then its colour looked up, if wanted.
+ * From shear images to the viewport: interpolates scalars, and looks up their colours on request.
  */
 #ifndef splattingWarp_h
 #define splattingWarp_h
@@ -37,37 +37,36 @@ class Warper
 {
 public:
   /**
-   * Fills the picture with the shear images of a view as seen in a viewport, each pixel from the
-   * image whose axis its ray follows most. The picture ends where the volume's outermost voxel
-   * centres are seen (half a voxel further out along axes with one voxel, and along all if the
-   * geometry shows boxes); around an eye inside that box it does not end. Pixels beyond and pixels
-   * without a sample are transparent.
+   * Fills the picture with the shear images of a view. Each pixel shows the image whose axis its
+   * ray follows most. The picture ends at the outermost voxel centres (half a voxel further out
+   * along axes with one voxel, and along all if the geometry shows boxes); around an eye inside
+   * this box it has no end. Other pixels, and pixels without a sample, are transparent.
    *
-   * Where the geometries show areas, pixels have the extremum or the average of their areas, see
-   * PixelArea.h, and the picture ends where areas no longer meet the volume.
-   * @param images      all of one type; those beyond the number of geometries are left alone
-   * @param geometries  as ShearWarp::factorise() gives them
-   * @return  false if the observer has stopped it; the picture is invalid then
+   * In overviews pixels have the extremum or the average of their areas, see PixelArea.h, and the
+   * picture ends where areas do not overlap the volume.
+   * @param images      all of one type; those beyond the number of geometries are ignored
+   * @param geometries  as ShearWarp::factorise() returns them
+   * @return  false, with an invalid picture, if the observer has stopped it
    */
   bool warp(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
     Reduction reduction, const ColorTable& table, const glm::ivec2& viewport,
     InstructionSet instructionSet, Picture& picture);
 
-  /// The same of given shear pixels, one for each pixel of the picture.
+  /// As warp(), with the shear pixel of each pixel of the picture.
   void warpPixels(const std::vector<ShearImage>& images, const std::vector<ShearPixel>& shown,
     const ColorTable& table, InstructionSet instructionSet, Picture& picture);
 
   /**
-   * The same as scalars, into those of a whole viewport, row after row from the bottom. Transparent
-   * pixels of the picture get the background; those outside the picture are left alone.
+   * As warp(), but writes the scalars of a whole viewport, row by row from the bottom. Transparent
+   * pixels of the picture get the background; those outside the picture are unchanged.
    * @param scalars  of type averageType() of the images' type
    */
   bool warpScalars(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
     Reduction reduction, const glm::ivec2& viewport, InstructionSet instructionSet,
     double background, void* scalars);
 
-  /// Sets the function that decides whether to go on. It is called by the thread that warps, only
-  /// where pixels show areas. Its argument is undefined.
+  /// Sets the function that returns whether to continue. It is called by the warping thread, in
+  /// overviews only. Its argument is undefined.
   void setObserver(const ProgressObserver::Callback& callback)
   {
     this->Observer.setCallback(callback);
@@ -75,7 +74,7 @@ public:
 
 private:
   ProgressObserver Observer;
-  /// Images converted to the accumulator's type, where they are of another or have holes.
+  /// Images converted to the accumulator's type, if they have another type or holes.
   std::vector<std::vector<unsigned char>> Copied;
 };
 }

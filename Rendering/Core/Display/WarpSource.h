@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * A shear image as the screen sees it: its values between pixels.
+ * The values of a shear image between its pixels.
  */
 #ifndef splattingWarpSource_h
 #define splattingWarpSource_h
@@ -18,11 +18,12 @@
 
 namespace splatting
 {
-/// Calls f(u, v, weight) for the pixels in the volume between which a point is interpolated.
+/// Calls f(u, v, weight) for the pixels in the volume that a point is interpolated from.
 template <class F>
 void forNeighbours(const ShearImage& image, const glm::dvec2& p, F&& f)
 {
-  // Points on the line between two images may round out of theirs, where they have no neighbours.
+  // Points on the common border of two images may round to positions outside theirs, where they
+  // have no neighbours.
   const int u = static_cast<int>(std::floor(p.x)), v = static_cast<int>(std::floor(p.y));
   const double fu = p.x - u, fv = p.y - v;
   for (int n = 0; n < 4; ++n)
@@ -57,8 +58,8 @@ struct WarpSource
   }
   bool hasHoles() const { return !this->image.mask.empty() || this->image.nonFinite; }
 
-  /// Where a neighbour may be missing, NaN or infinite: interpolates between those that count; NaN
-  /// where there is no sample.
+  /// For points with neighbours that may be missing, NaN or infinite: interpolates between the
+  /// others; NaN without a sample.
   A valueAt(const glm::dvec3& homogeneous) const
   {
     const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
@@ -81,8 +82,8 @@ struct WarpSource
           nearest = value;
         }
       });
-    // Where samples are missing inside the volume, the picture ends half-way to the last one; at
-    // the volume's rim it ends with the silhouette.
+    // Beside missing samples inside the volume the picture ends half-way to the last sample; at the
+    // border of the volume it ends with the silhouette.
     if (weight <= 0.0 || lost > 0.5)
     {
       return std::numeric_limits<A>::quiet_NaN();

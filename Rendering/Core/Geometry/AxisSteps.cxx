@@ -11,7 +11,7 @@ namespace splatting
 {
 namespace
 {
-/// The pixels from the first to the last that f is true for.
+/// The pixels from the first to the last for which f is true.
 template <class F>
 Span pixelsThat(int count, F&& f)
 {
@@ -78,7 +78,7 @@ Span AxisSteps::voxels(const Span& slices, const Span& pixels) const
   for (int k = slices.begin; k < slices.end && p <= q; ++k)
   {
     const Slice slice = this->slice(k);
-    // The rounding of rays that meet in the eye, on a face, moves some into the voxel beside it.
+    // If rays meet in the eye, on a face, rounding moves some of them into the neighbouring voxel.
     const int beside = this->Ascends[k - this->Slices.begin] ? 0 : 1;
     all.begin = std::min({ all.begin, slice.first[p] - beside, slice.last[p] - beside });
     all.end = std::max({ all.end, slice.first[q] + 1 + beside, slice.last[q] + 1 + beside });
@@ -134,7 +134,7 @@ void AxisPicks::fill(const std::int32_t* voxels, std::size_t row, const AxisStep
       const std::int32_t voxel = own[p] < 0 ? size : own[p];
       least = voxel < least ? voxel : least;
     }
-    // Registers of voxels stay in their row.
+    // Registers of voxels must stay in their row.
     const std::int32_t base = std::max(std::min(least, size - this->Group), 0);
     this->Bases[row * this->Groups + g] = base;
     Lane* const out = lanes + std::ptrdiff_t(g) * this->Group;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Which voxels the rays of a perspective image meet: in one slice all rows of pixels share what the
- * columns do, and all columns what the rows do.
+ * The voxels that the rays of a perspective image cross. In a slice all rows of pixels share the
+ * columns' coordinates, and all columns the rows'.
  */
 #ifndef splattingAxisSteps_h
 #define splattingAxisSteps_h
@@ -16,8 +16,7 @@
 namespace splatting
 {
 /**
- * The steps of rays from voxel to voxel, of an image's columns or of its rows, in all slices that
- * it sees.
+ * The steps of rays from voxel to voxel, along an image's columns or rows, in all visible slices.
  */
 class AxisSteps
 {
@@ -25,15 +24,16 @@ public:
   /// @param a  0 for columns, 1 for rows
   void find(const ShearWarp& geometry, int a, const PerspectiveLoops& loops);
 
-  /// What the rays do in slice k, one element per pixel and some more that are outside the volume.
+  /// The rays in slice k. Arrays have one element per pixel, and some more that are outside the
+  /// volume.
   struct Slice
   {
-    /// The voxels in which rays enter the slice and leave it: neighbours or the same. Outside the
-    /// volume -1, or the number of voxels.
+    /// The voxels in which rays enter and leave the slice, which are neighbours or the same.
+    /// Outside the volume -1, or the number of voxels.
     const std::int32_t *first, *last;
-    /// How far from the entry, as a share of a slice, rays change from the one to the other.
+    /// The distance from the entry, as a share of a slice, at which rays change to the other voxel.
     const double* time;
-    /// The same, rounded down to multiples of 2^-15; -1 where rays stay in one voxel.
+    /// The same, rounded down to multiples of 2^-15; -1 for rays that stay in one voxel.
     const std::int16_t* tick;
   };
   Slice slice(int k) const
@@ -42,11 +42,11 @@ public:
     return { &this->First[at], &this->Last[at], &this->Time[at], &this->Tick[at] };
   }
 
-  /// The voxels from the first to the last that some pixels meet in some slices, and perhaps one
-  /// beside them; may be two outside the volume at either end.
+  /// The voxels from the first to the last that some pixels cross in some slices, with at most one
+  /// more beside them, and at most two outside the volume at either end.
   Span voxels(const Span& slices, const Span& pixels) const;
 
-  /// The pixels that enter or leave slice k in the volume, and those that do both.
+  /// The pixels whose rays enter or leave slice k in the volume, and those whose rays do both.
   struct Covered
   {
     Span some, all;
@@ -62,23 +62,23 @@ private:
   std::vector<double> Time;
   std::vector<std::int16_t> Tick;
   std::vector<Covered> Covers;
-  std::vector<unsigned char> Ascends; // of each slice, whether its pixels' voxels do
+  std::vector<unsigned char> Ascends; // for each slice, whether voxels ascend with pixels
 };
 
 /**
- * The same for loops that pick voxels for a register of pixels out of a few registers of voxels:
- * pixels are no wider than voxels, so that a group of pixels meets no more voxels than it has
+ * The same steps, for loops that select voxels for a register of pixels from a few registers of
+ * voxels. Pixels are no wider than voxels, so a group of pixels crosses no more voxels than it has
  * pixels.
  */
 class AxisPicks
 {
 public:
-  /// @param group  pixels that pick from one register, see VoxelLoops::group
+  /// @param group  pixels that select from one register, see VoxelLoops::group
   /// @param bytes  of a voxel
   void find(const AxisSteps& steps, int group, int bytes);
 
-  /// Where a group of pixels picks from, for all groups, and which of these voxels each pixel
-  /// takes: integers as wide as voxels, negative for pixels outside the volume.
+  /// For each group of pixels the first voxel of its register, and for each pixel its voxel in it:
+  /// integers as wide as voxels, negative for pixels outside the volume.
   struct Picks
   {
     const std::int32_t* base;

@@ -31,7 +31,7 @@ glm::dvec2 voxelsPerPixel(const View& view)
     {
       return glm::dvec2(0.0);
     }
-    // How the pixel's coordinates change from voxel to voxel there.
+    // Derivatives of the pixel's coordinates with respect to the voxel.
     const glm::dvec3 w(glm::row(m, 3));
     const glm::dvec3 x =
       0.5 * view.viewport.x / clip.w * (glm::dvec3(glm::row(m, 0)) - clip.x / clip.w * w);
@@ -46,7 +46,7 @@ glm::dvec2 voxelsPerPixel(const View& view)
 
 namespace
 {
-/// Pixels that are as wide as voxels are not wider by rounding.
+/// Excludes rounding errors of pixels that are as wide as voxels.
 constexpr double Wide = 1.0 + 1e-6;
 }
 

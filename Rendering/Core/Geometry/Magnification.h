@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * How wide the screen's pixels are in voxels.
+ * The width of the screen's pixels in voxels.
  */
 #ifndef splattingMagnification_h
 #define splattingMagnification_h
@@ -12,18 +12,19 @@
 
 namespace splatting
 {
-/// The larger singular value of a map to a plane, from the sum of the squares of its elements and
-/// how it changes areas: how much it stretches the direction that it stretches most.
+/// The larger singular value of a map to a plane.
+/// @param squares  the sum of the squares of its elements
+/// @param area     the factor by which it scales areas
 double largerStretch(double squares, double area);
 
 /**
- * How many voxels a pixel of the viewport spans, across its ray, in the direction in which it spans
- * fewest and in that in which it spans most: the least of the volume's corners, 0 if one of them is
- * not before the eye.
+ * The number of voxels that a pixel of the viewport spans across its ray, in the direction of the
+ * smallest and of the largest span: the minimum over the volume's corners, 0 if a corner is not
+ * before the eye.
  */
 glm::dvec2 voxelsPerPixel(const View& view);
 
-/// Whether all of a volume is seen in pixels wider than voxels in some direction, ...
+/// Whether pixels are wider than voxels everywhere in the volume, in some direction ...
 bool isOverview(const View& view);
 /// ... or in all directions.
 bool isCoarse(const View& view);

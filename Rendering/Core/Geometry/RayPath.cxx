@@ -10,17 +10,17 @@ namespace splatting
 {
 namespace
 {
-/// One coordinate of a ray while it crosses a slice, relative to its pixel.
+/// One coordinate of a ray in a slice, relative to its pixel.
 struct Crossing
 {
-  int first, last;     // offsets of the voxels where it enters and leaves the slice
-  double faceDistance; // from the entry to the face between the two
+  int first, last;     // offsets of the voxels in which it enters and leaves the slice
+  double faceDistance; // from the entry to the face between them
 };
 
 Crossing cross(double entry, double exit)
 {
   // The ray enters and leaves voxels through faces at half-integers. A point on a face belongs to
-  // the voxel that the ray runs in next to it: after the entry, before the exit.
+  // the voxel that the ray crosses: after the entry, before the exit.
   const bool forward = exit >= entry;
   const int first = static_cast<int>(forward ? std::floor(entry + 0.5) : std::ceil(entry - 0.5));
   if (exit == entry)
@@ -31,7 +31,7 @@ Crossing cross(double entry, double exit)
   return { first, last, std::abs(first + (forward ? 0.5 : -0.5) - entry) };
 }
 
-/// All voxels.
+/// All crossed voxels.
 RayPath crossed(const glm::dvec2& entry, const glm::dvec2& exit, const glm::dvec2& speed)
 {
   const Crossing x = cross(entry.x, exit.x);
@@ -46,8 +46,8 @@ RayPath crossed(const glm::dvec2& entry, const glm::dvec2& exit, const glm::dvec
   add(x.first, y.first);
   if (x.first != x.last && y.first != y.last)
   {
-    // Which face comes first? distance / speed, multiplied out: products of 25 and 24 bits, exact;
-    // in the slice with the eye of 34 and 24 bits, rounded.
+    // Compares the times of the two faces, distance / speed, multiplied out: products of 25 and 24
+    // bits are exact; those of 34 and 24 bits, in the slice with the eye, are rounded.
     const double timeX = x.faceDistance * speed.y;
     const double timeY = y.faceDistance * speed.x;
     if (timeX < timeY)

@@ -10,8 +10,8 @@
 namespace splatting
 {
 /**
- * The voxels (u + di, v + dj) that the ray of shear pixel (u, v) crosses in one slice: the same
- * offsets for every pixel, at most three because a ray moves by at most one voxel in each
+ * The voxels (u + di, v + dj) that the ray of shear pixel (u, v) crosses in one slice. The offsets
+ * are the same for all pixels, at most three, because a ray moves by at most one voxel in each
  * direction.
  */
 struct RayPath
@@ -21,8 +21,8 @@ struct RayPath
   std::array<int, 3> dj{};
 };
 
-/// The voxels of a slice that a ray meets: all that it crosses, or the one that it passes nearest
-/// to in the middle of the slice.
+/// The voxels of a slice that count for a ray: all that it crosses, or the nearest one in the
+/// middle of the slice.
 enum class Meets
 {
   All,
@@ -30,7 +30,7 @@ enum class Meets
 };
 
 /**
- * What a ray meets between two points, a slice apart or less, where it runs with this slope.
+ * The path of a ray with this slope between two points, at most a slice apart.
  */
 RayPath pathBetween(
   const glm::dvec2& enter, const glm::dvec2& leave, const glm::dvec2& slope, Meets meets);

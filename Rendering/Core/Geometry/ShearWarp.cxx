@@ -22,7 +22,7 @@ double quantised(double x, int bits)
   return std::ldexp(std::round(std::ldexp(x, bits)), -bits);
 }
 
-/// Rows of pixels fill whole registers.
+/// Rows of pixels are whole registers.
 constexpr int RowUnit = 64;
 
 constexpr int SlopeBits = 24, PositionBits = 20, EyeBits = 10;
@@ -58,11 +58,11 @@ ShearWarp::ShearWarp(const View& view, Meets meets)
   const glm::dvec4 half(0.0, 0.0, 0.0, 1.0);
   const glm::dvec4 rowX = 0.5 * view.viewport.x * (glm::row(m, 0) / w + half) - 0.5 * half;
   const glm::dvec4 rowY = 0.5 * view.viewport.y * (glm::row(m, 1) / w + half) - 0.5 * half;
-  // Rays run where neither pixel coordinate changes.
+  // Rays are the lines of constant pixel coordinates.
   const glm::dvec3 x(rowX), y(rowY);
   const glm::dvec3 direction = glm::cross(x, y);
   const double area = glm::length(direction);
-  // The comparison also fails for matrices with NaN or infinity.
+  // Also true for NaN or infinity.
   if (!(area > 1e-12 * glm::length(x) * glm::length(y)) || !std::isfinite(area))
   {
     return;
@@ -72,7 +72,7 @@ ShearWarp::ShearWarp(const View& view, Meets meets)
   this->Overview = splatting::isOverview(view);
   this->Met = meets;
   this->chooseAxes(direction);
-  // Clip space is deeper away from the viewer; along the ray, with the principal axis growing:
+  // Clip depth grows away from the viewer. Along the ray, in the direction of the principal axis:
   const double deeper = glm::dot(glm::dvec3(glm::row(m, 2)) / w, direction);
   this->Reversed = deeper * direction[this->Axes[2]] < 0.0;
   this->computeWarp(rowX, rowY);
@@ -106,7 +106,7 @@ bool ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images, Meet
 
 void ShearWarp::chooseAxes(const glm::dvec3& direction)
 {
-  // On ties (to rounding errors) the slowest axis wins: its slices are contiguous.
+  // On ties (within rounding) the slowest axis is selected, because its slices are contiguous.
   int k = 2;
   for (int a = 1; a >= 0; --a)
   {
@@ -120,7 +120,7 @@ void ShearWarp::chooseAxes(const glm::dvec3& direction)
   {
     const double shear = -direction[this->Axes[a]] / direction[k];
     this->Shear[a] = quantised(std::clamp(shear, -1.0, 1.0), SlopeBits);
-    // Half the stack on either side of the middle, and a pixel for footprints at the rim.
+    // Half the stack on either side of the centre, and a pixel for footprints at the border.
     this->Margin[a] = static_cast<int>(std::ceil(std::abs(this->Shear[a]) * this->Size.z / 2)) + 1;
     this->ImageSize[a] = this->RayCount[a] = this->Size[a] + 2 * this->Margin[a];
   }
@@ -168,8 +168,8 @@ bool ShearWarp::findRays(const View& view, Rays& rays)
   {
     return false;
   }
-  // Points of a ray, but for their distance from the eye: linear (p - eye) = w (x, y, 1), x and y
-  // in [-1, 1] over the viewport.
+  // Points of a ray, regardless of their distance from the eye: linear (p - eye) = w (x, y, 1), x
+  // and y in [-1, 1] over the viewport.
   const glm::dmat3 inverse = glm::inverse(linear);
   const glm::dvec2 step = 2.0 / glm::dvec2(view.viewport);
   const glm::dmat3 viewport(
@@ -220,7 +220,7 @@ bool ShearWarp::lookAlong(int axis, bool reversed, const View& view, const Rays&
 
 bool ShearWarp::placeRays(const View& view, const glm::dmat3& directions, double farthest)
 {
-  // An odd number of steps has no ray along the axis, which could run between voxels.
+  // With an odd number of steps no ray is parallel to the axis, where it could lie between voxels.
   constexpr double narrower = 1.0 + 0x1p-10;
   this->Steps = static_cast<std::int64_t>(std::ceil(2.0 * farthest * narrower)) | 1;
   this->Pitch = 2.0 * farthest / static_cast<double>(this->Steps);
@@ -236,7 +236,7 @@ bool ShearWarp::placeRays(const View& view, const glm::dmat3& directions, double
 /// From directions (x, y, z), z along the image's axis, to (u w, v w, w) with w = z.
 glm::dmat3 ShearWarp::directionToPixel() const
 {
-  // Step n of all has slope 2 n / Steps - 1.
+  // Step n has slope 2 n / Steps - 1.
   const double half = 0.5 * static_cast<double>(this->Steps);
   return { half, 0.0, 0.0, 0.0, half, 0.0, half - static_cast<double>(this->First[0]),
     half - static_cast<double>(this->First[1]), 1.0 };
@@ -255,7 +255,7 @@ glm::dvec3 ShearWarp::pixelOf(const glm::dvec3& point) const
 /// The part of all pixels that shows the volume in the viewport.
 bool ShearWarp::placeImage(const View& view, const glm::dmat3& directions)
 {
-  // The viewport's pyramid, cut down to the rays that follow the axis most.
+  // The viewport's pyramid, limited to the rays that follow this axis most.
   std::vector<glm::dvec3> corners;
   const double right = view.viewport.x - 0.5, top = view.viewport.y - 0.5;
   for (const glm::dvec2& corner : { glm::dvec2(-0.5, -0.5), glm::dvec2(right, -0.5),
@@ -342,7 +342,7 @@ void ShearWarp::findPart(
 
 void ShearWarp::computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY)
 {
-  // A shear pixel shows the voxel of the middle slice that lies there.
+  // A shear pixel shows the voxel of the middle slice at its position.
   const int i = this->Axes[0], j = this->Axes[1], k = this->Axes[2];
   const glm::dmat2 linear(rowX[i], rowY[i], rowX[j], rowY[j]);
   const glm::dvec2 middle =
@@ -391,7 +391,7 @@ RayPath ShearWarp::voxelsOnRay(int u, int v, int k) const
 
 Span ShearWarp::coverage(const RayPath& path, int v) const
 {
-  // The voxels of a path are neighbours, so the ranges of pixels that see them join.
+  // The voxels of a path are neighbours, so their ranges of pixels are adjacent.
   Span all{ this->width(), 0 };
   for (int t = 0; t < path.count; ++t)
   {
@@ -415,7 +415,7 @@ glm::dvec4 ShearWarp::inPixels(const glm::dvec4& halfSpace) const
 
 bool ShearWarp::sameShear(const ShearWarp& other) const
 {
-  // The rays hold the shears.
+  // Columns and Rows include the shears.
   return this->Valid == other.Valid && this->Met == other.Met && this->Axes == other.Axes &&
     this->Size == other.Size && this->Pitch == other.Pitch && this->Reference == other.Reference &&
     this->DepthRange == other.DepthRange && this->Columns == other.Columns &&

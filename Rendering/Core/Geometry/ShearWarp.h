@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The factorisation of a view into shears of the volume along its principal axes and warps of the
- * shear images [CS98, section 2; Lacroute & Levoy 1994]: for parallel views one shear and an affine
- * warp; for perspective views slices are scaled as well, warps are projective, and where the rays
- * of a view follow different axes each axis has an image of its own.
+ * Factorises a view into shears of the volume along its principal axes and warps of the shear
+ * images [CS98, section 2; Lacroute & Levoy 1994]. Parallel views have one shear and an affine
+ * warp. In perspective views slices are also scaled, warps are projective, and each axis that rays
+ * follow has an image of its own.
  */
 #ifndef splattingShearWarp_h
 #define splattingShearWarp_h
@@ -24,8 +24,8 @@
 namespace splatting
 {
 /**
- * The rays of the columns (or of the rows) of a shear image, in one coordinate: that of pixel n
- * passes at[n] + slope[n] (z - ShearWarp::reference()) at depth z.
+ * The rays of the columns (or rows) of a shear image, in one coordinate: that of pixel n is at[n] +
+ * slope[n] (z - ShearWarp::reference()) at depth z.
  */
 struct AxisRays
 {
@@ -35,35 +35,33 @@ struct AxisRays
   {
     return this->at == other.at && this->slope == other.slope;
   }
-  double steepest = 0.0; ///< in perspective, the largest slope of the whole image, either way
+  double steepest = 0.0; ///< in perspective, the largest magnitude of slopes in the image
 };
 
 /**
- * A convex cone, given by its edges, or polygon, by its corners (x, y, 1), where
- * dot(side, edge) >= 0.
+ * A convex cone, given by its edges, or polygon, given by its corners (x, y, 1), cut to dot(side,
+ * edge) >= 0.
  */
 std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm::dvec3& side);
 
 /**
- * Geometry of a shear image. The volume is seen with its axes permuted: (i, j) in the slice, k
- * along the principal axis.
+ * Geometry of a shear image. The axes of the volume are permuted: (i, j) in the slice, k along the
+ * principal axis.
  *
- * In parallel views voxel (i, j) of slice k lies at pixel u = i + position(k).x,
- * v = j + position(k).y; the ray of pixel (u, v) passes index (i, j) = (u, v) - position(z) at
- * depth z. The middle of the volume maps to the middle of the image, so that mirrored volumes have
- * mirrored images, and an axis without shear puts pixels on voxel centres. Shears are rounded to
- * multiples of 2^-24: all positions are then exact in double, and equal views cannot differ by
- * rounding. That turns rays by at most 2^-25 and moves no voxel of a 4096-slice volume by more than
- * 1/16000 pixel.
+ * In parallel views voxel (i, j) of slice k lies at pixel u = i + position(k).x, v = j +
+ * position(k).y. The ray of pixel (u, v) passes index (i, j) = (u, v) - position(z) at depth z. The
+ * centre of the volume maps to the centre of the image, so mirrored volumes have mirrored images,
+ * and an axis without shear has pixels on voxel centres. Shears are rounded to multiples of 2^-24.
+ * All positions are then exact in double, and equal views cannot differ by rounding. This rotates
+ * rays by at most 2^-25, and moves voxels of a 4096-slice volume by at most 1/16000 pixel.
  *
- * In perspective views the image holds rays through the eye that follow the principal axis most, in
- * one of its two directions. Their slopes are equidistant, from -1 to 1, where the images of two
- * axes meet. Pixels are a voxel wide (0.1 % less, and as much as makes their number odd) where
- * the volume is farthest from the eye, and narrower in all other slices, so that no voxel falls
- * between rays. Slopes and what rays pass
- * at the reference depth are rounded, to multiples of 2^-24 and 2^-20, the eye to 2^-10 of a voxel:
- * positions are exact here, too. No ray has slope 0 but for rounding: one that lies within a face
- * between voxels belongs to the higher ones.
+ * In perspective views the image contains the rays through the eye that follow the principal axis
+ * most, in one of its two directions. Their slopes are equidistant, from -1 to 1, where the images
+ * of two axes meet. Pixels are a voxel wide (0.1 % less, and reduced to make their number odd)
+ * where the volume is farthest from the eye, and narrower in all other slices, so no voxel lies
+ * between rays. Slopes are rounded to multiples of 2^-24, positions at the reference depth to
+ * 2^-20, and the eye to 2^-10 of a voxel, so all positions are exact. No ray has slope 0, except by
+ * rounding; a ray within a face between voxels belongs to the higher ones.
  */
 class ShearWarp
 {
@@ -74,60 +72,58 @@ public:
   ShearWarp() = default;
 
   /**
-   * Factorises a parallel view. valid() is false when the view flattens the volume to a line or a
-   * point.
+   * Factorises a parallel view. valid() is false if the view maps the volume to a line or a point.
    */
   explicit ShearWarp(const View& view, Meets meets = Meets::All);
 
   /**
-   * Factorises any view: one image for a parallel view, up to six for a perspective one, those that
-   * show some of the volume; none if nothing of it can be seen.
-   * @return  false if the view flattens the volume to a line or a point; there are no images then
+   * Factorises any view: one image for a parallel view, up to six for a perspective one. Images
+   * that show nothing of the volume are omitted.
+   * @return  false, without images, if the view maps the volume to a line or a point
    */
   static bool factorise(const View& view, std::vector<ShearWarp>& images, Meets meets = Meets::All);
 
   /**
-   * Sets `part` to the geometry of a box of this volume's voxels as a volume by itself: voxels,
-   * slices and depths are counted from the box on, pixels and rays are those of this image, and all
-   * of the box's positions are exact. The part has no warp of its own.
-   * @param first       the box's first voxel and
-   * @param dimensions  its voxels, along the axes of the volume
+   * Sets `part` to the geometry of a box of this volume's voxels, as a volume of its own. Voxels,
+   * slices and depths are counted from the box. Pixels and rays are those of this image, and all
+   * positions are exact. The part has no warp.
+   * @param first       the first voxel of the box
+   * @param dimensions  the voxels of the box, along the axes of the volume
    */
   void findPart(const glm::ivec3& first, const glm::ivec3& dimensions, ShearWarp& part) const;
 
   bool valid() const { return this->Valid; }
   /// The volume axis along which slices are stacked, 0, 1 or 2.
   int principalAxis() const { return this->Axes[2]; }
-  /// The volume axes that i, j and k run along.
+  /// The volume axes of i, j and k.
   const std::array<int, 3>& axes() const { return this->Axes; }
   /// Voxels along i, j and k.
   const glm::ivec3& size() const { return this->Size; }
-  /// Of a part, the voxel (i, j, k) of the whole that is its first one.
+  /// Of a part: its first voxel (i, j, k) in the whole.
   const glm::ivec3& first() const { return this->FirstVoxel; }
   /// See View.
   bool showsBoxes() const { return this->ShowsBoxes; }
-  /// Whether the view is an overview, where what the screen's pixels show is sought in all of their
-  /// areas.
+  /// Whether the view is an overview, in which pixels show their areas.
   bool isOverview() const { return this->Overview; }
   int width() const { return this->ImageSize.x; }
   int height() const { return this->ImageSize.y; }
 
-  /// Columns and rows that are rays of the view. In perspective images there are a few columns
-  /// more, to fill registers, whose rays are far beside the volume.
+  /// Columns and rows that are rays of the view. Perspective images have a few more columns, to
+  /// fill registers, whose rays are far beside the volume.
   const glm::ivec2& rayCount() const { return this->RayCount; }
 
   bool isPerspective() const { return this->Perspective; }
   const AxisRays& columns() const { return this->Columns; }
   const AxisRays& rows() const { return this->Rows; }
-  /// The depth at which pixels' rays are at AxisRays::at: the middle of parallel views, in
-  /// perspective where the volume is farthest from the eye.
+  /// The depth of AxisRays::at: the centre of the volume in parallel views, in perspective where
+  /// the volume is farthest from the eye.
   double reference() const { return this->Reference; }
-  /// Voxels from one pixel to the next at that depth.
+  /// The distance of pixels in voxels at that depth.
   double pitch() const { return this->Pitch; }
-  /// The geometry of one pixel of the image, as pixel (0, 0); in perspective images
-  /// with columns beside it as there are beside other images.
+  /// The geometry of one pixel of the image, as pixel (0, 0). Perspective images have further
+  /// columns, as other images do.
   void takePixel(const glm::ivec2& pixel, ShearWarp& part) const;
-  /// Index coordinates where the ray of pixel (u, v) is at depth z.
+  /// Index coordinates of the ray of pixel (u, v) at depth z.
   glm::dvec2 onRay(int u, int v, double z) const
   {
     const double t = z - this->Reference;
@@ -140,12 +136,12 @@ public:
   {
     return glm::clamp(glm::dvec2(k - 0.5, k + 0.5), this->DepthRange.x, this->DepthRange.y);
   }
-  /// Where on their way through slice k rays meet voxels: between its faces, or in its middle.
+  /// The depths between which rays select the voxels of slice k: those of faces(), or the middle.
   glm::dvec2 passage(int k) const
   {
     return this->Met == Meets::Nearest ? glm::dvec2(k) : this->faces(k);
   }
-  /// The slices whose middle lies before the eye; in parallel views all.
+  /// The slices whose centre is in front of the eye; in parallel views all.
   const Span& slices() const { return this->SlicesSeen; }
   /// Of perspective views, (i, j, k).
   const glm::dvec3& eye() const { return this->Eye; }
@@ -155,31 +151,30 @@ public:
   /// Of parallel views: voxels from the image's first pixel to voxel (0, 0) of the middle slice.
   const glm::ivec2& margin() const { return this->Margin; }
 
-  /// Of parallel views: where voxel (0, 0) of slice (or depth) z lies in the image.
+  /// Of parallel views: the position of voxel (0, 0) of slice (or depth) z in the image.
   glm::dvec2 position(double z) const
   {
     return glm::dvec2(this->Margin) + this->Shear * (z - this->Middle);
   }
 
   /**
-   * Where the image shows a point (i, j, k), in homogeneous pixels: (u w, v w, w). In parallel
-   * views w is 1; in perspective ones it is the distance from the eye along the principal axis,
-   * negative behind the eye.
+   * The homogeneous pixel (u w, v w, w) of a point (i, j, k). In parallel views w is 1. In
+   * perspective views it is the distance from the eye along the principal axis, negative behind the
+   * eye.
    */
   glm::dvec3 pixelOf(const glm::dvec3& point) const;
 
   /**
-   * What the rays of a parallel view meet in slice k. Voxels are boxes; one counts when the ray
-   * crosses it over a positive length, so a ray that leaves a voxel through an edge or a corner
-   * does not touch the voxels beside it. Rays never run within a face: without shear they pass
-   * voxel centres. If rays meet the nearest voxel only, each voxel is met by one ray; a ray that
-   * passes between two meets the one that it runs to.
+   * The path of the rays of a parallel view in slice k. Voxels are boxes. A voxel counts if the ray
+   * crosses it over a positive length, so a ray through an edge or a corner does not count for the
+   * other voxels there. Rays never lie within a face: without shear they pass through voxel
+   * centres. With Meets::Nearest each voxel belongs to one ray; a ray between two voxels belongs to
+   * the one that it runs to.
    */
   RayPath rayPath(int k) const;
 
   /**
-   * The voxels that one ray meets in slice k, by ascending depth, in any view: di and dj are
-   * indices.
+   * The voxels of one ray in slice k, by ascending depth, in any view; di and dj are indices.
    */
   RayPath voxelsOnRay(int u, int v, int k) const;
 
@@ -189,24 +184,25 @@ public:
   Span coverage(const RayPath& path, int v) const;
 
   /**
-   * A half-space of index space in the pixels of a parallel view: dot(result, (u, v, k, 1)) >= 0.
+   * A half-space of index space in the coordinates of a parallel view: dot(result, (u, v, k, 1)) >=
+   * 0.
    */
   glm::dvec4 inPixels(const glm::dvec4& halfSpace) const;
 
   /**
-   * From viewport pixels (centres at integers) to shear pixels, in homogeneous coordinates:
-   * (u w, v w, w) = m (x, y, 1). In parallel views w is 1; in perspective ones it is the distance
-   * from the eye along the principal axis, in voxels per unit of clip space's w: positive for rays
-   * in the image's direction.
+   * From viewport pixels (centres at integers) to homogeneous shear pixels: (u w, v w, w) = m (x,
+   * y, 1). In parallel views w is 1. In perspective views it is the distance from the eye along the
+   * principal axis, in voxels per unit of clip space's w, positive for rays in the image's
+   * direction.
    */
   const glm::dmat3& screenToShear() const { return this->ScreenToShear; }
   /// The inverse.
   const glm::dmat3& shearToScreen() const { return this->ShearToScreen; }
 
-  /// Whether the viewer is nearest to the last slice.
+  /// Whether the last slice is nearest to the viewer.
   bool reversed() const { return this->Reversed; }
 
-  /// Whether the shear image is the same (the warp may differ, and the viewer's side).
+  /// Whether the shear images are equal. The warps and the viewer's side may differ.
   bool sameShear(const ShearWarp& other) const;
 
 private:
@@ -215,8 +211,8 @@ private:
   void computeWarp(const glm::dvec4& rowX, const glm::dvec4& rowY);
   void setParallelRays();
 
-  /// The rays of a perspective view: through the eye, of viewport pixel (x, y) along
-  /// directions (x, y, 1), in index space.
+  /// The rays of a perspective view in index space: through the eye, for viewport pixel (x, y) in
+  /// direction directions (x, y, 1).
   struct Rays
   {
     glm::dvec3 eye;
@@ -246,7 +242,7 @@ private:
   std::int64_t Steps = 0;              // of slopes from -1 to 1
   std::array<std::int64_t, 2> First{}; // the steps of pixel (0, 0)
   double Reference = 0.0, Pitch = 1.0;
-  glm::dvec2 DepthRange{ 0.0 }; // of the volume, as far as it lies before the eye
+  glm::dvec2 DepthRange{ 0.0 }; // of the volume in front of the eye
   Span SlicesSeen;
   AxisRays Columns, Rows;
   glm::dmat3 ScreenToShear{ 1.0 };

@@ -22,9 +22,9 @@ struct Cropping
 {
   static constexpr std::uint32_t All = (1u << 27) - 1;
 
-  /// Along each axis of index space, where the middle region begins and ends; it has both planes.
+  /// The middle region along each axis of index space, both planes included.
   std::array<glm::dvec2, 3> planes{};
-  /// Bit i + 3 j + 9 k: whether region (i, j, k) is shown, 0 being the lowest along its axis.
+  /// Bit i + 3 j + 9 k: whether region (i, j, k) is shown. Region 0 is the lowest along its axis.
   std::uint32_t flags = All;
 
   bool cuts() const { return this->flags != All; }
@@ -35,8 +35,8 @@ struct Cropping
 };
 
 /**
- * One volume seen in one viewport, as plain numbers. Index space: voxel centres lie at integers,
- * the volume's first voxel at (0, 0, 0).
+ * One volume in one viewport. In index space voxel centres are integers, and the first voxel is (0,
+ * 0, 0).
  */
 struct View
 {
@@ -48,7 +48,7 @@ struct View
   glm::ivec2 viewport{ 0 };
   /// Whether the picture ends at the outermost voxels' boxes, not at their centres.
   bool showsBoxes = false;
-  /// Half-spaces of index space that samples must lie in: dot(h, (x, y, z, 1)) >= 0.
+  /// Half-spaces of index space that contain the samples: dot(h, (x, y, z, 1)) >= 0.
   std::vector<glm::dvec4> halfSpaces;
   /// In index space.
   Cropping cropping;
@@ -62,7 +62,7 @@ struct View
 };
 
 /**
- * Whether the matrix holds numbers only; cameras without extent divide by zero.
+ * Whether the matrix is finite; that of cameras without extent is not.
  */
 inline bool isFinite(const View& view)
 {
@@ -80,8 +80,8 @@ inline bool isFinite(const View& view)
 }
 
 /**
- * Whether all rays of the view are parallel, told by the matrix. Those that turn by less over the
- * volume than 2^-20 are: no sample moves by more than 1/500 voxel in 4096.
+ * Whether all rays of the view are parallel, from the matrix. Rays whose direction changes by less
+ * than 2^-20 over the volume count as parallel: no sample moves by more than 1/500 voxel in 4096.
  */
 inline bool isParallel(const View& view)
 {

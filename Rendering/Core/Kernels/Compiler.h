@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What compilers spell differently. In an anonymous namespace because kernels include it, see
+ * Differences between compilers. In an anonymous namespace because kernels include it, see
  * Kernels.cxx.
  */
 #ifndef splattingCompiler_h
@@ -10,7 +10,7 @@
 #if defined(__AVX2__)
 #include <immintrin.h>
 #if defined(__GNUC__) && !defined(__clang__)
-// GCC's own intrinsics start from registers that they leave undefined on purpose.
+// GCC's intrinsics start from registers that are undefined on purpose.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #endif
@@ -18,7 +18,7 @@
 #include <emmintrin.h>
 #endif
 
-/// For functions of loops in which a call costs more than compilers expect.
+/// For functions in loops, where a call is expensive.
 #if defined(__GNUC__)
 #define SPLATTING_INLINE __attribute__((always_inline)) inline
 #else
@@ -29,7 +29,7 @@ namespace splatting
 {
 namespace
 {
-/// Asks memory for what will be read soon. The place need not be readable.
+/// Loads memory that will be read soon. The address need not be readable.
 inline void prefetch(const void* place)
 {
 #if defined(__GNUC__)

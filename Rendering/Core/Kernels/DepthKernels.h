@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Where rays are cut, and the slices that are left. For Kernels.cxx only, which says why all of
- * this is in an anonymous namespace.
+ * Cuts of rays, and the remaining slices. For Kernels.cxx only, which explains the anonymous
+ * namespace.
  */
 #ifndef splattingDepthKernels_h
 #define splattingDepthKernels_h
@@ -14,7 +14,7 @@ namespace splatting
 {
 namespace
 {
-/// Without a function call on the baseline of x86-64. For doubles far below 2^51.
+/// Without a function call on baseline x86-64. For doubles far below 2^51.
 template <class D>
 inline D nearestInteger(D x)
 {
@@ -38,7 +38,7 @@ void endAtPlane(const PlaneRow& plane, double* __restrict far, std::ptrdiff_t n)
   }
 }
 
-/// The slices between depths: a register of them, or one.
+/// The slices between depths, for a register or one element.
 template <class D>
 struct SlicesLeft
 {
@@ -47,15 +47,15 @@ struct SlicesLeft
   inline SlicesLeft(D near, D far, int begin, int end)
   {
     constexpr double rounding = DepthLimits::Rounding;
-    // Also keeps infinities out of the arithmetic.
+    // Also excludes infinities from the arithmetic.
     const D least = D{} + DepthLimits::Before, most = D{} + DepthLimits::Beyond;
     const D low = smaller(larger(near, least), most), high = smaller(larger(far, least), most);
-    // Up and down: with the margins these are no integers. Depths are -1 at least.
+    // Rounds up and down: with the margins these are no integers. Depths are at least -1.
     const D margin = rounding * (1.0 + larger(low, -low));
     const D lowest = nearestInteger(low - margin + 0.5);
     const D highest = nearestInteger(high + rounding * (1.0 + larger(high, -high)) - 0.5);
     const auto isThin = (lowest > highest) & (high - low > margin);
-    // Of two slices that are as near, the higher one.
+    // Of two slices at the same distance the higher one is selected.
     const D middle = nearestInteger(0.5 * (low + high) + rounding);
     this->first = larger(isThin ? middle : lowest, D{} + begin);
     this->last = smaller(isThin ? middle : highest, D{} + (end - 1));

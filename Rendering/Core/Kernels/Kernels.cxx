@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Compiled once per instruction set, with SPLATTING_KERNELS the name of the table that it defines
-// and SPLATTING_VECTOR_BYTES the width of a register. It must use no inline function from outside
-// but intrinsics (not even std::max): the linker keeps one copy of those for the whole library, and
-// it might be the one that only the newest processors can run. For the same reason all is in an
-// anonymous namespace, but the table.
+// Compiled once per instruction set. SPLATTING_KERNELS is the name of the table that it defines,
+// and SPLATTING_VECTOR_BYTES the width of a register. It must not use inline functions from
+// elsewhere except intrinsics (not even std::max): the linker keeps one copy of them for the whole
+// library, and this could be a copy that only the newest processors can run. For the same reason
+// everything except the table is in an anonymous namespace.
 #include "Kernels/Kernels.h"
 #include "Kernels/DepthKernels.h"
 #include "Kernels/PerspectiveKernels.h"
@@ -28,7 +28,7 @@ void widen(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdif
 {
   using A = Accumulator<T>;
   constexpr std::ptrdiff_t w = width<A>;
-  constexpr std::ptrdiff_t line = 64 / sizeof(T); // of a cache
+  constexpr std::ptrdiff_t line = 64 / sizeof(T); // of the cache
   for (int r = 0; r < rows; ++r, row += stride, out += outStride)
   {
     for (std::ptrdiff_t x = 0; x < n && ahead != 0; x += line)
@@ -81,7 +81,7 @@ struct SurveyBlock
         least[v] = smaller(value, least[v]);
         if constexpr (!std::numeric_limits<T>::is_integer)
         {
-          // Only NaN and infinities are no zero when subtracted from themselves.
+          // Only NaN and infinities differ from themselves by something other than 0.
           this->odd |= value - value != 0;
         }
       }
@@ -176,7 +176,7 @@ std::ptrdiff_t exceed(const P* samples, const P* limits, std::int32_t* found, st
   constexpr std::ptrdiff_t w = width<P>;
   constexpr std::ptrdiff_t word = w * sizeof(P) < 8 ? w : 8 / sizeof(P); // elements
   std::int32_t* end = found;
-  const auto take = [&](std::ptrdiff_t x) // without a branch, which could not be foreseen
+  const auto take = [&](std::ptrdiff_t x) // without an unpredictable branch
   {
     *end = static_cast<std::int32_t>(x);
     end += samples[x] > limits[x];
@@ -226,8 +226,8 @@ void bound(A* __restrict own, const A* __restrict before, const A* __restrict af
   }
 }
 
-/// What points on the screen mix, `chunk` of them at a time: each its pixel and the three
-/// beyond it along u and v.
+/// The pixels that points on the screen interpolate, `chunk` points at a time: each point's pixel
+/// and its three neighbours along u and v.
 template <class A>
 struct BilinearTaps
 {
@@ -237,7 +237,7 @@ struct BilinearTaps
 
   inline void set(std::int32_t x, double u, double v, std::int32_t rowLength)
   {
-    const std::int32_t i = static_cast<std::int32_t>(u); // both positive: truncation is floor
+    const std::int32_t i = static_cast<std::int32_t>(u); // both positive, so truncation is floor
     const std::int32_t j = static_cast<std::int32_t>(v);
     this->fu[x] = static_cast<A>(u - i);
     this->fv[x] = static_cast<A>(v - j);
@@ -246,7 +246,8 @@ struct BilinearTaps
   inline void mix(
     const A* __restrict image, std::int32_t rowLength, A* __restrict out, std::int32_t count) const
   {
-    // Neighbours along u are fetched as one: gathering elements takes twice as long.
+    // Neighbours along u are fetched together, because gathering single elements takes twice as
+    // long.
     struct Pair
     {
       A left, right;
@@ -270,7 +271,7 @@ template <class A>
 void interpolate(const A* __restrict image, std::ptrdiff_t stride, const double start[2],
   const double step[2], A* __restrict out, std::ptrdiff_t n)
 {
-  // In steps that each vectorise: points, then the four neighbours, then their mixture.
+  // In steps that are vectorised separately: points, their four neighbours, and the interpolation.
   const double u0 = start[0], v0 = start[1], du = step[0], dv = step[1];
   const std::int32_t rowLength = static_cast<std::int32_t>(stride);
   BilinearTaps<A> taps;
@@ -326,7 +327,7 @@ void lookUp(const A* __restrict values, A low, A scale, std::int32_t last,
     }
     for (std::ptrdiff_t x = 0; x < count; ++x)
     {
-      // An assignment would be compiled to instructions that gather, which take longer.
+      // An assignment would be compiled to gather instructions, which are slower.
       std::memcpy(out + begin + x, colors + at[x], sizeof(std::uint32_t));
     }
   }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * The innermost loops: one run of voxels in, one run of pixels out. Kernels.cxx is compiled once
- * per instruction set and chosen from at run time. Each loop does the same IEEE operations in the
- * same order whatever the vector width (no fused multiply-add, no reassociation), so every
+ * per instruction set, which is selected at run time. Each loop does the same IEEE operations in
+ * the same order for any vector width (no fused multiply-add, no reassociation), so every
  * instruction set gives the same bits.
  */
 #ifndef splattingKernels_h
@@ -15,7 +15,7 @@
 
 namespace splatting
 {
-/// Pixels along a tile of the image, the unit in which parts of slices are skipped, and its rows.
+/// Pixels and rows of a tile of the image, the unit in which parts of slices are skipped.
 constexpr int TileWidth = 8;
 constexpr int TileHeight = 4;
 
@@ -24,10 +24,11 @@ enum class InstructionSet
   Baseline,
   AVX2,
   AVX512,
-  AVX512VBMI ///< and instructions that pick bytes
+  AVX512VBMI ///< and instructions that select bytes
 };
 
-/// Most rows of voxels that a row of pixels meets at a time: three in each of four slices.
+/// The largest number of rows of voxels that a row of pixels reads at a time: three in each of four
+/// slices.
 constexpr int MostRows = 12;
 
 /// Half-open range of integers: pixels, voxels, slices, ...
@@ -38,8 +39,8 @@ struct Span
   bool empty() const { return this->end <= this->begin; }
 };
 
-/// Pixels at an end of a row, a register of them from `first` on, that see some of the rows of
-/// voxels: row r those in [begin[r], end[r]), relative to `first`. All rows are read there.
+/// A register of pixels at an end of a row, from `first` on, that read some of the rows of voxels:
+/// row r at [begin[r], end[r]), relative to `first`. All rows are readable there.
 struct Rim
 {
   int first;
@@ -47,7 +48,7 @@ struct Rim
   const int* end;
 };
 
-/// Rows of pixels, and the rows of voxels that the first one meets, shifted so that pixel x meets
+/// Rows of pixels, and the rows of voxels of the first one, shifted so that pixel x reads
 /// rows[r][x].
 template <class T>
 struct Sweep
@@ -58,16 +59,16 @@ struct Sweep
   const T* rows[MostRows];
   int count;
   std::ptrdiff_t rowStride;
-  std::ptrdiff_t ahead; ///< to voxels that will be needed next, if memory does not foresee them
-  const Span* runs;     ///< the pixels that count
+  std::ptrdiff_t ahead; ///< to voxels that are needed next, if memory does not prefetch them
+  const Span* runs;     ///< the pixels to raise
   int runCount;
   Span valid; ///< the pixels that all rows have voxels for
   Rim rims[2];
   int rimCount;
 };
 
-/// What the rays of a perspective image do in one slice; see AxisSteps and AxisPicks for the
-/// arrays, which begin with the first column and the first row.
+/// The rays of a perspective image in one slice. See AxisSteps and AxisPicks for the arrays, which
+/// begin with the first column and the first row.
 template <class T>
 struct CrossedSlice
 {
@@ -79,7 +80,8 @@ struct CrossedSlice
   const void *entryLanes, *exitLanes;
 };
 
-/// Rows of pixels of a perspective image and the voxels that their rays cross in one slice or two.
+/// Rows of pixels of a perspective image, and the voxels that their rays cross in one or two
+/// slices.
 template <class T>
 struct Crossing
 {
@@ -89,15 +91,15 @@ struct Crossing
   CrossedSlice<T> slices[2];
   int count; ///< of slices
   std::ptrdiff_t rowStride;
-  std::ptrdiff_t ahead;       ///< to voxels that will be needed next
+  std::ptrdiff_t ahead;       ///< to voxels that are needed next
   std::int32_t columns, rows; ///< of voxels
   const T* none;              ///< a row of the least value
-  const Span* runs; ///< the pixels that count: multiples of 64 bytes, but for the row's end
+  const Span* runs; ///< the pixels to raise: multiples of 64 bytes, except at the row's end
   int runCount;
 };
 
-/// A rectangle of footprint weights and the voxels that it meets first, which are of type A or, as
-/// the volume has them, of another one.
+/// A rectangle of footprint weights, and the first voxels that it weighs, of type A or, without
+/// copies, of the volume's type.
 template <class A, class S = A>
 struct SplatPart
 {
@@ -107,7 +109,7 @@ struct SplatPart
   int columns;
 };
 
-/// A rectangle of the image, and the parts of the footprint: one per slice that adds to it.
+/// A rectangle of the image, and the parts of the footprint: one per contributing slice.
 template <class A, class S = A>
 struct Splat
 {
@@ -118,8 +120,8 @@ struct Splat
   std::ptrdiff_t sourceStride; ///< from one row of voxels to the next
   SplatPart<A, S> parts[3];
   int partCount;
-  A base = 0;               ///< what is subtracted from the volume's own voxels
-  std::ptrdiff_t ahead = 0; ///< from these to voxels that will be needed next, or 0
+  A base = 0;               ///< subtracted from the volume's voxels
+  std::ptrdiff_t ahead = 0; ///< from these to voxels that are needed next, or 0
 };
 
 /// Loops over voxels of type T.
@@ -128,33 +130,33 @@ struct VoxelLoops
 {
   /// Elements of a register.
   std::ptrdiff_t lanes;
-  /// How many neighbouring pixels of a perspective image pick from one group of as many voxels.
+  /// Neighbouring pixels of a perspective image that select from one group of as many voxels.
   int group;
-  /// image[x] = max(image[x], rows[0..count)[x]); NaN never wins.
+  /// image[x] = max(image[x], rows[0..count)[x]), without NaN.
   void (*maximum)(T* image, const T* const* rows, int count, std::ptrdiff_t n);
   /// out[x] = the largest of rows[0..count)[x], in whole registers: up to lanes - 1 elements beyond
   /// n are read and written as well.
   void (*largest)(const T* const* rows, int count, T* out, std::ptrdiff_t n);
-  /// `maximum` for all rows of pixels: for the runs, as far as they are valid and perhaps some
-  /// valid pixels beside them, and for the rims.
+  /// `maximum` for all rows of pixels: for the valid pixels of the runs, possibly some valid pixels
+  /// beside them, and for the rims.
   void (*sweep)(const Sweep<T>& sweep);
-  /// `maximum` of the voxels that rays cross, each pixel its own.
+  /// `maximum` of the voxels that rays cross, individually for each pixel.
   void (*cross)(const Crossing<T>& crossing);
-  /// out[x] = row[x] - base, which must be exact, for some rows of n elements. row[x + ahead] will
-  /// be needed next; unless ahead is 0.
+  /// out[x] = row[x] - base, which must be exact, for some rows of n elements. row[x + ahead] is
+  /// needed next, unless ahead is 0.
   void (*widen)(const T* row, std::ptrdiff_t stride, Accumulator<T>* out, std::ptrdiff_t outStride,
     Accumulator<T> base, std::ptrdiff_t n, int rows, std::ptrdiff_t ahead);
-  /// WorksheetLoops::splat from the volume's own voxels; nullptr for types that take too long.
+  /// WorksheetLoops::splat from the volume's voxels; nullptr for types for which it is slower.
   void (*splatVoxels)(const Splat<Accumulator<T>, T>& splat);
-  /// maxima[x] = max(maxima[x], rows[0..count)[x]) and low = min(low, all of them), NaN aside; sets
-  /// nonFinite if there are NaN or infinity.
+  /// maxima[x] = max(maxima[x], rows[0..count)[x]) and low = min(low, all of them), without NaN;
+  /// sets nonFinite if there are NaN or infinities.
   void (*survey)(
     const T* const* rows, int count, std::ptrdiff_t n, T* maxima, T& low, bool& nonFinite);
   /// out[x] = the largest of row[4 x], row[4 x + 1], row[4 x + 2] and row[4 x + 3].
   void (*largestOfFour)(const T* row, T* out, std::ptrdiff_t n);
 };
 
-/// Loops over pixels of type P that compare tiles of the image with what is still to come.
+/// Loops over pixels of type P that compare tiles of the image with bounds.
 template <class P>
 struct TileLoops
 {
@@ -163,13 +165,13 @@ struct TileLoops
   /// flags[t] = whether bounds[t] > minima[t].
   void (*exceeds)(const P* bounds, const P* minima, unsigned char* flags, std::ptrdiff_t n);
   /// Writes the pixels x with samples[x] > limits[x] to `found`, which has room for n, and returns
-  /// how many they are.
+  /// their number.
   std::ptrdiff_t (*exceed)(
     const P* samples, const P* limits, std::int32_t* found, std::ptrdiff_t n);
 };
 
-/// Loops over the samples that a row of pixels has in one slice. A NaN sample is none, a NaN pixel
-/// has had none yet. Only pixels with mask[x] != 0 change; without a mask all do.
+/// Loops over the samples of a row of pixels in one slice. A NaN sample is none; a NaN pixel has no
+/// sample yet. Only pixels with mask[x] != 0 change; without a mask all do.
 template <class P>
 struct RayLoops
 {
@@ -177,29 +179,29 @@ struct RayLoops
   void (*raise)(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n);
   /// image[x] = min(image[x], samples[x]).
   void (*lower)(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n);
-  /// The same as `raise` until ended[x]: from the threshold on, the first lower sample ends it.
+  /// As `raise`, until ended[x]: above the threshold the first lower sample ends it.
   void (*climb)(P* image, unsigned char* ended, P threshold, const P* samples,
     const unsigned char* mask, std::ptrdiff_t n);
-  /// winners[x] = place for the first sample of a ray (winners[x] < 0 before) and where the image
-  /// is not what it was `before` the samples were taken.
+  /// winners[x] = place for the first sample of a ray (winners[x] < 0), and where the image differs
+  /// from `before`.
   void (*note)(std::int32_t* winners, std::int32_t place, const P* before, const P* image,
     const P* samples, const unsigned char* mask, std::ptrdiff_t n);
 };
 
-/// How depth shading dims the samples of slice k in a row of pixels whose rays have slices first[x]
-/// to last[x].
+/// The factors of depth shading for the samples of slice k, in a row of pixels whose rays have
+/// slices first[x] to last[x].
 template <class A>
 struct Shade
 {
   A low, ambient, changeRate;
-  A none; ///< what stands where there is no sample; NaN does so always
+  A none; ///< the value without a sample; NaN is also none
   std::int32_t k;
   bool reversed; ///< whether the ray comes from the last slice
   const std::int16_t* first;
   const std::int16_t* last;
 };
 
-/// The least and greatest first and last slices that the rays of tiles are cut to.
+/// The least and greatest first and last slices of the rays of tiles.
 struct TileExtremes
 {
   std::int16_t *leastFirst, *greatestFirst, *leastLast, *greatestLast; ///< arrays
@@ -208,33 +210,33 @@ struct TileExtremes
 /// Of depths along rays, in slices.
 struct DepthLimits
 {
-  static constexpr double Rounding = 1e-9; ///< that far outside is inside
-  /// Less than the first slice, and more than the last one.
+  static constexpr double Rounding = 1e-9; ///< tolerance of cuts
+  /// before the first slice, and beyond the last one
   static constexpr double Before = -1.0, Beyond = 32767.0;
 };
 
-/// A plane along a row of pixels: the ray of pixel x meets it at (slope (u + x) + rest) scale.
+/// A plane along a row of pixels: the ray of pixel x crosses it at (slope (u + x) + rest) scale.
 struct PlaneRow
 {
   double slope, rest, scale;
   int u;
 };
 
-/// Loops over the depths that rays are cut at, and over the slices that are left.
+/// Loops over the depths at which rays are cut, and over the remaining slices.
 struct CutLoops
 {
-  /// near[x] = max(near[x], where the ray meets the plane).
+  /// near[x] = max(near[x], the depth of the plane on the ray).
   void (*beginAtPlane)(const PlaneRow& plane, double* near, std::ptrdiff_t n);
-  /// far[x] = min(far[x], where the ray meets the plane).
+  /// far[x] = min(far[x], the depth of the plane on the ray).
   void (*endAtPlane)(const PlaneRow& plane, double* far, std::ptrdiff_t n);
-  /// The first and last of slices [begin, end) that lie between the depths, as RayIntervals says;
-  /// first > last if none do. Whether there are rays that do not have all.
+  /// The first and last of slices [begin, end) between the depths, see RayIntervals; first > last
+  /// if there are none. Returns whether any ray has not all of them.
   bool (*slicesBetween)(const double* near, const double* far, int begin, int end,
     std::int16_t* first, std::int16_t* last, std::ptrdiff_t n);
   /// The extremes of all tiles of some rows of n pixels.
   void (*tileExtremes)(const std::int16_t* first, const std::int16_t* last, std::ptrdiff_t stride,
     int rows, std::ptrdiff_t n, const TileExtremes& tiles);
-  /// How much of tiles counts in slices [begin, end): 0 none, 1 some, 2 all.
+  /// The visible share of tiles in slices [begin, end): 0 none, 1 some, 2 all.
   void (*tileShares)(
     const TileExtremes& tiles, int begin, int end, unsigned char* shares, std::ptrdiff_t n);
 };
@@ -242,13 +244,13 @@ struct CutLoops
 /// Loops over the rays of perspective images.
 struct PerspectiveLoops
 {
-  /// The voxels in which rays enter and leave a slice, as in AxisSteps::Slice: ray x enters at
-  /// at[x] + slope[x] * from and leaves at at[x] + slope[x] * to.
+  /// The voxels in which rays enter and leave a slice, see AxisSteps::Slice. Ray x enters at at[x]
+  /// + slope[x] * from and leaves at at[x] + slope[x] * to.
   void (*steps)(const double* at, const double* slope, double from, double to, std::int32_t size,
     std::int32_t* first, std::int32_t* last, double* time, std::int16_t* tick, std::ptrdiff_t n);
 };
 
-/// Integers that pick elements of type A from a register.
+/// Integers that select elements of type A from a register.
 template <class A>
 using LaneOf = std::conditional_t<sizeof(A) == 4, std::int32_t, std::int64_t>;
 
@@ -269,7 +271,7 @@ struct AxisWeights
   std::ptrdiff_t stride;
 };
 
-/// Some rows of voxels, and how each pixel of a row weighs them on its own.
+/// Some rows of voxels, and individual weights of each pixel of a row.
 template <class A>
 struct Resampling
 {
@@ -285,16 +287,16 @@ struct Resampling
   int taps;
 };
 
-/// Worksheets from voxels of which some are not finite.
+/// Worksheets from voxels that are not all finite.
 template <class A>
 struct Averages
 {
   A* image; ///< NaN is "no sample yet"
-  /// The worksheets of the finite voxels, the others being 0, and of which are finite: averages are
+  /// The worksheets of the finite voxels, with 0 for the others, and of their weights. Averages are
   /// the quotients.
   const A *sums, *weights;
-  A whole; ///< what weights are at least where all voxels are finite: `sums` are averages
-  /// The worksheets of which voxels are positive and negative infinities, or nullptr.
+  A whole; ///< lower bound of weights if all voxels are finite; then `sums` are averages
+  /// The worksheets of positive and of negative infinities, or nullptr.
   const A *positive, *negative;
 };
 
@@ -302,28 +304,28 @@ struct Averages
 template <class A>
 struct WorksheetLoops
 {
-  /// How many neighbouring pixels of a perspective image pick from one group of as many voxels.
+  /// Neighbouring pixels of a perspective image that select from one group of as many voxels.
   int group;
   void (*axisWeights)(const AxisWeights<A>& weights, std::ptrdiff_t n);
   /// out[x] = the sum of taps times voxels, for all rows and x from begin to end, in whole
-  /// registers, as voxels and weights are read.
+  /// registers; voxels and weights are read likewise.
   void (*resample)(const Resampling<A>& rows, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// out[x] = the sum of weights[r] rows[r][x].
   void (*blend)(const A* const* rows, const A* weights, int count, A* out, std::ptrdiff_t n);
   /// image[x] = max(image[x], the sum of weights[r] rows[r][x]).
   void (*raiseBlend)(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
-  /// Every pixel of the rectangle: the maximum of it and the weighted sum of its voxels, which must
-  /// be finite.
+  /// Sets every pixel of the rectangle to the maximum of it and the weighted sum of its voxels,
+  /// which must be finite.
   void (*splat)(const Splat<A>& splat);
-  /// Pixels become the larger of themselves and the averages.
+  /// Sets pixels to the larger of themselves and the averages.
   void (*raiseAverages)(const Averages<A>& averages, std::ptrdiff_t n);
   /// Whether there are neither NaN nor infinities.
   bool (*allFinite)(const A* voxels, std::ptrdiff_t n);
-  /// Tells with 1 and 0 which voxels are finite and, unless these are nullptr, which are positive
-  /// and negative infinities; those that are not finite become 0.
+  /// Flags finite voxels with 1 and, unless these are nullptr, positive and negative infinities.
+  /// Voxels that are not finite become 0.
   void (*separate)(A* voxels, A* finite, A* positive, A* negative, std::ptrdiff_t n);
-  /// `raise` by low + (samples[x] - low) * (ambient + (1 - n / N) changeRate), the sample being the
-  /// n-th of N from 0 on.
+  /// As `raise`, by low + (samples[x] - low) * (ambient + (1 - n / N) changeRate), for sample n of
+  /// N, from 0 on.
   void (*shade)(
     A* image, const Shade<A>& shade, const A* samples, const unsigned char* mask, std::ptrdiff_t n);
   /// Adds the samples in [low, high].
@@ -331,14 +333,13 @@ struct WorksheetLoops
     const unsigned char* mask, std::ptrdiff_t n);
   /// image[x] = clamp(image[x] + base, low, high); NaN stays.
   void (*finish)(A* image, A base, A low, A high, std::ptrdiff_t n);
-  /// What a worksheet can reach where it weighs its own voxels by 1 - `share` and its neighbours',
-  /// on one side or the other, by `share`, enlarged for rounding:
-  /// value = own[t] + share * max(0, max(before[t], after[t]) - own[t]),
-  /// own[t] = value + slack * max(|value|, magnitude).
+  /// The bounds of worksheets that weigh their own voxels by 1 - `share` and those of a
+  /// neighbouring layer by `share`, enlarged by rounding errors:
+  ///   value = own[t] + share * max(0, max(before[t], after[t]) - own[t]),
+  ///   own[t] = value + slack * max(|value|, magnitude).
   void (*bound)(
     A* own, const A* before, const A* after, A share, A slack, A magnitude, std::ptrdiff_t n);
-  /// out[x] = image interpolated bilinearly at start + x step, which must lie between pixels that
-  /// exist.
+  /// out[x] = image interpolated bilinearly at start + x step, between existing pixels.
   void (*interpolate)(const A* image, std::ptrdiff_t stride, const double start[2],
     const double step[2], A* out, std::ptrdiff_t n);
   /// The same at (u, v) of start + x step = (u w, v w, w).
@@ -387,10 +388,10 @@ struct Kernels
 {
 };
 
-/// The best instruction set that processor and build have.
+/// The best instruction set of both processor and build.
 InstructionSet bestInstructionSet();
 
-/// The loops for a set; a set that processor or build lack gives the best one below it.
+/// The loops for a set, or for the best lower one if processor or build do not have it.
 const Kernels& kernelsFor(InstructionSet set);
 
 /// "baseline", "AVX2", "AVX-512" or "AVX-512 VBMI".

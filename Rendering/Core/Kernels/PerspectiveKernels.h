@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The rays of perspective images and the voxels that they cross. For Kernels.cxx only, which says
- * why all of this is in an anonymous namespace.
+ * The rays of perspective images, and the voxels that they cross. For Kernels.cxx only, which
+ * explains the anonymous namespace.
  */
 #ifndef splattingPerspectiveKernels_h
 #define splattingPerspectiveKernels_h
@@ -16,12 +16,12 @@ namespace splatting
 {
 namespace
 {
-/// No element is less.
+/// The least element.
 template <class T>
 constexpr T Least = std::numeric_limits<T>::has_infinity ? -std::numeric_limits<T>::infinity()
                                                          : std::numeric_limits<T>::lowest();
 
-/// Of numbers that fit.
+/// For numbers in the range of the integer type.
 inline double roundedDown(double x)
 {
   const double whole = static_cast<double>(static_cast<std::int32_t>(x));
@@ -41,13 +41,13 @@ inline void steps(const double* __restrict at, const double* __restrict slope, d
   const double low = -2.0, high = size + 1.0;
   for (std::ptrdiff_t x = 0; x < n; ++x)
   {
-    // Seen from rays that run to lower voxels everything is mirrored.
+    // Mirrors rays that run to lower voxels.
     const double own = slope[x];
     const double turn = own < 0.0 ? -1.0 : 1.0;
     const double entry = turn * clamped(at[x] + own * from, low, high);
     const double exit = turn * clamped(at[x] + own * to, low, high);
-    // A point on a face belongs to the voxel that the ray runs in next to it; a ray that stays on
-    // it has but one.
+    // A point on a face belongs to the voxel that the ray crosses beside it. A ray within a face
+    // has one voxel.
     const double enters = roundedDown(entry + 0.5);
     const double before = -roundedDown(0.5 - exit);
     const double leaves = before > enters ? before : enters;
@@ -66,7 +66,7 @@ inline void steps(const double* __restrict at, const double* __restrict slope, d
   }
 }
 
-/// One pixel of one row, and the rows of voxels where rays enter a slice and leave it.
+/// One pixel of one row, and the rows of voxels where rays enter and leave a slice.
 template <class T>
 struct CrossedPixel
 {
@@ -75,7 +75,7 @@ struct CrossedPixel
   bool changesRows;
   double rowTime;
 
-  /// The voxels that it sees, and how many.
+  /// The voxels of its path. Returns their number.
   inline int path(std::ptrdiff_t x, T (&voxels)[3]) const
   {
     const Integer<T> enters = static_cast<const Integer<T>*>(this->slice.entryLanes)[x];
@@ -133,8 +133,8 @@ inline void crossRow(const Crossing<T>& c, int s, const Span& run, int v)
 }
 
 #if defined(__AVX2__)
-/// What some columns of pixels pick from the rows of voxels of a slice that were met last: rows of
-/// pixels are narrower than those of voxels, and the next one mostly meets the same.
+/// The voxels that some columns of pixels select from the last rows of voxels of a slice. Rows of
+/// pixels are narrower than rows of voxels, and the next one mostly crosses the same.
 template <class T>
 class PickedRows
 {
@@ -187,7 +187,7 @@ private:
       const std::ptrdiff_t x = this->Begin + n * width<T>, group = x / Picker<T>::group;
       const Register entry = loadRegister(static_cast<const Integer<T>*>(s.entryLanes) + x);
       const Register exit = loadRegister(static_cast<const Integer<T>*>(s.exitLanes) + x);
-      // A band of rows is too short for processors to notice that the next slice will come.
+      // A band of rows is too short for processors to predict the next slice.
       prefetch(voxels + ahead + s.entryBase[group]);
       store<T>(row.entry + n * width<T>,
         (Pack<T>)Picker<T>::pick(voxels, s.entryBase + group, entry, none));
@@ -203,8 +203,8 @@ private:
   Row Rows[3]; // two neighbours, and one without voxels
 };
 
-/// A slice as a row of pixels sees it. Copies, because for compilers pixels that are bytes might be
-/// part of the crossing.
+/// A slice for a row of pixels. It has copies, because compilers assume that writing byte pixels
+/// changes the crossing.
 template <class T>
 struct CrossedRow
 {
@@ -214,8 +214,7 @@ struct CrossedRow
   double rowTime;
   std::int16_t rowTick;
 
-  /// The larger of a register of pixels and the voxels on their paths; voxels that are NaN change
-  /// nothing.
+  /// The larger of a register of pixels and the voxels on their paths, without NaN.
   SPLATTING_INLINE Pack<T> raised(std::ptrdiff_t at, Pack<T> pixels) const
   {
     const Pack<T> entry = load<T>(this->first->entry + at);
@@ -224,11 +223,11 @@ struct CrossedRow
     {
       return best;
     }
-    // Where rays change both columns and rows there is a voxel between.
+    // Rays that change both columns and rows have a voxel between.
     TickOrder order = orderOf<width<T>>(this->columnTick + at, this->rowTick);
     if (order.ties)
     {
-      // Which face comes first takes more digits.
+      // The order of the faces needs more digits.
       order = orderOf<width<T>>(this->columnTime + at, this->rowTime);
     }
     const Register rowFirst = (Register)load<T>(this->last->entry + at);
@@ -238,7 +237,7 @@ struct CrossedRow
   }
 };
 
-/// Some columns of pixels and the slices that they cross.
+/// Some columns of pixels, and the slices that they cross.
 template <class T>
 class CrossedColumns
 {
@@ -281,9 +280,10 @@ private:
   PickedRows<T> Slices[2];
 };
 
-/// The registers of a run, for all rows of pixels. Where rows end within one it reaches into the
-/// next row, and leaves that as it is: beyond an image's edge rays meet no voxels. What the last
-/// rows have in such a register is left to do: pixels [first, run.end) of rows from the result on.
+/// Raises the registers of a run, for all rows of pixels. A register across the end of a row
+/// includes pixels of the next row, and leaves them unchanged, because rays beyond an image's edge
+/// cross no voxels. The caller raises the rest of the last rows: pixels [first, run.end) of rows
+/// from the result on.
 template <class T>
 inline int crossRegisters(const Crossing<T>& c, const Span& run, int& first)
 {
@@ -310,7 +310,8 @@ inline int crossRegisters(const Crossing<T>& c, const Span& run, int& first)
 template <class T>
 void cross(const Crossing<T>& crossing)
 {
-  const Crossing<T> c = crossing; // pixels that are bytes might be part of the other one
+  const Crossing<T> c =
+    crossing; // a copy, because compilers assume that writing byte pixels changes the original
   for (int n = 0; n < c.runCount; ++n)
   {
     Span pixels = c.runs[n];

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Instructions that pick elements for each pixel of a register: voxels of a row, and of two
- * registers the one that a ray meets. For Kernels.cxx only, which says why all of this is in an
- * anonymous namespace.
+ * Instructions that select elements for each pixel of a register: voxels of a row, and the voxel of
+ * a ray from two registers. For Kernels.cxx only, which explains the anonymous namespace.
  */
 #ifndef splattingPickKernels_h
 #define splattingPickKernels_h
@@ -14,7 +13,8 @@ namespace splatting
 {
 namespace
 {
-/// Picks voxels for a register of pixels. In general not at all: `group` is any, and `picks` tells.
+/// Selects voxels for a register of pixels. The general case is not implemented: `group` is any,
+/// and `picks` is false.
 template <class T, int Size = sizeof(T)>
 struct Picker
 {
@@ -145,8 +145,8 @@ struct Picker<T, 4>
 #endif
 
 #if defined(__AVX2__)
-/// Of a register of pixels, those that change columns before the ray changes rows, those that
-/// change them after it, and whether any are neither or cannot be told by their ticks.
+/// In a register of pixels, those that change columns before the ray changes rows, those that
+/// change them after it, and whether any do neither or are undecided by their ticks.
 #if defined(__AVX512F__)
 struct TickOrder
 {
@@ -187,7 +187,7 @@ inline TickOrder orderOf(const std::int16_t* ticks, std::int16_t tick)
   }
 }
 
-/// The same from the times themselves, which tell all but ties.
+/// The same from the times themselves, which decide all cases except ties.
 template <int Pixels>
 inline TickOrder orderOf(const double* times, double time)
 {
@@ -262,7 +262,7 @@ inline TickOrder orderOf(const std::int16_t* ticks, std::int16_t tick)
   return order;
 }
 
-/// The same from the times themselves, which tell all but ties.
+/// The same from the times themselves, which decide all cases except ties.
 template <int Pixels>
 inline TickOrder orderOf(const double* times, double time)
 {

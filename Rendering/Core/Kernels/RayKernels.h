@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The loops over what cuts rays and over single samples, CutLoops and RayLoops. For Kernels.cxx
- * only, which is compiled for several instruction sets and says why all of this is in an anonymous
- * namespace.
+ * Loops over cuts of rays and over single samples, CutLoops and RayLoops. For Kernels.cxx only,
+ * which explains the anonymous namespace.
  */
 #ifndef splattingRayKernels_h
 #define splattingRayKernels_h
@@ -78,7 +77,7 @@ void tileShares(
   }
 }
 
-/// The samples that count, and that `take(x)` wants.
+/// Loops over the visible samples that `take(x)` accepts.
 template <bool Masked, class P, class Take>
 inline void takeSamples(P* __restrict image, const P* __restrict samples,
   const unsigned char* __restrict mask, std::ptrdiff_t n, Take&& take)

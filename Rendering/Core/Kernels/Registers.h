@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * A register full of elements. For Kernels.cxx only, which is compiled for several instruction sets
- * and says why all of this is in an anonymous namespace.
+ * A register of elements. For Kernels.cxx only, which explains the anonymous namespace.
  */
 #ifndef splattingRegisters_h
 #define splattingRegisters_h
@@ -79,8 +78,8 @@ struct IntegerOf<8>
 template <class T>
 using Integer = typename IntegerOf<sizeof(T)>::type;
 
-/// A register of elements, widened to the accumulator's type. Where that is float, compilers need
-/// to be told the instruction that widens small integers.
+/// A register of elements, converted to the accumulator's type. For float, compilers need the
+/// explicit instruction that converts small integers.
 template <class T>
 inline Pack<Accumulator<T>> loadWidened(const T* p)
 {
@@ -151,7 +150,7 @@ constexpr bool AdvancesRegisters = true;
 constexpr bool AdvancesRegisters = false;
 #endif
 
-/// All elements of one register but the first, then the first of another.
+/// All elements of one register except the first, then the first of another one.
 template <class P>
 inline P advanced(P front, P back)
 {
@@ -208,8 +207,8 @@ inline P smaller(P a, P b)
 }
 
 /// Calls block.run<V>(x) for groups of V registers that cover [0, n). The last group overlaps the
-/// one before (a maximum may be taken twice). If n is too short for a register, calls single(x) for
-/// each x.
+/// one before, so elements may be processed twice. If n is too short for a register, calls
+/// single(x) for each x.
 template <class T, class Block, class Single>
 inline void blocks(std::ptrdiff_t n, Block&& block, Single&& single)
 {

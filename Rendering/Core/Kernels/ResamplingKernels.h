@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * The worksheets of perspective images: weights, and rows of pixels from rows of voxels. For
- * Kernels.cxx only, which says why all of this is in an anonymous namespace.
+ * Kernels.cxx only, which explains the anonymous namespace.
  */
 #ifndef splattingResamplingKernels_h
 #define splattingResamplingKernels_h
@@ -21,11 +21,11 @@ struct TwiceBell
   {
     const double r = this->radius;
     const double x = t < -r ? -r : t > r ? r : t;
-    // 1 + cos(pi x / r) = 2 cos^2 = 2 sin^2 of what is missing to pi / 2, at most pi / 2.
+    // 1 + cos(pi x / r) = 2 cos^2 = 2 sin^2 of the complement to pi / 2, at most pi / 2.
     constexpr double halfPi = 1.57079632679489661923;
     const double missing = halfPi * (1.0 - (x < 0.0 ? -x : x) / r);
     const double z = missing * missing;
-    // The sine's series, to 1e-13 at pi / 2.
+    // The series of the sine, to 1e-13 at pi / 2.
     double sine = -1.0 / 1307674368000.0;
     sine = sine * z + 1.0 / 6227020800.0;
     sine = sine * z - 1.0 / 39916800.0;
@@ -45,14 +45,14 @@ inline double positive(double x)
   return x > 0.0 ? x : 0.0;
 }
 
-/// Where some pixels lie from the first voxel that they weigh, and how far their points spread
-/// along the ray. Returns how far from ray to ray.
+/// The positions of some pixels relative to the first voxel that they weigh, and the extents of
+/// their points along the ray. Returns the distance of rays.
 template <class A>
 inline double placePixels(const AxisWeights<A>& w, std::ptrdiff_t begin, std::ptrdiff_t count,
   double* __restrict place, double* __restrict spread)
 {
-  // What spreads over nothing would be divided by it. These widen what a pixel sees by no more than
-  // a thousandth of a voxel, and only right before the eye.
+  // Avoids division by 0. These widen pixels by at most a thousandth of a voxel, and only directly
+  // before the eye.
   constexpr double leastPitch = 1e-3, leastSpread = 1e-6;
   const double pitch = w.pitch > leastPitch ? w.pitch : leastPitch;
   for (std::ptrdiff_t x = 0; x < count; ++x)
@@ -62,7 +62,7 @@ inline double placePixels(const AxisWeights<A>& w, std::ptrdiff_t begin, std::pt
     spread[x] = own > leastSpread ? own : leastSpread;
     const double at = w.at[begin + x] + slope * w.depth;
     const double reach = 0.5 * (pitch + spread[x]) + w.support;
-    // The first voxel that is nearer than that.
+    // The first voxel nearer than that.
     const double first = roundedDown(clamped(at - reach, w.low - 1.0, w.high - 1.0)) + 1.0;
     w.first[begin + x] = static_cast<std::int32_t>(first);
     place[x] = at - first;
@@ -70,7 +70,7 @@ inline double placePixels(const AxisWeights<A>& w, std::ptrdiff_t begin, std::pt
   return pitch;
 }
 
-/// Weights as PerspectiveFootprints.h has them.
+/// The weights of PerspectiveFootprints.h.
 template <class A>
 inline void weighBells(const AxisWeights<A>& w, std::ptrdiff_t n)
 {
@@ -101,15 +101,15 @@ inline void weighBells(const AxisWeights<A>& w, std::ptrdiff_t n)
       A* const out = w.weights + t * w.stride + begin;
       for (std::ptrdiff_t x = 0; x < count; ++x)
       {
-        // Far beside the volume there is nothing to weigh.
+        // Pixels far beside the volume have no weights.
         out[x] = static_cast<A>(sum[x] > 0.0 ? taps[t][x] / sum[x] : 0.0);
       }
     }
   }
 }
 
-/// A voxel that is a box weighs as much of the pixel's points as lie in it: the difference of the
-/// shares that lie below its ends.
+/// The weight of a box voxel is the share of the pixel's points in it: the difference of the shares
+/// below its ends.
 template <class A>
 inline void weighBoxes(const AxisWeights<A>& w, std::ptrdiff_t n)
 {
@@ -133,7 +133,7 @@ inline void weighBoxes(const AxisWeights<A>& w, std::ptrdiff_t n)
         const double d = t + 0.5 - place[x]; // of the voxel's end
         const double a = positive(d + p), b = positive(d + m), c = positive(d - m),
                      e = positive(d - p);
-        // Beyond the pixel's points nothing may be left to voxels that these do not meet.
+        // Rounding must not give weight to voxels beyond the pixel's points.
         const double inside = (a * a - b * b - c * c + e * e) / (2.0 * pitch * spread[x]);
         const double share = d < p ? inside : 1.0;
         const double now = isLast ? 1.0 : clamped(share, below[x], 1.0);
@@ -144,7 +144,7 @@ inline void weighBoxes(const AxisWeights<A>& w, std::ptrdiff_t n)
   }
 }
 
-/// The same for hats, the second differences of what lies below a voxel's centre, times how far.
+/// The same for hats: second differences of the first moments below voxel centres.
 template <class A>
 inline void weighHats(const AxisWeights<A>& w, std::ptrdiff_t n)
 {
@@ -171,7 +171,7 @@ inline void weighHats(const AxisWeights<A>& w, std::ptrdiff_t n)
           (a * a * a - b * b * b - c * c * c + e * e * e) / (6.0 * pitch * spread[x]);
         const double next = d < p ? sum : d;
         const double weight = next - own[x] - (own[x] - before[x]);
-        // Voxels that the pixel's points do not meet have nothing.
+        // Voxels beyond the pixel's points have no weight.
         out[x] = static_cast<A>(d < p + 2.0 ? positive(weight) : 0.0);
         before[x] = own[x];
         own[x] = next;
@@ -196,7 +196,7 @@ void axisWeights(const AxisWeights<A>& w, std::ptrdiff_t n)
   }
 }
 
-/// Picks voxels of the accumulator's type. In general not at all.
+/// Selects voxels of the accumulator's type. The general case is not implemented.
 template <class A>
 struct Resampler
 {

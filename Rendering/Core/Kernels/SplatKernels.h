@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * Footprints over voxels: the worksheets of parallel views, a few rows of a slice at a time, in
- * registers. For Kernels.cxx only, which says why all of this is in an anonymous namespace.
+ * registers. For Kernels.cxx only, which explains the anonymous namespace.
  */
 #ifndef splattingSplatKernels_h
 #define splattingSplatKernels_h
@@ -16,11 +16,11 @@ namespace splatting
 {
 namespace
 {
-/// Whether footprints weigh voxels of this type without a copy in the accumulator's.
+/// Whether footprints weigh voxels of this type without a copy in the accumulator's type.
 template <class T>
 constexpr bool weighsOwn = std::is_same_v<Accumulator<T>, float> && sizeof(T) <= 4;
 
-/// A register of voxels as worksheets weigh them.
+/// A register of voxels in the accumulator's type.
 template <class A, class S>
 inline Pack<A> fetch(const Splat<A, S>& s, const S* voxels)
 {
@@ -35,9 +35,8 @@ inline Pack<A> fetch(const Splat<A, S>& s, const S* voxels)
   }
 }
 
-/// V registers of voxels from `row` on, where those from the voxel before are at hand. Where voxels
-/// have to be converted, taking them from these is cheaper; the last one is fetched, so that
-/// nothing is read that is not needed.
+/// V registers of voxels from `row` on, given those from the voxel before. If voxels must be
+/// converted, shifting these is cheaper. The last one is fetched, so that nothing unneeded is read.
 template <int V, class A, class S>
 inline void nextColumn(const Splat<A, S>& s, const S* row, Pack<A> (&voxels)[V])
 {
@@ -51,8 +50,8 @@ inline void nextColumn(const Splat<A, S>& s, const S* row, Pack<A> (&voxels)[V])
 }
 
 /// Adds one part of the footprint to the worksheets of Rows x V registers. Rows of pixels share
-/// rows of voxels, so each register of voxels is loaded once for all of them; a pixel's sum still
-/// runs through the weights row by row.
+/// rows of voxels, so each register of voxels is loaded once for all of them. A pixel's sum still
+/// adds the weights row by row.
 template <int Rows, int V, int WeightRows, class A, class S>
 inline void addPart(
   const Splat<A, S>& s, const SplatPart<A, S>& part, const S* source, Pack<A> (&sum)[Rows][V])
@@ -181,7 +180,7 @@ struct SplatBlock
   template <int V>
   inline void run(std::ptrdiff_t x) const
   {
-    // Rows x V sums must fit the registers, of which there are 32 with AVX-512 and 16 without.
+    // Rows x V sums must fit into the registers: 32 with AVX-512, 16 without.
     if constexpr (V == 4 && Rows == 4 && SPLATTING_VECTOR_BYTES < 64)
     {
       this->run<2>(x);
@@ -221,7 +220,7 @@ void splat(const Splat<A, S>& s)
   }
 }
 
-/// The average of what counts, of a register of pixels or one of them.
+/// The average of the valid voxels, for a register of pixels or one element.
 template <class A>
 struct AverageLoop
 {
@@ -231,7 +230,7 @@ struct AverageLoop
   inline R raised(R image, Fetch&& fetch) const
   {
     const R zero = R{}, sum = fetch(this->a.sums), weight = fetch(this->a.weights);
-    const R quotient = sum / weight; // NaN if nothing counts
+    const R quotient = sum / weight; // NaN without valid voxels
     R average = weight >= this->a.whole ? sum : quotient;
     if (this->a.positive)
     {
@@ -267,7 +266,7 @@ void raiseAverages(const Averages<A>& averages, std::ptrdiff_t n)
   blocks<A>(n, loop, [&](std::ptrdiff_t x) { loop.single(x); });
 }
 
-/// Differences of numbers that are not finite are NaN, as are their sums with others.
+/// Differences of infinities and NaN are NaN, and so are sums with them.
 template <class A>
 bool allFinite(const A* voxels, std::ptrdiff_t n)
 {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The loops of previews: maxima of rows of voxels. For Kernels.cxx only, which says why all of this
- * is in an anonymous namespace.
+ * The loops of previews: maxima of rows of voxels. For Kernels.cxx only, which explains the
+ * anonymous namespace.
  */
 #ifndef splattingSweepKernels_h
 #define splattingSweepKernels_h
@@ -16,7 +16,7 @@ namespace splatting
 {
 namespace
 {
-/// Where the V registers of a block are: side by side, but for the last one, which may overlap.
+/// The positions of the V registers of a block: side by side, except that the last one may overlap.
 template <class T, int V>
 struct Registers
 {
@@ -71,7 +71,7 @@ struct MaximumBlock
   }
 };
 
-/// The run's valid pixels, and perhaps some valid ones beside them.
+/// The run's valid pixels, and possibly some valid ones beside them.
 template <class T, class Block>
 inline void sweepRun(const Block& block, const Span& run, const Span& valid)
 {
@@ -92,7 +92,7 @@ inline void sweepRun(const Block& block, const Span& run, const Span& valid)
   {
     block.run(Registers<T, 4>{ x, x + 3 * w });
   }
-  // What is left, in as few registers as it takes.
+  // The rest, in as few registers as possible.
   const auto last = [=](std::ptrdiff_t at) { return at < lastRegister ? at : lastRegister; };
   switch (end > x ? (end - x + w - 1) / w : 0)
   {
@@ -134,7 +134,7 @@ void largest(const T* const* rows, int count, T* out, std::ptrdiff_t n)
   }
 }
 
-/// Which pixels of a rim see which rows.
+/// The pixels of a rim that read each row.
 template <class T>
 struct RimMasks
 {

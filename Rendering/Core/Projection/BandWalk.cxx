@@ -14,15 +14,14 @@ namespace splatting
 namespace
 {
 /**
- * In which order a band of image rows meets the layers of slices, and what it leaves out.
+ * Walks a band of image rows through the layers of slices.
  *
- * Densely: all of them, in storage order. With bricks: layers with high bounds come first, and a
- * tile whose bound is no more than its least pixel is left out: it could not change a pixel. What
- * remains is walked row by row, several tiles at a time, because memory is fastest where it is read
- * in order.
+ * Densely: all of them, in memory order. With bricks: layers with high bounds first. A tile is
+ * skipped if its bound is not above its smallest pixel, because it cannot change a pixel. The other
+ * tiles are walked row by row, several at a time, because memory is fastest in order.
  *
- * Where rays are cut, tiles of which all samples of a layer count are splatted as they are. Of the
- * others each worksheet is made by itself, and taken where its slice counts.
+ * Where rays are cut, tiles of a layer with all samples visible are splatted as they are. In other
+ * tiles each worksheet is computed separately, and taken where its slice is visible.
  */
 template <class T, class P>
 class BandWalk
@@ -88,7 +87,7 @@ private:
   }
   Span slicesIn(int z) const { return slicesOfLayer(z, this->Context.geometry.size()); }
 
-  /// Highest first, by the mean over some of the tiles.
+  /// Sorts layers by the mean bound of some tiles, in descending order.
   void orderLayers(TileBounds<T, P>& bounds)
   {
     constexpr int step = 13;
@@ -146,7 +145,7 @@ private:
     }
   }
 
-  /// All layers, where rays are cut.
+  /// Walks all layers, where rays are cut.
   void walkCut()
   {
     BandTiles band = this->Band;
@@ -161,7 +160,7 @@ private:
     }
   }
 
-  /// The tiles of a group that have flags, as far as their samples count.
+  /// Splats the visible samples of the tiles of a group that have flags.
   void splatCounting(int z, int group, const BandTiles& band)
   {
     unsigned char* const kinds = this->Scratch.flags.data();
@@ -181,7 +180,7 @@ private:
       [&](const Span& run) { this->splatPartly(z, rows, run); });
   }
 
-  /// Pixels for which all samples of a layer count, and none beside them.
+  /// Splats pixels for which all samples of a layer are visible, and no others.
   void splatWholly(int z, const Span& rows, const Span& run)
   {
     const PixelRows<P> image = pixelsOf<P>(this->Context.image);
@@ -193,10 +192,10 @@ private:
     }
   }
 
-  /// Pixels for which some count.
+  /// Splats pixels for which some samples of a layer are visible.
   void splatPartly(int z, const Span& rows, const Span& run)
   {
-    // Only worksheets of neighbouring slices share what they read.
+    // Only worksheets of neighbouring slices share their voxels.
     const Span slices = this->slicesIn(z);
     const int step = this->Sampler.traits().beyond > 0 ? slices.end - slices.begin : 1;
     for (int k = slices.begin; k < slices.end; k += step)
@@ -205,7 +204,7 @@ private:
     }
   }
 
-  /// Those of a run and beside it, so that loops have whole registers.
+  /// Whole registers around a run.
   Span inRegisters(const Span& run) const
   {
     constexpr int pixels = 64 / sizeof(P);
@@ -214,7 +213,7 @@ private:
     return { begin, std::min(begin + (run.end - begin + step - 1) / step * step, width) };
   }
 
-  /// The same of some slices, as far as their rows have pixels that count.
+  /// As splatPartly(), for some slices.
   void splatMasked(const Span& some, const Span& all, const Span& run)
   {
     const int width = run.end - run.begin;
@@ -257,7 +256,7 @@ private:
     }
   }
 
-  /// Takes some slices into as many copies of pixels, or all into one.
+  /// Splats some slices into one copy of pixels each, or all into one copy.
   PixelRows<P> splatApart(const Span& slices, const Span& rows, const Span& run, int copies)
   {
     this->Scratch.runs.assign(1, run);
@@ -321,5 +320,5 @@ void walkBands(ProjectionContext& context, const SliceSampler<T, P>& sampler)
 #define WORKSHEETS(T)                                                                              \
   template void walkBands(ProjectionContext&, const SliceSampler<T, Accumulator<T>>&);
 SPLATTING_TYPES(VOXELS)
-SPLATTING_INTEGERS(WORKSHEETS) // others are of their voxels' type
+SPLATTING_INTEGERS(WORKSHEETS) // other modes have the type of the voxels
 }

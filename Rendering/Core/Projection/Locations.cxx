@@ -18,8 +18,8 @@ namespace splatting
 namespace
 {
 /**
- * Of the voxels of a slice that a footprint weighs, the one that adds most. A voxel can be met more
- * than once, where footprints stick out of the volume or have parts.
+ * The voxel of a slice that contributes most to a footprint. A voxel can occur more than once, if
+ * footprints extend beyond the volume or have parts.
  */
 class LargestShare
 {
@@ -41,7 +41,7 @@ public:
     }
   }
 
-  /// @param from  the value that adds nothing
+  /// @param from  the value that contributes nothing
   glm::ivec2 voxel(double from) const
   {
     glm::ivec2 best(-1);
@@ -70,7 +70,7 @@ private:
   int Count = 0;
 };
 
-/// Finds the voxels of the winners of a shear image; (i, j, k) as its axes are permuted.
+/// Finds the voxels of the winners of a shear image, with (i, j, k) permuted like its axes.
 template <class T>
 class VoxelFinder
 {
@@ -145,7 +145,7 @@ private:
         return this->inWholeFootprint(u, v, k, from);
       }
     }
-    // The outermost voxels are met again beyond the rim, those of the outermost slices as well.
+    // The outermost voxels and slices are repeated beyond the border.
     LargestShare shares;
     const auto add = [&](int i, int j, int slice, double weight)
     {
@@ -174,7 +174,7 @@ private:
     return shares.voxel(from);
   }
 
-  /// Of a parallel view's footprint that does not stick out of the volume: each voxel is met once.
+  /// For footprints of parallel views inside the volume, in which each voxel occurs once.
   glm::ivec2 inWholeFootprint(int u, int v, int k, double from) const
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];
@@ -209,7 +209,7 @@ private:
   PerspectiveFootprints<A> Own;
 };
 
-/// In the volume's own order.
+/// To the order of the volume's axes.
 glm::ivec3 unpermuted(const ShearWarp& geometry, const glm::ivec3& voxel)
 {
   glm::ivec3 result;
@@ -295,7 +295,7 @@ Locator::Sample Locator::onScreen(const glm::ivec2& pixel) const
   return sample;
 }
 
-/// Where a pixel's ray is at a depth along the principal axis.
+/// The point of a pixel's ray at a depth along the principal axis.
 glm::dvec3 Locator::pointAt(const glm::dvec2& pixel, const ShearPixel& shown, double z) const
 {
   const ShearWarp& geometry = (*this->Source.geometries)[shown.image];
@@ -315,8 +315,8 @@ glm::dvec3 Locator::pointAt(const glm::dvec2& pixel, const ShearPixel& shown, do
     }
     return point;
   }
-  // The ray is where two planes meet: those of the pixel's column and row. They alone make no use
-  // of clip depths, which would cost digits.
+  // The ray is the intersection of the planes of the pixel's column and row. They do not use clip
+  // depths, which would lose digits.
   const std::array<int, 3>& axes = geometry.axes();
   const glm::dvec2 clip = (2.0 * pixel + 1.0) / glm::dvec2(this->Source.view.viewport) - 1.0;
   const glm::dmat4 rows = glm::transpose(this->Source.view.indexToClip);

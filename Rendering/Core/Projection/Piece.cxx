@@ -39,10 +39,10 @@ void keepColumns(std::vector<Span>& spans, const Span& columns)
   }
 }
 
-/// What is left of a slice in some columns and rows of pixels.
+/// Limits a slice to some columns and rows of pixels.
 void keepPixels(SliceGeometry& slice, const Span& columns, const Span& rows)
 {
-  if (common(slice.inner, columns).empty()) // rims lie within
+  if (common(slice.inner, columns).empty()) // borders are inside
   {
     slice.vBegin = slice.vEnd = slice.innerBegin = slice.innerEnd = 0;
     slice.inner = {};
@@ -73,7 +73,7 @@ void keepPixels(SliceGeometry& slice, const Span& columns, const Span& rows)
   keepColumns(slice.upper, columns);
 }
 
-/// What is left of a box without another one, as boxes that do not overlap.
+/// The rest of a box without another one, as disjoint boxes.
 void subtract(Box box, const Box& other, std::vector<Box>& rest)
 {
   for (int a = 0; a < 3; ++a)
@@ -99,7 +99,7 @@ void subtract(Box box, const Box& other, std::vector<Box>& rest)
   }
 }
 
-/// An integer for each number, in their order: of negative ones all bits but the sign are turned.
+/// Maps numbers to integers in the same order: inverts all bits of negative ones except the sign.
 template <class Key, class T>
 Key keyOf(T value)
 {
@@ -247,7 +247,7 @@ void keepInterior(const ShearWarp& whole, const ShearWarp& part, Quality quality
   glm::dvec2 low, high;
   for (int a = 0; a < 2; ++a)
   {
-    // Rays that pass beside the whole belong to its outermost voxels.
+    // Rays outside the whole belong to its outermost voxels.
     low[a] = interior.begin[a] > 0 ? interior.begin[a] - first[a] - 0.5 : -Infinite;
     high[a] = interior.end[a] < whole.size()[a] ? interior.end[a] - first[a] - 0.5 : Infinite;
   }

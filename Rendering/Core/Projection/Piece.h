@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Pieces of one volume that are projected apart, each onto the image of the whole. MAX is
- * associative: the image of the whole is the maximum (or minimum) of theirs, bit for bit, if each
- * pixel of each slice's worksheet is computed wholly by a piece that has all the voxels for it, and
- * each by one at least.
+ * Pieces of one volume that are projected separately, each onto the image of the whole. MAX is
+ * associative, so the image of the whole is the maximum (or minimum) of theirs, bit for bit, if
+ * each pixel of each slice's worksheet is computed by pieces that have all of its voxels, and by at
+ * least one.
  */
 #ifndef splattingPiece_h
 #define splattingPiece_h
@@ -35,14 +35,15 @@ struct Box
 };
 
 /**
- * How many voxels beyond the one that is nearest to a ray in the middle of a slice the slice's
- * worksheet reads: in the slice, and in other slices. The ghost layers that pieces need.
+ * The number of voxels that a slice's worksheet reads beyond the voxel nearest to a ray in the
+ * middle of the slice: in the slice, and in other slices. They determine the ghost layers of
+ * pieces.
  *
- * A ray moves by half a voxel at most before and behind the middle, from which it is half a voxel
- * at most to the nearest voxel's side, and a pixel is half a voxel wide on either side. Standard
- * mode's boxes reach half a voxel further, 1.5 to 2 in all, high mode's hats one, and cosine bells
- * one and a half, of which the weights at the very end are 0. A cell of the exact field lies
- * between neighbouring voxels. Previews take each voxel by itself.
+ * A ray moves by at most half a voxel before and behind the middle. The nearest voxel's side is at
+ * most half a voxel away, and half of a pixel is half a voxel wide. Boxes of standard mode extend
+ * by half a voxel, 1.5 to 2 in all, hats of high mode by one, and cosine bells by one and a half,
+ * with weights of 0 at the end. A cell of the exact field lies between neighbouring voxels. Preview
+ * reads single voxels.
  */
 struct Reach
 {
@@ -52,41 +53,40 @@ struct Reach
 };
 Reach reachOf(Quality quality);
 
-/// The part of a piece whose voxels have `layers` others of the piece, or none of the whole, on all
-/// sides.
+/// The part of a piece whose voxels have `layers` other voxels of the piece on all sides, or none
+/// of the whole.
 Box interiorOf(const Box& piece, const glm::ivec3& whole, const glm::ivec3& layers);
 
 /// Whether each voxel of the whole is in one of the boxes.
 bool cover(const std::vector<Box>& boxes, const glm::ivec3& whole);
 
 /**
- * Keeps of the slices only the pixels whose worksheets need no voxels beyond the part: those whose
+ * Limits the slices to the pixels whose worksheets need no voxels outside the part: those whose
  * rays, in the middle of the slice, are nearest to a voxel of the part's interior.
  */
 void keepInterior(const ShearWarp& whole, const ShearWarp& part, Quality quality,
   std::vector<SliceGeometry>& slices);
 
 /**
- * Turns the pixels of a piece's image into numbers that ranks can reduce by maximum (for
- * Reduction::Minimum by minimum). Pixels without a sample become the least (the greatest) number.
- * Floating-point samples become integers in the same order, none of which is the least or the
- * greatest. In place.
+ * Converts the pixels of a piece's image in place to numbers that ranks can reduce by maximum (by
+ * minimum for Reduction::Minimum). Pixels without a sample become the least (greatest) number.
+ * Floating-point samples become integers in the same order, excluding the least and the greatest.
  * @return  the type of these numbers
  */
 ScalarType encode(ShearImage& image, Reduction reduction);
 
-/// The image of a piece without samples.
+/// Makes the image of a piece without samples.
 /// @param voxels  the type of the volume
 void blank(
   const ShearWarp& whole, ScalarType voxels, const ProjectionSettings& settings, ShearImage& image);
 
 /**
- * Turns reduced numbers into an image again, which has the spans and the mask of the whole.
+ * Converts reduced numbers back to an image, with the spans and the mask of the whole.
  * @param type  of the image's pixels
  */
 void decode(ShearImage& image, ScalarType type, Reduction reduction);
 
-/// After decode(), the lowest voxel where a depth-shaded image has no sample, as in RayWalk.
+/// After decode(), sets depth-shaded pixels without a sample to the lowest voxel, as RayWalk does.
 void fillEmpty(ShearImage& image, double low);
 }
 

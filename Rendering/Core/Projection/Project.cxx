@@ -24,7 +24,6 @@ LineEncoding encodingFor(const ProjectionSettings& settings, const glm::ivec3& s
   encoding.tolerance = settings.lineTolerance;
   if (settings.quality == Quality::Preview)
   {
-    encoding.eliminate = settings.eliminateInvisible;
     if (std::max({ size.x, size.y, size.z }) <= LineIndex::MostSorted)
     {
       encoding.order = settings.acceleration == Acceleration::SortedLines ? LineOrder::SortedLines
@@ -35,9 +34,8 @@ LineEncoding encodingFor(const ProjectionSettings& settings, const glm::ivec3& s
   return encoding;
 }
 
-/// A share of tiles above which skipping the others does not pay: the plain walk reads memory in
-/// order, which is worth more where little is computed, or where registers are wide and compute it
-/// fast.
+/// The share of tiles above which skipping the others does not pay, because the dense walk reads
+/// memory in order. This matters more if little is computed, or if wide registers compute it fast.
 double worthwhileShare(const ProjectionSettings& settings, bool perspective)
 {
   const VoxelLoops<float>& loops = kernelsFor(settings.instructionSet);
@@ -63,28 +61,29 @@ Acceleration choose(
   double patience = statistics.share > worthwhile ? 32.0 : 0.0; // frames
   if (settings.quality == Quality::High)
   {
-    // Views change little from frame to frame. Where bricks nearly pay, the next ones may, and
-    // trying costs little where much is computed. (Whole registers can make the share exceed 1.)
+    // Views change little from frame to frame. Near the limit the next frames may be below it, and
+    // high mode computes so much that trying costs little. (Whole registers can make the share
+    // exceed 1.)
     patience *= std::min((statistics.share - worthwhile) / (1.0 - worthwhile), 1.0);
   }
   return statistics.framesSince < patience ? Acceleration::Dense : Acceleration::Bricks;
 }
 
-/// Whether each sample has to be looked at by itself.
+/// Whether every sample must be evaluated.
 bool looksAtAll(const ProjectionSettings& settings, const VolumeIndex::Range& range)
 {
   return settings.reduction != Reduction::Maximum || range.hasInfinities() ||
     (settings.keepWinners && range.nonFinite);
 }
 
-/// What voxels are summed in.
+/// The type of sums of voxels.
 ScalarType accumulatorOf(ScalarType voxels)
 {
   return dispatch(voxels,
     [](auto* null) { return scalarTypeOf<Accumulator<std::remove_pointer_t<decltype(null)>>>(); });
 }
 
-/// Room for pixels: samples, or what worksheets are summed in.
+/// Allocates pixels: samples, or sums of worksheets.
 void openImage(const ProjectionSettings& settings, ScalarType voxels, ShearImage& image)
 {
   const bool samples = settings.quality == Quality::Preview && !computesWith(settings.reduction);
@@ -110,14 +109,14 @@ void learn(SkipStatistics& statistics, Acceleration used, const TileCount& count
 
 struct Projector::Scratch
 {
-  /// Made when they are first used.
+  /// Made on demand.
   std::array<std::array<std::unique_ptr<ProjectionMode>, 2>, 3> modes; // parallel, perspective
   std::unique_ptr<ProjectionMode> chains;
   WalkSpace walks;
   std::vector<SliceGeometry> slices;
   PerspectiveSteps steps;
   CutMap cuts;
-  // Of pieces only:
+  // For pieces only:
   ShearWarp part;
   Cuts partCuts;
   std::vector<SliceGeometry> wholeSlices;
@@ -158,7 +157,7 @@ void Projector::takeAtWinners(const VoxelArray& other, const ShearWarp& geometry
     .takeAtWinners({ other, geometry, this->Memory->slices, projected, image });
 }
 
-/// What can be used at all of what was asked for.
+/// The acceleration that is possible instead of the wanted one.
 Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   const ProjectionSettings& settings, const ShearWarp& geometry, const Cuts& cuts,
   const LineIndex*& lines)
@@ -186,7 +185,7 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
                                                             : Acceleration::Dense;
 }
 
-/// How the rays of a whole volume run, where a piece of it is projected.
+/// Finds the rays of a whole volume, for the projection of a piece.
 void Projector::findWhole(const ShearWarp& geometry, const ProjectionSettings& settings)
 {
   Scratch& memory = *this->Memory;
@@ -208,7 +207,7 @@ void Projector::outline(const ShearWarp& geometry, const ProjectionSettings& set
   outlineImage(geometry, memory.wholeSlices, memory.wholeCuts, memory.walks.outline, image);
 }
 
-/// The geometry of a piece of a volume, and its cuts.
+/// Finds the geometry of a piece of a volume, and its cuts.
 const ShearWarp& Projector::findPart(
   const ShearWarp& whole, const glm::ivec3& first, const glm::ivec3& dimensions, const Cuts& cuts)
 {
@@ -219,8 +218,7 @@ const ShearWarp& Projector::findPart(
   return memory.part;
 }
 
-/// Along each ray the slices that are samples of it, for shading by depth: those of the whole
-/// volume.
+/// Finds the slices of the whole volume that are samples of each ray, for depth shading.
 void Projector::countSteps(const ShearWarp& whole, const ShearWarp& geometry,
   const ProjectionSettings& settings, const Cuts& cuts, int width, int height)
 {
@@ -268,7 +266,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
     this->countSteps(whole, geometry, settings, cuts, image.width, image.height);
   }
   const VolumeIndex::Range& range = index.range();
-  // The mean of no sample is none.
+  // The mean of no sample is NaN.
   image.nonFinite = range.nonFinite || settings.reduction == Reduction::Mean;
   const LineIndex* lines = nullptr;
   const Acceleration used = this->possible(settings.acceleration == Acceleration::Auto

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Volume to shear image: for each slice its worksheet, and the maximum over them [CS98, section 2].
+ * From volume to shear image: the worksheet of each slice, and the maximum over them [CS98, section
+ * 2].
  */
 #ifndef splattingProject_h
 #define splattingProject_h
@@ -18,7 +19,7 @@
 
 namespace splatting
 {
-/// How a slice contributes; see vtkSplattingMIPVolumeMapper::SetQualityMode.
+/// The contribution of a slice; see vtkSplattingMIPVolumeMapper::SetQualityMode().
 enum class Quality
 {
   Preview,
@@ -27,8 +28,7 @@ enum class Quality
   Exact
 };
 
-/// What is left out and in which order the rest is walked; see
-/// vtkSplattingMIPVolumeMapper::SetAcceleration.
+/// Skipped voxels and the order of the others; see vtkSplattingMIPVolumeMapper::SetAcceleration().
 enum class Acceleration
 {
   Auto,
@@ -39,24 +39,24 @@ enum class Acceleration
   SortedVolume
 };
 
-/// What becomes of the samples along a ray: the worksheets' values of the slices that it crosses,
-/// in preview the voxels; see vtkSplattingMIPVolumeMapper::SetMaximumType.
+/// The reduction of the samples along a ray, which are the worksheets' values of the slices that it
+/// crosses, in preview the voxels; see vtkSplattingMIPVolumeMapper::SetMaximumType().
 enum class Reduction
 {
   Maximum,
   Minimum,
   Mean,
-  DepthShaded, ///< the maximum of samples, each shaded by its depth along the ray
+  DepthShaded, ///< the maximum of samples, each multiplied by a factor of its depth
   Local        ///< the first local maximum, from the viewer, at or above a threshold
 };
 
-/// Whether samples enter arithmetic, so that the image's scalars are of type Accumulator<T>.
+/// Whether samples are used in arithmetic, so that the image's scalars have type Accumulator<T>.
 inline bool computesWith(Reduction reduction)
 {
   return reduction == Reduction::Mean || reduction == Reduction::DepthShaded;
 }
 
-/// Whether it matters which end of a ray is nearest to the viewer.
+/// Whether the side of the viewer matters.
 inline bool isOrdered(Reduction reduction)
 {
   return reduction == Reduction::DepthShaded || reduction == Reduction::Local;
@@ -66,14 +66,14 @@ struct ProjectionSettings
 {
   Quality quality = Quality::High;
   Reduction reduction = Reduction::Maximum;
-  /// Of Reduction::DepthShaded: the n-th of N slices along a ray, n = 0 the nearest to the viewer,
-  /// is multiplied by ambient + (1 - n / N) changeRate, relative to the volume's lowest voxel
+  /// Of Reduction::DepthShaded: sample n of N along a ray, 0 being the nearest to the viewer, is
+  /// multiplied by ambient + (1 - n / N) changeRate, relative to the volume's lowest voxel
   /// [Bruckner, Program 4.3].
   double ambient = 0.3;
   double changeRate = 0.7;
   /// Of Reduction::Local.
   double threshold = -std::numeric_limits<double>::infinity();
-  /// Of Reduction::Mean: the samples that count.
+  /// Of Reduction::Mean: the range of samples.
   double meanLow = -std::numeric_limits<double>::infinity();
   double meanHigh = std::numeric_limits<double>::infinity();
   /// Reconstruction kernel of Quality::High.
@@ -81,24 +81,19 @@ struct ProjectionSettings
   /// 0: weights in closed form; N: from a general table with N x N sub-pixels.
   int footprintSampling = 0;
   InstructionSet instructionSet = bestInstructionSet();
-  /// Reductions other than Maximum are walked densely, as are volumes with infinities, and those
-  /// with NaN if winners are kept. Lines and its sorted kin are Bricks where rays are cut, in
-  /// perspective and where there are NaN; sorted orders are for Quality::Preview, elsewhere they
-  /// are Lines.
+  /// Reductions other than Maximum are dense, as are volumes with infinities, and volumes with NaN
+  /// and winners. Bricks replace chains where rays are cut, in perspective and with NaN. Lines
+  /// replace sorted orders outside Quality::Preview.
   Acceleration acceleration = Acceleration::Auto;
   /// Delta encoding of lines: see LineEncoding. 0 gives the same bits as Dense.
   double lineTolerance = 0.0;
-  /// Lines without voxels that cannot be seen: the same bits, fewer chains. For Quality::Preview,
-  /// else ignored.
-  bool eliminateInvisible = false;
-  /// Whether the image tells its winners: of equal samples the nearest to the viewer. Means have
-  /// none: not for Reduction::Mean. Lines and its sorted kin are Bricks then.
+  /// Whether the image has winners: of equal samples the nearest to the viewer. Not for
+  /// Reduction::Mean. Bricks then replace chains.
   bool keepWinners = false;
-  /// Which voxels the rays of shear images meet, as ShearWarp::factorise() takes it. Not compared:
+  /// The voxels that rays of shear images select, for ShearWarp::factorise(). Not compared, because
   /// images are.
   Meets meets = Meets::All;
-  /// Values at or below need not be told apart: the image is the larger of this (in preview rounded
-  /// down to the scalar type) and what it would be otherwise.
+  /// Pixels are clamped to at least this value (in preview rounded down to the scalar type).
   double floor = -std::numeric_limits<double>::infinity();
 
   bool operator==(const ProjectionSettings& other) const
@@ -109,19 +104,18 @@ struct ProjectionSettings
       this->meanHigh == other.meanHigh && this->kernel == other.kernel &&
       this->footprintSampling == other.footprintSampling &&
       this->instructionSet == other.instructionSet && this->acceleration == other.acceleration &&
-      this->lineTolerance == other.lineTolerance &&
-      this->eliminateInvisible == other.eliminateInvisible &&
-      this->keepWinners == other.keepWinners && this->floor == other.floor;
+      this->lineTolerance == other.lineTolerance && this->keepWinners == other.keepWinners &&
+      this->floor == other.floor;
   }
 };
 
 class ProjectionMode;
 
 /**
- * Projects volumes. Holds the threads' work space between frames.
+ * Projects volumes into shear images. Holds the threads' work space between frames.
  *
- * The image is cut into bands of rows, each walked by one thread, which owns its pixels: the same
- * bits for any number of threads. See BandWalk for the order in which a band meets the slices.
+ * The image is divided into bands of rows. One thread walks a band and owns its pixels, so the bits
+ * are the same for any number of threads. See BandWalk for the order of slices.
  */
 class Projector
 {
@@ -130,39 +124,41 @@ public:
   ~Projector();
 
   /**
-   * For all modes but Quality::Exact, which CellProjector projects.
+   * For all modes except Quality::Exact, which CellProjector projects.
    *
-   * @param first  where the index' voxels begin in the volume that the geometry and the cuts are
-   * of, along the volume's axes. If they are a piece of it, the image holds the samples that can be
-   * computed from the piece alone: see Piece.h. Chains are not walked.
-   * @return what has been used: never Auto, and Dense where there is no memory for what was asked.
-   *         If stopped(), the image has no meaning.
+   * @param first  the first voxel of the index in the volume of geometry and cuts, along the
+   *               volume's axes. If the index has a piece of the volume, the image has the samples
+   *               that can be computed from the piece alone, see Piece.h, and chains are not used.
+   * @return the acceleration that was used: never Auto, and Dense if there is no memory for another
+   *         one. If stopped(), the image is invalid.
    */
   Acceleration project(VolumeIndex& index, const ShearWarp& geometry,
     const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image,
     const glm::ivec3& first = glm::ivec3(0));
 
-  /// The spans and the mask of an image of the whole volume, whose pixels came from pieces.
+  /// Sets the spans and the mask of an image of the whole volume, whose pixels were reduced from
+  /// pieces.
   void outline(const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts,
     ShearImage& image);
 
   /**
-   * What another volume has where the last projected image found its winners: in preview the
-   * voxels, else the averages by the same footprints.
+   * Takes the values of another volume at the winners of the last projected image: in preview
+   * voxels, else averages with the same footprints.
    *
    * @param other  of the same type and size as the projected volume
    */
   void takeAtWinners(const VoxelArray& other, const ShearWarp& geometry,
     const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image);
 
-  /// Called with the share that is done, 0 to 1, while chains are made.
+  /// Sets a function that gets the completed share, 0 to 1, while chains are made.
   void setProgress(const std::function<void(double)>& progress) { this->Progress = progress; }
-  /// Asked by the thread that called project() whether to go on; while chains are made, with 0.
+  /// Sets the function that returns whether to continue, called by the thread that called
+  /// project(). While chains are made, its argument is 0.
   void setObserver(const ProgressObserver::Callback& callback)
   {
     this->Observer.setCallback(callback);
   }
-  /// Whether the last projection was given up.
+  /// Whether the observer stopped the last projection.
   bool stopped() const { return this->Observer.stopped(); }
 
 private:

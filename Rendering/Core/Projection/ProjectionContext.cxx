@@ -17,7 +17,7 @@ void findParallelSlice(const ShearWarp& geometry, int k, SliceGeometry& slice)
   const auto end = slice.path.dj.begin() + slice.path.count;
   const int low = *std::min_element(slice.path.dj.begin(), end);
   const int high = *std::max_element(slice.path.dj.begin(), end);
-  // Of one pixel's image the volume sticks out.
+  // The volume extends beyond the image of one pixel.
   const int rows = geometry.size().y, width = geometry.width(), height = geometry.height();
   slice.vBegin = std::clamp(-high, 0, height);
   slice.vEnd = std::clamp(rows - low, slice.vBegin, height);
@@ -25,7 +25,7 @@ void findParallelSlice(const ShearWarp& geometry, int k, SliceGeometry& slice)
   slice.innerEnd = std::clamp(rows - high, slice.innerBegin, slice.vEnd);
   const auto pixels = [&](int v) { return common(geometry.coverage(slice.path, v), { 0, width }); };
   slice.inner = pixels(-low);
-  // In parallel views no more than a row at either end.
+  // In parallel views at most a row at either end.
   slice.lower.assign(slice.innerBegin - slice.vBegin, pixels(-high));
   slice.upper.assign(slice.vEnd - slice.innerEnd, pixels(rows - low - 1));
 }
@@ -93,11 +93,11 @@ void extend(Span& all, const Span& span)
   all.end = std::max(all.end, span.end);
 }
 
-/// The spans of all rows over all slices. Where a row is an inner one of several slices, the first
-/// and the last decide, because the slices' spans move one way.
+/// Finds the spans of all rows over all slices. If a row is an inner one of several slices, the
+/// first and the last of these determine its span, because spans move in one direction.
 void findSpans(const std::vector<SliceGeometry>& slices, std::vector<Span>& spans)
 {
-  // A single row need not hold the rays that the first and the last slice meet.
+  // A single row need not contain the rays of the first and the last slice.
   for (std::size_t k = 0; k < slices.size() && spans.size() == 1; ++k)
   {
     extend(spans[0], slices[k].vBegin <= 0 && slices[k].vEnd > 0 ? slices[k].span(0) : Span{});
@@ -138,7 +138,7 @@ void findSpans(const std::vector<SliceGeometry>& slices, std::vector<Span>& span
 
 constexpr std::int16_t NoFirst = std::numeric_limits<std::int16_t>::max(), NoLast = -1;
 
-/// Whether a sample is left in any slice, for a row of pixels.
+/// Whether a sample is visible in any slice, for a row of pixels.
 class SamplesLeft
 {
 public:
@@ -189,8 +189,8 @@ private:
     }
   }
 
-  /// The pixels of a region move by a pixel or two from slice to slice, so that those of
-  /// consecutive slices make one span.
+  /// The pixels of a region move by a pixel or two from slice to slice, so those of consecutive
+  /// slices form one span.
   void fromRegions(int v, unsigned char* mask)
   {
     const Span range = slicesOf(this->Slices, v, v + 1);
@@ -298,8 +298,8 @@ void CrossedSlices::reset(const std::vector<SliceGeometry>& slices, int width)
   this->Slices = &slices;
   this->First.assign(width, NoFirst);
   this->Last.assign(width, NoLast);
-  // A ray crosses consecutive slices, and spans move by a pixel or two from one to the next: only
-  // where they differ a ray begins or ends.
+  // A ray crosses consecutive slices, and spans move by a pixel or two from one to the next. A ray
+  // begins or ends only where they differ.
   const int count = static_cast<int>(slices.size());
   const auto markDifference = [](const Span& own, const Span& other, int k, std::int16_t* out)
   {
@@ -331,7 +331,7 @@ void CrossedSlices::find(int v, std::int16_t* first, std::int16_t* last) const
 {
   const std::vector<SliceGeometry>& slices = *this->Slices;
   const Span range = slicesOf(slices, v, v + 1);
-  // Those that hold the row's paths follow each other, too.
+  // Slices that contain the row's paths are consecutive, too.
   const auto isInner = [&](int k) { return slices[k].innerBegin <= v && v < slices[k].innerEnd; };
   int begin = range.begin, end = range.end;
   for (; begin < end && !isInner(begin); ++begin)
@@ -343,7 +343,7 @@ void CrossedSlices::find(int v, std::int16_t* first, std::int16_t* last) const
   const int width = static_cast<int>(this->First.size());
   const std::int16_t lowest = static_cast<std::int16_t>(begin);
   const std::int16_t highest = static_cast<std::int16_t>(end - 1);
-  for (int u = 0; u < width; ++u) // in 16 bits, which every instruction set compares fast
+  for (int u = 0; u < width; ++u) // with 16 bits, which all instruction sets compare fast
   {
     const std::int16_t low = std::max(this->First[u], lowest);
     const std::int16_t high = std::min(this->Last[u], highest);

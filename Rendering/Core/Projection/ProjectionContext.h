@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What all parts of one projection share.
+ * Data that all parts of one projection share.
  */
 #ifndef splattingProjectionContext_h
 #define splattingProjectionContext_h
@@ -19,14 +19,14 @@
 
 namespace splatting
 {
-/// One slice as seen by all pixels.
+/// One slice in the image.
 struct SliceGeometry
 {
   RayPath path;             ///< of parallel views
   int vBegin = 0, vEnd = 0; ///< image rows whose rays cross the slice
   int innerBegin = 0,
-      innerEnd = 0; ///< those whose whole path lies in it: all but a few at either end
-  Span inner;       ///< pixels that the slice covers in these rows
+      innerEnd = 0;               ///< rows whose whole path is in it: all but a few at either end
+  Span inner;                     ///< pixels of the slice in these rows
   std::vector<Span> lower, upper; ///< and in each row before and after
 
   const Span& span(int v) const
@@ -37,12 +37,12 @@ struct SliceGeometry
   }
 };
 
-/// How the rays of a perspective image run through the volume.
+/// The voxels that rays of a perspective image cross.
 struct PerspectiveSteps
 {
   AxisSteps columns, rows;
 
-  /// The voxels of one pixel's ray in slice k. Those outside the volume may be given as nearer to
+  /// The voxels of one pixel's ray in slice k. Those outside the volume may be reported nearer to
   /// it than they are.
   RayPath path(int u, int v, int k) const;
 };
@@ -57,12 +57,12 @@ class CrossedSlices
 public:
   /// The slices must outlive their use.
   void reset(const std::vector<SliceGeometry>& slices, int width);
-  /// The first and the last one for each pixel; first > last where there are none.
+  /// The first and the last slice of each pixel; first > last if there are none.
   void find(int v, std::int16_t* first, std::int16_t* last) const;
 
 private:
   const std::vector<SliceGeometry>* Slices = nullptr;
-  std::vector<std::int16_t> First, Last; // for rows whose paths lie in all slices
+  std::vector<std::int16_t> First, Last; // for rows whose paths are in all slices
 };
 
 class CutMap;
@@ -71,7 +71,7 @@ struct OutlineSpace;
 struct ProjectionSettings;
 struct WalkSpace;
 
-/// Sets size and spans of an image and, if samples are left out, its mask.
+/// Sets size and spans of an image and, if samples are cut away, its mask.
 void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
   const CutMap& cuts, OutlineSpace& space, ShearImage& image);
 
@@ -88,8 +88,8 @@ constexpr T greatestValue()
   return Limits::has_infinity ? Limits::infinity() : Limits::max();
 }
 
-/// The first voxel on a ray's path in a slice, from the viewer on, for which isWanted(di, dj): its
-/// number, or -1 if there is none.
+/// The number of the first voxel on a ray's path in a slice, from the viewer on, for which
+/// isWanted(di, dj); -1 if there is none.
 template <class F>
 int firstOnPath(const RayPath& path, bool reversed, F&& isWanted)
 {
@@ -104,14 +104,14 @@ int firstOnPath(const RayPath& path, bool reversed, F&& isWanted)
   return -1;
 }
 
-/// Tiles that a walk met, and those that it splatted.
+/// Tiles in a walk, and those that it splatted.
 struct TileCount
 {
   std::int64_t met = 0;
   std::int64_t splatted = 0;
 };
 
-/// One projection of a volume, whatever the type of its voxels.
+/// One projection of a volume, for any voxel type.
 struct ProjectionContext
 {
   VolumeIndex& index;
@@ -127,12 +127,12 @@ struct ProjectionContext
   ShearImage& image;
   WalkSpace& space;
   ProgressObserver& observer;
-  /// How it is walked: all samples, ray by ray; or along chains; or with bricks; or densely.
+  /// The kind of walk: all samples, ray by ray; along chains; with bricks; or densely.
   bool byRays;
   const LineIndex* lines;
   const BrickMaxima* bricks;
 
-  Slices slices = {}; // those that are walked at present
+  Slices slices = {}; // the current ones
   TileCount count = {};
 
   template <class T>
@@ -146,8 +146,8 @@ struct ProjectionContext
   const Span& pixels(int v, int k) const { return this->sliceGeometry[k].span(v); }
 };
 
-/// How far beyond the volume worksheets may read: a footprint and the drift of a slice. Less than a
-/// tile.
+/// The distance beyond the volume at which worksheets may read: a footprint and the drift of a
+/// slice. Less than a tile.
 constexpr int Beside = 4;
 
 /// The voxels that the pixels of a layer read, relative to the pixel.
@@ -170,7 +170,7 @@ inline Span slicesOfLayer(int layer, const glm::ivec3& size)
   return { layer * BrickDepth, std::min((layer + 1) * BrickDepth, size.z) };
 }
 
-/// The slices that rows [v0, v1) meet: a range, because the stack only moves one way.
+/// The slices that rows [v0, v1) cross: a range, because the stack moves in one direction.
 inline Span slicesOf(const std::vector<SliceGeometry>& slices, int v0, int v1)
 {
   const auto meets = [=](const SliceGeometry& s) { return s.vBegin < v1 && s.vEnd > v0; };
@@ -185,7 +185,7 @@ inline Span common(const Span& a, const Span& b)
   return { std::max(a.begin, b.begin), std::min(a.end, b.end) };
 }
 
-/// The largest value of type T that is no more than x; the least one if there is none.
+/// The largest value of type T not above x, or the least one.
 template <class T>
 T roundedDown(double x)
 {
@@ -208,22 +208,22 @@ T roundedDown(double x)
   }
 }
 
-/// What pixels of a preview start from: no voxel is less.
+/// The initial value of a preview's pixels, not above any voxel.
 template <class T>
 T previewFloor(const ProjectionContext& context)
 {
   if (context.range.nonFinite)
   {
-    return leastValue<T>(); // which tells pixels without a sample: see dropEmpty()
+    return leastValue<T>(); // marks pixels without a sample: see dropEmpty()
   }
-  // The range's double need not be a 64-bit integer's exact value.
+  // The range's double may differ from a 64-bit integer.
   constexpr bool exact = !std::numeric_limits<T>::is_integer || sizeof(T) < 8;
   const T low = exact ? static_cast<T>(context.range.low) : leastValue<T>();
   return std::max(low, roundedDown<T>(context.floor));
 }
 
-/// Sets rows to "no sample": pixels that no sample can reach to the greatest value, so that they do
-/// not lower a tile's least value; all others to the floor, above which samples count.
+/// Initialises rows to "no sample": pixels that no sample can reach to the greatest value, so that
+/// they do not lower a tile's least value; other pixels to the floor.
 template <class P>
 void openRows(ShearImage& image, P floor, int v0, int v1)
 {
@@ -239,7 +239,7 @@ void openRows(ShearImage& image, P floor, int v0, int v1)
       continue;
     }
     const unsigned char* const mask = &image.mask[std::ptrdiff_t(v) * image.width];
-    const Span pixels = span; // not what a pixel might overwrite
+    const Span pixels = span; // a copy, because writing pixels might change it
     for (int u = pixels.begin; u < pixels.end; ++u)
     {
       row[u] = mask[u] ? floor : outside;
@@ -247,8 +247,8 @@ void openRows(ShearImage& image, P floor, int v0, int v1)
   }
 }
 
-/// Where voxels are NaN, pixels between those of the outline may have no sample, too. Infinities
-/// mark both kinds for a walk; now they are NaN.
+/// With NaN voxels, pixels within the outline may have no sample, too. Infinities mark both kinds
+/// during a walk, and become NaN.
 template <class P>
 void dropEmpty(ShearImage& image, int v0, int v1)
 {
@@ -261,7 +261,7 @@ void dropEmpty(ShearImage& image, int v0, int v1)
   }
 }
 
-/// Pixels that no ray meets were marked for the walk; they are "no sample" again.
+/// Pixels that no ray reaches were marked for the walk. Sets them to "no sample".
 template <class P>
 void closeRows(ShearImage& image, int v0, int v1)
 {

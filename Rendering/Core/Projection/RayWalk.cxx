@@ -15,8 +15,8 @@ namespace splatting
 namespace
 {
 /**
- * MIP's relatives: projections that look at every sample of a ray, densely and, where that matters,
- * in the order of the ray.
+ * Projections that evaluate every sample of a ray, densely and, if it matters, in the order of the
+ * ray.
  */
 template <class T, class P>
 class RayWalk
@@ -63,8 +63,8 @@ public:
     }
   }
 
-  /// Whether slices come from the last one on: only where their order along the ray matters. Sums
-  /// must not depend on the side that they are seen from.
+  /// Whether slices are walked from the last one, only if their order along the ray matters. Sums
+  /// must not depend on the side of the viewer.
   bool isReversed() const
   {
     return (this->Settings.reduction == Reduction::Local || this->Settings.keepWinners) &&
@@ -131,7 +131,7 @@ private:
     std::ptrdiff_t size() const { return this->pixels.end - this->pixels.begin; }
   };
 
-  /// Takes samples and remembers where they have won.
+  /// Takes samples, and notes the winners.
   void takeAndNote(const Row& row, const P* samples, RayScratch& scratch) const
   {
     computesWith(this->Settings.reduction) ? this->noteBeside<A>(row, samples, scratch)
@@ -210,14 +210,14 @@ private:
     }
   }
 
-  /// The least value that is no less than a bound, for samples, which are without the base.
+  /// The least value not below a bound, relative to the base.
   A lowest(double bound) const
   {
     const double wanted = bound - this->Base;
     const A found = static_cast<A>(wanted);
     return found < wanted ? std::nextafter(found, std::numeric_limits<A>::infinity()) : found;
   }
-  /// The greatest that is no greater.
+  /// The greatest value not above a bound.
   A highest(double bound) const
   {
     const double wanted = bound - this->Base;
@@ -229,7 +229,7 @@ private:
   {
     if constexpr (std::numeric_limits<P>::is_integer)
     {
-      // The least integer that is no less.
+      // The least integer not below it.
       const double least = std::ceil(this->Settings.threshold);
       using Limits = std::numeric_limits<P>;
       return least <= static_cast<double>(Limits::lowest()) ? Limits::lowest()
@@ -269,8 +269,7 @@ private:
     }
   }
 
-  /// Adds the base again. Pixels without a sample show the lowest voxel, as those of a global
-  /// maximum do.
+  /// Adds the base. Pixels without a sample show the lowest voxel, like those of a global maximum.
   void addBase(int v0, int v1) const
   {
     const WorksheetLoops<A>& loops = this->Context.kernels;
@@ -278,7 +277,7 @@ private:
     A* const begin = image.row<A>(v0);
     const std::ptrdiff_t count = std::ptrdiff_t(v1 - v0) * image.width;
     loops.finish(begin, this->Base, leastValue<A>(), greatestValue<A>(), count);
-    // Pixels of a piece wait for the others' samples.
+    // Pixels of a piece may get samples of other pieces.
     if (&this->Context.geometry == &this->Context.whole && !image.nonFinite)
     {
       std::replace(begin, begin + count, leastValue<A>(), static_cast<A>(this->Context.range.low));
@@ -292,7 +291,7 @@ private:
   A Base;
 };
 
-/// Room for what a reduction keeps of each pixel.
+/// Allocates the state of a reduction for each pixel.
 void openState(const ShearImage& image, Reduction reduction, RayState& state)
 {
   const std::size_t pixels = std::size_t(image.width) * image.height;
@@ -339,5 +338,5 @@ void walkRays(ProjectionContext& context, const SliceSampler<T, P>& sampler)
 #define WORKSHEETS(T)                                                                              \
   template void walkRays(ProjectionContext&, const SliceSampler<T, Accumulator<T>>&);
 SPLATTING_TYPES(VOXELS)
-SPLATTING_INTEGERS(WORKSHEETS) // others are of their voxels' type
+SPLATTING_INTEGERS(WORKSHEETS) // other modes have the type of the voxels
 }

@@ -14,26 +14,25 @@ namespace splatting
 constexpr int StepsPerSlice = 3;
 
 /**
- * The projection before the warp.
+ * The result of a projection before the warp.
  */
 struct ShearImage
 {
   ScalarType type = ScalarType::UInt8;
   int width = 0;
   int height = 0;
-  /// width * height scalars of `type`, row after row. The buffer only grows, frames re-use it.
+  /// width * height scalars of `type`, row by row. The buffer only grows, because frames reuse it.
   std::vector<unsigned char> bytes;
-  /// Per row, the pixels whose ray crosses the volume; what lies outside has no meaning. Rays that
-  /// miss an edge of the volume by no more than they are rounded by can be among them if such rays
-  /// beside them hit it.
+  /// For each row the pixels whose ray crosses the volume; others are undefined. Includes rays that
+  /// miss an edge of the volume by less than their rounding error if rays beside them hit it.
   std::vector<Span> spans;
-  /// If anything cuts the volume, see Cuts: per pixel, whether a sample is left. Else empty.
+  /// With cuts, see Cuts: for each pixel whether a sample is visible. Else empty.
   std::vector<unsigned char> mask;
-  /// If asked for: per pixel the step of the ray that its value comes from, StepsPerSlice * slice,
-  /// in preview plus the voxel's number in RayPath; -1 without a sample. Else empty.
+  /// On request, for each pixel the step of the ray that has its value: StepsPerSlice * slice, in
+  /// preview plus the voxel's number in RayPath; -1 without a sample. Else empty.
   std::vector<std::int32_t> winners;
   bool keepsWinners() const { return !this->winners.empty(); }
-  /// NaN pixels have no sample, infinities occur.
+  /// Whether NaN marks pixels without a sample, and infinities are possible.
   bool nonFinite = false;
 
   template <class T>
@@ -51,7 +50,7 @@ struct ShearImage
   {
     return v >= 0 && v < this->height && u >= this->spans[v].begin && u < this->spans[v].end;
   }
-  /// Whether it has samples there, NaN aside.
+  /// Whether the ray has visible samples, except NaN.
   bool covers(int u, int v) const
   {
     return this->meetsVolume(u, v) &&

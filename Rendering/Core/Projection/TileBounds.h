@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The tiles of a band of image rows, and what each layer of slices can add to them: the largest
- * brick that a tile's rays can meet in the layer.
+ * The tiles of a band of image rows, and their bounds for each layer of slices: the largest brick
+ * that a tile's rays can cross in the layer.
  */
 #ifndef splattingTileBounds_h
 #define splattingTileBounds_h
@@ -20,7 +20,7 @@ namespace splatting
 {
 static_assert(TileWidth == BrickWidth && TileHeight == BrickHeight);
 
-/// A band of rows in tiles of TileWidth pixels and some rows: groups of rows of tiles.
+/// A band of rows, divided into groups of tiles of TileWidth pixels.
 struct BandTiles
 {
   int v0, v1, width;
@@ -32,7 +32,8 @@ struct BandTiles
   int firstRow(int group) const { return this->v0 + group * this->height; }
   int endRow(int group) const { return std::min(this->firstRow(group) + this->height, this->v1); }
 
-  /// The least of the pixels of each tile of a group; `rows` is the group's first.
+  /// The least pixel of each tile of a group.
+  /// @param rows  the group's first
   template <class P>
   void findMinima(const TileLoops<P>& loops, const P* rows, int group, P* out) const
   {
@@ -53,10 +54,10 @@ struct BandTiles
   }
 };
 
-/// Rows of tiles where none is left out: many, because rows of pixels share what they read.
+/// Rows of tiles in dense walks: many, because rows of pixels share their voxels.
 constexpr int DenseHeight = 4 * TileHeight;
 
-/// The layers of slices that a band of rows meets.
+/// The layers of slices that a band of rows crosses.
 inline Span layersOf(const ProjectionContext& context, const Span& some, int v0, int v1)
 {
   const Span slices = common(some, slicesOf(context.sliceGeometry, v0, v1));
@@ -68,7 +69,7 @@ template <class T, class P>
 class TileBounds
 {
 public:
-  /// @param range  of layers, which will be asked for
+  /// @param range  the layers that are needed
   TileBounds(const ProjectionContext& context, const SliceSampler<T, P>& sampler,
     const BandTiles& tiles, const Span& range, BandScratch& scratch)
     : Context(context),
@@ -78,18 +79,18 @@ public:
       Tiles(tiles.tiles()),
       Groups(tiles.groups())
   {
-    // Worksheets also weigh voxels of the layers before and behind.
+    // Worksheets also weigh voxels of the neighbouring layers.
     const int layers = (context.geometry.size().z + BrickDepth - 1) / BrickDepth;
     const int beyond = sampler.traits().beyond;
     this->Known = { std::max(range.begin - beyond, 0), std::min(range.end + beyond, layers) };
   }
 
-  /// What each layer can add to each tile.
+  /// Finds the bounds of all tiles for all layers.
   void find(const BrickMaxima& bricks)
   {
     const std::size_t count =
       std::size_t(this->Known.end - this->Known.begin) * this->Groups * this->Tiles;
-    // Rows are written in whole registers, each of which the next row overwrites.
+    // Rows are written in whole registers, whose ends the next row overwrites.
     this->Space.voxelBounds.resize(count * sizeof(T) + BrickMaxima::Padding);
     for (int z = this->Known.begin; z < this->Known.end; ++z)
     {
@@ -100,7 +101,7 @@ public:
           : this->takeBricks(bricks, z, g, this->voxelBounds(z, g));
       }
     }
-    if (this->Sampler.traits().beyond == 0) // voxels as they are
+    if (this->Sampler.traits().beyond == 0) // single voxels
     {
       this->Space.bounds.swap(this->Space.voxelBounds);
     }
@@ -117,13 +118,13 @@ public:
     }
   }
 
-  /// What layer z can add to the tiles of a group: none of its samples is larger.
+  /// The bounds of a group's tiles for layer z: no sample is larger.
   P* bounds(int z, int group)
   {
     return reinterpret_cast<P*>(this->Space.bounds.data()) + this->place(z, group);
   }
 
-  /// How many tiles meet bricks, over all layers.
+  /// The number of tiles that cross bricks, over all layers.
   std::int64_t met() const { return this->Met; }
 
 private:
@@ -136,18 +137,18 @@ private:
     return reinterpret_cast<T*>(this->Space.voxelBounds.data()) + this->place(z, group);
   }
 
-  /// The largest of the bricks in the window of each tile of a group, for the layer's own slices.
-  /// Beyond the ends of rows of bricks others are read: that makes some bounds higher, not wrong.
+  /// The largest brick in the window of each tile of a group, for the layer's own slices. Beyond
+  /// the ends of rows other bricks are read, which can only raise bounds.
   void takeBricks(const BrickMaxima& bricks, int z, int group, T* out)
   {
     const VoxelWindow window = this->Sampler.window(z);
-    // Where worksheets read beyond the volume they repeat its outermost voxels.
+    // Beyond the volume worksheets repeat its outermost voxels.
     const int bottom = this->Band.firstRow(group), top = this->Band.endRow(group) - 1;
     const int last = this->Context.geometry.size().y - 1;
     const int low = std::clamp(bottom + window.jMin, 0, last) / BrickHeight;
     const int high = std::clamp(top + window.jMax, 0, last) / BrickHeight;
     const bool meets = top + window.jMax >= -Beside && bottom + window.jMin <= last + Beside;
-    // Tile t meets bricks t + from to t + to.
+    // Tile t crosses bricks t + from to t + to.
     const int from = floorDivided(window.iMin, BrickWidth);
     const int to = floorDivided(TileWidth - 1 + window.iMax, BrickWidth);
     const Span tiles = meets ? common({ 0, this->Tiles }, { -to, bricks.count.x - from }) : Span{};
@@ -170,7 +171,7 @@ private:
     const VoxelLoops<T>& loops = this->Context.kernels;
     loops.largest(rows, count, out + tiles.begin, tiles.end - tiles.begin);
     std::fill(out + tiles.end, out + this->Tiles, leastValue<T>());
-    // The next tiles can see outermost voxels, too, that are repeated for them.
+    // The next tiles may read repeated outermost voxels, too.
     if (tiles.begin > 0)
     {
       out[tiles.begin - 1] = out[tiles.begin];
@@ -181,7 +182,7 @@ private:
     }
   }
 
-  /// The same in perspective, where each tile has a window of its own.
+  /// The same in perspective, where each tile has its own window.
   void takeOwnBricks(const BrickMaxima& bricks, int z, int group, T* out)
   {
     const glm::ivec3& size = this->Context.geometry.size();
@@ -192,7 +193,7 @@ private:
     {
       return;
     }
-    // Where worksheets read beyond the volume they repeat its outermost voxels.
+    // Beyond the volume worksheets repeat its outermost voxels.
     const int low = std::clamp(rows.begin, 0, size.y - 1) / BrickHeight;
     const int high = std::clamp(rows.end - 1, 0, size.y - 1) / BrickHeight;
     const T* all[MostBricks];
@@ -215,7 +216,7 @@ private:
     }
   }
 
-  /// The bricks along i that each tile of a layer meets.
+  /// The bricks along i that each tile of a layer crosses.
   const std::vector<Span>& tileWindows(int z)
   {
     std::vector<Span>& windows = this->Space.tileWindows;
@@ -236,19 +237,19 @@ private:
     return windows;
   }
 
-  /// In each direction a window is at most a tile, the drift of BrickDepth + 2 slices and a
-  /// footprint wide.
+  /// In each direction a window is at most as wide as a tile, the drift of BrickDepth + 2 slices
+  /// and a footprint.
   static constexpr int MostBricks = 4 * 6;
 
   static int floorDivided(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
-  /// Worksheets also weigh voxels of the layers before and behind.
+  /// Worksheets also weigh voxels of the neighbouring layers.
   void blendBounds()
   {
     const WorksheetLoops<P>& loops = this->Context.kernels;
     const int row = this->Groups * this->Tiles; // of one layer
     const P slack = this->Sampler.slack(), magnitude = this->Sampler.magnitude();
-    // In place: the layer behind is still as it was, the one before is kept.
+    // In place: the next layer is unchanged, and the previous one is copied.
     this->Space.voxelBounds.resize(std::size_t(2) * row * sizeof(P));
     P* before = reinterpret_cast<P*>(this->Space.voxelBounds.data());
     P* kept = before + row;
@@ -270,7 +271,7 @@ private:
     }
   }
 
-  /// Where voxels are NaN others weigh more, and a layer's neighbours may be all that counts.
+  /// With NaN voxels others weigh more, and only those of a neighbouring layer may count.
   void takeLargest(P* own, const P* before, const P* after, int count) const
   {
     const P slack = this->Sampler.slack(), magnitude = this->Sampler.magnitude();
@@ -286,8 +287,8 @@ private:
   BandScratch& Space;
   const BandTiles& Band;
   const int Tiles, Groups;
-  Span Known;         // layers that have bounds
-  int WindowsOf = -1; // the layer that the scratch's windows are of
+  Span Known;         // layers with bounds
+  int WindowsOf = -1; // the layer of the scratch's windows
   std::int64_t Met = 0;
 };
 }

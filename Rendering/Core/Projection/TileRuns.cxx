@@ -16,11 +16,11 @@ std::uint64_t packed(const unsigned char* flags)
   for (int n = 0; n < 8; ++n)
   {
     std::uint64_t eight = 0;
-    for (int byte = 0; byte < 8; ++byte) // compilers make this one load
+    for (int byte = 0; byte < 8; ++byte) // compiled to one load
     {
       eight |= std::uint64_t(flags[8 * n + byte]) << (8 * byte);
     }
-    // The product's highest byte has bit 0 of each byte.
+    // Bit n of the product's highest byte is byte n.
     bits |= (eight * 0x0102040810204080u) >> 56 << (8 * n);
   }
   return bits;
@@ -49,7 +49,7 @@ int findTileRuns(
   for (int first = 0; first < tiles; first += FlagsPerWord)
   {
     std::uint64_t word = packed(flags + first);
-    // Small gaps cost less than a second start.
+    // Small gaps cost less than another run.
     word |= ((word << 1) & (word >> 1)) | ((word << 1) & (word >> 2)) | ((word << 2) & (word >> 1));
     while (word)
     {

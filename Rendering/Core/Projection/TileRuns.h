@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Tiles of a row of pixels that have a flag, as runs of pixels.
+ * Runs of pixels from the flags of tiles.
  */
 #ifndef splattingTileRuns_h
 #define splattingTileRuns_h
@@ -13,22 +13,22 @@
 
 namespace splatting
 {
-/// Flags are read in words: room for them is a multiple of this, with zeros behind the last tile.
+/// Flags are read in words: their number is a multiple of this, with zeros after the last tile.
 constexpr int FlagsPerWord = 64;
 
-/// Room for the flags of some tiles.
+/// Allocates the flags of some tiles.
 inline void openFlags(int tiles, std::vector<unsigned char>& flags)
 {
   flags.resize((tiles + FlagsPerWord - 1) / FlagsPerWord * FlagsPerWord);
   std::fill(flags.begin() + tiles, flags.end(), static_cast<unsigned char>(0));
 }
 
-/// @param unit  pixels whose multiples runs begin and end at, but for the row's end
-/// @return how many tiles the runs have
+/// @param unit  runs begin and end at multiples of so many pixels, except at the row's end
+/// @return the number of tiles in the runs
 int findTileRuns(
   const unsigned char* flags, int tiles, int unit, int width, std::vector<Span>& runs);
 
-/// Calls f(run) for the runs of tiles of one kind among those of a row of pixels.
+/// Calls f(run) for the runs of tiles of one kind in a row of pixels.
 template <class F>
 void forRunsOf(unsigned char kind, const unsigned char* kinds, int tiles, int width, F&& f)
 {

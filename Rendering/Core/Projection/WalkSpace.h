@@ -33,12 +33,12 @@ struct OutlineSpace
   PerThread<Rows> rows;
 };
 
-/// Copies of pixels, which samples are taken into apart from the image.
+/// Copies of pixels, into which samples are taken apart from the image.
 class PixelCopies
 {
 public:
   /// Copies runs of some rows.
-  /// @param slices  how many copies are made, one for each slice
+  /// @param slices  the number of copies, one for each slice
   template <class P>
   PixelRows<P> copy(
     const PixelRows<P>& from, int v0, int v1, const std::vector<Span>& runs, int slices);
@@ -47,7 +47,7 @@ private:
   std::vector<unsigned char> Bytes;
 };
 
-/// What a thread needs to walk a band.
+/// Work space of a thread for a band.
 struct BandScratch
 {
   LoadedVoxels loaded;
@@ -64,20 +64,20 @@ struct BandScratch
   TileCount count;
 };
 
-/// And to walk rays.
+/// Work space of a thread for rays.
 struct RayScratch
 {
   LoadedVoxels loaded;
   std::vector<unsigned char> mask, widened, before;
 };
 
-/// What is known of all pixels between slices of a walk by rays, besides the image.
+/// State of all pixels between slices of a walk by rays, besides the image.
 struct RayState
 {
   std::vector<unsigned char> ended; ///< Reduction::Local: whether the maximum is found
   std::vector<double> sums;         ///< Reduction::Mean
-  std::vector<std::int32_t> counts; ///< likewise
-  RayIntervals crossed;             ///< Reduction::DepthShaded: the slices that count
+  std::vector<std::int32_t> counts; ///< Reduction::Mean
+  RayIntervals crossed;             ///< Reduction::DepthShaded: the visible slices
 };
 
 struct WalkSpace
@@ -96,10 +96,9 @@ struct Progress
   double from = 0.0, to = 1.0;
 };
 
-/// Calls body(slices, isFirst, isLast) with ProjectionContext::slices set: for all slices, or,
-/// where these would need a copy that there is no memory for, for some at a time, from the last on
-/// if reversed.
-/// @param beyond  slices beside them that are read, too
+/// Calls body(slices, isFirst, isLast) with ProjectionContext::slices set: for all slices or, if
+/// there is no memory for a copy of them, for some at a time, from the last on if reversed.
+/// @param beyond  neighbouring slices that are also read
 void forSlices(ProjectionContext& context, int beyond, bool reversed, const Progress& progress,
   const std::function<void(const Span& slices, bool isFirst, bool isLast)>& body);
 

@@ -12,7 +12,7 @@ namespace splatting
 {
 namespace
 {
-/// Slices that are transposed at a time where there is no memory for a copy of all.
+/// Slices that are transposed at a time if there is no memory for a copy of all.
 constexpr int ChunkDepth = 8 * BrickDepth;
 }
 
@@ -46,7 +46,7 @@ void forSlices(ProjectionContext& context, int beyond, bool reversed, const Prog
   const int axis = context.geometry.principalAxis(), depth = context.geometry.size().z;
   const double share = progress.to - progress.from;
   context.observer.setPart(progress.from, progress.to);
-  if (context.lines) // chains hold the voxels
+  if (context.lines) // chains contain the voxels
   {
     body(Span{ 0, depth }, true, true);
     return;

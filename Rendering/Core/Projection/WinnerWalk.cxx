@@ -12,7 +12,7 @@ namespace splatting
 {
 namespace
 {
-/// The largest value that is less, if there is one.
+/// The largest smaller value, if there is one.
 template <class P>
 P justBelow(P value)
 {
@@ -27,14 +27,14 @@ P justBelow(P value)
 }
 
 /**
- * Which sample each pixel of a band of rows shows: of equal ones the nearest to the viewer. Where a
- * pixel is the floor, which no sample is below, that is the first sample of its ray; where there
- * may be NaN, the floor is below all, and such a pixel has no sample.
+ * Finds the sample that each pixel of a band of rows shows: of equal samples the nearest to the
+ * viewer. For pixels at the floor, below which no sample is, this is the first sample of the ray.
+ * With NaN voxels the floor is below all samples, and such pixels have no sample.
  *
- * Nothing is noted while an image is made. Slices are splatted once more, from the viewer on, into
- * copies of limits just below the pixels: what a slice lifts above its limit has its winner there,
- * and gets a limit that nothing is above. With bricks only tiles are looked at whose bound in a
- * layer is above the least limit of their pixels.
+ * Nothing is noted during the projection. Slices are splatted again, from the viewer on, into
+ * copies of limits just below the pixels. A slice that raises a pixel above its limit has its
+ * winner, and the pixel's limit becomes the largest number. With bricks only tiles are visited
+ * whose bound in a layer is above the least limit of their pixels.
  */
 template <class T, class P>
 class WinnerWalk
@@ -52,7 +52,7 @@ public:
   {
   }
 
-  /// No pixel has a winner yet, and those without samples never will.
+  /// Marks all pixels as without winner, except those without samples.
   void open()
   {
     const ShearImage& image = this->Context.image;
@@ -104,7 +104,7 @@ public:
     }
   }
 
-  /// Rays that only rounding lets meet the volume may have no sample.
+  /// Rays that cross the volume only by rounding may have no sample.
   void close()
   {
     std::replace(
@@ -112,9 +112,9 @@ public:
   }
 
 private:
-  /// No sample is above.
+  /// No sample is above it.
   static constexpr P Nothing = std::numeric_limits<P>::max();
-  /// Among winners, that the first sample is still to be found.
+  /// Marks pixels whose first sample is not found yet.
   static constexpr std::int32_t AtFloor = -2;
 
   std::int32_t* winner(int u, int v) const
@@ -132,7 +132,7 @@ private:
       this->Limits.at(0, this->Band.firstRow(group)), group, this->minimaOf(group));
   }
 
-  /// The tiles of a group whose pixels a layer may have samples for.
+  /// The tiles of a group whose pixels may have samples in a layer.
   void walkGroup(int z, int group, const P* bounds)
   {
     const TileLoops<P>& loops = this->Context.kernels;
@@ -163,7 +163,7 @@ private:
     }
   }
 
-  /// Whether the runs have samples that do not count: runs may be wider than the tiles with flags.
+  /// Whether the runs have invisible samples: runs may be wider than the tiles with flags.
   bool areCut(const unsigned char* shares) const
   {
     return std::any_of(this->Scratch.runs.begin(), this->Scratch.runs.end(),
@@ -175,10 +175,10 @@ private:
       });
   }
 
-  /// The winners among some slices, for the runs. Whether there are any.
+  /// Finds winners in some slices, for the runs. Returns whether there are any.
   bool findIn(const Span& slices, const Span& rows, bool isCut)
   {
-    // Voxels are told apart afterwards.
+    // Voxels of a slice are distinguished afterwards.
     const int count = slices.end - slices.begin;
     const int apart = this->Sampler.traits().beyond > 0 || isCut ? count : 1;
     const PixelRows<P> copies =
@@ -201,7 +201,7 @@ private:
     return any;
   }
 
-  /// The pixels of a row that some slices have lifted.
+  /// Finds the pixels of a row that some slices have raised.
   bool findInRow(const Span& slices, int v, const Span& run, const P* lifted, bool isCut)
   {
     const TileLoops<P>& loops = this->Context.kernels;
@@ -222,7 +222,7 @@ private:
     return any;
   }
 
-  /// Those of a row whose rays cross slice k.
+  /// The pixels of a row whose rays cross slice k.
   Span pixels(int v, int k) const
   {
     const SliceGeometry& slice = this->Context.sliceGeometry[k];
@@ -239,7 +239,7 @@ private:
     return this->Context.cuts.findMask(k, v, { u, u + 1 }, &mask) && mask;
   }
 
-  /// The first samples of a row's rays whose pixels are the floor: nearly always where they enter
+  /// Finds the first samples of rays whose pixels are at the floor: nearly always where they enter
   /// the volume.
   void findFirst(const Span& slices, int v)
   {
@@ -329,5 +329,5 @@ void findWinners(ProjectionContext& context, const SliceSampler<T, P>& sampler)
 #define WORKSHEETS(T)                                                                              \
   template void findWinners(ProjectionContext&, const SliceSampler<T, Accumulator<T>>&);
 SPLATTING_TYPES(VOXELS)
-SPLATTING_INTEGERS(WORKSHEETS) // others are of their voxels' type
+SPLATTING_INTEGERS(WORKSHEETS) // other modes have the type of the voxels
 }

@@ -53,7 +53,7 @@ const Quadrature& ruleFor(const Kernel& kernel)
   return kernel.shape == Reconstruction::CosineBell ? Gauss10 : Gauss3;
 }
 
-/// Sorted depths at which a piecewise smooth function of z has kinks, with both ends of the range.
+/// The sorted kinks of a piecewise smooth function of z, with both ends of the range.
 class Breaks
 {
 public:
@@ -69,7 +69,7 @@ public:
       this->Depths[this->Count++] = z;
     }
   }
-  /// z where (a - shear z) equals `kink` modulo 1: all voxels of a row are kinked together.
+  /// Adds the z where (a - shear z) equals `kink` modulo 1: all voxels of a row have kinks there.
   void addPeriodic(double a, double shear, double kink)
   {
     if (shear == 0.0)
@@ -83,12 +83,12 @@ public:
       this->add((a - n - kink) / shear);
     }
   }
-  /// Calls f(begin, end) for each interval between them.
+  /// Calls f(begin, end) for each interval between kinks.
   template <class F>
   void forIntervals(F&& f)
   {
     std::sort(this->Depths.begin(), this->Depths.begin() + this->Count);
-    // Kinks that coincide but for rounding have nothing between them.
+    // Excludes intervals between kinks that coincide within rounding.
     constexpr double least = 1e-14;
     for (int p = 1; p < this->Count; ++p)
     {
@@ -105,8 +105,8 @@ private:
   int Count = 2;
 };
 
-/// A lone sub-pixel has its centre half-way between two voxels, where the narrowest bells end, or
-/// are zero but for rounding: it would see nothing.
+/// The centre of a single sub-pixel is half-way between two voxels, where the narrowest bells are
+/// zero, or nearly.
 int leastSampling(const Kernel& kernel)
 {
   return kernel.shape == Reconstruction::CosineBell && kernel.radius < 0.501 ? 2 : 1;
@@ -167,7 +167,7 @@ double Kernel::operator()(double t) const
 {
   if (this->shape == Reconstruction::Box)
   {
-    // Half-open, so that a sub-pixel on the face between two voxels belongs to one of them.
+    // Half-open, so that a sub-pixel on a face belongs to one voxel.
     return t >= -0.5 && t < 0.5 ? 1.0 : 0.0;
   }
   t = std::abs(t);
@@ -187,7 +187,7 @@ double Kernel::overPixel(double t, double width) const
   {
     return 0.0;
   }
-  // The integral of h, from 0 on.
+  // The integral of h from 0.
   const auto integral = [this, support](double x)
   {
     x = std::clamp(x, -support, support);
@@ -210,7 +210,7 @@ WeightTable closedFormWeights(
 {
   const double support = kernel.support();
   Breaks breaks(-0.5, 0.5);
-  // H has kinks where an end of the pixel meets an end of h.
+  // H has kinks where an end of the pixel coincides with an end of h.
   for (double kink : { support + 0.5, -support - 0.5 })
   {
     breaks.addPeriodic(-fraction.x, shear.x, kink);
@@ -264,7 +264,7 @@ void GeneralTable::set(const Kernel& kernel, const glm::dvec2& shear, int sampli
   const double reach = s * (1.0 + std::max(std::abs(shear.x), std::abs(shear.y)));
   this->Voxels = 2 * static_cast<int>(std::ceil(reach));
   const int n = this->Voxels * sampling;
-  this->Sampling = 0; // until it is made: there may be no memory for it
+  this->Sampling = 0; // until the table is made, in case of std::bad_alloc
   for (auto& entries : this->Entries)
   {
     entries.resize(static_cast<std::size_t>(n) * n);
@@ -292,8 +292,8 @@ double GeneralTable::place(int subPixel) const
 
 double GeneralTable::entry(const Kernel& kernel, int part, const glm::dvec2& p) const
 {
-  // Along the ray through p, as far as it runs in slice -part seen from the voxel's own (the voxel
-  // of slice k + c meets slice k at its own depth z - c).
+  // Along the ray through p, within slice -part relative to the voxel's own. The voxel of slice k +
+  // c lies in slice k at its own depth z - c.
   const double from = -0.5 - part, to = 0.5 - part;
   const double support = kernel.support();
   Breaks breaks(from, to);
@@ -320,7 +320,7 @@ double GeneralTable::entry(const Kernel& kernel, int part, const glm::dvec2& p) 
     {
       const double z = 0.5 * (begin + end);
       const glm::dvec2 q = glm::abs(p - this->Shear * z);
-      if (std::abs(z) <= support && q.x <= support && q.y <= support) // else all of it is 0
+      if (std::abs(z) <= support && q.x <= support && q.y <= support) // otherwise it is 0
       {
         integrate(ruleFor(kernel), begin, end, add);
       }
@@ -328,13 +328,13 @@ double GeneralTable::entry(const Kernel& kernel, int part, const glm::dvec2& p) 
   return sum;
 }
 
-/// The first of a pixel's sub-pixels, of all that there would be if the table had no end: the pixel
-/// is `pixel` voxels from the one nearest to the voxel, which lies at `centre`.
+/// The first sub-pixel of a pixel, without the limits of the table. The pixel is `pixel` voxels
+/// from the one nearest to the voxel, which lies at `centre`.
 int GeneralTable::firstOf(int pixel, double centre) const
 {
   const auto isBefore = [&](int n) { return this->place(n) + centre - pixel < -0.5; };
   const double begin = pixel - 0.5 - centre + 0.5 * this->Voxels;
-  int n = static_cast<int>(std::ceil(begin * this->Sampling - 0.5)); // but for rounding
+  int n = static_cast<int>(std::ceil(begin * this->Sampling - 0.5)); // within rounding
   for (; isBefore(n); ++n)
   {
   }

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Footprints [CS98, section 3]: how much each voxel adds to a pixel of a slice's worksheet.
+ * Footprints [CS98, section 3]: the weight of each voxel in a pixel of a slice's worksheet.
  *
  * A pixel averages the reconstructed volume over its area and the slice's thickness. With the
  * reconstruction kernel h(x) h(y) h(z) and H = box * h, the voxel of slice k + c at offset (a, b)
- * (pixel minus voxel, in slice k's frame) weighs
+ * (pixel minus voxel, in slice k's frame) has the weight
  *
  *   w_c(a, b) = integral over z in [-1/2, 1/2] of h(z - c) H(a - s_x z) H(b - s_y z) dz.
  *
- * Standard mode is the case h = box: w_0 alone, and H the hat.
+ * In standard mode h is the box: only w_0 is not 0, and H is the hat.
  */
 #ifndef splattingFootprint_h
 #define splattingFootprint_h
@@ -35,7 +35,7 @@ enum class Reconstruction
 struct Kernel
 {
   Reconstruction shape = Reconstruction::Hat;
-  /// Half-width of the cosine bell in voxels, in [0.5, 1.5]; ignored by the others.
+  /// Half-width of the cosine bell in voxels, in [0.5, 1.5]; ignored by the other kernels.
   double radius = 1.0;
 
   /// Half-width in voxels.
@@ -59,19 +59,19 @@ struct Kernel
 using WeightTable = std::array<std::array<std::array<double, 5>, 5>, 3>;
 
 /**
- * Weights in closed form: the integrand is smooth between the kinks of h and H, where
+ * Weights in closed form. The integrand is smooth between the kinks of h and H, where
  * Gauss-Legendre quadrature is exact for the polynomial kernels (3 nodes) and accurate to 1e-13 for
  * the cosine bell (10 nodes).
- * `fraction` is where the nearest voxel lies, relative to the pixel, in [-1/2, 1/2] voxels.
+ * @param fraction  the position of the nearest voxel relative to the pixel, in [-1/2, 1/2] voxels
  */
 WeightTable closedFormWeights(
   const Kernel& kernel, const glm::dvec2& shear, const glm::dvec2& fraction);
 
 /**
- * The paper's way: a general table of the sheared voxel's thickness, weighted by h, at the
- * mid-points of sub-pixels, N x N for each pixel, made once per view: set() does nothing if
- * its arguments are those of the last call. A slice's weights are sums over the sub-pixels that
- * fall into a pixel. Each pixel has weight, however narrow the kernel.
+ * The paper's general table: the thickness of the sheared voxel, weighted by h, at the centres of N
+ * x N sub-pixels of each pixel. Made once per view; set() does nothing if its arguments are those
+ * of the last call. A slice's weights are sums over the sub-pixels in a pixel. Each pixel has a
+ * weight, however narrow the kernel.
  */
 class GeneralTable
 {
@@ -92,7 +92,7 @@ private:
 };
 
 /**
- * One voxel of a footprint that counts.
+ * One voxel of a footprint with its weight.
  */
 struct Tap
 {
@@ -102,8 +102,8 @@ struct Tap
 };
 
 /**
- * The taps of one footprint, in the order slice, row, column. Held in place: a frame makes one for
- * every slice.
+ * The taps of one footprint, in the order slice, row, column. Stored in place, because a frame
+ * makes one for every slice.
  */
 class Taps
 {
@@ -122,8 +122,8 @@ private:
 };
 
 /**
- * The taps with non-zero weight after rounding to multiples of 2^-bits. What rounding adds or
- * removes is given back to the largest, so that the sum is exactly 1.
+ * The taps with non-zero weight after rounding to multiples of 2^-bits. The rounding error is added
+ * to the largest weight, so that the sum is exactly 1.
  */
 Taps quantisedTaps(const WeightTable& weights, int bits);
 }

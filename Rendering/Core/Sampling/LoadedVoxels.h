@@ -12,11 +12,11 @@
 
 namespace splatting
 {
-/// Voxels widened to the accumulator's type: a rectangle from each of the up to three slices that a
-/// worksheet reads. What footprints read beyond the volume repeats its outermost voxels.
+/// Voxels converted to the accumulator's type: a rectangle from each of up to three slices that a
+/// worksheet reads. Beyond the volume its outermost voxels are repeated.
 struct LoadedVoxels
 {
-  /// Bytes behind the last voxel, so that loops can read whole registers.
+  /// Bytes after the last voxel, for loops that read whole registers.
   static constexpr std::size_t Padding = 128;
 
   struct Sheet
@@ -25,22 +25,21 @@ struct LoadedVoxels
     int i = 0, j = 0; // the first voxel
     int columns = 0, rows = 0;
     bool finite = true;     ///< whether there are neither NaN nor infinities
-    bool separated = false; ///< whether the other parts are there, see WorksheetSampler
+    bool separated = false; ///< whether the other parts are set, see WorksheetSampler
   };
   /// Part 0: the voxels. If some are not finite, part 1 flags the finite ones and, with infinities,
   /// parts 2 and 3 the positive and the negative ones.
   static constexpr int MostParts = 4;
   std::array<std::vector<unsigned char>, MostParts> bytes;
-  int part = 0;                         ///< which voxel() points into
+  int part = 0;                         ///< the part of voxel()
   std::vector<std::uint16_t> runEnds;   ///< of walks along chains only
-  std::vector<unsigned char> worksheet; ///< of walks that look at each sample only
+  std::vector<unsigned char> worksheet; ///< of walks by rays only
   std::vector<unsigned char> averages;  ///< worksheets of parts
   std::vector<unsigned char>
-    present; ///< which pixels of `worksheet` have a sample, in perspective previews
-  std::vector<Span>
-    runs;            ///< of perspective previews: the asked runs, as far as a slice covers them
-  Span rows, pixels; ///< of the image, that it has the voxels for
-  std::ptrdiff_t ahead = 0; ///< to voxels that will be needed after those that are loaded
+    present;                ///< which pixels of `worksheet` have a sample, in perspective previews
+  std::vector<Span> runs;   ///< of perspective previews: the requested runs within a slice
+  Span rows, pixels;        ///< of the image, whose voxels are loaded
+  std::ptrdiff_t ahead = 0; ///< to voxels that are needed next
   std::ptrdiff_t rowLength = 0;
   std::ptrdiff_t sheetLength = 0;
   std::array<Sheet, 3> sheets;
@@ -48,7 +47,7 @@ struct LoadedVoxels
   std::ptrdiff_t resampledLength = 0;
   int resampledRows = 0;
 
-  /// Forgets all sheets.
+  /// Removes all sheets.
   template <class A>
   void resize(int columns, int rows, int parts)
   {
@@ -64,7 +63,7 @@ struct LoadedVoxels
     }
     this->sheets.fill(Sheet{});
   }
-  /// Rows of pixels from weighed rows of voxels, in perspective: `rows` of `length` for each part.
+  /// Rows of pixels from weighted rows of voxels, in perspective: `rows` of `length` for each part.
   template <class A>
   void resizeResampled(int parts, int rows, int length)
   {
@@ -82,7 +81,7 @@ struct LoadedVoxels
     return reinterpret_cast<A*>(this->resampledBytes.data()) +
       (std::ptrdiff_t(part) * this->resampledRows + row) * this->resampledLength;
   }
-  /// Room for rows of voxels between slices.
+  /// Buffer for rows of voxels between slices.
   template <class A>
   A* blended(int rows, int columns)
   {

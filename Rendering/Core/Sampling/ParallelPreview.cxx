@@ -32,7 +32,7 @@ struct PreviewLayer
   std::array<Tap, MostRows> taps;
   int tapCount = 0;
   VoxelWindow window;
-  Span valid; ///< the pixels that see voxels along all paths
+  Span valid; ///< the pixels with voxels on all paths
   Ends left, right;
   bool rimsFit = false; ///< whether a register holds a rim
 };
@@ -40,7 +40,7 @@ static_assert(MostRows == StepsPerSlice * BrickDepth);
 
 /**
  * Preview mode: the voxels that rays cross, in layers of BrickDepth slices. The rows of a layer's
- * slices are read side by side: that keeps several streams through memory busy, and a pixel is
+ * slices are read side by side. Several memory streams keep the processor busy, and a pixel is
  * loaded and stored once for all of them.
  */
 template <class T>
@@ -49,7 +49,7 @@ class ParallelPreview : public SliceSampler<T, T>
 public:
   using typename SliceSampler<T, T>::Samples;
 
-  /// `storage` outlives this, and is kept for the next frame.
+  /// @param storage  outlives this, and is reused by the next frame
   ParallelPreview(const ProjectionContext& context, std::vector<PreviewLayer>& storage)
     : SliceSampler<T, T>({ false, 0, TileWidth }),
       Context(context),
@@ -108,8 +108,8 @@ public:
       });
   }
 
-  /// In the order of memory: slice after slice, or, where rows of all slices lie side by side, a
-  /// few rows through all of them.
+  /// In memory order: slice by slice or, if rows of all slices are adjacent, a few rows through all
+  /// of them.
   void splatAll(
     const Span& layers, int v0, int v1, const std::vector<Span>& all, LoadedVoxels&) const override
   {
@@ -120,7 +120,7 @@ public:
     Reading reading;
     if (!slicesFirst)
     {
-      // Long rows that lie side by side in a page of memory are read one after the other.
+      // Long adjacent rows in a memory page are read one after the other.
       const bool longRows = slices.sliceStride * std::ptrdiff_t(sizeof(T)) >= 1024;
       reading.sideBySide = longRows ? 1 : BrickDepth;
       reading.ahead = reading.sideBySide;
@@ -141,14 +141,14 @@ public:
 private:
   using Layer = PreviewLayer;
 
-  /// In which order the rows of slices are read.
+  /// The order of the rows of slices.
   struct Reading
   {
     int sideBySide = BrickDepth; ///< slices at a time
-    int ahead = 0;               ///< to those that come next, if that is known
+    int ahead = 0;               ///< to the next ones, if known
   };
 
-  /// Slices of one layer.
+  /// For slices of one layer.
   void splatSome(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
     const PixelRows<T>& pixels, const Reading& reading) const
   {
@@ -162,8 +162,8 @@ private:
     this->splatSlices(slices, plain.end, v1, runs, pixels);
   }
 
-  /// The rows of pixels, of some, whose voxels all exist in a layer, and beside which there are
-  /// others: a rim reads a few voxels beyond its row.
+  /// The rows of pixels, out of some, whose voxels all exist in a layer, with further rows beside
+  /// them, because a rim reads a few voxels beyond its row.
   Span plainRows(const Layer& layer, int v0, int v1) const
   {
     const int first = layer.rimsFit ? std::clamp(1 - layer.window.jMin, v0, v1) : v1;
@@ -222,7 +222,7 @@ private:
     }
   }
 
-  /// Rows whose rays stay in the layer's rows of voxels; they may leave its columns.
+  /// For rows whose rays stay in the layer's rows of voxels; they may leave its columns.
   void sweep(const Layer& layer, const Span& slices, const Span& rows,
     const std::vector<Span>& runs, const PixelRows<T>& pixels, const Reading& reading) const
   {
@@ -265,7 +265,7 @@ private:
     }
     sweep.runs = runs.data();
     sweep.runCount = static_cast<int>(runs.size());
-    // Pixels that see voxels along all paths, which all do that see any if paths shift alike.
+    // Pixels with voxels on all paths: all that have any if paths shift alike.
     const Layer::Tap& one = layer.taps[firstTap];
     const bool shiftAlike = std::all_of(layer.taps.begin() + firstTap, layer.taps.begin() + endTap,
       [&](const Layer::Tap& tap) { return tap.di == one.di; });
@@ -287,7 +287,7 @@ private:
     loops.sweep(sweep);
   }
 
-  /// From a row of voxels to the one that the same pixels see first in another slice.
+  /// The distance from a row of voxels to the first one of the same pixels in another slice.
   std::ptrdiff_t distance(const Layer::Tap& tap, int slices) const
   {
     const int last = this->Context.geometry.size().z - 1, k = std::clamp(tap.k + slices, 0, last);
@@ -301,7 +301,7 @@ private:
     return { ends.first, ends.begin.data() + firstTap, ends.end.data() + firstTap };
   }
 
-  /// Any rows, slice by slice.
+  /// For any rows, slice by slice.
   void splatSlices(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
     const PixelRows<T>& pixels) const
   {

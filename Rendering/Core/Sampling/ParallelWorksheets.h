@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * Standard and high mode of parallel views: footprints over copies of voxels, or over the volume's
- * own.
+ * voxels.
  */
 #ifndef splattingParallelWorksheets_h
 #define splattingParallelWorksheets_h
@@ -28,9 +28,9 @@ public:
 
   VoxelWindow window(int layer) const override { return this->Reach.layers[layer].window; }
 
-  /// Rounding can take a worksheet beyond its largest voxel by slack() times the larger of that and
+  /// Rounding can raise a worksheet above its largest voxel by slack() times the larger of that and
   /// magnitude(): 75 products and sums, and a few operations for the bound itself. Sums of 8-bit
-  /// voxels are exact. Where voxels are NaN, sums are also divided by sums of weights.
+  /// voxels are exact. With NaN voxels sums are also divided by sums of weights.
   A slack() const override
   {
     const int operations = this->Context.range.nonFinite ? 180 : 90;
@@ -71,7 +71,7 @@ protected:
     return splat;
   }
 
-  /// All but the source.
+  /// Everything except the source.
   template <class S>
   Splat<A, S> splatInto(const Target& target, int first, int end, const Span& span) const
   {
@@ -90,9 +90,9 @@ protected:
     if (this->Depth > 0 || !loops.splatVoxels || this->Context.range.nonFinite ||
       this->Footprints[k].partCount != 1)
     {
-      return false; // copies are used for several slices, or are not worse
+      return false; // copies are reused by several slices, or are not slower
     }
-    // Pixels whose footprints lie in the volume.
+    // Pixels whose footprints are in the volume.
     const glm::ivec3& size = this->Context.geometry.size();
     const SliceFootprint<A>& footprint = this->Footprints[k];
     const FootprintPart<A>& part = footprint.parts[0];
@@ -129,11 +129,11 @@ protected:
   }
 
 private:
-  /// As few pixels inside the volume make rims beside them worthwhile; and the pixels of a rim, at
-  /// most a register of floats.
+  /// The number of pixels inside the volume from which separate rims pay, and that of the pixels of
+  /// a rim, at most a register of floats.
   static constexpr int LeastOwn = 64, RimWidth = 16;
 
-  /// Splats pixels at the rim by a copy of voxels, since footprints there read beyond the volume.
+  /// Splats border pixels from a copy of voxels, because their footprints read beyond the volume.
   void splatRim(int k, int first, int end, const Span& columns, const Target& target,
     LoadedVoxels& loaded) const
   {
@@ -147,7 +147,7 @@ private:
     }
   }
 
-  /// The voxel of slice k + c that is nearest to pixel (u, v) of slice k, of those that are loaded.
+  /// The loaded voxel of slice k + c that is nearest to pixel (u, v) of slice k.
   const A* voxel(LoadedVoxels& loaded, int k, int c, int u, int v) const
   {
     const glm::ivec2& nearest = this->Footprints[k].nearest;
@@ -159,7 +159,7 @@ protected:
   const std::vector<SliceFootprint<A>>& Footprints;
 };
 
-/// What a parallel view's worksheets weigh and read.
+/// The weights and voxels of a parallel view's worksheets.
 template <class A>
 struct WorksheetSpace
 {

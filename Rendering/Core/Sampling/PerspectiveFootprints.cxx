@@ -12,8 +12,8 @@ namespace splatting
 {
 namespace
 {
-/// Of slopes within a part: where pixels are about a voxel wide, the covariance of 0.25 / 12 that
-/// is lost then moves weights by less than the general tables of [CS98] with 16 x 16 sub-pixels do.
+/// Of slopes within a part. Where pixels are about a voxel wide, the neglected covariance of 0.25 /
+/// 12 changes weights by less than the general tables of [CS98] with 16 x 16 sub-pixels do.
 constexpr double MostProduct = 0.25;
 
 /// The integral of h from -infinity to t.
@@ -33,7 +33,7 @@ double integral(const Kernel& kernel, double t)
   }
 }
 
-/// Voxels that a stretch can meet.
+/// The largest number of voxels that a length overlaps.
 int tapsOf(double length)
 {
   return static_cast<int>(std::ceil(length + 1e-6));
@@ -159,8 +159,8 @@ Span AxisFootprints<A>::voxels(int k, int q, const Span& pixels) const
   {
     return { first[pixels.begin], first[pixels.end - 1] + this->Taps[n] };
   }
-  // Before the eye the points of pixels widen as rays run apart: all on one side begin at the same
-  // place, and where it is between two voxels, rounding decides.
+  // Near the eye the points of pixels spread out as rays diverge. All pixels on one side begin at
+  // the same position, and between two voxels rounding decides.
   const auto ends = std::minmax_element(first + pixels.begin, first + pixels.end);
   return { *ends.first, *ends.second + this->Taps[n] };
 }
@@ -205,7 +205,7 @@ void PerspectiveFootprints<A>::find(
       }
       for (int c = 0; c < 3; ++c)
       {
-        // Of what all parts add up to.
+        // Relative to the sum of all parts.
         this->depth[k * this->parts + q][c] = static_cast<A>(shares[c] / (sum * this->parts));
       }
     }

@@ -1,21 +1,20 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Footprints in perspective views: rays run apart, so that each pixel weighs the voxels of a slice
- * in its own way. A slice is cut into parts of equal thickness, in each of which the weights are
- * products: of what all pixels of a column share, what those of a row share, and what all share.
+ * Footprints in perspective views, where rays diverge and each pixel has its own weights. A slice
+ * is divided into parts of equal thickness. In each part weights are products of a factor for the
+ * column, one for the row, and one for all pixels.
  *
  * In a part, the points of a pixel have x = x_ray + slope t a + w b, where t is the part's
- * thickness, w the distance from ray to ray, a and b are spread evenly over [-1/2, 1/2]. A voxel
- * weighs the mean of its reconstruction kernel over them, which with N, the kernel integrated
- * twice, is
+ * thickness, w the distance of rays, and a and b are uniform in [-1/2, 1/2]. The weight of a voxel
+ * is the mean of its reconstruction kernel over these points. With N, the kernel integrated twice,
+ * it is
  *
  *   E[h(x - i)] = (N(d + p) - N(d + m) - N(d - m) + N(d - p)) / (w |slope| t),
- *   d = x_ray - i, p = (w + |slope| t) / 2, m = (w - |slope| t) / 2.
+ *   d = x_ray - i,   p = (w + |slope| t) / 2,   m = (w - |slope| t) / 2.
  *
- * Exact weights would know that x and y grow together along a ray. Between parts these do; within
- * one that is lost, a covariance of slope_x slope_y t^2 / 12. There are as many parts as keep it
- * at or below 0.021 for all pixels of an image.
+ * The common change of x and y along a ray within a part is neglected: a covariance of slope_x
+ * slope_y t^2 / 12. The number of parts keeps it at or below 0.021 for all pixels of an image.
  */
 #ifndef splattingPerspectiveFootprints_h
 #define splattingPerspectiveFootprints_h
@@ -33,7 +32,7 @@ namespace splatting
 constexpr int MostParts = 3;
 constexpr int MostTaps = 5;
 
-/// Into how many parts the slices of an image are cut.
+/// The number of parts of an image's slices.
 int partsOf(const ShearWarp& geometry, const Kernel& kernel);
 
 /**
@@ -53,23 +52,23 @@ public:
   struct Part
   {
     const std::int32_t* first; ///< the first voxel of each pixel; may lie outside the volume
-    /// Tap n of pixel x at weights[n * stride + x]; no less than 0, and they add up to 1.
+    /// Tap n of pixel x is weights[n * stride + x]; not negative, with sum 1.
     const A* weights;
     std::ptrdiff_t stride;
     int taps;
-    /// The first voxels as places in a group's register: see AxisPicks::Picks.
+    /// The first voxels relative to a group's register: see AxisPicks::Picks.
     const std::int32_t* base;
     const void* lanes;
   };
   Part part(int k, int q) const;
 
   /// The voxels that some pixels read for part q of the worksheet of slice k, from first to last;
-  /// they may lie outside the volume.
+  /// may be outside the volume.
   Span voxels(int k, int q, const Span& pixels) const;
-  /// The same for all parts of some slices; there may be no slice or no pixel.
+  /// The same for all parts of some slices; slices or pixels may be empty.
   Span voxels(const Span& slices, const Span& pixels) const;
 
-  /// Farthest outside the volume that a pixel can begin to read.
+  /// The largest distance outside the volume at which a pixel begins to read.
   static constexpr int Margin = 8;
 
 private:
@@ -86,7 +85,7 @@ private:
   std::ptrdiff_t Padded = 0;
   double Steepest = 0.0;
   std::vector<int> Taps;
-  std::vector<unsigned char> Ascends; // of each part, whether its pixels' first voxels do
+  std::vector<unsigned char> Ascends; // for each part, whether first voxels ascend with pixels
   std::vector<std::int32_t> First, Bases;
   std::vector<A> Weights;
   std::vector<unsigned char> Lanes;
@@ -100,7 +99,7 @@ struct PerspectiveFootprints
 {
   AxisFootprints<A> columns, rows;
   int parts = 1;
-  /// For each slice and part, how much of a voxel of slices k - 1, k and k + 1 counts.
+  /// For each slice and part, the weights of slices k - 1, k and k + 1.
   std::vector<std::array<A, 3>> depth;
 
   /// As AxisFootprints::find().

@@ -14,7 +14,7 @@ namespace splatting
 namespace
 {
 /**
- * Preview mode in perspective views: the voxels that rays cross, each ray its own.
+ * Preview mode in perspective views: the voxels that rays cross, for each ray separately.
  */
 template <class T>
 class PerspectivePreview : public SliceSampler<T, T>
@@ -33,7 +33,7 @@ public:
       Context(context),
       Picks(picks)
   {
-    // A row without voxels, and a register of them.
+    // A row without voxels, as long as a register at least.
     const std::size_t count = std::max<std::size_t>(context.geometry.size().x, 64);
     none.resize(count * sizeof(T));
     this->None = reinterpret_cast<T*>(none.data());
@@ -54,7 +54,7 @@ public:
   {
     const Span some = common(slices, this->Context.geometry.slices());
     const VoxelLoops<T>& loops = this->Context.kernels;
-    // Two slices at a time: the image is read and written once.
+    // Two slices at a time, so that the image is read and written once.
     const int step = pixels.sliceStride != 0 ? 1 : 2;
     for (int k = some.begin; k < some.end; k += step)
     {
@@ -145,14 +145,14 @@ private:
       });
   }
 
-  /// Whole registers around pixels, as far as the image has them.
+  /// Whole registers around pixels, within the image.
   Span unitsOf(const Span& pixels) const
   {
     return { pixels.begin / RunUnit * RunUnit,
       std::min((pixels.end + RunUnit - 1) / RunUnit * RunUnit, this->Context.image.width) };
   }
 
-  /// The rows that two slices cover, and in these the pixels, in whole registers.
+  /// The rows of two slices, and their runs of pixels, in whole registers.
   Span findRuns(int near, int far, const Span& rows, const std::vector<Span>& runs,
     std::vector<Span>& covered) const
   {
@@ -192,7 +192,7 @@ private:
     return s;
   }
 
-  /// Of a slice and the one after it, or the same.
+  /// Of a slice and the next one, or the same.
   Crossing<T> crossingOf(int k, int next, const Span& rows, const std::vector<Span>& runs,
     const PixelRows<T>& pixels) const
   {
@@ -213,8 +213,8 @@ private:
     return c;
   }
 
-  /// One step of the rays of some pixels, into loaded.worksheet and loaded.present. Whether there
-  /// is any.
+  /// Computes one step of the rays of some pixels, into loaded.worksheet and loaded.present.
+  /// Returns whether there is any.
   bool findStep(int k, int v, int step, const Span& pixels, LoadedVoxels& loaded) const
   {
     const glm::ivec3& size = this->Context.geometry.size();

@@ -14,7 +14,7 @@ namespace splatting
 {
 namespace
 {
-/// What the layers of an image read, as far as WorksheetSampler asks for it.
+/// The voxels that the layers of an image read, for WorksheetSampler.
 template <class A>
 void findReach(
   const ShearWarp& geometry, const PerspectiveFootprints<A>& footprints, WorksheetReach<A>& reach)
@@ -33,14 +33,14 @@ void findReach(
     share = std::max({ share, k % BrickDepth == 0 ? before : A(0),
       k % BrickDepth == BrickDepth - 1 ? behind : A(0) });
   }
-  // Pixels are narrower than voxels: as many voxels, some for the taps and for what rays move.
+  // Pixels are narrower than voxels: as many voxels, and some for the taps and the drift of rays.
   reach.columns = reach.rows = 16;
 }
 
 /**
  * Standard and high mode in perspective views. The weights of a pixel are products, so a slice's
- * worksheet is made in two steps: its rows of voxels are weighed into rows of pixels, which the
- * image's rows then weigh.
+ * worksheet is made in two steps: rows of voxels are weighted into rows of pixels, which are then
+ * weighted into the image's rows.
  */
 template <class T>
 class PerspectiveWorksheets : public WorksheetSampler<T>
@@ -48,13 +48,13 @@ class PerspectiveWorksheets : public WorksheetSampler<T>
 public:
   using A = Accumulator<T>;
 
-  /// @param depth  how many slices beyond its own a footprint reads
+  /// @param depth  slices beyond its own that a footprint reads
   PerspectiveWorksheets(const ProjectionContext& context,
     const PerspectiveFootprints<A>& footprints, const WorksheetReach<A>& reach, int depth)
     : WorksheetSampler<T>(context, true, reach, depth),
       Own(footprints)
   {
-    // Rows of voxels that two blocks need are widened, blended and weighed twice.
+    // Rows of voxels of two blocks are converted, blended and weighted twice.
     this->BlockHeight = 32;
   }
 
@@ -67,7 +67,8 @@ public:
     return this->Own.rows.voxels(this->readers(this->slicesOf(z)), pixels);
   }
 
-  /// As in ParallelWorksheets, of up to 3 + 5 + 15 products and sums and the weights' own rounding.
+  /// As in ParallelWorksheets, with up to 3 + 5 + 15 products and sums and the weights' own
+  /// rounding.
   A slack() const override
   {
     return (this->Context.range.nonFinite ? 2 : 1) * 60 * std::numeric_limits<A>::epsilon() / 2;
@@ -129,11 +130,11 @@ private:
   /// Sums of weights are rounded, too.
   A wholeWeight() const override { return A(1) - 60 * std::numeric_limits<A>::epsilon() / 2; }
 
-  /// Registers of pixels begin at their multiples.
+  /// Registers of pixels begin at multiples of it.
   static constexpr int Unit = 16;
   static int alignedDown(int u) { return u / Unit * Unit; }
 
-  /// Weighs the rows of voxels that some rows of pixels need into rows of pixels, for each part.
+  /// Weights the rows of voxels of some rows of pixels into rows of pixels, for each part.
   void resampleRows(
     int k, const Span& rows, const Span& span, LoadedVoxels& loaded, Span* voxelRows) const
   {
@@ -163,13 +164,14 @@ private:
     }
   }
 
-  /// The voxels of some rows: of slice k, or, in part q, by share of the slices around it.
+  /// Finds the voxels of some rows: of slice k or, in part q, blended from the slices around it.
   void findVoxels(
     int k, int q, const Span& rows, LoadedVoxels& loaded, Resampling<A>& resampling) const
   {
     if (this->Depth == 0)
     {
-      resampling.voxels = loaded.template voxel<A>(0, rows.begin, k); // for shares see splatRows()
+      resampling.voxels =
+        loaded.template voxel<A>(0, rows.begin, k); // for blended slices see splatRows()
       resampling.voxelStride = loaded.rowLength;
       return;
     }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What a volume has where the projection of another one found its winners. For dependent
- * components: colours go with the opacity that won.
+ * The values of a volume at the winners of another volume's projection. For dependent components:
+ * colours are taken from the sample with the projected opacity.
  */
 #ifndef splattingValuesAtWinners_h
 #define splattingValuesAtWinners_h
@@ -15,8 +15,7 @@
 
 namespace splatting
 {
-/// Voxel (i, j, k) of a volume whose axes are permuted as in the shear image, wherever it is
-/// stored.
+/// Voxel (i, j, k) of a volume with axes permuted as in the shear image, for any memory layout.
 template <class T>
 class PermutedVoxels
 {
@@ -40,7 +39,7 @@ public:
       std::clamp(k, 0, this->Size.z - 1) * this->Strides[2]];
   }
 
-  /// The same of voxels that exist.
+  /// For voxels inside the volume.
   std::ptrdiff_t place(int i, int j, int k) const
   {
     return i * this->Strides[0] + j * this->Strides[1] + k * this->Strides[2];
@@ -61,7 +60,7 @@ T voxelAtWinner(const PermutedVoxels<T>& voxels, const RayPath& path, int u, int
   return voxels.at(u + path.di[t], v + path.dj[t], step / StepsPerSlice);
 }
 
-/// The same where each ray has a path of its own.
+/// The same for rays with individual paths.
 template <class T>
 T voxelAtWinner(const PermutedVoxels<T>& voxels, const ShearWarp& geometry, int u, int v, int step)
 {
@@ -88,7 +87,7 @@ Accumulator<T> averageAtWinner(const PermutedVoxels<T>& voxels,
   return static_cast<Accumulator<T>>(sum / weight);
 }
 
-/// NaN aside, as in worksheets; NaN if there is nothing else.
+/// Excludes NaN, as worksheets do; NaN if all are NaN.
 template <class T>
 Accumulator<T> averageAtWinner(const PermutedVoxels<T>& voxels,
   const SliceFootprint<Accumulator<T>>& footprint, int u, int v, int k)
@@ -109,7 +108,7 @@ Accumulator<T> averageAtWinner(const PermutedVoxels<T>& voxels,
   return static_cast<Accumulator<T>>(sum / weight);
 }
 
-/// Fills an image with valueAt(voxels, u, v, step) of the other volume, where there is a winner.
+/// Fills an image with valueAt(voxels, u, v, step) of the other volume, at winners.
 template <class T, class F>
 void fillAtWinners(const AtWinners& c, const F& valueAt)
 {

@@ -17,7 +17,7 @@ namespace splatting
 {
 namespace
 {
-/// The part of slice c; without columns if no tap lies there.
+/// The part of slice c, which has no columns if there is no tap.
 template <class A>
 FootprintPart<A> partOf(const Taps& taps, int c)
 {
@@ -419,7 +419,7 @@ void WorksheetSampler<T>::load(int k, int step, LoadedVoxels& loaded) const
 template <class T>
 void WorksheetSampler<T>::loadSheet(const LoadedVoxels::Sheet& sheet, LoadedVoxels& loaded) const
 {
-  // Rows inside the volume go together, those beyond repeat the outermost.
+  // Rows inside the volume are loaded together; those beyond repeat the outermost one.
   const int height = this->Context.geometry.size().y;
   const int end = sheet.j + sheet.rows;
   const int low = std::clamp(0, sheet.j, end), high = std::clamp(height, low, end);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * Standard and high mode: the footprints of all slices, and worksheets in layers of BrickDepth
- * slices. A worksheet lives for a few rows of one slice, in registers.
+ * slices. A worksheet exists for a few rows of one slice, in registers.
  */
 #ifndef splattingWorksheets_h
 #define splattingWorksheets_h
@@ -24,7 +24,7 @@ struct FootprintPart
   int slice;  // -1, 0 or 1
   int di, dj; // the first column and row
   int columns, rows;
-  std::array<A, 25> weights; // row after row, zero where there is no tap
+  std::array<A, 25> weights; // row by row, zero without a tap
 };
 
 /// The footprint of one slice, with weights of the accumulator's type.
@@ -38,26 +38,28 @@ struct SliceFootprint
   int partCount = 0;
 };
 
-/// Weights are rounded so that 8-bit sums are exact, else to the accumulator's precision.
+/// Weights are rounded so that 8-bit sums are exact, for other types to the accumulator's
+/// precision.
 template <class T>
 constexpr int weightBits = sizeof(T) == 1 ? 16
   : std::is_same_v<Accumulator<T>, float> ? 24
                                           : 48;
 
-/// The footprints of all slices; `sampling` as ProjectionSettings::footprintSampling. The table is
-/// set if it is needed, and of use again for other frames of the same view.
+/// The footprints of all slices.
+/// @param sampling  as ProjectionSettings::footprintSampling
+/// @param table     is set if needed, and reused by other frames of the same view
 template <class A>
 void findFootprints(const ShearWarp& geometry, const Kernel& kernel, int sampling, int weightBits,
   GeneralTable& table, std::vector<SliceFootprint<A>>& footprints);
 
-/// What the worksheets of all slices read.
+/// The voxels that the worksheets of all slices read.
 template <class A>
 struct WorksheetReach
 {
   struct Layer
   {
     VoxelWindow window; ///< of the layer's own voxels, by all worksheets that read them
-    A share = 0;        ///< how much of a worksheet its neighbours' voxels can weigh
+    A share = 0;        ///< the largest weight of neighbouring layers' voxels in a worksheet
   };
   std::vector<Layer> layers;
   std::vector<VoxelWindow> slices; ///< the same for each slice's voxels
@@ -68,7 +70,8 @@ template <class A>
 void findReach(const std::vector<SliceGeometry>& slices,
   const std::vector<SliceFootprint<A>>& footprints, WorksheetReach<A>& reach);
 
-/// The kernel of standard and high mode, and how many slices beyond its own a footprint reads.
+/// The kernel of standard and high mode, and the number of slices beyond its own that a footprint
+/// reads.
 inline Kernel worksheetKernel(const ProjectionSettings& settings)
 {
   return settings.quality == Quality::Standard ? Kernel{ Reconstruction::Box } : settings.kernel;
@@ -78,17 +81,17 @@ inline int worksheetDepth(const ProjectionSettings& settings)
   return settings.quality == Quality::Standard ? 0 : 1;
 }
 
-/// What the worksheets of all projections share: how layers, blocks and rows are walked, and how
-/// voxels are loaded.
+/// The common code of worksheets in all projections: loops over layers, blocks and rows, and
+/// loading of voxels.
 template <class T>
 class WorksheetSampler : public SliceSampler<T, Accumulator<T>>
 {
 public:
   using A = Accumulator<T>;
   using typename SliceSampler<T, A>::Samples;
-  using Target = PixelRows<A>; ///< where worksheets go
+  using Target = PixelRows<A>; ///< destination of worksheets
 
-  /// @param depth  how many slices beyond its own a footprint reads
+  /// @param depth  slices beyond its own that a footprint reads
   WorksheetSampler(
     const ProjectionContext& context, bool perspective, const WorksheetReach<A>& reach, int depth)
     : SliceSampler<T, A>({ perspective, 1, RunUnit }),
@@ -101,8 +104,8 @@ public:
 
   A share(int layer) const override { return this->Reach.layers[layer].share; }
 
-  /// What is subtracted from voxels before they are weighed, so that a flat background of the
-  /// lowest value is 0 and its sums are exact.
+  /// Is subtracted from voxels before they are weighted. A flat background of the lowest value is
+  /// then 0, and its sums are exact.
   A base() const override { return this->Base; }
 
   A magnitude() const override
@@ -112,7 +115,7 @@ public:
 
   void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
     const Target& pixels, LoadedVoxels& loaded) const override;
-  /// Block by block, so that voxels are widened once.
+  /// Block by block, so that voxels are converted once.
   void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
     LoadedVoxels& loaded) const override;
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
@@ -129,22 +132,22 @@ public:
     return static_cast<A>(floor) - this->Base;
   }
 
-  /// Adds the base; rounding must not show values that the data do not have.
+  /// Adds the base. Clamps rounding errors to the range of the data.
   void finish(int v0, int v1) const override;
 
 protected:
-  /// The largest of all voxels, less the base, whatever its sign.
+  /// The largest of all voxels, less the base.
   A largestVoxel() const
   {
     return std::max(
       this->magnitude(), std::abs(static_cast<A>(this->Context.range.high) - this->Base));
   }
 
-  /// Room for the voxels of some rows and columns of pixels.
+  /// Allocates the voxels of some rows and columns of pixels.
   void open(int v0, int v1, const Span& columns, LoadedVoxels& loaded) const;
 
-  /// Widens the voxels that worksheet k reads, as far as they are not loaded.
-  /// @param step  to the worksheet that comes next, 0 if none does
+  /// Converts the voxels of worksheet k, unless they are loaded.
+  /// @param step  to the next worksheet, 0 if there is none
   void load(int k, int step, LoadedVoxels& loaded) const;
 
   /// The voxels of slice s that worksheets need for some pixels.
@@ -152,56 +155,54 @@ protected:
 
   virtual void loadSheet(const LoadedVoxels::Sheet& sheet, LoadedVoxels& loaded) const;
 
-  /// Does the same as load() and splatRows() from the volume's own voxels, as far as these are all
-  /// that counts. False if that does not pay.
+  /// Replaces load() and splatRows(), from the volume's voxels alone, if these suffice. Returns
+  /// false if this does not pay.
   virtual bool splatOwn(int, int, int, int, const Span&, const Target&, LoadedVoxels&) const
   {
     return false;
   }
 
-  /// Raises pixels of some rows to the worksheet of slice k, whose voxels have been loaded and are
-  /// finite.
+  /// Raises pixels of some rows to the worksheet of slice k, whose voxels are loaded and finite.
   virtual void splatRows(int k, int first, int end, const Span& span, const Target& target,
     LoadedVoxels& loaded) const = 0;
 
-  /// The same where some are not. NaN is left out of averages: the worksheet of the others, divided
-  /// by that of their weights. Pixels that are NaN have no sample yet.
+  /// The same for voxels that are not all finite. Averages exclude NaN: the worksheet of the other
+  /// voxels is divided by that of their weights. Pixels that are NaN have no sample yet.
   virtual void splatNonFiniteRows(
     int k, int first, int end, const Span& span, const Target& target, LoadedVoxels& loaded) const;
 
-  /// Whether the voxels that worksheet k reads are, which have been loaded.
+  /// Whether the loaded voxels of worksheet k are finite.
   bool isFinite(int k, LoadedVoxels& loaded) const;
 
-  /// What the weights of a pixel add up to at least.
+  /// A lower bound of the sum of a pixel's weights.
   virtual A wholeWeight() const { return 1; }
 
 private:
-  /// The widest registers hold two tiles, and take no longer for both than for one.
+  /// The widest registers contain two tiles, and take the same time for one.
   static constexpr int RunUnit = 2 * TileWidth;
 
   static A baseOf(const VolumeIndex::Range& range)
   {
-    // Only where the difference is exact: 64-bit integers have more bits than double.
+    // Only if the difference is exact: 64-bit integers have more bits than double.
     return std::numeric_limits<T>::is_integer && sizeof(T) < 8 ? static_cast<A>(range.low) : A(0);
   }
 
-  /// The sheets that worksheet k reads, as slices.
+  /// The slices of the sheets of worksheet k.
   Span sheetsOf(int k) const
   {
     return { std::max(k - this->Depth, 0),
       std::min(k + this->Depth, this->Context.geometry.size().z - 1) + 1 };
   }
   bool isFinite(const LoadedVoxels::Sheet& sheet, LoadedVoxels& loaded) const;
-  /// Voxels, which of them are finite, and, if there are infinities, which are positive or
-  /// negative.
+  /// Voxels, flags of finite ones and, with infinities, flags of positive and negative ones.
   int parts() const { return this->Context.range.hasInfinities() ? 4 : 2; }
-  /// Makes the parts of the sheets that worksheet k reads.
+  /// Makes the parts of the sheets of worksheet k.
   void separate(int k, LoadedVoxels& loaded) const;
 
-  /// Room for one worksheet.
+  /// Buffer for one worksheet.
   Target worksheetFor(int v0, int v1, const Span& columns, LoadedVoxels& loaded) const;
 
-  /// Calls f for blocks of the image whose voxels stay in the cache.
+  /// Calls f for blocks of the image whose voxels fit the cache.
   template <class F>
   void forBlocks(int v0, int v1, const Span& columns, F&& f) const;
 
@@ -210,7 +211,7 @@ private:
   void sample(int k, int step, int first, int end, const Span& span, const Target& worksheet,
     LoadedVoxels& loaded) const;
   /// Raises pixels of some rows to the worksheet of slice k.
-  /// @param step  to the worksheet that comes next, 0 if none does
+  /// @param step  to the next worksheet, 0 if there is none
   void splatOne(int k, int step, int first, int end, const Span& span, const Target& target,
     LoadedVoxels& loaded) const;
   void splatBlocks(const Span& slices, int v0, int v1, const Span& run, const Target& target,
@@ -218,8 +219,8 @@ private:
   void splatBlock(const Span& slices, int v0, int v1, const Span& columns, const Target& target,
     LoadedVoxels& loaded) const;
 
-  /// Calls f(first, end, span) for rows that slice k covers in the same columns: nearly always all
-  /// of them at once.
+  /// Calls f(first, end, span) for rows with the same columns of slice k, nearly always all rows at
+  /// once.
   template <class F>
   void forRows(int k, int v0, int v1, const Span& columns, F&& f) const;
 
@@ -231,7 +232,7 @@ protected:
   const ProjectionContext& Context;
   const WorksheetReach<A>& Reach;
   int Depth;
-  int BlockWidth = 1024, BlockHeight = 16; ///< pixels; for the second-level cache
+  int BlockWidth = 1024, BlockHeight = 16; ///< pixels; fit the second-level cache
   A Base;
 };
 }

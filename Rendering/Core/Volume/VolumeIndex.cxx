@@ -31,7 +31,7 @@ constexpr T highest()
                                               : std::numeric_limits<T>::max();
 }
 
-/// Adds the seconds that it lives.
+/// Adds its lifetime to a number of seconds.
 class Stopwatch
 {
 public:
@@ -89,8 +89,8 @@ struct Extremes
   bool nonFinite = false;
 };
 
-/// Looks at all voxels once, for their range and, if asked, for the bricks along all axes. These
-/// are made of cubes of four voxels, two rows of cubes along x at a time.
+/// Finds the range of all voxels and, on request, the bricks along all axes, in one pass. Bricks
+/// consist of cubes of four voxels, two rows of cubes along x at a time.
 template <class T>
 class Survey
 {
@@ -153,7 +153,7 @@ private:
     return const_cast<T*>(this->Bricks[axis].template row<T>(j, k));
   }
 
-  /// Rows 2 pair and, if there is one, 2 pair + 1 of the cubes at z.
+  /// Rows 2 pair and, if it exists, 2 pair + 1 of the cubes at z.
   void lookAt(int pair, int z, Scratch& scratch) const
   {
     const int y = 2 * pair;
@@ -164,7 +164,7 @@ private:
       this->findCubes(y + n, z, scratch, cubes);
       if (this->Bricks)
       {
-        // Along axes 1 and 2 two cubes along x make a brick.
+        // Along axes 1 and 2 a brick consists of two cubes along x,
         T* const bricks = this->row(2, y + n, z);
         join(cubes.data(), this->Count.x, bricks);
         std::copy(bricks, bricks + this->Bricks[2].count.x, this->row(1, z, y + n));
@@ -172,7 +172,7 @@ private:
     }
     if (this->Bricks)
     {
-      // Along axis 0 two along y do.
+      // along axis 0 of two along y.
       const T *const a = scratch.cubes[0].data(), *const b = scratch.cubes[isPair ? 1 : 0].data();
       const std::ptrdiff_t slice =
         std::ptrdiff_t(this->Bricks[0].count.x) * this->Bricks[0].count.y;
@@ -184,7 +184,7 @@ private:
     }
   }
 
-  /// The largest of each two cubes, and the last one as it is if it is left alone.
+  /// The larger of each two cubes; a single last cube is copied.
   static void join(const T* cubes, int count, T* bricks)
   {
     for (int i = 0; i < count / 2; ++i)
@@ -205,7 +205,7 @@ private:
     scratch.columns.assign(std::size_t(this->Count.x) * Edge, lowest<T>());
     for (int j = y * Edge; j < std::min((y + 1) * Edge, size.y); ++j)
     {
-      const T* rows[Edge]; // several streams through memory keep the processor busy
+      const T* rows[Edge]; // several memory streams keep the processor busy
       int count = 0;
       for (int k = z * Edge; k < std::min((z + 1) * Edge, size.z); ++k)
       {
@@ -239,7 +239,7 @@ double largestMagnitudeOf(const VoxelArray& volume, const Extremes<T>& extremes)
   {
     return std::max(std::abs(low), std::abs(high));
   }
-  // Infinities hide the others.
+  // The magnitudes of the other voxels are unknown beside infinities.
   const T* const voxels = static_cast<const T*>(volume.voxels);
   const glm::ivec3& size = volume.dimensions;
   return std::accumulate(voxels, voxels + std::ptrdiff_t(size.x) * size.y * size.z, 0.0,
@@ -258,7 +258,7 @@ void VolumeIndex::survey()
   const Extremes<T> extremes = Survey<T>(this->Volume, fits ? this->Bricks.data() : nullptr)();
   this->ValueRange = { static_cast<double>(extremes.low), static_cast<double>(extremes.high),
     extremes.nonFinite, largestMagnitudeOf(this->Volume, extremes) };
-  // Walks of volumes with infinities leave nothing out.
+  // Walks of volumes with infinities skip nothing.
   this->BricksMade = fits && !this->ValueRange.hasInfinities();
   if (!this->BricksMade)
   {
@@ -355,7 +355,7 @@ Slices VolumeIndex::someSlices(int begin, int end, std::vector<unsigned char>& b
   const std::ptrdiff_t slice =
     std::ptrdiff_t(this->Volume.dimensions.y) * this->Volume.dimensions.z;
   buffer.resize(std::size_t(end - begin) * slice * sizeOf(this->Volume.type));
-  const void* first = nullptr; // where slice 0 would be
+  const void* first = nullptr; // of slice 0, which need not exist
   dispatch(this->Volume.type,
     [&](auto* null)
     {
@@ -400,7 +400,7 @@ const BrickMaxima& VolumeIndex::bricks(int principalAxis)
 const LineIndex* VolumeIndex::lines(
   int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress)
 {
-  const bool plain = encoding.order == LineOrder::Lines && !encoding.eliminate;
+  const bool plain = encoding.order == LineOrder::Lines;
   LineIndex& lines = this->Lines[principalAxis][plain ? 0 : 1];
   std::optional<LineEncoding>& tooLarge = this->Unmade[principalAxis][plain ? 0 : 1];
   if (lines.holds(encoding))

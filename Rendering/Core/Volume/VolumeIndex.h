@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What is known of a volume beyond its voxels: made on first need, kept until the data change.
+ * Data derived from a volume, made on demand and kept until the volume changes.
  */
 #ifndef splattingVolumeIndex_h
 #define splattingVolumeIndex_h
@@ -22,7 +22,7 @@
 namespace splatting
 {
 /**
- * The voxels as somebody else holds them, first axis fastest, without gaps.
+ * The address of a volume's voxels, first axis fastest, without gaps.
  */
 struct VoxelArray
 {
@@ -47,19 +47,19 @@ constexpr int BrickHeight = 4;
 constexpr int BrickDepth = 4;
 
 /**
- * The largest voxel (NaN aside) of each brick, with bricks laid along one principal axis.
+ * The largest voxel of each brick, without NaN, with bricks along one principal axis.
  */
 struct BrickMaxima
 {
-  /// Bytes that may be read before the first and behind the last brick, so that loops need not stop
-  /// at the ends of rows.
+  /// Bytes that may be read before the first and after the last brick, so that loops can read whole
+  /// registers.
   static constexpr std::size_t Padding = 128;
 
   glm::ivec3 count{ 0 }; ///< bricks along i, j and k
   std::unique_ptr<unsigned char[]> bytes;
-  std::size_t size = 0; ///< of all of it
+  std::size_t size = 0; ///< with padding
 
-  /// Room for so many bricks, which are left unset: the pages come when the threads set them.
+  /// Allocates bricks without setting them, so that each thread touches its pages first.
   template <class T>
   void open(const glm::ivec3& bricks)
   {
@@ -78,44 +78,44 @@ struct BrickMaxima
   }
 };
 
-/// Which accelerations have been worth their while, for Acceleration::Auto.
+/// Statistics of bricks, for Acceleration::Auto.
 struct SkipStatistics
 {
-  double share = 0.0;  ///< of the tiles that bricks did not leave out, the last time
+  double share = 0.0;  ///< of the tiles that bricks did not skip, in their last frame
   int framesSince = 0; ///< frames without bricks since then
 };
 
 class VolumeIndex
 {
 public:
-  /// Forgets all that was known and looks at other (or changed) voxels.
+  /// Discards all data, and sets other (or changed) voxels.
   void reset(const VoxelArray& volume);
 
   const VoxelArray& volume() const { return this->Volume; }
 
-  /// Bytes that may be held besides the volume. What would exceed them is not made; a
-  /// change gives up all that is there. Returns whether it has changed.
+  /// Sets the bytes that may be held besides the volume. What would exceed them is not made. A
+  /// change discards all data. Returns whether the budget has changed.
   bool setBudget(std::size_t bytes);
-  /// Whether something was not made for want of memory.
+  /// Whether something was not made because of the budget.
   bool exceedsBudget() const { return this->Exceeded; }
 
-  /// Whether slices() can be called for an axis: the volume holds them as they are, or the budget
-  /// has room for a copy.
+  /// Whether slices() can be called for an axis: without a copy, or because the budget has room for
+  /// one.
   bool hasSlices(int principalAxis);
   /**
-   * The volume seen along an axis, rows without gaps, (i, j) as in ShearWarp::axes(). Along the
-   * first axis voxels of a row would lie a whole row of memory apart; there it is a copy with axes
-   * (1, 2, 0), made on first use (one pass, reads and writes each byte once).
+   * The volume as slices along an axis, rows without gaps, (i, j) as in ShearWarp::axes(). Along
+   * the first axis it is a copy with axes (1, 2, 0), because voxels of a row would be a whole row
+   * apart in memory. The copy is made on demand in one pass.
    */
   Slices slices(int principalAxis);
   /**
-   * The same for slices [begin, end) along the first axis only, copied into `buffer`.
+   * The same for slices [begin, end) along the first axis, copied into `buffer`.
    */
   Slices someSlices(int begin, int end, std::vector<unsigned char>& buffer) const;
 
   struct Range
   {
-    double low = 0.0, high = 0.0; ///< of all voxels but NaN; low > high if there are none
+    double low = 0.0, high = 0.0; ///< of all voxels except NaN; low > high if there are none
     bool nonFinite = false;       ///< whether there are NaN or infinities
     double magnitude = 0.0;       ///< the largest one of finite voxels
 
@@ -124,10 +124,10 @@ public:
       return this->low <= this->high && (std::isinf(this->low) || std::isinf(this->high));
     }
   };
-  /// Made on first use: one pass over the voxels, which makes the bricks as well.
+  /// Computed on demand in one pass over the voxels, which also makes the bricks.
   const Range& range();
-  /// If the voxels are a piece of a volume: the range of that, which range() is from now on. It
-  /// holds the voxels' own.
+  /// Sets the range that range() returns for a piece to that of the whole volume. It must include
+  /// that of the piece.
   void setRangeOfWhole(const Range& range);
 
   /// Whether there are bricks: the budget has room for them, and there are no infinities.
@@ -136,15 +136,14 @@ public:
   const BrickMaxima& bricks(int principalAxis);
 
   /**
-   * The chains along an axis, or nullptr if the budget has no room for them or if `progress` gave
-   * them up. Made on first use and again when the encoding changes; those of plain
-   * rows with all voxels are kept beside those of the last other encoding. Not for volumes with NaN
-   * or infinities.
+   * The chains along an axis, or nullptr if the budget has no room or `progress` stopped them. Made
+   * on demand, and again when the encoding changes. Plain rows with all voxels are kept in addition
+   * to the last other encoding. Not for volumes with NaN or infinities.
    */
   const LineIndex* lines(
     int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress = {});
 
-  /// Cut volumes have statistics of their own: much of them may be left out.
+  /// Cut volumes have their own statistics, because much of them may be skipped.
   SkipStatistics& statistics(int principalAxis, int quality, bool isCut)
   {
     return this->Statistics[isCut][principalAxis][quality];
@@ -152,7 +151,7 @@ public:
 
   /// Bytes held besides the volume.
   std::size_t memorySize() const;
-  /// Seconds that making them took.
+  /// Seconds that all data took.
   double time() const { return this->Seconds; }
 
 private:
@@ -168,7 +167,8 @@ private:
   Range ValueRange;
   std::array<BrickMaxima, 3> Bricks;
   std::array<std::array<LineIndex, 2>, 3> Lines;
-  std::array<std::array<std::optional<LineEncoding>, 2>, 3> Unmade; // encodings that had no room
+  std::array<std::array<std::optional<LineEncoding>, 2>, 3>
+    Unmade; // encodings that exceeded the budget
   bool Surveyed = false;
   bool BricksMade = false;
   bool Exceeded = false;

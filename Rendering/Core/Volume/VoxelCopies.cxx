@@ -27,7 +27,7 @@ void forAll(std::ptrdiff_t count, std::ptrdiff_t grain, Body&& body)
     });
 }
 
-constexpr std::ptrdiff_t Grain = 1 << 16; // voxels that are worth a task
+constexpr std::ptrdiff_t Grain = 1 << 16; // voxels of a task
 
 template <class T>
 double valueOf(const StridedVoxels& from, std::ptrdiff_t n)
@@ -35,7 +35,7 @@ double valueOf(const StridedVoxels& from, std::ptrdiff_t n)
   return static_cast<double>(static_cast<const T*>(from.voxels)[n * from.stride]);
 }
 
-/// The length of a vector of n-th voxels. Of finite ones it is finite, and at most the largest
+/// The length of the vector of the n-th voxels. Finite for finite voxels, at most the largest
 /// number of its type.
 template <class T>
 Accumulator<T> lengthOf(const std::vector<StridedVoxels>& components, std::ptrdiff_t n)
@@ -47,7 +47,7 @@ Accumulator<T> lengthOf(const std::vector<StridedVoxels>& components, std::ptrdi
     const double value = valueOf<T>(component, n);
     sum += value * value;
   }
-  constexpr double least = 1e-280; // below, squares lose digits
+  constexpr double least = 1e-280; // squares of smaller numbers lose digits
   constexpr double most = std::numeric_limits<A>::max();
   double length = std::sqrt(sum);
   if (sum < least || length > most)
@@ -64,7 +64,7 @@ Accumulator<T> lengthOf(const std::vector<StridedVoxels>& components, std::ptrdi
   return static_cast<A>(length);
 }
 
-/// A row of voxels, interpolated between four rows.
+/// A row of voxels, interpolated from four rows.
 template <class T>
 struct RowBundle
 {
@@ -72,7 +72,7 @@ struct RowBundle
   double weights[4];
   std::ptrdiff_t stride;
 
-  /// Adds what these rows have at column i, NaN aside; remembers the nearest voxel.
+  /// Adds column i of these rows without NaN, and notes the nearest voxel.
   void add(int i, double share, double& sum, double& weight, double& best, double& nearest) const
   {
     for (int r = 0; r < 4; ++r)
@@ -80,7 +80,7 @@ struct RowBundle
       const double w = this->weights[r] * share;
       if (w <= 0.0)
       {
-        continue; // nothing times infinity is no number
+        continue; // zero times infinity is NaN
       }
       const double value = static_cast<double>(this->rows[r][i * this->stride]);
       if (w > best)
@@ -105,7 +105,7 @@ struct RowBundle
     {
       this->add(i + 1, fraction, sum, weight, best, nearest);
     }
-    const double average = sum / weight; // NaN between infinities of both signs
+    const double average = sum / weight; // NaN for infinities of both signs
     return static_cast<A>(nearest == nearest && average == average ? average : nearest);
   }
 };

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Voxels that cannot be splatted from where they are: interleaved components, magnitudes, hidden
+ * Copies of voxels that cannot be splatted in place: interleaved components, magnitudes, hidden
  * voxels, grids with unequal steps.
  */
 #ifndef splattingVoxelCopies_h
@@ -16,7 +16,7 @@
 namespace splatting
 {
 /**
- * One component as somebody else holds it: the scalar of voxel n at voxels[n * stride].
+ * One component of an array: the scalar of voxel n at voxels[n * stride].
  */
 struct StridedVoxels
 {
@@ -25,21 +25,21 @@ struct StridedVoxels
   std::ptrdiff_t stride = 1;
 };
 
-/// The type that holds averages of scalars of a type: its Accumulator.
+/// The type of averages of scalars of a type: its Accumulator.
 ScalarType averageType(ScalarType type);
 
-/// The voxels, one after the other, in their own type.
+/// Copies the voxels contiguously, in their own type.
 void gather(const StridedVoxels& from, std::ptrdiff_t count, void* to);
 
-/// The Euclidean length of each voxel's components, summed in double; `to` is of averageType().
+/// The Euclidean length of each voxel's components, summed in double. `to` has averageType().
 void magnitude(const std::vector<StridedVoxels>& components, std::ptrdiff_t count, void* to);
 
-/// The voxels in averageType(), NaN where `hidden` is not 0.
+/// Copies the voxels in averageType(), with NaN where `hidden` is not 0.
 void hide(const StridedVoxels& from, const unsigned char* hidden, std::ptrdiff_t count, void* to);
 
 /**
- * Where voxels lie along one axis of a grid with unequal steps: voxel n of the copy at the share
- * `fraction[n]` of the way from voxel below[n] to the next one. No fractions: at below[n].
+ * The voxels of a copy along one axis of a grid with unequal steps. Voxel n lies at fraction[n]
+ * between voxel below[n] and the next one; without fractions at below[n].
  */
 struct ResampledAxis
 {
@@ -48,13 +48,13 @@ struct ResampledAxis
 };
 
 /**
- * Points: interpolated trilinearly in double, in averageType(). NaN is left out of averages, and
- * the result is NaN where the nearest voxel is.
+ * Interpolates points trilinearly in double, to averageType(). Averages exclude NaN. The result is
+ * NaN where the nearest voxel is.
  */
 void resamplePoints(
   const StridedVoxels& from, const glm::ivec3& size, const ResampledAxis (&axes)[3], void* to);
 
-/// Cells: the cell that holds the voxel's middle, in its own type.
+/// Copies the cell that contains the voxel's centre, in its own type.
 void resampleCells(
   const StridedVoxels& from, const glm::ivec3& size, const ResampledAxis (&axes)[3], void* to);
 }

@@ -26,7 +26,7 @@ vtkIdType count(const Size& size)
   return size[0] * size[1] * size[2];
 }
 
-/// Points along each axis, or cells.
+/// Points, or cells, along each axis.
 Size sizeOf(vtkDataSet* data, bool cells)
 {
   vtkImageData* const image = vtkImageData::SafeDownCast(data);
@@ -46,7 +46,7 @@ vtkUnsignedCharArray* ghosts(vtkDataSetAttributes* attributes)
     attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
 }
 
-/// The mask's scalars: of its points, or of its cells if only these have some.
+/// The mask's point scalars or, without any, its cell scalars.
 vtkUnsignedCharArray* maskScalars(vtkImageData* mask, bool& onCells)
 {
   int cellFlag = 0;
@@ -56,7 +56,7 @@ vtkUnsignedCharArray* maskScalars(vtkImageData* mask, bool& onCells)
   return vtkUnsignedCharArray::SafeDownCast(scalars);
 }
 
-/// The flags of the array that have the bit; nullptr if none has.
+/// The flags if any of them has the bit, else nullptr.
 vtkUnsignedCharArray* withBit(vtkUnsignedCharArray* flags, unsigned char bit)
 {
   if (!flags)
@@ -101,7 +101,7 @@ std::array<vtkIdType, 2> neighbours(vtkIdType n, bool ofCell, vtkIdType most)
                 : std::array<vtkIdType, 2>{ std::max<vtkIdType>(n - 1, 0), std::min(n, most - 1) };
 }
 
-/// Whether one of the cells' points, or all of the points' cells, have the bit.
+/// Whether one of a cell's points, or all of a point's cells, have the bit.
 bool isHiddenByOthers(const unsigned char* flags, unsigned char bit, const Size& others, bool cells,
   vtkIdType i, vtkIdType j, vtkIdType k)
 {

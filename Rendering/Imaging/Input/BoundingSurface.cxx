@@ -25,24 +25,24 @@ namespace splatting
 namespace
 {
 const char* const NoPolygons =
-  "The bounding surface has no polygons: give it some, or take it away with "
+  "The bounding surface has no polygons: add some, or remove the surface with "
   "SetBoundingSurface(nullptr).";
 const char* const NoArea =
-  "The polygons of the bounding surface have no area: give it some that have, or take it away with "
+  "The polygons of the bounding surface have no area: add larger ones, or remove the surface with "
   "SetBoundingSurface(nullptr).";
 const char* const NoPlaces =
   "The bounding surface has points that are not finite, or farther away than 1e12 voxels: give it "
   "world coordinates about the volume.";
 
-/// Whether something can be computed with a point in index space.
+/// Whether the coordinates of a point are finite and not too large.
 bool isNear(const glm::dvec3& p)
 {
-  // NaN is not.
+  // false for NaN
   const glm::dvec3 distance = glm::abs(p);
   return distance.x <= 1e12 && distance.y <= 1e12 && distance.z <= 1e12;
 }
 
-/// Not if the corners lie on a line, within the rounding of coordinates in double precision.
+/// false if the corners are collinear within the rounding of double coordinates
 bool hasArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
 {
   const glm::dvec3 largest = glm::max(glm::abs(b - a), glm::abs(c - a));
@@ -50,8 +50,8 @@ bool hasArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
   return size > 0.0 && glm::length(glm::cross((b - a) / size, (c - a) / size)) > 1e-14;
 }
 
-/// Whether an edge has a triangle on one side only. Points in the same place are one: surfaces with
-/// normals have several at their edges.
+/// Whether an edge has a triangle on one side only. Points at the same position are merged, because
+/// surfaces with normals have several at their edges.
 bool isOpen(vtkPolyData* triangles)
 {
   vtkNew<vtkCleanPolyData> merge;
@@ -114,7 +114,7 @@ const char* BoundingSurface::MakeTriangles(vtkPolyData* data)
       return NoPlaces;
     }
   }
-  vtkNew<vtkPolyData> bare; // its attributes are of no use
+  vtkNew<vtkPolyData> bare; // without attributes, which are not needed
   bare->CopyStructure(data);
   vtkNew<vtkTriangleFilter> filter;
   filter->SetInputData(bare);
@@ -142,7 +142,7 @@ const char* BoundingSurface::MakeTriangles(vtkPolyData* data)
   {
     return NoPolygons;
   }
-  // Some without area may close the gaps between others.
+  // Triangles without area may close gaps between others.
   if (std::none_of(this->Triangles.begin(), this->Triangles.end(),
         [this](const glm::ivec3& t)
         { return hasArea(this->Points[t.x], this->Points[t.y], this->Points[t.z]); }))

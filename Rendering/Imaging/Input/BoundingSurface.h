@@ -14,35 +14,34 @@ class vtkPolyData;
 namespace splatting
 {
 /**
- * A vtkPolyData that a volume is shown in, as triangles of the volume's index space. They are made
- * anew only when the data or the matrix changes.
+ * A vtkPolyData as triangles of a volume's index space, updated when the data or the matrix change.
  */
 class BoundingSurface
 {
 public:
-  /// Takes the surface, which may be nullptr. Returns what is wrong with it, or nullptr.
+  /// Sets the surface, which may be nullptr. Returns an error message, or nullptr.
   const char* Update(vtkPolyData* data, const glm::dmat4& worldToIndex);
 
-  /// Of the last Update().
+  /// Whether the surface of the last Update() is open.
   bool IsOpen() const { return this->Open; }
 
-  /// Another number after each Update() that changed the triangles.
+  /// Changes with each Update() that changes the triangles.
   vtkIdType Version() const { return this->NumberOfUpdates; }
 
-  /// Nullptr if there is none.
+  /// nullptr if there is no surface
   ClosedSurface* Get() { return this->Surface.empty() ? nullptr : &this->Surface; }
 
 private:
   const char* MakeTriangles(vtkPolyData* data);
   const char* MakeSurface();
 
-  vtkPolyData* Data = nullptr; // only compared
+  vtkPolyData* Data = nullptr; // compared only
   vtkMTimeType DataTime = 0;
   glm::dmat4 WorldToIndex{ 1.0 };
   const char* Fault = nullptr;
   bool Open = false;
   vtkIdType NumberOfUpdates = 0;
-  std::vector<glm::dvec3> Points; // in the world
+  std::vector<glm::dvec3> Points; // in world coordinates
   std::vector<glm::ivec3> Triangles;
   ClosedSurface Surface;
 };

@@ -41,8 +41,8 @@ ScalarType sizedType()
   }
 }
 
-/// Whether an array of separate components has them so. From VTK 9.3 to 9.6 it may interleave them,
-/// from the start or from the first GetVoidPointer() on, and does not always tell.
+/// Whether an array stores its components separately. VTK 9.3 to 9.6 may interleave them, at once
+/// or at the first GetVoidPointer(), without changing its type.
 template <class T>
 bool isSeparate(vtkSOADataArrayTemplate<T>* array)
 {
@@ -61,7 +61,7 @@ bool isSeparate(vtkSOADataArrayTemplate<T>* array)
 #endif
 }
 
-/// A component of an array, without a place if it is stored in an unusual way.
+/// A component of an array; without address if it has an unusual layout.
 template <class T>
 StridedVoxels componentOf(vtkDataArray* array, int component)
 {
@@ -90,7 +90,7 @@ std::ptrdiff_t count(const glm::ivec3& size)
   return std::ptrdiff_t(size.x) * size.y * size.z;
 }
 
-/// The data set's time with that of all that it holds.
+/// The latest time of the data set and its contents.
 vtkMTimeType timeOf(vtkDataSet* input)
 {
   vtkMTimeType time = input->GetMTime();
@@ -105,8 +105,8 @@ vtkMTimeType timeOf(vtkDataSet* input)
   return time;
 }
 
-/// What is wrong with the data set, its arrays and geometry aside.
-std::string problemOfInput(vtkDataSet* input)
+/// The error of the data set, except for its arrays and geometry.
+std::string loadInput(vtkDataSet* input)
 {
   if (!input)
   {
@@ -125,8 +125,8 @@ std::string problemOfInput(vtkDataSet* input)
   return {};
 }
 
-/// The voxels of one component of several, in an array of T. In place of NaN the least
-/// number. False if all are NaN.
+/// The voxels of one of several components, in an array of T. NaN is replaced by the least number.
+/// Returns false if all are NaN.
 template <class T>
 bool interleave(const VoxelArray& volume, int component, int components, T* out)
 {
@@ -151,7 +151,7 @@ bool interleave(const VoxelArray& volume, int component, int components, T* out)
   return found;
 }
 
-/// Whether one of the values, stored one after the other, is NaN.
+/// Whether one of the contiguous values is NaN.
 bool hasNaN(vtkDataArray* scalars)
 {
   return dispatch(scalarTypeOfVtk(scalars->GetDataType()),
@@ -183,9 +183,9 @@ ScalarType scalarTypeOfVtk(int vtkType)
   return ScalarType::Float32;
 }
 
-const char* const ScalarSource::NoMemory =
-  "There is not enough memory to project this volume: make room, lower IndexMemoryBudget, or show "
-  "a part of the volume or fewer components.";
+const char* const ScalarSource::NoMemory = "There is not enough memory to project this volume: "
+                                           "free memory, lower IndexMemoryBudget, or show "
+                                           "a part of the volume or fewer components.";
 
 ScalarSource::ScalarSource() = default;
 
@@ -200,13 +200,13 @@ bool ScalarSource::Key::operator==(const Key& other) const
     this->maskTime == other.maskTime;
 }
 
-// Choices that make no difference are made equal, so that a change of them changes nothing.
+// Sets choices without effect to the same value, so that their changes are ignored.
 void ScalarSource::Key::DropIdle()
 {
   constexpr int all = ScalarChoice::Disabled;
   constexpr int one = ScalarChoice::Component;
   const bool isSingle = this->scalars->GetNumberOfComponents() == 1;
-  if (isSingle && !(this->vectorMode == one && this->vectorComponent > 0)) // which is a fault
+  if (isSingle && !(this->vectorMode == one && this->vectorComponent > 0)) // which is an error
   {
     this->vectorMode = all;
   }
@@ -224,7 +224,7 @@ void* ScalarSource::Copy::Allocate(std::ptrdiff_t voxels, ScalarType type)
 std::string ScalarSource::Examine(vtkDataSet* input, const ScalarChoice& choice)
 {
   Key key;
-  std::string problem = problemOfInput(input);
+  std::string problem = loadInput(input);
   if (problem.empty())
   {
     problem = this->FindScalars(input, choice, key);
@@ -233,7 +233,7 @@ std::string ScalarSource::Examine(vtkDataSet* input, const ScalarChoice& choice)
   {
     return problem;
   }
-  this->StandIn = nullptr; // lest the old scalars stay in memory
+  this->StandIn = nullptr; // releases the old scalars
   this->StandInCopy = nullptr;
   if (problem.empty())
   {
@@ -251,7 +251,7 @@ std::string ScalarSource::Examine(vtkDataSet* input, const ScalarChoice& choice)
   return problem;
 }
 
-// Finds the chosen array and says what is wrong with it.
+// Finds the chosen array. Returns an error message, or an empty string.
 std::string ScalarSource::FindScalars(vtkDataSet* input, const ScalarChoice& choice, Key& key) const
 {
   int cellFlag = 0;
@@ -278,8 +278,8 @@ std::string ScalarSource::FindScalars(vtkDataSet* input, const ScalarChoice& cho
     return "The scalars have " + std::to_string(scalars->GetNumberOfTuples()) + " tuples for " +
       std::to_string(voxels) + (cells ? " cells" : " points") + ": the two must agree.";
   }
-  // The image's time includes its arrays'. Images may share an array, and an array may be given
-  // another buffer without a word.
+  // The image's time includes that of its arrays. Images may share an array, and an array may get
+  // another buffer without a change of its time.
   key = { input, timeOf(input), scalars, componentOf(scalars, 0).voxels, choice.vectorMode,
     choice.vectorComponent, cells, choice.independentComponents, choice.mask,
     choice.mask ? choice.mask->GetMTime() : 0 };
@@ -287,7 +287,7 @@ std::string ScalarSource::FindScalars(vtkDataSet* input, const ScalarChoice& cho
   return {};
 }
 
-// What is projected of the array's components.
+// Finds the projected components. Returns an error message, or an empty string.
 std::string ScalarSource::CheckComponents(const Key& key)
 {
   const int available = key.scalars->GetNumberOfComponents();
@@ -328,7 +328,7 @@ bool ScalarSource::IsMagnitude() const
     this->Examined.scalars->GetNumberOfComponents() > 1;
 }
 
-// The components that are projected, or make up the magnitude that is.
+// The projected components, or those of the projected magnitude.
 std::vector<StridedVoxels> ScalarSource::ChosenComponents()
 {
   vtkDataArray* scalars = this->Examined.scalars;
@@ -407,7 +407,7 @@ void ScalarSource::Update()
   {
     Copy copy;
     this->Volumes.push_back(this->MakeVolume(component, hidden, copy));
-    // A magnitude that is splatted as it is stays.
+    // A magnitude that needs no further copy is kept.
     this->Copies.push_back(copy.bytes ? std::move(copy) : std::move(lengths));
   }
   this->Volumed = this->Examined;
@@ -455,7 +455,7 @@ int ScalarSource::VtkTypeOf(ScalarType type) const
 {
   if (type == scalarTypeOfVtk(this->VtkType))
   {
-    return this->VtkType; // keeps char apart from signed char, long from long long
+    return this->VtkType; // distinguishes char from signed char, and long from long long
   }
   return type == ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
 }
@@ -466,9 +466,9 @@ int ScalarSource::AverageVtkType(int vtkType)
   return type == ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE;
 }
 
-// Whether the chosen array is what is projected, one voxel after the other and without holes: ray
-// casters take NaN for a number, and read the buffer from several threads, while an array that is
-// stored otherwise makes one only then.
+// Whether the chosen array is projected as it is, contiguous and without NaN. Ray casters do not
+// exclude NaN. They read the buffer from several threads, and arrays with other layouts would
+// create it there.
 bool ScalarSource::IsInputArray() const
 {
   const bool isPart = this->Examined.vectorMode == ScalarChoice::Component &&
@@ -479,7 +479,7 @@ bool ScalarSource::IsInputArray() const
     !hasNaN(this->Examined.scalars);
 }
 
-// Nothing if no voxel has a number.
+// nullptr if no voxel has a number
 vtkSmartPointer<vtkDataArray> ScalarSource::InterleavedVolumes() const
 {
   const int components = static_cast<int>(this->Volumes.size());
@@ -510,7 +510,7 @@ vtkImageData* ScalarSource::Image()
   return this->StandIn->GetPointData()->GetScalars() ? this->StandIn.Get() : nullptr;
 }
 
-// Without scalars if there is nothing to see, so that this, too, is found once.
+// Makes an image without scalars if no voxel is visible, so that this result is kept, too.
 void ScalarSource::MakeImage()
 {
   const VolumeGrid& grid = this->Layout.grid;
@@ -519,7 +519,7 @@ void ScalarSource::MakeImage()
   this->StandIn = vtkSmartPointer<vtkImageData>::New();
   if (auto* const image = vtkImageData::SafeDownCast(this->Examined.input))
   {
-    // Cropping is about the image's own axes: extent and direction stay what they are.
+    // Cropping refers to the image's axes, so extent and direction are kept.
     const int* const extent = image->GetExtent();
     first = { extent[0], extent[2], extent[4] };
     this->StandIn->SetDirectionMatrix(image->GetDirectionMatrix());

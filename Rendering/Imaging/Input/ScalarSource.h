@@ -22,7 +22,7 @@ class vtkImageData;
 namespace splatting
 {
 /**
- * Which numbers of a data set are projected, as the properties of mapper and volume say it.
+ * The scalars of a data set that are projected, as chosen by the properties of mapper and volume.
  */
 struct ScalarChoice
 {
@@ -45,9 +45,9 @@ struct ScalarChoice
 };
 
 /**
- * From a data set to the volumes that are splatted, one for each component. They are the data set's
- * own arrays where these hold voxel after voxel, and copies otherwise, made when they are needed
- * and anew when the data or the choice change.
+ * The volumes of a data set, one for each component. They are the data set's own arrays if these
+ * are contiguous, else copies, which are made on demand and updated when the data or the choice
+ * change.
  */
 class ScalarSource
 {
@@ -56,58 +56,60 @@ public:
   ~ScalarSource();
 
   /**
-   * The gate: a sentence that says why the input cannot be projected and what to do, or nothing.
-   * Cheap while nothing changes. What follows is about the last input that passed.
+   * Validates the input. Returns an error message that says what to do, or an empty string. Fast if
+   * nothing has changed. The other methods use the last valid input.
    */
   std::string Examine(vtkDataSet* input, const ScalarChoice& choice);
 
-  /// What to say where copies, or what is made of them, do not fit.
+  /// The error message if copies, or indices of them, do not fit into memory.
   static const char* const NoMemory;
 
   const VolumeGrid& Grid() const { return this->Layout.grid; }
-  /// The array that is projected, or has the components that are.
+  /// The array that is projected, or whose components are.
   vtkDataArray* Scalars() const { return this->Examined.scalars; }
-  /// Whether small cells of a rectilinear grid may be missing, because the grid got larger steps.
+  /// Whether small cells of a rectilinear grid may be missing, because it was resampled to larger
+  /// steps.
   bool IsCoarse() const { return this->Layout.coarse; }
-  /// How many components are projected: 1 to 4.
+  /// The number of projected components, 1 to 4.
   int Components() const { return this->NumberOfComponents; }
-  /// Whether the components are one sample's colour and opacity.
+  /// Whether the components are the colour and opacity of one sample.
   bool AreDependent() const { return this->Dependent; }
 
-  /// Makes the copies that are needed; a no-op while nothing changes.
+  /// Makes the copies that are needed.
   void Update();
-  /// Another number after each Update() that changed the volumes.
+  /// Changes with each Update() that changes the volumes.
   vtkIdType Version() const { return this->NumberOfUpdates; }
-  /// Valid after Update(), as long as HasVolumes().
+  /// Valid after Update(), while HasVolumes().
   const VoxelArray& Volume(int component) const { return this->Volumes[component]; }
-  /// Whether the volumes still are what the last Update() has made them: scalars of the input may
-  /// have been deleted, reallocated or modified since, copies have not.
+  /// Whether the volumes are those of the last Update(). False if scalars of the input have been
+  /// deleted, reallocated or modified since; copies stay valid.
   bool HasVolumes() const;
-  /// For a rank that holds nothing: no volume here; those of others have this type of VTK.
+  /// For a rank without voxels.
+  /// @param vtkType  of the other ranks' scalars
   void Clear(int vtkType);
-  /// VTK's name for the type of a volume, or of what is projected from it.
+  /// VTK's type of a volume, or of its projection.
   int VtkTypeOf(ScalarType type) const;
-  /// VTK_FLOAT or VTK_DOUBLE, whichever holds averages of scalars of a VTK type.
+  /// VTK_FLOAT or VTK_DOUBLE: the type of averages of scalars of a VTK type.
   static int AverageVtkType(int vtkType);
-  /// VTK's type of the scalars that the volumes are made of.
+  /// VTK's type of the scalars.
   int GetVtkType() const { return this->VtkType; }
 
   /**
-   * The same voxels as point scalars of a vtkImageData, for mappers that know nothing else. Hidden
-   * voxels and NaN have the least value. Shares the input's array if this holds voxel after voxel
-   * and all have a number. nullptr if no voxel has one.
+   * The volumes as point scalars of a vtkImageData, for VTK's mappers. Hidden voxels and NaN have
+   * the least value. Shares the input's array if it is contiguous and without NaN. nullptr if no
+   * voxel has a number.
    */
   vtkImageData* Image();
-  /// Whether there is such an image, from before; none if the input changed since.
+  /// Whether there is an image of the current input.
   bool HasImage() const { return this->StandIn != nullptr; }
 
   /// Bytes of all copies.
   std::size_t MemorySize() const;
-  /// Seconds that the last Update() that changed the volumes took.
+  /// Seconds of the last Update() that changed the volumes.
   double Time() const { return this->Seconds; }
 
 private:
-  /// What the volumes depend on.
+  /// The data and choices that determine the volumes.
   struct Key
   {
     vtkDataSet* input = nullptr;
@@ -142,10 +144,10 @@ private:
   vtkSmartPointer<vtkDataArray> InterleavedVolumes() const;
   void MakeImage();
 
-  Key Examined; // what passed the gate
-  Key Volumed;  // what the volumes were made of
-  Key Imaged;   // what the image was made of
-  /// The array of volumes that are not copied, and its time then.
+  Key Examined; // the last valid choice
+  Key Volumed;  // of the volumes
+  Key Imaged;   // of the image
+  /// The array of volumes without copies, and its time.
   vtkWeakPointer<vtkDataArray> Lender;
   vtkMTimeType LenderTime = 0;
   GridOfDataSet Layout;
@@ -156,13 +158,13 @@ private:
   double Seconds = 0.0;
   std::vector<VoxelArray> Volumes;
   std::vector<Copy> Copies;
-  vtkSmartPointer<vtkDataArray> Packed; // the scalars, if they are stored in an unusual way
+  vtkSmartPointer<vtkDataArray> Packed; // the scalars, if they have an unusual layout
   vtkSmartPointer<vtkImageData> StandIn;
-  vtkSmartPointer<vtkDataArray> StandInCopy; // its scalars, if they are not the input's
+  vtkSmartPointer<vtkDataArray> StandInCopy; // its scalars, unless they are the input's
 };
 
 /**
- * The core's name for a VTK type; Float32 for types that are no numbers.
+ * The core's type for a VTK type; Float32 for types that are not numeric.
  */
 ScalarType scalarTypeOfVtk(int vtkType);
 }

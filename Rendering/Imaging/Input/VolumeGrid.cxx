@@ -16,9 +16,9 @@ namespace splatting
 {
 namespace
 {
-constexpr int MostVoxels = 16384; // along an axis, as the mapper accepts
+constexpr int MostVoxels = 16384; // along an axis, like the mapper's limit
 
-/// Voxels between the points of an axis, or on them.
+/// Voxels between, or on, the points of an axis.
 int voxelsAlong(int points, bool cells)
 {
   return cells ? std::max(points - 1, 1) : points;
@@ -29,11 +29,11 @@ struct Axis
 {
   std::vector<double> points;
   bool uniform = true;
-  double step = 0.0; // the least one, or the only one; 0 if there is none
+  double step = 0.0; // the least or only step; 0 if there is none
   double length() const { return this->points.back() - this->points.front(); }
 };
 
-/// Whether all points lie where equal steps would put them, but for a thousandth of a step.
+/// Whether all points are within a thousandth of a step of equal distances.
 bool isUniform(const std::vector<double>& points)
 {
   const double step = (points.back() - points.front()) / (double(points.size()) - 1.0);
@@ -47,7 +47,8 @@ bool isUniform(const std::vector<double>& points)
   return true;
 }
 
-/// False if the coordinates are not as many as the points, or neither ascend nor descend.
+/// False if the number of coordinates differs from that of points, or if they neither ascend nor
+/// descend.
 bool readAxis(vtkDataArray* coordinates, int points, Axis& axis)
 {
   if (!coordinates || coordinates->GetNumberOfTuples() != points)
@@ -79,7 +80,7 @@ bool readAxis(vtkDataArray* coordinates, int points, Axis& axis)
   return true;
 }
 
-/// Voxels of a resampled axis whose steps are enlarged by a factor.
+/// Voxels of a resampled axis with steps enlarged by a factor.
 int resampledCount(const Axis& axis, double factor, bool cells)
 {
   if (axis.step == 0.0)
@@ -110,7 +111,7 @@ glm::ivec3 resampledSize(const Axis (&axes)[3], bool cells, double most)
   }
 }
 
-/// Where the voxels at first + n * step lie among the points or cells of an axis.
+/// The points or cells of an axis around the voxels at first + n * step.
 ResampledAxis locate(const Axis& axis, double first, double step, int count, bool cells)
 {
   ResampledAxis result;
@@ -149,7 +150,7 @@ void describeImage(vtkImageData* image, GridOfDataSet& result)
   }
   for (int a = 0; a < 3; ++a)
   {
-    // A layer of cells on a single point has no thickness of its own.
+    // A layer of cells on a single point has no thickness.
     first[a] += result.grid.cells && extent[2 * a] < extent[2 * a + 1] ? 0.5 : 0.0;
     result.grid.spacing[a] = image->GetSpacing()[a];
     result.grid.first[a] = image->GetOrigin()[a] + first[a] * image->GetSpacing()[a];
@@ -159,7 +160,7 @@ void describeImage(vtkImageData* image, GridOfDataSet& result)
   result.resampled = result.coarse = false;
 }
 
-/// The step of axes that have one point only.
+/// The step of axes with a single point.
 double stepOfOthers(const Axis (&axes)[3])
 {
   double step = std::numeric_limits<double>::max();
@@ -186,7 +187,7 @@ void describeAxes(const Axis (&axes)[3], GridOfDataSet& result)
     const int count = result.grid.dimensions[a];
     const double steps = cells ? count : count - 1.0;
     const double step = axis.step != 0.0 ? axis.length() / steps : stepOfOthers(axes);
-    // Steps that are not enlarged are at most the least one, but for rounding.
+    // Steps that are not enlarged equal at most the least one, within rounding.
     result.coarse |= axis.step != 0.0 && std::abs(step) > 1.000001 * std::abs(axis.step);
     const double first = axis.points[0] + (cells && axis.step != 0.0 ? 0.5 * step : 0.0);
     result.grid.indexToPhysical[a][a] = result.grid.spacing[a] = step;
@@ -206,7 +207,7 @@ std::string describeGrid(vtkDataSet* data, bool cells, GridOfDataSet& result)
   {
     result.dimensions[a] = voxelsAlong(points[a], cells);
   }
-  // Positions in rows, slices and the shear image are counted in int and must be exact in double.
+  // Positions in rows, slices and the shear image are int, and must be exact in double.
   if (std::max({ points[0], points[1], points[2] }) > MostVoxels)
   {
     return "The input has more than 16384 voxels along an axis: extract a part of it.";

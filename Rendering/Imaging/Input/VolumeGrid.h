@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Where the voxels of a data set lie.
+ * The positions of a data set's voxels.
  */
 #ifndef VolumeGrid_h
 #define VolumeGrid_h
@@ -26,42 +26,41 @@ struct VolumeGrid
   glm::ivec3 dimensions{ 0 };
   /// Voxel centres (the first one at 0) to the data set's coordinates.
   glm::dmat4 indexToPhysical{ 1.0 };
-  /// Where the first voxel lies along each axis, and the step, before a direction matrix turns
-  /// them.
+  /// The position of the first voxel along each axis, and the step, without direction matrix.
   glm::dvec3 first{ 0.0 };
   glm::dvec3 spacing{ 1.0 };
-  /// Whether voxels are cells: the picture then ends at their boxes, not at the outermost centres.
+  /// Whether voxels are cells. The picture then ends at their boxes, not at the outermost centres.
   bool cells = false;
 };
 
 /**
- * The voxels of a vtkImageData or vtkRectilinearGrid and, where the latter has unequal steps, the
- * uniform grid that takes its place.
+ * The voxels of a vtkImageData or vtkRectilinearGrid, and the uniform grid that replaces the latter
+ * if it has unequal steps.
  */
 struct GridOfDataSet
 {
-  /// Most voxels of a resampled grid, unless the data set itself has more.
+  /// The largest number of voxels of a resampled grid, unless the data set has more.
   static constexpr double MostResampled = 1 << 26;
 
   VolumeGrid grid;
-  /// As the data set has them; grid.dimensions unless resampled.
+  /// Of the data set; grid.dimensions unless resampled.
   glm::ivec3 dimensions{ 0 };
   bool resampled = false;
-  /// Whether it was resampled to steps that are larger than the least one of an axis.
+  /// Whether it was resampled to steps larger than the least one of an axis.
   bool coarse = false;
   ResampledAxis axes[3];
 };
 
 /**
- * Fills `result` and returns what is wrong with the data set's geometry, or an empty string. Voxels
- * are its cells or its points; an axis with one point has one layer of cells, about that point.
+ * Fills `result`. Returns an error message about the data set's geometry, or an empty string.
+ * Voxels are its cells or its points. An axis with one point has one layer of cells, about that
+ * point.
  *
- * Coordinates of a rectilinear grid whose points lie within a thousandth of a step of equal
- * distances are taken as they are. Others are resampled at distances of the least step of their
- * axis (a little less, so as to end with the grid): points are then interpolated, every cell has a
- * voxel. If that were more than MostResampled voxels, all distances are enlarged by one factor. No
- * axis gets more than 16384. (vtkResampleToImage does the same ten times as slowly, for all arrays,
- * and takes cells for points.)
+ * A rectilinear grid whose points are within a thousandth of a step of equal distances is used as
+ * it is. Others are resampled at the least step of each axis, reduced so as to end with the grid.
+ * Points are interpolated; every cell has a voxel. If there are more than MostResampled voxels, all
+ * steps are enlarged by one factor. An axis has at most 16384 voxels. (vtkResampleToImage takes ten
+ * times as long, for all arrays, and treats cells as points.)
  */
 std::string describeGrid(vtkDataSet* data, bool cells, GridOfDataSet& result);
 }

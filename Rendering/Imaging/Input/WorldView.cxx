@@ -24,7 +24,7 @@ glm::dvec4 row(const glm::dmat4& m, int r)
   return { m[0][r], m[1][r], m[2][r], m[3][r] };
 }
 
-/// Flags of cropping regions with the lowest and the highest along an axis exchanged.
+/// Exchanges the flags of the lowest and the highest cropping regions along an axis.
 unsigned mirrored(unsigned flags, int stride)
 {
   unsigned result = 0;
@@ -36,8 +36,8 @@ unsigned mirrored(unsigned flags, int stride)
   return result;
 }
 
-/// The direction of projection in the world, and how far at most rays go along it from one slice to
-/// the next.
+/// The direction of projection in the world, and the largest step of rays along it from slice to
+/// slice.
 struct Projection
 {
   glm::dvec3 normal;
@@ -49,22 +49,22 @@ Projection projectionOf(const View& view, const glm::dmat4& world)
   const glm::dmat3 linear(world);
   if (isParallel(view))
   {
-    // Rays run where neither coordinate on the screen changes.
+    // Rays are the lines of constant screen coordinates.
     const glm::dvec3 ray =
       glm::cross(glm::dvec3(row(view.indexToClip, 0)), glm::dvec3(row(view.indexToClip, 1)));
     const glm::dvec3 across = linear * ray, steps = glm::abs(ray);
     return { glm::normalize(across),
       glm::length(across) / std::max({ steps.x, steps.y, steps.z }) };
   }
-  // Where w grows; a plane is a row vector. From slice to slice rays go by one step along one axis
-  // and at most one along the others.
+  // The direction in which w grows; a plane is a row vector. From slice to slice rays advance by
+  // one step along one axis, and by at most one along the others.
   const glm::dvec3 w(row(view.indexToClip, 3));
   const glm::dvec3 normal = glm::normalize(w * glm::inverse(linear));
   const glm::dvec3 steps = glm::abs(normal * linear);
   return { normal, steps.x + steps.y + steps.z };
 }
 
-/// Keeps a half-space of index space if it cuts into the volume's voxels at all.
+/// Adds a half-space of index space, if it cuts the volume's voxels.
 void addHalfSpace(View& view, const glm::dvec4& h)
 {
   double least = h.w;
@@ -123,7 +123,7 @@ void addPlanes(View& view, const glm::dmat4& indexToWorld, vtkPlaneCollection* p
   {
     const glm::dvec3 normal(plane->GetNormal()[0], plane->GetNormal()[1], plane->GetNormal()[2]);
     const glm::dvec3 origin(plane->GetOrigin()[0], plane->GetOrigin()[1], plane->GetOrigin()[2]);
-    // A plane is a row vector: it transforms from the right.
+    // A plane is a row vector, transformed from the right.
     addHalfSpace(view, glm::dvec4(normal, -glm::dot(normal, origin)) * indexToWorld);
   }
 }
@@ -151,8 +151,7 @@ void addSlab(View& view, const glm::dmat4& indexToWorld, const double centre[3],
 {
   const Projection projection = projectionOf(view, indexToWorld);
   const double place = glm::dot(projection.normal, glm::dvec3(centre[0], centre[1], centre[2]));
-  // What is thinner than a slice shows the nearest one, however thin: it must not drown in
-  // rounding.
+  // A slab thinner than a slice shows the nearest slice. It must not be lost by rounding.
   const double half = 0.5 * std::max(thickness, 1e-3 * projection.slice);
   addHalfSpace(view, glm::dvec4(projection.normal, half - place) * indexToWorld);
   addHalfSpace(view, glm::dvec4(-projection.normal, half + place) * indexToWorld);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * How a volume in the world is seen, from VTK's matrices, planes and regions to numbers.
+ * Converts VTK's matrices, planes and regions of a volume's view to numbers.
  */
 #ifndef WorldView_h
 #define WorldView_h
@@ -17,31 +17,30 @@ namespace splatting
 glm::dmat4 toGlm(const vtkMatrix4x4* matrix);
 
 /**
- * Whether the matrix from index space to the world flattens the volume, or has no meaning (NaN).
+ * Whether the matrix from index space to world space is singular or not finite.
  */
 bool isSingular(const glm::dmat4& indexToWorld);
 
 /**
- * Half-spaces: those of the near and far plane that cut into the volume.
+ * The view, with the half-spaces of the near and far plane that cut the volume.
  */
 View viewOf(const VolumeGrid& grid, const glm::dmat4& indexToWorld, const glm::dmat4& worldToClip,
   const glm::ivec2& viewport);
 
 /**
- * Adds the half-spaces of clipping planes in the world.
+ * Adds the half-spaces of clipping planes in world space.
  */
 void addPlanes(View& view, const glm::dmat4& indexToWorld, vtkPlaneCollection* planes);
 
 /**
- * VTK's cropping, whose planes lie across the axes of the image, wherever its direction matrix
- * turns these.
+ * VTK's cropping. Its planes are orthogonal to the axes of the image, for any direction matrix.
  */
 Cropping croppingOf(const VolumeGrid& grid, const double planes[6], int flags);
 
 /**
- * Adds the two half-spaces of a slab across the direction of projection: that of the rays of a
- * parallel view; in perspective that in which w, the fourth coordinate of clip space, grows. Centre
- * and thickness are in the world.
+ * Adds the two half-spaces of a slab orthogonal to the direction of projection: of the rays of a
+ * parallel view; in perspective the direction in which w, the fourth coordinate of clip space,
+ * grows. Centre and thickness are in world space.
  */
 void addSlab(View& view, const glm::dmat4& indexToWorld, const double centre[3], double thickness);
 }

@@ -5,7 +5,6 @@
  * Object Space", 1998, done again. See --help.
  */
 #include "Paper/PaperAccuracy.h"
-#include "Paper/PaperElimination.h"
 #include "Paper/PaperFigures.h"
 #include "Paper/PaperReport.h"
 #include "Paper/PaperScene.h"
@@ -195,7 +194,6 @@ void Run(const Options& options)
     times.push_back(MeasureTimes(data, settings));
   }
   ReportTables(report, sets, times);
-  ReportElimination(report, sets, settings);
   std::cout << "figures" << std::endl;
   ReportPhantom(report, settings);
   ReportEncoding(report, sets[0], times[0], settings);

@@ -27,14 +27,14 @@ bool isRefused(const std::string& word, Change&& change)
   filter->SetDepthShadingAmbient(INFINITY);
   filter->SetAverageIPScalarRange(9.0, 8.0);
   change(filter.Get());
-  const char* const fault = faultOf(*filter);
+  const char* const fault = validate(*filter);
   return fault && std::string(fault).find(word) != std::string::npos;
 }
 
 void testFaults(Checks& check)
 {
   vtkNew<Filter> filter;
-  check(!faultOf(*filter), "defaults are refused");
+  check(!validate(*filter), "defaults are refused");
   check(!isRefused("", [](Filter*) {}), "what has no effect is refused");
   check(isRefused("SlabThickness", [](Filter* f) { f->SlabOn(); }), "a thin slab");
   check(isRefused("CroppingRegionPlanes", [](Filter* f) { f->CroppingOn(); }), "NaN planes");

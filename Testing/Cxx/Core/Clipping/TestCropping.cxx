@@ -157,7 +157,6 @@ void testPreview(Checks& check)
         }
         scene.settings.acceleration = anyAcceleration(random);
         scene.settings.instructionSet = anyInstructionSet(random);
-        scene.settings.eliminateInvisible = random.uniform(0, 1);
         const auto expected = expectedOf(rays, grid, view, scene.cuts);
         check(sameBits(expected, toReference<T>(projected(volume, scene))), "type ",
           int(splatting::scalarTypeOf<T>()), ", flags ", std::hex, flags, std::dec,

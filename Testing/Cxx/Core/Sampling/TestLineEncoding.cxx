@@ -45,8 +45,7 @@ void testDecoded(Checks& check)
       const T high = *std::max_element(volume.voxels.begin(), volume.voxels.end());
       for (double levels : { 1.0, 8.0, 255.0 })
       {
-        const auto found =
-          decoded<T>(makeLines(volume, { LineOrder::Lines, levels, false }), volume.size);
+        const auto found = decoded<T>(makeLines(volume, { LineOrder::Lines, levels }), volume.size);
         for (std::size_t v = 0; v < volume.voxels.size(); ++v)
         {
           const T x = volume.voxels[v], d = found.voxels[v];
@@ -67,17 +66,17 @@ void testChains(Checks& check)
   volume.voxels = { 7, 7, 7, 9, 9, 5, 255, 255 };
   check(makeLines(volume, {}).chainCount() == 4, "four chains of equal voxels");
   // 8 levels at 0 are 7.8 at 7: from 0 to 14 for 7, from 2 to 16 for 9, from -2 to 12 for 5.
-  check(makeLines(volume, { LineOrder::Lines, 8.0, false }).chainCount() == 2, "7, 9 and 5 join");
+  check(makeLines(volume, { LineOrder::Lines, 8.0 }).chainCount() == 2, "7, 9 and 5 join");
   // Values may differ by twice the tolerance: 0 and 20 meet where 10 levels at 0 end.
   volume.voxels = { 0, 19, 0, 20, 0, 19, 0, 255 };
-  check(makeLines(volume, { LineOrder::Lines, 10.0, false }).chainCount() == 4,
+  check(makeLines(volume, { LineOrder::Lines, 10.0 }).chainCount() == 4,
     "0 and 19 join at 10, 0 and 20 do not: 9 levels are left at 20");
   volume = reference::Volume<std::uint8_t>({ 600, 1, 1 }, 3);
   check(makeLines(volume, {}).chainCount() == 3, "chains in rows are at most 256 voxels long");
-  check(makeLines(volume, { LineOrder::SortedLines, 0.0, false }).chainCount() == 1,
+  check(makeLines(volume, { LineOrder::SortedLines, 0.0 }).chainCount() == 1,
     "sorted chains are as long as they can be");
   volume = reference::Volume<std::uint8_t>({ 600, 1, 1 }, 0);
-  check(makeLines(volume, { LineOrder::SortedVolume, 0.0, false }).chainCount() == 0,
+  check(makeLines(volume, { LineOrder::SortedVolume, 0.0 }).chainCount() == 0,
     "sorted orders leave out the lowest value of the type");
 }
 
@@ -88,7 +87,7 @@ void testSorting(Checks& check)
     [&](int, reference::Random& random)
     {
       const auto volume = boxes<std::int16_t>({ 30, 20, 10 }, 9, random);
-      const LineIndex slices = makeLines(volume, { LineOrder::SortedLines, 0.0, false });
+      const LineIndex slices = makeLines(volume, { LineOrder::SortedLines, 0.0 });
       for (int k = 0; k < volume.size[2]; ++k)
       {
         for (std::size_t r = slices.runsOf(k); r < slices.runsOf(k + 1); ++r)
@@ -107,7 +106,7 @@ void testSorting(Checks& check)
           }
         }
       }
-      const LineIndex all = makeLines(volume, { LineOrder::SortedVolume, 0.0, false });
+      const LineIndex all = makeLines(volume, { LineOrder::SortedVolume, 0.0 });
       for (std::size_t r = 0; r < all.runsOf(1); ++r)
       {
         const auto run = all.run<std::int16_t, splatting::VolumeChain>(r);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Projections along chains of voxels have the same bits as dense ones: every scalar type, mode,
-// order, with and without invisible voxels. Delta encoding stays within its bound.
+// order. Delta encoding stays within its bound.
 #include "AverageTesting.h"
 #include "LineTesting.h"
 
@@ -82,7 +82,6 @@ void testExact(Checks& check)
       splatting::ProjectionSettings settings;
       settings.kernel = kernels[random.uniform(0, 2)];
       settings.instructionSet = anyInstructionSet(random);
-      settings.eliminateInvisible = random.uniform(0, 1);
       std::vector<glm::dvec4> halfSpaces;
       if (random.uniform(0, 2) == 0)
       {
@@ -110,7 +109,6 @@ void testLargeVolumes(Checks& check)
       const auto volume = boxes<std::uint8_t>(sizes[n % 3], 5, random);
       const splatting::ShearWarp geometry(anyView(volume.size, random));
       splatting::ProjectionSettings settings;
-      settings.eliminateInvisible = n % 2;
       compareWithDense(check, volume, geometry, settings, {}, "large volume");
     });
   // More voxels in a row than sorted chains can tell apart.
@@ -136,7 +134,6 @@ void testFlat(Checks& check)
       const reference::Volume<T> volume(sizes[n % 3], level<T>(share));
       const splatting::ShearWarp geometry(anyView(volume.size, random));
       splatting::ProjectionSettings settings;
-      settings.eliminateInvisible = share == 77;
       compareWithDense(check, volume, geometry, settings, {}, "flat volume");
       settings.lineTolerance = 100.0;
       compareWithDense(check, volume, geometry, settings, {}, "flat volume with tolerance");
@@ -159,7 +156,6 @@ void testOddValues(Checks& check)
       }
       volume.voxels[0] = std::numeric_limits<T>::quiet_NaN();
       splatting::ProjectionSettings settings;
-      settings.eliminateInvisible = true;
       settings.lineTolerance = 20.0;
       const splatting::ShearWarp geometry(anyView(volume.size, random));
       compareWithDense(check, volume, geometry, settings, {}, "odd values");
@@ -180,8 +176,8 @@ bool savesMemory(Checks& check, const reference::Volume<T>& volume)
   std::size_t exactBytes = 0, roughBytes = 0;
   for (LineOrder order : orders)
   {
-    const auto exact = makeLines(volume, { order, 0.0, false });
-    const auto rough = makeLines(volume, { order, 60.0, false });
+    const auto exact = makeLines(volume, { order, 0.0 });
+    const auto rough = makeLines(volume, { order, 60.0 });
     // Chains within a tolerance join exact ones, so there are no more of them. Sorted orders also
     // hold each value that chains have: those half-way may be more than the exact ones.
     check(rough.chainCount() <= exact.chainCount(), "a tolerance makes ", rough.chainCount(),
@@ -223,7 +219,6 @@ void testTolerance(Checks& check, Savings& savings)
             splatting::ProjectionSettings settings =
               settingsOf(quality, lineAccelerations[random.uniform(0, 2)]);
             settings.lineTolerance = tolerance;
-            settings.eliminateInvisible = random.uniform(0, 1);
             const auto found = toReference<P>(project(volume, geometry, settings));
             check(exact.hit == found.hit, "a tolerance changes what is covered");
             // Rounded sums may be wrong in both pictures.
@@ -243,61 +238,6 @@ void testTolerance(Checks& check, Savings& savings)
       }
       savings.bytes.add(savesMemory(check, volume));
       savings.pixels.add(deviations > 0);
-    });
-}
-
-/// Few values and many views: ties between voxels on both sides.
-void testElimination(Checks& check)
-{
-  Sightings hiding;
-  reference::forScenes("elimination", 1500,
-    [&](int, reference::Random& random)
-    {
-      const std::array<int, 3> size{ random.uniform(3, 9), random.uniform(3, 9),
-        random.uniform(2, 9) };
-      const auto volume = boxes<std::uint8_t>(size, 3, random);
-      const splatting::ShearWarp geometry(anyView(volume.size, random));
-      const auto expected =
-        project(volume, geometry, settingsOf(Quality::Preview, Acceleration::Dense));
-      for (Acceleration acceleration : lineAccelerations)
-      {
-        splatting::ProjectionSettings settings = settingsOf(Quality::Preview, acceleration);
-        settings.eliminateInvisible = true;
-        check(sameImage(project(volume, geometry, settings), expected),
-          "a voxel that can be seen is missing; axis ", geometry.principalAxis(), ", shear ",
-          geometry.shear().x, " ", geometry.shear().y, ", acceleration ", int(acceleration));
-      }
-      const auto hidden = makeLines(volume, { LineOrder::Lines, 0.0, true }).invisibleCount();
-      hiding.add(hidden > volume.voxels.size() / 10);
-    });
-  check(hiding.areEnough(0.1), "a tenth of the voxels is eliminated in only ", hiding);
-}
-
-/// Where it is known which voxels are hidden.
-void testInvisibleCount(Checks& check)
-{
-  const auto countOf = [](const reference::Volume<std::int16_t>& volume) {
-    return makeLines(volume, { LineOrder::Lines, 0.0, true }).invisibleCount();
-  };
-  // Of equal voxels the highest slice hides the others, but for the outermost of each slice.
-  reference::Volume<std::int16_t> volume({ 7, 6, 5 }, 3);
-  check(countOf(volume) == 5 * 4 * 4, "equal voxels: ", countOf(volume));
-  // A higher slice hides what is before and behind, in cones.
-  for (int n = 0; n < 7 * 6; ++n)
-  {
-    volume.voxels[volume.index(0, 0, 2) + n] = 9;
-  }
-  // Slices 1 and 3 see it whole but for their rims. Slices 0 and 4 do, too, because the rims of
-  // slices 1 and 3 are not greater; but slice 0 may use equal ones.
-  check(countOf(volume) == 5 * 4 + 5 * 4 + 5 * 4 + 3 * 2, "a plane: ", countOf(volume));
-  const std::vector<glm::dvec4> away{ { 0.0, 0.0, -1.0, 1.5 } }; // all but slices 0 and 1
-  splatting::ProjectionSettings settings;
-  settings.eliminateInvisible = true;
-  reference::forScenes("half-spaces", 5,
-    [&](int, reference::Random& random)
-    {
-      const splatting::ShearWarp geometry(anyView(volume.size, random));
-      compareWithDense(check, volume, geometry, settings, away, "half-spaces");
     });
 }
 
@@ -329,7 +269,6 @@ void testFloor(Checks& check)
         {
           splatting::ProjectionSettings settings = settingsOf(Quality::Preview, acceleration);
           settings.floor = double(floor);
-          settings.eliminateInvisible = random.uniform(0, 1);
           if (std::numeric_limits<T>::is_integer && random.uniform(0, 1))
           {
             settings.floor += 0.5; // rounded down
@@ -362,7 +301,6 @@ void testRenewal(Checks& check)
           splatting::ProjectionSettings settings =
             settingsOf(quality, lineAccelerations[random.uniform(0, 2)]);
           settings.lineTolerance = random.uniform(0, 1) ? 50.0 : 0.0;
-          settings.eliminateInvisible = random.uniform(0, 1);
           splatting::ShearImage image;
           projector.project(index, geometry, settings, {}, image);
           check(sameImage(image, project(volume, geometry, settings)), "an index is out of date");
@@ -370,11 +308,11 @@ void testRenewal(Checks& check)
         const std::size_t held = index.memorySize();
         for (LineOrder order : orders)
         {
-          const LineIndex& lines = *index.lines(geometry.principalAxis(), { order, 0.0, false });
+          const LineIndex& lines = *index.lines(geometry.principalAxis(), { order, 0.0 });
           check(lines.memorySize() > 0 && index.memorySize() >= lines.memorySize(),
             "chains are not counted");
-          check(&lines == index.lines(geometry.principalAxis(), { order, 0.0, false }) &&
-              lines.holds({ order, 0.0, false }),
+          check(&lines == index.lines(geometry.principalAxis(), { order, 0.0 }) &&
+              lines.holds({ order, 0.0 }),
             "chains are not kept");
         }
         check(held > 0, "no memory is held");
@@ -396,7 +334,6 @@ void testThreads(Checks& check)
       const auto volume = boxes<float>({ 70, 60, 50 }, 9, random);
       const splatting::ShearWarp geometry(anyView(volume.size, random));
       splatting::ProjectionSettings settings;
-      settings.eliminateInvisible = true;
       for (int threads : { 1, 5 })
       {
         vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
@@ -442,8 +379,6 @@ int TestLineIndex(int, char*[])
   testLargeVolumes(check);
   testOddValues<float>(check);
   testOddValues<double>(check);
-  testElimination(check);
-  testInvisibleCount(check);
   testRenewal(check);
   testThreads(check);
   return check.result();

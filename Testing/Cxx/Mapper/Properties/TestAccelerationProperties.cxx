@@ -137,7 +137,6 @@ void testTolerance(stage::Stage& stage, vtkImageData* image, stage::Checks& chec
   const int difference = largestDifference(exact, stage.pixels());
   check(difference > 0 && difference <= 9, "8 grey levels, one more by rounding the colours.");
   check(mapper->GetIndexMemorySize() < memory, "Longer chains take less memory.");
-  mapper->SetLineTolerance(0.0);
 }
 
 /// Culling shows the same pixels above the window's lower end, and those below as dark as before.

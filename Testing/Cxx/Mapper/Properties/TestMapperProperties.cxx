@@ -28,7 +28,7 @@ void testRefusals(Mapper* mapper, Checks& check)
 {
   vtkNew<vtkVolumeProperty> property;
   mapper->SetBlendModeToMaximumIntensity();
-  const auto fault = [&] { return faultOf(mapper, property); };
+  const auto fault = [&] { return validate(mapper, property); };
   const auto refuses = [&](const std::string& word)
   {
     const char* const sentence = fault();

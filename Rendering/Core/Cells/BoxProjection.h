@@ -3,8 +3,8 @@
 /**
  * Where boxes of index space are seen.
  */
-#ifndef splattingCellPlaces_h
-#define splattingCellPlaces_h
+#ifndef splattingBoxProjection_h
+#define splattingBoxProjection_h
 
 #include "Cells/PixelRays.h"
 #include "Geometry/View.h"
@@ -58,10 +58,10 @@ struct PixelRectangle
 };
 
 /// The pixels of the viewport that may see a box, and between which parameters of their rays.
-class SeenBox
+class ProjectedBox
 {
 public:
-  SeenBox(const PixelRays& rays, const CellBox& box) : Rays(rays), Box(box)
+  ProjectedBox(const PixelRays& rays, const CellBox& box) : Rays(rays), Box(box)
   {
     const glm::dmat3& m = rays.toPixel();
     const glm::dvec3 q = m * (box.middle - rays.origin());
@@ -78,8 +78,7 @@ public:
     if (!this->Near)
     {
       this->Pixel = glm::dvec2(q) / q.z;
-      this->Spread =
-        glm::dvec2(this->reachOf(0, this->Pixel.x), this->reachOf(1, this->Pixel.y)) /
+      this->Spread = glm::dvec2(this->reachOf(0, this->Pixel.x), this->reachOf(1, this->Pixel.y)) /
         (this->T - this->Reach);
     }
   }

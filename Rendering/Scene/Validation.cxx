@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Scene/Refusals.h"
+#include "Scene/Validation.h"
 
 #include "MapperProperties.h"
 #include "Scene/ProjectedVolume.h"
@@ -17,8 +17,7 @@ namespace splatting
 {
 namespace
 {
-std::string problemOfInput(
-  vtkSplattingMIPVolumeMapper* mapper, vtkVolume* volume, ProjectedVolume& data)
+std::string loadInput(vtkSplattingMIPVolumeMapper* mapper, vtkVolume* volume, ProjectedVolume& data)
 {
   if (volume->IsA("vtkMultiVolume"))
   {
@@ -35,7 +34,7 @@ std::string problemOfInput(
   choice.mask = mapper->GetMaskInput();
   if (data.Ranks.Use(mapper->GetController()) && !pieceOf(mapper))
   {
-    return ""; // a rank may hold nothing
+    return ""; // a rank may have no piece
   }
   std::string problem = data.Source.Examine(mapper->GetInput(), choice);
   if (problem.empty() && isFlat(data.Source.Grid(), volume))
@@ -46,8 +45,8 @@ std::string problemOfInput(
   return problem;
 }
 
-/// What any rank has to say, once each has looked at its piece. Collective.
-std::string problemOfRanks(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer,
+/// The error of any rank, after each has checked its piece. Collective.
+std::string agreeWithRanks(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer,
   vtkVolume* volume, ProjectedVolume& data, const std::string& problemOfPiece)
 {
   RankReport report = reportOf(mapper, problemOfPiece);
@@ -59,7 +58,7 @@ std::string problemOfRanks(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* ren
     }
     describeScalars(data.Components, data.Source, report);
   }
-  report.view = viewNumber(mapper, renderer, volume);
+  report.view = viewHash(mapper, renderer, volume);
   std::string problem = data.Ranks.Agree(report);
   if (problem.empty() && report.isEmpty())
   {
@@ -71,11 +70,11 @@ std::string problemOfRanks(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* ren
   return problem;
 }
 
-/// Of the mapper's own properties, once the input is known to be good.
-std::string problemOfProperties(
+/// The error of the mapper's own properties, for valid input.
+std::string validateProperties(
   vtkSplattingMIPVolumeMapper* mapper, vtkVolume* volume, ProjectedVolume& data)
 {
-  if (const char* const fault = faultOf(mapper, volume->GetProperty()))
+  if (const char* const fault = validate(mapper, volume->GetProperty()))
   {
     return fault;
   }
@@ -86,14 +85,14 @@ std::string problemOfProperties(
 }
 }
 
-std::string refusalOf(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
-  ProjectedVolume& data)
+std::string loadAndValidate(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer,
+  vtkVolume* volume, ProjectedVolume& data)
 {
-  std::string problem = problemOfInput(mapper, volume, data);
+  std::string problem = loadInput(mapper, volume, data);
   if (data.Ranks.AreMany())
   {
-    problem = problemOfRanks(mapper, renderer, volume, data, problem);
+    problem = agreeWithRanks(mapper, renderer, volume, data, problem);
   }
-  return problem.empty() ? problemOfProperties(mapper, volume, data) : problem;
+  return problem.empty() ? validateProperties(mapper, volume, data) : problem;
 }
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Ranks/FrameAttendance.h"
+#include "Ranks/FrameObserver.h"
 
 #include "vtkCommand.h"
 #include "vtkRenderer.h"
@@ -12,8 +12,8 @@
 
 namespace splatting
 {
-/// Of one volume in one renderer.
-class FrameAttendance::Watch
+/// Observes one volume in one renderer.
+class FrameObserver::Watch
 {
 public:
   Watch(vtkRenderer* renderer, vtkVolume* volume, const Callback& absent)
@@ -40,7 +40,7 @@ public:
     return this->Renderer == renderer && this->Volume == volume;
   }
   bool IsOver() const { return !this->Renderer || !this->Volume; }
-  void Attend() { this->IsPresent = true; }
+  void MarkRendered() { this->IsPresent = true; }
 
 private:
   void StartFrame() { this->IsPresent = false; }
@@ -60,11 +60,11 @@ private:
   bool IsPresent = true;
 };
 
-FrameAttendance::FrameAttendance(Callback absent) : Absent(std::move(absent)) {}
+FrameObserver::FrameObserver(Callback absent) : Absent(std::move(absent)) {}
 
-FrameAttendance::~FrameAttendance() = default;
+FrameObserver::~FrameObserver() = default;
 
-void FrameAttendance::Attend(vtkRenderer* renderer, vtkVolume* volume)
+void FrameObserver::MarkRendered(vtkRenderer* renderer, vtkVolume* volume)
 {
   const auto isOver = [](const std::unique_ptr<Watch>& watch) { return watch->IsOver(); };
   this->Watches.erase(
@@ -77,7 +77,7 @@ void FrameAttendance::Attend(vtkRenderer* renderer, vtkVolume* volume)
   }
   else
   {
-    (*watch)->Attend();
+    (*watch)->MarkRendered();
   }
 }
 }
