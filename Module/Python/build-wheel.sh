@@ -102,7 +102,7 @@ make_project() {
   sed -e "s:^cmake.source-dir = .*:cmake.source-dir = \"$source_dir\"\nbuild-dir = \"$work/build\":" \
     "$here/pyproject.toml" >"$project/pyproject.toml"
   if [[ $version != cvista ]]; then
-    sed -i -E -e 's/"cvista-sdk==[^"]*", //' -e "s/cvista\[rendering\]==[^\"]*/vtk==$version/" \
+    sed -i -E -e 's/"cmake[^"]*", "cvista-sdk==[^"]*", //' -e "s/cvista\[rendering\]==[^\"]*/vtk==$version/" \
       -e "s/\+cvista\.[^\"]*/+vtk.$version/" -e '/^wheel.py-api/d' "$project/pyproject.toml"
   fi
 }
