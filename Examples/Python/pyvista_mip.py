@@ -38,7 +38,8 @@ def show(name, one_volume=False):
     plotter.show(auto_close=False)
     start = time.perf_counter()
     for _ in range(arguments.frames):
-        plotter.camera.azimuth += 5
+        plotter.camera.Azimuth(5)
+        plotter.render()
         plotter.screenshot()
     milliseconds = 1000 * (time.perf_counter() - start) / arguments.frames
     plotter.screenshot(arguments.output / f"{name}.png")
