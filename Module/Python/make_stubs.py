@@ -117,10 +117,10 @@ class Stubs:
         signatures = self.signatures(getter) if getter else []
         kind = signatures[0].split("-> ")[1].rstrip(":") if signatures else "Any"
         doc = textwrap.indent(docstring(value.__doc__) or "...", "    ")
-        return (
-            f"@property\ndef {name}(self) -> {kind}:\n{doc}\n"
-            f"@{name}.setter\ndef {name}(self, value: Any) -> None: ..."
-        )
+        text = f"@property\ndef {name}(self) -> {kind}:\n{doc}"
+        if "write" in (value.__doc__ or ""):
+            text += f"\n@{name}.setter\ndef {name}(self, value: Any) -> None: ..."
+        return text
 
     def class_text(self, one):
         bases = ", ".join(self.name_of_class(base) for base in one.__bases__)
