@@ -22,6 +22,9 @@ const char* nameOfMaximumType(int type);
 const char* nameOfVectorMode(int mode);
 const char* nameOfAcceleration(int acceleration);
 
+// Internal to each file: the libraries export all names that contain an exported class.
+namespace
+{
 /**
  * Returns an error message that says which property is invalid and what to do, or nullptr.
  * Properties without effect are not checked.
@@ -147,6 +150,7 @@ ProjectionSettings settingsOf(Object& object, int mode, const View& view, bool l
     settings.footprintSampling = object.GetFootprintSampling();
   }
   return settings;
+}
 }
 }
 

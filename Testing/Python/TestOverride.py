@@ -54,7 +54,8 @@ class TestOverride(unittest.TestCase):
     def test_one_volume(self):
         """use_for() keeps what the mapper before had."""
         old = vtkSmartVolumeMapper()
-        old.SetInputConnection(vtkRTAnalyticSource().GetOutputPort())
+        source = vtkRTAnalyticSource()
+        old.SetInputConnection(source.GetOutputPort())
         old.SetBlendModeToMinimumIntensity()
         old.SelectScalarArray("RTData")
         old.SetScalarModeToUsePointFieldData()
