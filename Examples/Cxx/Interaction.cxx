@@ -23,14 +23,13 @@ public:
 
   void OnChar() override
   {
-    const std::string keys = "123psh";
-    const std::size_t key = keys.find(this->Interactor->GetKeyCode());
-    if (key != std::string::npos)
+    const char key = this->Interactor->GetKeyCode();
+    if (key >= '1' && key < '1' + static_cast<int>(ModeNames.size()))
     {
-      this->Scene->UseSplatting(static_cast<int>(key % 3));
+      this->Scene->UseSplatting(key - '1');
       this->Interactor->Render();
     }
-    else if (this->Interactor->GetKeyCode() == 'q')
+    else if (key == 'q')
     {
       this->Interactor->TerminateApp();
     }
@@ -89,7 +88,7 @@ void Interact(const Volume& volume, const LookSettings& look, const Options& opt
   vtkNew<vtkRenderWindowInteractor> interactor;
   interactor->SetRenderWindow(scene.GetWindow());
   interactor->SetInteractorStyle(keys);
-  scene.GetWindow()->SetWindowName("splatmip: 1 preview, 2 standard, 3 high, q quit");
+  scene.GetWindow()->SetWindowName("splatmip: 1 preview, 2 standard, 3 high, 4 exact, q quit");
   scene.GetWindow()->Render();
   interactor->Start();
   scene.GetWindow()->RemoveObserver(label);

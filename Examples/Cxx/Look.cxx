@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Look.h"
 
+#include "Reading/Reading.h"
+
 #include "vtkDataArray.h"
 #include "vtkPointData.h"
 #include "vtkSplattingMIPProjection.h"
@@ -107,12 +109,7 @@ Palette MakePalette(const LookSettings& look)
 
 std::vector<std::string> GetColormapNames()
 {
-  std::vector<std::string> names;
-  for (const NamedColormap& map : GetColormaps())
-  {
-    names.push_back(map.Name);
-  }
-  return names;
+  return ListNames(GetColormaps());
 }
 
 void ChooseWindowLevel(vtkImageData* image, int blendMode, double& window, double& level)

@@ -255,7 +255,7 @@ void DeclareOutputOptions(CLI::App& app, Options& options, Words& words)
     "Also time the modes beside VTK's ray caster, which takes a while, in a window (needs a "
     "display)");
   group.AddFlag("--interactive", options.Interactive,
-    "Open a window instead: drag to turn, 1, 2 and 3 switch the mode, q quits");
+    "Open a window instead: drag to turn, 1 to 4 switch the mode, q quits");
 }
 
 void CheckOutputName(const Options& options)

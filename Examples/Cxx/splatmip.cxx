@@ -10,6 +10,7 @@
 #include "Options.h"
 #include "Projector.h"
 #include "Reading/Mask.h"
+#include "Reading/Reading.h"
 #include "Reading/VolumeReader.h"
 #include "Writing/DepthCoding.h"
 #include "Writing/Picture.h"
@@ -49,11 +50,11 @@ LookSettings CompleteLook(const Options& options, const Volume& volume)
 void PrintVolume(const Volume& volume, const LookSettings& look)
 {
   const int* size = volume.Image->GetDimensions();
-  std::printf("%s: %d x %d x %d voxels, %s\n", volume.Name.c_str(), size[0], size[1], size[2],
-    volume.Image->GetScalarTypeAsString());
+  std::printf("%s: %d x %d x %d voxels, %s\n", MakePrintable(volume.Name).c_str(), size[0],
+    size[1], size[2], volume.Image->GetScalarTypeAsString());
   for (const std::string& note : volume.Notes)
   {
-    std::printf("%s\n", note.c_str());
+    std::printf("%s\n", MakePrintable(note).c_str());
   }
   std::printf("shown with window %g, level %g\n", look.Window, look.Level);
   std::fflush(stdout);
@@ -219,7 +220,7 @@ int main(int argc, char* argv[])
   }
   catch (const std::exception& error)
   {
-    std::cerr << "splatmip: " << error.what() << "\n";
+    std::cerr << "splatmip: " << MakePrintable(error.what()) << "\n";
     return 1;
   }
 }

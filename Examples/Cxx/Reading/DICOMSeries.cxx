@@ -16,7 +16,6 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -37,9 +36,7 @@ struct Series
 Series MakeSeries(const vtkDICOMItem& record)
 {
   Series series;
-  std::string description = record.Get(DC::SeriesDescription).AsString();
-  std::replace_if(
-    description.begin(), description.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  const std::string description = record.Get(DC::SeriesDescription).AsUTF8String();
   series.Name = record.Get(DC::SeriesInstanceUID).AsString();
   series.Text = record.Get(DC::Modality).AsString();
   series.Text += description.empty() ? "" : " \"" + description + "\"";
@@ -75,7 +72,7 @@ std::vector<Series> FindSeries(const std::string& folder, const QuietReading& qu
   if (HasFailed(directory.Get(), quiet))
   {
     const char* const file = directory->GetInternalFileName();
-    RefuseDamaged(file && *file ? file : folder, quiet);
+    RefuseDamaged(file && *file ? file : folder, quiet.GetReason());
   }
   std::vector<Series> all;
   for (int i = 0; i < directory->GetNumberOfSeries(); ++i)
@@ -132,12 +129,13 @@ std::string ExplainFile(const std::string& path)
       ? ""
       : name + " is deflated DICOM; convert it with DCMTK's dcmconv +te.";
   }
+  const auto isLetter = [](char c) { return c >= 'A' && c <= 'Z'; };
   // group 8 or 2, of an element below 0x100, with a type in two letters or a short length
   const bool isBig = head[0] == 0;
   const char group = head[isBig ? 1 : 0];
   const bool isElement = (group == 8 || group == 2) && head[isBig ? 0 : 1] == 0 &&
     head[isBig ? 2 : 3] == 0 &&
-    ((std::isupper(head[4]) && std::isupper(head[5])) || (head[6] == 0 && head[7] == 0));
+    ((isLetter(head[4]) && isLetter(head[5])) || (head[6] == 0 && head[7] == 0));
   return isElement
     ? name + " looks like DICOM without a header; convert it with DCMTK's dcmconv +te."
     : "";

@@ -16,11 +16,6 @@
 
 namespace
 {
-vtkDICOMValue Get(const DICOMFrame& frame, vtkDICOMTag tag)
-{
-  return frame.File->Reader->GetMetaData()->Get(0, frame.Number, tag);
-}
-
 void AddNote(std::vector<std::string>& notes, const std::string& note)
 {
   if (std::find(notes.begin(), notes.end(), note) == notes.end())
@@ -70,21 +65,21 @@ void SetSlope(ValueMap& map, double slope, double intercept)
  */
 void SetValues(ValueMap& map, const DICOMFrame& frame, std::vector<std::string>& notes)
 {
-  const vtkDICOMSequence tables = Get(frame, DC::ModalityLUTSequence);
-  const vtkDICOMSequence worlds = Get(frame, DC::RealWorldValueMappingSequence);
+  const vtkDICOMSequence tables = frame.Get(DC::ModalityLUTSequence);
+  const vtkDICOMSequence worlds = frame.Get(DC::RealWorldValueMappingSequence);
   if (tables.GetNumberOfItems() > 0)
   {
     SetTable(map, tables.GetItem(0));
     AddNote(notes, "the values are those of the file's Modality LUT");
   }
-  else if (Get(frame, DC::RescaleSlope).IsValid())
+  else if (frame.Get(DC::RescaleSlope).IsValid())
   {
     SetSlope(
-      map, Get(frame, DC::RescaleSlope).AsDouble(), Get(frame, DC::RescaleIntercept).AsDouble());
+      map, frame.Get(DC::RescaleSlope).AsDouble(), frame.Get(DC::RescaleIntercept).AsDouble());
   }
-  else if (Get(frame, DC::DoseGridScaling).IsValid())
+  else if (frame.Get(DC::DoseGridScaling).IsValid())
   {
-    SetSlope(map, Get(frame, DC::DoseGridScaling).AsDouble(), 0.0);
+    SetSlope(map, frame.Get(DC::DoseGridScaling).AsDouble(), 0.0);
   }
   else if (worlds.GetNumberOfItems() > 0)
   {
@@ -99,8 +94,8 @@ void SetValues(ValueMap& map, const DICOMFrame& frame, std::vector<std::string>&
 
 void SetPadding(ValueMap& map, const DICOMFrame& frame, bool hidesPadding)
 {
-  const vtkDICOMValue value = Get(frame, DC::PixelPaddingValue);
-  const vtkDICOMValue limit = Get(frame, DC::PixelPaddingRangeLimit);
+  const vtkDICOMValue value = frame.Get(DC::PixelPaddingValue);
+  const vtkDICOMValue limit = frame.Get(DC::PixelPaddingRangeLimit);
   if (!value.IsValid() || map.Bits == 0)
   {
     return;
@@ -184,14 +179,14 @@ ValueMap FindValueMap(const DICOMFrame& frame, bool hidesPadding, std::vector<st
   if (type != VTK_FLOAT && type != VTK_DOUBLE)
   {
     const int most = 8 * vtkDataArray::GetDataTypeSize(type);
-    const int stored = Get(frame, DC::BitsStored).AsInt();
+    const int stored = frame.Get(DC::BitsStored).AsInt();
     map.Shift = frame.File->Shift;
     map.Bits = (stored > 0 ? std::min(stored, most) : most) - map.Shift;
-    map.IsSigned = Get(frame, DC::PixelRepresentation).AsInt() == 1;
+    map.IsSigned = frame.Get(DC::PixelRepresentation).AsInt() == 1;
   }
   SetValues(map, frame, notes);
   SetPadding(map, frame, hidesPadding);
-  if (Get(frame, DC::PhotometricInterpretation).AsString() == "MONOCHROME1")
+  if (frame.Get(DC::PhotometricInterpretation).AsString() == "MONOCHROME1")
   {
     AddNote(
       notes, "the file wants low values bright (MONOCHROME1), as --colormap inverted shows it");

@@ -85,12 +85,7 @@ std::string QuietReading::GetReason() const
     const std::size_t object = text.find("): ");
     text.erase(0, object < text.find('\n') ? object + 3 : 0);
   }
-  text = text.substr(0, text.find('\n'));
-  text.erase(text.find_last_not_of(" .") + 1);
-  // it may quote a damaged file
-  std::replace_if(
-    text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text.empty() ? "" : " (" + text + ")";
+  return text.substr(0, text.find('\n'));
 }
 
 SilentErrors::SilentErrors()

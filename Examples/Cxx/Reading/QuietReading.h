@@ -31,8 +31,8 @@ public:
   bool HasErrors() const;
 
   /**
-   * The first error in brackets, without VTK's "ERROR: In FILE, line N" and object name; empty if
-   * there is none.
+   * The first error without VTK's "ERROR: In FILE, line N" and object name; empty if there is
+   * none.
    */
   std::string GetReason() const;
 

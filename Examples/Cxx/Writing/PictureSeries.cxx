@@ -117,7 +117,7 @@ constexpr auto WriteDICOM = nullptr;
 
 struct SeriesFormat
 {
-  const char* Ending;
+  const char* Name; // the ending
   bool (*Write)(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
     const std::vector<std::string>& names); // nullptr if there is no
   const char* Library;
@@ -130,7 +130,7 @@ const SeriesFormat* FindFormat(const std::string& path)
 {
   const std::string ending = std::filesystem::path(path).extension().string();
   const auto* const found = std::find_if(std::begin(Formats), std::end(Formats),
-    [&](const SeriesFormat& format) { return ending == format.Ending; });
+    [&](const SeriesFormat& format) { return ending == format.Name; });
   return found == std::end(Formats) ? nullptr : found;
 }
 }
@@ -170,12 +170,7 @@ bool WritePNG(vtkImageData* image, const std::string& path)
 
 std::vector<std::string> GetSeriesEndings()
 {
-  std::vector<std::string> endings;
-  for (const SeriesFormat& format : Formats)
-  {
-    endings.emplace_back(format.Ending);
-  }
-  return endings;
+  return ListNames(Formats);
 }
 
 std::string CheckSeriesName(const std::string& path)
@@ -187,7 +182,7 @@ std::string CheckSeriesName(const std::string& path)
   }
   return format->Write ? ""
                        : std::string("this build has no ") + format->Library + " to write " +
-      format->Ending + " with: take .png";
+      format->Name + " with: take .png";
 }
 
 std::vector<std::string> GetSeriesFiles(const std::string& path, int count)

@@ -3,6 +3,7 @@
 #include "Writing/ValueFile.h"
 
 #include "Reading/QuietReading.h"
+#include "Reading/Reading.h"
 #include "Reading/VolumeReader.h"
 #include "Writing/SafeFiles.h"
 
@@ -14,6 +15,8 @@
 #include "vtkSmartPointer.h"
 #include "vtkTIFFWriter.h"
 
+#include <vtksys/SystemTools.hxx>
+
 #include <tiffio.h>
 
 #include <algorithm>
@@ -24,11 +27,6 @@
 
 namespace
 {
-bool EndsWith(const std::string& text, const std::string& end)
-{
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 /**
  * NIfTI counts from left to right and back to front. VTK's writer adds the image's origin as it
  * lies along the image's axes.
@@ -114,7 +112,7 @@ bool WriteMeta(vtkImageData* values, const std::string& path)
 
 struct ValueFormat
 {
-  const char* Ending;
+  const char* Name; // the ending
   bool (*Write)(vtkImageData* values, const std::string& path);
 };
 
@@ -124,7 +122,7 @@ constexpr ValueFormat Formats[] = { { ".nii", WriteNIFTI }, { ".nii.gz", WriteNI
 const ValueFormat* FindFormat(const std::string& path)
 {
   const auto* const found = std::find_if(std::begin(Formats), std::end(Formats),
-    [&](const ValueFormat& format) { return EndsWith(path, format.Ending); });
+    [&](const ValueFormat& format) { return vtksys::SystemTools::StringEndsWith(path, format.Name); });
   return found == std::end(Formats) ? nullptr : found;
 }
 
@@ -146,12 +144,7 @@ bool CanBeRead(const std::string& path, vtkImageData* values)
 
 std::vector<std::string> GetValueEndings()
 {
-  std::vector<std::string> endings;
-  for (const ValueFormat& format : Formats)
-  {
-    endings.emplace_back(format.Ending);
-  }
-  return endings;
+  return ListNames(Formats);
 }
 
 bool IsValueFile(const std::string& path)
