@@ -50,8 +50,8 @@ LookSettings CompleteLook(const Options& options, const Volume& volume)
 void PrintVolume(const Volume& volume, const LookSettings& look)
 {
   const int* size = volume.Image->GetDimensions();
-  std::printf("%s: %d x %d x %d voxels, %s\n", MakePrintable(volume.Name).c_str(), size[0],
-    size[1], size[2], volume.Image->GetScalarTypeAsString());
+  std::printf("%s: %d x %d x %d voxels, %s\n", MakePrintable(volume.Name).c_str(), size[0], size[1],
+    size[2], volume.Image->GetScalarTypeAsString());
   for (const std::string& note : volume.Notes)
   {
     std::printf("%s\n", MakePrintable(note).c_str());

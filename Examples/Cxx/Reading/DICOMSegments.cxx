@@ -56,7 +56,8 @@ double FindStep(const SliceLine& line, double thickness, const std::string& path
   for (const double step : { thickness, least > 0.0 ? least : 1.0 })
   {
     if (step > 0.0 &&
-      std::all_of(line.Places.begin(), line.Places.end(), [step](double place)
+      std::all_of(line.Places.begin(), line.Places.end(),
+        [step](double place)
         { return std::fabs(place / step - std::round(place / step)) < NearEnough; }))
     {
       return step;

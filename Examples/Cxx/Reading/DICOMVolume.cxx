@@ -146,8 +146,8 @@ void FindWindow(
 /**
  * Read the largest stack of frames that agree: not a scout among slices.
  */
-void ReadStack(const DICOMFiles& files, const ReadSettings& settings, const QuietReading& quiet,
-  Volume& volume)
+void ReadStack(
+  const DICOMFiles& files, const ReadSettings& settings, const QuietReading& quiet, Volume& volume)
 {
   std::string note;
   std::vector<DICOMFrame> frames;

@@ -43,8 +43,7 @@ std::string DescribeUnit(const std::string& unit, double length)
 }
 }
 
-void PlaceVolume(
-  Volume& volume, Steps steps, std::array<double, 3> origin, const std::string& unit)
+void PlaceVolume(Volume& volume, Steps steps, std::array<double, 3> origin, const std::string& unit)
 {
   const int* const size = volume.Image->GetDimensions();
   volume.Image->SetExtent(0, size[0] - 1, 0, size[1] - 1, 0, size[2] - 1);
@@ -174,8 +173,7 @@ vtkSmartPointer<vtkImageData> Interpolate(vtkImageData* image, int axis,
       {
         ++i;
       }
-      const double share =
-        std::clamp((place - places[i]) / (places[i + 1] - places[i]), 0.0, 1.0);
+      const double share = std::clamp((place - places[i]) / (places[i + 1] - places[i]), 0.0, 1.0);
       const vtkIdType below = (line * count + i + (share > 1.0 - Near)) * stride;
       const vtkIdType above = (line * count + i + (share > Near)) * stride;
       for (vtkIdType n = 0; n < stride; ++n, ++point)

@@ -175,9 +175,10 @@ SliceLine FindLine(const std::vector<SlicePlane>& planes, const std::vector<std:
   if (most > HalfPixel * GetPixel(first))
   {
     std::ostringstream text;
-    text << Describe(planes[farthest]) << ": this slice is shifted sideways by " << most
-         << " mm against the line from " << Describe(first) << " to " << Describe(last)
-         << "; move what does not belong to the volume out of the folder, or choose another series.";
+    text
+      << Describe(planes[farthest]) << ": this slice is shifted sideways by " << most
+      << " mm against the line from " << Describe(first) << " to " << Describe(last)
+      << "; move what does not belong to the volume out of the folder, or choose another series.";
     throw std::runtime_error(text.str());
   }
   return line;

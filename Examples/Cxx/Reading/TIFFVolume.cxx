@@ -66,8 +66,7 @@ bool NumberPages(Layout& layout, const std::string& order)
     {
       for (int slice = 0; slice < layout.Slices; ++slice)
       {
-        layout.Pages.push_back(
-          static_cast<int>(FindPage(layout, order, slice, channel, time)));
+        layout.Pages.push_back(static_cast<int>(FindPage(layout, order, slice, channel, time)));
       }
     }
   }
@@ -105,8 +104,9 @@ Layout ParseImageJ(const TIFFPages& pages)
   layout.Times = count("frames");
   layout.Slices = fields.count("slices")
     ? count("slices")
-    : std::max(1, static_cast<int>(std::max(count("images"), pages.GetCount()) /
-                    (double(layout.Channels) * layout.Times)));
+    : std::max(1,
+        static_cast<int>(
+          std::max(count("images"), pages.GetCount()) / (double(layout.Channels) * layout.Times)));
   NumberPages(layout, "CZT");
   layout.Unit = fields["unit"] == "pixel" ? "" : fields["unit"];
   const double depth = std::atof(fields["spacing"].c_str());

@@ -187,8 +187,7 @@ vtkSmartPointer<vtkUnsignedCharArray> FindHidden(
     {
       data->GetPointCells(i, others);
       isHidden = isHiddenPoint(i) ||
-        (others->GetNumberOfIds() > 0 &&
-          std::all_of(others->begin(), others->end(), isHiddenCell));
+        (others->GetNumberOfIds() > 0 && std::all_of(others->begin(), others->end(), isHiddenCell));
     }
     hidden->SetValue(i, isHidden ? vtkDataSetAttributes::HIDDENPOINT : 0);
   }
@@ -328,8 +327,7 @@ Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& 
   }
   values->SetName(GetName(values).c_str());
   volume.Image = vtkSmartPointer<vtkImageData>::New();
-  volume.Image->SetDimensions(
-    int(places[0].size()), int(places[1].size()), int(places[2].size()));
+  volume.Image->SetDimensions(int(places[0].size()), int(places[1].size()), int(places[2].size()));
   volume.Image->GetPointData()->SetScalars(values);
   if (even != places)
   {

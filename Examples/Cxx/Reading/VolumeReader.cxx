@@ -115,8 +115,7 @@ ReadFunction* ChooseReader(const std::string& path)
 {
   const std::string name = vtksys::SystemTools::LowerCase(path);
   const auto* const format = std::find_if(std::begin(Formats), std::end(Formats),
-    [&](const VolumeFormat& each)
-    { return vtksys::SystemTools::StringEndsWith(name, each.Name); });
+    [&](const VolumeFormat& each) { return vtksys::SystemTools::StringEndsWith(name, each.Name); });
   return format == std::end(Formats) ? nullptr : format->Read;
 }
 

@@ -122,7 +122,8 @@ constexpr ValueFormat Formats[] = { { ".nii", WriteNIFTI }, { ".nii.gz", WriteNI
 const ValueFormat* FindFormat(const std::string& path)
 {
   const auto* const found = std::find_if(std::begin(Formats), std::end(Formats),
-    [&](const ValueFormat& format) { return vtksys::SystemTools::StringEndsWith(path, format.Name); });
+    [&](const ValueFormat& format)
+    { return vtksys::SystemTools::StringEndsWith(path, format.Name); });
   return found == std::end(Formats) ? nullptr : found;
 }
 
