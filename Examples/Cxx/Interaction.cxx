@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Interaction.h"
 
-#include "Comparison.h"
 #include "MIPScene.h"
 
 #include "vtkCommand.h"

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -144,4 +145,11 @@ double MIPScene::MeasureFrame(const std::string& what)
 void MIPScene::SetLabel(const std::string& label)
 {
   this->Label->SetInput(label.c_str());
+}
+
+std::string FormatTime(double milliseconds)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), milliseconds < 100 ? "%.1f ms" : "%.0f ms", milliseconds);
+  return text;
 }

@@ -4,7 +4,7 @@
 #define MIPScene_h
 
 #include "Look.h"
-#include "ProjectionSettings.h"
+#include "Projector.h"
 #include "Reading/VolumeReader.h"
 #include "View.h"
 
@@ -69,5 +69,10 @@ private:
   vtkNew<vtkRenderer> Renderer;
   vtkNew<vtkRenderWindow> Window;
 };
+
+/**
+ * Format milliseconds with as many digits as are significant.
+ */
+std::string FormatTime(double milliseconds);
 
 #endif

@@ -15,7 +15,6 @@
 #include <filesystem>
 #include <memory>
 #include <sstream>
-#include <tuple>
 #include <utility>
 
 const std::vector<std::string> ModeNames = { "preview", "standard", "high", "exact" };
@@ -37,23 +36,15 @@ struct Words
 };
 
 /// Azimuth and elevation of --view.
-const std::vector<std::pair<std::string, std::pair<double, double>>> Sides = {
-  { "anterior", { 0, 0 } }, { "posterior", { 180, 0 } }, { "left", { 90, 0 } },
-  { "right", { -90, 0 } }, { "superior", { 0, 90 } }, { "inferior", { 0, -90 } }
-};
-
-std::vector<std::string> GetSides()
+const struct
 {
-  std::vector<std::string> names;
-  for (const auto& side : Sides)
-  {
-    names.push_back(side.first);
-  }
-  return names;
-}
+  const char* Name;
+  double Azimuth, Elevation;
+} Sides[] = { { "anterior", 0, 0 }, { "posterior", 180, 0 }, { "left", 90, 0 }, { "right", -90, 0 },
+  { "superior", 0, 90 }, { "inferior", 0, -90 } };
 
 /**
- * What CLI11 asks of a check: nothing if the text is fine, else what is wrong with it.
+ * Check a size. CLI11's checks return what is wrong with a text, or nothing.
  */
 std::string CheckSize(const std::string& text)
 {
@@ -73,15 +64,6 @@ std::string CheckComponentWord(const std::string& text)
   return isNumber || text == "luminance" || text == "magnitude"
     ? ""
     : "not a number from 1 on, luminance or magnitude";
-}
-
-std::string CheckLabel(const std::string& text)
-{
-  int label = 0;
-  char rest = 0;
-  return std::sscanf(text.c_str(), "%9d%c", &label, &rest) == 1 && label != 0
-    ? ""
-    : "not a whole number other than 0";
 }
 
 /**
@@ -188,7 +170,7 @@ void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
     ->delimiter(',');
   group.Add("--mask", options.Mask.Path, "FILE", CLI::Validator(),
     "Only voxels where the nearest voxel of this file is not 0");
-  group.Add("--label", options.Mask.Label, "NUMBER", CLI::Validator(CheckLabel, ""),
+  group.Add("--label", options.Mask.Label, "NUMBER", Between(1, 999999999),
     "Of the mask, or of a DICOM segmentation, only the voxels with this number");
 }
 
@@ -210,7 +192,7 @@ void DeclareViewOptions(CLI::App& app, Options& options, Words& words)
 {
   const CLI::Validator angle = Between(-360.0, 360.0);
   Group group(app, "From where");
-  CLI::Option* const view = group.Add("--view", words.View, "SIDE", CLI::IsMember(GetSides()),
+  CLI::Option* const view = group.Add("--view", words.View, "SIDE", CLI::IsMember(ListNames(Sides)),
     "From one side of the patient, in place of --azimuth and --elevation");
   group
     .Add("--azimuth", options.View.Azimuth, "DEGREES", angle,
@@ -285,11 +267,12 @@ std::vector<int> ChooseModes(const std::string& name)
 void TranslateWords(const Words& words, Options& options)
 {
   std::sscanf(words.Size.c_str(), "%5dx%5d", &options.View.Size[0], &options.View.Size[1]);
-  for (const auto& [name, angles] : Sides)
+  for (const auto& side : Sides)
   {
-    if (name == words.View)
+    if (side.Name == words.View)
     {
-      std::tie(options.View.Azimuth, options.View.Elevation) = angles;
+      options.View.Azimuth = side.Azimuth;
+      options.View.Elevation = side.Elevation;
     }
   }
   ProjectionSettings& settings = options.Projection;
@@ -303,54 +286,52 @@ void TranslateWords(const Words& words, Options& options)
 }
 
 /**
- * Refuse what does not go together.
+ * Declare options that do not go together, or need a file.
+ */
+void DeclareCombinations(CLI::App& app)
+{
+  const std::pair<const char*, std::vector<const char*>> exclusions[] = {
+    { "--interactive", { "--compare", "--rotate", "--slab-offset" } },
+    { "--compare",
+      { "--rotate", "--blend", "--depth-shading", "--depth-coding", "--slab", "--crop",
+        "--mask" } },
+    { "--slab-offset", { "--rotate" } }, { "--depth-coding", { "--colormap" } }
+  };
+  for (const auto& [name, others] : exclusions)
+  {
+    for (const char* const other : others)
+    {
+      app.get_option(name)->excludes(app.get_option(other));
+    }
+  }
+  for (const char* const name : { "--series", "--frame", "--channel", "--array", "--component" })
+  {
+    app.get_option(name)->needs(app.get_option("file"));
+  }
+}
+
+/**
+ * Refuse words of options that do not go together.
  */
 void CheckCombinations(const Options& options)
 {
   const ProjectionSettings& settings = options.Projection;
-  const bool isMaximum = settings.BlendMode == vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
-  if (options.Input.empty() &&
-    (options.Read.Series > 0 || options.Read.Frame > 0 || options.Read.Channel > 0 ||
-      !options.Read.Array.empty() || !options.Read.Component.empty()))
-  {
-    throw CLI::ValidationError(
-      "--series, --frame, --channel, --array, --component", "they are of a file: name one");
-  }
-  if (options.Interactive + options.Compare + (options.Rotate > 0) > 1)
-  {
-    throw CLI::ValidationError("--rotate, --compare, --interactive", "choose one of them");
-  }
   if (options.Modes.size() > 1 &&
     (options.Interactive || options.Rotate > 0 || IsValueFile(options.Output)))
   {
     throw CLI::ValidationError("--mode", "all is for stills: choose one");
   }
-  if (options.Compare &&
-    (!isMaximum || settings.DepthShading || settings.Slab > 0.0 || settings.Cropping ||
-      options.DepthCoding || !options.Mask.Path.empty()))
-  {
-    throw CLI::ValidationError("--compare",
-      "it times maxima of the whole volume: leave --blend, --depth-shading, --depth-coding, "
-      "--slab, "
-      "--crop and --mask out");
-  }
-  if (settings.DepthShading && !isMaximum)
+  if (settings.DepthShading &&
+    settings.BlendMode != vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND)
   {
     throw CLI::ValidationError("--depth-shading", "it is for maxima: leave --blend out");
   }
   if (options.DepthCoding &&
-    settings.BlendMode == vtkSplattingMIPProjection::AVERAGE_INTENSITY_BLEND)
-  {
-    throw CLI::ValidationError("--depth-coding", "means lie at no depth: leave --blend mean out");
-  }
-  if (options.DepthCoding && (options.Look.Colormap != "gray" || IsValueFile(options.Output)))
+    (settings.BlendMode == vtkSplattingMIPProjection::AVERAGE_INTENSITY_BLEND ||
+      IsValueFile(options.Output)))
   {
     throw CLI::ValidationError(
-      "--depth-coding", "it chooses the colours of a picture: leave --colormap out, write .png");
-  }
-  if (settings.SlabOffset != 0.0 && (options.Interactive || options.Rotate > 0))
-  {
-    throw CLI::ValidationError("--slab-offset", "it is for stills: views turn about the middle");
+      "--depth-coding", "means lie at no depth, and values have no colours: leave it out");
   }
   for (int axis = 0; axis < 3 && settings.Cropping; ++axis)
   {
@@ -392,6 +373,7 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
   DeclareLookOptions(app, options);
   DeclareViewOptions(app, options, words);
   DeclareOutputOptions(app, options, words);
+  DeclareCombinations(app);
   app.set_version_flag(
     "--version", std::string("splatmip " SPLATMIP_VERSION ", VTK ") + vtkVersion::GetVTKVersion());
   app.formatter(std::make_shared<HelpWithExamples>());

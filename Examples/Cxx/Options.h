@@ -4,7 +4,7 @@
 #define Options_h
 
 #include "Look.h"
-#include "ProjectionSettings.h"
+#include "Projector.h"
 #include "Reading/Mask.h"
 #include "Reading/VolumeReader.h"
 #include "View.h"

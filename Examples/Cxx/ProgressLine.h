@@ -3,6 +3,8 @@
 #ifndef ProgressLine_h
 #define ProgressLine_h
 
+#include "vtkAlgorithm.h"
+
 #include <chrono>
 #include <string>
 
@@ -13,21 +15,28 @@
 class ProgressLine
 {
 public:
-  explicit ProgressLine(std::string what);
+  /**
+   * Show the progress of an algorithm, if one is given.
+   */
+  explicit ProgressLine(std::string what, vtkAlgorithm* algorithm = nullptr);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   /**
-   * Tell the fraction done, in [0, 1].
+   * Show the fraction done, in [0, 1].
    */
   void Show(double fraction);
 
 private:
+  void ShowProgress(vtkObject*, unsigned long, void* fraction);
+
   std::string What;
   std::chrono::steady_clock::time_point Start;
   bool IsTerminal;
   int ShownPercent = -1;
+  vtkAlgorithm* Algorithm;
+  unsigned long Observer = 0;
 };
 
 #endif

@@ -4,9 +4,7 @@
 
 #include "ProgressLine.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
-#include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkMatrix3x3.h"
 #include "vtkPointData.h"
@@ -92,16 +90,10 @@ Projector::Projector(const Volume& volume, const ProjectionSettings& settings,
 vtkSmartPointer<vtkImageData> Projector::Project(const std::string& what)
 {
   using Clock = std::chrono::steady_clock;
-  ProgressLine line(what);
-  vtkNew<vtkCallbackCommand> tell;
-  tell->SetClientData(&line);
-  tell->SetCallback([](vtkObject*, unsigned long, void* client, void* data)
-    { static_cast<ProgressLine*>(client)->Show(*static_cast<double*>(data)); });
-  const unsigned long tag = this->Projection->AddObserver(vtkCommand::ProgressEvent, tell);
+  ProgressLine line(what, this->Projection);
   const auto start = Clock::now();
   this->Projection->Update();
   this->Seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  this->Projection->RemoveObserver(tag);
   vtkImageData* const found = this->Projection->GetOutput();
   if (found->GetNumberOfPoints() == 0)
   {

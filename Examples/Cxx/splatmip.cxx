@@ -4,7 +4,6 @@
 // splatmip: maximum intensity projections of a volume by splatting. Without an argument it writes a
 // picture of the volume that it carries. Stills and turns come from vtkSplattingMIPProjection,
 // which needs no display; windows show what vtkSplattingMIPVolumeMapper draws.
-#include "Comparison.h"
 #include "Interaction.h"
 #include "MIPScene.h"
 #include "Options.h"
@@ -88,6 +87,54 @@ vtkSmartPointer<vtkImageData> DrawViews(
     DrawScaleBar(views, projection->GetOutputSpacing()[0]);
   }
   return views;
+}
+
+/**
+ * Times the modes and prints a line for each. The ray caster is timed once with each interpolation,
+ * of which the one that is closest to the mode counts.
+ */
+class Comparison
+{
+public:
+  Comparison(const Volume& volume, const LookSettings& look, const Options& options);
+
+  /**
+   * Return a mode's time in milliseconds.
+   */
+  double AddMode(int mode);
+
+private:
+  MIPScene Scene;
+  double RayCasting[2] = { 0.0, 0.0 };
+};
+
+Comparison::Comparison(const Volume& volume, const LookSettings& look, const Options& options)
+  : Scene(volume, options.Projection, look, options.View, true)
+{
+  std::printf("\nWhole frame, view to pixels: median of %d frames of %d x %d, turned by one "
+              "degree each; %d threads, %s\n",
+    MIPScene::NumberOfTimedFrames, options.View.Size[0], options.View.Size[1],
+    vtkSMPTools::GetEstimatedNumberOfThreads(), this->Scene.GetSplatting()->GetInstructionSet());
+  std::printf("%-10s %12s   vtkFixedPointVolumeRayCastMapper\n", "mode", "splatting");
+}
+
+double Comparison::AddMode(int mode)
+{
+  const bool isPreview = mode == vtkSplattingMIPVolumeMapper::PREVIEW;
+  const int interpolation = isPreview ? VTK_NEAREST_INTERPOLATION : VTK_LINEAR_INTERPOLATION;
+  double& rayCasting = this->RayCasting[interpolation];
+  if (rayCasting == 0.0)
+  {
+    this->Scene.UseRayCasting(interpolation);
+    rayCasting = this->Scene.MeasureFrame("ray casting");
+  }
+  this->Scene.UseSplatting(mode);
+  const double splatting = this->Scene.MeasureFrame(ModeNames[mode]);
+  std::printf("%-10s %12s   %12s (%s), %.1f times as long\n", ModeNames[mode].c_str(),
+    FormatTime(splatting).c_str(), FormatTime(rayCasting).c_str(), isPreview ? "nearest" : "linear",
+    rayCasting / splatting);
+  std::fflush(stdout);
+  return splatting;
 }
 
 /**

@@ -279,29 +279,18 @@ std::vector<std::size_t> ChooseByTag(const std::vector<DICOMFrame>& frames,
 void CheckCounts(
   const std::vector<DICOMFrame>& frames, const std::vector<std::vector<std::size_t>>& places)
 {
-  std::map<std::size_t, std::size_t> counts;
-  for (const auto& place : places)
+  const auto [least, most] = std::minmax_element(
+    places.begin(), places.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  if (least->size() < most->size())
   {
-    ++counts[place.size()];
-  }
-  const std::size_t usual = std::max_element(counts.begin(), counts.end(),
-    [](const auto& a, const auto& b) {
-      return a.second < b.second;
-    })->first;
-  for (const auto& place : places)
-  {
-    if (place.size() == usual)
+    const auto describe = [&](const auto& place)
     {
-      continue;
-    }
-    const SlicePlane& plane = frames[place[0]].Plane;
-    std::ostringstream text;
-    text << "there are " << place.size() << (place.size() == 1 ? " slice" : " slices") << " at ("
-         << plane.Position[0] << ", " << plane.Position[1] << ", " << plane.Position[2] << ") mm"
-         << (place.size() > 1 ? ", another is " + frames[place[1]].Plane.Name : "") << ", and "
-         << usual << " at most other places; move what does not belong to the volume out of the "
-         << "folder, or choose another series.";
-    Refuse(plane.Name, text.str());
+      return std::to_string(place.size()) + (place.size() > 1 ? " slices at " : " slice at ") +
+        "the place of " + Describe(frames[place.back()].Plane);
+    };
+    Refuse(frames[most->front()].Plane.Name,
+      "there are " + describe(*most) + ", and " + describe(*least) +
+        "; move what does not belong to the volume out of the folder, or choose another series.");
   }
 }
 }

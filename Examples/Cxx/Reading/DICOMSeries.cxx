@@ -5,8 +5,6 @@
 #include "ProgressLine.h"
 #include "Reading/Reading.h"
 
-#include "vtkCallbackCommand.h"
-#include "vtkCommand.h"
 #include "vtkDICOMDirectory.h"
 #include "vtkDICOMItem.h"
 #include "vtkDICOMUtilities.h"
@@ -56,18 +54,11 @@ void AddFiles(Series& series, vtkStringArray* files)
 
 std::vector<Series> FindSeries(const std::string& folder, const QuietReading& quiet)
 {
-  ProgressLine line("looking for series in " + folder);
-  vtkNew<vtkCallbackCommand> tell;
-  tell->SetClientData(&line);
-  tell->SetCallback(
-    [](vtkObject* caller, unsigned long, void* client, void*) {
-      static_cast<ProgressLine*>(client)->Show(static_cast<vtkAlgorithm*>(caller)->GetProgress());
-    });
   vtkNew<vtkDICOMDirectory> directory;
   directory->SetDirectoryName(folder.c_str());
   directory->SetScanDepth(Depth);
   directory->RequirePixelDataOn();
-  directory->AddObserver(vtkCommand::ProgressEvent, tell);
+  const ProgressLine line("looking for series in " + folder, directory);
   directory->Update();
   if (HasFailed(directory.Get(), quiet))
   {

@@ -10,15 +10,7 @@
 #include <vector>
 
 #include <fcntl.h>
-#ifdef _WIN32
-#include <io.h>
-#define close _close
-#define dup _dup
-#define dup2 _dup2
-#define open _open
-#else
 #include <unistd.h>
-#endif
 
 /**
  * Collects VTK's messages instead of showing them.
@@ -90,11 +82,7 @@ std::string QuietReading::GetReason() const
 
 SilentErrors::SilentErrors()
 {
-#ifdef _WIN32
-  const int nowhere = open("NUL", _O_WRONLY);
-#else
   const int nowhere = open("/dev/null", O_WRONLY);
-#endif
   std::fflush(stderr);
   this->Saved = dup(2);
   dup2(nowhere, 2);

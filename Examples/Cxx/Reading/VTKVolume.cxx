@@ -5,9 +5,7 @@
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
-#include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetReader.h"
 #include "vtkIdList.h"
@@ -69,14 +67,7 @@ void CheckExtent(vtkInformation* info, const std::string& path, const QuietReadi
 vtkSmartPointer<vtkDataSet> RunReader(
   vtkAlgorithm* reader, const std::string& path, const QuietReading& quiet)
 {
-  ProgressLine line("reading " + std::filesystem::path(path).filename().string());
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetClientData(&line);
-  observer->SetCallback(
-    [](vtkObject* caller, unsigned long, void* client, void*) {
-      static_cast<ProgressLine*>(client)->Show(static_cast<vtkAlgorithm*>(caller)->GetProgress());
-    });
-  reader->AddObserver(vtkCommand::ProgressEvent, observer);
+  const ProgressLine line("reading " + std::filesystem::path(path).filename().string(), reader);
   reader->UpdateInformation();
   vtkInformation* const info = reader->GetOutputInformation(0);
   if (HasFailed(reader, quiet) || !info)
@@ -85,7 +76,6 @@ vtkSmartPointer<vtkDataSet> RunReader(
   }
   CheckExtent(info, path, quiet);
   reader->Update();
-  reader->RemoveObserver(observer);
   vtkSmartPointer<vtkDataSet> data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
   if (HasFailed(reader, quiet) || !data || data->GetNumberOfPoints() < 1)
   {

@@ -29,9 +29,9 @@ class TestMasks(splatmip.SplatmipTest):
             self.assertNotIn("other voxels", text)
         mask = self.path("m.mha")
         for arguments, words, code in (
-                ((self.file, "--mask", mask, "--label", "5"), "its labels are 3 or 7", 1),
+                ((self.file, "--mask", mask, "--label", "5"), "this mask shows nothing of the volume; give", 1),
                 ((self.file, "--label", "5"), "--label is for a --mask or a DICOM segmentation", 1),
-                ((self.file, "--mask", mask, "--label", "0"), "other than 0", 2),
+                ((self.file, "--mask", mask, "--label", "0"), "not a number from 1 to", 2),
                 ((self.file, "--mask", "none.nii"), "none.nii: no such file", 1)):
             self.assert_refused(*arguments, words=words, code=code)
 
@@ -66,7 +66,7 @@ class TestMasks(splatmip.SplatmipTest):
             places = numpy.column_stack((steps, origin))
             for arguments, shown in (((), found != 0), (("--label", "7"), found == 7)):
                 self.assert_shown(labels, places, shown, *arguments,
-                                  words="the mask has other voxels than the volume: 11 x 12 x 9 voxels")
+                                  words="the mask has other voxels than the volume: the nearest")
         far = splatmip.write_meta(self.path("m.mha"), labels, PLACES + [[0, 0, 0, 900]] * 3)
         self.assert_refused(self.file, "--mask", far, words="this mask shows nothing of the volume")
 

@@ -73,6 +73,7 @@ class TestProgram(splatmip.SplatmipTest):
                       ("--depth-coding", "--blend", "mean"), ("--depth-coding", "--colormap", "hot"),
                       ("--depth-coding", "--output", "v.nii")):
             self.assert_refused("missing.vti", *words, words=words[0], code=2)
+        self.assert_refused("--component", "1", words="--component requires file", code=2)
         for words in ("--compare", "--interactive"):
             self.assert_refused("missing.vti", words, words="no display")
         self.assertEqual(os.listdir(self.scratch.name), [])

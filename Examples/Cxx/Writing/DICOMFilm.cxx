@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Writing/DICOMFilm.h"
-
 #include "Reading/QuietReading.h"
+#include "Writing/PictureSeries.h"
 
 #include "vtkDICOMMetaData.h"
 #include "vtkDICOMSCGenerator.h"

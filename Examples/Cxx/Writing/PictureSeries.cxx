@@ -11,9 +11,6 @@
 #include "vtkPNGWriter.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
-#ifdef SPLATMIP_HAS_DICOM
-#include "Writing/DICOMFilm.h"
-#endif
 #ifdef SPLATMIP_HAS_THEORA
 #include "vtkOggTheoraWriter.h"
 #endif
@@ -111,8 +108,10 @@ bool WriteTheora(vtkImageData* slices, const Palette& palette, const FilmSetting
 #ifndef SPLATMIP_HAS_THEORA
 constexpr auto WriteTheora = nullptr;
 #endif
-#ifndef SPLATMIP_HAS_DICOM
-constexpr auto WriteDICOM = nullptr;
+#ifdef SPLATMIP_HAS_DICOM
+constexpr auto DICOMWriter = WriteDICOM;
+#else
+constexpr auto DICOMWriter = nullptr;
 #endif
 
 struct SeriesFormat
@@ -124,7 +123,7 @@ struct SeriesFormat
 };
 
 constexpr SeriesFormat Formats[] = { { ".png", WritePNGs, "" },
-  { ".ogv", WriteTheora, "Ogg Theora in its VTK" }, { ".dcm", WriteDICOM, "vtk-dicom" } };
+  { ".ogv", WriteTheora, "Ogg Theora in its VTK" }, { ".dcm", DICOMWriter, "vtk-dicom" } };
 
 const SeriesFormat* FindFormat(const std::string& path)
 {

@@ -55,4 +55,12 @@ std::vector<std::string> GetSeriesFiles(const std::string& path, int count);
 void WriteSeries(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
   const std::string& path);
 
+/**
+ * Write slices as one DICOM file with a frame for each: a multi-frame secondary capture of gray
+ * bytes or true colours, in a series of its own in the study of the files that were read. Returns
+ * whether the file is complete. Only in builds with vtk-dicom.
+ */
+bool WriteDICOM(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+  const std::vector<std::string>& names);
+
 #endif

@@ -7,6 +7,8 @@
 #include "Reading/VolumeReader.h"
 #include "Writing/SafeFiles.h"
 
+#include "itkMetaImageIO.h"
+
 #include "vtkImageCast.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
@@ -21,7 +23,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <stdexcept>
 
@@ -50,15 +51,14 @@ vtkSmartPointer<vtkMatrix4x4> MakeForm(vtkImageData* values)
 }
 
 /**
- * By one of VTK's writers, whose reports are not for the user.
+ * Write by one of VTK's writers.
  */
 bool WriteWith(vtkImageWriter* writer, vtkImageData* values, const std::string& path)
 {
-  const QuietReading quiet;
   writer->SetInputData(values);
   writer->SetFileName(path.c_str());
   writer->Write();
-  return !writer->GetErrorCode() && !quiet.HasErrors();
+  return !writer->GetErrorCode();
 }
 
 bool WriteNIFTI(vtkImageData* values, const std::string& path)
@@ -80,34 +80,29 @@ bool WriteTIFF(vtkImageData* values, const std::string& path)
 }
 
 /**
- * By hand, because VTK's writer leaves directions out.
+ * Write by ITK, because VTK's writer leaves directions out.
  */
 bool WriteMeta(vtkImageData* values, const std::string& path)
 {
-  const int* const size = values->GetDimensions();
-  const double* const spacing = values->GetSpacing();
-  const double* const origin = values->GetOrigin();
-  std::ofstream file(path, std::ios::binary);
-  file.precision(17);
-  file << "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = ";
-#ifdef VTK_WORDS_BIGENDIAN
-  file << "True";
-#else
-  file << "False";
-#endif
-  file << "\nTransformMatrix =";
-  for (int i = 0; i < 9; ++i)
+  const auto writer = itk::MetaImageIO::New();
+  writer->SetFileName(path);
+  writer->SetNumberOfDimensions(3);
+  writer->SetComponentType(itk::IOComponentEnum::FLOAT);
+  itk::ImageIORegion region(3);
+  for (int axis = 0; axis < 3; ++axis)
   {
-    file << ' ' << values->GetDirectionMatrix()->GetElement(i % 3, i / 3);
+    const auto* const direction = values->GetDirectionMatrix();
+    region.SetSize(axis, values->GetDimensions()[axis]);
+    writer->SetDimensions(axis, values->GetDimensions()[axis]);
+    writer->SetSpacing(axis, values->GetSpacing()[axis]);
+    writer->SetOrigin(axis, values->GetOrigin()[axis]);
+    writer->SetDirection(axis,
+      { direction->GetElement(0, axis), direction->GetElement(1, axis),
+        direction->GetElement(2, axis) });
   }
-  file << "\nOffset = " << origin[0] << ' ' << origin[1] << ' ' << origin[2]
-       << "\nElementSpacing = " << spacing[0] << ' ' << spacing[1] << ' ' << spacing[2]
-       << "\nDimSize = " << size[0] << ' ' << size[1]
-       << " 1\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n";
-  file.write(static_cast<const char*>(values->GetScalarPointer()),
-    static_cast<std::streamsize>(values->GetNumberOfPoints() * sizeof(float)));
-  file.close();
-  return !file.fail();
+  writer->SetIORegion(region);
+  writer->Write(values->GetScalarPointer());
+  return true; // unless it throws
 }
 
 struct ValueFormat
@@ -128,15 +123,17 @@ const ValueFormat* FindFormat(const std::string& path)
 }
 
 /**
- * Whether a file has as many values: VTK's writers do not report that the disk is full.
+ * Write a file and read it: the writers do not report all errors, such as that the disk is full.
  */
-bool CanBeRead(const std::string& path, vtkImageData* values)
+bool WriteAndRead(vtkImageData* values, const std::string& path)
 {
   try
   {
-    return ReadVolume(path, {}).Image->GetNumberOfPoints() == values->GetNumberOfPoints();
+    const QuietReading quiet;
+    return FindFormat(path)->Write(values, path) && !quiet.HasErrors() &&
+      ReadVolume(path, {}).Image->GetNumberOfPoints() == values->GetNumberOfPoints();
   }
-  catch (const std::runtime_error&)
+  catch (const std::exception&)
   {
     return false;
   }
@@ -165,6 +162,5 @@ void WriteValues(
   values->SetOrigin(first[0] + origin[0], first[1] + origin[1], first[2] + origin[2]);
   values->SetDirectionMatrix(picture->GetDirectionMatrix()); // which filters do not pass on
   WriteSafely({ path },
-    [&](const std::vector<std::string>& names)
-    { return FindFormat(path)->Write(values, names.front()) && CanBeRead(names.front(), values); });
+    [&](const std::vector<std::string>& names) { return WriteAndRead(values, names.front()); });
 }
