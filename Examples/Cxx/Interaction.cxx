@@ -12,7 +12,7 @@
 namespace
 {
 /**
- * The trackball, with keys for the modes in place of VTK's usual keys.
+ * Trackball with keys for the modes in place of VTK's usual keys.
  */
 class ModeKeys : public vtkInteractorStyleTrackballCamera
 {
@@ -48,8 +48,8 @@ private:
 vtkStandardNewMacro(ModeKeys);
 
 /**
- * After a frame that projected anew: say the mode and how long the volume took, and draw once more
- * for the label to be seen. That frame re-uses the projection, so there is no third.
+ * Shows the mode and its time after each frame that was projected anew. The window is rendered once
+ * more to show the label; that frame re-uses the projection, so there is no third.
  */
 class LabelUpdate : public vtkCommand
 {

@@ -51,7 +51,7 @@ void ProgressLine::Show(double fraction)
   {
     return;
   }
-  // stdio and not std::cerr, which is diverted while files are read
+  // std::cerr is redirected while files are read
   std::fprintf(stderr, "\r%s %3d %%", this->What.c_str(), percent);
   std::fflush(stderr);
   this->ShownPercent = percent;

@@ -9,8 +9,8 @@
 #include <string>
 
 /**
- * A line on stderr that says how far a long step is. It appears after the first second, because
- * short steps need none, and only where stderr is a terminal, because logs need none either.
+ * A line on stderr with the progress of a long step. It appears after one second, and only if
+ * stderr is a terminal.
  */
 class ProgressLine
 {

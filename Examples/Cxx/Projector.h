@@ -14,7 +14,7 @@
 #include <string>
 
 /**
- * What of a volume is projected, and how, but for the quality mode.
+ * Settings of a projection except the quality mode.
  */
 struct ProjectionSettings
 {
@@ -22,16 +22,16 @@ struct ProjectionSettings
   double KernelRadius = 1.0; // voxels
   int BlendMode = vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
   bool DepthShading = false;
-  double Slab = 0.0;       // its thickness in mm, or 0
-  double SlabOffset = 0.0; // of its middle from the volume's to the viewer, mm
+  double Slab = 0.0;       // thickness in mm, or 0 for no slab
+  double SlabOffset = 0.0; // from the volume's centre to the viewer, mm
   bool Cropping = false;
   std::array<double, 6>
     Crop = {}; // from, to along each axis of the volume, mm from its first voxel
 };
 
 /**
- * Tell a vtkSplattingMIPProjection, or a vtkSplattingMIPVolumeMapper; the slab's middle is a point
- * of the world.
+ * Apply settings to a vtkSplattingMIPProjection or a vtkSplattingMIPVolumeMapper. The centre of the
+ * slab is in world coordinates.
  */
 template <class Target>
 void Apply(
@@ -50,8 +50,8 @@ void Apply(
 }
 
 /**
- * One view of a volume, or several once round the patient's long axis, by
- * vtkSplattingMIPProjection, which needs no display.
+ * One view of a volume, or several around the patient's long axis, by vtkSplattingMIPProjection,
+ * which needs no display.
  */
 class Projector
 {
@@ -62,13 +62,13 @@ public:
   vtkSplattingMIPProjection* GetProjection() { return this->Projection; }
 
   /**
-   * Views as bytes, which are places in the look's palette. What says in the progress line what is
-   * done. Throws std::runtime_error if nothing of the volume is seen.
+   * Project the views to bytes, which are indices of the look's palette. The text names the step in
+   * the progress line. Throws std::runtime_error if no part of the volume is visible.
    */
   vtkSmartPointer<vtkImageData> Project(const std::string& what);
 
   /**
-   * The seconds that the last Project() took for what it shows.
+   * Get the seconds that the last projection took.
    */
   double GetSeconds() const { return this->Seconds; }
 

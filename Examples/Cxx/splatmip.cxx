@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // splatmip: maximum intensity projections of a volume by splatting. Without an argument it writes a
-// picture of the volume that it carries. Stills and turns come from vtkSplattingMIPProjection,
-// which needs no display; windows show what vtkSplattingMIPVolumeMapper draws.
+// picture of the built-in volume. Stills and turns are made by vtkSplattingMIPProjection, which
+// needs no display; windows are drawn by vtkSplattingMIPVolumeMapper.
 #include "Interaction.h"
 #include "MIPScene.h"
 #include "Options.h"
@@ -31,7 +31,7 @@
 namespace
 {
 /**
- * What the user wants, else what the file does, else what the values suggest.
+ * Complete the look: the user's window, else the file's, else one from the values.
  */
 LookSettings CompleteLook(const Options& options, const Volume& volume)
 {
@@ -60,7 +60,7 @@ void PrintVolume(const Volume& volume, const LookSettings& look)
 }
 
 /**
- * Views with what is written into them.
+ * Draw the views with labels and marks.
  */
 vtkSmartPointer<vtkImageData> DrawViews(
   Projector& projector, const Volume& volume, const Options& options, std::string label)
@@ -90,8 +90,8 @@ vtkSmartPointer<vtkImageData> DrawViews(
 }
 
 /**
- * Times the modes and prints a line for each. The ray caster is timed once with each interpolation,
- * of which the one that is closest to the mode counts.
+ * Times the modes and prints a line for each, beside the ray caster with the most similar
+ * interpolation.
  */
 class Comparison
 {
@@ -138,7 +138,7 @@ double Comparison::AddMode(int mode)
 }
 
 /**
- * The modes side by side, or the values of one.
+ * Write the modes side by side, or the values of one.
  */
 void WriteStill(const Volume& volume, const LookSettings& look, const Options& options)
 {
@@ -193,7 +193,7 @@ std::vector<std::string> GetOutputFiles(const Options& options)
 }
 
 /**
- * What would be in vain is told before the volume is read.
+ * Check display and outputs before the volume is read.
  */
 void CheckBeforehand(const Options& options)
 {
@@ -224,7 +224,7 @@ void Run(const Options& options)
   else if (options.Mask.Label != 0 && !volume.HasLabels)
   {
     throw std::runtime_error(
-      "--label is for a --mask or a DICOM segmentation; give one, or leave it out.");
+      "--label is for a --mask or a DICOM segmentation; give one, or leave --label out.");
   }
   if (!options.Interactive)
   {

@@ -155,7 +155,7 @@ def read_nrrd(path):
     elif "spacings" in fields:
         axes = numpy.diag(numbers(fields["spacings"], 3))
     else:
-        note = "the file does not say how large voxels are: cubes of 1 are shown"
+        note = "the file has no voxel size: cubes of 1 are shown"
     origin = signs * numbers(fields.get("space origin", "0 0 0"), 3)
     length, is_known = find_unit((fields.get("space units", "") + '"mm"').split('"')[1])
     image = make_image(decode(data, fields, shape), axes * length, origin * length)
@@ -248,7 +248,7 @@ def read_nifti(path):
         axes, origin = to_lps * matrix[:, :3] * spacing, (to_lps * matrix[:, 3:]).ravel()
     low, high = header.GetCalMin(), header.GetCalMax()
     volumes = reader.GetTimeDimension()
-    notes = [] if matrix is not None else ["the file does not say how the patient lies; left and right may be exchanged"]
+    notes = [] if matrix is not None else ["the file has no orientation; left and right may be exchanged"]
     notes += [f"the first of {volumes} volumes"] if volumes > 1 else []
     return Volume(make_image(values, axes, origin), matrix is not None, True,
                   (low, high) if high > low else None, "; ".join(notes))

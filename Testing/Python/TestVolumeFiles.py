@@ -161,7 +161,7 @@ class TestVolumeFiles(unittest.TestCase):
         self.check(volume, axes=numpy.diag([1.0, 0.5, 2.0]), origin=numpy.zeros(3))
         volume = self.read("a.nrrd", nrrd(space=None, space_directions=None, space_origin=None))
         self.check(volume, axes=numpy.eye(3), origin=numpy.zeros(3))
-        self.assertIn("how large voxels are", volume.note)
+        self.assertIn("no voxel size", volume.note)
 
     def test_meta_image(self):
         for fields in ({}, {"dtype": ">i2"}, {"pack": zlib.compress, "CompressedData": "True"}):
@@ -189,7 +189,7 @@ class TestVolumeFiles(unittest.TestCase):
         self.check(self.read("a.nii", nifti(unit=3)))  # micrometres
         volume = self.read("a.nii", nifti(form=""))
         self.assertFalse(volume.is_oriented)
-        self.assertIn("does not say how the patient lies", volume.note)
+        self.assertIn("has no orientation", volume.note)
         volume = self.read("a.nii", nifti(volumes=3))
         self.check(volume)
         self.assertIn("the first of 3 volumes", volume.note)

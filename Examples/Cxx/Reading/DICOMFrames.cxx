@@ -74,7 +74,7 @@ std::unique_ptr<DICOMFile> OpenFile(const std::string& path, const QuietReading&
   file->Reader->SetMemoryRowOrderToFileNative();
   file->Reader->UpdateInformation();
   vtkDICOMMetaData* const elements = file->Reader->GetMetaData();
-  // zeros after the pixels look like elements of group 0
+  // zeros behind the pixels are parsed as elements of group 0
   if (HasFailed(file->Reader.Get(), quiet) || elements->Begin() == elements->End() ||
     elements->Begin()->GetTag().GetGroup() == 0)
   {
@@ -164,13 +164,12 @@ SlicePlane FindPlane(const DICOMFile& file, int frame)
   if (position.empty() || axes.empty())
   {
     Refuse(plane.Name,
-      "this picture has no position in the patient, as films and screenshots have none, so that "
-      "it is no part of a volume; give a CT or MR series, or choose another one.");
+      "this picture has no position in the patient; give a CT or MR series, or choose another "
+      "one.");
   }
   if (spacing.empty() || !(spacing[0] > 0.0) || !(spacing[1] > 0.0))
   {
-    Refuse(plane.Name,
-      "this slice does not say how large its pixels are (PixelSpacing); export the series again.");
+    Refuse(plane.Name, "this slice has no pixel size (PixelSpacing); export the series again.");
   }
   std::copy_n(position.begin(), 3, plane.Position.begin());
   std::copy_n(axes.begin(), 3, plane.Row.begin());
@@ -201,9 +200,9 @@ void CheckFrames(const DICOMFile& file, const std::vector<Vector3>& offsets)
   if (count > 1 && offsets.empty() && !isPlaced)
   {
     Refuse(file.Path,
-      "it does not say where its " + std::to_string(count) +
-        " frames lie, as a film does not, so that they are no volume; give a CT or MR series, or "
-        "choose another one.");
+      "its " + std::to_string(count) +
+        " frames have no positions, such as those of a film; give a CT or MR series, or choose "
+        "another one.");
   }
 }
 
@@ -405,7 +404,7 @@ std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
     Refuse(frames[places[0][0]].Plane.Name,
       "there are " + std::to_string(count) + " slices at each place, here also " +
         frames[places[0][1]].Plane.Name +
-        ", and nothing says which belong together; move one set out of the folder.");
+        ", and no element distinguishes them; move one set out of the folder.");
   }
   return order;
 }

@@ -20,7 +20,7 @@
 
 namespace
 {
-/// Folders in folders: a patient's, a study's, a series', and some to spare.
+/// Levels of folders that are searched.
 constexpr int Depth = 8;
 
 struct Series
@@ -69,7 +69,7 @@ std::vector<Series> FindSeries(const std::string& folder, const QuietReading& qu
   for (int i = 0; i < directory->GetNumberOfSeries(); ++i)
   {
     const Series series = MakeSeries(directory->GetSeriesRecord(i));
-    // vtkDICOMDirectory makes another series of objects that are there twice
+    // vtkDICOMDirectory lists copies of objects as another series
     auto known = std::find_if(all.begin(), all.end(),
       [&](const Series& other) { return !series.Name.empty() && other.Name == series.Name; });
     known = known == all.end() ? all.insert(known, series) : known;
@@ -79,7 +79,8 @@ std::vector<Series> FindSeries(const std::string& folder, const QuietReading& qu
 }
 
 /**
- * The series that a file belongs to, or for a folder the largest. Their number if there is none.
+ * Find the series of a file, or the largest of a folder. Returns the number of series if there is
+ * none.
  */
 std::size_t FindDefault(const std::vector<Series>& all, const std::string& path)
 {
@@ -140,7 +141,7 @@ bool IsDICOMFile(const std::string& path)
 namespace
 {
 /**
- * The first explanation of a file, or of those in a folder.
+ * Explain a file, or the first of a folder that has an explanation.
  */
 std::string ExplainFiles(const std::string& path)
 {

@@ -25,7 +25,7 @@ void AddNote(std::vector<std::string>& notes, const std::string& note)
 }
 
 /**
- * Codes whose first bit is their sign.
+ * Interpret the first bit of a code as its sign.
  */
 double AddSign(double code, const ValueMap& map)
 {
@@ -34,7 +34,7 @@ double AddSign(double code, const ValueMap& map)
 }
 
 /**
- * A table of values, with its first code.
+ * Set a table of values and its first code.
  */
 void SetTable(ValueMap& map, const vtkDICOMItem& table)
 {
@@ -61,7 +61,7 @@ void SetSlope(ValueMap& map, double slope, double intercept)
 }
 
 /**
- * Values in the order of the standard: the first of the elements that is there.
+ * Set the conversion by the first of the elements that exists, in the order of the standard.
  */
 void SetValues(ValueMap& map, const DICOMFrame& frame, std::vector<std::string>& notes)
 {
@@ -100,7 +100,7 @@ void SetPadding(ValueMap& map, const DICOMFrame& frame, bool hidesPadding)
   {
     return;
   }
-  // The standard has them signed or not as pixels are, which not all files obey.
+  // They should be signed if pixels are, but not all files obey.
   const double codes = std::ldexp(1.0, map.Bits);
   const auto read = [&](const vtkDICOMValue& code)
   { return AddSign(std::fmod(code.AsInt() + codes, codes), map); };
@@ -121,7 +121,7 @@ void Look(const From* from, vtkIdType count, const std::vector<double>& values, 
 }
 
 /**
- * From a table by the stored bits, or one by one.
+ * Convert values by a table of the stored bits, or one by one.
  */
 template <class To>
 void ConvertValues(vtkDataArray* from, vtkIdType first, vtkIdType count, const ValueMap& map,
@@ -189,7 +189,7 @@ ValueMap FindValueMap(const DICOMFrame& frame, bool hidesPadding, std::vector<st
   if (frame.Get(DC::PhotometricInterpretation).AsString() == "MONOCHROME1")
   {
     AddNote(
-      notes, "the file wants low values bright (MONOCHROME1), as --colormap inverted shows it");
+      notes, "low values are bright in this file (MONOCHROME1): --colormap inverted shows them so");
   }
   return map;
 }

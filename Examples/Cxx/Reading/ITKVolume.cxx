@@ -29,7 +29,8 @@ std::string Trim(const std::string& text)
 }
 
 /**
- * What ITK does not report of a header: the texts behind its keys, and the files with its data.
+ * Parts of a header that ITK does not report: the texts behind its keys, and the files with its
+ * data.
  */
 struct Header
 {

@@ -14,7 +14,7 @@
 
 namespace
 {
-/// How far voxels of a mask may lie from the volume's, in voxels: files round.
+/// Voxels by which equal voxels of mask and volume may differ, because files round.
 constexpr double Tolerance = 0.1;
 
 /**

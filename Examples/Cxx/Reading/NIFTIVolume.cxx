@@ -158,8 +158,7 @@ void Place(Volume& volume, const nifti_image& header)
                                    : "mm");
   if (!form)
   {
-    volume.Notes.push_back(
-      "the file does not say how the patient lies; left and right may be exchanged");
+    volume.Notes.push_back("the file has no orientation; left and right may be exchanged");
     AddCaution(volume, "orientation unknown");
   }
 }

@@ -39,7 +39,7 @@ std::string DescribeUnit(const std::string& unit, double length)
 {
   const std::string name = length == 0.001 ? "um" : unit;
   return "the file's unit of length is " + name +
-    (length > 0.0 ? "; lengths here are in mm" : ", which is unknown: 1 mm was taken for it");
+    (length > 0.0 ? "; lengths here are in mm" : ", which is unknown: 1 mm is assumed");
 }
 }
 
@@ -75,7 +75,7 @@ void PlaceVolume(Volume& volume, Steps steps, std::array<double, 3> origin, cons
   volume.IsInMillimeters = isSized && unitLength > 0.0;
   if (!isSized)
   {
-    volume.Notes.push_back("the file does not say how large voxels are: 1 mm was taken");
+    volume.Notes.push_back("the file has no voxel size: 1 mm is assumed");
     AddCaution(volume, "voxel size unknown");
   }
   if (!unit.empty() && unitLength != 1.0)

@@ -29,7 +29,7 @@ void PlaceVolume(
 void TurnToLPS(Steps& steps, std::array<double, 3>& origin);
 
 /**
- * Add a line to what the picture must say.
+ * Add a line to the warnings that pictures must show.
  */
 void AddCaution(Volume& volume, const std::string& caution);
 

@@ -70,7 +70,7 @@ std::string QuietReading::GetReason() const
     return "";
   }
   std::string text = this->Collector->Errors.front();
-  std::size_t place = text.find(", line "); // an error may quote another, places and all
+  std::size_t place = text.find(", line "); // an error may quote another with its place
   for (; place != std::string::npos; place = text.find(", line "))
   {
     text.erase(0, std::min(text.size(), text.find('\n', place)) + 1);

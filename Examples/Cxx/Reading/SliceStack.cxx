@@ -12,10 +12,10 @@
 
 namespace
 {
-/// Planes that are closer than so many pixels lie at the same place.
+/// Pixels by which planes at the same place may differ.
 constexpr double SamePlace = 0.01;
 
-/// Pixels that a slice's corners may be off: less than what a projection resolves.
+/// Pixels by which the corners of a slice may be off: less than a projection resolves.
 constexpr double HalfPixel = 0.5;
 
 double Dot(const Vector3& a, const Vector3& b)
@@ -41,7 +41,7 @@ double GetPixel(const SlicePlane& plane)
 }
 
 /**
- * Degrees between planes, in themselves or against each other.
+ * Get the degrees between the axes of planes.
  */
 double GetAngle(const SlicePlane& a, const SlicePlane& b)
 {

@@ -22,7 +22,7 @@ namespace
 constexpr int MostPages = 10'000'000;
 
 /**
- * What the description says of the pages.
+ * The pages by the description.
  */
 struct Layout
 {
@@ -122,7 +122,7 @@ int GetNumber(vtkXMLDataElement* element, const char* name, int usual)
 }
 
 /**
- * Let elements TiffData say which pages the planes are. Returns whether one file has all.
+ * Assign pages to planes by elements TiffData. Returns whether one file has all.
  */
 bool AssignPages(Layout& layout, vtkXMLDataElement* pixels, const std::string& order)
 {
@@ -222,7 +222,7 @@ void PlaceStack(Volume& volume, const Layout& layout)
   const Steps steps = { { { size[0], 0.0, 0.0 }, { 0.0, size[1], 0.0 }, { 0.0, 0.0, size[2] } } };
   PlaceVolume(volume, isSized ? steps : Steps(), {}, isSized ? layout.Unit : "");
   volume.Notes.push_back(
-    "the file does not say how voxels lie: pages from the feet on, seen from the feet");
+    "the file has no orientation: the first page is at the feet, the first row in front");
 }
 }
 

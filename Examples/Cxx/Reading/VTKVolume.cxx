@@ -30,7 +30,7 @@
 
 namespace
 {
-/// Coordinates of rectilinear grids that are off an even place by less of the step are even.
+/// Steps by which even coordinates of rectilinear grids may be off.
 constexpr double EvenEnough = 1e-3;
 
 /**
@@ -260,7 +260,7 @@ vtkDataArray* ChooseArray(
   return arrays[static_cast<std::size_t>(found - names.begin())];
 }
 
-/// Of voxels along three axes.
+/// Places of voxels along three axes.
 using Places = std::array<std::vector<double>, 3>;
 
 void Place(Volume& volume, vtkImageData* image, const Places& even)

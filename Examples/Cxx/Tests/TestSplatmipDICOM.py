@@ -79,7 +79,7 @@ class TestValues(DICOMTest):
                 (lut(20), table[numpy.clip(codes - 20, 0, 199)], "those of the file's Modality LUT\n"),
                 ({"RealWorldValueMappingSequence": world}, 0.25 * codes - 3, "real world values\n"),
                 ({"RealWorldValueMappingSequence": world_table}, codes, "is not applied\n"),
-                ({"PhotometricInterpretation": "MONOCHROME1"}, codes, "(MONOCHROME1), as --colormap inv")):
+                ({"PhotometricInterpretation": "MONOCHROME1"}, codes, "(MONOCHROME1): --colormap inverted")):
             folder = self.write(make_slices(codes, **fields))
             if "ModalityLUTSequence" in fields:
                 self.assertTrue((values == self.judge(folder)).all())
@@ -190,7 +190,7 @@ class TestStacks(DICOMTest):
                 (change(0, ImagePositionPatient=(0, 3, 0)), f"the line from {self.name(0)} at (0, 3, 0) mm"),
                 (change(8, ImagePositionPatient=(0, 3, 16)), f"to {self.name(8)} at (0, 3, 16) mm;"),
                 (change(4, ImagePositionPatient=None), f"{self.name(4)}: this picture has no position"),
-                (change(4, PixelSpacing=None), f"{self.name(4)}: this slice does not say how large"),
+                (change(4, PixelSpacing=None), f"{self.name(4)}: this slice has no pixel size"),
                 (change(7, ImagePositionPatient=(0, 0, 12)),
                  f"{self.name(6)}: there are 2 slices at the place of {self.name(7)} at (0, 0, 12) mm, and 1 slice")):
             self.assert_refused(self.write(slices), words=words)
@@ -230,7 +230,7 @@ class TestStacks(DICOMTest):
         self.assert_refused(self.folder, "--frame", "3", words="there is no volume 3 here, only 2")
         os.remove(self.name(4))
         self.assert_refused(self.folder, words=" slices at the place of ")
-        self.assert_refused(self.write(make(0) + make(1)), words="nothing says which belong")
+        self.assert_refused(self.write(make(0) + make(1)), words="and no element distinguishes them")
 
 
 class TestFrames(DICOMTest):
@@ -252,7 +252,7 @@ class TestFrames(DICOMTest):
                           GridFrameOffsetVector=[30 + 2 * k for k in range(9)])  # the normal is to the feet
         falling = numpy.array([[1.5, 0, 0, 0], [0, -1, 0, 0], [0, 0, -2, 46.0]])
         self.assert_volume(self.folder, make_values()[::-1], falling)
-        self.assert_refused(self.write_frames(), words="where its 9 frames lie")
+        self.assert_refused(self.write_frames(), words="its 9 frames have no positions")
 
     def test_enhanced(self):
         """Frames in any order, each with a position; at the same place an index counts times."""

@@ -113,7 +113,7 @@ class TestNIfTI(FormatTest):
             picture, text = self.draw(self.write(patches=patches), "--output", "a.png")
             self.assertIn(unknown, text)
             lines.append((picture[:200, :200] == 255).all(axis=2).any(axis=1).sum())
-        self.assertIn("does not say how large voxels are: 1 mm was taken", text)
+        self.assertIn("has no voxel size: 1 mm is assumed", text)
         self.assertGreater(lines[1], 1.2 * lines[0])
 
     def test_types(self):
@@ -286,7 +286,7 @@ class TestNRRD(FormatTest):
 
     def test_units(self):
         for unit, length, words in (("um", 1e-3, "is um"), ("cm", 10, "is cm"), ("\u00b5m", 1e-3, "is um"),
-                                    ("\x1bell", 1, "is ?ell, which is unknown: 1 mm was taken for it")):
+                                    ("\x1bell", 1, "is ?ell, which is unknown: 1 mm is assumed")):
             path = self.write(space_units=f'"{unit}" "{unit}" "{unit}"')
             self.check(path, places=PLACES * length, words="unit of length " + words, by_itk=False)
             self.assert_volume(path, make_values(), PLACES * length, options=("--slab", 10 * length))
@@ -297,7 +297,7 @@ class TestNRRD(FormatTest):
         places = numpy.column_stack((numpy.eye(3), PLACES[:, 3]))
         for words in ("none none none", f"{first} none {last}", f"{first} (nan,nan,nan) {last}"):
             self.assert_volume(self.write(space_directions=words), make_values(), places,
-                               words="the file does not say how large voxels are: 1 mm was taken\n")
+                               words="the file has no voxel size: 1 mm is assumed\n")
         pictures = [self.draw(self.path("a.nrrd"), "--output", "a.png", *words)[0]
                     for words in ((), ("--no-marks",))]
         self.assertTrue((pictures[0] == pictures[1]).all())

@@ -82,7 +82,7 @@ class TestProgram(splatmip.SplatmipTest):
         """Options in groups, and three commands, of which each option is one that there is."""
         self.assertRegex(self.run_well("--version"), r"^splatmip \d+\.\d+\.\d+, VTK \d+\.\d+\.\d+\n$")
         options, examples = self.run_well("--help").split("Examples:")
-        for group in ("What is projected", "How values are shown", "From where", "What comes out"):
+        for group in ("Input", "Projection", "Colours", "View", "Output"):
             self.assertIn(f"\n{group}:\n", options)
         commands = [line.split() for line in examples.splitlines() if line.startswith("  splatmip")]
         self.assertEqual(len(commands), 3)
@@ -172,7 +172,7 @@ class TestOptions(splatmip.SplatmipTest):
             self.assertEqual(self.show(*words)[20:].max() > 100, is_shown, words)
         result = self.run_program(self.file, "--crop", "100,140,0,40,0,40")
         self.assertEqual(result.returncode, 1)
-        self.assertRegex(result.stderr, r"^splatmip: nothing of the volume.*\.\n$")
+        self.assertRegex(result.stderr, r"^splatmip: no part of the volume.*\.\n$")
 
     def test_kernel(self):
         """The kernel changes the picture of high, and a wider one is smoother."""

@@ -26,7 +26,7 @@
 
 namespace
 {
-/// The file of one of numbered pictures.
+/// Make the name of a numbered picture.
 std::string NumberName(const std::string& path, int n)
 {
   const std::filesystem::path name(path);
@@ -52,8 +52,8 @@ bool WritePNGs(vtkImageData* slices, const Palette& palette, const FilmSettings&
 
 #ifdef SPLATMIP_HAS_THEORA
 /**
- * Whether the pages of an Ogg file follow each other up to one that is marked as the last:
- * vtkOggTheoraWriter does not report that the disk is full.
+ * Return whether the pages of an Ogg file follow each other up to the last: vtkOggTheoraWriter does
+ * not report that the disk is full.
  */
 bool IsCompleteOgg(const std::string& path)
 {
@@ -118,7 +118,7 @@ struct SeriesFormat
 {
   const char* Name; // the ending
   bool (*Write)(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
-    const std::vector<std::string>& names); // nullptr if there is no
+    const std::vector<std::string>& names); // nullptr if this build has no
   const char* Library;
 };
 
