@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Interaction.h"
 
-#include "Comparison.h"
 #include "MIPScene.h"
 
 #include "vtkCommand.h"
@@ -13,7 +12,7 @@
 namespace
 {
 /**
- * The trackball, with keys for the modes in place of VTK's usual keys.
+ * Trackball with keys for the modes in place of VTK's usual keys.
  */
 class ModeKeys : public vtkInteractorStyleTrackballCamera
 {
@@ -23,14 +22,13 @@ public:
 
   void OnChar() override
   {
-    const std::string keys = "123psh";
-    const std::size_t key = keys.find(this->Interactor->GetKeyCode());
-    if (key != std::string::npos)
+    const char key = this->Interactor->GetKeyCode();
+    if (key >= '1' && key < '1' + static_cast<int>(ModeNames.size()))
     {
-      this->Scene->UseSplatting(static_cast<int>(key % 3));
+      this->Scene->UseSplatting(key - '1');
       this->Interactor->Render();
     }
-    else if (this->Interactor->GetKeyCode() == 'q')
+    else if (key == 'q')
     {
       this->Interactor->TerminateApp();
     }
@@ -50,8 +48,8 @@ private:
 vtkStandardNewMacro(ModeKeys);
 
 /**
- * After a frame that projected anew: say the mode and how long the volume took, and draw once more
- * for the label to be seen. That frame re-uses the projection, so there is no third.
+ * Shows the mode and its time after each frame that was projected anew. The window is rendered once
+ * more to show the label; that frame re-uses the projection, so there is no third.
  */
 class LabelUpdate : public vtkCommand
 {
@@ -89,7 +87,7 @@ void Interact(const Volume& volume, const LookSettings& look, const Options& opt
   vtkNew<vtkRenderWindowInteractor> interactor;
   interactor->SetRenderWindow(scene.GetWindow());
   interactor->SetInteractorStyle(keys);
-  scene.GetWindow()->SetWindowName("splatmip: 1 preview, 2 standard, 3 high, q quit");
+  scene.GetWindow()->SetWindowName("splatmip: 1 preview, 2 standard, 3 high, 4 exact, q quit");
   scene.GetWindow()->Render();
   interactor->Start();
   scene.GetWindow()->RemoveObserver(label);

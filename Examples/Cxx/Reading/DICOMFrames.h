@@ -7,6 +7,7 @@
 #include "Reading/SliceStack.h"
 
 #include "vtkDICOMReader.h"
+#include "vtkDICOMValue.h"
 #include "vtkImageData.h"
 #include "vtkSmartPointer.h"
 
@@ -16,17 +17,19 @@
 #include <vector>
 
 /**
- * A DICOM file of one or several frames. Each has a reader of its own, because one for all would
- * take the first one's pixels for those of all.
+ * A DICOM file of one or several frames. Each has a reader of its own, because a common one would
+ * use the pixel format of the first file for all.
  */
 struct DICOMFile
 {
   std::string Path;
   vtkSmartPointer<vtkDICOMReader> Reader;
-  int ScalarType;   // of the values, of which each pixel has so many
-  int Components;   //
+  int ScalarType;   // of the stored values
+  int Components;   // values of each pixel
   int Shift;        // bits of a pixel below the lowest of its code
-  double Thickness; // of its slices, mm, or 1
+  double Thickness; // of its slices, mm; 0 if it is unknown
+
+  vtkDICOMValue Get(vtkDICOMTag tag, int frame = 0) const;
 };
 
 struct DICOMFrame
@@ -34,36 +37,35 @@ struct DICOMFrame
   DICOMFile* File;
   int Number; // in the file
   SlicePlane Plane;
+
+  vtkDICOMValue Get(vtkDICOMTag tag) const { return this->File->Get(tag, this->Number); }
 };
 
-/**
- * The files of a series without copies of the same object, which notes tell of. Throws
- * std::runtime_error with one sentence, as do the others.
- */
-std::vector<std::unique_ptr<DICOMFile>> OpenFiles(const std::vector<std::string>& paths,
-  const QuietReading& quiet, std::vector<std::string>& notes);
+using DICOMFiles = std::vector<std::unique_ptr<DICOMFile>>;
 
 /**
- * All frames of the files, and where they lie.
+ * Open the files of a series, less copies of the same object, which notes name. Throws
+ * std::runtime_error with one sentence, as do the functions below.
  */
-std::vector<DICOMFrame> FindFrames(const std::vector<std::unique_ptr<DICOMFile>>& files);
+DICOMFiles OpenFiles(const std::vector<std::string>& paths, const QuietReading& quiet,
+  std::vector<std::string>& notes);
 
 /**
- * One of the frames at each place: all, or where each place has several, those that belong together
+ * Find all frames of the files, and where they lie.
+ */
+std::vector<DICOMFrame> FindFrames(const DICOMFiles& files);
+
+std::vector<SlicePlane> GetPlanes(const std::vector<DICOMFrame>& frames);
+
+/**
+ * Choose one of the frames at each place: where each place has several, those that belong together
  * by time, echo or the like, by their number from 1 on; 0 takes the first.
  */
 std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
   const std::vector<std::vector<std::size_t>>& places, int number, std::vector<std::string>& notes);
 
 /**
- * The window that all these frames want to be shown with, the first if they give several; what is
- * passed stays as it is if they differ or give none.
- */
-void FindWindow(const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& order,
-  double& window, double& level);
-
-/**
- * The values of a file's frames, in the unit that it gives.
+ * Read the stored values of a file's frames.
  */
 vtkImageData* ReadPixels(DICOMFile& file, const QuietReading& quiet);
 

@@ -6,12 +6,8 @@
 #include "Reading/DICOMFrames.h"
 #include "Reading/VolumeReader.h"
 
-#include <memory>
-#include <string>
-#include <vector>
-
 /**
- * Whether a file is a DICOM segmentation (SEG).
+ * Return whether a file is a DICOM segmentation (SEG).
  */
 bool IsSegmentation(const DICOMFile& file);
 
@@ -20,7 +16,6 @@ bool IsSegmentation(const DICOMFile& file);
  * alone if a label is given. Frames that the file leaves out are empty. Throws std::runtime_error
  * with one sentence.
  */
-Volume ReadSegments(
-  const std::vector<std::unique_ptr<DICOMFile>>& files, int label, const QuietReading& quiet);
+void ReadSegments(const DICOMFiles& files, int label, const QuietReading& quiet, Volume& volume);
 
 #endif

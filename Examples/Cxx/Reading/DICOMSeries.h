@@ -9,21 +9,21 @@
 #include <vector>
 
 /**
- * The files of one series: of a folder, what lies in its folders too, of a DICOMDIR, or of a file,
- * with those beside it. By its number from 1 on; 0 takes the file's own, or the one with most
- * bytes. Notes become a list of all series where there are more, and files those of all series.
- * Throws std::runtime_error with one sentence.
+ * Choose the files of one series of a folder and the folders in it, of a DICOMDIR, or of a file and
+ * those beside it: by its number from 1 on, or if that is 0 the file's own, or the largest. If
+ * there are several series, notes list them. Files become those of all series. Throws
+ * std::runtime_error with one sentence.
  */
 std::vector<std::string> ChooseSeries(const std::string& path, int number,
   const QuietReading& quiet, std::vector<std::string>& notes, std::vector<std::string>& files);
 
 /**
- * Why a file cannot be read that is DICOM in some wrapping, and what to do; else nothing.
+ * Explain why a wrapped DICOM file cannot be read, and what to do. Returns nothing for other files.
  */
 std::string ExplainFile(const std::string& path);
 
 /**
- * Whether a file looks like DICOM's, whatever its name is.
+ * Return whether a file is DICOM, by its content.
  */
 bool IsDICOMFile(const std::string& path);
 

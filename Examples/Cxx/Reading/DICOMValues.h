@@ -9,7 +9,7 @@
 #include <vector>
 
 /**
- * How the stored bits of a frame become values in the file's unit.
+ * Conversion of the stored bits of a frame to values in the file's unit.
  */
 struct ValueMap
 {
@@ -27,19 +27,19 @@ struct ValueMap
 };
 
 /**
- * Rescale slope and intercept, Modality LUT, dose grid scaling or real world values. Notes name
- * what is not applied. Padding is hidden always if its code is in the upper half, else if the
- * caller wants that.
+ * Find the conversion of a frame by rescale slope and intercept, Modality LUT, dose grid scaling or
+ * real world values. Notes name what is not applied. Padding is hidden if its code is in the upper
+ * half, or if the caller asks for that.
  */
 ValueMap FindValueMap(const DICOMFrame& frame, bool hidesPadding, std::vector<std::string>& notes);
 
 /**
- * The type that holds all values that are possible.
+ * Find the type that holds all possible values.
  */
 int FindScalarType(const std::vector<const DICOMFrame*>& frames, const std::vector<ValueMap>& maps);
 
 /**
- * Copy a frame of a file's pixels to a slice of values. Has the table of the last map, so that one
+ * Copies frames of pixels to slices of values. Keeps the table of the last conversion, so one
  * object should be used for many frames.
  */
 class SliceConverter

@@ -33,16 +33,6 @@ void KeepReport(const char*, const char* format, va_list values)
   std::vsnprintf(text, sizeof(text), format, values);
   Report = text;
 }
-
-[[noreturn]] void RefuseIncomplete(const std::string& path)
-{
-  std::replace_if(
-    Report.begin(), Report.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  Report.erase(Report.find_last_not_of(". ") + 1);
-  Refuse(path,
-    "damaged, incomplete or not TIFF" + (Report.empty() ? "" : " (" + Report + ")") +
-      "; check it, or export the volume again.");
-}
 }
 
 TIFFPages::TIFFPages(const std::string& path) : Path(path), File(nullptr, TIFFClose)
@@ -53,7 +43,7 @@ TIFFPages::TIFFPages(const std::string& path) : Path(path), File(nullptr, TIFFCl
   this->File.reset(TIFFOpen(path.c_str(), "r"));
   if (!this->File)
   {
-    RefuseIncomplete(path);
+    this->RefuseReported();
   }
   TIFF* const file = this->File.get();
   std::uint32_t page = 0;
@@ -70,8 +60,13 @@ TIFFPages::TIFFPages(const std::string& path) : Path(path), File(nullptr, TIFFCl
   } while (TIFFReadDirectory(file));
   if (!Report.empty() || this->Pages.empty())
   {
-    RefuseIncomplete(path);
+    this->RefuseReported();
   }
+}
+
+void TIFFPages::RefuseReported() const
+{
+  RefuseDamaged(this->Path, Report);
 }
 
 void TIFFPages::RefuseTag(const char* tag, double value, const std::string& advice) const
@@ -96,6 +91,11 @@ void TIFFPages::CheckType() const
   if (!TIFFIsCODECConfigured(compression))
   {
     this->RefuseTag("Compression", compression, asGray);
+  }
+  const auto planes = GetTag<std::uint16_t>(file, TIFFTAG_PLANARCONFIG);
+  if (planes != PLANARCONFIG_CONTIG && GetTag<std::uint16_t>(file, TIFFTAG_SAMPLESPERPIXEL) > 1)
+  {
+    this->RefuseTag("PlanarConfiguration", planes, "save the stack with interleaved samples");
   }
   const auto bits = GetTag<std::uint16_t>(file, TIFFTAG_BITSPERSAMPLE);
   const auto format = GetTag<std::uint16_t>(file, TIFFTAG_SAMPLEFORMAT);
@@ -126,7 +126,7 @@ void TIFFPages::CheckKind()
   const auto samples = GetTag<std::uint16_t>(file, TIFFTAG_SAMPLESPERPIXEL);
   if (width < 1 || height < 1 || samples < 1)
   {
-    RefuseIncomplete(this->Path);
+    this->RefuseReported();
   }
   if (this->Pages.empty())
   {
@@ -166,55 +166,38 @@ void TIFFPages::Read(int page, char* pixels)
 {
   if (!TIFFSetDirectory(this->File.get(), static_cast<tdir_t>(this->Pages[page])))
   {
-    RefuseIncomplete(this->Path);
+    this->RefuseReported();
   }
-  this->ReadBlocks(pixels);
-}
-
-void TIFFPages::ReadBlocks(char* pixels)
-{
   TIFF* const file = this->File.get();
   const bool isTiled = TIFFIsTiled(file) != 0; // else strips, which are tiles as wide as the page
   const auto width = isTiled ? GetTag<std::uint32_t>(file, TIFFTAG_TILEWIDTH) : this->Width;
   const auto height = isTiled
     ? GetTag<std::uint32_t>(file, TIFFTAG_TILELENGTH)
     : std::min(this->Height, GetTag<std::uint32_t>(file, TIFFTAG_ROWSPERSTRIP));
-  const bool isPlanar = GetTag<std::uint16_t>(file, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE;
-  const int planes = isPlanar ? this->Samples : 1;
-  const std::size_t sample = this->Bits / 8U, pixel = sample * this->Samples;
-  const std::size_t piece = isPlanar ? sample : pixel; // of a pixel, in a block
-  const std::size_t bytes = piece * width * height;
-  if (isTiled && TIFFTileSize(file) != static_cast<tmsize_t>(bytes))
+  const std::size_t pixel = this->Samples * this->Bits / 8U;
+  const std::size_t bytes = pixel * width * height;
+  if (bytes == 0 || (isTiled && TIFFTileSize(file) != static_cast<tmsize_t>(bytes)))
   {
-    RefuseIncomplete(this->Path);
+    this->RefuseReported();
   }
   std::vector<char> block(bytes);
-  for (int plane = 0; plane < planes && width > 0 && height > 0; ++plane)
+  for (std::uint32_t y = 0; y < this->Height; y += height)
   {
-    for (std::uint32_t y = 0; y < this->Height; y += height)
+    const std::uint32_t rows = std::min(height, this->Height - y);
+    for (std::uint32_t x = 0; x < this->Width; x += width)
     {
-      const std::uint32_t rows = std::min(height, this->Height - y);
-      for (std::uint32_t x = 0; x < this->Width; x += width)
+      const std::uint32_t columns = std::min(width, this->Width - x);
+      const auto found = isTiled ? TIFFReadTile(file, block.data(), x, y, 0, 0)
+                                 : TIFFReadEncodedStrip(file, TIFFComputeStrip(file, y, 0),
+                                     block.data(), static_cast<tmsize_t>(bytes));
+      if (found < static_cast<tmsize_t>(pixel * width * rows))
       {
-        const std::uint32_t columns = std::min(width, this->Width - x);
-        const auto sampleNumber = static_cast<std::uint16_t>(plane);
-        const auto found = isTiled
-          ? TIFFReadTile(file, block.data(), x, y, 0, sampleNumber)
-          : TIFFReadEncodedStrip(file, TIFFComputeStrip(file, y, sampleNumber), block.data(),
-              static_cast<tmsize_t>(bytes));
-        if (found < static_cast<tmsize_t>(piece * width * rows))
-        {
-          RefuseIncomplete(this->Path);
-        }
-        for (std::uint32_t row = 0; row < rows; ++row)
-        {
-          const char* from = block.data() + piece * width * row;
-          char* to = pixels + pixel * (std::size_t(y + row) * this->Width + x) + plane * sample;
-          for (std::uint32_t column = 0; column < columns; ++column, from += piece, to += pixel)
-          {
-            std::memcpy(to, from, piece);
-          }
-        }
+        this->RefuseReported();
+      }
+      for (std::uint32_t row = 0; row < rows; ++row)
+      {
+        std::memcpy(pixels + pixel * (std::size_t(y + row) * this->Width + x),
+          block.data() + pixel * width * row, pixel * columns);
       }
     }
   }
@@ -226,7 +209,7 @@ void TIFFPages::ReadBehind(int number, char* pixels)
   const auto* const offsets = GetTag<const std::uint64_t*>(file, TIFFTAG_STRIPOFFSETS);
   if (!offsets || GetTag<std::uint16_t>(file, TIFFTAG_COMPRESSION) != COMPRESSION_NONE)
   {
-    RefuseIncomplete(this->Path);
+    this->RefuseReported();
   }
   const std::size_t bytes = this->GetRowBytes() * this->Height;
   std::ifstream data(this->Path, std::ios::binary);
@@ -234,7 +217,7 @@ void TIFFPages::ReadBehind(int number, char* pixels)
   data.read(pixels, static_cast<std::streamsize>(bytes));
   if (!data)
   {
-    RefuseIncomplete(this->Path);
+    this->RefuseReported();
   }
   const std::size_t size = this->Bits / 8U;
   for (std::size_t i = 0; i < bytes && TIFFIsByteSwapped(file); i += size)

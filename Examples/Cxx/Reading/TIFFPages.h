@@ -12,7 +12,7 @@ struct tiff;
 
 /**
  * The pages of a TIFF file, which have the same size and type. Constructor and methods throw
- * std::runtime_error with one sentence, which names tag and value where a page is not supported.
+ * std::runtime_error with one sentence, with tag and value where a page is not supported.
  */
 class TIFFPages
 {
@@ -25,12 +25,12 @@ public:
   int GetComponents() const { return this->Samples; }
 
   /**
-   * The number of pages, less masks and reduced copies of others.
+   * Get the number of pages, less masks and reduced copies of others.
    */
   int GetCount() const { return static_cast<int>(this->Pages.size()); }
 
   /**
-   * The first page's description, and pixels per unit, or 0.
+   * Get the first page's description, and its pixels per unit, or 0.
    */
   const std::string& GetDescription() const { return this->Description; }
   const double* GetResolution() const { return this->Resolution; }
@@ -49,7 +49,7 @@ private:
   [[noreturn]] void RefuseTag(const char* tag, double value, const std::string& advice) const;
   void CheckType() const;
   void CheckKind();
-  void ReadBlocks(char* pixels);
+  [[noreturn]] void RefuseReported() const;
   std::size_t GetRowBytes() const { return this->Width * this->Samples * this->Bits / 8; }
 
   std::string Path;

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/TIFFVolume.h"
-
+#include "Reading/Formats.h"
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
 #include "Reading/TIFFPages.h"
@@ -11,33 +10,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <map>
+#include <set>
 #include <sstream>
 
 namespace
 {
+/// Damaged descriptions can have any numbers.
+constexpr int MostPages = 10'000'000;
+
 /**
- * What the pages are, as far as the description says.
+ * The pages by the description.
  */
 struct Layout
 {
   int Slices = 1;
   int Channels = 1;
   int Times = 1;
+  bool IsContiguous = false;       // pictures may follow each other behind one page
   std::vector<int> Pages;          // of (slice, channel, time), the slice changing fastest
   std::array<double, 3> Size = {}; // of a voxel, in the unit, or 0
   std::string Unit;
 };
 
 /**
- * The number of a page by those of slice, channel and time, which change in the order of the
+ * Find the number of a page by those of slice, channel and time, which change in the order of the
  * letters Z, C and T.
  */
-int FindPage(const Layout& layout, const std::string& order, int slice, int channel, int time)
+std::int64_t FindPage(
+  const Layout& layout, const std::string& order, int slice, int channel, int time)
 {
-  int page = 0;
-  int step = 1;
+  std::int64_t page = 0, step = 1;
   for (const char axis : order)
   {
     page += step * (axis == 'Z' ? slice : axis == 'C' ? channel : time);
@@ -47,13 +52,13 @@ int FindPage(const Layout& layout, const std::string& order, int slice, int chan
 }
 
 /**
- * Number all pages in an order; none if there are more than any file has.
+ * Number all pages in an order, unless there are too many. Returns whether it did.
  */
-void NumberPages(Layout& layout, const std::string& order)
+bool NumberPages(Layout& layout, const std::string& order)
 {
-  if (double(layout.Slices) * layout.Channels * layout.Times > 1e7)
+  if (double(layout.Slices) * layout.Channels * layout.Times > MostPages)
   {
-    return;
+    return false;
   }
   for (int time = 0; time < layout.Times; ++time)
   {
@@ -61,14 +66,23 @@ void NumberPages(Layout& layout, const std::string& order)
     {
       for (int slice = 0; slice < layout.Slices; ++slice)
       {
-        layout.Pages.push_back(FindPage(layout, order, slice, channel, time));
+        layout.Pages.push_back(static_cast<int>(FindPage(layout, order, slice, channel, time)));
       }
     }
   }
+  return true;
 }
 
 /**
- * Lines such as "slices=12"; channels change fastest, times slowest.
+ * Convert text to a whole number that can be multiplied and added.
+ */
+int ParseNumber(const std::string& text)
+{
+  return static_cast<int>(std::clamp(std::strtol(text.c_str(), nullptr, 10), -1L, long(MostPages)));
+}
+
+/**
+ * Parse lines such as "slices=12"; channels change fastest, times slowest.
  */
 Layout ParseImageJ(const TIFFPages& pages)
 {
@@ -83,13 +97,16 @@ Layout ParseImageJ(const TIFFPages& pages)
       fields.emplace(line.substr(0, end), line.substr(end + 1));
     }
   }
-  const auto count = [&](const char* name) { return std::max(1, std::atoi(fields[name].c_str())); };
+  const auto count = [&](const char* name) { return std::max(1, ParseNumber(fields[name])); };
   Layout layout;
+  layout.IsContiguous = true;
   layout.Channels = count("channels");
   layout.Times = count("frames");
   layout.Slices = fields.count("slices")
     ? count("slices")
-    : std::max(count("images"), pages.GetCount()) / (layout.Channels * layout.Times);
+    : std::max(1,
+        static_cast<int>(
+          std::max(count("images"), pages.GetCount()) / (double(layout.Channels) * layout.Times)));
   NumberPages(layout, "CZT");
   layout.Unit = fields["unit"] == "pixel" ? "" : fields["unit"];
   const double depth = std::atof(fields["spacing"].c_str());
@@ -101,16 +118,18 @@ Layout ParseImageJ(const TIFFPages& pages)
 int GetNumber(vtkXMLDataElement* element, const char* name, int usual)
 {
   const char* const text = element->GetAttribute(name);
-  return text ? std::atoi(text) : usual;
+  return text ? ParseNumber(text) : usual;
 }
 
 /**
- * Let elements TiffData say which pages the planes are.
+ * Assign pages to planes by elements TiffData. Returns whether one file has all.
  */
-void AssignPages(Layout& layout, vtkXMLDataElement* pixels, const std::string& order)
+bool AssignPages(Layout& layout, vtkXMLDataElement* pixels, const std::string& order)
 {
-  const int count = static_cast<int>(layout.Pages.size());
-  std::vector<int> pages(static_cast<std::size_t>(count), -1); // by the number in the order
+  const auto count = static_cast<int>(layout.Pages.size());
+  std::vector<int> pages(layout.Pages.size(), -1); // by the number in the order
+  std::set<std::string> files;
+  bool isAssigned = false;
   for (int n = 0; n < pixels->GetNumberOfNestedElements(); ++n)
   {
     vtkXMLDataElement* const data = pixels->GetNestedElement(n);
@@ -118,26 +137,28 @@ void AssignPages(Layout& layout, vtkXMLDataElement* pixels, const std::string& o
     {
       continue;
     }
-    const int first = FindPage(layout, order, GetNumber(data, "FirstZ", 0),
+    vtkXMLDataElement* const file = data->FindNestedElementWithName("UUID");
+    const char* const name = file ? file->GetAttribute("FileName") : nullptr;
+    files.insert(name ? name : "");
+    const std::int64_t first = FindPage(layout, order, GetNumber(data, "FirstZ", 0),
       GetNumber(data, "FirstC", 0), GetNumber(data, "FirstT", 0));
     const int page = GetNumber(data, "IFD", 0);
     const int planes = GetNumber(data, "PlaneCount", data->GetAttribute("IFD") ? 1 : count);
     for (int plane = 0; plane < planes && first >= 0 && first + plane < count; ++plane)
     {
       pages[static_cast<std::size_t>(first + plane)] = page + plane;
+      isAssigned = true;
     }
   }
-  if (std::any_of(pages.begin(), pages.end(), [](int page) { return page >= 0; }))
+  for (int& page : layout.Pages)
   {
-    for (int& page : layout.Pages)
-    {
-      page = pages[static_cast<std::size_t>(page)];
-    }
+    page = isAssigned ? pages[static_cast<std::size_t>(page)] : page;
   }
+  return files.size() < 2;
 }
 
 /**
- * The first image of OME's XML.
+ * Parse the first image of OME's XML.
  */
 Layout ParseOME(const TIFFPages& pages, const std::string& path)
 {
@@ -145,8 +166,10 @@ Layout ParseOME(const TIFFPages& pages, const std::string& path)
     vtkXMLUtilities::ReadElementFromString(pages.GetDescription().c_str()));
   vtkXMLDataElement* const image = root ? root->FindNestedElementWithName("Image") : nullptr;
   vtkXMLDataElement* const pixels = image ? image->FindNestedElementWithName("Pixels") : nullptr;
-  const char* const order = pixels ? pixels->GetAttribute("DimensionOrder") : nullptr;
-  if (!order || std::string(order).size() != 5)
+  const char* const text = pixels ? pixels->GetAttribute("DimensionOrder") : nullptr;
+  const std::string letters = text ? text : "", order = letters.substr(letters.find('Y') + 1);
+  const std::string axes = "ZCT";
+  if (!std::is_permutation(order.begin(), order.end(), axes.begin(), axes.end()))
   {
     Refuse(path, "its OME description is damaged; export the volume again.");
   }
@@ -154,8 +177,10 @@ Layout ParseOME(const TIFFPages& pages, const std::string& path)
   layout.Slices = std::max(1, GetNumber(pixels, "SizeZ", 1));
   layout.Channels = std::max(1, GetNumber(pixels, "SizeC", 1) / pages.GetComponents());
   layout.Times = std::max(1, GetNumber(pixels, "SizeT", 1));
-  NumberPages(layout, order + 2);
-  AssignPages(layout, pixels, order + 2);
+  if (NumberPages(layout, order) && !AssignPages(layout, pixels, order))
+  {
+    Refuse(path, "its planes are in several files, which is not supported; export one file.");
+  }
   const char* const names[3] = { "PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ" };
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -190,22 +215,14 @@ Layout FindLayout(const TIFFPages& pages, const std::string& path)
 
 void PlaceStack(Volume& volume, const Layout& layout)
 {
+  const auto& size = layout.Size;
   const bool isSized = !layout.Unit.empty() &&
-    std::all_of(layout.Size.begin(), layout.Size.end(),
+    std::all_of(size.begin(), size.end(),
       [](double length) { return length > 0.0 && std::isfinite(length); });
-  const auto size = isSized ? layout.Size : std::array<double, 3>{ 1.0, 1.0, 1.0 };
-  PlaceVolume(
-    volume, { { { size[0], 0.0, 0.0 }, { 0.0, size[1], 0.0 }, { 0.0, 0.0, size[2] } } }, {});
-  if (isSized)
-  {
-    ConvertToMillimeters(volume, layout.Unit);
-    volume.Notes.push_back(
-      "TIFF does not say how voxels lie: pages from the feet on, seen from the feet");
-    return;
-  }
-  volume.Notes.push_back("TIFF does not say how large voxels are and how they lie: cubes of 1 mm, "
-                         "pages from the feet on, seen from the feet");
-  volume.Caution = "voxel size unknown";
+  const Steps steps = { { { size[0], 0.0, 0.0 }, { 0.0, size[1], 0.0 }, { 0.0, 0.0, size[2] } } };
+  PlaceVolume(volume, isSized ? steps : Steps(), {}, isSized ? layout.Unit : "");
+  volume.Notes.push_back(
+    "the file has no orientation: the first page is at the feet, the first row in front");
 }
 }
 
@@ -213,7 +230,8 @@ Volume ReadTIFF(const std::string& path, const ReadSettings& settings, const Qui
 {
   TIFFPages pages(path);
   const Layout layout = FindLayout(pages, path);
-  const bool isBehind = pages.GetCount() == 1 && layout.Pages.size() > 1; // as ImageJ writes
+  const bool isBehind =
+    layout.IsContiguous && pages.GetCount() == 1 && layout.Pages.size() > 1; // as ImageJ writes
   const bool hasAll = std::all_of(layout.Pages.begin(), layout.Pages.end(),
     [&](int page) { return page >= 0 && (page < pages.GetCount() || isBehind); });
   if (layout.Pages.empty() || !hasAll)
