@@ -4,8 +4,8 @@
  * What a mode of projection is. Walks know the order in which slices are met and what can be left
  * out; kernels know weights and pointers; a SliceSampler says how slices become samples of pixels.
  *
- * There are six samplers, for parallel and perspective views: preview, worksheets and exact, and
- * one more for worksheets from chains. Each mode is a file of its own, for all types of voxels,
+ * There are five samplers: preview and worksheets, for parallel and perspective views, and one for
+ * worksheets from chains. Each mode is a file of its own, for all types of voxels,
  * which the others enter by ProjectionMode alone. Who adds a mode implements these two classes.
  */
 #ifndef splattingSliceSampler_h

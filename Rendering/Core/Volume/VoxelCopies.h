@@ -25,9 +25,6 @@ struct StridedVoxels
   std::ptrdiff_t stride = 1;
 };
 
-/// The type that holds averages of scalars of a type: its Accumulator.
-ScalarType averageType(ScalarType type);
-
 /// The voxels, one after the other, in their own type.
 void gather(const StridedVoxels& from, std::ptrdiff_t count, void* to);
 
