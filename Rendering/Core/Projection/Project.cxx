@@ -10,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <memory>
-#include <type_traits>
 #include <vector>
 
 namespace splatting
@@ -76,19 +75,12 @@ bool looksAtAll(const ProjectionSettings& settings, const VolumeIndex::Range& ra
     (settings.keepWinners && range.nonFinite);
 }
 
-/// The type of sums of voxels.
-ScalarType accumulatorOf(ScalarType voxels)
-{
-  return dispatch(voxels,
-    [](auto* null) { return scalarTypeOf<Accumulator<std::remove_pointer_t<decltype(null)>>>(); });
-}
-
 /// Allocates pixels: samples, or sums of worksheets.
 void openImage(const ProjectionSettings& settings, ScalarType voxels, ShearImage& image)
 {
   const bool samples = settings.quality == Quality::Preview && !computesWith(settings.reduction);
   const std::size_t pixels = std::size_t(image.width) * image.height;
-  image.type = samples ? voxels : accumulatorOf(voxels);
+  image.type = samples ? voxels : averageType(voxels);
   image.bytes.resize(pixels * sizeOf(image.type));
   image.winners.resize(settings.keepWinners ? pixels : 0);
 }

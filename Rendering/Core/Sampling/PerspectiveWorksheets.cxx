@@ -123,7 +123,7 @@ private:
           weights[count++] = shares[q] * *weight;
         }
       }
-      loops.raiseBlend(target.at(span.begin, v), rows, weights, count, span.end - span.begin);
+      loops.raiseBlend(rows, weights, count, target.at(span.begin, v), span.end - span.begin);
     }
   }
 

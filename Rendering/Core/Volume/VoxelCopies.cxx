@@ -138,12 +138,6 @@ void forRows(const ResampledAxis (&axes)[3], A* to, Body&& body)
 }
 }
 
-ScalarType averageType(ScalarType type)
-{
-  return dispatch(type,
-    [](auto* null) { return scalarTypeOf<Accumulator<std::remove_pointer_t<decltype(null)>>>(); });
-}
-
 void gather(const StridedVoxels& from, std::ptrdiff_t count, void* to)
 {
   dispatch(from.type,
