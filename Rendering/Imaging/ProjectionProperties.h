@@ -105,12 +105,12 @@ ProjectionSettings settingsOf(Object& object, int mode, const View& view, bool l
   {
     mode = Object::HIGH;
   }
-  if (mode == Object::EXACT && isOverview(view))
+  if (mode == Object::EXACT && minifiesAnyAxis(view))
   {
     // The field is nowhere larger than at a voxel, and pixels show areas. If pixels are wider than
     // voxels in all directions, one voxel per slice shows all of them.
     mode = Object::PREVIEW;
-    settings.meets = isCoarse(view) ? Meets::Nearest : Meets::All;
+    settings.meets = minifiesAllAxes(view) ? Meets::Nearest : Meets::All;
   }
   settings.quality = static_cast<Quality>(mode);
   switch (settings.reduction)
@@ -140,7 +140,7 @@ ProjectionSettings settingsOf(Object& object, int mode, const View& view, bool l
     case Reduction::Minimum:
       break;
   }
-  settings.keepWinners = locate && settings.reduction != Reduction::Mean;
+  settings.recordLocations = locate && settings.reduction != Reduction::Mean;
   if (mode == Object::HIGH && object.GetKernel() == Object::COSINE_BELL)
   {
     settings.kernel = { Reconstruction::CosineBell, object.GetKernelRadius() };

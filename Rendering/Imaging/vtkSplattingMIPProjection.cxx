@@ -212,7 +212,7 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection
     this->Cuts[n].intervals.find(this->Images[n], view.halfSpaces);
   }
   // The nearest of equal samples is located.
-  const bool ordered = splatting::isOrdered(settings.reduction) || settings.keepWinners;
+  const bool ordered = splatting::isOrdered(settings.reduction) || settings.recordLocations;
   if (haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts == this->CutsBefore &&
     this->Components.IsUpToDate(settings))
   {

@@ -92,7 +92,7 @@ bool ProjectedVolume::IsUpToDate(const View& view, const ProjectionSettings& set
   {
     return this->Cuts.AreKeptOnScreen(view) && this->Components.IsUpToDate(settings);
   }
-  const bool ordered = isOrdered(settings.reduction) || settings.keepWinners ||
+  const bool ordered = isOrdered(settings.reduction) || settings.recordLocations ||
     this->Source.AreDependent(); // of equal samples the nearest is located
   return haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts.AreKept() &&
     this->Components.IsUpToDate(settings);

@@ -23,7 +23,7 @@ public:
                                                  : this->splat<T>(context);
   }
   template <class T>
-  void takeAtWinners(const AtWinners&) const
+  void takeAtLocations(const AtWinners&) const
   {
   }
 

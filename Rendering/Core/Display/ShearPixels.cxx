@@ -146,7 +146,7 @@ void findShearPixels(const std::vector<ShearImage>& images,
           });
       }
     });
-  if (!geometries.empty() && geometries.front().isOverview())
+  if (!geometries.empty() && geometries.front().minifiesAnyAxis())
   {
     findAreaPixels(images, geometries, reduction == Reduction::Minimum, origin, size, out);
   }

@@ -50,12 +50,12 @@ namespace
 constexpr double Wide = 1.0 + 1e-6;
 }
 
-bool isOverview(const View& view)
+bool minifiesAnyAxis(const View& view)
 {
   return voxelsPerPixel(view).y > Wide;
 }
 
-bool isCoarse(const View& view)
+bool minifiesAllAxes(const View& view)
 {
   return voxelsPerPixel(view).x > Wide;
 }

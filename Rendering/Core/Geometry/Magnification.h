@@ -25,9 +25,9 @@ double largerStretch(double squares, double area);
 glm::dvec2 voxelsPerPixel(const View& view);
 
 /// Whether pixels are wider than voxels everywhere in the volume, in some direction ...
-bool isOverview(const View& view);
+bool minifiesAnyAxis(const View& view);
 /// ... or in all directions.
-bool isCoarse(const View& view);
+bool minifiesAllAxes(const View& view);
 }
 
 #endif

@@ -69,7 +69,7 @@ ShearWarp::ShearWarp(const View& view, Meets meets)
   }
   this->Size = view.dimensions;
   this->ShowsBoxes = view.showsBoxes;
-  this->Overview = splatting::isOverview(view);
+  this->Overview = splatting::minifiesAnyAxis(view);
   this->Met = meets;
   this->chooseAxes(direction);
   // Clip depth grows away from the viewer. Along the ray, in the direction of the principal axis:
@@ -92,7 +92,7 @@ bool ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images, Meet
   std::size_t count = 0;
   Rays rays;
   const bool valid = findRays(view, rays);
-  const bool overview = valid && splatting::isOverview(view);
+  const bool overview = valid && splatting::minifiesAnyAxis(view);
   for (int direction = 0; valid && direction < 6; ++direction)
   {
     images.resize(std::max(images.size(), count + 1));

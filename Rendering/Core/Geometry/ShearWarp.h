@@ -104,7 +104,7 @@ public:
   /// See View.
   bool showsBoxes() const { return this->ShowsBoxes; }
   /// Whether the view is an overview, in which pixels show their areas.
-  bool isOverview() const { return this->Overview; }
+  bool minifiesAnyAxis() const { return this->Overview; }
   int width() const { return this->ImageSize.x; }
   int height() const { return this->ImageSize.y; }
 

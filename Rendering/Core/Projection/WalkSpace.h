@@ -86,7 +86,7 @@ struct WalkSpace
   PerThread<RayScratch> rayBands;
   RayState rays;
   OutlineSpace outline;
-  std::vector<unsigned char> limits; ///< of all pixels, for WinnerWalk
+  std::vector<unsigned char> limits; ///< of all pixels, for LocationWalk
   std::vector<unsigned char> chunk;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sampling/PerspectiveFootprints.h"
-#include "Sampling/ValuesAtWinners.h"
+#include "Sampling/ValuesAtLocations.h"
 #include "Sampling/Worksheets.h"
 
 #include <algorithm>
@@ -227,7 +227,7 @@ public:
         context, this->Footprints, this->Reach, worksheetDepth(context.settings)));
   }
   template <class T>
-  void takeAtWinners(const AtWinners& winners) const
+  void takeAtLocations(const AtWinners& winners) const
   {
     fillAtWinners<T>(winners,
       [&](const PermutedVoxels<T>& voxels, int u, int v, int step)

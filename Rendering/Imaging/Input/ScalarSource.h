@@ -69,7 +69,7 @@ public:
   vtkDataArray* Scalars() const { return this->Examined.scalars; }
   /// Whether small cells of a rectilinear grid may be missing, because it was resampled to larger
   /// steps.
-  bool IsCoarse() const { return this->Layout.coarse; }
+  bool UsesLargerSteps() const { return this->Layout.coarse; }
   /// The number of projected components, 1 to 4.
   int Components() const { return this->NumberOfComponents; }
   /// Whether the components are the colour and opacity of one sample.

@@ -409,7 +409,7 @@ bool compareWithFunction(Checks& check, const splatting::View& view,
       isShown |= color != 0;
       check(color != 0 || !meets(shown, camera.eye, ray, -0.01), "a gap at ", x, ", ", y);
       const double value = (double(color) - 1.0) / 65535;
-      if (!splatting::isOverview(view))
+      if (!splatting::minifiesAnyAxis(view))
       {
         const double off = value - f.at(ray);
         check(color == 0 || std::abs(off) <= bound, "a seam: ", off, " at ", x, ", ", y,

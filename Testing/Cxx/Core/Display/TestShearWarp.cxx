@@ -305,8 +305,8 @@ void testWidths(Checks& check)
       check(width.x >= 1.0 / (zoom * most) - 1e-9 && width.y <= 1.0 / (zoom * least) + 1e-9 &&
           width.x <= width.y + 1e-9,
         "pixels are ", width.x, " to ", width.y, " voxels wide");
-      check(splatting::isOverview(view) == (width.y > 1.0 + 1e-6) &&
-          splatting::isCoarse(view) == (width.x > 1.0 + 1e-6),
+      check(splatting::minifiesAnyAxis(view) == (width.y > 1.0 + 1e-6) &&
+          splatting::minifiesAllAxes(view) == (width.x > 1.0 + 1e-6),
         "what an overview is");
       // Of cubes it is the same from everywhere.
       view.indexToClip = view.indexToClip * glm::scale(glm::dmat4(1.0), 1.0 / spacing);
@@ -319,7 +319,7 @@ void testWidths(Checks& check)
   inside.viewport = { 8, 8 };
   inside.indexToClip = glm::perspective(1.0, 1.0, 0.1, 100.0) *
     glm::lookAt(glm::dvec3(15.0), glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0));
-  check(!splatting::isOverview(inside), "from inside a volume there is no overview");
+  check(!splatting::minifiesAnyAxis(inside), "from inside a volume there is no overview");
 }
 }
 
