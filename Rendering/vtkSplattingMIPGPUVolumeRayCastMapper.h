@@ -55,6 +55,7 @@ namespace splatting
 {
 class VolumeStandIn;
 }
+VTK_ABI_NAMESPACE_BEGIN
 class vtkOpenGLSplattingMIPVolumeMapper;
 class vtkSplattingMIPVolumeMapper;
 
@@ -129,5 +130,6 @@ private:
   const char* LoggedReason; // what the log says last; "" before
   std::unique_ptr<splatting::VolumeStandIn> StandIn;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -8,10 +8,10 @@
 #include "ReportedProblems.h"
 #include "Scene/ProjectedVolume.h"
 #include "Scene/RayCastFallback.h"
+#include "Scene/SampleLocations.h"
 #include "Scene/Selection.h"
 #include "Scene/Validation.h"
 #include "Scene/ViewOfVolume.h"
-#include "Scene/SampleLocations.h"
 #include "TurnOfViews.h"
 
 #include "vtkCommand.h"
@@ -33,6 +33,7 @@
 
 using namespace splatting;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
 vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, Controller, vtkMultiProcessController);
 
@@ -611,3 +612,4 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ProjectionTime: " << this->GetProjectionTime() << "\n";
   os << indent << "InstructionSet: " << this->GetInstructionSet() << "\n";
 }
+VTK_ABI_NAMESPACE_END

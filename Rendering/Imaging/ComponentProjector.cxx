@@ -212,8 +212,8 @@ ProjectionSettings ComponentProjector::SettingsOf(
   const Channel& channel, ProjectionSettings settings) const
 {
   // Only the mapper's located component needs winners.
-  settings.recordLocations =
-    this->TakesAtLocations(settings) || (settings.recordLocations && &channel == &this->LocatedChannel());
+  settings.recordLocations = this->TakesAtLocations(settings) ||
+    (settings.recordLocations && &channel == &this->LocatedChannel());
   if (this->TakesAtLocations(settings) && settings.quality == Quality::Exact)
   {
     settings.quality = Quality::High; // takeAtLocations() takes averages

@@ -34,6 +34,7 @@
 
 using namespace splatting;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSplattingMIPProjection);
 vtkCxxSetObjectMacro(vtkSplattingMIPProjection, Camera, vtkCamera);
 
@@ -546,3 +547,4 @@ void vtkSplattingMIPProjection::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "IndexMemorySize: " << this->GetIndexMemorySize() << "\n";
   os << indent << "InstructionSet: " << this->GetInstructionSet() << "\n";
 }
+VTK_ABI_NAMESPACE_END

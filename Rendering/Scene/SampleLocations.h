@@ -14,15 +14,18 @@
 #include "Scene/ShownVolume.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
 
 #include <memory>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkImageData;
 class vtkRenderer;
 class vtkScalarsToColors;
 class vtkVolume;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

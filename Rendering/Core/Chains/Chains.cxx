@@ -4,7 +4,6 @@
 #include "Chains/LineWorksheets.h"
 #include "Common/Parallel.h"
 
-
 #include <memory>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include "Common/Parallel.h"
 #include "Display/Outline.h"
 
-
 #include <glm/common.hpp>
 
 #include <algorithm>

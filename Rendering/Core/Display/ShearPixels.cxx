@@ -7,7 +7,6 @@
 #include "Display/PixelArea.h"
 #include "Display/WarpSource.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <type_traits>

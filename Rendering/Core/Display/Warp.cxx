@@ -6,7 +6,6 @@
 #include "Display/AreaRows.h"
 #include "Display/WarpSource.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -6,7 +6,6 @@
 #include "Common/Parallel.h"
 #include "Sampling/ValuesAtLocations.h"
 
-
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 

@@ -5,7 +5,6 @@
 #include "Common/Parallel.h"
 #include "Volume/VoxelCopies.h"
 
-
 #include <glm/common.hpp>
 
 #include <algorithm>

@@ -104,8 +104,8 @@ struct ProjectionSettings
       this->meanHigh == other.meanHigh && this->kernel == other.kernel &&
       this->footprintSampling == other.footprintSampling &&
       this->instructionSet == other.instructionSet && this->acceleration == other.acceleration &&
-      this->lineTolerance == other.lineTolerance && this->recordLocations == other.recordLocations &&
-      this->floor == other.floor;
+      this->lineTolerance == other.lineTolerance &&
+      this->recordLocations == other.recordLocations && this->floor == other.floor;
   }
 };
 

@@ -90,7 +90,7 @@ public:
           }
           const Row row{ step, v, pixels, isCut ? scratch.mask.data() : present };
           this->Settings.recordLocations ? this->takeAndNote(row, samples, scratch)
-                                     : this->take(row, samples, scratch);
+                                         : this->take(row, samples, scratch);
         }
       });
   }

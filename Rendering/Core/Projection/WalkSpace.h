@@ -13,7 +13,6 @@
 #include "Projection/TileRuns.h"
 #include "Sampling/SliceSampler.h"
 
-
 #include <algorithm>
 #include <cstdint>
 #include <functional>

@@ -12,7 +12,6 @@
 #include "Sampling/SliceSampler.h"
 #include "Sampling/Worksheets.h"
 
-
 namespace splatting
 {
 /// Voxel (i, j, k) of a volume with axes permuted as in the shear image, for any memory layout.

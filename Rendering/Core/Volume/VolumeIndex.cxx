@@ -5,7 +5,6 @@
 #include "Common/Parallel.h"
 #include "Kernels/Kernels.h"
 
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>

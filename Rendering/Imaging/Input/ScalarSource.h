@@ -7,6 +7,7 @@
 #include "Volume/VoxelCopies.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
 #include "vtkWeakPointer.h"
 
@@ -15,9 +16,11 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataArray;
 class vtkDataSet;
 class vtkImageData;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

@@ -32,8 +32,9 @@ Projected projectAndCarry(const reference::Volume<T>& volume, const reference::V
   splatting::Projector projector;
   Projected result;
   projector.project(index, geometry, settings, cutsBy(geometry, {}, cropping), result.image);
-  projector.takeAtLocations({ other.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(other.size) },
-    geometry, settings, result.image, result.carried);
+  projector.takeAtLocations(
+    { other.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(other.size) }, geometry, settings,
+    result.image, result.carried);
   return result;
 }
 
