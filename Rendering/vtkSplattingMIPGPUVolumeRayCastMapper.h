@@ -48,6 +48,7 @@
 #include "vtkNew.h" // for the splatting mapper
 #include "vtkOpenGLGPUVolumeRayCastMapper.h"
 #include "vtkRenderingSplattingMIPModule.h" // for the export macro
+#include "vtkSplattingMIPNamespace.h"
 
 #include <memory> // for the stand-in
 
