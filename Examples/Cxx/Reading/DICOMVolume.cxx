@@ -1,10 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ProgressLine.h"
-#include "Reading/DICOMFrames.h"
-#include "Reading/DICOMSegments.h"
-#include "Reading/DICOMSeries.h"
-#include "Reading/DICOMValues.h"
+#include "Reading/DICOM.h"
 #include "Reading/Formats.h"
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"

@@ -7,7 +7,7 @@
 #include "Reading/Reading.h"
 #include "SplatmipAorta.h" // made from aorta-stent.vti by the build
 #ifdef SPLATMIP_HAS_DICOM
-#include "Reading/DICOMSeries.h"
+#include "Reading/DICOM.h"
 #endif
 
 #include "vtkDataArray.h"
