@@ -267,7 +267,8 @@ def use_for(volume: typing.Any, mode: str = "exact") -> typing.Any:
     mapper.SetCropping(old.GetCropping())
     mapper.SetCroppingRegionPlanes(old.GetCroppingRegionPlanes())
     mapper.SetCroppingRegionFlags(old.GetCroppingRegionFlags())
-    mapper.SetClippingPlanes(old.GetClippingPlanes())
+    if old.GetClippingPlanes():
+        mapper.SetClippingPlanes(old.GetClippingPlanes())
     mapper.SetQualityMode(_choice("mode", mode, _MODES))
     volume.SetMapper(mapper)
     return mapper

@@ -45,8 +45,9 @@ Threads& ownThreads()
   {
     Unnested() { this->SetNestedParallelism(false); }
   } threads;
-  // Each backend has a number of its own, and Initialize(n) sets that of the current backend.
-  static std::atomic<int> number{ 0 };
+  // Each backend has a number of its own. vtkSMPTools initialises that of the current backend only;
+  // Initialize(0) reads VTK_SMP_MAX_THREADS.
+  static std::atomic<int> number{ -1 };
   const int wanted = smp::vtkSMPToolsAPI::GetInstance().GetInternalDesiredNumberOfThread();
   if (number.exchange(wanted) != wanted)
   {
