@@ -107,10 +107,7 @@ ProjectionSettings settingsOf(Object& object, int mode, const View& view, bool l
   }
   if (mode == Object::EXACT && minifiesAnyAxis(view))
   {
-    // The field is nowhere larger than at a voxel, and pixels show areas. If pixels are wider than
-    // voxels in all directions, one voxel per slice shows all of them.
-    mode = Object::PREVIEW;
-    settings.meets = minifiesAllAxes(view) ? Meets::Nearest : Meets::All;
+    mode = Object::PREVIEW; // the field is nowhere larger than at a voxel, and pixels show areas
   }
   settings.quality = static_cast<Quality>(mode);
   switch (settings.reduction)

@@ -311,7 +311,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     splatting::PixelRays rays;
     const bool isValid = this->Components.UsesCells(settings)
       ? rays.find(view)
-      : splatting::ShearWarp::factorise(view, this->Images, settings.meets);
+      : splatting::ShearWarp::factorise(view, this->Images);
     if (!isValid)
     {
       return TurnOfViews::Degenerate;

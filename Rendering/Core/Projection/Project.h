@@ -90,9 +90,6 @@ struct ProjectionSettings
   /// Whether the image has winners: of equal samples the nearest to the viewer. Not for
   /// Reduction::Mean. Bricks then replace chains.
   bool recordLocations = false;
-  /// The voxels that rays of shear images select, for ShearWarp::factorise(). Not compared, because
-  /// images are.
-  Meets meets = Meets::All;
   /// Pixels are clamped to at least this value (in preview rounded down to the scalar type).
   double floor = -std::numeric_limits<double>::infinity();
 

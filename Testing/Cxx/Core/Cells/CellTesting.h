@@ -364,10 +364,10 @@ private:
       const glm::dvec3 side(n & 1, n >> 1 & 1, n >> 2 & 1);
       const double size = Beside<T> * sizes[n >> 3];
       const reference::CellRay<R> ray = this->Oracle.ray(x, y, size * (2.0 * side - 1.0));
-      const bool minifiesAllAxes = n >> 3 == 1 || n >> 3 == 5;
+      const bool isCoarse = n >> 3 == 1 || n >> 3 == 5;
       const Sample sample = !this->crosses(ray, x, y, screen)
         ? Sample()
-        : this->expected(minifiesAllAxes ? this->Coarse : this->Oracle, ray);
+        : this->expected(isCoarse ? this->Coarse : this->Oracle, ray);
       none |= !sample.exists;
       least = sample.exists ? std::min(least, sample.value) : least;
       largest = sample.exists ? std::max(largest, sample.value) : largest;
