@@ -5,8 +5,12 @@
 
 #include "Projection/Project.h"
 
+#include "vtkSplattingMIPNamespace.h"
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkSplattingMIPVolumeMapper;
 class vtkVolumeProperty;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

@@ -3,13 +3,16 @@
 #ifndef ReportedProblems_h
 #define ReportedProblems_h
 
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkWeakPointer.h"
 
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkRenderer;
 class vtkVolume;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

@@ -10,6 +10,7 @@
 
 using namespace splatting;
 
+VTK_ABI_NAMESPACE_BEGIN
 //------------------------------------------------------------------------------
 vtkCxxSetObjectMacro(vtkAbstractSplattingMIPVolumeMapper, MaskInput, vtkImageData);
 vtkCxxSetObjectMacro(vtkAbstractSplattingMIPVolumeMapper, BoundingSurface, vtkPolyData);
@@ -102,3 +103,4 @@ void vtkAbstractSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent inden
   os << indent << "BoundingSurface: " << this->BoundingSurface << "\n";
   os << indent << "DepthCodingColors: " << this->DepthCodingColors << "\n";
 }
+VTK_ABI_NAMESPACE_END

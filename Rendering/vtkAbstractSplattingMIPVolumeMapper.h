@@ -19,8 +19,10 @@
 
 #include "vtkRenderingSplattingMIPModule.h" // for the export macro
 #include "vtkSplattingMIPChoices.h"         // for the enumerations
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkVolumeMapper.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkImageData;
 class vtkPolyData;
 class vtkScalarsToColors;
@@ -399,5 +401,6 @@ private:
   vtkAbstractSplattingMIPVolumeMapper(const vtkAbstractSplattingMIPVolumeMapper&) = delete;
   void operator=(const vtkAbstractSplattingMIPVolumeMapper&) = delete;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

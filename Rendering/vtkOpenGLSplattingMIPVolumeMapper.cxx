@@ -24,6 +24,7 @@
 #include <cstdint>
 #include <cstring>
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkOpenGLSplattingMIPVolumeMapper);
 
 namespace
@@ -362,3 +363,4 @@ void vtkOpenGLSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Texture: " << this->Texture->GetWidth() << " x " << this->Texture->GetHeight()
      << "\n";
 }
+VTK_ABI_NAMESPACE_END

@@ -22,6 +22,7 @@
 
 #include <memory> // for the quad
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkOpenGLFramebufferObject;
 class vtkOpenGLQuadHelper;
 class vtkTextureObject;
@@ -56,5 +57,6 @@ private:
   vtkNew<vtkOpenGLFramebufferObject> TextureBuffer; // to copy from the texture
   std::unique_ptr<vtkOpenGLQuadHelper> DepthQuad;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -24,6 +24,7 @@
 
 using namespace splatting;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSplattingMIPGPUVolumeRayCastMapper);
 
 namespace
@@ -295,3 +296,4 @@ void vtkSplattingMIPGPUVolumeRayCastMapper::PrintSelf(ostream& os, vtkIndent ind
   os << indent << "SplattingMapper:\n";
   this->SplattingMapper->PrintSelf(os, indent.GetNextIndent());
 }
+VTK_ABI_NAMESPACE_END

@@ -48,6 +48,7 @@
 #include "vtkNew.h" // for the splatting mapper
 #include "vtkOpenGLGPUVolumeRayCastMapper.h"
 #include "vtkRenderingSplattingMIPModule.h" // for the export macro
+#include "vtkSplattingMIPNamespace.h"
 
 #include <memory> // for the stand-in
 
@@ -55,6 +56,7 @@ namespace splatting
 {
 class VolumeStandIn;
 }
+VTK_ABI_NAMESPACE_BEGIN
 class vtkOpenGLSplattingMIPVolumeMapper;
 class vtkSplattingMIPVolumeMapper;
 
@@ -129,5 +131,6 @@ private:
   const char* LoggedReason; // what the log says last; "" before
   std::unique_ptr<splatting::VolumeStandIn> StandIn;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -8,10 +8,10 @@
 #include "ReportedProblems.h"
 #include "Scene/ProjectedVolume.h"
 #include "Scene/RayCastFallback.h"
+#include "Scene/SampleLocations.h"
 #include "Scene/Selection.h"
 #include "Scene/Validation.h"
 #include "Scene/ViewOfVolume.h"
-#include "Scene/WinnerLocations.h"
 #include "TurnOfViews.h"
 
 #include "vtkCommand.h"
@@ -33,6 +33,7 @@
 
 using namespace splatting;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkObjectFactoryNewMacro(vtkSplattingMIPVolumeMapper);
 vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, Controller, vtkMultiProcessController);
 
@@ -92,7 +93,7 @@ public:
 
   FrameObserver Observer; // for several ranks
   ProjectedVolume Data;
-  WinnerLocations Locations{ Data.Source, Data.Components, Data.Cuts, Data.Images };
+  SampleLocations Locations{ Data.Source, Data.Components, Data.Cuts, Data.Images };
   splatting::Picture Picture;
   double Shear[2] = { 0.0, 0.0 };
 
@@ -319,7 +320,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return TurnOfViews::Degenerate;
   }
-  if (data.Source.IsCoarse() && in.Warned.insert("coarse").second)
+  if (data.Source.UsesLargerSteps() && in.Warned.insert("coarse").second)
   {
     vtkWarningMacro(<< "The rectilinear grid is resampled to larger steps than its least, which is "
                        "too small for that: small cells may be lost. Extract a part of it.");
@@ -493,7 +494,7 @@ vtkImageData* vtkSplattingMIPVolumeMapper::GetLocations()
 //------------------------------------------------------------------------------
 bool vtkSplattingMIPVolumeMapper::PickWorldPosition(int x, int y, double position[3])
 {
-  WinnerLocations::Sample sample;
+  SampleLocations::Sample sample;
   if (!this->Internal->Locations.Pick(x, y, sample))
   {
     return false;
@@ -505,7 +506,7 @@ bool vtkSplattingMIPVolumeMapper::PickWorldPosition(int x, int y, double positio
 //------------------------------------------------------------------------------
 bool vtkSplattingMIPVolumeMapper::PickVoxel(int x, int y, int ijk[3])
 {
-  WinnerLocations::Sample sample;
+  SampleLocations::Sample sample;
   if (!this->Internal->Locations.Pick(x, y, sample))
   {
     return false;
@@ -517,7 +518,7 @@ bool vtkSplattingMIPVolumeMapper::PickVoxel(int x, int y, int ijk[3])
 //------------------------------------------------------------------------------
 double vtkSplattingMIPVolumeMapper::PickValue(int x, int y)
 {
-  WinnerLocations::Sample sample;
+  SampleLocations::Sample sample;
   return this->Internal->Locations.Pick(x, y, sample) ? sample.value
                                                       : std::numeric_limits<double>::quiet_NaN();
 }
@@ -611,3 +612,4 @@ void vtkSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ProjectionTime: " << this->GetProjectionTime() << "\n";
   os << indent << "InstructionSet: " << this->GetInstructionSet() << "\n";
 }
+VTK_ABI_NAMESPACE_END

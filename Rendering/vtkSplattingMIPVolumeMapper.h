@@ -53,6 +53,7 @@
 
 #include <memory> // for the hidden implementation
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkImageData;
 class vtkMultiProcessController;
 
@@ -249,5 +250,6 @@ private:
   class Internals;
   std::unique_ptr<Internals> Internal;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -2,95 +2,68 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Interaction.h"
 
-#include "Comparison.h"
 #include "MIPScene.h"
 
 #include "vtkCommand.h"
 #include "vtkInteractorStyleTrackballCamera.h"
-#include "vtkObjectFactory.h"
 #include "vtkRenderWindowInteractor.h"
 
 namespace
 {
-/**
- * The trackball, with keys for the modes in place of VTK's usual keys.
- */
-class ModeKeys : public vtkInteractorStyleTrackballCamera
+struct Session
 {
-public:
-  static ModeKeys* New();
-  vtkTypeMacro(ModeKeys, vtkInteractorStyleTrackballCamera);
+  MIPScene Scene;
+  vtkNew<vtkRenderWindowInteractor> Interactor;
+  vtkIdType NumberOfProjections = 0;
 
-  void OnChar() override
+  /**
+   * Switch the mode or quit. VTK's usual keys are disabled, because the style has an observer.
+   */
+  void OnChar(vtkObject*, unsigned long, void*)
   {
-    const std::string keys = "123psh";
-    const std::size_t key = keys.find(this->Interactor->GetKeyCode());
-    if (key != std::string::npos)
+    const char key = this->Interactor->GetKeyCode();
+    if (key >= '1' && key < '1' + static_cast<int>(ModeNames.size()))
     {
-      this->Scene->UseSplatting(static_cast<int>(key % 3));
+      this->Scene.UseSplatting(key - '1');
       this->Interactor->Render();
     }
-    else if (this->Interactor->GetKeyCode() == 'q')
+    else if (key == 'q')
     {
       this->Interactor->TerminateApp();
     }
   }
 
-  MIPScene* Scene = nullptr;
-
-protected:
-  ModeKeys() = default;
-  ~ModeKeys() override = default;
-
-private:
-  ModeKeys(const ModeKeys&) = delete;
-  void operator=(const ModeKeys&) = delete;
-};
-
-vtkStandardNewMacro(ModeKeys);
-
-/**
- * After a frame that projected anew: say the mode and how long the volume took, and draw once more
- * for the label to be seen. That frame re-uses the projection, so there is no third.
- */
-class LabelUpdate : public vtkCommand
-{
-public:
-  static LabelUpdate* New() { return new LabelUpdate; }
-
-  void Execute(vtkObject*, unsigned long, void*) override
+  /**
+   * Show the mode and its time after each frame that was projected anew. The window is rendered
+   * once more to show the label; that frame re-uses the projection, so there is no third.
+   */
+  void UpdateLabel(vtkObject*, unsigned long, void*)
   {
-    vtkSplattingMIPVolumeMapper* mapper = this->Scene->GetSplatting();
+    vtkSplattingMIPVolumeMapper* const mapper = this->Scene.GetSplatting();
     if (mapper->GetNumberOfProjections() != this->NumberOfProjections)
     {
       this->NumberOfProjections = mapper->GetNumberOfProjections();
-      this->Scene->SetLabel(
+      this->Scene.SetLabel(
         ModeNames[mapper->GetQualityMode()] + "  " + FormatTime(1000.0 * mapper->GetTimeToDraw()));
-      this->Scene->GetWindow()->Render();
+      this->Scene.GetWindow()->Render();
     }
   }
-
-  MIPScene* Scene = nullptr;
-  vtkIdType NumberOfProjections = 0;
 };
 }
 
 void Interact(const Volume& volume, const LookSettings& look, const Options& options)
 {
-  MIPScene scene(volume, options.Projection, look, options.View, false);
-  scene.UseSplatting(options.Modes.front());
-  scene.GetSplatting()->SetDepthCoding(options.DepthCoding);
-  vtkNew<LabelUpdate> label;
-  label->Scene = &scene;
-  scene.GetWindow()->AddObserver(vtkCommand::EndEvent, label);
-
-  vtkNew<ModeKeys> keys;
-  keys->Scene = &scene;
-  vtkNew<vtkRenderWindowInteractor> interactor;
-  interactor->SetRenderWindow(scene.GetWindow());
-  interactor->SetInteractorStyle(keys);
-  scene.GetWindow()->SetWindowName("splatmip: 1 preview, 2 standard, 3 high, q quit");
-  scene.GetWindow()->Render();
-  interactor->Start();
-  scene.GetWindow()->RemoveObserver(label);
+  Session session{ { volume, options.Projection, look, options.View, false }, {}, 0 };
+  session.Scene.UseSplatting(options.Modes.front());
+  session.Scene.GetSplatting()->SetDepthCoding(options.DepthCoding);
+  vtkRenderWindow* const window = session.Scene.GetWindow();
+  const auto label = window->AddObserver(vtkCommand::EndEvent, &session, &Session::UpdateLabel);
+  vtkNew<vtkInteractorStyleTrackballCamera> style;
+  style->AddObserver(vtkCommand::CharEvent, &session, &Session::OnChar);
+  session.Interactor->SetRenderWindow(window);
+  session.Interactor->SetInteractorStyle(style);
+  window->SetWindowName("splatmip: 1 preview, 2 standard, 3 high, 4 exact, q quit");
+  window->Render();
+  session.Interactor->Start();
+  window->RemoveObserver(label);
 }

@@ -7,7 +7,7 @@
 #include "Reading/VolumeReader.h"
 
 /**
- * Shows a volume in a window until the user closes it.
+ * Show a volume in a window until the user closes it.
  */
 void Interact(const Volume& volume, const LookSettings& look, const Options& options);
 

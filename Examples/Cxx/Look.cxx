@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Look.h"
 
+#include "Reading/Reading.h"
+
 #include "vtkDataArray.h"
 #include "vtkPointData.h"
 #include "vtkSplattingMIPProjection.h"
@@ -48,11 +50,11 @@ const NamedColormap& FindColormap(const std::string& name)
   throw std::runtime_error("there is no colormap " + name + "; see splatmip --help.");
 }
 
-/// Voxels that tell what a volume looks like.
+/// Number of samples from which the window is chosen.
 constexpr vtkIdType FewVoxels = 1000000;
 
 /**
- * The finite ones of so many values, or somewhat more, evenly spread over the volume.
+ * Sample about so many values, evenly spread over the volume. Returns the finite ones.
  */
 std::vector<double> SampleValues(vtkDataArray* scalars, vtkIdType voxels)
 {
@@ -107,12 +109,7 @@ Palette MakePalette(const LookSettings& look)
 
 std::vector<std::string> GetColormapNames()
 {
-  std::vector<std::string> names;
-  for (const NamedColormap& map : GetColormaps())
-  {
-    names.push_back(map.Name);
-  }
-  return names;
+  return ListNames(GetColormaps());
 }
 
 void ChooseWindowLevel(vtkImageData* image, int blendMode, double& window, double& level)
@@ -123,12 +120,11 @@ void ChooseWindowLevel(vtkImageData* image, int blendMode, double& window, doubl
   std::vector<double> values = SampleValues(scalars, FewVoxels);
   if (values.empty())
   {
-    values = SampleValues(scalars, scalars->GetNumberOfTuples()); // few are numbers
+    values = SampleValues(scalars, scalars->GetNumberOfTuples()); // most are not finite
   }
   if (values.empty())
   {
-    throw std::runtime_error(
-      "the volume has no finite value, so that there is nothing to show; see what wrote it.");
+    throw std::runtime_error("the volume has no finite value; export it again.");
   }
   const bool isMinimum = blendMode == vtkSplattingMIPProjection::MINIMUM_INTENSITY_BLEND;
   const bool isMean = blendMode == vtkSplattingMIPProjection::AVERAGE_INTENSITY_BLEND;

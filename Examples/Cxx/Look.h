@@ -12,7 +12,7 @@
 #include <vector>
 
 /**
- * How values become colours: Window wide around Level, in Colormap.
+ * Mapping from values to colours: a window around a level, and a colormap.
  */
 struct LookSettings
 {
@@ -22,26 +22,27 @@ struct LookSettings
 };
 
 /**
- * The names that LookSettings::Colormap may have.
+ * List the names of the colormaps.
  */
 std::vector<std::string> GetColormapNames();
 
 /**
- * The colours of values.
+ * Make the colours of values.
  */
 vtkSmartPointer<vtkColorTransferFunction> MakeColors(const LookSettings& look);
 
 /**
- * The same for values that are bytes: 0 for the low end of the window, 255 for the high one.
+ * Colours of bytes: 0 is the low end of the window, 255 the high one.
  */
 using Palette = std::array<std::array<unsigned char, 3>, 256>;
 Palette MakePalette(const LookSettings& look);
 
 /**
- * Of maxima black at the median value, white at the value that one voxel in 2000 exceeds: the
- * maximum of a ray is seldom below the one, and a few outliers do not decide the other. Of minima
- * the other way round, of means what lies between a twentieth of the voxels and another. The whole
- * range where these two are equal. Throws a sentence if no value is finite.
+ * Choose a window from the values. For maxima, black is the median value and white the value that
+ * one voxel in 2000 exceeds: few rays have a maximum below the median, and a few outliers do not
+ * determine white. For minima it is the reverse. For means it is the range without the lowest and
+ * the highest twentieth of the voxels. If these limits are equal, it is the whole range. Throws
+ * std::runtime_error if no value is finite.
  */
 void ChooseWindowLevel(vtkImageData* image, int blendMode, double& window, double& level);
 

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -29,15 +30,16 @@ void SetColors(vtkVolumeProperty* property, const LookSettings& look)
 
 void CheckDisplay()
 {
-  // Newer VTKs would tell in their own way that there is no display.
+  // Newer versions of VTK would print a warning of their own.
   vtkObject::GlobalWarningDisplayOff();
   vtkNew<vtkRenderWindow> window;
   vtkObject::GlobalWarningDisplayOn();
   const char* display = std::getenv("DISPLAY");
   if (window->IsA("vtkXOpenGLRenderWindow") && (!display || !*display))
   {
-    throw std::runtime_error("there is no display for a window (DISPLAY is not set); run it on a "
-                             "desktop, or as xvfb-run -a splatmip.");
+    throw std::runtime_error(
+      "there is no display (DISPLAY is not set); run splatmip on a desktop, or "
+      "by xvfb-run -a.");
   }
 }
 
@@ -144,4 +146,11 @@ double MIPScene::MeasureFrame(const std::string& what)
 void MIPScene::SetLabel(const std::string& label)
 {
   this->Label->SetInput(label.c_str());
+}
+
+std::string FormatTime(double milliseconds)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), milliseconds < 100 ? "%.1f ms" : "%.0f ms", milliseconds);
+  return text;
 }

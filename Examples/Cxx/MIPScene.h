@@ -4,7 +4,7 @@
 #define MIPScene_h
 
 #include "Look.h"
-#include "ProjectionSettings.h"
+#include "Projector.h"
 #include "Reading/VolumeReader.h"
 #include "View.h"
 
@@ -20,12 +20,12 @@
 #include <string>
 
 /**
- * Throws a sentence where a window cannot be opened; X would end the program.
+ * Throw std::runtime_error if no window can be opened; X would end the program.
  */
 void CheckDisplay();
 
 /**
- * One volume in one window under a parallel camera, drawn by either mapper.
+ * One volume in one window, drawn by either mapper.
  */
 class MIPScene
 {
@@ -37,20 +37,20 @@ public:
   vtkSplattingMIPVolumeMapper* GetSplatting() { return this->Splatting; }
 
   /**
-   * Draw with vtkSplattingMIPVolumeMapper in one of its QualityModes, ...
+   * Use vtkSplattingMIPVolumeMapper in one of its QualityModes.
    */
   void UseSplatting(int qualityMode);
 
   /**
-   * ... or with vtkFixedPointVolumeRayCastMapper, one sample per voxel, the value between the
-   * voxels by VTK_NEAREST_INTERPOLATION or VTK_LINEAR_INTERPOLATION.
+   * Use vtkFixedPointVolumeRayCastMapper with one sample per voxel, interpolated by
+   * VTK_NEAREST_INTERPOLATION or VTK_LINEAR_INTERPOLATION.
    */
   void UseRayCasting(int interpolation);
 
   /**
-   * The median time of a whole frame in milliseconds: NumberOfTimedFrames calls of Render() after
-   * one that warms up, each seen from one degree further, because nothing need be done again for an
-   * unchanged view. What says in the progress line what is measured.
+   * Measure the median time of a whole frame in milliseconds. Calls Render() once to warm up, then
+   * NumberOfTimedFrames times, each view turned by one degree, because an unchanged view is not
+   * projected again. The text names the measurement in the progress line.
    */
   double MeasureFrame(const std::string& what);
   static const int NumberOfTimedFrames = 7;
@@ -69,5 +69,10 @@ private:
   vtkNew<vtkRenderer> Renderer;
   vtkNew<vtkRenderWindow> Window;
 };
+
+/**
+ * Format milliseconds with as many digits as are significant.
+ */
+std::string FormatTime(double milliseconds);
 
 #endif

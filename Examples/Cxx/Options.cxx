@@ -15,7 +15,6 @@
 #include <filesystem>
 #include <memory>
 #include <sstream>
-#include <tuple>
 #include <utility>
 
 const std::vector<std::string> ModeNames = { "preview", "standard", "high", "exact" };
@@ -23,7 +22,7 @@ const std::vector<std::string> ModeNames = { "preview", "standard", "high", "exa
 namespace
 {
 /**
- * What the command line says in words.
+ * Options that are words.
  */
 struct Words
 {
@@ -37,23 +36,15 @@ struct Words
 };
 
 /// Azimuth and elevation of --view.
-const std::vector<std::pair<std::string, std::pair<double, double>>> Sides = {
-  { "anterior", { 0, 0 } }, { "posterior", { 180, 0 } }, { "left", { 90, 0 } },
-  { "right", { -90, 0 } }, { "superior", { 0, 90 } }, { "inferior", { 0, -90 } }
-};
-
-std::vector<std::string> GetSides()
+const struct
 {
-  std::vector<std::string> names;
-  for (const auto& side : Sides)
-  {
-    names.push_back(side.first);
-  }
-  return names;
-}
+  const char* Name;
+  double Azimuth, Elevation;
+} Sides[] = { { "anterior", 0, 0 }, { "posterior", 180, 0 }, { "left", 90, 0 }, { "right", -90, 0 },
+  { "superior", 0, 90 }, { "inferior", 0, -90 } };
 
 /**
- * What CLI11 asks of a check: nothing if the text is fine, else what is wrong with it.
+ * Check a size. CLI11's checks return what is wrong with a text, or nothing.
  */
 std::string CheckSize(const std::string& text)
 {
@@ -62,7 +53,7 @@ std::string CheckSize(const std::string& text)
   const int found = std::sscanf(text.c_str(), "%5dx%5d%c", &width, &height, &rest);
   return found == 2 && width >= 16 && height >= 16 && width <= 8192 && height <= 8192
     ? ""
-    : "not a size such as 400x600, each between 16 and 8192";
+    : "not a size such as 400x600, from 16x16 to 8192x8192";
 }
 
 std::string CheckComponentWord(const std::string& text)
@@ -75,17 +66,8 @@ std::string CheckComponentWord(const std::string& text)
     : "not a number from 1 on, luminance or magnitude";
 }
 
-std::string CheckLabel(const std::string& text)
-{
-  int label = 0;
-  char rest = 0;
-  return std::sscanf(text.c_str(), "%9d%c", &label, &rest) == 1 && label != 0
-    ? ""
-    : "not a whole number other than 0";
-}
-
 /**
- * A check for finite numbers in a range; CLI11's own lets NaN pass.
+ * Make a check for finite numbers in a range. NaN passes CLI11's own check.
  */
 CLI::Validator Between(double low, double high)
 {
@@ -101,7 +83,7 @@ CLI::Validator Between(double low, double high)
 }
 
 /**
- * A heading in --help, and what is declared under it.
+ * A group of options in --help.
  */
 class Group
 {
@@ -139,29 +121,27 @@ void DeclareVolumeOptions(CLI::App& app, Options& options)
   app
     .add_option("file", options.Input,
       "A " + JoinWords(GetVolumeEndings()) +
-        " file, or a DICOM file, a DICOMDIR or a folder with DICOM files; without it, a built-in "
-        "CT "
-        "of a stented aorta")
+        " file, a DICOM file, a DICOMDIR or a folder with DICOM files. Default: a built-in CT of a "
+        "stented aorta")
     ->type_name("FILE");
-  Group group(app, "Which volume");
+  Group group(app, "Input");
   group.Add("--series", options.Read.Series, "NUMBER", Between(1, 99999),
-    "Of several DICOM series, as their list counts them; default: the largest, or that of the "
+    "Number of a DICOM series in the list that is printed. Default: the largest, or that of the "
     "file");
   group.Add("--frame", options.Read.Frame, "NUMBER", Between(1, 99999),
-    "Of several volumes at the same place, such as times or echoes; default: the first");
+    "Number of a volume of several at the same place, such as times or echoes. Default: the first");
   group.Add("--channel", options.Read.Channel, "NUMBER", Between(1, 99999),
-    "Of several channels of a TIFF stack by ImageJ or OME; default: the first");
+    "Number of a channel of a TIFF stack by ImageJ or OME. Default: the first");
   group.Add("--array", options.Read.Array, "NAME", CLI::Validator(),
-    "Of several arrays of a VTK file; default: the active one, or the first");
+    "Name of an array of a VTK file. Default: the active one, or the first");
   group.Add("--component", options.Read.Component, "NUMBER", CLI::Validator(CheckComponentWord, ""),
-    "Of several values in each voxel, such as red, green and blue; or luminance, of these three, "
-    "or "
-    "magnitude, of a vector; default: the first");
+    "Number of a value of several in each voxel; or luminance, for red, green and blue; or "
+    "magnitude, for vectors. Default: the first");
 }
 
 void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
 {
-  Group group(app, "What is projected");
+  Group group(app, "Projection");
   group.AddChoice("--mode", words.Mode, "MODE", { "preview", "standard", "high", "exact", "all" },
     "Quality mode, or all of them side by side (stills only)");
   group.AddChoice("--kernel", words.Kernel, "KERNEL", { "trilinear", "cosine-bell" },
@@ -171,91 +151,92 @@ void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
       "Radius of the cosine bell in voxels, 0.5 to 1.5")
     ->capture_default_str();
   group.AddChoice("--blend", words.Blend, "BLEND", { "max", "min", "mean" },
-    "Of the values along each ray the largest, the least or the mean");
+    "Show the largest value along each ray, the least or the mean");
   group.AddFlag("--depth-shading", options.Projection.DepthShading,
-    "Dim what lies farther away, before the largest is found");
+    "Dim values with the distance before the largest is found");
   group.Add("--slab", options.Projection.Slab, "MM", Between(1e-6, 1e9),
-    "Only a slab so thick across the view, in the middle of the volume");
+    "Thickness of a slab across the view, in the middle of the volume. Default: the whole volume");
   group
     .Add("--slab-offset", options.Projection.SlabOffset, "MM", Between(-1e9, 1e9),
-      "Move the slab so far to the viewer")
+      "Distance by which the slab is moved to the viewer")
     ->needs("--slab");
   group
     .Add("--crop", words.Crop, "MM", Between(-1e9, 1e9),
-      "Only a box, by six numbers: from and to along each axis of the volume, from its first voxel "
-      "on, as in 0,200,0,200,50,150")
+      "Box to show, by six numbers: from and to along each axis of the volume, from its first "
+      "voxel on, as in 0,200,0,200,50,150")
     ->expected(6)
     ->delimiter(',');
   group.Add("--mask", options.Mask.Path, "FILE", CLI::Validator(),
-    "Only voxels where the nearest voxel of this file is not 0");
-  group.Add("--label", options.Mask.Label, "NUMBER", CLI::Validator(CheckLabel, ""),
-    "Of the mask, or of a DICOM segmentation, only the voxels with this number");
+    "File of a mask: show only voxels whose nearest voxel of the mask is not 0");
+  group.Add("--label", options.Mask.Label, "NUMBER", Between(1, 999999999),
+    "Show only voxels with this number in the mask or the DICOM segmentation");
 }
 
 void DeclareLookOptions(CLI::App& app, Options& options)
 {
-  Group group(app, "How values are shown");
+  Group group(app, "Colours");
   group.Add("--window", options.Look.Window, "VALUE", Between(1e-30, 1e30),
-    "Range of values from black to white; default: the file's, or from the median value to the one "
+    "Range of values from black to white. Default: the file's, or from the median value to the one "
     "that one voxel in 2000 exceeds");
   group.Add("--level", options.Look.Level, "VALUE", Between(-1e30, 1e30),
-    "Value in the middle of that range");
-  group.AddChoice("--colormap", options.Look.Colormap, "COLORMAP", GetColormapNames(), "Colours");
+    "Value in the middle of that range. Default: as for --window");
+  group.AddChoice("--colormap", options.Look.Colormap, "COLORMAP", GetColormapNames(), "Colormap");
   group.AddFlag("--depth-coding", options.DepthCoding,
-    "Hues tell how far away what is seen lies, from red over green to blue; the picture says how "
-    "far red and blue are");
+    "Show depth as hue, from red (near) over green to blue (far). The picture has a legend");
 }
 
 void DeclareViewOptions(CLI::App& app, Options& options, Words& words)
 {
   const CLI::Validator angle = Between(-360.0, 360.0);
-  Group group(app, "From where");
-  CLI::Option* const view = group.Add("--view", words.View, "SIDE", CLI::IsMember(GetSides()),
-    "From one side of the patient, in place of --azimuth and --elevation");
+  Group group(app, "View");
+  CLI::Option* const view = group.Add("--view", words.View, "SIDE", CLI::IsMember(ListNames(Sides)),
+    "Side of the patient, in place of --azimuth and --elevation");
   group
     .Add("--azimuth", options.View.Azimuth, "DEGREES", angle,
-      "Degrees that the camera goes round, from the patient's front to the left side")
+      "Rotation of the camera around the patient, from the front to the left side")
     ->capture_default_str()
     ->excludes(view);
   group
-    .Add("--elevation", options.View.Elevation, "DEGREES", angle, "Degrees that the camera rises")
+    .Add("--elevation", options.View.Elevation, "DEGREES", angle,
+      "Elevation of the camera above the horizontal plane")
     ->capture_default_str()
     ->excludes(view);
   group
-    .Add("--roll", options.View.Roll, "DEGREES", angle, "Degrees that the camera turns clockwise")
+    .Add("--roll", options.View.Roll, "DEGREES", angle,
+      "Clockwise rotation of the camera about its axis")
     ->capture_default_str();
   group
     .Add("--zoom", options.View.Zoom, "FACTOR", Between(0.01, 1000.0),
-      "Enlargement; 1 fits the volume")
+      "Magnification; 1 fits the volume")
     ->capture_default_str();
   group.Add("--perspective", options.View.Perspective, "DEGREES", Between(1.0, 120.0),
-    "The angle in which the eye sees the volume; without it rays are parallel");
-  group.Add("--size", words.Size, "WxH", CLI::Validator(CheckSize, ""), "Pixels of each picture")
+    "Angle of a perspective view of the volume. Default: parallel rays");
+  group
+    .Add(
+      "--size", words.Size, "WxH", CLI::Validator(CheckSize, ""), "Size of each picture in pixels")
     ->capture_default_str();
 }
 
 void DeclareOutputOptions(CLI::App& app, Options& options, Words& words)
 {
-  Group group(app, "What comes out");
+  Group group(app, "Output");
   group
     .Add("--output,--out", words.Output, "FILE", CLI::Validator(),
-      "The picture to write, .png, or its values in the file's unit, " +
-        JoinWords(GetValueEndings()) + "; with --rotate a film or numbered pictures, " +
-        JoinWords(GetSeriesEndings()) + " (DICOM, a multi-frame secondary capture)")
+      "Picture to write, .png, or its values in the file's unit, " + JoinWords(GetValueEndings()) +
+        "; with --rotate, a film or numbered pictures, " + JoinWords(GetSeriesEndings()) +
+        " (DICOM, a multi-frame secondary capture)")
     ->capture_default_str();
   group.Add("--rotate", options.Rotate, "VIEWS", Between(2, 3600),
-    "Once round the patient in so many views, 2 to 3600, from --azimuth on");
+    "Write a turn around the patient of 2 to 3600 views, from --azimuth on");
   group.Add("--rate", options.Rate, "VIEWS", Between(1, 50), "Views per second of a film")
     ->capture_default_str();
   group.AddFlag("--no-marks", options.NoMarks,
-    "Leave out the letters for the patient's sides and the scale bar, which are there where the "
-    "file "
-    "says how the patient lies and how large voxels are");
+    "Leave out the scale bar and the letters for the patient's sides, which are drawn if the file "
+    "has voxel size and orientation");
   group.AddFlag("--compare", options.Compare,
-    "Also time the modes beside VTK's ray caster, which takes a while, in a window (needs a "
-    "display)");
+    "Also time the modes beside VTK's ray caster (needs a display; takes a while)");
   group.AddFlag("--interactive", options.Interactive,
-    "Open a window instead: drag to turn, 1, 2 and 3 switch the mode, q quits");
+    "Open a window instead of writing: drag to turn, keys 1 to 4 switch the mode, q quits");
 }
 
 void CheckOutputName(const Options& options)
@@ -285,11 +266,12 @@ std::vector<int> ChooseModes(const std::string& name)
 void TranslateWords(const Words& words, Options& options)
 {
   std::sscanf(words.Size.c_str(), "%5dx%5d", &options.View.Size[0], &options.View.Size[1]);
-  for (const auto& [name, angles] : Sides)
+  for (const auto& side : Sides)
   {
-    if (name == words.View)
+    if (side.Name == words.View)
     {
-      std::tie(options.View.Azimuth, options.View.Elevation) = angles;
+      options.View.Azimuth = side.Azimuth;
+      options.View.Elevation = side.Elevation;
     }
   }
   ProjectionSettings& settings = options.Projection;
@@ -303,54 +285,52 @@ void TranslateWords(const Words& words, Options& options)
 }
 
 /**
- * Refuse what does not go together.
+ * Declare options that do not go together, or need a file.
+ */
+void DeclareCombinations(CLI::App& app)
+{
+  const std::pair<const char*, std::vector<const char*>> exclusions[] = {
+    { "--interactive", { "--compare", "--rotate", "--slab-offset" } },
+    { "--compare",
+      { "--rotate", "--blend", "--depth-shading", "--depth-coding", "--slab", "--crop",
+        "--mask" } },
+    { "--slab-offset", { "--rotate" } }, { "--depth-coding", { "--colormap" } }
+  };
+  for (const auto& [name, others] : exclusions)
+  {
+    for (const char* const other : others)
+    {
+      app.get_option(name)->excludes(app.get_option(other));
+    }
+  }
+  for (const char* const name : { "--series", "--frame", "--channel", "--array", "--component" })
+  {
+    app.get_option(name)->needs(app.get_option("file"));
+  }
+}
+
+/**
+ * Refuse words of options that do not go together.
  */
 void CheckCombinations(const Options& options)
 {
   const ProjectionSettings& settings = options.Projection;
-  const bool isMaximum = settings.BlendMode == vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
-  if (options.Input.empty() &&
-    (options.Read.Series > 0 || options.Read.Frame > 0 || options.Read.Channel > 0 ||
-      !options.Read.Array.empty() || !options.Read.Component.empty()))
-  {
-    throw CLI::ValidationError(
-      "--series, --frame, --channel, --array, --component", "they are of a file: name one");
-  }
-  if (options.Interactive + options.Compare + (options.Rotate > 0) > 1)
-  {
-    throw CLI::ValidationError("--rotate, --compare, --interactive", "choose one of them");
-  }
   if (options.Modes.size() > 1 &&
     (options.Interactive || options.Rotate > 0 || IsValueFile(options.Output)))
   {
-    throw CLI::ValidationError("--mode", "all is for stills: choose one");
+    throw CLI::ValidationError("--mode", "all is for stills; choose one mode");
   }
-  if (options.Compare &&
-    (!isMaximum || settings.DepthShading || settings.Slab > 0.0 || settings.Cropping ||
-      options.DepthCoding || !options.Mask.Path.empty()))
+  if (settings.DepthShading &&
+    settings.BlendMode != vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND)
   {
-    throw CLI::ValidationError("--compare",
-      "it times maxima of the whole volume: leave --blend, --depth-shading, --depth-coding, "
-      "--slab, "
-      "--crop and --mask out");
-  }
-  if (settings.DepthShading && !isMaximum)
-  {
-    throw CLI::ValidationError("--depth-shading", "it is for maxima: leave --blend out");
+    throw CLI::ValidationError("--depth-shading", "it is for maxima; leave --blend out");
   }
   if (options.DepthCoding &&
-    settings.BlendMode == vtkSplattingMIPProjection::AVERAGE_INTENSITY_BLEND)
-  {
-    throw CLI::ValidationError("--depth-coding", "means lie at no depth: leave --blend mean out");
-  }
-  if (options.DepthCoding && (options.Look.Colormap != "gray" || IsValueFile(options.Output)))
+    (settings.BlendMode == vtkSplattingMIPProjection::AVERAGE_INTENSITY_BLEND ||
+      IsValueFile(options.Output)))
   {
     throw CLI::ValidationError(
-      "--depth-coding", "it chooses the colours of a picture: leave --colormap out, write .png");
-  }
-  if (settings.SlabOffset != 0.0 && (options.Interactive || options.Rotate > 0))
-  {
-    throw CLI::ValidationError("--slab-offset", "it is for stills: views turn about the middle");
+      "--depth-coding", "means have no depth, and values have no colours; leave it out");
   }
   for (int axis = 0; axis < 3 && settings.Cropping; ++axis)
   {
@@ -365,13 +345,13 @@ const char* const Examples = R"(Examples:
   splatmip scan.nii.gz --azimuth 30 --output scan.png
       a picture, the camera 30 degrees to the patient's left
   splatmip dicom-folder --view left --slab 30 --window 600 --level 300
-      30 mm in the middle of the largest series in a folder, white from the value 600 on
+      a slab of 30 mm of the largest series in a folder, white from the value 600 on
   splatmip dicom-folder --rotate 36 --output turn.ogv
-      a film once round the patient; numbered pictures, with --output turn.png, become any other
-      film by: ffmpeg -i turn-%05d.png turn.gif
+      a film of a turn around the patient; for other films write numbered pictures by --output
+      turn.png, then: ffmpeg -i turn-%05d.png turn.gif
 )";
 
-/// The examples come as they are: newer versions of CLI11 would fill the lines of a footer.
+/// Appends the examples as they are: newer versions of CLI11 wrap the lines of a footer.
 class HelpWithExamples : public CLI::Formatter
 {
 public:
@@ -392,6 +372,7 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
   DeclareLookOptions(app, options);
   DeclareViewOptions(app, options, words);
   DeclareOutputOptions(app, options, words);
+  DeclareCombinations(app);
   app.set_version_flag(
     "--version", std::string("splatmip " SPLATMIP_VERSION ", VTK ") + vtkVersion::GetVTKVersion());
   app.formatter(std::make_shared<HelpWithExamples>());

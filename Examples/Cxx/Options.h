@@ -4,7 +4,7 @@
 #define Options_h
 
 #include "Look.h"
-#include "ProjectionSettings.h"
+#include "Projector.h"
 #include "Reading/Mask.h"
 #include "Reading/VolumeReader.h"
 #include "View.h"
@@ -20,22 +20,22 @@
 extern const std::vector<std::string> ModeNames;
 
 /**
- * What the command line asks for.
+ * Settings from the command line.
  */
 struct Options
 {
   std::string Input;             // empty: the built-in volume
-  ReadSettings Read;             // what of it
-  MaskSettings Mask;             // which of its voxels
-  std::vector<int> Modes;        // one, but for stills side by side
+  ReadSettings Read;             // choices in it
+  MaskSettings Mask;             // voxels to show
+  std::vector<int> Modes;        // one, or several for stills side by side
   ProjectionSettings Projection; //
   ViewSettings View;             //
-  LookSettings Look;             // of which the user has given
+  LookSettings Look;             // of the user, where these are true:
   bool DepthCoding = false;      // in place of a colormap
-  bool HasWindow = false;        // this
-  bool HasLevel = false;         // and this
+  bool HasWindow = false;        // Look.Window
+  bool HasLevel = false;         // Look.Level
   std::string Output;            // an absolute path
-  bool NoMarks = false;          // sides and scale bar
+  bool NoMarks = false;          // no letters for sides, no scale bar
   bool Compare = false;          // with the ray caster
   bool Interactive = false;      // in a window
   int Rotate = 0;                // views, or 0
@@ -43,7 +43,8 @@ struct Options
 };
 
 /**
- * Throws CLI::Success for --help and --version, CLI::ParseError for what makes no sense.
+ * Parse the command line. Throws CLI::Success for --help and --version, CLI::ParseError for invalid
+ * options.
  */
 Options ParseOptions(CLI::App& app, int argc, char* argv[]);
 

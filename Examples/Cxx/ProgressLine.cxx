@@ -2,44 +2,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ProgressLine.h"
 
+#include "vtkCommand.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <utility>
 
-#ifdef _WIN32
-#include <io.h>
-#else
 #include <unistd.h>
-#endif
 
-namespace
-{
-bool StderrIsTerminal()
-{
-#ifdef _WIN32
-  return _isatty(_fileno(stderr)) != 0;
-#else
-  return isatty(fileno(stderr)) != 0;
-#endif
-}
-}
-
-ProgressLine::ProgressLine(std::string what)
+ProgressLine::ProgressLine(std::string what, vtkAlgorithm* algorithm)
   : What(std::move(what)),
     Start(std::chrono::steady_clock::now()),
-    IsTerminal(StderrIsTerminal())
+    IsTerminal(isatty(fileno(stderr)) != 0),
+    Algorithm(algorithm)
 {
+  if (algorithm)
+  {
+    this->Observer =
+      algorithm->AddObserver(vtkCommand::ProgressEvent, this, &ProgressLine::ShowProgress);
+  }
 }
 
 ProgressLine::~ProgressLine()
 {
+  if (this->Algorithm)
+  {
+    this->Algorithm->RemoveObserver(this->Observer);
+  }
   if (this->ShownPercent >= 0)
   {
     const std::string blanks(this->What.size() + 6, ' ');
     std::fprintf(stderr, "\r%s\r", blanks.c_str());
     std::fflush(stderr);
   }
+}
+
+void ProgressLine::ShowProgress(vtkObject*, unsigned long, void* fraction)
+{
+  this->Show(*static_cast<double*>(fraction));
 }
 
 void ProgressLine::Show(double fraction)
@@ -50,7 +51,7 @@ void ProgressLine::Show(double fraction)
   {
     return;
   }
-  // stdio and not std::cerr, which is diverted while files are read
+  // std::cerr is redirected while files are read
   std::fprintf(stderr, "\r%s %3d %%", this->What.c_str(), percent);
   std::fflush(stderr);
   this->ShownPercent = percent;

@@ -3,31 +3,40 @@
 #ifndef ProgressLine_h
 #define ProgressLine_h
 
+#include "vtkAlgorithm.h"
+
 #include <chrono>
 #include <string>
 
 /**
- * A line on stderr that says how far a long step is. It appears after the first second, because
- * short steps need none, and only where stderr is a terminal, because logs need none either.
+ * A line on stderr with the progress of a long step. It appears after one second, and only if
+ * stderr is a terminal.
  */
 class ProgressLine
 {
 public:
-  explicit ProgressLine(std::string what);
+  /**
+   * Show the progress of an algorithm, if one is given.
+   */
+  explicit ProgressLine(std::string what, vtkAlgorithm* algorithm = nullptr);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   /**
-   * Tell the fraction done, in [0, 1].
+   * Show the fraction done, in [0, 1].
    */
   void Show(double fraction);
 
 private:
+  void ShowProgress(vtkObject*, unsigned long, void* fraction);
+
   std::string What;
   std::chrono::steady_clock::time_point Start;
   bool IsTerminal;
   int ShownPercent = -1;
+  vtkAlgorithm* Algorithm;
+  unsigned long Observer = 0;
 };
 
 #endif

@@ -4,9 +4,7 @@
 
 #include "ProgressLine.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
-#include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkMatrix3x3.h"
 #include "vtkPointData.h"
@@ -20,7 +18,7 @@
 
 namespace
 {
-/// The image in the patient's coordinates, which a projection takes from the image alone.
+/// Make an image with the orientation in its direction matrix, where the filter reads it.
 vtkSmartPointer<vtkImageData> Orient(const Volume& volume)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -41,7 +39,7 @@ vtkSmartPointer<vtkImageData> Orient(const Volume& volume)
   return image;
 }
 
-/// What the volume fits into from all sides.
+/// Find the parallel scale in which the volume fits into all views.
 double LargestScale(const Volume& volume, const ViewSettings& view, int views)
 {
   double scale = 0.0;
@@ -92,20 +90,14 @@ Projector::Projector(const Volume& volume, const ProjectionSettings& settings,
 vtkSmartPointer<vtkImageData> Projector::Project(const std::string& what)
 {
   using Clock = std::chrono::steady_clock;
-  ProgressLine line(what);
-  vtkNew<vtkCallbackCommand> tell;
-  tell->SetClientData(&line);
-  tell->SetCallback([](vtkObject*, unsigned long, void* client, void* data)
-    { static_cast<ProgressLine*>(client)->Show(*static_cast<double*>(data)); });
-  const unsigned long tag = this->Projection->AddObserver(vtkCommand::ProgressEvent, tell);
+  ProgressLine line(what, this->Projection);
   const auto start = Clock::now();
   this->Projection->Update();
   this->Seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  this->Projection->RemoveObserver(tag);
   vtkImageData* const found = this->Projection->GetOutput();
   if (found->GetNumberOfPoints() == 0)
   {
-    throw std::runtime_error("the volume cannot be projected.");
+    throw std::runtime_error("the volume cannot be projected; see Limits in the documentation.");
   }
   auto bytes = vtkSmartPointer<vtkImageData>::New();
   bytes->CopyStructure(found);
@@ -123,7 +115,7 @@ vtkSmartPointer<vtkImageData> Projector::Project(const std::string& what)
   if (isEmpty && (this->Projection->GetSlab() || this->Projection->GetCropping()))
   {
     throw std::runtime_error(
-      "nothing of the volume is in the picture; see --crop, --slab-offset and --mask.");
+      "no part of the volume is in the picture; change --crop, --slab-offset or --mask.");
   }
   return bytes;
 }

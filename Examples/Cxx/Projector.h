@@ -4,18 +4,54 @@
 #define Projector_h
 
 #include "Look.h"
-#include "ProjectionSettings.h"
 #include "Reading/VolumeReader.h"
 #include "View.h"
 
 #include "vtkNew.h"
 #include "vtkSplattingMIPProjection.h"
 
+#include <array>
 #include <string>
 
 /**
- * One view of a volume, or several once round the patient's long axis, by
- * vtkSplattingMIPProjection, which needs no display.
+ * Settings of a projection except the quality mode.
+ */
+struct ProjectionSettings
+{
+  int Kernel = vtkSplattingMIPProjection::TRILINEAR;
+  double KernelRadius = 1.0; // voxels
+  int BlendMode = vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
+  bool DepthShading = false;
+  double Slab = 0.0;       // thickness in mm, or 0 for no slab
+  double SlabOffset = 0.0; // from the volume's centre to the viewer, mm
+  bool Cropping = false;
+  std::array<double, 6>
+    Crop = {}; // from, to along each axis of the volume, mm from its first voxel
+};
+
+/**
+ * Apply settings to a vtkSplattingMIPProjection or a vtkSplattingMIPVolumeMapper. The centre of the
+ * slab is in world coordinates.
+ */
+template <class Target>
+void Apply(
+  const ProjectionSettings& settings, const std::array<double, 3>& slabCenter, Target* target)
+{
+  target->SetKernel(settings.Kernel);
+  target->SetKernelRadius(settings.KernelRadius);
+  target->SetBlendMode(settings.BlendMode);
+  target->SetMaximumType(settings.DepthShading ? Target::DEPTH_SHADED : Target::GLOBAL);
+  target->SetSlab(settings.Slab > 0.0);
+  target->SetSlabThickness(settings.Slab > 0.0 ? settings.Slab : 1.0);
+  target->SetSlabCenter(slabCenter[0], slabCenter[1], slabCenter[2]);
+  target->SetCropping(settings.Cropping);
+  const auto& crop = settings.Crop;
+  target->SetCroppingRegionPlanes(crop[0], crop[1], crop[2], crop[3], crop[4], crop[5]);
+}
+
+/**
+ * One view of a volume, or several around the patient's long axis, by vtkSplattingMIPProjection,
+ * which needs no display.
  */
 class Projector
 {
@@ -26,13 +62,13 @@ public:
   vtkSplattingMIPProjection* GetProjection() { return this->Projection; }
 
   /**
-   * Views as bytes, which are places in the look's palette. What says in the progress line what is
-   * done. Throws std::runtime_error if nothing of the volume is seen.
+   * Project the views to bytes, which are indices of the look's palette. The text names the step in
+   * the progress line. Throws std::runtime_error if no part of the volume is visible.
    */
   vtkSmartPointer<vtkImageData> Project(const std::string& what);
 
   /**
-   * The seconds that the last Project() took for what it shows.
+   * Get the seconds that the last projection took.
    */
   double GetSeconds() const { return this->Seconds; }
 

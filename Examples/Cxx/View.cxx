@@ -19,7 +19,7 @@ vtkSmartPointer<vtkTransform> MakeViewTurn(const ViewSettings& view, double azim
 namespace
 {
 /**
- * Half of four of a box's diagonals; the other four mirror these.
+ * Get the halves of four diagonals of a box; the other four are their negatives.
  */
 std::array<std::array<double, 4>, 4> GetDiagonals(const double box[6], vtkMatrix4x4* orientation)
 {
@@ -50,7 +50,7 @@ double GetFittingScale(
     const double* seen = turn->GetLinearInverse()->TransformDoubleVector(diagonal.data());
     scale = std::max({ scale, std::fabs(seen[2]), std::fabs(seen[0]) / aspect });
   }
-  return scale > 0.0 ? 1.1 * scale : 1.0; // a rim for the label
+  return scale > 0.0 ? 1.1 * scale : 1.0; // room for the label
 }
 
 PerspectiveFit FitPerspective(

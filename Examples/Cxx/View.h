@@ -10,7 +10,8 @@
 #include <array>
 
 /**
- * From where the volume is seen: with all angles 0 from the patient's front, head up. Degrees.
+ * The view of a volume: if all angles are 0, from the patient's front, head up. Angles are in
+ * degrees.
  */
 struct ViewSettings
 {
@@ -18,24 +19,24 @@ struct ViewSettings
   double Azimuth = 20.0;   // the camera goes round to the patient's left
   double Elevation = 10.0; // the camera rises
   double Roll = 0.0;       // the camera turns clockwise
-  double Zoom = 1.0;       // 1: the volume's box just fits
-  double Perspective = 0;  // the angle in which its sphere is seen, or 0 for parallel rays
+  double Zoom = 1.0;       // 1: the volume's box fits
+  double Perspective = 0;  // angle of the volume's sphere, or 0 for parallel rays
 };
 
 /**
- * The camera's frame as a turn of the front view's: x to the right, y away, z up.
+ * Make the rotation of the camera relative to the front view: x to the right, y away, z up.
  */
 vtkSmartPointer<vtkTransform> MakeViewTurn(const ViewSettings& view, double azimuth);
 
 /**
- * The parallel scale with which a box, oriented as the volume is, fits into the view.
+ * Find the parallel scale in which a box, oriented as the volume is, fits into the view.
  */
 double GetFittingScale(
   const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view, vtkTransform* turn);
 
 /**
- * Of a perspective view: how far the eye is from the middle of a box, and half the height of what
- * is seen there, at zoom 1.
+ * Distance of the eye from the centre of a box in a perspective view, and half the height of the
+ * view there, at zoom 1.
  */
 struct PerspectiveFit
 {

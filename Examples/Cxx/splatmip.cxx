@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // splatmip: maximum intensity projections of a volume by splatting. Without an argument it writes a
-// picture of the volume that it carries. Stills and turns come from vtkSplattingMIPProjection,
-// which needs no display; windows show what vtkSplattingMIPVolumeMapper draws.
-#include "Comparison.h"
+// picture of the built-in volume. Stills and turns are made by vtkSplattingMIPProjection, which
+// needs no display; windows are drawn by vtkSplattingMIPVolumeMapper.
 #include "Interaction.h"
 #include "MIPScene.h"
 #include "Options.h"
 #include "Projector.h"
 #include "Reading/Mask.h"
+#include "Reading/Reading.h"
 #include "Reading/VolumeReader.h"
 #include "Writing/DepthCoding.h"
 #include "Writing/Picture.h"
@@ -31,7 +31,7 @@
 namespace
 {
 /**
- * What the user wants, else what the file does, else what the values suggest.
+ * Complete the look: the user's window, else the file's, else one from the values.
  */
 LookSettings CompleteLook(const Options& options, const Volume& volume)
 {
@@ -49,18 +49,18 @@ LookSettings CompleteLook(const Options& options, const Volume& volume)
 void PrintVolume(const Volume& volume, const LookSettings& look)
 {
   const int* size = volume.Image->GetDimensions();
-  std::printf("%s: %d x %d x %d voxels, %s\n", volume.Name.c_str(), size[0], size[1], size[2],
-    volume.Image->GetScalarTypeAsString());
+  std::printf("%s: %d x %d x %d voxels, %s\n", MakePrintable(volume.Name).c_str(), size[0], size[1],
+    size[2], volume.Image->GetScalarTypeAsString());
   for (const std::string& note : volume.Notes)
   {
-    std::printf("%s\n", note.c_str());
+    std::printf("%s\n", MakePrintable(note).c_str());
   }
   std::printf("shown with window %g, level %g\n", look.Window, look.Level);
   std::fflush(stdout);
 }
 
 /**
- * Views with what is written into them.
+ * Draw the views with labels and marks.
  */
 vtkSmartPointer<vtkImageData> DrawViews(
   Projector& projector, const Volume& volume, const Options& options, std::string label)
@@ -90,7 +90,55 @@ vtkSmartPointer<vtkImageData> DrawViews(
 }
 
 /**
- * The modes side by side, or the values of one.
+ * Times the modes and prints a line for each, beside the ray caster with the most similar
+ * interpolation.
+ */
+class Comparison
+{
+public:
+  Comparison(const Volume& volume, const LookSettings& look, const Options& options);
+
+  /**
+   * Return a mode's time in milliseconds.
+   */
+  double AddMode(int mode);
+
+private:
+  MIPScene Scene;
+  double RayCasting[2] = { 0.0, 0.0 };
+};
+
+Comparison::Comparison(const Volume& volume, const LookSettings& look, const Options& options)
+  : Scene(volume, options.Projection, look, options.View, true)
+{
+  std::printf("\nWhole frame, view to pixels: median of %d frames of %d x %d, turned by one "
+              "degree each; %d threads, %s\n",
+    MIPScene::NumberOfTimedFrames, options.View.Size[0], options.View.Size[1],
+    vtkSMPTools::GetEstimatedNumberOfThreads(), this->Scene.GetSplatting()->GetInstructionSet());
+  std::printf("%-10s %12s   vtkFixedPointVolumeRayCastMapper\n", "mode", "splatting");
+}
+
+double Comparison::AddMode(int mode)
+{
+  const bool isPreview = mode == vtkSplattingMIPVolumeMapper::PREVIEW;
+  const int interpolation = isPreview ? VTK_NEAREST_INTERPOLATION : VTK_LINEAR_INTERPOLATION;
+  double& rayCasting = this->RayCasting[interpolation];
+  if (rayCasting == 0.0)
+  {
+    this->Scene.UseRayCasting(interpolation);
+    rayCasting = this->Scene.MeasureFrame("ray casting");
+  }
+  this->Scene.UseSplatting(mode);
+  const double splatting = this->Scene.MeasureFrame(ModeNames[mode]);
+  std::printf("%-10s %12s   %12s (%s), %.1f times as long\n", ModeNames[mode].c_str(),
+    FormatTime(splatting).c_str(), FormatTime(rayCasting).c_str(), isPreview ? "nearest" : "linear",
+    rayCasting / splatting);
+  std::fflush(stdout);
+  return splatting;
+}
+
+/**
+ * Write the modes side by side, or the values of one.
  */
 void WriteStill(const Volume& volume, const LookSettings& look, const Options& options)
 {
@@ -145,7 +193,7 @@ std::vector<std::string> GetOutputFiles(const Options& options)
 }
 
 /**
- * What would be in vain is told before the volume is read.
+ * Check display and outputs before the volume is read.
  */
 void CheckBeforehand(const Options& options)
 {
@@ -176,7 +224,7 @@ void Run(const Options& options)
   else if (options.Mask.Label != 0 && !volume.HasLabels)
   {
     throw std::runtime_error(
-      "--label is for a --mask or a DICOM segmentation; give one, or leave it out.");
+      "--label is for a --mask or a DICOM segmentation; give one, or leave --label out.");
   }
   if (!options.Interactive)
   {
@@ -219,7 +267,7 @@ int main(int argc, char* argv[])
   }
   catch (const std::exception& error)
   {
-    std::cerr << "splatmip: " << error.what() << "\n";
+    std::cerr << "splatmip: " << MakePrintable(error.what()) << "\n";
     return 1;
   }
 }

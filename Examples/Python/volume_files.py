@@ -36,6 +36,11 @@ SPACES = {
     "right-anterior-superior": (-1, -1, 1),
     "left-anterior-superior": (1, -1, 1),
 }
+# Millimetres, by a unit's symbols and names.
+UNITS = {**dict.fromkeys(("mm", "millimeter", "millimetre"), 1.0), **dict.fromkeys(("m", "meter", "metre"), 1000.0),
+         **dict.fromkeys(("cm", "centimeter", "centimetre"), 10.0), **dict.fromkeys(("in", "inch"), 25.4),
+         **dict.fromkeys(("um", "\u00b5m", "\u03bcm", "micron", "micrometer", "micrometre"), 0.001),
+         **dict.fromkeys(("nm", "nanometer", "nanometre"), 1e-6)}
 SPACES.update({"lps": (1, 1, 1), "ras": (-1, -1, 1), "las": (1, -1, 1)})
 
 
@@ -79,7 +84,7 @@ def read_header(path):
     """The lines "key: value" (NRRD) or "key = value" (MetaImage) before the data, and the data."""
     fields = {}
     with open(path, "rb") as file:
-        for line in iter(lambda: file.readline(65536).decode("latin-1"), ""):
+        for line in iter(lambda: file.readline(65536).decode(errors="replace"), ""):
             key, separator, value = line.partition("=" if path.suffix.lower() == ".mha" else ":")
             key = key.strip().lower()
             if separator:
@@ -118,6 +123,12 @@ def numbers(text, count):
     return numpy.array(found)
 
 
+def find_unit(name):
+    """The length of a unit in mm, which is 1 where it is unknown, and whether it is known."""
+    name = name.lower() if name.lower() in UNITS else name.lower().rstrip("s")
+    return UNITS.get(name, 1.0), name in UNITS
+
+
 def check_dimensions(fields, *keys):
     """Three sizes, z first, of one value per voxel in this very file."""
     dimension = int(next((fields[key] for key in keys if key in fields), "0"))
@@ -144,11 +155,11 @@ def read_nrrd(path):
     elif "spacings" in fields:
         axes = numpy.diag(numbers(fields["spacings"], 3))
     else:
-        note = "the file does not say how large voxels are: cubes of 1 are shown"
+        note = "the file has no voxel size: cubes of 1 are shown"
     origin = signs * numbers(fields.get("space origin", "0 0 0"), 3)
-    is_in_mm = space in SPACES and fields.get("space units", '"mm"').startswith('"mm"')
-    image = make_image(decode(data, fields, shape), axes, origin)
-    return Volume(image, space in SPACES, is_in_mm, None, note)
+    length, is_known = find_unit((fields.get("space units", "") + '"mm"').split('"')[1])
+    image = make_image(decode(data, fields, shape), axes * length, origin * length)
+    return Volume(image, space in SPACES, is_known and "space directions" in fields, None, note)
 
 
 def read_meta(path):
@@ -160,9 +171,10 @@ def read_meta(path):
     spacing = find("elementspacing", "elementsize")
     axes = numbers(directions or "1 0 0 0 1 0 0 0 1", 9).reshape(3, 3).T * numbers(spacing or "1 1 1", 3)
     origin = find("origin", "position", "offset") or "0 0 0"
-    is_in_mm = spacing is not None and find("distanceunits") in (None, "?", "mm")
-    image = make_image(decode(data, fields, shape), axes, numbers(origin, 3))
-    return Volume(image, directions is not None, is_in_mm)
+    unit = find("distanceunits")
+    length, is_known = find_unit("mm" if unit in (None, "?") else unit)
+    image = make_image(decode(data, fields, shape), axes * length, numbers(origin, 3) * length)
+    return Volume(image, directions is not None, is_known and spacing is not None)
 
 
 def run_reader(reader, path):
@@ -236,7 +248,7 @@ def read_nifti(path):
         axes, origin = to_lps * matrix[:, :3] * spacing, (to_lps * matrix[:, 3:]).ravel()
     low, high = header.GetCalMin(), header.GetCalMax()
     volumes = reader.GetTimeDimension()
-    notes = [] if matrix is not None else ["the file does not say how the patient lies; left and right may be exchanged"]
+    notes = [] if matrix is not None else ["the file has no orientation; left and right may be exchanged"]
     notes += [f"the first of {volumes} volumes"] if volumes > 1 else []
     return Volume(make_image(values, axes, origin), matrix is not None, True,
                   (low, high) if high > low else None, "; ".join(notes))

@@ -79,7 +79,7 @@ class Queue:
         with self.condition:
             for other in self.requests:
                 other.is_superseded = other.is_superseded or (name != "" and other.name == name)
-            if len(self.requests) >= MOST_REQUESTS:
+            if sum(not other.is_superseded for other in self.requests) >= MOST_REQUESTS:
                 raise Busy(f"{MOST_REQUESTS} pictures wait to be made: try again later")
             self.requests.append(request)
             self.condition.notify_all()

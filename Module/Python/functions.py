@@ -233,8 +233,10 @@ def enable(mode: str = "exact") -> None:
 
 
 def disable() -> None:
-    """End what enable() began, for mappers that are made from now on."""
-    vtksplattingmip.vtkSplattingMIPGPUVolumeRayCastMapper.GlobalOverrideOff()
+    """Undo enable() for mappers that are made from now on."""
+    override = vtksplattingmip.vtkSplattingMIPGPUVolumeRayCastMapper
+    override.SetGlobalQualityMode(_MODES["exact"])
+    override.GlobalOverrideOff()
 
 
 def use_for(volume: typing.Any, mode: str = "exact") -> typing.Any:

@@ -6,12 +6,15 @@
 #include "Projection/Project.h"
 #include "TransferFunctions.h"
 
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
 
 #include <cstddef>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkVolumeProperty;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

@@ -203,7 +203,7 @@ void ComponentProjector::UpdateColors(
 }
 
 // Whether all components but the last are taken from the samples of the last.
-bool ComponentProjector::TakesAtWinners(const ProjectionSettings& settings) const
+bool ComponentProjector::TakesAtLocations(const ProjectionSettings& settings) const
 {
   return this->Dependent && settings.reduction != Reduction::Mean;
 }
@@ -212,14 +212,14 @@ ProjectionSettings ComponentProjector::SettingsOf(
   const Channel& channel, ProjectionSettings settings) const
 {
   // Only the mapper's located component needs winners.
-  settings.keepWinners =
-    this->TakesAtWinners(settings) || (settings.keepWinners && &channel == &this->LocatedChannel());
-  if (this->TakesAtWinners(settings) && settings.quality == Quality::Exact)
+  settings.recordLocations = this->TakesAtLocations(settings) ||
+    (settings.recordLocations && &channel == &this->LocatedChannel());
+  if (this->TakesAtLocations(settings) && settings.quality == Quality::Exact)
   {
-    settings.quality = Quality::High; // takeAtWinners() takes averages
+    settings.quality = Quality::High; // takeAtLocations() takes averages
   }
   // Other components and locations need samples below the window, too.
-  if (this->Cull && !settings.keepWinners && settings.reduction == Reduction::Maximum)
+  if (this->Cull && !settings.recordLocations && settings.reduction == Reduction::Maximum)
   {
     settings.floor = this->Colors.FloorOfWindow(&channel - this->Channels.data());
   }
@@ -257,12 +257,12 @@ bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
   return true;
 }
 
-// Projects one image of all components. takeAtWinners() must follow the projection directly,
+// Projects one image of all components. takeAtLocations() must follow the projection directly,
 // because it uses the projector's state.
 bool ComponentProjector::ProjectImage(
   std::size_t n, const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts)
 {
-  if (!this->TakesAtWinners(settings))
+  if (!this->TakesAtLocations(settings))
   {
     return std::all_of(this->Channels.begin(), this->Channels.end(),
       [&](Channel& channel)
@@ -280,7 +280,7 @@ bool ComponentProjector::ProjectImage(
     {
       channel.Settings = last.Settings;
       channel.Used = last.Used;
-      this->Projector.takeAtWinners(
+      this->Projector.takeAtLocations(
         channel.Index.volume(), geometry, last.Settings, winners, channel.Images[n]);
     }
   }
@@ -319,7 +319,7 @@ bool ComponentProjector::Project(const std::vector<ShearWarp>& geometries,
 
 bool ComponentProjector::HasWinners() const
 {
-  return this->Projected && this->LocatedChannel().Settings.keepWinners;
+  return this->Projected && this->LocatedChannel().Settings.recordLocations;
 }
 
 void ComponentProjector::Describe(Located& located) const
@@ -369,7 +369,7 @@ void ComponentProjector::Exchange(const std::vector<ShearWarp>& geometries,
 
 double ComponentProjector::OverallProgress(double done) const
 {
-  const std::size_t channels = this->TakesAtWinners(this->Settings()) ? 1 : this->Channels.size();
+  const std::size_t channels = this->TakesAtLocations(this->Settings()) ? 1 : this->Channels.size();
   return (this->Done + done) /
     static_cast<double>(channels * std::max<std::size_t>(this->Parts, 1));
 }
@@ -404,7 +404,7 @@ bool ComponentProjector::ProjectOnScreen(
     if (done)
     {
       this->UpdateCells(channel, view);
-      const bool locate = channel.Settings.keepWinners;
+      const bool locate = channel.Settings.recordLocations;
       done = this->Ranks
         ? this->Cells.projectPiece(
             channel.Cells, view, channel.Settings, ends, locate, channel.Screen)
@@ -449,8 +449,8 @@ void ComponentProjector::FindShown(const std::vector<ShearWarp>& geometries, con
 {
   const Channel& last = this->Channels.back();
   this->Shown.clear();
-  if (geometries.empty() || !geometries.front().isOverview() ||
-    !this->TakesAtWinners(last.Settings))
+  if (geometries.empty() || !geometries.front().minifiesAnyAxis() ||
+    !this->TakesAtLocations(last.Settings))
   {
     return;
   }

@@ -11,14 +11,17 @@
 #include "Projection/Project.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
 
 #include <cstddef>
 #include <optional>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkImageData;
 class vtkVolumeProperty;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {
@@ -83,7 +86,7 @@ public:
   /// Whether ProjectOnScreen() projects these settings, not Project().
   bool UsesCells(const ProjectionSettings& settings) const
   {
-    return settings.quality == Quality::Exact && !this->TakesAtWinners(settings);
+    return settings.quality == Quality::Exact && !this->TakesAtLocations(settings);
   }
 
   /**
@@ -176,7 +179,7 @@ private:
 
   void FindShown(const std::vector<ShearWarp>& geometries, const View& view);
   ProjectionSettings SettingsOf(const Channel& channel, ProjectionSettings settings) const;
-  bool TakesAtWinners(const ProjectionSettings& settings) const;
+  bool TakesAtLocations(const ProjectionSettings& settings) const;
   const Channel& LocatedChannel() const
   {
     return this->Dependent ? this->Channels.back() : this->Channels.front();

@@ -5,7 +5,11 @@
 
 #include "Projection/Locations.h"
 
+#include "vtkSplattingMIPNamespace.h"
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkImageData;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

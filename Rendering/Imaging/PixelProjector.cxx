@@ -19,7 +19,7 @@ const PixelProjector::Pixel& PixelProjector::Project(VolumeIndex& index,
   {
     this->Alone.Cuts.intervals.takePixel(wholeCuts.intervals, place, geometry.width());
   }
-  settings.keepWinners = true;
+  settings.recordLocations = true;
   settings.floor = ProjectionSettings().floor;
   settings.acceleration = Acceleration::Dense;
   // Single pixels must not change the statistics of frames.

@@ -22,6 +22,9 @@ const char* nameOfMaximumType(int type);
 const char* nameOfVectorMode(int mode);
 const char* nameOfAcceleration(int acceleration);
 
+// Internal to each file: the libraries export all names that contain an exported class.
+namespace
+{
 /**
  * Returns an error message that says which property is invalid and what to do, or nullptr.
  * Properties without effect are not checked.
@@ -102,12 +105,9 @@ ProjectionSettings settingsOf(Object& object, int mode, const View& view, bool l
   {
     mode = Object::HIGH;
   }
-  if (mode == Object::EXACT && isOverview(view))
+  if (mode == Object::EXACT && minifiesAnyAxis(view))
   {
-    // The field is nowhere larger than at a voxel, and pixels show areas. If pixels are wider than
-    // voxels in all directions, one voxel per slice shows all of them.
-    mode = Object::PREVIEW;
-    settings.meets = isCoarse(view) ? Meets::Nearest : Meets::All;
+    mode = Object::PREVIEW; // the field is nowhere larger than at a voxel, and pixels show areas
   }
   settings.quality = static_cast<Quality>(mode);
   switch (settings.reduction)
@@ -137,7 +137,7 @@ ProjectionSettings settingsOf(Object& object, int mode, const View& view, bool l
     case Reduction::Minimum:
       break;
   }
-  settings.keepWinners = locate && settings.reduction != Reduction::Mean;
+  settings.recordLocations = locate && settings.reduction != Reduction::Mean;
   if (mode == Object::HIGH && object.GetKernel() == Object::COSINE_BELL)
   {
     settings.kernel = { Reconstruction::CosineBell, object.GetKernelRadius() };
@@ -147,6 +147,7 @@ ProjectionSettings settingsOf(Object& object, int mode, const View& view, bool l
     settings.footprintSampling = object.GetFootprintSampling();
   }
   return settings;
+}
 }
 }
 

@@ -5,7 +5,11 @@
 
 #include "Display/Warp.h"
 
+#include "vtkSplattingMIPNamespace.h"
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkVolumeProperty;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

@@ -4,6 +4,7 @@
 #define TurnOfViews_h
 
 #include "vtkNew.h"
+#include "vtkSplattingMIPNamespace.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
@@ -11,8 +12,10 @@
 
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkCamera;
 class vtkImageData;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

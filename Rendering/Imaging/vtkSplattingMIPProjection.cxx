@@ -34,6 +34,7 @@
 
 using namespace splatting;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSplattingMIPProjection);
 vtkCxxSetObjectMacro(vtkSplattingMIPProjection, Camera, vtkCamera);
 
@@ -212,7 +213,7 @@ bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection
     this->Cuts[n].intervals.find(this->Images[n], view.halfSpaces);
   }
   // The nearest of equal samples is located.
-  const bool ordered = splatting::isOrdered(settings.reduction) || settings.keepWinners;
+  const bool ordered = splatting::isOrdered(settings.reduction) || settings.recordLocations;
   if (haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts == this->CutsBefore &&
     this->Components.IsUpToDate(settings))
   {
@@ -310,7 +311,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     splatting::PixelRays rays;
     const bool isValid = this->Components.UsesCells(settings)
       ? rays.find(view)
-      : splatting::ShearWarp::factorise(view, this->Images, settings.meets);
+      : splatting::ShearWarp::factorise(view, this->Images);
     if (!isValid)
     {
       return TurnOfViews::Degenerate;
@@ -546,3 +547,4 @@ void vtkSplattingMIPProjection::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "IndexMemorySize: " << this->GetIndexMemorySize() << "\n";
   os << indent << "InstructionSet: " << this->GetInstructionSet() << "\n";
 }
+VTK_ABI_NAMESPACE_END

@@ -45,9 +45,11 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkImagingSplattingMIPModule.h" // for the export macro
 #include "vtkSplattingMIPChoices.h"       // for the enumerations
+#include "vtkSplattingMIPNamespace.h"
 
 #include <memory> // for the hidden implementation
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkCamera;
 
 class VTKIMAGINGSPLATTINGMIP_EXPORT vtkSplattingMIPProjection : public vtkImageAlgorithm
@@ -403,5 +405,6 @@ private:
   class Internals;
   std::unique_ptr<Internals> Internal;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -3,12 +3,16 @@
 #ifndef FrameObserver_h
 #define FrameObserver_h
 
+#include "vtkSplattingMIPNamespace.h"
+
 #include <functional>
 #include <memory>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkRenderer;
 class vtkVolume;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

@@ -8,16 +8,19 @@
 #include "Projection/Piece.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkSplattingMIPNamespace.h"
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkImageData;
 class vtkMultiProcessController;
 class vtkRenderer;
 class vtkSplattingMIPVolumeMapper;
 class vtkVolume;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

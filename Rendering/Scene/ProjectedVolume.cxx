@@ -73,7 +73,7 @@ bool ProjectedVolume::FindCuts(vtkSplattingMIPVolumeMapper* mapper, const View& 
     this->Images.clear();
     isValid = this->Cuts.FindOnScreen(view, renderer, volume, intermixes, readDepth);
   }
-  else if (ShearWarp::factorise(view, this->Images, settings.meets))
+  else if (ShearWarp::factorise(view, this->Images))
   {
     this->Cuts.Find(view, this->Images, renderer, volume, intermixes, readDepth);
   }
@@ -92,7 +92,7 @@ bool ProjectedVolume::IsUpToDate(const View& view, const ProjectionSettings& set
   {
     return this->Cuts.AreKeptOnScreen(view) && this->Components.IsUpToDate(settings);
   }
-  const bool ordered = isOrdered(settings.reduction) || settings.keepWinners ||
+  const bool ordered = isOrdered(settings.reduction) || settings.recordLocations ||
     this->Source.AreDependent(); // of equal samples the nearest is located
   return haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts.AreKept() &&
     this->Components.IsUpToDate(settings);
@@ -117,7 +117,7 @@ bool ProjectedVolume::Project(vtkSplattingMIPVolumeMapper* mapper, const View& v
   }
   const ProjectionSettings wanted = settingsOf(mapper, mode, view);
   const bool onScreen = this->Components.UsesCells(wanted);
-  if (onScreen != this->Components.UsesCells(best) || wanted.meets != best.meets)
+  if (onScreen != this->Components.UsesCells(best))
   {
     this->FindCuts(mapper, view, renderer, volume, readDepth, wanted);
   }

@@ -10,13 +10,16 @@
 #include "Scene/SceneCuts.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkSplattingMIPNamespace.h"
 
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkImageData;
 class vtkRenderer;
 class vtkSplattingMIPVolumeMapper;
 class vtkVolume;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

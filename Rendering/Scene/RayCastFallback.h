@@ -8,8 +8,10 @@
 
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkFixedPointVolumeRayCastMapper;
 class vtkGPUVolumeRayCastMapper;
 class vtkImageData;
@@ -18,6 +20,7 @@ class vtkRenderer;
 class vtkSplattingMIPVolumeMapper;
 class vtkVolume;
 class vtkWindow;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

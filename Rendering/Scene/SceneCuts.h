@@ -8,6 +8,7 @@
 #include "Clipping/SceneDepth.h"
 #include "Input/BoundingSurface.h"
 
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
 
 #include <glm/mat4x4.hpp>
@@ -15,8 +16,10 @@
 #include <functional>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkRenderer;
 class vtkVolume;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

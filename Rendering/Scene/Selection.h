@@ -5,7 +5,11 @@
 
 #include "Display/Picture.h"
 
+#include "vtkSplattingMIPNamespace.h"
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkHardwareSelector;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

@@ -4,10 +4,13 @@
 #define ShownVolume_h
 
 #include "vtkRenderer.h" // for the weak pointer
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkVolume.h"
 #include "vtkWeakPointer.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkRenderWindow;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

@@ -3,11 +3,15 @@
 #ifndef Validation_h
 #define Validation_h
 
+#include "vtkSplattingMIPNamespace.h"
+
 #include <string>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkRenderer;
 class vtkSplattingMIPVolumeMapper;
 class vtkVolume;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

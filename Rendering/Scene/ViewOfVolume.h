@@ -9,9 +9,13 @@
 #include "Geometry/View.h"
 #include "Input/VolumeGrid.h"
 
+#include "vtkSplattingMIPNamespace.h"
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkRenderer;
 class vtkVolume;
 class vtkVolumeMapper;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

@@ -4,12 +4,15 @@
 #define VolumeStandIn_h
 
 #include "vtkNew.h"
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkMatrix4x4;
 class vtkRenderer;
 class vtkVolume;
 class vtkVolumeProperty;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

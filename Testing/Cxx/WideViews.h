@@ -28,7 +28,7 @@ inline splatting::View magnifiedView()
 /// Large windows would be looked at for seconds.
 inline splatting::View magnified(splatting::View view)
 {
-  while (splatting::isOverview(view))
+  while (splatting::minifiesAnyAxis(view))
   {
     if (view.viewport.x < 300 && view.viewport.y < 300)
     {
@@ -46,7 +46,7 @@ inline splatting::View magnified(splatting::View view)
 /// The same view with so few pixels that it is an overview, if that is possible.
 inline splatting::View reduced(splatting::View view)
 {
-  while (!splatting::isOverview(view) && view.viewport.x > 1 && view.viewport.y > 1)
+  while (!splatting::minifiesAnyAxis(view) && view.viewport.x > 1 && view.viewport.y > 1)
   {
     view.viewport = (view.viewport + 1) / 2;
   }

@@ -137,8 +137,11 @@ class TestVolumeFiles(unittest.TestCase):
             self.assertTrue(volume.is_oriented and volume.is_in_mm)
         self.check(self.read("a.nrrd", nrrd(dtype=">i2")))
         self.check(self.read("A.NRRD", nrrd()))
-        for unit, is_in_mm in (('"mm" "mm" "mm"', True), ('"um" "um" "um"', False), ("", False)):
-            self.assertEqual(self.read("a.nrrd", nrrd(space_units=unit)).is_in_mm, is_in_mm)
+        for unit, length, is_in_mm in (('"mm" "mm" "mm"', 1.0, True), ('"um" "um" "um"', 0.001, True),
+                                       ('"cm" "cm" "cm"', 10.0, True), ('"ell" "ell" "ell"', 1.0, False)):
+            volume = self.read("a.nrrd", nrrd(space_units=unit))
+            self.check(volume, axes=AXES * length, origin=ORIGIN * length)
+            self.assertEqual(volume.is_in_mm, is_in_mm)
         for names, dtype in (("float", "<f4"), ("double", ">f8"), ("uchar", "<u1"), ("unsigned int", "<i4")):
             self.check(self.read("a.nrrd", nrrd(names, dtype)), make_values(dtype[1:]).astype("u4")
                        if "int" in names else make_values(dtype[1:]))
@@ -153,12 +156,12 @@ class TestVolumeFiles(unittest.TestCase):
             self.assertTrue(volume.is_oriented)
         volume = self.read("a.nrrd", nrrd(space="scanner-xyz"))
         self.check(volume)
-        self.assertFalse(volume.is_oriented or volume.is_in_mm)
+        self.assertEqual((volume.is_oriented, volume.is_in_mm), (False, True))
         volume = self.read("a.nrrd", nrrd(space=None, space_directions=None, space_origin=None, spacings="1 0.5 2"))
         self.check(volume, axes=numpy.diag([1.0, 0.5, 2.0]), origin=numpy.zeros(3))
         volume = self.read("a.nrrd", nrrd(space=None, space_directions=None, space_origin=None))
         self.check(volume, axes=numpy.eye(3), origin=numpy.zeros(3))
-        self.assertIn("how large voxels are", volume.note)
+        self.assertIn("no voxel size", volume.note)
 
     def test_meta_image(self):
         for fields in ({}, {"dtype": ">i2"}, {"pack": zlib.compress, "CompressedData": "True"}):
@@ -169,6 +172,9 @@ class TestVolumeFiles(unittest.TestCase):
         self.check(volume, axes=numpy.eye(3))
         self.assertFalse(volume.is_oriented or volume.is_in_mm)
         self.check(self.read("a.mha", meta("MET_FLOAT", "<f4")), make_values("f4"))
+        volume = self.read("a.mha", meta(DistanceUnits="cm"))
+        self.check(volume, axes=AXES * 10.0, origin=ORIGIN * 10.0)
+        self.assertTrue(volume.is_in_mm)
         self.check(self.read("A.MHA", meta()))
 
     def test_nifti(self):
@@ -183,7 +189,7 @@ class TestVolumeFiles(unittest.TestCase):
         self.check(self.read("a.nii", nifti(unit=3)))  # micrometres
         volume = self.read("a.nii", nifti(form=""))
         self.assertFalse(volume.is_oriented)
-        self.assertIn("does not say how the patient lies", volume.note)
+        self.assertIn("has no orientation", volume.note)
         volume = self.read("a.nii", nifti(volumes=3))
         self.check(volume)
         self.assertIn("the first of 3 volumes", volume.note)

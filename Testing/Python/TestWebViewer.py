@@ -223,10 +223,12 @@ class TestWebViewer(unittest.TestCase):
             self.assertTrue(first.is_wanted())
             start([6], "first", 6)
             self.assertFalse(first.is_wanted())
-            start(range(7, 12), "", web_viewer.MOST_REQUESTS)
+            start(range(7, 13), "", web_viewer.MOST_REQUESTS + 1)  # the superseded one is about to leave
             wait_for(lambda: len(outcomes) == 5)
-        wait_for(lambda: len(outcomes) == 12)
-        self.assertEqual(sorted(outcomes.values()), ["Abandoned"] * 2 + ["Busy"] * 3 + ["turn"] * 7)
+            start([13], "third", web_viewer.MOST_REQUESTS + 1)  # takes the place of the one before
+            wait_for(lambda: outcomes.get(2) == "Abandoned")
+        wait_for(lambda: len(outcomes) == 14)
+        self.assertEqual(sorted(outcomes.values()), ["Abandoned"] * 3 + ["Busy"] * 3 + ["turn"] * 8)
         self.assertEqual(queue.requests, [])
 
     def status(self, name):

@@ -96,8 +96,8 @@ class TestZoom(unittest.TestCase):
         self.assertGreater(same.mean(), 0.9)
         across, up = view.project(position[y, x][same])
         off = numpy.maximum(abs(across - x[same]), abs(up - y[same]))
-        # A sample in the area, or one beside it that is seen coming.
-        self.assertLess(off.max(), 0.5 + 1.5 / view.pixel + 1e-6)
+        # A sample in the area: half a voxel beside its ray at most.
+        self.assertLess(off.max(), 0.5 + 1e-3)
 
     def test_largest_of_areas(self):
         """Front views of pixels three and a half voxels wide, against the definition."""
@@ -121,12 +121,10 @@ class TestZoom(unittest.TestCase):
                     for a in range(1, 8):
                         ends = [(c - 4) * 3.5 + 0.5 * (n - 1) + numpy.array((-1.75, 1.75))
                                 for c, n in ((b, 31), (a, 34))]
-                        rows, columns = (numpy.concatenate(
-                            [e, numpy.arange(numpy.ceil(e[0]), numpy.floor(e[1]) + 1)])
-                            for e in ends)
-                        grid = numpy.stack(numpy.meshgrid(rows, columns, indexing="ij"), -1)
-                        expected = zoom.interpolate(plane, grid).max()
-                        if grid.min() >= 0 and rows.max() <= 30 and columns.max() <= 33:
+                        if numpy.min(ends) >= 0 and ends[0][1] <= 30 and ends[1][1] <= 33:
+                            rows, columns = (slice(int(numpy.ceil(e[0])), int(e[1]) + 1)
+                                             for e in ends)
+                            expected = plane[rows, columns].max()
                             self.assertAlmostEqual(found[b, a], expected, places=2)
 
 

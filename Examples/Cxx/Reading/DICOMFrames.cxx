@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/DICOMFrames.h"
+#include "Reading/DICOM.h"
 
 #include "ProgressLine.h"
 #include "Reading/Reading.h"
@@ -8,24 +8,22 @@
 #include "vtkDICOMItem.h"
 #include "vtkDICOMMetaData.h"
 #include "vtkDICOMSequence.h"
-#include "vtkDataArray.h"
 #include "vtkInformation.h"
 #include "vtkMath.h"
-#include "vtkPointData.h"
+
+#include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <map>
-#include <set>
 #include <sstream>
 #include <utility>
 
 namespace
 {
-/// What tells frames at the same place apart, the more telling first.
+/// Elements by which frames at the same place are distinguished, in the order of preference.
 const struct
 {
   vtkDICOMTag Tag;
@@ -38,17 +36,11 @@ const struct
   { DC::ContentTime, "time" }, { DC::ImageType, "image type" }, { DC::SOPInstanceUID, "object" },
   { DC::InstanceNumber, "instance number" }, { DC::DimensionIndexValues, "dimension index" } };
 
-vtkDICOMValue Get(const DICOMFile& file, int frame, vtkDICOMTag tag)
-{
-  return file.Reader->GetMetaData()->Get(0, frame, tag);
-}
-
 /**
- * As many numbers as asked for, or none.
+ * Get as many finite numbers as asked for, or none.
  */
-std::vector<double> GetNumbers(const DICOMFile& file, int frame, vtkDICOMTag tag, std::size_t count)
+std::vector<double> GetNumbers(const vtkDICOMValue& value, std::size_t count)
 {
-  const vtkDICOMValue value = Get(file, frame, tag);
   if (value.GetNumberOfValues() != count)
   {
     return {};
@@ -62,12 +54,12 @@ std::vector<double> GetNumbers(const DICOMFile& file, int frame, vtkDICOMTag tag
 
 int GetNumberOfFrames(const DICOMFile& file)
 {
-  return std::max(1, Get(file, 0, DC::NumberOfFrames).AsInt());
+  return std::max(1, file.Get(DC::NumberOfFrames).AsInt());
 }
 
 double GetLength(const DICOMFile& file, vtkDICOMTag tag)
 {
-  const double length = std::fabs(Get(file, 0, tag).AsDouble());
+  const double length = std::fabs(file.Get(tag).AsDouble());
   return std::isfinite(length) ? length : 0.0;
 }
 
@@ -82,11 +74,11 @@ std::unique_ptr<DICOMFile> OpenFile(const std::string& path, const QuietReading&
   file->Reader->SetMemoryRowOrderToFileNative();
   file->Reader->UpdateInformation();
   vtkDICOMMetaData* const elements = file->Reader->GetMetaData();
-  // zeros after the pixels look like elements of group 0
+  // zeros behind the pixels are parsed as elements of group 0
   if (HasFailed(file->Reader.Get(), quiet) || elements->Begin() == elements->End() ||
     elements->Begin()->GetTag().GetGroup() == 0)
   {
-    RefuseDamaged(path, quiet);
+    RefuseDamaged(path, quiet.GetReason());
   }
   if (elements->Get(DC::PhotometricInterpretation).AsString() == "PALETTE COLOR")
   {
@@ -113,29 +105,19 @@ std::unique_ptr<DICOMFile> OpenFile(const std::string& path, const QuietReading&
   file->Components = vtkImageData::GetNumberOfScalarComponents(info);
   const double spacing = GetLength(*file, DC::SpacingBetweenSlices);
   const double thickness = GetLength(*file, DC::SliceThickness);
-  file->Thickness = spacing > 0.0 ? spacing : thickness > 0.0 ? thickness : 1.0;
+  file->Thickness = spacing > 0.0 ? spacing : thickness;
   return file;
 }
 
 /**
- * Whether two files have the same bytes.
- */
-bool AreSame(const std::string& a, const std::string& b)
-{
-  std::ifstream first(a, std::ios::binary), second(b, std::ios::binary);
-  using Bytes = std::istreambuf_iterator<char>;
-  return std::equal(Bytes(first), Bytes(), Bytes(second), Bytes());
-}
-
-/**
- * How far the frames of a file lie from the position that it gives for all, or nothing if it does
- * not say: doses, and nuclear medicine.
+ * Find how far the frames of a dose, or of nuclear medicine, lie from the position that the file
+ * gives for all. Returns nothing if the file does not say.
  */
 std::vector<Vector3> FindOffsets(const DICOMFile& file, const Vector3& normal)
 {
   const auto count = static_cast<std::size_t>(GetNumberOfFrames(file));
   std::vector<Vector3> offsets;
-  std::vector<double> heights = GetNumbers(file, 0, DC::GridFrameOffsetVector, count);
+  std::vector<double> heights = GetNumbers(file.Get(DC::GridFrameOffsetVector), count);
   Vector3 direction = normal;
   if (!heights.empty() && heights[0] != 0.0) // not offsets, but the patient's z
   {
@@ -145,8 +127,8 @@ std::vector<Vector3> FindOffsets(const DICOMFile& file, const Vector3& normal)
   }
   if (heights.empty())
   {
-    heights = GetNumbers(file, 0, DC::SliceVector, count);
-    const double step = Get(file, 0, DC::SpacingBetweenSlices).AsDouble(); // may be negative
+    heights = GetNumbers(file.Get(DC::SliceVector), count);
+    const double step = file.Get(DC::SpacingBetweenSlices).AsDouble(); // may be negative
     heights = step == 0.0 ? std::vector<double>() : heights;
     std::for_each(
       heights.begin(), heights.end(), [step](double& height) { height = (height - 1.0) * step; });
@@ -159,22 +141,16 @@ std::vector<Vector3> FindOffsets(const DICOMFile& file, const Vector3& normal)
 }
 
 /**
- * Position and orientation of a frame; in nuclear medicine they are those of the detector.
+ * Get position or orientation of a frame; in nuclear medicine they are those of the detector.
  */
-std::vector<double> GetPlaneNumbers(const DICOMFile& file, int frame, vtkDICOMTag tag, int count)
+std::vector<double> GetPlaneNumbers(
+  const DICOMFile& file, int frame, vtkDICOMTag tag, std::size_t count)
 {
-  std::vector<double> numbers = GetNumbers(file, frame, tag, count);
-  const vtkDICOMSequence detectors = Get(file, frame, DC::DetectorInformationSequence);
-  if (numbers.empty() && detectors.GetNumberOfItems() > 0)
-  {
-    const vtkDICOMValue value = detectors.Get(0, tag);
-    if (value.GetNumberOfValues() == static_cast<std::size_t>(count))
-    {
-      numbers.resize(count);
-      value.GetValues(numbers.data(), count);
-    }
-  }
-  return numbers;
+  const std::vector<double> numbers = GetNumbers(file.Get(tag, frame), count);
+  const vtkDICOMSequence detectors = file.Get(DC::DetectorInformationSequence, frame);
+  return numbers.empty() && detectors.GetNumberOfItems() > 0
+    ? GetNumbers(detectors.Get(0, tag), count)
+    : numbers;
 }
 
 SlicePlane FindPlane(const DICOMFile& file, int frame)
@@ -184,17 +160,16 @@ SlicePlane FindPlane(const DICOMFile& file, int frame)
   plane.Name = file.Path + (count > 1 ? ", frame " + std::to_string(frame + 1) : "");
   const auto position = GetPlaneNumbers(file, frame, DC::ImagePositionPatient, 3);
   const auto axes = GetPlaneNumbers(file, frame, DC::ImageOrientationPatient, 6);
-  const auto spacing = GetNumbers(file, frame, DC::PixelSpacing, 2);
+  const auto spacing = GetNumbers(file.Get(DC::PixelSpacing, frame), 2);
   if (position.empty() || axes.empty())
   {
     Refuse(plane.Name,
-      "this picture has no position in the patient, as films and screenshots have none, so that "
-      "it is no part of a volume; give a CT or MR series, or choose another one.");
+      "this picture has no position in the patient; give a CT or MR series, or choose another "
+      "one.");
   }
   if (spacing.empty() || !(spacing[0] > 0.0) || !(spacing[1] > 0.0))
   {
-    Refuse(plane.Name,
-      "this slice does not say how large its pixels are (PixelSpacing); export the series again.");
+    Refuse(plane.Name, "this slice has no pixel size (PixelSpacing); export the series again.");
   }
   std::copy_n(position.begin(), 3, plane.Position.begin());
   std::copy_n(axes.begin(), 3, plane.Row.begin());
@@ -209,25 +184,25 @@ SlicePlane FindPlane(const DICOMFile& file, int frame)
       "export the series again.");
   }
   plane.Spacing = { spacing[1], spacing[0] }; // DICOM gives the distance of rows first
-  plane.Size = { static_cast<std::size_t>(Get(file, 0, DC::Columns).AsUnsignedInt()),
-    static_cast<std::size_t>(Get(file, 0, DC::Rows).AsUnsignedInt()) };
+  plane.Size = { static_cast<std::size_t>(file.Get(DC::Columns).AsUnsignedInt()),
+    static_cast<std::size_t>(file.Get(DC::Rows).AsUnsignedInt()) };
   return plane;
 }
 
 /**
- * Of frames that share the position of their file, as those of a film do.
+ * Refuse frames without positions of their own, such as those of a film.
  */
 void CheckFrames(const DICOMFile& file, const std::vector<Vector3>& offsets)
 {
   const int count = GetNumberOfFrames(file);
-  const vtkDICOMValue groups = Get(file, 0, DC::PerFrameFunctionalGroupsSequence);
+  const vtkDICOMValue groups = file.Get(DC::PerFrameFunctionalGroupsSequence);
   const bool isPlaced = groups.GetNumberOfValues() == static_cast<std::size_t>(count);
   if (count > 1 && offsets.empty() && !isPlaced)
   {
     Refuse(file.Path,
-      "it does not say where its " + std::to_string(count) +
-        " frames lie, as a film does not, so that they are no volume; give a CT or MR series, or "
-        "choose another one.");
+      "its " + std::to_string(count) +
+        " frames have no positions, such as those of a film; give a CT or MR series, or choose "
+        "another one.");
   }
 }
 
@@ -252,11 +227,11 @@ struct IsLess
   }
 };
 
-/// Frames at a place by what a tag says of them.
+/// Frames at a place by the values of a tag.
 using Sorted = std::map<std::string, std::size_t, IsLess>;
 
 /**
- * Empty if the tag does not tell them apart.
+ * Sort frames by a tag. Returns nothing if the tag does not distinguish them.
  */
 Sorted SortByTag(
   const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& place, vtkDICOMTag tag)
@@ -264,7 +239,7 @@ Sorted SortByTag(
   Sorted sorted;
   for (const std::size_t i : place)
   {
-    const vtkDICOMValue value = Get(*frames[i].File, frames[i].Number, tag);
+    const vtkDICOMValue value = frames[i].Get(tag);
     if (value.IsValid())
     {
       sorted.emplace(value.AsString(), i);
@@ -274,8 +249,8 @@ Sorted SortByTag(
 }
 
 /**
- * The frame of that number at each place, in the order of a tag that tells them apart, or none. The
- * tag must have the same values at all places unless ranks are enough.
+ * Choose the frame of a number at each place, in the order of a tag, or none if the tag does not
+ * distinguish them. It must have the same values at all places unless ranks are enough.
  */
 std::vector<std::size_t> ChooseByTag(const std::vector<DICOMFrame>& frames,
   const std::vector<std::vector<std::size_t>>& places, vtkDICOMTag tag, std::size_t number,
@@ -303,46 +278,40 @@ std::vector<std::size_t> ChooseByTag(const std::vector<DICOMFrame>& frames,
 void CheckCounts(
   const std::vector<DICOMFrame>& frames, const std::vector<std::vector<std::size_t>>& places)
 {
-  std::map<std::size_t, std::size_t> counts;
-  for (const auto& place : places)
+  const auto [least, most] = std::minmax_element(
+    places.begin(), places.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  if (least->size() < most->size())
   {
-    ++counts[place.size()];
-  }
-  const std::size_t usual = std::max_element(counts.begin(), counts.end(),
-    [](const auto& a, const auto& b) {
-      return a.second < b.second;
-    })->first;
-  for (const auto& place : places)
-  {
-    if (place.size() == usual)
+    const auto describe = [&](const auto& place)
     {
-      continue;
-    }
-    const SlicePlane& plane = frames[place[0]].Plane;
-    std::ostringstream text;
-    text << "there are " << place.size() << (place.size() == 1 ? " slice" : " slices") << " at ("
-         << plane.Position[0] << ", " << plane.Position[1] << ", " << plane.Position[2] << ") mm"
-         << (place.size() > 1 ? ", another is " + frames[place[1]].Plane.Name : "") << ", and "
-         << usual << " at most other places; move what does not belong to the volume out of the "
-         << "folder, or choose another series.";
-    Refuse(plane.Name, text.str());
+      return std::to_string(place.size()) + (place.size() > 1 ? " slices at " : " slice at ") +
+        "the place of " + Describe(frames[place.back()].Plane);
+    };
+    Refuse(frames[most->front()].Plane.Name,
+      "there are " + describe(*most) + ", and " + describe(*least) +
+        "; move what does not belong to the volume out of the folder, or choose another series.");
   }
 }
 }
 
-std::vector<std::unique_ptr<DICOMFile>> OpenFiles(
+vtkDICOMValue DICOMFile::Get(vtkDICOMTag tag, int frame) const
+{
+  return this->Reader->GetMetaData()->Get(0, frame, tag);
+}
+
+DICOMFiles OpenFiles(
   const std::vector<std::string>& paths, const QuietReading& quiet, std::vector<std::string>& notes)
 {
-  std::vector<std::unique_ptr<DICOMFile>> files;
-  std::map<std::string, std::string> first; // the path by what the object is called
+  DICOMFiles files;
+  std::map<std::string, std::string> first; // the path by the identifier of the object
   std::string copy;
   ProgressLine line("reading headers");
   for (std::size_t i = 0; i < paths.size(); ++i)
   {
     line.Show(double(i) / double(paths.size()));
     auto file = OpenFile(paths[i], quiet);
-    const auto known = first.emplace(Get(*file, 0, DC::SOPInstanceUID).AsString(), paths[i]).first;
-    if (known->second != paths[i] && AreSame(known->second, paths[i]))
+    const auto known = first.emplace(file->Get(DC::SOPInstanceUID).AsString(), paths[i]).first;
+    if (known->second != paths[i] && !vtksys::SystemTools::FilesDiffer(known->second, paths[i]))
     {
       copy = paths[i];
       continue;
@@ -357,7 +326,7 @@ std::vector<std::unique_ptr<DICOMFile>> OpenFiles(
   return files;
 }
 
-std::vector<DICOMFrame> FindFrames(const std::vector<std::unique_ptr<DICOMFile>>& files)
+std::vector<DICOMFrame> FindFrames(const DICOMFiles& files)
 {
   std::vector<DICOMFrame> frames;
   for (const auto& file : files)
@@ -390,6 +359,16 @@ std::vector<DICOMFrame> FindFrames(const std::vector<std::unique_ptr<DICOMFile>>
   return frames;
 }
 
+std::vector<SlicePlane> GetPlanes(const std::vector<DICOMFrame>& frames)
+{
+  std::vector<SlicePlane> planes;
+  for (const DICOMFrame& frame : frames)
+  {
+    planes.push_back(frame.Plane);
+  }
+  return planes;
+}
+
 std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
   const std::vector<std::vector<std::size_t>>& places, int number, std::vector<std::string>& notes)
 {
@@ -410,7 +389,7 @@ std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
         const DICOMFrame& first = frames[order[0]];
         notes.push_back(DescribeChoice("volume", number, static_cast<int>(count)) + ", " +
           (areRanksEnough ? std::string("by the order of ") + name + " at each place"
-                          : name + (" " + Get(*first.File, first.Number, tag).AsString())));
+                          : name + (" " + first.Get(tag).AsString())));
         return order;
       }
     }
@@ -425,7 +404,7 @@ std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
     Refuse(frames[places[0][0]].Plane.Name,
       "there are " + std::to_string(count) + " slices at each place, here also " +
         frames[places[0][1]].Plane.Name +
-        ", and nothing says which belong together; move one set out of the folder.");
+        ", and no element distinguishes them; move one set out of the folder.");
   }
   return order;
 }
@@ -436,24 +415,7 @@ vtkImageData* ReadPixels(DICOMFile& file, const QuietReading& quiet)
   vtkImageData* const image = file.Reader->GetOutput();
   if (HasFailed(file.Reader.Get(), quiet) || image->GetNumberOfPoints() < 1)
   {
-    RefuseDamaged(file.Path, quiet);
+    RefuseDamaged(file.Path, quiet.GetReason());
   }
   return image;
-}
-
-void FindWindow(const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& order,
-  double& window, double& level)
-{
-  std::set<std::pair<double, double>> found;
-  for (const std::size_t i : order)
-  {
-    found.emplace(Get(*frames[i].File, frames[i].Number, DC::WindowWidth).AsDouble(),
-      Get(*frames[i].File, frames[i].Number, DC::WindowCenter).AsDouble());
-  }
-  const auto [width, center] = *found.begin();
-  if (found.size() == 1 && width > 0.0 && std::isfinite(width) && std::isfinite(center))
-  {
-    window = width;
-    level = center;
-  }
 }

@@ -1,16 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/DICOMSegments.h"
+#include "Reading/DICOM.h"
 
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
 #include "Reading/SliceStack.h"
 
 #include "vtkDICOMItem.h"
-#include "vtkDICOMMetaData.h"
 #include "vtkDICOMSequence.h"
 #include "vtkDataArray.h"
-#include "vtkMath.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -21,99 +19,48 @@ namespace
 /// Steps that a frame may be off its place.
 constexpr double NearEnough = 0.1;
 
-vtkDICOMValue Get(const DICOMFrame& frame, vtkDICOMTag tag)
-{
-  return frame.File->Reader->GetMetaData()->Get(0, frame.Number, tag);
-}
+/// Frames that are closer, in mm, are of the same slice.
+constexpr double SamePlace = 1e-3;
 
 /**
- * The numbers of segments, with the names that the files give.
+ * List the segments by their numbers and names.
  */
-std::vector<std::string> ListSegments(
-  const std::vector<std::unique_ptr<DICOMFile>>& files, std::vector<int>& numbers)
+std::vector<std::string> ListSegments(const DICOMFiles& files, std::vector<int>& numbers)
 {
   std::vector<std::string> names;
   for (const auto& file : files)
   {
-    const vtkDICOMSequence segments = file->Reader->GetMetaData()->Get(DC::SegmentSequence);
+    const vtkDICOMSequence segments = file->Get(DC::SegmentSequence);
     for (std::size_t i = 0; i < segments.GetNumberOfItems(); ++i)
     {
-      std::string name = segments.Get(i, DC::SegmentLabel).AsString();
-      std::replace_if(
-        name.begin(), name.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
       numbers.push_back(segments.Get(i, DC::SegmentNumber).AsInt());
-      names.push_back(std::to_string(numbers.back()) + " (" + name + ")");
+      names.push_back(std::to_string(numbers.back()) + " (" +
+        segments.Get(i, DC::SegmentLabel).AsUTF8String() + ")");
     }
   }
   return names;
 }
 
 /**
- * Even slices, on each of which frames lie.
+ * Find the distance of even slices on which all frames lie: the one that the file gives, else the
+ * least between frames, or 1 mm if there is one.
  */
-struct Grid
+double FindStep(const SliceLine& line, double thickness, const std::string& path)
 {
-  Vector3 Normal;
-  Vector3 First; // the first pixel of the first slice
-  double Step = 0.0;
-  vtkIdType Slices = 0;
-
-  double GetHeight(const SlicePlane& plane) const
+  double least = 0.0;
+  for (std::size_t i = 1; i < line.Places.size(); ++i)
   {
-    return vtkMath::Dot(plane.Position.data(), this->Normal.data()) -
-      vtkMath::Dot(this->First.data(), this->Normal.data());
+    const double step = line.Places[i] - line.Places[i - 1];
+    least = step > SamePlace && !(least > 0.0 && least < step) ? step : least;
   }
-
-  vtkIdType GetSlice(const SlicePlane& plane) const
+  for (const double step : { thickness, least > 0.0 ? least : 1.0 })
   {
-    return static_cast<vtkIdType>(std::lround(this->GetHeight(plane) / this->Step));
-  }
-};
-
-/**
- * Whether a plane is on a slice, with its pixels above those of the first.
- */
-bool IsOnGrid(const SlicePlane& plane, const Grid& grid)
-{
-  const double height = grid.GetHeight(plane), place = height / grid.Step;
-  double aside = 0.0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    aside = std::hypot(aside, plane.Position[axis] - grid.First[axis] - height * grid.Normal[axis]);
-  }
-  return std::fabs(place - std::round(place)) < NearEnough &&
-    aside < 0.5 * std::min(plane.Spacing[0], plane.Spacing[1]);
-}
-
-/**
- * The distance of slices is the one that the file gives, else the least between frames.
- */
-Grid FindGrid(const std::vector<SlicePlane>& planes, double thickness, const std::string& path)
-{
-  std::string note;
-  if (FindLargestStack(planes, note).size() != planes.size())
-  {
-    Refuse(path, "its frames are of different kinds; " + note + ".");
-  }
-  const auto places = FindPlaces(planes);
-  Grid grid;
-  grid.First = planes[places.front()[0]].Position;
-  vtkMath::Cross(planes[0].Row.data(), planes[0].Column.data(), grid.Normal.data());
-  double least = thickness;
-  for (std::size_t i = 1; i < places.size(); ++i)
-  {
-    const double step =
-      grid.GetHeight(planes[places[i][0]]) - grid.GetHeight(planes[places[i - 1][0]]);
-    least = i == 1 ? step : std::min(least, step);
-  }
-  for (const double step : { thickness, least })
-  {
-    grid.Step = step;
-    grid.Slices = grid.GetSlice(planes[places.back()[0]]) + 1;
-    if (std::all_of(planes.begin(), planes.end(),
-          [&](const SlicePlane& plane) { return IsOnGrid(plane, grid); }))
+    if (step > 0.0 &&
+      std::all_of(line.Places.begin(), line.Places.end(),
+        [step](double place)
+        { return std::fabs(place / step - std::round(place / step)) < NearEnough; }))
     {
-      return grid;
+      return step;
     }
   }
   Refuse(path, "its frames are not evenly above each other; export the segmentation again.");
@@ -125,10 +72,10 @@ Grid FindGrid(const std::vector<SlicePlane>& planes, double thickness, const std
 bool AddFrame(const DICOMFrame& frame, vtkDataArray* stored, int label, vtkIdType pixels,
   vtkIdType slice, vtkDataArray* labels)
 {
-  const std::string type = Get(frame, DC::SegmentationType).AsString();
-  const int number = Get(frame, DC::ReferencedSegmentNumber).AsInt();
+  const std::string type = frame.Get(DC::SegmentationType).AsString();
+  const int number = frame.Get(DC::ReferencedSegmentNumber).AsInt();
   const double least =
-    type == "FRACTIONAL" ? 0.5 * Get(frame, DC::MaximumFractionalValue).AsDouble() : 1.0;
+    type == "FRACTIONAL" ? 0.5 * frame.Get(DC::MaximumFractionalValue).AsDouble() : 1.0;
   bool isOverlapping = false;
   for (vtkIdType i = 0; i < pixels; ++i)
   {
@@ -147,12 +94,11 @@ bool AddFrame(const DICOMFrame& frame, vtkDataArray* stored, int label, vtkIdTyp
 
 bool IsSegmentation(const DICOMFile& file)
 {
-  const std::string kind = file.Reader->GetMetaData()->Get(DC::SOPClassUID).AsString();
+  const std::string kind = file.Get(DC::SOPClassUID).AsString();
   return kind == "1.2.840.10008.5.1.4.1.1.66.4" || kind == "1.2.840.10008.5.1.4.1.1.66.7";
 }
 
-Volume ReadSegments(
-  const std::vector<std::unique_ptr<DICOMFile>>& files, int label, const QuietReading& quiet)
+void ReadSegments(const DICOMFiles& files, int label, const QuietReading& quiet, Volume& volume)
 {
   const std::string& path = files.front()->Path;
   std::vector<int> numbers;
@@ -164,34 +110,41 @@ Volume ReadSegments(
         "; give another --label.");
   }
   const std::vector<DICOMFrame> frames = FindFrames(files);
-  std::vector<SlicePlane> planes;
-  for (const DICOMFrame& frame : frames)
+  const std::vector<SlicePlane> planes = GetPlanes(frames);
+  std::string note;
+  if (FindLargestStack(planes, note).size() != planes.size())
   {
-    planes.push_back(frame.Plane);
+    Refuse(path, "its frames are of different kinds; " + note + ".");
   }
-  const SlicePlane& plane = planes.front();
-  const Grid grid = FindGrid(planes, files.front()->Thickness, path);
-  const auto pixels = static_cast<vtkIdType>(plane.Size[0] * plane.Size[1]);
-  CheckMemory(double(pixels) * double(grid.Slices), path);
-  Volume volume;
+  std::vector<std::size_t> order;
+  for (const auto& place : FindPlaces(planes))
+  {
+    order.insert(order.end(), place.begin(), place.end());
+  }
+  const SliceLine line = FindLine(planes, order);
+  const double step = FindStep(line, files.front()->Thickness, path);
+  const auto getSlice = [&](std::size_t i) { return std::lround(line.Places[i] / step); };
+  const SlicePlane& first = planes[order.front()];
+  const vtkIdType slices = getSlice(order.size() - 1) + 1;
+  const auto pixels = static_cast<vtkIdType>(first.Size[0] * first.Size[1]);
+  CheckMemory(double(pixels) * double(slices), path);
   volume.Image = vtkSmartPointer<vtkImageData>::New();
-  volume.Image->SetDimensions(int(plane.Size[0]), int(plane.Size[1]), int(grid.Slices));
+  volume.Image->SetDimensions(int(first.Size[0]), int(first.Size[1]), int(slices));
   volume.Image->AllocateScalars(VTK_UNSIGNED_SHORT, 1);
   vtkDataArray* const labels = volume.Image->GetPointData()->GetScalars();
   labels->Fill(0.0);
   bool isOverlapping = false;
-  for (const DICOMFrame& frame : frames)
+  for (std::size_t i = 0; i < order.size(); ++i)
   {
+    const DICOMFrame& frame = frames[order[i]];
     vtkDataArray* const stored = ReadPixels(*frame.File, quiet)->GetPointData()->GetScalars();
-    const vtkIdType slice = grid.GetSlice(frame.Plane);
-    isOverlapping = AddFrame(frame, stored, label, pixels, slice, labels) || isOverlapping;
+    isOverlapping = AddFrame(frame, stored, label, pixels, getSlice(i), labels) || isOverlapping;
   }
-  volume.IsOriented = volume.IsInMillimeters = volume.HasLabels = true;
-  PlaceVolume(volume, MakeSteps(plane, grid.Normal, grid.Step), grid.First);
+  volume.IsOriented = volume.HasLabels = true;
+  PlaceVolume(volume, MakeSteps(first, line.Direction, step), first.Position, "mm");
   volume.Notes.push_back("segments " + JoinWords(names) + " (--label chooses)");
   if (isOverlapping)
   {
     volume.Notes.push_back("segments overlap: the highest number was taken");
   }
-  return volume;
 }

@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/DICOMSeries.h"
+#include "Reading/DICOM.h"
 
 #include "ProgressLine.h"
 #include "Reading/Reading.h"
 
-#include "vtkCallbackCommand.h"
-#include "vtkCommand.h"
 #include "vtkDICOMDirectory.h"
 #include "vtkDICOMItem.h"
 #include "vtkDICOMUtilities.h"
@@ -16,14 +14,13 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 
 namespace
 {
-/// Folders in folders: a patient's, a study's, a series', and some to spare.
+/// Levels of folders that are searched.
 constexpr int Depth = 8;
 
 struct Series
@@ -37,9 +34,7 @@ struct Series
 Series MakeSeries(const vtkDICOMItem& record)
 {
   Series series;
-  std::string description = record.Get(DC::SeriesDescription).AsString();
-  std::replace_if(
-    description.begin(), description.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  const std::string description = record.Get(DC::SeriesDescription).AsUTF8String();
   series.Name = record.Get(DC::SeriesInstanceUID).AsString();
   series.Text = record.Get(DC::Modality).AsString();
   series.Text += description.empty() ? "" : " \"" + description + "\"";
@@ -59,29 +54,22 @@ void AddFiles(Series& series, vtkStringArray* files)
 
 std::vector<Series> FindSeries(const std::string& folder, const QuietReading& quiet)
 {
-  ProgressLine line("looking for series in " + folder);
-  vtkNew<vtkCallbackCommand> tell;
-  tell->SetClientData(&line);
-  tell->SetCallback(
-    [](vtkObject* caller, unsigned long, void* client, void*) {
-      static_cast<ProgressLine*>(client)->Show(static_cast<vtkAlgorithm*>(caller)->GetProgress());
-    });
   vtkNew<vtkDICOMDirectory> directory;
   directory->SetDirectoryName(folder.c_str());
   directory->SetScanDepth(Depth);
   directory->RequirePixelDataOn();
-  directory->AddObserver(vtkCommand::ProgressEvent, tell);
+  const ProgressLine line("looking for series in " + folder, directory);
   directory->Update();
   if (HasFailed(directory.Get(), quiet))
   {
     const char* const file = directory->GetInternalFileName();
-    RefuseDamaged(file && *file ? file : folder, quiet);
+    RefuseDamaged(file && *file ? file : folder, quiet.GetReason());
   }
   std::vector<Series> all;
   for (int i = 0; i < directory->GetNumberOfSeries(); ++i)
   {
     const Series series = MakeSeries(directory->GetSeriesRecord(i));
-    // vtkDICOMDirectory makes another series of objects that are there twice
+    // vtkDICOMDirectory lists copies of objects as another series
     auto known = std::find_if(all.begin(), all.end(),
       [&](const Series& other) { return !series.Name.empty() && other.Name == series.Name; });
     known = known == all.end() ? all.insert(known, series) : known;
@@ -91,7 +79,8 @@ std::vector<Series> FindSeries(const std::string& folder, const QuietReading& qu
 }
 
 /**
- * The series that a file belongs to, or for a folder the largest. Their number if there is none.
+ * Find the series of a file, or the largest of a folder. Returns the number of series if there is
+ * none.
  */
 std::size_t FindDefault(const std::vector<Series>& all, const std::string& path)
 {
@@ -132,12 +121,13 @@ std::string ExplainFile(const std::string& path)
       ? ""
       : name + " is deflated DICOM; convert it with DCMTK's dcmconv +te.";
   }
+  const auto isLetter = [](char c) { return c >= 'A' && c <= 'Z'; };
   // group 8 or 2, of an element below 0x100, with a type in two letters or a short length
   const bool isBig = head[0] == 0;
   const char group = head[isBig ? 1 : 0];
   const bool isElement = (group == 8 || group == 2) && head[isBig ? 0 : 1] == 0 &&
     head[isBig ? 2 : 3] == 0 &&
-    ((std::isupper(head[4]) && std::isupper(head[5])) || (head[6] == 0 && head[7] == 0));
+    ((isLetter(head[4]) && isLetter(head[5])) || (head[6] == 0 && head[7] == 0));
   return isElement
     ? name + " looks like DICOM without a header; convert it with DCMTK's dcmconv +te."
     : "";
@@ -151,7 +141,7 @@ bool IsDICOMFile(const std::string& path)
 namespace
 {
 /**
- * The first explanation of a file, or of those in a folder.
+ * Explain a file, or the first of a folder that has an explanation.
  */
 std::string ExplainFiles(const std::string& path)
 {

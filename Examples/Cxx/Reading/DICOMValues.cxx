@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/DICOMValues.h"
+#include "Reading/DICOM.h"
 
 #include "vtkDICOMItem.h"
 #include "vtkDICOMMetaData.h"
@@ -16,11 +16,6 @@
 
 namespace
 {
-vtkDICOMValue Get(const DICOMFrame& frame, vtkDICOMTag tag)
-{
-  return frame.File->Reader->GetMetaData()->Get(0, frame.Number, tag);
-}
-
 void AddNote(std::vector<std::string>& notes, const std::string& note)
 {
   if (std::find(notes.begin(), notes.end(), note) == notes.end())
@@ -30,7 +25,7 @@ void AddNote(std::vector<std::string>& notes, const std::string& note)
 }
 
 /**
- * Codes whose first bit is their sign.
+ * Interpret the first bit of a code as its sign.
  */
 double AddSign(double code, const ValueMap& map)
 {
@@ -39,7 +34,7 @@ double AddSign(double code, const ValueMap& map)
 }
 
 /**
- * A table of values, with its first code.
+ * Set a table of values and its first code.
  */
 void SetTable(ValueMap& map, const vtkDICOMItem& table)
 {
@@ -66,25 +61,25 @@ void SetSlope(ValueMap& map, double slope, double intercept)
 }
 
 /**
- * Values in the order of the standard: the first of the elements that is there.
+ * Set the conversion by the first of the elements that exists, in the order of the standard.
  */
 void SetValues(ValueMap& map, const DICOMFrame& frame, std::vector<std::string>& notes)
 {
-  const vtkDICOMSequence tables = Get(frame, DC::ModalityLUTSequence);
-  const vtkDICOMSequence worlds = Get(frame, DC::RealWorldValueMappingSequence);
+  const vtkDICOMSequence tables = frame.Get(DC::ModalityLUTSequence);
+  const vtkDICOMSequence worlds = frame.Get(DC::RealWorldValueMappingSequence);
   if (tables.GetNumberOfItems() > 0)
   {
     SetTable(map, tables.GetItem(0));
     AddNote(notes, "the values are those of the file's Modality LUT");
   }
-  else if (Get(frame, DC::RescaleSlope).IsValid())
+  else if (frame.Get(DC::RescaleSlope).IsValid())
   {
     SetSlope(
-      map, Get(frame, DC::RescaleSlope).AsDouble(), Get(frame, DC::RescaleIntercept).AsDouble());
+      map, frame.Get(DC::RescaleSlope).AsDouble(), frame.Get(DC::RescaleIntercept).AsDouble());
   }
-  else if (Get(frame, DC::DoseGridScaling).IsValid())
+  else if (frame.Get(DC::DoseGridScaling).IsValid())
   {
-    SetSlope(map, Get(frame, DC::DoseGridScaling).AsDouble(), 0.0);
+    SetSlope(map, frame.Get(DC::DoseGridScaling).AsDouble(), 0.0);
   }
   else if (worlds.GetNumberOfItems() > 0)
   {
@@ -99,13 +94,13 @@ void SetValues(ValueMap& map, const DICOMFrame& frame, std::vector<std::string>&
 
 void SetPadding(ValueMap& map, const DICOMFrame& frame, bool hidesPadding)
 {
-  const vtkDICOMValue value = Get(frame, DC::PixelPaddingValue);
-  const vtkDICOMValue limit = Get(frame, DC::PixelPaddingRangeLimit);
+  const vtkDICOMValue value = frame.Get(DC::PixelPaddingValue);
+  const vtkDICOMValue limit = frame.Get(DC::PixelPaddingRangeLimit);
   if (!value.IsValid() || map.Bits == 0)
   {
     return;
   }
-  // The standard has them signed or not as pixels are, which not all files obey.
+  // They should be signed if pixels are, but not all files obey.
   const double codes = std::ldexp(1.0, map.Bits);
   const auto read = [&](const vtkDICOMValue& code)
   { return AddSign(std::fmod(code.AsInt() + codes, codes), map); };
@@ -126,7 +121,7 @@ void Look(const From* from, vtkIdType count, const std::vector<double>& values, 
 }
 
 /**
- * From a table by the stored bits, or one by one.
+ * Convert values by a table of the stored bits, or one by one.
  */
 template <class To>
 void ConvertValues(vtkDataArray* from, vtkIdType first, vtkIdType count, const ValueMap& map,
@@ -184,17 +179,17 @@ ValueMap FindValueMap(const DICOMFrame& frame, bool hidesPadding, std::vector<st
   if (type != VTK_FLOAT && type != VTK_DOUBLE)
   {
     const int most = 8 * vtkDataArray::GetDataTypeSize(type);
-    const int stored = Get(frame, DC::BitsStored).AsInt();
+    const int stored = frame.Get(DC::BitsStored).AsInt();
     map.Shift = frame.File->Shift;
     map.Bits = (stored > 0 ? std::min(stored, most) : most) - map.Shift;
-    map.IsSigned = Get(frame, DC::PixelRepresentation).AsInt() == 1;
+    map.IsSigned = frame.Get(DC::PixelRepresentation).AsInt() == 1;
   }
   SetValues(map, frame, notes);
   SetPadding(map, frame, hidesPadding);
-  if (Get(frame, DC::PhotometricInterpretation).AsString() == "MONOCHROME1")
+  if (frame.Get(DC::PhotometricInterpretation).AsString() == "MONOCHROME1")
   {
     AddNote(
-      notes, "the file wants low values bright (MONOCHROME1), as --colormap inverted shows it");
+      notes, "low values are bright in this file (MONOCHROME1): --colormap inverted shows them so");
   }
   return map;
 }

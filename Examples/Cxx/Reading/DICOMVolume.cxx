@@ -1,30 +1,29 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/DICOMVolume.h"
-
 #include "ProgressLine.h"
-#include "Reading/DICOMFrames.h"
-#include "Reading/DICOMSegments.h"
-#include "Reading/DICOMSeries.h"
-#include "Reading/DICOMValues.h"
+#include "Reading/DICOM.h"
+#include "Reading/Formats.h"
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
 #include "Reading/SliceStack.h"
 
 #include "vtkDICOMMetaData.h"
-#include "vtkDataArray.h"
 #include "vtkImageCast.h"
 #include "vtkNew.h"
-#include "vtkPointData.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <sstream>
 
 namespace
 {
+/// Steps that a slice may be off its even place without interpolation.
+constexpr double EvenEnough = 0.1;
+
 /**
- * 16-bit integers where they hold the values that there are.
+ * Convert integers to 16 bits if they hold the values that there are.
  */
 vtkSmartPointer<vtkImageData> Narrow(vtkImageData* image)
 {
@@ -43,7 +42,7 @@ vtkSmartPointer<vtkImageData> Narrow(vtkImageData* image)
 }
 
 /**
- * The frames in their order, each file read once.
+ * Read the frames in an order, each file once.
  */
 vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
   const std::vector<std::size_t>& order, bool hidesPadding, const QuietReading& quiet,
@@ -86,80 +85,98 @@ vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
 }
 
 /**
- * Slices between others: integers are rounded.
+ * Find even places for slices, or refuse them.
  */
-vtkSmartPointer<vtkImageData> Blend(
-  vtkImageData* image, const std::vector<std::size_t>& order, const std::vector<SliceBlend>& slices)
+std::vector<double> FindEvenPlaces(const SliceLine& line, const std::vector<SlicePlane>& planes,
+  const std::vector<std::size_t>& order, std::vector<std::string>& notes)
 {
-  const int* const size = image->GetDimensions();
-  CheckMemory(double(size[0]) * size[1] * slices.size(), "the volume");
-  auto even = vtkSmartPointer<vtkImageData>::New();
-  even->SetDimensions(size[0], size[1], static_cast<int>(slices.size()));
-  const int components = image->GetNumberOfScalarComponents();
-  even->AllocateScalars(image->GetScalarType(), components);
-  vtkDataArray* const from = image->GetPointData()->GetScalars();
-  vtkDataArray* const to = even->GetPointData()->GetScalars();
-  const bool isWhole = image->GetScalarType() != VTK_FLOAT && image->GetScalarType() != VTK_DOUBLE;
-  const vtkIdType count = vtkIdType(size[0]) * size[1];
-  const auto find = [&](std::size_t plane)
-  { return std::find(order.begin(), order.end(), plane) - order.begin(); };
-  for (std::size_t k = 0; k < slices.size(); ++k)
+  const auto& places = line.Places;
+  const std::vector<double> even = SpaceEvenly(places, EvenEnough);
+  if (even == places)
   {
-    const auto first = count * find(slices[k].First), second = count * find(slices[k].Second);
-    const double weight = slices[k].Weight;
-    const auto start = count * static_cast<vtkIdType>(k);
-    if (weight == 0.0 || weight == 1.0)
-    {
-      to->InsertTuples(start, count, weight == 0.0 ? first : second, from);
-      continue;
-    }
-    for (vtkIdType i = 0; i < count * components; ++i)
-    {
-      const vtkIdType point = i / components;
-      const int n = static_cast<int>(i % components);
-      const double value = (1.0 - weight) * from->GetComponent(first + point, n) +
-        weight * from->GetComponent(second + point, n);
-      to->SetComponent(start + point, n, isWhole ? std::round(value) : value);
-    }
+    return even;
   }
+  std::size_t least = 1, most = 1; // the slices behind these steps
+  const auto step = [&](std::size_t i) { return places[i] - places[i - 1]; };
+  for (std::size_t i = 1; i < places.size(); ++i)
+  {
+    least = step(i) < step(least) ? i : least;
+    most = step(i) > step(most) ? i : most;
+  }
+  const auto describe = [&](std::size_t i)
+  { return Describe(planes[order[i - 1]]) + " and " + Describe(planes[order[i]]); };
+  std::ostringstream text;
+  text << "the slices are " << step(least) << " mm (between " << describe(least) << ") to "
+       << step(most) << " mm apart (between " << describe(most) << ")";
+  if (even.empty())
+  {
+    Refuse(planes[order[least]].Name,
+      text.str() +
+        ", which is too uneven to interpolate; move what does not belong to the volume out of "
+        "the folder.");
+  }
+  text << " and were interpolated to " << even[1] - even[0] << " mm";
+  notes.push_back(text.str());
   return even;
 }
 
-void Place(Volume& volume, const SlicePlane& plane, const SliceGrid& grid, double thickness)
+/**
+ * Find the window with which all frames ask to be shown, the first if they give several.
+ */
+void FindWindow(
+  const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& order, Volume& volume)
 {
-  volume.IsOriented = true;
-  volume.IsInMillimeters = true;
-  const double step = grid.Step > 0.0 ? grid.Step : thickness;
-  PlaceVolume(volume, MakeSteps(plane, grid.Direction, step), plane.Position);
-}
-
-std::vector<SlicePlane> GetPlanes(const std::vector<DICOMFrame>& frames)
-{
-  std::vector<SlicePlane> planes;
-  for (const DICOMFrame& frame : frames)
+  std::set<std::pair<double, double>> found;
+  for (const std::size_t i : order)
   {
-    planes.push_back(frame.Plane);
+    found.emplace(
+      frames[i].Get(DC::WindowWidth).AsDouble(), frames[i].Get(DC::WindowCenter).AsDouble());
   }
-  return planes;
+  const auto [width, center] = *found.begin();
+  if (found.size() == 1 && width > 0.0 && std::isfinite(width) && std::isfinite(center))
+  {
+    volume.Window = width;
+    volume.Level = center;
+  }
 }
 
 /**
- * The frames that agree with most others: not a scout among slices.
+ * Read the largest stack of frames that agree: not a scout among slices.
  */
-std::vector<DICOMFrame> ChooseStack(
-  const std::vector<DICOMFrame>& frames, std::vector<std::string>& notes)
+void ReadStack(
+  const DICOMFiles& files, const ReadSettings& settings, const QuietReading& quiet, Volume& volume)
 {
   std::string note;
-  std::vector<DICOMFrame> chosen;
-  for (const std::size_t i : FindLargestStack(GetPlanes(frames), note))
+  std::vector<DICOMFrame> frames;
+  const std::vector<DICOMFrame> all = FindFrames(files);
+  for (const std::size_t i : FindLargestStack(GetPlanes(all), note))
   {
-    chosen.push_back(frames[i]);
+    frames.push_back(all[i]);
   }
   if (!note.empty())
   {
-    notes.push_back(note);
+    volume.Notes.push_back(note);
   }
-  return chosen;
+  const std::vector<SlicePlane> planes = GetPlanes(frames);
+  const auto order = ChooseTime(frames, FindPlaces(planes), settings.Frame, volume.Notes);
+  const SliceLine line = FindLine(planes, order);
+  const std::vector<double> even = FindEvenPlaces(line, planes, order, volume.Notes);
+  volume.Image = ReadFrames(frames, order, settings.HidesPadding, quiet, volume.Notes);
+  if (even != line.Places)
+  {
+    const SlicePlane& plane = planes[0];
+    CheckMemory(double(plane.Size[0]) * plane.Size[1] * even.size(), frames[0].File->Path);
+    volume.Image = Interpolate(volume.Image, 2, line.Places, even);
+    AddCaution(volume, "slices interpolated");
+  }
+  FindWindow(frames, order, volume);
+  const double thickness = files.front()->Thickness;
+  const double step = even.size() > 1 ? even.back() / static_cast<double>(even.size() - 1)
+    : thickness > 0.0                 ? thickness
+                                      : 1.0;
+  volume.IsOriented = true;
+  const SlicePlane& first = planes[order[0]];
+  PlaceVolume(volume, MakeSteps(first, line.Direction, step), first.Position, "mm");
 }
 }
 
@@ -168,28 +185,15 @@ Volume ReadDICOM(const std::string& path, const ReadSettings& settings, const Qu
   Volume volume;
   const auto names = ChooseSeries(path, settings.Series, quiet, volume.Notes, volume.Files);
   const auto files = OpenFiles(names, quiet, volume.Notes);
+  volume.Study = files.front()->Reader->GetMetaData();
   if (IsSegmentation(*files.front()))
   {
     CheckChoice(path, "volume", settings.Frame, 1);
-    Volume segments = ReadSegments(files, settings.Label, quiet);
-    segments.Notes.insert(segments.Notes.begin(), volume.Notes.begin(), volume.Notes.end());
-    segments.Files = volume.Files;
-    segments.Study = files.front()->Reader->GetMetaData();
-    return segments;
+    ReadSegments(files, settings.Label, quiet, volume);
   }
-  const std::vector<DICOMFrame> frames = ChooseStack(FindFrames(files), volume.Notes);
-  const std::vector<SlicePlane> planes = GetPlanes(frames);
-  const auto order = ChooseTime(frames, FindPlaces(planes), settings.Frame, volume.Notes);
-  const SliceGrid grid = MakeGrid(planes, order);
-  volume.Image = ReadFrames(frames, order, settings.HidesPadding, quiet, volume.Notes);
-  if (!grid.Note.empty())
+  else
   {
-    volume.Image = Blend(volume.Image, order, grid.Slices);
-    volume.Notes.push_back(grid.Note);
-    volume.Caution = "slices interpolated";
+    ReadStack(files, settings, quiet, volume);
   }
-  FindWindow(frames, order, volume.Window, volume.Level);
-  Place(volume, planes[order[0]], grid, files.front()->Thickness);
-  volume.Study = files.front()->Reader->GetMetaData();
   return volume;
 }

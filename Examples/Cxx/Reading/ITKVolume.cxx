@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/ITKVolume.h"
-
+#include "Reading/Formats.h"
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
 
@@ -9,10 +8,15 @@
 #include "itkMetaImageIO.h"
 #include "itkNrrdImageIO.h"
 
+#include "vtkExtractVOI.h"
+#include "vtkNew.h"
+
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <map>
 #include <sstream>
 #include <vector>
 
@@ -25,51 +29,57 @@ std::string Trim(const std::string& text)
 }
 
 /**
- * The text behind a key and a separator in a header, which ITK does not report; empty if there is
- * none. Keys of MetaImage are case-sensitive.
+ * Parts of a header that ITK does not report: the texts behind its keys, and the files with its
+ * data.
  */
-std::string FindField(const std::string& path, const std::string& key, char separator)
+struct Header
 {
-  std::istringstream header(ReadHead(path));
-  for (std::string line; std::getline(header, line) && !Trim(line).empty();)
-  {
-    const std::size_t end = line.find(separator);
-    if (end != std::string::npos && Trim(line.substr(0, end)) == key)
-    {
-      return Trim(line.substr(end + 1));
-    }
-  }
-  return "";
-}
+  std::map<std::string, std::string> Fields; // less empty ones
+  std::vector<std::string> Files;
 
-[[noreturn]] void RefuseUnread(const std::string& path, const std::string& reason)
-{
-  if (reason.find("not available") != std::string::npos)
+  bool Has(const std::string& key) const { return this->Fields.count(key) > 0; }
+  std::string Get(const std::string& key) const
   {
-    Refuse(path,
-      "the encoding of its data is not supported (" + reason +
-        "); save the volume with gzip or raw data.");
+    return this->Has(key) ? this->Fields.at(key) : "";
   }
-  Refuse(path,
-    "damaged, incomplete or not what its name says (" + reason +
-      "); check it, or export the volume again.");
-}
+};
 
 /**
- * Refuse lines that ITK 5 cannot quote in an error without a buffer overflow. Only values of keys
- * of one's own are so long in sound files.
+ * Keys of NRRD are made lower-case; those of MetaImage are case-sensitive. ITK 5 cannot quote long
+ * lines of NRRD in an error without a buffer overflow. Only values of private keys are so long in
+ * sound files.
  */
-void CheckLines(const std::string& path)
+Header ReadHeader(const std::string& path, char separator)
 {
   constexpr std::size_t Longest = 500;
-  std::istringstream header(ReadHead(path));
-  for (std::string line; std::getline(header, line) && !Trim(line).empty();)
+  Header header;
+  std::istringstream text(ReadHead(path));
+  for (std::string line; std::getline(text, line) && !Trim(line).empty();)
   {
-    if (line.size() > Longest && line[0] != '#' && line.find(":=") == std::string::npos)
+    if (separator == ':' && line.size() > Longest && line[0] != '#' &&
+      line.find(":=") == std::string::npos)
     {
-      RefuseUnread(path, "a line of its header is too long");
+      RefuseDamaged(path, "a line of its header is too long");
+    }
+    const std::size_t end = line.find(separator);
+    const std::string value = Trim(line.substr(end == std::string::npos ? 0 : end + 1));
+    if (end != std::string::npos && !value.empty())
+    {
+      const std::string key = Trim(line.substr(0, end));
+      header.Fields.emplace(separator == ':' ? vtksys::SystemTools::LowerCase(key) : key, value);
+    }
+    const std::filesystem::path file = std::filesystem::path(path).parent_path() / value;
+    std::error_code error;
+    if (std::filesystem::is_regular_file(file, error)) // also in a list of files, a line each
+    {
+      header.Files.push_back(file.string());
+    }
+    if (header.Has("ElementDataFile") && value != "LIST" && end != std::string::npos)
+    {
+      break; // of MetaImage: data follow
     }
   }
+  return header;
 }
 
 int GetScalarType(const itk::ImageIOBase* io, const std::string& path)
@@ -90,10 +100,10 @@ int GetScalarType(const itk::ImageIOBase* io, const std::string& path)
 }
 
 /**
- * The last two of a chain of reasons, a line each, without the functions that report them; or the
- * first of several reports.
+ * Refuse a file for the last two of a chain of reasons, a line each, less the functions that report
+ * them; or for the first of several reports.
  */
-std::string GetReason(const std::string& report, bool isChain)
+[[noreturn]] void RefuseUnread(const std::string& path, const std::string& report, bool isChain)
 {
   std::vector<std::string> lines;
   for (std::string line : vtksys::SystemTools::SplitString(report, '\n'))
@@ -106,16 +116,19 @@ std::string GetReason(const std::string& report, bool isChain)
       lines.push_back(line);
     }
   }
-  std::string text = lines.empty() ? "" : isChain ? lines.back() : lines.front();
-  text = lines.size() > 1 && isChain ? lines[lines.size() - 2] + ": " + text : text;
-  std::replace_if(
-    text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text;
+  std::string reason = lines.empty() ? "" : isChain ? lines.back() : lines.front();
+  reason = lines.size() > 1 && isChain ? lines[lines.size() - 2] + ": " + reason : reason;
+  if (reason.find("not available") != std::string::npos)
+  {
+    Refuse(path,
+      "the encoding of its data is not supported (" + reason +
+        "); save the volume with gzip or raw data.");
+  }
+  RefuseDamaged(path, reason);
 }
 
 /**
- * The file's image of at most three dimensions, with the frames one behind the other along the
- * third.
+ * Read an image of at most three dimensions, with the frames behind each other along the third.
  */
 vtkSmartPointer<vtkImageData> ReadImage(
   itk::ImageIOBase* io, const std::string& path, const QuietReading& quiet)
@@ -137,7 +150,7 @@ vtkSmartPointer<vtkImageData> ReadImage(
     CheckMemory(size[0] * size[1] * size[2] * io->GetNumberOfComponents(), path);
     if (!(size[0] * size[1] * size[2] > 0.0) || *std::max_element(size, size + 3) > VTK_INT_MAX)
     {
-      RefuseUnread(path, "one of its sizes is 0 or too large");
+      RefuseDamaged(path, "one of its sizes is 0 or too large");
     }
     auto image = vtkSmartPointer<vtkImageData>::New();
     image->SetDimensions(int(size[0]), int(size[1]), int(size[2]));
@@ -146,37 +159,33 @@ vtkSmartPointer<vtkImageData> ReadImage(
     io->Read(image->GetScalarPointer());
     if (!quiet.GetPrinted().empty()) // by MetaIO, which reports incomplete data so
     {
-      RefuseUnread(path, GetReason(quiet.GetPrinted(), false));
+      RefuseUnread(path, quiet.GetPrinted(), false);
     }
     return image;
   }
   catch (const itk::ExceptionObject& error)
   {
     const std::string printed = quiet.GetPrinted();
-    RefuseUnread(
-      path, GetReason(printed.empty() ? error.GetDescription() : printed, printed.empty()));
+    RefuseUnread(path, printed.empty() ? error.GetDescription() : printed, printed.empty());
   }
 }
 
 /**
- * One of the frames along the third axis.
+ * Return one of the frames along the third axis, from 1 on.
  */
 vtkSmartPointer<vtkImageData> ExtractFrame(vtkImageData* image, int number, int count)
 {
   const int* const size = image->GetDimensions();
   const int slices = size[2] / count;
-  auto frame = vtkSmartPointer<vtkImageData>::New();
-  frame->SetDimensions(size[0], size[1], slices);
-  frame->AllocateScalars(image->GetScalarType(), image->GetNumberOfScalarComponents());
-  const auto bytes = static_cast<std::size_t>(frame->GetNumberOfPoints()) * image->GetScalarSize() *
-    image->GetNumberOfScalarComponents();
-  std::copy_n(static_cast<const char*>(image->GetScalarPointer(0, 0, slices * (number - 1))), bytes,
-    static_cast<char*>(frame->GetScalarPointer()));
-  return frame;
+  vtkNew<vtkExtractVOI> extract;
+  extract->SetInputData(image);
+  extract->SetVOI(0, size[0] - 1, 0, size[1] - 1, slices * (number - 1), slices * number - 1);
+  extract->Update();
+  return extract->GetOutput();
 }
 
 /**
- * The frame that the settings name, not placed yet.
+ * Read the frame that the settings name, not placed yet.
  */
 Volume ReadFrame(itk::ImageIOBase* io, const std::string& path, const ReadSettings& settings,
   const QuietReading& quiet, bool areComponentsFrames)
@@ -202,7 +211,7 @@ Volume ReadFrame(itk::ImageIOBase* io, const std::string& path, const ReadSettin
 }
 
 /**
- * Steps and origin as ITK has them.
+ * Get steps and origin as ITK has them.
  */
 void GetGrid(itk::ImageIOBase* io, Steps& steps, std::array<double, 3>& origin)
 {
@@ -227,7 +236,7 @@ std::string GetEntry(itk::ImageIOBase* io, const std::string& key)
 }
 
 /**
- * The number of vectors in text such as "(1,0,0) none (nan,nan,nan)" that are not empty.
+ * Count the vectors in text such as "(1,0,0) none (nan,nan,nan)" that are not empty.
  */
 std::size_t CountVectors(const std::string& text)
 {
@@ -248,16 +257,17 @@ bool StartsWith(const std::string& text, const std::string& start)
 
 Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
-  CheckLines(path);
-  const std::string kinds = FindField(path, "kinds", ':');
+  const Header header = ReadHeader(path, ':');
+  const std::string kinds = header.Get("kinds");
   const auto io = itk::NrrdImageIO::New();
   Volume volume =
     ReadFrame(io, path, settings, quiet, kinds.empty() || kinds.find("list") != std::string::npos);
+  volume.Files = header.Files;
   Steps steps;
   std::array<double, 3> origin;
   GetGrid(io, steps, origin);
   const std::string space = GetEntry(io, "NRRD_space");
-  const std::string named = vtksys::SystemTools::LowerCase(FindField(path, "space", ':'));
+  const std::string named = vtksys::SystemTools::LowerCase(header.Get("space"));
   if (StartsWith(space, "right-anterior-superior-time") || named == "left-anterior-superior" ||
     named == "las")
   {
@@ -265,43 +275,43 @@ Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const Qui
   }
   volume.IsOriented =
     StartsWith(space, "left-posterior-superior") || StartsWith(space, "right-anterior-superior");
-  const std::string directions = FindField(path, "space directions", ':');
-  const std::string spacings = FindField(path, "spacings", ':');
-  if (CountVectors(directions) < std::min(3U, io->GetNumberOfDimensions()) &&
-    spacings.find_first_of("0123456789") == std::string::npos)
+  const std::string directions = header.Get("space directions");
+  const unsigned int axes = std::min(3U, io->GetNumberOfDimensions());
+  if (CountVectors(directions) < axes &&
+    header.Get("spacings").find_first_of("0123456789") == std::string::npos)
   {
     steps = {};
     volume.IsOriented = false;
   }
-  PlaceVolume(volume, steps, origin);
-  const std::string units = FindField(path, "space units", ':'); // as in "mm" "mm" "mm"
+  const std::string units = header.Get("space units"); // as in "mm" "mm" "mm"
   const std::size_t end = units.find('"', 1);
-  if (!directions.empty())
-  {
-    ConvertToMillimeters(volume, end == std::string::npos ? "mm" : units.substr(1, end - 1));
-  }
+  PlaceVolume(volume, steps, origin,
+    directions.empty()           ? ""
+      : end == std::string::npos ? "mm"
+                                 : units.substr(1, end - 1));
   return volume;
 }
 
 Volume ReadMeta(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
-  const int dimensions = std::atoi(FindField(path, "NDims", '=').c_str());
-  if (dimensions < 2 || dimensions > 10) // ITK trusts the number
+  const Header header = ReadHeader(path, '=');
+  const int dimensions = std::atoi(header.Get("NDims").c_str());
+  if (dimensions < 2 || dimensions > 10) // ITK does not check the number
   {
-    RefuseUnread(path, "NDims is not a number from 2 to 10");
+    RefuseDamaged(path, "NDims is not a number from 2 to 10");
   }
   const auto io = itk::MetaImageIO::New();
   Volume volume = ReadFrame(io, path, settings, quiet, false);
+  volume.Files = header.Files;
   Steps steps;
   std::array<double, 3> origin;
   GetGrid(io, steps, origin);
-  const auto has = [&](const char* key) { return !FindField(path, key, '=').empty(); };
-  volume.IsOriented = has("TransformMatrix") || has("Orientation") || has("Rotation");
-  PlaceVolume(volume, steps, origin);
-  if (has("ElementSpacing") || has("ElementSize"))
-  {
-    const std::string unit = GetEntry(io, "ITK_VoxelUnits");
-    ConvertToMillimeters(volume, unit.empty() || unit == "?" ? "mm" : unit);
-  }
+  volume.IsOriented =
+    header.Has("TransformMatrix") || header.Has("Orientation") || header.Has("Rotation");
+  const std::string unit = GetEntry(io, "ITK_VoxelUnits");
+  PlaceVolume(volume, steps, origin,
+    !header.Has("ElementSpacing") && !header.Has("ElementSize") ? ""
+      : unit.empty() || unit == "?"                             ? "mm"
+                                                                : unit);
   return volume;
 }

@@ -8,7 +8,7 @@
 #include <string>
 
 /**
- * Which voxels are shown: where a file has one label, or any but 0.
+ * Choice of the voxels to show: those with one label, or with any but 0.
  */
 struct MaskSettings
 {
@@ -17,9 +17,8 @@ struct MaskSettings
 };
 
 /**
- * Hides the voxels that a mask does not show: each whose nearest voxel of the mask is none of
- * those, or lies outside it. A note says so if their voxels differ. Throws std::runtime_error with
- * one sentence.
+ * Hide the voxels of a volume whose nearest voxel of the mask is not chosen, or that lie outside
+ * the mask. A note says whether their voxels differ. Throws std::runtime_error with one sentence.
  */
 void ApplyMask(const MaskSettings& settings, Volume& volume);
 

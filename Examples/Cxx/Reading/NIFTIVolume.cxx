@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/NIFTIVolume.h"
-
+#include "Reading/Formats.h"
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
 
 #include "vtkDataArray.h"
+#include "vtkImageShiftScale.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 
 #include <nifti2_io.h>
@@ -53,7 +54,7 @@ const Type& FindType(const nifti_image& header, const std::string& path)
 }
 
 /**
- * Whether a header has 1 to 7 dimensions: libnifti 3.0.1 trusts the number in NIfTI-2.
+ * Return whether a header has 1 to 7 dimensions: libnifti 3.0.1 does not check NIfTI-2.
  */
 bool HasSoundDimension(const std::string& path)
 {
@@ -68,7 +69,8 @@ bool HasSoundDimension(const std::string& path)
 }
 
 /**
- * One of the volumes along the axes beyond the third, from 0 on; nullptr if it is incomplete.
+ * Read one of the volumes along the axes beyond the third, from 0 on. Returns nullptr if it is
+ * incomplete.
  */
 vtkSmartPointer<vtkImageData> ReadFrame(nifti_image* header, std::int64_t number, const Type& type)
 {
@@ -96,25 +98,22 @@ vtkSmartPointer<vtkImageData> ReadFrame(nifti_image* header, std::int64_t number
 }
 
 /**
- * Codes become values.
+ * Convert codes to values.
  */
 vtkSmartPointer<vtkImageData> Scale(vtkImageData* image, double slope, double intercept)
 {
   const bool isFloat = image->GetScalarType() == VTK_FLOAT || image->GetScalarSize() <= 2;
-  auto scaled = vtkSmartPointer<vtkImageData>::New();
-  scaled->CopyStructure(image);
-  scaled->AllocateScalars(isFloat ? VTK_FLOAT : VTK_DOUBLE, 1);
-  vtkDataArray* const from = image->GetPointData()->GetScalars();
-  vtkDataArray* const to = scaled->GetPointData()->GetScalars();
-  for (vtkIdType i = 0; i < from->GetNumberOfTuples(); ++i)
-  {
-    to->SetComponent(i, 0, slope * from->GetComponent(i, 0) + intercept);
-  }
-  return scaled;
+  vtkNew<vtkImageShiftScale> scale;
+  scale->SetInputData(image);
+  scale->SetShift(intercept / slope);
+  scale->SetScale(slope);
+  scale->SetOutputScalarType(isFloat ? VTK_FLOAT : VTK_DOUBLE);
+  scale->Update();
+  return scale->GetOutput();
 }
 
 /**
- * Whether the axes of a matrix span space.
+ * Return whether the axes of a matrix span space.
  */
 bool IsUsable(const nifti_dmat44& matrix)
 {
@@ -131,7 +130,7 @@ bool IsUsable(const nifti_dmat44& matrix)
 }
 
 /**
- * The sform as it stands, else the qform, else the voxel size alone.
+ * Place a volume by the sform as it stands, else by the qform, else by the voxel size alone.
  */
 void Place(Volume& volume, const nifti_image& header)
 {
@@ -152,21 +151,20 @@ void Place(Volume& volume, const nifti_image& header)
   }
   TurnToLPS(steps, origin);
   volume.IsOriented = form != nullptr;
-  PlaceVolume(volume, steps, origin);
-  ConvertToMillimeters(volume,
-    header.xyz_units == NIFTI_UNITS_METER      ? "m"
-      : header.xyz_units == NIFTI_UNITS_MICRON ? "um"
-                                               : "mm");
+  const int unit = header.xyz_units;
+  PlaceVolume(volume, steps, origin,
+    unit == NIFTI_UNITS_METER      ? "m"
+      : unit == NIFTI_UNITS_MICRON ? "um"
+                                   : "mm");
   if (!form)
   {
-    volume.Notes.push_back(
-      "the file does not say how the patient lies; left and right may be exchanged");
-    volume.Caution = "orientation unknown";
+    volume.Notes.push_back("the file has no orientation; left and right may be exchanged");
+    AddCaution(volume, "orientation unknown");
   }
 }
 }
 
-Volume ReadNIFTI(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
+Volume ReadNIFTI(const std::string& path, const ReadSettings& settings, const QuietReading&)
 {
   const SilentErrors silent; // the library prints errors at any debug level
   const std::unique_ptr<nifti_image, Free> header(
@@ -174,7 +172,7 @@ Volume ReadNIFTI(const std::string& path, const ReadSettings& settings, const Qu
   const auto isSound = [](std::int64_t size) { return size >= 1 && size <= VTK_INT_MAX; };
   if (!header || !isSound(header->nx) || !isSound(header->ny) || !isSound(header->nz))
   {
-    RefuseDamaged(path, quiet);
+    RefuseDamaged(path, "");
   }
   const Type& type = FindType(*header, path);
   CheckMemory(double(header->nx) * double(header->ny) * double(header->nz), path);
@@ -188,7 +186,7 @@ Volume ReadNIFTI(const std::string& path, const ReadSettings& settings, const Qu
   volume.Image = ReadFrame(header.get(), std::max(1, settings.Frame) - 1, type);
   if (!volume.Image)
   {
-    RefuseDamaged(path, quiet);
+    RefuseDamaged(path, "");
   }
   const double slope = header->scl_slope, intercept = header->scl_inter;
   if (std::isfinite(slope) && std::isfinite(intercept) && slope != 0.0 &&

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reading/Placement.h"
 
+#include "vtkDataArray.h"
+#include "vtkPointData.h"
+
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace
 {
@@ -20,7 +24,7 @@ const std::pair<const char*, double> Units[] = { { "mm", 1.0 }, { "millimeter", 
 /// 0 for an unknown unit.
 double FindMillimeters(const std::string& unit)
 {
-  std::string name = vtksys::SystemTools::LowerCase(unit);
+  const std::string name = vtksys::SystemTools::LowerCase(unit);
   for (const auto& [word, length] : Units)
   {
     if (name == word || name == std::string(word) + "s")
@@ -30,46 +34,59 @@ double FindMillimeters(const std::string& unit)
   }
   return 0.0;
 }
+
+std::string DescribeUnit(const std::string& unit, double length)
+{
+  const std::string name = length == 0.001 ? "um" : unit;
+  return "the file's unit of length is " + name +
+    (length > 0.0 ? "; lengths here are in mm" : ", which is unknown: 1 mm is assumed");
+}
 }
 
-void PlaceVolume(Volume& volume, Steps steps, const std::array<double, 3>& origin)
+void PlaceVolume(Volume& volume, Steps steps, std::array<double, 3> origin, const std::string& unit)
 {
   const int* const size = volume.Image->GetDimensions();
   volume.Image->SetExtent(0, size[0] - 1, 0, size[1] - 1, 0, size[2] - 1);
   volume.Image->SetOrigin(0.0, 0.0, 0.0);
   volume.Image->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
   volume.Orientation = vtkSmartPointer<vtkMatrix4x4>::New();
-  double spacing[3];
+  const double unitLength = FindMillimeters(unit);
+  const double scale = unitLength > 0.0 ? unitLength : 1.0;
   bool isSized = true;
+  double spacing[3];
   for (int axis = 0; axis < 3; ++axis)
   {
     auto& step = steps[axis];
-    spacing[axis] = std::hypot(step[0], step[1], step[2]);
-    if (!(spacing[axis] > 1e-9 && spacing[axis] < 1e9)) // so that it catches NaN as well
+    double length = std::hypot(step[0], step[1], step[2]);
+    if (!(length > 1e-9 && length < 1e9)) // also if it is NaN
     {
       isSized = false;
       step = {};
-      step[axis] = spacing[axis] = 1.0;
+      step[axis] = length = 1.0;
     }
     for (int row = 0; row < 3; ++row)
     {
-      volume.Orientation->SetElement(row, axis, step[row] / spacing[axis]);
+      volume.Orientation->SetElement(row, axis, step[row] / length);
     }
+    spacing[axis] = length * scale;
+    volume.Origin[axis] = std::isfinite(origin[axis]) ? origin[axis] * scale : 0.0;
   }
   volume.Image->SetSpacing(spacing);
+  volume.IsInMillimeters = isSized && unitLength > 0.0;
   if (!isSized)
   {
-    volume.Notes.push_back("the file does not say how large voxels are: 1 mm was taken");
-    volume.Caution = "voxel size unknown";
-    volume.IsInMillimeters = false;
+    volume.Notes.push_back("the file has no voxel size: 1 mm is assumed");
+    AddCaution(volume, "voxel size unknown");
+  }
+  if (!unit.empty() && unitLength != 1.0)
+  {
+    volume.Notes.push_back(DescribeUnit(unit, unitLength));
   }
   if (!(std::fabs(volume.Orientation->Determinant()) > 1e-3))
   {
     volume.Orientation->Identity();
     volume.IsOriented = false;
   }
-  std::transform(origin.begin(), origin.end(), volume.Origin.begin(),
-    [](double place) { return std::isfinite(place) ? place : 0.0; });
 }
 
 void TurnToLPS(Steps& steps, std::array<double, 3>& origin)
@@ -84,24 +101,92 @@ void TurnToLPS(Steps& steps, std::array<double, 3>& origin)
   }
 }
 
-void ConvertToMillimeters(Volume& volume, const std::string& unit)
+void AddCaution(Volume& volume, const std::string& caution)
 {
-  const double length = FindMillimeters(unit);
-  volume.IsInMillimeters = length > 0.0 && volume.Caution.empty();
-  if (length == 1.0)
+  volume.Caution += (volume.Caution.empty() ? "" : "\n") + caution;
+}
+
+std::vector<double> SpaceEvenly(const std::vector<double>& places, double tolerance)
+{
+  constexpr double MostPlaces = 8.0; // times as many as there are
+  constexpr double NearLeast = 1.1;
+  if (places.size() < 2)
   {
-    return;
+    return places;
   }
-  const std::string name = unit.find_first_of("\xC2\xCE\xB5\\") == 0 ? "um" : unit;
-  volume.Notes.push_back("the file's unit of length is " + name +
-    (length > 0.0 ? "; lengths here are in mm" : ", which is unknown: 1 mm was taken for it"));
-  if (length > 0.0)
+  const double length = places.back() - places.front();
+  const auto evenPlace = [&](std::size_t i, double count)
+  { return places.front() + length * static_cast<double>(i) / count; };
+  const double last = static_cast<double>(places.size() - 1);
+  bool isEven = true;
+  double least = std::fabs(length);
+  for (std::size_t i = 1; i < places.size(); ++i)
   {
-    const double* const spacing = volume.Image->GetSpacing();
-    volume.Image->SetSpacing(spacing[0] * length, spacing[1] * length, spacing[2] * length);
-    for (double& place : volume.Origin)
+    const double off = places[i] - evenPlace(i, last);
+    isEven = isEven && std::fabs(off) <= tolerance * std::fabs(length) / last;
+    least = std::min(least, std::fabs(places[i] - places[i - 1]));
+  }
+  if (isEven)
+  {
+    return places;
+  }
+  double sum = 0.0, summands = 0.0;
+  for (std::size_t i = 1; i < places.size(); ++i)
+  {
+    const double step = std::fabs(places[i] - places[i - 1]);
+    sum += step < NearLeast * least ? step : 0.0;
+    summands += step < NearLeast * least ? 1.0 : 0.0;
+  }
+  const double count = std::max(1.0, std::round(std::fabs(length) * summands / sum));
+  std::vector<double> even;
+  for (std::size_t i = 0; count <= MostPlaces * last && i <= static_cast<std::size_t>(count); ++i)
+  {
+    even.push_back(evenPlace(i, count));
+  }
+  return even;
+}
+
+vtkSmartPointer<vtkImageData> Interpolate(vtkImageData* image, int axis,
+  const std::vector<double>& places, const std::vector<double>& newPlaces)
+{
+  constexpr double Near = 1e-6; // so that NaN beside a sample does not reach it
+  const bool isFloat = image->GetScalarSize() <= 2 || image->GetScalarType() == VTK_FLOAT;
+  int size[3];
+  image->GetDimensions(size);
+  const vtkIdType stride = std::accumulate(size, size + axis, vtkIdType(1), std::multiplies<>());
+  const vtkIdType lines = image->GetNumberOfPoints() / size[axis] / stride;
+  const vtkIdType count = size[axis];
+  size[axis] = static_cast<int>(newPlaces.size());
+  auto result = vtkSmartPointer<vtkImageData>::New();
+  result->SetDimensions(size);
+  const int components = image->GetNumberOfScalarComponents();
+  result->AllocateScalars(isFloat ? VTK_FLOAT : VTK_DOUBLE, components);
+  vtkDataArray* const from = image->GetPointData()->GetScalars();
+  vtkDataArray* const to = result->GetPointData()->GetScalars();
+  vtkIdType point = 0;
+  for (vtkIdType line = 0; line < lines; ++line)
+  {
+    vtkIdType i = 0; // the new place is between this one and the next
+    for (const double place : newPlaces)
     {
-      place *= length;
+      while (i + 2 < count && std::fabs(places[i + 1] - places[0]) <= std::fabs(place - places[0]))
+      {
+        ++i;
+      }
+      const double share = std::clamp((place - places[i]) / (places[i + 1] - places[i]), 0.0, 1.0);
+      const vtkIdType below = (line * count + i + (share > 1.0 - Near)) * stride;
+      const vtkIdType above = (line * count + i + (share > Near)) * stride;
+      for (vtkIdType n = 0; n < stride; ++n, ++point)
+      {
+        for (int c = 0; c < components; ++c)
+        {
+          to->SetComponent(point, c,
+            (1.0 - share) * from->GetComponent(below + n, c) +
+              share * from->GetComponent(above + n, c));
+        }
+      }
     }
   }
+  to->SetName(from->GetName());
+  return result;
 }

@@ -10,15 +10,7 @@
 #include <vector>
 
 #include <fcntl.h>
-#ifdef _WIN32
-#include <io.h>
-#define close _close
-#define dup _dup
-#define dup2 _dup2
-#define open _open
-#else
 #include <unistd.h>
-#endif
 
 /**
  * Collects VTK's messages instead of showing them.
@@ -78,28 +70,19 @@ std::string QuietReading::GetReason() const
     return "";
   }
   std::string text = this->Collector->Errors.front();
-  std::size_t place = text.find(", line "); // an error may quote another, places and all
+  std::size_t place = text.find(", line "); // an error may quote another with its place
   for (; place != std::string::npos; place = text.find(", line "))
   {
     text.erase(0, std::min(text.size(), text.find('\n', place)) + 1);
     const std::size_t object = text.find("): ");
     text.erase(0, object < text.find('\n') ? object + 3 : 0);
   }
-  text = text.substr(0, text.find('\n'));
-  text.erase(text.find_last_not_of(" .") + 1);
-  // it may quote a damaged file
-  std::replace_if(
-    text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text.empty() ? "" : " (" + text + ")";
+  return text.substr(0, text.find('\n'));
 }
 
 SilentErrors::SilentErrors()
 {
-#ifdef _WIN32
-  const int nowhere = open("NUL", _O_WRONLY);
-#else
   const int nowhere = open("/dev/null", O_WRONLY);
-#endif
   std::fflush(stderr);
   this->Saved = dup(2);
   dup2(nowhere, 2);

@@ -13,8 +13,8 @@
 class MessageCollector;
 
 /**
- * While it lives nothing that the readers have to say reaches the terminal: VTK's messages, its
- * log, and what the libraries beneath (MetaIO) write to the standard streams.
+ * Keeps messages of readers from the terminal in its scope: VTK's messages, its log, and the output
+ * of libraries (MetaIO) to the standard streams.
  */
 class QuietReading
 {
@@ -25,19 +25,19 @@ public:
   QuietReading& operator=(const QuietReading&) = delete;
 
   /**
-   * Whether VTK reported an error, or one of the generic warnings by which its readers report a
-   * file that ends too early.
+   * Return whether VTK reported an error, or one of the generic warnings by which its readers
+   * report a file that ends too early.
    */
   bool HasErrors() const;
 
   /**
-   * The first error in brackets, without VTK's "ERROR: In FILE, line N" and object name; empty if
-   * there is none.
+   * Get the first error without VTK's "ERROR: In FILE, line N" and object name; empty if there is
+   * none.
    */
   std::string GetReason() const;
 
   /**
-   * What libraries have written to the standard streams.
+   * Get the output of libraries to the standard streams.
    */
   std::string GetPrinted() const { return this->Sink.str(); }
 
@@ -51,7 +51,7 @@ private:
 };
 
 /**
- * In its scope nothing that a C library prints reaches stderr.
+ * Keeps the output of C libraries from stderr in its scope.
  */
 class SilentErrors
 {

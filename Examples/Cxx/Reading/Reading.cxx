@@ -24,11 +24,34 @@ void Refuse(const std::string& path, const std::string& reason)
   throw std::runtime_error(path + ": " + reason);
 }
 
-void RefuseDamaged(const std::string& path, const QuietReading& quiet)
+void RefuseDamaged(const std::string& path, const std::string& report)
 {
+  const std::string reason = report.substr(0, report.find_last_not_of(" .\n\r") + 1);
   Refuse(path,
-    "damaged, incomplete or not what its name says" + quiet.GetReason() +
+    "damaged, incomplete or not what its name says" + (reason.empty() ? "" : " (" + reason + ")") +
       "; check it, or export the volume again.");
+}
+
+std::string MakePrintable(const std::string& text)
+{
+  std::string printable;
+  for (std::size_t i = 0; i < text.size();)
+  {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t length = byte < 0x80 ? 1
+      : byte < 0xC2                        ? 0
+      : byte < 0xE0                        ? 2
+      : byte < 0xF0                        ? 3
+                                           : 4;
+    const std::string bytes = text.substr(i, length);
+    const bool isWhole = length > 0 && bytes.size() == length &&
+      std::all_of(bytes.begin() + 1, bytes.end(), [](char c) { return (c & 0xC0) == 0x80; });
+    const bool isControl =
+      byte < ' ' || byte == 0x7F || (byte == 0xC2 && isWhole && (bytes[1] & 0x20) == 0);
+    printable += isWhole && !isControl ? bytes : "?";
+    i += isWhole ? length : 1;
+  }
+  return printable;
 }
 
 std::string ReadHead(const std::string& path)

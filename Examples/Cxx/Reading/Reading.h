@@ -14,18 +14,29 @@
 #include <vector>
 
 /**
- * Throws a sentence about a file.
+ * Throw a sentence about a file.
  */
 [[noreturn]] void Refuse(const std::string& path, const std::string& reason);
-[[noreturn]] void RefuseDamaged(const std::string& path, const QuietReading& quiet);
 
 /**
- * A damaged header can ask for any amount of memory: refuse before it is allocated.
+ * Throw the sentence about a damaged file, with what a library reports, which may be empty.
+ */
+[[noreturn]] void RefuseDamaged(const std::string& path, const std::string& report);
+
+/**
+ * Replace control characters and bytes that are not UTF-8 by question marks. Files must not control
+ * the terminal.
+ */
+std::string MakePrintable(const std::string& text);
+
+/**
+ * Refuse a volume that does not fit into memory, before it is allocated: damaged headers can ask
+ * for any amount.
  */
 void CheckMemory(double voxels, const std::string& path);
 
 /**
- * The beginning of a file, where its header is, if that is text.
+ * Read the first MiB of a file.
  */
 std::string ReadHead(const std::string& path);
 
@@ -36,24 +47,38 @@ std::string ReadHead(const std::string& path);
 void CheckChoice(const std::string& path, const std::string& what, int number, int count);
 
 /**
- * A note about one (from 1 on, or 0 for the first) of several, with the option that chooses.
+ * Return a note about one (from 1 on, or 0 for the first) of several, with the option that chooses.
  */
 std::string DescribeChoice(const std::string& what, int number, int count);
 
 /**
- * One of the components of an image, from 1 on.
+ * Return one of the components of an image, from 1 on.
  */
 vtkSmartPointer<vtkImageData> ExtractComponent(vtkImageData* image, int number);
 
 /**
- * VTK's name for a type of numbers, or VTK_VOID if there is none.
+ * Return VTK's name for a type of numbers, or VTK_VOID if there is none.
  */
 int FindScalarType(std::size_t bytes, bool isFloat, bool isSigned);
 
 /**
- * As in ".a, .b or .c".
+ * Join words as in ".a, .b or .c".
  */
 std::string JoinWords(const std::vector<std::string>& words);
+
+/**
+ * Return the names of the entries of a table.
+ */
+template <class Table>
+std::vector<std::string> ListNames(const Table& table)
+{
+  std::vector<std::string> names;
+  for (const auto& entry : table)
+  {
+    names.emplace_back(entry.Name);
+  }
+  return names;
+}
 
 template <class Reader>
 bool HasFailed(Reader* reader, const QuietReading& quiet)

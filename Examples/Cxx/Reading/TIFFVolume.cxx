@@ -1,43 +1,318 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/TIFFVolume.h"
-
+#include "Reading/Formats.h"
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
-#include "Reading/TIFFPages.h"
 
 #include "vtkXMLDataElement.h"
 #include "vtkXMLUtilities.h"
 
+#include <tiffio.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdarg>
+#include <cstdint>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <map>
+#include <memory>
+#include <set>
 #include <sstream>
+#include <tuple>
 
 namespace
 {
+template <class Value>
+Value GetTag(TIFF* file, std::uint32_t tag)
+{
+  Value value = {};
+  TIFFGetFieldDefaulted(file, tag, &value);
+  return value;
+}
+
+/// libtiff's last error.
+std::string Report;
+
+void KeepReport(const char*, const char* format, va_list values)
+{
+  char text[200];
+  std::vsnprintf(text, sizeof(text), format, values);
+  Report = text;
+}
+
 /**
- * What the pages are, as far as the description says.
+ * The pages of a TIFF file, which have the same size and type. Constructor and methods throw
+ * std::runtime_error with one sentence, with tag and value where a page is not supported.
+ */
+class TIFFPages
+{
+public:
+  explicit TIFFPages(const std::string& path);
+
+  int GetWidth() const { return static_cast<int>(this->Width); }
+  int GetHeight() const { return static_cast<int>(this->Height); }
+  int GetVTKType() const;
+  int GetComponents() const { return this->Samples; }
+
+  /**
+   * Get the number of pages, less masks and reduced copies of others.
+   */
+  int GetCount() const { return static_cast<int>(this->Pages.size()); }
+
+  /**
+   * Get the first page's description, and its pixels per unit, or 0.
+   */
+  const std::string& GetDescription() const { return this->Description; }
+  const double* GetResolution() const { return this->Resolution; }
+
+  /**
+   * Read a page, from 0 on, top row first.
+   */
+  void Read(int page, char* pixels);
+
+  /**
+   * Read one of several pictures, from 0 on, that follow each other behind the only page.
+   */
+  void ReadBehind(int number, char* pixels);
+
+private:
+  [[noreturn]] void RefuseTag(const char* tag, double value, const std::string& advice) const;
+  void CheckType() const;
+  void CheckKind();
+  [[noreturn]] void RefuseReported() const;
+  std::size_t GetRowBytes() const { return this->Width * this->Samples * this->Bits / 8; }
+
+  std::string Path;
+  std::unique_ptr<tiff, void (*)(tiff*)> File;
+  std::vector<std::uint32_t> Pages;
+  std::uint32_t Width = 0;
+  std::uint32_t Height = 0;
+  std::uint16_t Bits = 1;
+  std::uint16_t Format = 1;
+  std::uint16_t Samples = 1;
+  std::string Description;
+  double Resolution[2] = { 0.0, 0.0 };
+};
+
+TIFFPages::TIFFPages(const std::string& path) : Path(path), File(nullptr, TIFFClose)
+{
+  Report.clear();
+  TIFFSetErrorHandler(KeepReport);
+  TIFFSetWarningHandler(nullptr);
+  this->File.reset(TIFFOpen(path.c_str(), "r"));
+  if (!this->File)
+  {
+    this->RefuseReported();
+  }
+  TIFF* const file = this->File.get();
+  std::uint32_t page = 0;
+  do
+  {
+    const auto kind = GetTag<std::uint32_t>(file, TIFFTAG_SUBFILETYPE);
+    if ((kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0)
+    {
+      this->CheckType();
+      this->CheckKind();
+      this->Pages.push_back(page);
+    }
+    ++page;
+  } while (TIFFReadDirectory(file));
+  if (!Report.empty() || this->Pages.empty())
+  {
+    this->RefuseReported();
+  }
+}
+
+void TIFFPages::RefuseReported() const
+{
+  RefuseDamaged(this->Path, Report);
+}
+
+void TIFFPages::RefuseTag(const char* tag, double value, const std::string& advice) const
+{
+  std::ostringstream text;
+  text << "page " << this->Pages.size() + 1 << " has " << tag << " = " << value
+       << ", which is not supported; " << advice << ".";
+  Refuse(this->Path, text.str());
+}
+
+void TIFFPages::CheckType() const
+{
+  TIFF* const file = this->File.get();
+  const std::string asGray = "save the stack as gray values, uncompressed";
+  const auto photometric = GetTag<std::uint16_t>(file, TIFFTAG_PHOTOMETRIC);
+  if (photometric != PHOTOMETRIC_MINISBLACK && photometric != PHOTOMETRIC_RGB)
+  {
+    this->RefuseTag("PhotometricInterpretation", photometric,
+      photometric == PHOTOMETRIC_MINISWHITE ? "invert the stack and save it again" : asGray);
+  }
+  const auto compression = GetTag<std::uint16_t>(file, TIFFTAG_COMPRESSION);
+  if (!TIFFIsCODECConfigured(compression))
+  {
+    this->RefuseTag("Compression", compression, asGray);
+  }
+  const auto planes = GetTag<std::uint16_t>(file, TIFFTAG_PLANARCONFIG);
+  if (planes != PLANARCONFIG_CONTIG && GetTag<std::uint16_t>(file, TIFFTAG_SAMPLESPERPIXEL) > 1)
+  {
+    this->RefuseTag("PlanarConfiguration", planes, "save the stack with interleaved samples");
+  }
+  const auto bits = GetTag<std::uint16_t>(file, TIFFTAG_BITSPERSAMPLE);
+  const auto format = GetTag<std::uint16_t>(file, TIFFTAG_SAMPLEFORMAT);
+  const bool isFloat = format == SAMPLEFORMAT_IEEEFP;
+  if (format != SAMPLEFORMAT_UINT && format != SAMPLEFORMAT_INT && !isFloat)
+  {
+    this->RefuseTag("SampleFormat", format, "save the stack as integers or float");
+  }
+  if ((bits != 8 && bits != 16 && bits != 32 && bits != 64) || (isFloat && bits < 32))
+  {
+    this->RefuseTag(isFloat ? "SampleFormat = 3 (float) and BitsPerSample" : "BitsPerSample", bits,
+      "save the stack with 8, 16 or 32 bits");
+  }
+  const auto depth = GetTag<std::uint32_t>(file, TIFFTAG_IMAGEDEPTH);
+  if (depth > 1)
+  {
+    this->RefuseTag("ImageDepth", depth, "save the stack with a page for each slice");
+  }
+}
+
+void TIFFPages::CheckKind()
+{
+  TIFF* const file = this->File.get();
+  const auto bits = GetTag<std::uint16_t>(file, TIFFTAG_BITSPERSAMPLE);
+  const auto format = GetTag<std::uint16_t>(file, TIFFTAG_SAMPLEFORMAT);
+  const auto width = GetTag<std::uint32_t>(file, TIFFTAG_IMAGEWIDTH);
+  const auto height = GetTag<std::uint32_t>(file, TIFFTAG_IMAGELENGTH);
+  const auto samples = GetTag<std::uint16_t>(file, TIFFTAG_SAMPLESPERPIXEL);
+  if (width < 1 || height < 1 || samples < 1)
+  {
+    this->RefuseReported();
+  }
+  if (this->Pages.empty())
+  {
+    this->Width = width;
+    this->Height = height;
+    this->Samples = samples;
+    this->Bits = bits;
+    this->Format = format;
+    const auto* const text = GetTag<const char*>(file, TIFFTAG_IMAGEDESCRIPTION);
+    this->Description = text ? text : "";
+    this->Resolution[0] = GetTag<float>(file, TIFFTAG_XRESOLUTION);
+    this->Resolution[1] = GetTag<float>(file, TIFFTAG_YRESOLUTION);
+    return;
+  }
+  const std::tuple<const char*, std::uint32_t, std::uint32_t> tags[] = { { "ImageWidth", width,
+                                                                           this->Width },
+    { "ImageLength", height, this->Height }, { "SamplesPerPixel", samples, this->Samples },
+    { "BitsPerSample", bits, this->Bits }, { "SampleFormat", format, this->Format } };
+  for (const auto& [name, found, first] : tags)
+  {
+    if (found != first)
+    {
+      this->RefuseTag(name, found,
+        "the first page has " + std::to_string(first) +
+          ": save the pages of each kind as a stack of their own");
+    }
+  }
+}
+
+int TIFFPages::GetVTKType() const
+{
+  return FindScalarType(
+    this->Bits / 8U, this->Format == SAMPLEFORMAT_IEEEFP, this->Format == SAMPLEFORMAT_INT);
+}
+
+void TIFFPages::Read(int page, char* pixels)
+{
+  if (!TIFFSetDirectory(this->File.get(), static_cast<tdir_t>(this->Pages[page])))
+  {
+    this->RefuseReported();
+  }
+  TIFF* const file = this->File.get();
+  const bool isTiled = TIFFIsTiled(file) != 0; // else strips, which are tiles as wide as the page
+  const auto width = isTiled ? GetTag<std::uint32_t>(file, TIFFTAG_TILEWIDTH) : this->Width;
+  const auto height = isTiled
+    ? GetTag<std::uint32_t>(file, TIFFTAG_TILELENGTH)
+    : std::min(this->Height, GetTag<std::uint32_t>(file, TIFFTAG_ROWSPERSTRIP));
+  const std::size_t pixel = this->Samples * this->Bits / 8U;
+  const std::size_t bytes = pixel * width * height;
+  if (bytes == 0 || (isTiled && TIFFTileSize(file) != static_cast<tmsize_t>(bytes)))
+  {
+    this->RefuseReported();
+  }
+  std::vector<char> block(bytes);
+  for (std::uint32_t y = 0; y < this->Height; y += height)
+  {
+    const std::uint32_t rows = std::min(height, this->Height - y);
+    for (std::uint32_t x = 0; x < this->Width; x += width)
+    {
+      const std::uint32_t columns = std::min(width, this->Width - x);
+      const auto found = isTiled ? TIFFReadTile(file, block.data(), x, y, 0, 0)
+                                 : TIFFReadEncodedStrip(file, TIFFComputeStrip(file, y, 0),
+                                     block.data(), static_cast<tmsize_t>(bytes));
+      if (found < static_cast<tmsize_t>(pixel * width * rows))
+      {
+        this->RefuseReported();
+      }
+      for (std::uint32_t row = 0; row < rows; ++row)
+      {
+        std::memcpy(pixels + pixel * (std::size_t(y + row) * this->Width + x),
+          block.data() + pixel * width * row, pixel * columns);
+      }
+    }
+  }
+}
+
+void TIFFPages::ReadBehind(int number, char* pixels)
+{
+  TIFF* const file = this->File.get();
+  const auto* const offsets = GetTag<const std::uint64_t*>(file, TIFFTAG_STRIPOFFSETS);
+  if (!offsets || GetTag<std::uint16_t>(file, TIFFTAG_COMPRESSION) != COMPRESSION_NONE)
+  {
+    this->RefuseReported();
+  }
+  const std::size_t bytes = this->GetRowBytes() * this->Height;
+  std::ifstream data(this->Path, std::ios::binary);
+  data.seekg(static_cast<std::streamoff>(offsets[0] + bytes * static_cast<std::size_t>(number)));
+  data.read(pixels, static_cast<std::streamsize>(bytes));
+  if (!data)
+  {
+    this->RefuseReported();
+  }
+  const std::size_t size = this->Bits / 8U;
+  for (std::size_t i = 0; i < bytes && TIFFIsByteSwapped(file); i += size)
+  {
+    std::reverse(pixels + i, pixels + i + size);
+  }
+}
+
+/// Damaged descriptions can have any numbers.
+constexpr int MostPages = 10'000'000;
+
+/**
+ * The pages by the description.
  */
 struct Layout
 {
   int Slices = 1;
   int Channels = 1;
   int Times = 1;
+  bool IsContiguous = false;       // pictures may follow each other behind one page
   std::vector<int> Pages;          // of (slice, channel, time), the slice changing fastest
   std::array<double, 3> Size = {}; // of a voxel, in the unit, or 0
   std::string Unit;
 };
 
 /**
- * The number of a page by those of slice, channel and time, which change in the order of the
+ * Find the number of a page by those of slice, channel and time, which change in the order of the
  * letters Z, C and T.
  */
-int FindPage(const Layout& layout, const std::string& order, int slice, int channel, int time)
+std::int64_t FindPage(
+  const Layout& layout, const std::string& order, int slice, int channel, int time)
 {
-  int page = 0;
-  int step = 1;
+  std::int64_t page = 0, step = 1;
   for (const char axis : order)
   {
     page += step * (axis == 'Z' ? slice : axis == 'C' ? channel : time);
@@ -47,13 +322,13 @@ int FindPage(const Layout& layout, const std::string& order, int slice, int chan
 }
 
 /**
- * Number all pages in an order; none if there are more than any file has.
+ * Number all pages in an order, unless there are too many. Returns whether it did.
  */
-void NumberPages(Layout& layout, const std::string& order)
+bool NumberPages(Layout& layout, const std::string& order)
 {
-  if (double(layout.Slices) * layout.Channels * layout.Times > 1e7)
+  if (double(layout.Slices) * layout.Channels * layout.Times > MostPages)
   {
-    return;
+    return false;
   }
   for (int time = 0; time < layout.Times; ++time)
   {
@@ -61,14 +336,23 @@ void NumberPages(Layout& layout, const std::string& order)
     {
       for (int slice = 0; slice < layout.Slices; ++slice)
       {
-        layout.Pages.push_back(FindPage(layout, order, slice, channel, time));
+        layout.Pages.push_back(static_cast<int>(FindPage(layout, order, slice, channel, time)));
       }
     }
   }
+  return true;
 }
 
 /**
- * Lines such as "slices=12"; channels change fastest, times slowest.
+ * Convert text to a whole number that can be multiplied and added.
+ */
+int ParseNumber(const std::string& text)
+{
+  return static_cast<int>(std::clamp(std::strtol(text.c_str(), nullptr, 10), -1L, long(MostPages)));
+}
+
+/**
+ * Parse lines such as "slices=12"; channels change fastest, times slowest.
  */
 Layout ParseImageJ(const TIFFPages& pages)
 {
@@ -83,13 +367,16 @@ Layout ParseImageJ(const TIFFPages& pages)
       fields.emplace(line.substr(0, end), line.substr(end + 1));
     }
   }
-  const auto count = [&](const char* name) { return std::max(1, std::atoi(fields[name].c_str())); };
+  const auto count = [&](const char* name) { return std::max(1, ParseNumber(fields[name])); };
   Layout layout;
+  layout.IsContiguous = true;
   layout.Channels = count("channels");
   layout.Times = count("frames");
   layout.Slices = fields.count("slices")
     ? count("slices")
-    : std::max(count("images"), pages.GetCount()) / (layout.Channels * layout.Times);
+    : std::max(1,
+        static_cast<int>(
+          std::max(count("images"), pages.GetCount()) / (double(layout.Channels) * layout.Times)));
   NumberPages(layout, "CZT");
   layout.Unit = fields["unit"] == "pixel" ? "" : fields["unit"];
   const double depth = std::atof(fields["spacing"].c_str());
@@ -101,16 +388,18 @@ Layout ParseImageJ(const TIFFPages& pages)
 int GetNumber(vtkXMLDataElement* element, const char* name, int usual)
 {
   const char* const text = element->GetAttribute(name);
-  return text ? std::atoi(text) : usual;
+  return text ? ParseNumber(text) : usual;
 }
 
 /**
- * Let elements TiffData say which pages the planes are.
+ * Assign pages to planes by elements TiffData. Returns whether one file has all.
  */
-void AssignPages(Layout& layout, vtkXMLDataElement* pixels, const std::string& order)
+bool AssignPages(Layout& layout, vtkXMLDataElement* pixels, const std::string& order)
 {
-  const int count = static_cast<int>(layout.Pages.size());
-  std::vector<int> pages(static_cast<std::size_t>(count), -1); // by the number in the order
+  const auto count = static_cast<int>(layout.Pages.size());
+  std::vector<int> pages(layout.Pages.size(), -1); // by the number in the order
+  std::set<std::string> files;
+  bool isAssigned = false;
   for (int n = 0; n < pixels->GetNumberOfNestedElements(); ++n)
   {
     vtkXMLDataElement* const data = pixels->GetNestedElement(n);
@@ -118,26 +407,28 @@ void AssignPages(Layout& layout, vtkXMLDataElement* pixels, const std::string& o
     {
       continue;
     }
-    const int first = FindPage(layout, order, GetNumber(data, "FirstZ", 0),
+    vtkXMLDataElement* const file = data->FindNestedElementWithName("UUID");
+    const char* const name = file ? file->GetAttribute("FileName") : nullptr;
+    files.insert(name ? name : "");
+    const std::int64_t first = FindPage(layout, order, GetNumber(data, "FirstZ", 0),
       GetNumber(data, "FirstC", 0), GetNumber(data, "FirstT", 0));
     const int page = GetNumber(data, "IFD", 0);
     const int planes = GetNumber(data, "PlaneCount", data->GetAttribute("IFD") ? 1 : count);
     for (int plane = 0; plane < planes && first >= 0 && first + plane < count; ++plane)
     {
       pages[static_cast<std::size_t>(first + plane)] = page + plane;
+      isAssigned = true;
     }
   }
-  if (std::any_of(pages.begin(), pages.end(), [](int page) { return page >= 0; }))
+  for (int& page : layout.Pages)
   {
-    for (int& page : layout.Pages)
-    {
-      page = pages[static_cast<std::size_t>(page)];
-    }
+    page = isAssigned ? pages[static_cast<std::size_t>(page)] : page;
   }
+  return files.size() < 2;
 }
 
 /**
- * The first image of OME's XML.
+ * Parse the first image of OME's XML.
  */
 Layout ParseOME(const TIFFPages& pages, const std::string& path)
 {
@@ -145,8 +436,10 @@ Layout ParseOME(const TIFFPages& pages, const std::string& path)
     vtkXMLUtilities::ReadElementFromString(pages.GetDescription().c_str()));
   vtkXMLDataElement* const image = root ? root->FindNestedElementWithName("Image") : nullptr;
   vtkXMLDataElement* const pixels = image ? image->FindNestedElementWithName("Pixels") : nullptr;
-  const char* const order = pixels ? pixels->GetAttribute("DimensionOrder") : nullptr;
-  if (!order || std::string(order).size() != 5)
+  const char* const text = pixels ? pixels->GetAttribute("DimensionOrder") : nullptr;
+  const std::string letters = text ? text : "", order = letters.substr(letters.find('Y') + 1);
+  const std::string axes = "ZCT";
+  if (!std::is_permutation(order.begin(), order.end(), axes.begin(), axes.end()))
   {
     Refuse(path, "its OME description is damaged; export the volume again.");
   }
@@ -154,8 +447,10 @@ Layout ParseOME(const TIFFPages& pages, const std::string& path)
   layout.Slices = std::max(1, GetNumber(pixels, "SizeZ", 1));
   layout.Channels = std::max(1, GetNumber(pixels, "SizeC", 1) / pages.GetComponents());
   layout.Times = std::max(1, GetNumber(pixels, "SizeT", 1));
-  NumberPages(layout, order + 2);
-  AssignPages(layout, pixels, order + 2);
+  if (NumberPages(layout, order) && !AssignPages(layout, pixels, order))
+  {
+    Refuse(path, "its planes are in several files, which is not supported; export one file.");
+  }
   const char* const names[3] = { "PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ" };
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -190,22 +485,14 @@ Layout FindLayout(const TIFFPages& pages, const std::string& path)
 
 void PlaceStack(Volume& volume, const Layout& layout)
 {
+  const auto& size = layout.Size;
   const bool isSized = !layout.Unit.empty() &&
-    std::all_of(layout.Size.begin(), layout.Size.end(),
+    std::all_of(size.begin(), size.end(),
       [](double length) { return length > 0.0 && std::isfinite(length); });
-  const auto size = isSized ? layout.Size : std::array<double, 3>{ 1.0, 1.0, 1.0 };
-  PlaceVolume(
-    volume, { { { size[0], 0.0, 0.0 }, { 0.0, size[1], 0.0 }, { 0.0, 0.0, size[2] } } }, {});
-  if (isSized)
-  {
-    ConvertToMillimeters(volume, layout.Unit);
-    volume.Notes.push_back(
-      "TIFF does not say how voxels lie: pages from the feet on, seen from the feet");
-    return;
-  }
-  volume.Notes.push_back("TIFF does not say how large voxels are and how they lie: cubes of 1 mm, "
-                         "pages from the feet on, seen from the feet");
-  volume.Caution = "voxel size unknown";
+  const Steps steps = { { { size[0], 0.0, 0.0 }, { 0.0, size[1], 0.0 }, { 0.0, 0.0, size[2] } } };
+  PlaceVolume(volume, isSized ? steps : Steps(), {}, isSized ? layout.Unit : "");
+  volume.Notes.push_back(
+    "the file has no orientation: the first page is at the feet, the first row in front");
 }
 }
 
@@ -213,7 +500,8 @@ Volume ReadTIFF(const std::string& path, const ReadSettings& settings, const Qui
 {
   TIFFPages pages(path);
   const Layout layout = FindLayout(pages, path);
-  const bool isBehind = pages.GetCount() == 1 && layout.Pages.size() > 1; // as ImageJ writes
+  const bool isBehind =
+    layout.IsContiguous && pages.GetCount() == 1 && layout.Pages.size() > 1; // as ImageJ writes
   const bool hasAll = std::all_of(layout.Pages.begin(), layout.Pages.end(),
     [&](int page) { return page >= 0 && (page < pages.GetCount() || isBehind); });
   if (layout.Pages.empty() || !hasAll)

@@ -1,22 +1,21 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/VTKVolume.h"
-
 #include "ProgressLine.h"
+#include "Reading/Formats.h"
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
-#include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetReader.h"
+#include "vtkIdList.h"
 #include "vtkInformation.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkXMLImageDataReader.h"
 #include "vtkXMLRectilinearGridReader.h"
 
@@ -26,18 +25,16 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <vector>
 
 namespace
 {
-/// Coordinates of rectilinear grids that are off an even place by less of the step are even.
+/// Steps by which even coordinates of rectilinear grids may be off.
 constexpr double EvenEnough = 1e-3;
 
-/// Voxels along an axis, times those that there are, that an uneven grid may become.
-constexpr double MostVoxels = 8.0;
-
 /**
- * Whether the end of an XML file is there: VTK's readers accept raw data without it.
+ * Return whether the end of an XML file is there: VTK's readers accept raw data without it.
  */
 bool HasEnd(const std::string& path)
 {
@@ -60,7 +57,7 @@ void CheckExtent(vtkInformation* info, const std::string& path, const QuietReadi
     const double count = double(extent[2 * axis + 1]) - extent[2 * axis] + 1.0;
     if (count < 1.0)
     {
-      RefuseDamaged(path, quiet);
+      RefuseDamaged(path, quiet.GetReason());
     }
     voxels *= count;
   }
@@ -70,33 +67,25 @@ void CheckExtent(vtkInformation* info, const std::string& path, const QuietReadi
 vtkSmartPointer<vtkDataSet> RunReader(
   vtkAlgorithm* reader, const std::string& path, const QuietReading& quiet)
 {
-  ProgressLine line("reading " + std::filesystem::path(path).filename().string());
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetClientData(&line);
-  observer->SetCallback(
-    [](vtkObject* caller, unsigned long, void* client, void*) {
-      static_cast<ProgressLine*>(client)->Show(static_cast<vtkAlgorithm*>(caller)->GetProgress());
-    });
-  reader->AddObserver(vtkCommand::ProgressEvent, observer);
+  const ProgressLine line("reading " + std::filesystem::path(path).filename().string(), reader);
   reader->UpdateInformation();
   vtkInformation* const info = reader->GetOutputInformation(0);
   if (HasFailed(reader, quiet) || !info)
   {
-    RefuseDamaged(path, quiet);
+    RefuseDamaged(path, quiet.GetReason());
   }
   CheckExtent(info, path, quiet);
   reader->Update();
-  reader->RemoveObserver(observer);
   vtkSmartPointer<vtkDataSet> data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
   if (HasFailed(reader, quiet) || !data || data->GetNumberOfPoints() < 1)
   {
-    RefuseDamaged(path, quiet);
+    RefuseDamaged(path, quiet.GetReason());
   }
   return data;
 }
 
 /**
- * The places of voxels along an axis: of points, or of the middles of cells.
+ * Get the places of voxels along an axis: of points, or of the centres of cells.
  */
 std::vector<double> GetPlaces(vtkDataSet* data, int axis, bool isOfCells)
 {
@@ -129,75 +118,93 @@ std::vector<double> GetPlaces(vtkDataSet* data, int axis, bool isOfCells)
 }
 
 /**
- * Places with the least of the steps of others.
+ * Find even places for coordinates along an axis, or refuse those that cannot be interpolated.
  */
-std::vector<double> SpaceEvenly(const std::vector<double>& places, const std::string& path)
+std::vector<double> FindEvenPlaces(const std::vector<double>& places, const std::string& path)
 {
   const double length = places.back() - places.front();
-  double least = std::fabs(length);
   for (std::size_t i = 1; i < places.size(); ++i)
   {
-    const double step = places[i] - places[i - 1];
-    if (!(step * length > 0.0))
+    if (!((places[i] - places[i - 1]) * length > 0.0) || !std::isfinite(length))
     {
       Refuse(path, "its coordinates neither rise nor fall; write the grid again.");
     }
-    least = std::min(least, std::fabs(step));
   }
-  if (places.size() < 2 || std::fabs(least * double(places.size() - 1) / length) > 1.0 - EvenEnough)
-  {
-    return places;
-  }
-  const double count = std::ceil(std::fabs(length) / least * (1.0 - EvenEnough));
-  if (count > MostVoxels * double(places.size()))
+  const std::vector<double> even = SpaceEvenly(places, EvenEnough);
+  if (even.empty())
   {
     Refuse(path, "its coordinates are too uneven to interpolate; resample the grid to an image.");
-  }
-  std::vector<double> even;
-  for (int i = 0; i <= static_cast<int>(count); ++i)
-  {
-    even.push_back(places.front() + length * i / count);
   }
   return even;
 }
 
 /**
- * Values at other places along one axis, as floating point. Stride is that of the axis.
+ * Find the voxels that ghost arrays hide: points with HIDDENPOINT, and those all of whose cells
+ * have HIDDENCELL; or cells with HIDDENCELL, and those with a hidden point. Returns nullptr if
+ * there are no ghost arrays.
  */
-vtkSmartPointer<vtkDataArray> Interpolate(vtkDataArray* values, vtkIdType stride,
-  const std::vector<double>& from, const std::vector<double>& to)
+vtkSmartPointer<vtkUnsignedCharArray> FindHidden(
+  vtkDataSet* data, bool isOfCells, const std::string& path)
 {
-  const bool isFloat = values->GetDataTypeSize() <= 2 || values->GetDataType() == VTK_FLOAT;
-  const auto result = vtkSmartPointer<vtkDataArray>::Take(
-    vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
-  const auto size = static_cast<vtkIdType>(from.size());
-  const vtkIdType lines = values->GetNumberOfTuples() / size / stride;
-  result->SetNumberOfComponents(values->GetNumberOfComponents());
-  result->SetNumberOfTuples(lines * stride * static_cast<vtkIdType>(to.size()));
-  vtkIdType point = 0;
-  for (vtkIdType line = 0; line < lines; ++line)
+  vtkUnsignedCharArray* const points = data->GetPointGhostArray();
+  vtkUnsignedCharArray* const cells = data->GetCellGhostArray();
+  if ((points && points->GetNumberOfTuples() != data->GetNumberOfPoints()) ||
+    (cells && cells->GetNumberOfTuples() != data->GetNumberOfCells()))
   {
-    vtkIdType i = 0; // the place is between this one and the next
-    for (const double place : to)
-    {
-      while (i + 2 < size && std::fabs(from[i + 1] - from[0]) <= std::fabs(place - from[0]))
-      {
-        ++i;
-      }
-      const double share = (place - from[i]) / (from[i + 1] - from[i]);
-      for (vtkIdType n = 0; n < stride; ++n, ++point)
-      {
-        const vtkIdType first = (line * size + i) * stride + n;
-        result->InterpolateTuple(
-          point, first, values, first + stride, values, std::clamp(share, 0.0, 1.0));
-      }
-    }
+    RefuseDamaged(path, "not a ghost value for each point or cell");
   }
-  return result;
+  if (!points && !cells)
+  {
+    return nullptr;
+  }
+  const auto isHiddenPoint = [points](vtkIdType i)
+  { return points && (points->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT) != 0; };
+  const auto isHiddenCell = [cells](vtkIdType i)
+  { return cells && (cells->GetValue(i) & vtkDataSetAttributes::HIDDENCELL) != 0; };
+  auto hidden = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  hidden->SetName(vtkDataSetAttributes::GhostArrayName());
+  hidden->SetNumberOfTuples(isOfCells ? data->GetNumberOfCells() : data->GetNumberOfPoints());
+  vtkNew<vtkIdList> others;
+  for (vtkIdType i = 0; i < hidden->GetNumberOfTuples(); ++i)
+  {
+    bool isHidden = false;
+    if (isOfCells)
+    {
+      data->GetCellPoints(i, others);
+      isHidden = isHiddenCell(i) || std::any_of(others->begin(), others->end(), isHiddenPoint);
+    }
+    else
+    {
+      data->GetPointCells(i, others);
+      isHidden = isHiddenPoint(i) ||
+        (others->GetNumberOfIds() > 0 && std::all_of(others->begin(), others->end(), isHiddenCell));
+    }
+    hidden->SetValue(i, isHidden ? vtkDataSetAttributes::HIDDENPOINT : 0);
+  }
+  return hidden;
 }
 
 /**
- * The arrays of numbers of points or cells.
+ * Copy values as floating point, less hidden ones.
+ */
+vtkSmartPointer<vtkDataArray> CopyShown(vtkDataArray* values, vtkUnsignedCharArray* hidden)
+{
+  const bool isFloat = values->GetDataTypeSize() <= 2 || values->GetDataType() == VTK_FLOAT;
+  const auto copy = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
+  copy->DeepCopy(values);
+  for (vtkIdType i = 0; i < copy->GetNumberOfTuples(); ++i)
+  {
+    for (int n = 0; n < copy->GetNumberOfComponents() && hidden->GetValue(i) != 0; ++n)
+    {
+      copy->SetComponent(i, n, std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return copy;
+}
+
+/**
+ * List the arrays of numbers of points or cells, the active one first.
  */
 std::vector<vtkDataArray*> ListArrays(vtkDataSetAttributes* attributes)
 {
@@ -224,7 +231,8 @@ std::string GetName(vtkDataArray* array)
 }
 
 /**
- * The array that the settings name, else the active one, else the first, points before cells.
+ * Choose the array that the settings name, else the active one, else the first, points before
+ * cells.
  */
 vtkDataArray* ChooseArray(
   vtkDataSet* data, const std::string& path, const std::string& wanted, Volume& volume)
@@ -252,21 +260,8 @@ vtkDataArray* ChooseArray(
   return arrays[static_cast<std::size_t>(found - names.begin())];
 }
 
-/// Of voxels along three axes.
+/// Places of voxels along three axes.
 using Places = std::array<std::vector<double>, 3>;
-
-vtkSmartPointer<vtkDataArray> MakeEven(
-  vtkSmartPointer<vtkDataArray> values, const Places& places, const Places& even)
-{
-  vtkIdType stride = 1;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const bool isEven = even[axis] == places[axis];
-    values = isEven ? values : Interpolate(values, stride, places[axis], even[axis]);
-    stride *= static_cast<vtkIdType>(even[axis].size());
-  }
-  return values;
-}
 
 void Place(Volume& volume, vtkImageData* image, const Places& even)
 {
@@ -287,7 +282,7 @@ void Place(Volume& volume, vtkImageData* image, const Places& even)
       origin[row] += element * along.front();
     }
   }
-  PlaceVolume(volume, steps, origin);
+  PlaceVolume(volume, steps, origin, "");
 }
 
 Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& wanted)
@@ -306,7 +301,7 @@ Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& 
   for (int axis = 0; axis < 3; ++axis)
   {
     places[axis] = GetPlaces(data, axis, isOfCells);
-    even[axis] = image ? places[axis] : SpaceEvenly(places[axis], path);
+    even[axis] = image ? places[axis] : FindEvenPlaces(places[axis], path);
     voxels *= static_cast<double>(places[axis].size());
     evenVoxels *= static_cast<double>(even[axis].size());
   }
@@ -314,23 +309,31 @@ Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& 
   {
     Refuse(path, "no numeric value at each point or cell; save the volume with scalars.");
   }
+  CheckMemory(evenVoxels, path);
+  const auto hidden = FindHidden(data, isOfCells, path);
+  if (hidden && even != places)
+  {
+    values = CopyShown(values, hidden);
+  }
+  values->SetName(GetName(values).c_str());
+  volume.Image = vtkSmartPointer<vtkImageData>::New();
+  volume.Image->SetDimensions(int(places[0].size()), int(places[1].size()), int(places[2].size()));
+  volume.Image->GetPointData()->SetScalars(values);
   if (even != places)
   {
-    CheckMemory(evenVoxels, path);
-    values = MakeEven(values, places, even);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      volume.Image = even[axis] == places[axis]
+        ? volume.Image
+        : Interpolate(volume.Image, axis, places[axis], even[axis]);
+    }
     volume.Notes.push_back("the grid is uneven and was interpolated to the least of its steps");
-    volume.Caution = "grid interpolated";
+    AddCaution(volume, "grid interpolated");
   }
-  volume.Image = vtkSmartPointer<vtkImageData>::New();
-  volume.Image->SetDimensions(int(even[0].size()), int(even[1].size()), int(even[2].size()));
-  vtkDataArray* const hidden =
-    data->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName());
-  if (hidden && image && !isOfCells)
+  else if (hidden)
   {
     volume.Image->GetPointData()->AddArray(hidden);
   }
-  values->SetName(GetName(values).c_str());
-  volume.Image->GetPointData()->SetScalars(values);
   Place(volume, image, even);
   return volume;
 }
@@ -355,7 +358,7 @@ Volume ReadVTK(const std::string& path, const ReadSettings& settings, const Quie
   {
     if (!HasEnd(path))
     {
-      RefuseDamaged(path, quiet);
+      RefuseDamaged(path, quiet.GetReason());
     }
     const vtkSmartPointer<vtkXMLReader> reader = ending == ".vtr"
       ? vtkSmartPointer<vtkXMLReader>(vtkSmartPointer<vtkXMLRectilinearGridReader>::New())

@@ -2,19 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reading/VolumeReader.h"
 
-#include "Reading/ITKVolume.h"
-#include "Reading/NIFTIVolume.h"
+#include "Reading/Formats.h"
 #include "Reading/QuietReading.h"
 #include "Reading/Reading.h"
-#include "Reading/TIFFVolume.h"
-#include "Reading/VTKVolume.h"
 #include "SplatmipAorta.h" // made from aorta-stent.vti by the build
 #ifdef SPLATMIP_HAS_DICOM
-#include "Reading/DICOMSeries.h"
-#include "Reading/DICOMVolume.h"
+#include "Reading/DICOM.h"
 #endif
 
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkPointData.h"
 
 #include <vtksys/SystemTools.hxx>
@@ -24,14 +21,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <new>
-#include <sstream>
 #include <stdexcept>
 
 namespace
 {
 /**
- * Luminance of red, green and blue (ITU-R BT.601), or the length of a vector.
+ * Compute the luminance of red, green and blue (ITU-R BT.601), or the length of vectors.
  */
 vtkSmartPointer<vtkImageData> Combine(vtkImageData* image, bool isLuminance)
 {
@@ -56,11 +53,13 @@ vtkSmartPointer<vtkImageData> Combine(vtkImageData* image, bool isLuminance)
 }
 
 /**
- * Make one value of several in each voxel.
+ * Choose or combine values where voxels have several. Hidden voxels remain hidden.
  */
 void ChooseComponent(Volume& volume, const std::string& path, const std::string& wanted)
 {
   const int components = volume.Image->GetNumberOfScalarComponents();
+  const vtkSmartPointer<vtkDataArray> hidden =
+    volume.Image->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName());
   const bool isLuminance = wanted == "luminance";
   if (isLuminance && components < 3)
   {
@@ -68,18 +67,21 @@ void ChooseComponent(Volume& volume, const std::string& path, const std::string&
       "luminance is of red, green and blue, and voxels have " + std::to_string(components) +
         (components > 1 ? " values" : " value") + "; give another --component.");
   }
+  const int number = std::atoi(wanted.c_str()); // 0 if it is a word
+  CheckChoice(path, "component", number, components);
   if (isLuminance || wanted == "magnitude")
   {
     volume.Image = Combine(volume.Image, isLuminance);
     volume.Notes.push_back(wanted + " of " + std::to_string(components) + " components");
-    return;
   }
-  const int number = std::atoi(wanted.c_str());
-  CheckChoice(path, "component", number, components);
-  if (components > 1)
+  else if (components > 1)
   {
     volume.Image = ExtractComponent(volume.Image, std::max(number, 1));
     volume.Notes.push_back(DescribeChoice("component", number, components));
+  }
+  if (hidden)
+  {
+    volume.Image->GetPointData()->AddArray(hidden);
   }
 }
 
@@ -93,20 +95,12 @@ std::string ExplainFile(const std::string&)
 {
   return "";
 }
-
-Volume ReadDICOM(const std::string& path, const ReadSettings&, const QuietReading&)
-{
-  Refuse(path,
-    "this build has no DICOM reader; build it with vtk-dicom, or convert the series to .nrrd.");
-}
 #endif
-
-using ReadFunction = Volume (*)(const std::string&, const ReadSettings&, const QuietReading&);
 
 struct VolumeFormat
 {
-  const char* Ending;
-  ReadFunction Read;
+  const char* Name; // the ending
+  ReadFunction* Read;
 };
 
 constexpr VolumeFormat Formats[] = { { ".vti", ReadVTK }, { ".vtr", ReadVTK }, { ".vtk", ReadVTK },
@@ -115,27 +109,20 @@ constexpr VolumeFormat Formats[] = { { ".vti", ReadVTK }, { ".vtr", ReadVTK }, {
   { ".hdr.gz", ReadNIFTI }, { ".img.gz", ReadNIFTI }, { ".tif", ReadTIFF }, { ".tiff", ReadTIFF } };
 
 /**
- * By the end of the name; nullptr if it is none of those.
+ * Choose a function by the end of the name; nullptr if it is none of those.
  */
-ReadFunction ChooseReader(const std::string& path)
+ReadFunction* ChooseReader(const std::string& path)
 {
-  const std::string lower = vtksys::SystemTools::LowerCase(path);
-  for (const VolumeFormat& format : Formats)
-  {
-    const std::string ending = format.Ending;
-    if (lower.size() > ending.size() &&
-      lower.compare(lower.size() - ending.size(), ending.size(), ending) == 0)
-    {
-      return format.Read;
-    }
-  }
-  return nullptr;
+  const std::string name = vtksys::SystemTools::LowerCase(path);
+  const auto* const format = std::find_if(std::begin(Formats), std::end(Formats),
+    [&](const VolumeFormat& each) { return vtksys::SystemTools::StringEndsWith(name, each.Name); });
+  return format == std::end(Formats) ? nullptr : format->Read;
 }
 
 Volume ReadAny(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
   std::error_code error;
-  const ReadFunction read = ChooseReader(path);
+  ReadFunction* const read = ChooseReader(path);
   const bool isDICOM = std::filesystem::is_directory(path, error) || (!read && IsDICOMFile(path));
   if (!isDICOM && !read)
   {
@@ -163,35 +150,7 @@ Volume ReadAny(const std::string& path, const ReadSettings& settings, const Quie
 }
 
 /**
- * Add the existing files that the lines of a header without data name.
- */
-void AddCompanions(const std::string& path, std::vector<std::string>& files)
-{
-  const std::filesystem::path header(path);
-  const std::string ending = vtksys::SystemTools::LowerCase(header.extension().string());
-  if (ending != ".mhd" && ending != ".nhdr")
-  {
-    return;
-  }
-  std::istringstream lines(ReadHead(path));
-  for (std::string line; std::getline(lines, line);)
-  {
-    const std::size_t end = line.find_last_not_of(" \t\r") + 1;
-    for (std::size_t begin = 0; begin < end; begin = line.find_first_of(" \t:=", begin))
-    {
-      begin = line.find_first_not_of(" \t:=", begin);
-      const std::filesystem::path name(line.substr(begin, end - begin));
-      std::error_code error;
-      if (std::filesystem::is_regular_file(header.parent_path() / name, error))
-      {
-        files.push_back((header.parent_path() / name).string());
-      }
-    }
-  }
-}
-
-/**
- * Refuse what no reader needs to be asked about.
+ * Refuse what no reader can read.
  */
 void CheckFile(const std::string& path)
 {
@@ -215,14 +174,17 @@ void CheckFile(const std::string& path)
 }
 }
 
+#ifndef SPLATMIP_HAS_DICOM
+Volume ReadDICOM(const std::string& path, const ReadSettings&, const QuietReading&)
+{
+  Refuse(path,
+    "this build has no DICOM reader; build it with vtk-dicom, or convert the series to .nrrd.");
+}
+#endif
+
 std::vector<std::string> GetVolumeEndings()
 {
-  std::vector<std::string> endings;
-  for (const VolumeFormat& format : Formats)
-  {
-    endings.emplace_back(format.Ending);
-  }
-  return endings;
+  return ListNames(Formats);
 }
 
 Volume ReadVolume(const std::string& path, const ReadSettings& settings)
@@ -234,7 +196,6 @@ Volume ReadVolume(const std::string& path, const ReadSettings& settings)
     Volume volume = ReadAny(path, settings, quiet);
     volume.Name = std::filesystem::path(path).filename().string();
     volume.Files.push_back(path);
-    AddCompanions(path, volume.Files);
     return volume;
   }
   catch (const std::bad_alloc&)

@@ -12,8 +12,7 @@
 #include <vector>
 
 /**
- * What of a file with several volumes is wanted: numbers from 1 on, 0 and no text for the
- * usual ones.
+ * Choices in files with several volumes: numbers from 1 on, 0 or no text for the default.
  */
 struct ReadSettings
 {
@@ -21,7 +20,7 @@ struct ReadSettings
   int Frame = 0;
   int Channel = 0;
   int Label = 0;             // of a DICOM segmentation
-  bool HidesPadding = false; // also where a maximum does not show it
+  bool HidesPadding = false; // all of it, not only what a maximum shows
   std::string Array;         // its name
   std::string Component;     // a number, "luminance" or "magnitude"
 };
@@ -37,18 +36,19 @@ struct Volume
   vtkSmartPointer<vtkImageData> Image;
 
   /**
-   * Turns Image's coordinates to the patient's: +x left, +y back, +z head (LPS, as in DICOM). It is
-   * the volume's prop matrix, because vtkFixedPointVolumeRayCastMapper ignores direction matrices.
+   * Rotation from Image's coordinates to the patient's: +x left, +y back, +z head (LPS, as in
+   * DICOM). It is the volume's prop matrix, because vtkFixedPointVolumeRayCastMapper ignores
+   * direction matrices.
    */
   vtkSmartPointer<vtkMatrix4x4> Orientation;
 
   /**
-   * Where the first voxel lies in the patient (LPS), as far as the file says; Image has it at 0.
+   * Position of the first voxel in the patient (LPS), as far as the file says; it is 0 in Image.
    */
   std::array<double, 3> Origin = {};
 
   /**
-   * What to call the volume, and what the user should know of it, a line each.
+   * The volume's name, and notes for the user, a line each.
    */
   std::string Name;
   std::vector<std::string> Notes;
@@ -70,24 +70,25 @@ struct Volume
   bool HasLabels = false;
 
   /**
-   * What whoever sees a picture must know, in a few words; may be empty.
+   * Warnings that pictures must show, a few words on each line; may be empty.
    */
   std::string Caution;
 
   /**
-   * How the file wants to be shown, in its values; the window is 0 if it does not say.
+   * The file's window, in its values; the width is 0 if it has none.
    */
   double Window = 0.0;
   double Level = 0.0;
 
   /**
-   * Of DICOM, the vtkDICOMMetaData of one of the files, for what is derived from them.
+   * The vtkDICOMMetaData of one of the files, from which outputs take patient and study; nullptr if
+   * the input is not DICOM.
    */
   vtkSmartPointer<vtkObject> Study;
 };
 
 /**
- * How the names of files end that can be read, less those of DICOM.
+ * List the endings of the files that can be read, less DICOM's.
  */
 std::vector<std::string> GetVolumeEndings();
 
@@ -100,7 +101,7 @@ std::vector<std::string> GetVolumeEndings();
 Volume ReadVolume(const std::string& path, const ReadSettings& settings);
 
 /**
- * The volume that is part of the program: CT angiography of a stented abdominal aorta.
+ * Read the volume that is part of the program: CT angiography of a stented abdominal aorta.
  */
 Volume ReadBuiltInVolume();
 

@@ -7,7 +7,7 @@ A file is a dict from keyword to value: text, numbers, bytes, or a list of such 
 import os
 import sys
 
-import SplatmipTesting as splatmip
+import numpy
 
 try:
     import pydicom
@@ -15,8 +15,14 @@ except ImportError:
     print("skipped: no pydicom")
     sys.exit(0)
 
-CT_STORAGE = "1.2.840.10008.5.1.4.1.1.2"
 ROOT = "1.2.826.0.1.3680043.9.9999"  # of the unique identifiers
+SIZE = (9, 12, 10)  # z, y, x
+
+
+def make_values(low=0, high=1000, seed=0):
+    values = numpy.random.default_rng(seed).integers(low, high, SIZE, numpy.int64)
+    values.flat[:2] = low, high - 1
+    return values
 
 
 def make_dataset(fields):
@@ -33,33 +39,36 @@ def make_dataset(fields):
     return dataset
 
 
-def write_object(path, fields, syntax=pydicom.uid.ExplicitVRLittleEndian):
-    dataset = make_dataset(fields)
+def write_object(path, fields):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    dataset = make_dataset({name: value for name, value in fields.items() if value is not None})
     dataset.file_meta = pydicom.dataset.FileMetaDataset()
-    dataset.file_meta.TransferSyntaxUID = syntax
+    dataset.file_meta.TransferSyntaxUID = pydicom.uid.ExplicitVRLittleEndian
     dataset.is_little_endian, dataset.is_implicit_VR = True, False
     dataset.save_as(path, write_like_original=False)
     return path
 
 
-def make_slices(image=None):
-    """The slices of a CT, from the feet on; rows run to the left, columns to the back."""
-    image = image or splatmip.make_image()
-    columns, rows, count = image.GetDimensions()
-    spacing = image.GetSpacing()
-    pixels = splatmip.get_bytes(image)
-    size = len(pixels) // count
+def encode(codes, fields):
+    is_signed = fields.get("PixelRepresentation", 1)
+    return numpy.ascontiguousarray(codes).astype("<i2" if is_signed else "<u2").tobytes()
+
+
+def make_slices(codes=None, **fields):
+    """The slices of a CT, from the feet on; rows run to the left, columns to the back. The voxels
+    have 1.5 x 1 x 2 mm."""
+    codes = make_values() if codes is None else codes
     return [{
-        "SOPClassUID": CT_STORAGE, "SOPInstanceUID": f"{ROOT}.3.{k + 1}", "Modality": "CT",
-        "PatientName": "Phantom", "PatientID": "1", "StudyDate": "20260101",
+        "SOPClassUID": "1.2.840.10008.5.1.4.1.1.2", "SOPInstanceUID": f"{ROOT}.3.{k + 1}",
+        "Modality": "CT", "PatientName": "Phantom", "PatientID": "1", "StudyDate": "20260101",
         "StudyTime": "120000", "StudyID": "1", "SeriesNumber": 1,
         "StudyInstanceUID": ROOT + ".1", "SeriesInstanceUID": ROOT + ".2",
-        "InstanceNumber": k + 1, "ImagePositionPatient": (0, 0, spacing[2] * k),
+        "InstanceNumber": k + 1, "ImagePositionPatient": (0, 0, 2 * k),
         "ImageOrientationPatient": (1, 0, 0, 0, 1, 0), "SamplesPerPixel": 1,
-        "PhotometricInterpretation": "MONOCHROME2", "Rows": rows, "Columns": columns,
-        "PixelSpacing": (spacing[1], spacing[0]), "BitsAllocated": 16, "BitsStored": 16,
-        "HighBit": 15, "PixelRepresentation": 1,
-        "PixelData": pixels[k * size:(k + 1) * size]} for k in range(count)]
+        "PhotometricInterpretation": "MONOCHROME2", "Rows": page.shape[0],
+        "Columns": page.shape[1], "PixelSpacing": (1, 1.5), "BitsAllocated": 16,
+        "BitsStored": 16, "HighBit": 15, "PixelRepresentation": 1,
+        "PixelData": encode(page, fields), **fields} for k, page in enumerate(codes)]
 
 
 def name_of(k):
@@ -68,7 +77,6 @@ def name_of(k):
 
 
 def write_series(folder, slices):
-    os.makedirs(folder, exist_ok=True)
     for k, fields in enumerate(slices):
         write_object(os.path.join(folder, name_of(k)), fields)
     return folder
@@ -76,8 +84,18 @@ def write_series(folder, slices):
 
 def join_frames(slices, **fields):
     """One object with the slices as frames, whose positions are for the caller to give."""
-    frames = {name: value for name, value in slices[0].items() if name != "InstanceNumber"}
-    frames.update(NumberOfFrames=len(slices),
-                  PixelData=b"".join(fields["PixelData"] for fields in slices))
-    frames.update(fields)
-    return {name: value for name, value in frames.items() if value is not None}
+    pixels = b"".join(page["PixelData"] for page in slices)
+    return {**slices[0], "InstanceNumber": None, "NumberOfFrames": len(slices),
+            "PixelData": pixels, **fields}
+
+
+def place_frames(positions, *groups):
+    """Fields of an enhanced object: functional groups with a position of each frame, and others."""
+    shared = {"PlaneOrientationSequence": [{"ImageOrientationPatient": (1, 0, 0, 0, 1, 0)}],
+              "PixelMeasuresSequence": [{"PixelSpacing": (1, 1.5), "SliceThickness": 2}]}
+    frames = [{"PlanePositionSequence": [{"ImagePositionPatient": position}]} for position in positions]
+    for name, items in groups:
+        for frame, item in zip(frames, items):
+            frame[name] = [item]
+    return {"ImagePositionPatient": None, "ImageOrientationPatient": None, "PixelSpacing": None,
+            "SharedFunctionalGroupsSequence": [shared], "PerFrameFunctionalGroupsSequence": frames}

@@ -6,7 +6,6 @@ that names tag and value.
 import ctypes
 import ctypes.util
 import struct
-import unittest
 
 import numpy
 
@@ -15,123 +14,104 @@ import SplatmipTesting as splatmip
 try:
     import tifffile
 except ImportError:
-    tifffile = None
+    print("skipped: no tifffile")
+    raise SystemExit(0) from None
 
 UNIT = numpy.eye(3, 4)
+PLACES = numpy.array([[0.25, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 2, 0.0]]) * 1e-3
+SIZES = {"Z": 4, "C": 3, "T": 2, "Y": 20, "X": 30}
+GRAY = {"photometric": "minisblack", "metadata": None}
 
 
-def make_values(dtype=numpy.uint16, size=(9, 20, 30), seed=0):
-    return numpy.random.default_rng(seed).integers(0, 250, size).astype(dtype)
+def make_values(dtype="uint16", size=(9, 20, 30)):
+    return numpy.random.default_rng(0).integers(0, 250, size).astype(dtype)
 
 
-@unittest.skipUnless(tifffile, "skipped: no tifffile")
-class TestTIFF(splatmip.SplatmipTest):
-    def write(self, values, name="a.tif", **settings):
-        tifffile.imwrite(self.path(name), values, **settings)
-        return self.path(name)
+def make_axes(axes):
+    return make_values(size=tuple(SIZES[axis] for axis in axes))
 
-    def check(self, path, values=None, places=UNIT, *arguments):
-        values = tifffile.imread(path) if values is None else values
-        return self.assert_volume(path, values, places, *arguments)
+
+class TIFFTest(splatmip.SplatmipTest):
+    def write(self, values, **settings):
+        tifffile.imwrite(self.path("a.tif"), values, **settings)
+        return self.path("a.tif")
 
     def patch(self, path, tag, value):
         """Change a short number in all pages."""
-        with open(path, "r+b") as file:
-            data = bytearray(file.read())
-            place = struct.unpack_from("<I", data, 4)[0]
-            while place:
-                count = struct.unpack_from("<H", data, place)[0]
-                for n in range(count):
-                    entry = place + 2 + 12 * n
-                    if struct.unpack_from("<H", data, entry)[0] == tag:
-                        struct.pack_into("<HIHH", data, entry + 2, 3, 1, value, 0)
-                place = struct.unpack_from("<I", data, place + 2 + 12 * count)[0]
-            file.seek(0)
-            file.write(data)
-        return path
+        data, changes = splatmip.read_file(path), {}
+        place = struct.unpack_from("<I", data, 4)[0]
+        while place:
+            count = struct.unpack_from("<H", data, place)[0]
+            for entry in range(place + 2, place + 2 + 12 * count, 12):
+                if struct.unpack_from("<H", data, entry)[0] == tag:
+                    changes[entry + 2] = struct.pack("<HIHH", 3, 1, value, 0)
+            place = struct.unpack_from("<I", data, place + 2 + 12 * count)[0]
+        return splatmip.patch_file(path, changes)
 
-    def test_types(self):
-        """The first row is at the front, the first page at the feet."""
-        for dtype in ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"):
-            path = self.write(make_values(dtype), photometric="minisblack", metadata=None)
-            text = self.check(path)
-            self.assertIn("TIFF does not say how large voxels are", text)
-        self.check(self.write(make_values(), name="a.tiff", bigtiff=True, photometric="minisblack"))
-        self.check(self.write(make_values(), byteorder=">", photometric="minisblack"))
 
+class TestPages(TIFFTest):
     def test_layouts(self):
-        """Tiles, strips, compression and single pages."""
-        settings = [{"tile": (16, 16)}, {"rowsperstrip": 7}, {"compression": "deflate"},
-                    {"compression": "deflate", "predictor": True, "tile": (16, 32)}]
-        for more in settings:
-            self.check(self.write(make_values(), photometric="minisblack", **more))
-        self.check(self.write(make_values(size=(1, 20, 30)), photometric="minisblack"),
-                   make_values(size=(1, 20, 30)))
+        """The first row is at the front, the first page at the feet."""
+        types = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
+        for dtype, settings in (
+                *((dtype, {}) for dtype in types), ("uint16", {"bigtiff": True}),
+                ("uint16", {"byteorder": ">"}), ("uint16", {"tile": (16, 16)}),
+                ("uint16", {"rowsperstrip": 7}), ("uint16", {"compression": "deflate"}),
+                ("uint16", {"compression": "deflate", "predictor": True, "tile": (16, 32)})):
+            path = self.write(make_values(dtype), **GRAY, **settings)
+            self.assert_volume(path, tifffile.imread(path), UNIT, words="has no voxel size: 1 mm is assumed")
+        values = make_values(size=(1, 20, 30))
+        self.assert_volume(self.write(values, **GRAY), values, UNIT)
 
     def test_components(self):
-        """Colours, contiguous or planar, and alpha are components; luminance is made of three."""
-        for size, settings in (((9, 20, 30, 3), {"photometric": "rgb"}),
-                               ((9, 20, 30, 2), {"photometric": "minisblack",
-                                                 "planarconfig": "contig",
-                                                 "extrasamples": ["unassalpha"]}),
-                               ((9, 20, 30, 5), {"photometric": "minisblack",
-                                                 "planarconfig": "contig"})):
+        """Colours and alpha are components; luminance is made of three."""
+        for count, settings in ((3, {"photometric": "rgb"}), (5, {"photometric": "minisblack"}),
+                                (2, {"photometric": "minisblack", "extrasamples": ["unassalpha"]})):
             for dtype in ("uint8", "uint16"):
-                values = make_values(dtype, size)
-                path = self.write(values, metadata=None, **settings)
-                for n in range(size[3]):
-                    text = self.check(path, values[..., n], UNIT, "--component", str(n + 1))
-                    self.assertIn(f"component {n + 1} of {size[3]}", text)
-        planar = make_values("uint16", (9, 3, 20, 30))
-        for more in ({}, {"tile": (16, 16)}):
-            path = self.write(planar, photometric="rgb", planarconfig="separate", metadata=None, **more)
-            self.check(path, planar[:, 1], UNIT, "--component", "2")
-        luminance = numpy.tensordot(planar.astype(float), [0.299, 0.587, 0.114], ([1], [0]))
-        self.check(path, luminance, UNIT, "--component", "luminance")
+                values = make_values(dtype, (9, 20, 30, count))
+                path = self.write(values, planarconfig="contig", metadata=None, **settings)
+                for n in range(count):
+                    self.assert_volume(path, values[..., n], UNIT, "--component", n + 1,
+                                       words=f"component {n + 1} of {count}")
+        values = make_values(size=(9, 20, 30, 3))
+        path = self.write(values, photometric="rgb", metadata=None, tile=(16, 16))
+        self.assert_volume(path, values @ [0.299, 0.587, 0.114], UNIT, "--component", "luminance")
 
     def test_refused_tags(self):
-        gray = {"photometric": "minisblack", "metadata": None}
-        path = self.write(make_values(), photometric="miniswhite", metadata=None)
-        self.assert_refused(path, word="page 1 has PhotometricInterpretation = 0, which is not sup")
-        path = self.write(make_values("uint8"), photometric="palette", metadata=None,
-                          colormap=numpy.zeros((3, 256), numpy.uint16))
-        self.assert_refused(path, word="PhotometricInterpretation = 3")
-        path = self.write(make_values("float16"), **gray)
-        self.assert_refused(path, word="SampleFormat = 3 (float) and BitsPerSample = 16")
-        path = self.write(make_values("complex64"), **gray)
-        self.assert_refused(path, word="SampleFormat = 6")
-        path = self.patch(self.write(make_values("uint8"), **gray), 258, 4)
-        self.assert_refused(path, word="BitsPerSample = 4")
-        path = self.patch(self.write(make_values(), **gray), 259, 34712)  # JPEG 2000
-        self.assert_refused(path, word="Compression = 34712, which is not supported; save")
+        palette = {"photometric": "palette", "colormap": numpy.zeros((3, 256), numpy.uint16)}
+        planar = {"photometric": "rgb", "planarconfig": "separate"}
+        for dtype, size, settings, patch, words in (
+                ("uint16", (), {"photometric": "miniswhite"}, (), "page 1 has PhotometricInterpretation = 0, which"),
+                ("uint8", (), palette, (), "PhotometricInterpretation = 3"),
+                ("uint16", (3,), planar, (), "PlanarConfiguration = 2"),
+                ("float16", (), {}, (), "SampleFormat = 3 (float) and BitsPerSample = 16"),
+                ("complex64", (), {}, (), "SampleFormat = 6"), ("uint8", (), {}, (258, 4), "BitsPerSample = 4"),
+                ("uint16", (), {}, (259, 34712), "Compression = 34712, which is not supported; save")):
+            path = self.write(make_values(dtype, (9, *size, 20, 30)), **{**GRAY, **settings})
+            self.assert_refused(self.patch(path, *patch) if patch else path, words=words)
 
     def test_other_pages(self):
         """Reduced copies are left out; other pages that differ are refused."""
-        path = self.path("a.tif")
-        with tifffile.TiffWriter(path) as file:
-            for page in make_values():
-                file.write(page, photometric="minisblack", metadata=None)
-                file.write(page[::4, ::4], photometric="minisblack", subfiletype=1, metadata=None)
-        self.check(path, make_values())
-        for other, word in ((make_values("uint8")[0], "page 2 has BitsPerSample = 8, which is not "
-                                                      "supported; the first page has 16"),
-                            (make_values("int16")[0], "SampleFormat = 2"),
-                            (make_values()[0, :, :20], "ImageWidth = 20"),
-                            (make_values()[0, :10], "ImageLength = 10")):
-            with tifffile.TiffWriter(path) as file:
-                for page in (make_values()[0], other):
-                    file.write(page, photometric="minisblack", metadata=None)
-            self.assert_refused(path, word=word)
+        def write(pages):
+            with tifffile.TiffWriter(self.path("a.tif")) as file:
+                for page, kind in pages:
+                    file.write(page, subfiletype=kind, **GRAY)
+            return self.path("a.tif")
+        values = make_values()
+        path = write((part, kind) for page in values for part, kind in ((page, 0), (page[::4, ::4], 1)))
+        self.assert_volume(path, values, UNIT)
+        for other, words in ((values[0].astype("uint8"), "page 2 has BitsPerSample = 8, which is not supported"),
+                             (values[0].astype("int16"), "SampleFormat = 2"),
+                             (values[0, :, :20], "ImageWidth = 20"), (values[0, :10], "ImageLength = 10")):
+            self.assert_refused(write([(values[0], 0), (other, 0)]), words=words)
 
     def test_damaged(self):
         for settings in ({}, {"compression": "deflate"}):
-            path = self.write(make_values(), photometric="minisblack", metadata=None, **settings)
-            with open(path, "rb") as file:
-                data = file.read()
-            for part in (0.01, 0.5, 0.95):
-                splatmip.write_file(path, data[:int(part * len(data))])
-                self.assert_refused(path, word="damaged, incomplete or not TIFF")
-        self.assert_refused(splatmip.write_file(path, b"Not a picture." * 99), word="not TIFF")
+            path = self.write(make_values(), **GRAY, **settings)
+            data = splatmip.read_file(path)
+            for part in (0, 0.01, 0.5, 0.95):
+                content = data[:int(part * len(data))] or b"Not a picture." * 99
+                self.assert_refused(splatmip.write_file(path, content), words="damaged, incomplete")
 
     def test_compressions(self):
         """What libtiff can compress, too; tifffile needs other packages to read that."""
@@ -154,111 +134,97 @@ class TestTIFF(splatmip.SplatmipTest):
                         file, row.ctypes.data_as(ctypes.c_void_p), n, 0)
                 library.TIFFWriteDirectory(file)
             library.TIFFClose(file)
-            self.check(self.path("c.tif"), values)
+            self.assert_volume(self.path("c.tif"), values, UNIT)
 
 
-@unittest.skipUnless(tifffile, "skipped: no tifffile")
-class TestDescriptions(splatmip.SplatmipTest):
-    PLACES = numpy.array([[0.25, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 2, 0.0]]) * 1e-3
-    SIZES = {"Z": 4, "C": 3, "T": 2, "Y": 20, "X": 30}
-
-    def make(self, axes):
-        return make_values(size=tuple(self.SIZES[axis] for axis in axes))
-
-    def check_all(self, path, values, axes, places):
+class TestDescriptions(TIFFTest):
+    def check_all(self, path, axes):
         """Each channel and time."""
-        for channel in range(self.SIZES["C"] if "C" in axes else 1):
-            for time in range(self.SIZES["T"] if "T" in axes else 1):
-                arguments = ["--channel", str(channel + 1)] if "C" in axes else []
-                arguments += ["--frame", str(time + 1)] if "T" in axes else []
-                part = values[tuple({"C": channel, "T": time}.get(axis, slice(None))
-                                    for axis in axes)]
-                text = self.assert_volume(path, part, places, *arguments)
-        return text
+        values = make_axes(axes)
+        for channel, time in numpy.ndindex(SIZES["C"] if "C" in axes else 1, SIZES["T"] if "T" in axes else 1):
+            arguments = ["--channel", channel + 1] if "C" in axes else []
+            arguments += ["--frame", time + 1] if "T" in axes else []
+            part = values[tuple({"C": channel, "T": time}.get(axis, slice(None)) for axis in axes)]
+            self.assert_volume(path, part, PLACES, *arguments, words="unit of length is um; lengths here are in mm")
 
-    def write_imagej(self, axes, **settings):
-        path = self.path("a.tif")
-        tifffile.imwrite(path, self.make(axes), imagej=True, resolution=(4, 2),
-                         metadata={"axes": axes, "spacing": 2.0, "unit": "um"}, **settings)
-        return path
+    def write_imagej(self, axes, unit="um", **settings):
+        return self.write(make_axes(axes), imagej=True, resolution=(4, 2),
+                          metadata={"axes": axes, "spacing": 2.0, "unit": unit}, **settings)
 
     def test_imagej(self):
-        for axes in ("ZYX", "ZCYX", "TZYX", "TZCYX"):
-            path = self.write_imagej(axes)
+        for axes, settings in (("ZYX", {}), ("ZCYX", {}), ("TZYX", {}), ("TZCYX", {"compression": "deflate"}),
+                               ("TZCYX", {})):
+            path = self.write_imagej(axes, **settings)
             with tifffile.TiffFile(path) as file:
                 self.assertTrue(file.is_imagej)
-            text = self.check_all(path, self.make(axes), axes, self.PLACES)
-            self.assertIn("the file's unit of length is um; lengths here are in mm\n", text)
-        self.assert_refused(path, "--channel", "4", word="there is no channel 4 here, only 3")
-        self.assert_refused(path, "--frame", "3", word="there is no volume 3 here, only 2")
-        self.assertIn("channel 2 of 3 (--channel chooses)",
-                      self.project(path, "--channel", "2")[2])
-
-    def test_imagej_pages(self):
-        """A page for each picture, as ImageJ writes for compressed data."""
-        self.check_all(self.write_imagej("TZCYX", compression="deflate"), self.make("TZCYX"),
-                       "TZCYX", self.PLACES)
+            self.check_all(path, axes)
+        self.assertIn("channel 2 of 3 (--channel chooses)", self.project(path, "--channel", "2")[2])
+        self.assert_refused(path, "--channel", "4", words="there is no channel 4 here, only 3")
+        self.assert_refused(path, "--frame", "3", words="there is no volume 3 here, only 2")
 
     def test_imagej_one_page(self):
         """The pictures follow each other behind the only page, of either byte order."""
+        values = make_values(size=(24, 20, 30))
         for order in "<>":
-            values = make_values(size=(24, 20, 30))
-            path = self.path("b.tif")
-            tifffile.imwrite(path, values[:1], photometric="minisblack", metadata=None,
-                             byteorder=order, description="ImageJ=1.53\nimages=24\nslices=24\n"
-                             "unit=micron\nspacing=2.0\n", resolution=(4, 2))
-            with open(path, "rb") as file:
-                data = file.read()
+            path = self.write(values[:1], byteorder=order, resolution=(4, 2), **GRAY, description=(
+                "ImageJ=1.53\nimages=24\nslices=24\nunit=micron\nspacing=2.0\n"))
             offset = tifffile.TiffFile(path).pages[0].dataoffsets[0]
+            data = splatmip.read_file(path)
             self.assertEqual(offset + 1200, len(data))
             splatmip.write_file(path, data[:offset] + values.astype(order + "u2").tobytes())
-            self.assert_volume(path, values, self.PLACES)
+            self.assert_volume(path, values, PLACES)
             splatmip.write_file(path, data[:offset] + values.tobytes()[:-100])
-            self.assert_refused(path, word="damaged, incomplete")
+            self.assert_refused(path, words="damaged, incomplete")
 
-    def test_imagej_units(self):
+    def test_units(self):
         for unit, length in (("pixel", None), ("\\u00B5m", 1e-3), ("mm", 1), ("cm", 10), ("inch", 25.4)):
-            path = self.path("a.tif")
-            tifffile.imwrite(path, self.make("ZYX"), imagej=True, resolution=(4, 2),
-                             metadata={"axes": "ZYX", "spacing": 2.0, "unit": unit})
-            places = self.PLACES * 1e3 * length if length else UNIT
-            text = self.assert_volume(path, self.make("ZYX"), places)
-            self.assertEqual("voxels are and how" in text, length is None)
+            places = PLACES * 1e3 * length if length else UNIT
+            text = self.assert_volume(self.write_imagej("ZYX", unit), make_axes("ZYX"), places)
+            self.assertEqual("no voxel size" in text, length is None)
 
     def test_ome(self):
         for axes in ("ZYX", "CZYX", "TCZYX", "TZCYX", "CTZYX", "ZCTYX"):
-            path = self.path("a.ome.tif")
-            tifffile.imwrite(path, self.make(axes), photometric="minisblack", metadata={
+            path = self.write(make_axes(axes), photometric="minisblack", ome=True, metadata={
                 "axes": axes, "PhysicalSizeX": 0.25, "PhysicalSizeXUnit": "\u00b5m",
                 "PhysicalSizeY": 0.5, "PhysicalSizeYUnit": "\u00b5m",
                 "PhysicalSizeZ": 2.0, "PhysicalSizeZUnit": "\u00b5m"})
             with tifffile.TiffFile(path) as file:
                 self.assertTrue(file.is_ome)
-            self.check_all(path, self.make(axes), axes, self.PLACES)
+            self.check_all(path, axes)
+
+    def write_ome(self, content, **changes):
+        attributes = {"DimensionOrder": "XYZCT", "SizeZ": 4, "SizeC": 1, "SizeT": 1, "PhysicalSizeX": 0.25,
+                      "PhysicalSizeY": 0.5, "PhysicalSizeZ": 2, **changes}
+        words = " ".join(f'{name}="{value}"' for name, value in attributes.items())
+        return self.write(make_axes("ZYX"), **GRAY, description=(
+            '<?xml version="1.0"?><OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06">'
+            f'<Image ID="Image:0"><Pixels ID="Pixels:0" Type="uint16" {words}>{content}</Pixels></Image></OME>'))
 
     def test_ome_pages(self):
-        """The description says which page is which; planes that are in no page are refused."""
-        xml = ('<?xml version="1.0"?><OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06">'
-               '<Image ID="Image:0"><Pixels ID="Pixels:0" DimensionOrder="XYZCT" Type="uint16" '
-               'SizeX="30" SizeY="20" SizeZ="4" SizeC="1" SizeT="1" PhysicalSizeX="0.25" '
-               'PhysicalSizeY="0.5" PhysicalSizeZ="2"><Channel ID="Channel:0:0"/>{}</Pixels></Image>'
-               '</OME>')
-        values = self.make("ZYX")
-        order = (2, 0, 3, 1)
+        """The description says which page is which."""
+        values, order = make_axes("ZYX"), (2, 0, 3, 1)
         data = "".join(f'<TiffData FirstZ="{z}" IFD="{page}"/>' for z, page in enumerate(order))
-        path = self.path("a.tif")
-        for text, expected in ((data, values[list(order)]), ("<TiffData/>", values), ("", values)):
-            tifffile.imwrite(path, values, photometric="minisblack", metadata=None,
-                             description=xml.format(text))
-            self.assert_volume(path, expected, self.PLACES)
-        for text in (data.replace('IFD="3"', 'IFD="9"'), '<TiffData FirstZ="1" IFD="0"/>'):
-            tifffile.imwrite(path, values, photometric="minisblack", metadata=None,
-                             description=xml.format(text))
-            self.assert_refused(path, word="its description and its pages differ: 4 slices, 1 channels")
+        for content, expected in ((data, values[list(order)]), ("<TiffData/>", values), ("", values)):
+            self.assert_volume(self.write_ome(content), expected, PLACES)
+        files = "".join(f'<TiffData FirstZ="{z}" IFD="0"><UUID FileName="{z}.tif"/></TiffData>' for z in range(4))
+        self.assert_refused(self.write_ome(files), words="its planes are in several files, which is not supported")
 
-    def test_channel_of_others(self):
-        self.assert_refused(splatmip.write_nrrd(self.path("a.nrrd")), "--channel", "1",
-                            word="this is not TIFF and has no channels")
+    def test_damaged_descriptions(self):
+        """Counts that do not fit, are too large to multiply, or are no numbers."""
+        differs = "its description and its pages differ: "
+        for content, changes, words in (
+                ('<TiffData IFD="9" FirstZ="3"/>', {}, differs), ('<TiffData FirstZ="1" IFD="0"/>', {}, differs),
+                ('<TiffData IFD="2147483647" PlaneCount="2"/>', {}, differs),
+                ('<TiffData FirstZ="99999999999"/><TiffData FirstT="-5" FirstC="7"/>', {"SizeZ": 5}, differs),
+                ("", {"SizeC": 65536, "SizeT": 65536, "SizeZ": 65536}, differs),
+                ("<TiffData/>", {"DimensionOrder": "XYQQQ", "SizeT": 3, "SizeZ": 1}, "its OME description is damaged"),
+                ("<TiffData/>", {"DimensionOrder": "Z"}, "its OME description is damaged"),
+                ("", {"PhysicalSizeXUnit": "mm", "PhysicalSizeZUnit": "nm"}, "different units of length")):
+            self.assert_refused(self.write_ome(content, **changes), words=words)
+        for text in ("channels=65536\nframes=65536\n", "channels=nan\nslices=99999999999999999999\n",
+                     "images=2147483647\nchannels=2147483647\n"):
+            path = self.write(make_axes("ZYX"), description="ImageJ=1.53\n" + text, **GRAY)
+            self.assert_refused(path, words=differs)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Writing/DICOMFilm.h"
-
 #include "Reading/QuietReading.h"
+#include "Writing/PictureSeries.h"
 
 #include "vtkDICOMMetaData.h"
 #include "vtkDICOMSCGenerator.h"
@@ -15,7 +14,7 @@
 namespace
 {
 /**
- * Leaves out what vtk-dicom writes and the standard does not allow, or nobody knows.
+ * Omits elements that the standard does not allow here, or that are unknown.
  */
 class FilmGenerator : public vtkDICOMSCGenerator
 {
@@ -55,7 +54,7 @@ private:
 vtkStandardNewMacro(FilmGenerator);
 
 /**
- * The patient and the study of the files that were read, and a series of our own.
+ * Describe a series of its own in the study of the files that were read.
  */
 vtkSmartPointer<vtkDICOMMetaData> DescribeFilm(vtkObject* study)
 {
@@ -79,15 +78,15 @@ vtkSmartPointer<vtkDICOMMetaData> DescribeFilm(vtkObject* study)
   }
   elements->Set(DC::Modality, "OT");
   elements->Set(DC::SeriesNumber, 1000);
-  elements->Set(DC::BurnedInAnnotation, "NO"); // nothing that tells who the patient is
+  elements->Set(DC::BurnedInAnnotation, "NO"); // no text that identifies the patient
   elements->Set(
     DC::DerivationDescription, "maximum intensity projections, splatmip " SPLATMIP_VERSION);
   return elements;
 }
 
 /**
- * Bytes where the palette is gray, else colours. DICOM wants an even number of bytes, which
- * vtk-dicom does not see to: where it is odd, a column of the palette's darkest is added.
+ * Paint frames as bytes if the palette is gray, else as colours. DICOM requires an even number of
+ * bytes, which vtk-dicom does not ensure: where it is odd, a column of the darkest colour is added.
  */
 vtkSmartPointer<vtkImageData> PaintFrames(vtkImageData* slices, const Palette& palette)
 {

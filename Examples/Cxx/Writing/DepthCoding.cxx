@@ -14,7 +14,7 @@
 
 namespace
 {
-/// Of a point, along a camera's direction of projection.
+/// Find the depth of a point along a camera's direction of projection.
 double FindDepth(const double point[3], vtkCamera* camera)
 {
   const double* const focus = camera->GetFocalPoint();

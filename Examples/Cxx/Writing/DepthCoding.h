@@ -10,8 +10,8 @@
 #include <string>
 
 /**
- * The depths that have the first and the last hue, from the plane through a projection's focal
- * point across the view, away from the viewer.
+ * The depths of the first and the last hue: distances from the plane through the focal point across
+ * the view, positive away from the viewer.
  */
 struct DepthRange
 {
@@ -20,19 +20,19 @@ struct DepthRange
 };
 
 /**
- * The slab or, without one, what the volume has in all views.
+ * Find the range of a slab, or that of the volume in all views.
  */
 DepthRange FindDepthRange(vtkSplattingMIPProjection* projection);
 
 /**
- * Colours for the brightness of each pixel, one byte: the hue goes from red, where the sample shown
- * is near, over green to blue. The projection must have recorded locations.
+ * Colour brightness, a byte for each pixel, by depth: the hue goes from red, where the sample is
+ * near, over green to blue. The projection must have recorded locations.
  */
 vtkSmartPointer<vtkImageData> ColorByDepth(
   vtkImageData* bytes, vtkSplattingMIPProjection* projection, const DepthRange& range);
 
 /**
- * What the hues mean, in two lines.
+ * Describe the hues in two lines.
  */
 std::string DescribeHues(const DepthRange& range, bool isInMillimeters);
 

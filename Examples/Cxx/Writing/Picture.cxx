@@ -18,7 +18,8 @@
 namespace
 {
 /**
- * A text in one slice. Where: 0 is at the left and the bottom, 1 at the right and the top.
+ * Draw a text in one slice. The position is 0 at the left and the bottom, 1 at the right and the
+ * top.
  */
 void DrawText(vtkImageData* slices, int slice, const std::string& text, double x, double y)
 {
@@ -54,7 +55,7 @@ void DrawText(vtkImageData* slices, int slice, const std::string& text, double x
 }
 
 /**
- * The patient's sides that a direction points to, the nearest first.
+ * Name the patient's sides in a direction, the nearest first.
  */
 std::string NameDirection(const double direction[3])
 {

@@ -9,19 +9,20 @@
 #include <string>
 
 /**
- * Writes a text into the top left corner of each slice of bytes or colours, with the brightest,
+ * Write a text into the top left corner of each slice of bytes or colours, in the brightest value,
  * without OpenGL.
  */
 void DrawLabel(vtkImageData* slices, const std::string& text);
 
 /**
- * Writes the patient's sides at the edges of each view of a projection, as DICOM names them: R and
- * L, A and P, H and F (head, feet), and further letters where an edge is more than 15 degrees off.
+ * Write the patient's sides at the edges of each view of a projection by DICOM's letters: R and L,
+ * A and P, H and F (head, feet). A further letter is added where an edge is more than 15 degrees
+ * off.
  */
 void DrawSides(vtkImageData* slices, vtkSplattingMIPProjection* projection);
 
 /**
- * Draws a bar of 1, 2 or 5 times a power of ten millimetres at the bottom right.
+ * Draw a bar of 1, 2 or 5 times a power of ten millimetres at the bottom right.
  */
 void DrawScaleBar(vtkImageData* slices, double millimetersPerPixel);
 

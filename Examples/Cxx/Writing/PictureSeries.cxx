@@ -11,9 +11,6 @@
 #include "vtkPNGWriter.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
-#ifdef SPLATMIP_HAS_DICOM
-#include "Writing/DICOMFilm.h"
-#endif
 #ifdef SPLATMIP_HAS_THEORA
 #include "vtkOggTheoraWriter.h"
 #endif
@@ -29,7 +26,7 @@
 
 namespace
 {
-/// The file of one of numbered pictures.
+/// Make the name of a numbered picture.
 std::string NumberName(const std::string& path, int n)
 {
   const std::filesystem::path name(path);
@@ -55,8 +52,8 @@ bool WritePNGs(vtkImageData* slices, const Palette& palette, const FilmSettings&
 
 #ifdef SPLATMIP_HAS_THEORA
 /**
- * Whether the pages of an Ogg file follow each other up to one that is marked as the last:
- * vtkOggTheoraWriter does not report that the disk is full.
+ * Return whether the pages of an Ogg file follow each other up to the last: vtkOggTheoraWriter does
+ * not report that the disk is full.
  */
 bool IsCompleteOgg(const std::string& path)
 {
@@ -111,26 +108,28 @@ bool WriteTheora(vtkImageData* slices, const Palette& palette, const FilmSetting
 #ifndef SPLATMIP_HAS_THEORA
 constexpr auto WriteTheora = nullptr;
 #endif
-#ifndef SPLATMIP_HAS_DICOM
-constexpr auto WriteDICOM = nullptr;
+#ifdef SPLATMIP_HAS_DICOM
+constexpr auto DICOMWriter = WriteDICOM;
+#else
+constexpr auto DICOMWriter = nullptr;
 #endif
 
 struct SeriesFormat
 {
-  const char* Ending;
+  const char* Name; // the ending
   bool (*Write)(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
-    const std::vector<std::string>& names); // nullptr if there is no
+    const std::vector<std::string>& names); // nullptr if this build has no
   const char* Library;
 };
 
 constexpr SeriesFormat Formats[] = { { ".png", WritePNGs, "" },
-  { ".ogv", WriteTheora, "Ogg Theora in its VTK" }, { ".dcm", WriteDICOM, "vtk-dicom" } };
+  { ".ogv", WriteTheora, "Ogg Theora in its VTK" }, { ".dcm", DICOMWriter, "vtk-dicom" } };
 
 const SeriesFormat* FindFormat(const std::string& path)
 {
   const std::string ending = std::filesystem::path(path).extension().string();
   const auto* const found = std::find_if(std::begin(Formats), std::end(Formats),
-    [&](const SeriesFormat& format) { return ending == format.Ending; });
+    [&](const SeriesFormat& format) { return ending == format.Name; });
   return found == std::end(Formats) ? nullptr : found;
 }
 }
@@ -170,12 +169,7 @@ bool WritePNG(vtkImageData* image, const std::string& path)
 
 std::vector<std::string> GetSeriesEndings()
 {
-  std::vector<std::string> endings;
-  for (const SeriesFormat& format : Formats)
-  {
-    endings.emplace_back(format.Ending);
-  }
-  return endings;
+  return ListNames(Formats);
 }
 
 std::string CheckSeriesName(const std::string& path)
@@ -187,7 +181,7 @@ std::string CheckSeriesName(const std::string& path)
   }
   return format->Write ? ""
                        : std::string("this build has no ") + format->Library + " to write " +
-      format->Ending + " with: take .png";
+      format->Name + " with: take .png";
 }
 
 std::vector<std::string> GetSeriesFiles(const std::string& path, int count)

@@ -50,25 +50,26 @@ public:
     Unfinished = &this->Names;
     for (std::size_t n = 0; n < std::size(Interrupts); ++n)
     {
-      this->Handlers[n] = std::signal(Interrupts[n], RemoveUnfinished);
-      if (this->Handlers[n] == SIG_IGN) // as under nohup
+      // Signals that are ignored, such as SIGHUP under nohup, remain so at any moment.
+      this->Handlers[n] = std::signal(Interrupts[n], SIG_IGN);
+      if (this->Handlers[n] != SIG_IGN)
       {
-        std::signal(Interrupts[n], SIG_IGN);
+        std::signal(Interrupts[n], RemoveUnfinished);
       }
     }
   }
 
   ~TemporaryFiles()
   {
+    for (const std::string& name : this->Names) // while a signal would remove them, too
+    {
+      std::remove(name.c_str());
+    }
     for (std::size_t n = 0; n < std::size(Interrupts); ++n)
     {
       std::signal(Interrupts[n], this->Handlers[n]);
     }
     Unfinished = nullptr;
-    for (const std::string& name : this->Names)
-    {
-      std::remove(name.c_str());
-    }
   }
 
   TemporaryFiles(const TemporaryFiles&) = delete;
@@ -97,12 +98,17 @@ private:
   void (*Handlers[std::size(Interrupts)])(int);
 };
 
-/// The file that a name stands for, or the name if there is none: links remain links.
+/// Follow links, also to files that do not exist yet, so that links remain links.
 std::string FollowLinks(const std::string& output)
 {
+  constexpr int MostLinks = 40;
   std::error_code error;
-  const std::filesystem::path path = std::filesystem::weakly_canonical(output, error);
-  return error ? output : path.string();
+  std::filesystem::path path = output;
+  for (int n = 0; n < MostLinks && std::filesystem::is_symlink(path, error); ++n)
+  {
+    path = path.parent_path() / std::filesystem::read_symlink(path, error);
+  }
+  return path.string();
 }
 
 std::runtime_error CannotWrite(const std::string& output)
@@ -168,18 +174,22 @@ void WriteSafely(const std::vector<std::string>& outputs,
     targets.push_back(FollowLinks(output));
   }
   const TemporaryFiles temporary(targets);
-  bool isComplete = write(temporary.Names);
-  std::error_code error;
-  for (std::size_t n = 0; n < targets.size() && isComplete; ++n)
-  {
-    KeepPermissions(temporary.Names[n], targets[n]);
-    std::filesystem::rename(temporary.Names[n], targets[n], error);
-    isComplete = !error;
-  }
-  if (!isComplete)
+  if (!write(temporary.Names))
   {
     throw std::runtime_error(outputs.front() +
       ": this could not be written completely, so nothing was written; see whether the disk is "
       "full.");
+  }
+  for (std::size_t n = 0; n < targets.size(); ++n)
+  {
+    std::error_code error;
+    KeepPermissions(temporary.Names[n], targets[n]);
+    std::filesystem::rename(temporary.Names[n], targets[n], error);
+    if (error)
+    {
+      throw std::runtime_error(outputs[n] + ": this could not be replaced" +
+        (n > 0 ? ", but the files before it were written" : "") +
+        "; see whether another program uses it.");
+    }
   }
 }

@@ -23,7 +23,8 @@ void CheckNotInput(const std::vector<std::string>& outputs, const std::vector<st
  * Write files completely or not at all. The function gets a temporary name in the folder of each
  * output, with the same ending, and returns whether it has written all of them completely. They
  * replace the outputs only then. Otherwise, and if a signal ends the program, they are removed, and
- * the outputs remain as they were. Throws std::runtime_error.
+ * the outputs remain as they were. If one of several cannot be replaced, those before it remain
+ * written, and the error says so. Throws std::runtime_error.
  */
 void WriteSafely(const std::vector<std::string>& outputs,
   const std::function<bool(const std::vector<std::string>& names)>& write);

@@ -3,8 +3,11 @@
 #include "Writing/ValueFile.h"
 
 #include "Reading/QuietReading.h"
+#include "Reading/Reading.h"
 #include "Reading/VolumeReader.h"
 #include "Writing/SafeFiles.h"
+
+#include "itkMetaImageIO.h"
 
 #include "vtkImageCast.h"
 #include "vtkMatrix3x3.h"
@@ -14,21 +17,17 @@
 #include "vtkSmartPointer.h"
 #include "vtkTIFFWriter.h"
 
+#include <vtksys/SystemTools.hxx>
+
 #include <tiffio.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <stdexcept>
 
 namespace
 {
-bool EndsWith(const std::string& text, const std::string& end)
-{
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 /**
  * NIfTI counts from left to right and back to front. VTK's writer adds the image's origin as it
  * lies along the image's axes.
@@ -52,15 +51,14 @@ vtkSmartPointer<vtkMatrix4x4> MakeForm(vtkImageData* values)
 }
 
 /**
- * By one of VTK's writers, whose reports are not for the user.
+ * Write by one of VTK's writers.
  */
 bool WriteWith(vtkImageWriter* writer, vtkImageData* values, const std::string& path)
 {
-  const QuietReading quiet;
   writer->SetInputData(values);
   writer->SetFileName(path.c_str());
   writer->Write();
-  return !writer->GetErrorCode() && !quiet.HasErrors();
+  return !writer->GetErrorCode();
 }
 
 bool WriteNIFTI(vtkImageData* values, const std::string& path)
@@ -82,39 +80,34 @@ bool WriteTIFF(vtkImageData* values, const std::string& path)
 }
 
 /**
- * By hand, because VTK's writer leaves directions out.
+ * Write by ITK, because VTK's writer leaves directions out.
  */
 bool WriteMeta(vtkImageData* values, const std::string& path)
 {
-  const int* const size = values->GetDimensions();
-  const double* const spacing = values->GetSpacing();
-  const double* const origin = values->GetOrigin();
-  std::ofstream file(path, std::ios::binary);
-  file.precision(17);
-  file << "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = ";
-#ifdef VTK_WORDS_BIGENDIAN
-  file << "True";
-#else
-  file << "False";
-#endif
-  file << "\nTransformMatrix =";
-  for (int i = 0; i < 9; ++i)
+  const auto writer = itk::MetaImageIO::New();
+  writer->SetFileName(path);
+  writer->SetNumberOfDimensions(3);
+  writer->SetComponentType(itk::IOComponentEnum::FLOAT);
+  itk::ImageIORegion region(3);
+  for (int axis = 0; axis < 3; ++axis)
   {
-    file << ' ' << values->GetDirectionMatrix()->GetElement(i % 3, i / 3);
+    const auto* const direction = values->GetDirectionMatrix();
+    region.SetSize(axis, values->GetDimensions()[axis]);
+    writer->SetDimensions(axis, values->GetDimensions()[axis]);
+    writer->SetSpacing(axis, values->GetSpacing()[axis]);
+    writer->SetOrigin(axis, values->GetOrigin()[axis]);
+    writer->SetDirection(axis,
+      { direction->GetElement(0, axis), direction->GetElement(1, axis),
+        direction->GetElement(2, axis) });
   }
-  file << "\nOffset = " << origin[0] << ' ' << origin[1] << ' ' << origin[2]
-       << "\nElementSpacing = " << spacing[0] << ' ' << spacing[1] << ' ' << spacing[2]
-       << "\nDimSize = " << size[0] << ' ' << size[1]
-       << " 1\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n";
-  file.write(static_cast<const char*>(values->GetScalarPointer()),
-    static_cast<std::streamsize>(values->GetNumberOfPoints() * sizeof(float)));
-  file.close();
-  return !file.fail();
+  writer->SetIORegion(region);
+  writer->Write(values->GetScalarPointer());
+  return true; // unless it throws
 }
 
 struct ValueFormat
 {
-  const char* Ending;
+  const char* Name; // the ending
   bool (*Write)(vtkImageData* values, const std::string& path);
 };
 
@@ -124,20 +117,23 @@ constexpr ValueFormat Formats[] = { { ".nii", WriteNIFTI }, { ".nii.gz", WriteNI
 const ValueFormat* FindFormat(const std::string& path)
 {
   const auto* const found = std::find_if(std::begin(Formats), std::end(Formats),
-    [&](const ValueFormat& format) { return EndsWith(path, format.Ending); });
+    [&](const ValueFormat& format)
+    { return vtksys::SystemTools::StringEndsWith(path, format.Name); });
   return found == std::end(Formats) ? nullptr : found;
 }
 
 /**
- * Whether a file has as many values: VTK's writers do not report that the disk is full.
+ * Write a file and read it: the writers do not report all errors, such as that the disk is full.
  */
-bool CanBeRead(const std::string& path, vtkImageData* values)
+bool WriteAndRead(vtkImageData* values, const std::string& path)
 {
   try
   {
-    return ReadVolume(path, {}).Image->GetNumberOfPoints() == values->GetNumberOfPoints();
+    const QuietReading quiet;
+    return FindFormat(path)->Write(values, path) && !quiet.HasErrors() &&
+      ReadVolume(path, {}).Image->GetNumberOfPoints() == values->GetNumberOfPoints();
   }
-  catch (const std::runtime_error&)
+  catch (const std::exception&)
   {
     return false;
   }
@@ -146,12 +142,7 @@ bool CanBeRead(const std::string& path, vtkImageData* values)
 
 std::vector<std::string> GetValueEndings()
 {
-  std::vector<std::string> endings;
-  for (const ValueFormat& format : Formats)
-  {
-    endings.emplace_back(format.Ending);
-  }
-  return endings;
+  return ListNames(Formats);
 }
 
 bool IsValueFile(const std::string& path)
@@ -171,6 +162,5 @@ void WriteValues(
   values->SetOrigin(first[0] + origin[0], first[1] + origin[1], first[2] + origin[2]);
   values->SetDirectionMatrix(picture->GetDirectionMatrix()); // which filters do not pass on
   WriteSafely({ path },
-    [&](const std::vector<std::string>& names)
-    { return FindFormat(path)->Write(values, names.front()) && CanBeRead(names.front(), values); });
+    [&](const std::vector<std::string>& names) { return WriteAndRead(values, names.front()); });
 }

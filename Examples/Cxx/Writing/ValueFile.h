@@ -10,18 +10,18 @@
 #include <vector>
 
 /**
- * How the names of files of values end.
+ * List the endings of files of values.
  */
 std::vector<std::string> GetValueEndings();
 
 /**
- * Whether a name ends so.
+ * Return whether a name has one of those endings.
  */
 bool IsValueFile(const std::string& path);
 
 /**
- * Writes the values of a picture by vtkSplattingMIPProjection where it lies in the patient, if the
- * picture's place is relative to the given one (LPS). Throws std::runtime_error with one sentence.
+ * Write the values of a picture by vtkSplattingMIPProjection with its position in the patient
+ * (LPS), which is relative to an origin. Throws std::runtime_error with one sentence.
  */
 void WriteValues(
   vtkImageData* picture, const std::array<double, 3>& origin, const std::string& path);

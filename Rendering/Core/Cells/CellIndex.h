@@ -119,7 +119,7 @@ template <class A>
 struct ValueScale
 {
   CellScale<A> scale; ///< from voxels to values; for minima these are negative
-  A highest; ///< the largest voxel, of minima the least
+  A highest;          ///< the largest voxel, of minima the least
   bool minima;
   bool shades; ///< whether voxels may be above the largest
 

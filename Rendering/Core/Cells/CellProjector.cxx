@@ -6,7 +6,6 @@
 #include "Cells/TileSplatter.h"
 #include "Common/Parallel.h"
 
-
 #include <algorithm>
 #include <mutex>
 #include <numeric>

@@ -4,7 +4,6 @@
 #include "Chains/LineWorksheets.h"
 #include "Common/Parallel.h"
 
-
 #include <memory>
 #include <vector>
 
@@ -23,7 +22,7 @@ public:
                                                  : this->splat<T>(context);
   }
   template <class T>
-  void takeAtWinners(const AtWinners&) const
+  void takeAtLocations(const AtWinners&) const
   {
   }
 

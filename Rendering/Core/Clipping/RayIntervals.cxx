@@ -6,7 +6,6 @@
 #include "Clipping/SceneDepth.h"
 #include "Common/Parallel.h"
 
-
 #include <glm/geometric.hpp>
 
 #include <algorithm>

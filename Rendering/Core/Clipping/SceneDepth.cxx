@@ -5,7 +5,6 @@
 #include "Cells/PixelRays.h"
 #include "Common/Parallel.h"
 
-
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 

@@ -5,7 +5,6 @@
 #include "Clipping/ClosedSurface.h"
 #include "Common/Parallel.h"
 
-
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 

@@ -13,9 +13,9 @@
  * @file
  * Parallel loops, on all cores with any VTK.
  *
- * vtkSMPTools runs them, with the backend and the number of threads that the program chose. One case
- * differs: some builds of VTK start with the backend "Sequential", among them the package vtk of
- * PyPI. There VTK's backend "STDThread" runs the loops, with
+ * vtkSMPTools runs them, with the backend and the number of threads that the program chose. One
+ * case differs: some builds of VTK start with the backend "Sequential", among them the package vtk
+ * of PyPI. There VTK's backend "STDThread" runs the loops, with
  *
  * - the number of vtkSMPTools::Initialize(n), if the program called it;
  * - else that of the environment variable VTK_SMP_MAX_THREADS;

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 namespace splatting
@@ -93,6 +94,31 @@ decltype(auto) dispatch(ScalarType type, F&& f)
       break;
   }
   return f(static_cast<double*>(nullptr));
+}
+
+/**
+ * No number of type T is less, or greater.
+ */
+template <class T>
+constexpr T leastValue()
+{
+  using Limits = std::numeric_limits<T>;
+  return Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
+}
+template <class T>
+constexpr T greatestValue()
+{
+  using Limits = std::numeric_limits<T>;
+  return Limits::has_infinity ? Limits::infinity() : Limits::max();
+}
+
+/**
+ * The type that holds averages of scalars of a type: its Accumulator.
+ */
+inline ScalarType averageType(ScalarType type)
+{
+  return dispatch(type,
+    [](auto* null) { return scalarTypeOf<Accumulator<std::remove_pointer_t<decltype(null)>>>(); });
 }
 
 /**

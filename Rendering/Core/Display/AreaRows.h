@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Values of the screen's pixels by area, row by row, for pixels wider than those of the shear
- * images; see PixelArea.h.
+ * Values of the screen's pixels, row by row, where these are wider than pixels of the shear images:
+ * the extremum or the average of the points at which they read them; see PixelArea.h.
  */
 #ifndef splattingAreaRows_h
 #define splattingAreaRows_h
@@ -10,7 +10,8 @@
 #include "Display/PixelArea.h"
 #include "Display/WarpSource.h"
 
-#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -38,65 +39,64 @@ public:
   /// sample.
   void find(const glm::dvec3& start, int x, int n, A* values) const
   {
-    this->Reduced == Reduction::Mean ? this->findAverages(start, x, n, values)
-                                     : this->findExtrema(start, x, n, values);
+    std::array<Span, MostImages> met, shown;
+    for (std::size_t i = 0; i < this->Images.size(); ++i)
+    {
+      met[i] = this->Met[i].cut({ x, x + n }, start);
+      shown[i] = this->Images[i].shown.cut({ x, x + n }, start);
+    }
+    for (int p = x; p < x + n; ++p)
+    {
+      const glm::dvec3 pixel = start + glm::dvec3(double(p), 0.0, 0.0);
+      Read read;
+      for (std::size_t i = 0; i < this->Images.size(); ++i)
+      {
+        if (p >= met[i].begin && p < met[i].end)
+        {
+          this->readArea(this->Images[i], pixel, read);
+        }
+      }
+      A value =
+        this->Reduced == Reduction::Mean ? static_cast<A>(read.sum / read.count) : read.extremum;
+      // At rims and holes an area may have no point between samples.
+      for (std::size_t i = 0; i < this->Images.size() && read.count == 0; ++i)
+      {
+        const WarpSource<A>& image = this->Images[i];
+        if (p >= shown[i].begin && p < shown[i].end)
+        {
+          value = image.valueAt(image.geometry.screenToShear() * pixel);
+          break;
+        }
+      }
+      values[p - x] = value;
+    }
   }
 
 private:
-  void findExtrema(const glm::dvec3& start, int x, int n, A* values) const
+  /// What the points of an area have shown so far.
+  struct Read
+  {
+    A extremum = std::numeric_limits<A>::quiet_NaN();
+    double sum = 0.0;
+    int count = 0;
+  };
+
+  void readArea(const WarpSource<A>& image, const glm::dvec3& pixel, Read& read) const
   {
     const bool least = this->Reduced == Reduction::Minimum;
-    std::fill_n(values, n, std::numeric_limits<A>::quiet_NaN());
-    for (std::size_t number = 0; number < this->Images.size(); ++number)
-    {
-      const WarpSource<A>& source = this->Images[number];
-      const PixelAreas<A> areas(source.image, source.pixels);
-      const Span met = this->Met[number].cut({ x, x + n }, start);
-      const Span shown = source.shown.cut({ x, x + n }, start);
-      for (int p = met.begin; p < met.end; ++p)
-      {
-        AreaValue<A> best{ values[p - x] };
-        best.take(areas.extremum(areaOf(source.geometry, start.x + p, start.y), least), least);
-        if (!best.found() && p >= shown.begin && p < shown.end)
+    areaOf(image.geometry, pixel.x, pixel.y)
+      .forPoints(
+        [&](double u, double v)
         {
-          best.value = source.valueAt(
-            source.geometry.screenToShear() * (start + glm::dvec3(double(p), 0.0, 0.0)));
-        }
-        values[p - x] = best.value;
-      }
-    }
-  }
-
-  void findAverages(const glm::dvec3& start, int x, int n, A* values) const
-  {
-    for (int p = x; p < x + n; ++p)
-    {
-      const AreaMean mean = this->averageOf(start, p);
-      values[p - x] = mean.weights > 0.0 ? static_cast<A>(mean.sum / mean.weights)
-                                         : std::numeric_limits<A>::quiet_NaN();
-    }
-  }
-
-  /// The average of pixel p of a row. If no point is between samples, as in volumes one voxel
-  /// thick, that of the samples.
-  AreaMean averageOf(const glm::dvec3& start, int p) const
-  {
-    AreaMean points, samples;
-    for (std::size_t number = 0; number < this->Images.size(); ++number)
-    {
-      const WarpSource<A>& source = this->Images[number];
-      if (!this->Met[number].cut({ p, p + 1 }, start).empty())
-      {
-        const PixelArea area = areaOf(source.geometry, start.x + p, start.y);
-        const PixelAreas<A> areas(source.image, source.pixels);
-        areas.addAverage(source.geometry, area, points);
-        if (points.weights == 0.0)
-        {
-          areas.addSamples(area, samples);
-        }
-      }
-    }
-    return points.weights > 0.0 ? points : samples;
+          const A value = interpolatedAt(image.image, image.pixels, u, v);
+          if (value == value)
+          {
+            const bool isBetter = least ? value < read.extremum : value > read.extremum;
+            read.extremum = isBetter || read.count == 0 ? value : read.extremum;
+            read.sum += value;
+            ++read.count;
+          }
+        });
   }
 
   const std::vector<WarpSource<A>>& Images;

@@ -5,7 +5,6 @@
 #include "Common/Parallel.h"
 #include "Display/Outline.h"
 
-
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -23,7 +22,7 @@ struct Rectangle
 /// Contains all pixels that show an image, and perhaps some beside them.
 Rectangle boundsOf(const ShearWarp& geometry, const glm::dvec2& viewport)
 {
-  if (!geometry.isPerspective() && !geometry.isOverview())
+  if (!geometry.isPerspective() && !geometry.minifiesAnyAxis())
   {
     // The box is symmetric about the centre of the volume.
     const Cuboid box = shownBox(geometry);
@@ -38,7 +37,7 @@ Rectangle boundsOf(const ShearWarp& geometry, const glm::dvec2& viewport)
   }
   const glm::dvec2 last = viewport - 1.0;
   Rectangle bounds{ viewport, glm::dvec2(-2.0) };
-  const Outline shown = geometry.isOverview() ? metByAreas(geometry) : shownBy(geometry);
+  const Outline shown = geometry.minifiesAnyAxis() ? metByAreas(geometry) : shownBy(geometry);
   for (const glm::dvec3& corner :
     shown.cut({ { 0.0, 0.0, 1.0 }, { last.x, 0.0, 1.0 }, { last, 1.0 }, { 0.0, last.y, 1.0 } }))
   {

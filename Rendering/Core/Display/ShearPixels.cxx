@@ -7,8 +7,8 @@
 #include "Display/PixelArea.h"
 #include "Display/WarpSource.h"
 
-
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 namespace splatting
@@ -40,27 +40,42 @@ ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& h
   return lost > 0.5 ? ShearPixel{} : nearest;
 }
 
-/// For areas. A sample in the area precedes one beside it.
+/// Where pixels show areas: the best of the samples that are read, or that are nearest to points
+/// between samples.
 template <class T>
 ShearPixel shownOfArea(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, const std::vector<Outline>& met, bool least,
   const glm::dvec3& pixel)
 {
-  AreaExtrema<Accumulator<T>> best;
-  int sampled = -1, between = -1; // the images of these
+  ShearPixel shown;
+  T best{};
   for (std::size_t n = 0; n < geometries.size(); ++n)
   {
     if (met[n].cut({ 0, 1 }, pixel).empty())
     {
       continue;
     }
-    const auto found = PixelAreas<T>(images[n], images[n].row<T>(0))
-                         .extrema(areaOf(geometries[n], pixel.x, pixel.y), least);
-    sampled = best.sample.take(found.sample, least) ? static_cast<int>(n) : sampled;
-    between = best.between.take(found.between, least) ? static_cast<int>(n) : between;
+    const T* const pixels = images[n].row<T>(0);
+    areaOf(geometries[n], pixel.x, pixel.y)
+      .forPoints(
+        [&](double column, double row)
+        {
+          const auto value = interpolatedAt(images[n], pixels, column, row);
+          if (value != value)
+          {
+            return;
+          }
+          const int u = static_cast<int>(std::floor(column + 0.5));
+          const int v = static_cast<int>(std::floor(row + 0.5));
+          const T sample = images[n].row<T>(v)[u];
+          if (shown.image < 0 || (least ? sample < best : sample > best))
+          {
+            best = sample;
+            shown = { static_cast<int>(n), u, v };
+          }
+        });
   }
-  return sampled >= 0 ? ShearPixel{ sampled, best.sample.u, best.sample.v }
-                      : ShearPixel{ between, best.between.u, best.between.v };
+  return shown;
 }
 
 /// Of pixels that have one.
@@ -130,7 +145,7 @@ void findShearPixels(const std::vector<ShearImage>& images,
           });
       }
     });
-  if (!geometries.empty() && geometries.front().isOverview())
+  if (!geometries.empty() && geometries.front().minifiesAnyAxis())
   {
     findAreaPixels(images, geometries, reduction == Reduction::Minimum, origin, size, out);
   }

@@ -6,7 +6,6 @@
 #include "Display/AreaRows.h"
 #include "Display/WarpSource.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -99,7 +98,7 @@ public:
   /// Returns false if the observer has stopped it.
   bool warp(const Picture& place, Pixel* pixels, std::ptrdiff_t stride) const
   {
-    const bool showsAreas = this->Images.front().geometry.isOverview();
+    const bool showsAreas = this->Images.front().geometry.minifiesAnyAxis();
     if (showsAreas)
     {
       this->Observer.start();

@@ -4,7 +4,6 @@
 
 #include "Common/Parallel.h"
 
-
 #include <algorithm>
 
 namespace splatting
@@ -50,7 +49,7 @@ void AxisSteps::find(const ShearWarp& geometry, int a, const PerspectiveLoops& l
       for (std::ptrdiff_t n = begin; n < end; ++n)
       {
         const glm::dvec2 faces =
-          geometry.passage(this->Slices.begin + static_cast<int>(n)) - geometry.reference();
+          geometry.faces(this->Slices.begin + static_cast<int>(n)) - geometry.reference();
         const std::size_t at = n * this->Padded;
         std::int32_t* const first = &this->First[at];
         std::int32_t* const last = &this->Last[at];

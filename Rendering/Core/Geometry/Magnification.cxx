@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Geometry/Magnification.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_access.hpp>
 
@@ -12,16 +11,21 @@
 
 namespace splatting
 {
+namespace
+{
+/// The larger singular value of a map to a plane, from the sum of the squares of its elements and
+/// how it changes areas: how much it stretches the direction that it stretches most.
 double largerStretch(double squares, double area)
 {
   return std::sqrt(
     0.5 * (squares + std::sqrt(std::max(squares * squares - 4.0 * area * area, 0.0))));
 }
+}
 
-glm::dvec2 voxelsPerPixel(const View& view)
+double voxelsPerPixel(const View& view)
 {
   const glm::dmat4& m = view.indexToClip;
-  glm::dvec2 least(std::numeric_limits<double>::infinity());
+  double least = std::numeric_limits<double>::infinity();
   for (int n = 0; n < 8; ++n)
   {
     const glm::dvec4 corner(
@@ -29,7 +33,7 @@ glm::dvec2 voxelsPerPixel(const View& view)
     const glm::dvec4 clip = m * corner;
     if (!(clip.w > 0.0))
     {
-      return glm::dvec2(0.0);
+      return 0.0;
     }
     // Derivatives of the pixel's coordinates with respect to the voxel.
     const glm::dvec3 w(glm::row(m, 3));
@@ -39,24 +43,15 @@ glm::dvec2 voxelsPerPixel(const View& view)
       0.5 * view.viewport.y / clip.w * (glm::dvec3(glm::row(m, 1)) - clip.y / clip.w * w);
     const double area = glm::length(glm::cross(x, y));
     const double most = largerStretch(glm::dot(x, x) + glm::dot(y, y), area);
-    least = glm::min(least, glm::dvec2(1.0 / most, most / area));
+    least = std::min(least, most / area);
   }
   return least;
 }
 
-namespace
+bool minifiesAnyAxis(const View& view)
 {
-/// Excludes rounding errors of pixels that are as wide as voxels.
-constexpr double Wide = 1.0 + 1e-6;
-}
-
-bool isOverview(const View& view)
-{
-  return voxelsPerPixel(view).y > Wide;
-}
-
-bool isCoarse(const View& view)
-{
-  return voxelsPerPixel(view).x > Wide;
+  // Pixels that are as wide as voxels are not wider by rounding.
+  constexpr double wide = 1.0 + 1e-6;
+  return voxelsPerPixel(view) > wide;
 }
 }

@@ -30,12 +30,13 @@ Crossing cross(double entry, double exit)
   const int last = static_cast<int>(forward ? std::ceil(exit - 0.5) : std::floor(exit + 0.5));
   return { first, last, std::abs(first + (forward ? 0.5 : -0.5) - entry) };
 }
+}
 
-/// All crossed voxels.
-RayPath crossed(const glm::dvec2& entry, const glm::dvec2& exit, const glm::dvec2& speed)
+RayPath pathBetween(const glm::dvec2& enter, const glm::dvec2& leave, const glm::dvec2& slope)
 {
-  const Crossing x = cross(entry.x, exit.x);
-  const Crossing y = cross(entry.y, exit.y);
+  const Crossing x = cross(enter.x, leave.x);
+  const Crossing y = cross(enter.y, leave.y);
+  const glm::dvec2 speed = glm::abs(slope);
   RayPath found;
   const auto add = [&found](int di, int dj)
   {
@@ -63,26 +64,6 @@ RayPath crossed(const glm::dvec2& entry, const glm::dvec2& exit, const glm::dvec
   {
     add(x.last, y.last);
   }
-  return found;
-}
-}
-
-RayPath pathBetween(
-  const glm::dvec2& enter, const glm::dvec2& leave, const glm::dvec2& slope, Meets meets)
-{
-  if (meets == Meets::All)
-  {
-    return crossed(enter, leave, glm::abs(slope));
-  }
-  const auto nearest = [&](int a)
-  {
-    return static_cast<int>(
-      slope[a] < 0.0 ? std::ceil(enter[a] - 0.5) : std::floor(enter[a] + 0.5));
-  };
-  RayPath found;
-  found.count = 1;
-  found.di[0] = nearest(0);
-  found.dj[0] = nearest(1);
   return found;
 }
 }

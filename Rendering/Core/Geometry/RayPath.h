@@ -21,19 +21,10 @@ struct RayPath
   std::array<int, 3> dj{};
 };
 
-/// The voxels of a slice that count for a ray: all that it crosses, or the nearest one in the
-/// middle of the slice.
-enum class Meets
-{
-  All,
-  Nearest
-};
-
 /**
  * The path of a ray with this slope between two points, at most a slice apart.
  */
-RayPath pathBetween(
-  const glm::dvec2& enter, const glm::dvec2& leave, const glm::dvec2& slope, Meets meets);
+RayPath pathBetween(const glm::dvec2& enter, const glm::dvec2& leave, const glm::dvec2& slope);
 }
 
 #endif

@@ -49,7 +49,7 @@ std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm:
   return result;
 }
 
-ShearWarp::ShearWarp(const View& view, Meets meets)
+ShearWarp::ShearWarp(const View& view)
 {
   const glm::dmat4& m = view.indexToClip;
   const glm::dvec3 centre = 0.5 * glm::dvec3(view.dimensions - 1);
@@ -69,8 +69,7 @@ ShearWarp::ShearWarp(const View& view, Meets meets)
   }
   this->Size = view.dimensions;
   this->ShowsBoxes = view.showsBoxes;
-  this->Overview = splatting::isOverview(view);
-  this->Met = meets;
+  this->Overview = splatting::minifiesAnyAxis(view);
   this->chooseAxes(direction);
   // Clip depth grows away from the viewer. Along the ray, in the direction of the principal axis:
   const double deeper = glm::dot(glm::dvec3(glm::row(m, 2)) / w, direction);
@@ -80,24 +79,23 @@ ShearWarp::ShearWarp(const View& view, Meets meets)
   this->Valid = true;
 }
 
-bool ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images, Meets meets)
+bool ShearWarp::factorise(const View& view, std::vector<ShearWarp>& images)
 {
   if (isParallel(view))
   {
     images.resize(1);
-    images.front() = ShearWarp(view, meets);
+    images.front() = ShearWarp(view);
     images.resize(images.front().valid() ? 1 : 0);
     return !images.empty();
   }
   std::size_t count = 0;
   Rays rays;
   const bool valid = findRays(view, rays);
-  const bool overview = valid && splatting::isOverview(view);
+  const bool overview = valid && splatting::minifiesAnyAxis(view);
   for (int direction = 0; valid && direction < 6; ++direction)
   {
     images.resize(std::max(images.size(), count + 1));
     images[count].Overview = overview;
-    images[count].Met = meets;
     count += images[count].lookAlong(direction / 2, direction % 2 == 1, view, rays);
   }
   images.resize(count);
@@ -378,15 +376,14 @@ void ShearWarp::takePixel(const glm::ivec2& pixel, ShearWarp& part) const
 
 RayPath ShearWarp::rayPath(int k) const
 {
-  const glm::dvec2 way = this->Met == Meets::Nearest ? glm::dvec2(k) : glm::dvec2(k - 0.5, k + 0.5);
-  return pathBetween(-this->position(way.x), -this->position(way.y), -this->Shear, this->Met);
+  return pathBetween(-this->position(k - 0.5), -this->position(k + 0.5), -this->Shear);
 }
 
 RayPath ShearWarp::voxelsOnRay(int u, int v, int k) const
 {
   const glm::dvec2 slope(this->Columns.slope[u], this->Rows.slope[v]);
-  const glm::dvec2 depths = this->passage(k);
-  return pathBetween(this->onRay(u, v, depths.x), this->onRay(u, v, depths.y), slope, this->Met);
+  const glm::dvec2 depths = this->faces(k);
+  return pathBetween(this->onRay(u, v, depths.x), this->onRay(u, v, depths.y), slope);
 }
 
 Span ShearWarp::coverage(const RayPath& path, int v) const
@@ -416,8 +413,8 @@ glm::dvec4 ShearWarp::inPixels(const glm::dvec4& halfSpace) const
 bool ShearWarp::sameShear(const ShearWarp& other) const
 {
   // Columns and Rows include the shears.
-  return this->Valid == other.Valid && this->Met == other.Met && this->Axes == other.Axes &&
-    this->Size == other.Size && this->Pitch == other.Pitch && this->Reference == other.Reference &&
+  return this->Valid == other.Valid && this->Axes == other.Axes && this->Size == other.Size &&
+    this->Pitch == other.Pitch && this->Reference == other.Reference &&
     this->DepthRange == other.DepthRange && this->Columns == other.Columns &&
     this->Rows == other.Rows;
 }

@@ -74,14 +74,14 @@ public:
   /**
    * Factorises a parallel view. valid() is false if the view maps the volume to a line or a point.
    */
-  explicit ShearWarp(const View& view, Meets meets = Meets::All);
+  explicit ShearWarp(const View& view);
 
   /**
    * Factorises any view: one image for a parallel view, up to six for a perspective one. Images
    * that show nothing of the volume are omitted.
    * @return  false, without images, if the view maps the volume to a line or a point
    */
-  static bool factorise(const View& view, std::vector<ShearWarp>& images, Meets meets = Meets::All);
+  static bool factorise(const View& view, std::vector<ShearWarp>& images);
 
   /**
    * Sets `part` to the geometry of a box of this volume's voxels, as a volume of its own. Voxels,
@@ -104,7 +104,7 @@ public:
   /// See View.
   bool showsBoxes() const { return this->ShowsBoxes; }
   /// Whether the view is an overview, in which pixels show their areas.
-  bool isOverview() const { return this->Overview; }
+  bool minifiesAnyAxis() const { return this->Overview; }
   int width() const { return this->ImageSize.x; }
   int height() const { return this->ImageSize.y; }
 
@@ -136,11 +136,6 @@ public:
   {
     return glm::clamp(glm::dvec2(k - 0.5, k + 0.5), this->DepthRange.x, this->DepthRange.y);
   }
-  /// The depths between which rays select the voxels of slice k: those of faces(), or the middle.
-  glm::dvec2 passage(int k) const
-  {
-    return this->Met == Meets::Nearest ? glm::dvec2(k) : this->faces(k);
-  }
   /// The slices whose centre is in front of the eye; in parallel views all.
   const Span& slices() const { return this->SlicesSeen; }
   /// Of perspective views, (i, j, k).
@@ -168,8 +163,7 @@ public:
    * The path of the rays of a parallel view in slice k. Voxels are boxes. A voxel counts if the ray
    * crosses it over a positive length, so a ray through an edge or a corner does not count for the
    * other voxels there. Rays never lie within a face: without shear they pass through voxel
-   * centres. With Meets::Nearest each voxel belongs to one ray; a ray between two voxels belongs to
-   * the one that it runs to.
+   * centres.
    */
   RayPath rayPath(int k) const;
 
@@ -229,7 +223,6 @@ private:
   bool ShowsBoxes = false;
   bool Overview = false;
   bool Reversed = false;
-  Meets Met = Meets::All;
   std::array<int, 3> Axes{ 0, 1, 2 };
   glm::ivec3 Size{ 0 };
   glm::ivec3 FirstVoxel{ 0 };

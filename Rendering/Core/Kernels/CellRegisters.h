@@ -34,8 +34,8 @@ SPLATTING_INLINE A fused(A a, A b, A c)
   }
 }
 
-/// Stores from + n step, for the lanes n of a mask only, one after the other. Returns how many there
-/// are.
+/// Stores from + n step, for the lanes n of a mask only, one after the other. Returns how many
+/// there are.
 inline int storeLanes(std::int32_t* p, std::int32_t from, std::int32_t step, unsigned lanes)
 {
   int count = 0;

@@ -267,12 +267,13 @@ struct BilinearTaps
   }
 };
 
-template <class A>
-void interpolate(const A* __restrict image, std::ptrdiff_t stride, const double start[2],
-  const double step[2], A* __restrict out, std::ptrdiff_t n)
+template <bool Projective, class A>
+void interpolate(const A* __restrict image, std::ptrdiff_t stride, const double* start,
+  const double* step, A* __restrict out, std::ptrdiff_t n)
 {
-  // In steps that are vectorised separately: points, their four neighbours, and the interpolation.
-  const double u0 = start[0], v0 = start[1], du = step[0], dv = step[1];
+  // In steps that each vectorise: points, then the four neighbours, then their mixture.
+  const double u0 = start[0], v0 = start[1], w0 = Projective ? start[2] : 1.0;
+  const double du = step[0], dv = step[1], dw = Projective ? step[2] : 0.0;
   const std::int32_t rowLength = static_cast<std::int32_t>(stride);
   BilinearTaps<A> taps;
   for (std::int32_t begin = 0; begin < n; begin += taps.chunk)
@@ -281,27 +282,7 @@ void interpolate(const A* __restrict image, std::ptrdiff_t stride, const double 
     const std::int32_t count = left < taps.chunk ? left : taps.chunk;
     for (std::int32_t x = 0; x < count; ++x)
     {
-      taps.set(x, u0 + (begin + x) * du, v0 + (begin + x) * dv, rowLength);
-    }
-    taps.mix(image, rowLength, out + begin, count);
-  }
-}
-
-template <class A>
-void interpolateProjective(const A* __restrict image, std::ptrdiff_t stride, const double start[3],
-  const double step[3], A* __restrict out, std::ptrdiff_t n)
-{
-  const double u0 = start[0], v0 = start[1], w0 = start[2];
-  const double du = step[0], dv = step[1], dw = step[2];
-  const std::int32_t rowLength = static_cast<std::int32_t>(stride);
-  BilinearTaps<A> taps;
-  for (std::int32_t begin = 0; begin < n; begin += taps.chunk)
-  {
-    const std::int32_t left = static_cast<std::int32_t>(n) - begin;
-    const std::int32_t count = left < taps.chunk ? left : taps.chunk;
-    for (std::int32_t x = 0; x < count; ++x)
-    {
-      const double perW = 1.0 / (w0 + (begin + x) * dw);
+      const double perW = Projective ? 1.0 / (w0 + (begin + x) * dw) : 1.0;
       taps.set(x, (u0 + (begin + x) * du) * perW, (v0 + (begin + x) * dv) * perW, rowLength);
     }
     taps.mix(image, rowLength, out + begin, count);
@@ -344,10 +325,10 @@ constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::note)>(&note<P>) };
 template <class A>
 constexpr WorksheetLoops<A> worksheetLoops{ Resampler<A>::group, &axisWeights<A>, &resample<A>,
-  &blend<A>, &raiseBlend<A>, &splat<A, A>, &raiseAverages<A>, &allFinite<A>, &separate<A>,
+  &blend<false, A>, &blend<true, A>, &splat<A, A>, &raiseAverages<A>, &allFinite<A>, &separate<A>,
   static_cast<decltype(WorksheetLoops<A>::shade)>(&shade<A>),
-  static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>, &interpolate<A>,
-  &interpolateProjective<A>, &lookUp<A> };
+  static_cast<decltype(WorksheetLoops<A>::add)>(&add<A>), &finish<A>, &bound<A>,
+  &interpolate<false, A>, &interpolate<true, A>, &lookUp<A> };
 }
 
 extern const Kernels SPLATTING_KERNELS;

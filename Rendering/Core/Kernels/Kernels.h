@@ -313,7 +313,7 @@ struct WorksheetLoops
   /// out[x] = the sum of weights[r] rows[r][x].
   void (*blend)(const A* const* rows, const A* weights, int count, A* out, std::ptrdiff_t n);
   /// image[x] = max(image[x], the sum of weights[r] rows[r][x]).
-  void (*raiseBlend)(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n);
+  void (*raiseBlend)(const A* const* rows, const A* weights, int count, A* image, std::ptrdiff_t n);
   /// Sets every pixel of the rectangle to the maximum of it and the weighted sum of its voxels,
   /// which must be finite.
   void (*splat)(const Splat<A>& splat);
@@ -340,11 +340,11 @@ struct WorksheetLoops
   void (*bound)(
     A* own, const A* before, const A* after, A share, A slack, A magnitude, std::ptrdiff_t n);
   /// out[x] = image interpolated bilinearly at start + x step, between existing pixels.
-  void (*interpolate)(const A* image, std::ptrdiff_t stride, const double start[2],
-    const double step[2], A* out, std::ptrdiff_t n);
+  void (*interpolate)(const A* image, std::ptrdiff_t stride, const double* start,
+    const double* step, A* out, std::ptrdiff_t n);
   /// The same at (u, v) of start + x step = (u w, v w, w).
-  void (*interpolateProjective)(const A* image, std::ptrdiff_t stride, const double start[3],
-    const double step[3], A* out, std::ptrdiff_t n);
+  void (*interpolateProjective)(const A* image, std::ptrdiff_t stride, const double* start,
+    const double* step, A* out, std::ptrdiff_t n);
   /// out[x] = colors[nearest entry to scale (values[x] - low)], clamped to [0, last].
   void (*lookUp)(const A* values, A low, A scale, std::int32_t last, const std::uint32_t* colors,
     std::uint32_t* out, std::ptrdiff_t n);

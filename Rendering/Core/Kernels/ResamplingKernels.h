@@ -305,56 +305,11 @@ void resample(const Resampling<A>& r, std::ptrdiff_t begin, std::ptrdiff_t end)
   }
 }
 
-template <class A, int Rows>
-inline void blendRows(const A* const* rows, const A* weights, A* out, std::ptrdiff_t n)
+/// Sums of rows, each with a weight; or what pixels become if they are less.
+template <class A, bool Raises>
+struct BlendBlock
 {
-  const A* row[Rows];
-  A weight[Rows];
-  for (int r = 0; r < Rows; ++r)
-  {
-    row[r] = rows[r];
-    weight[r] = weights[r];
-  }
-  std::ptrdiff_t x = 0;
-  for (; x + width<A> <= n; x += width<A>)
-  {
-    Pack<A> sum{};
-#pragma GCC unroll 3
-    for (int r = 0; r < Rows; ++r)
-    {
-      sum += weight[r] * load<A>(row[r] + x);
-    }
-    store<A>(out + x, sum);
-  }
-  for (; x < n; ++x)
-  {
-    A sum = 0;
-    for (int r = 0; r < Rows; ++r)
-    {
-      sum += weight[r] * row[r][x];
-    }
-    out[x] = sum;
-  }
-}
-
-template <class A>
-void blend(const A* const* rows, const A* weights, int count, A* out, std::ptrdiff_t n)
-{
-  switch (count)
-  {
-    case 1:
-      return blendRows<A, 1>(rows, weights, out, n);
-    case 2:
-      return blendRows<A, 2>(rows, weights, out, n);
-    default:
-      return blendRows<A, 3>(rows, weights, out, n);
-  }
-}
-
-template <class A>
-struct RaiseBlock
-{
-  A* image;
+  A* out;
   const A* const* rows;
   const A* weights;
   int count;
@@ -366,7 +321,7 @@ struct RaiseBlock
     {
       sum += this->weights[r] * this->rows[r][x];
     }
-    this->image[x] = larger(sum, this->image[x]);
+    this->out[x] = Raises ? larger(sum, this->out[x]) : sum;
   }
   template <int V>
   inline void run(std::ptrdiff_t x) const
@@ -390,16 +345,16 @@ struct RaiseBlock
 #pragma GCC unroll 4
     for (int v = 0; v < V; ++v)
     {
-      A* const at = this->image + x + v * width<A>;
-      store<A>(at, larger(sum[v], load<A>(at)));
+      A* const at = this->out + x + v * width<A>;
+      store<A>(at, Raises ? larger(sum[v], load<A>(at)) : sum[v]);
     }
   }
 };
 
-template <class A>
-void raiseBlend(A* image, const A* const* rows, const A* weights, int count, std::ptrdiff_t n)
+template <bool Raises, class A>
+void blend(const A* const* rows, const A* weights, int count, A* out, std::ptrdiff_t n)
 {
-  const RaiseBlock<A> block{ image, rows, weights, count };
+  const BlendBlock<A, Raises> block{ out, rows, weights, count };
   blocks<A>(n, block, [&](std::ptrdiff_t x) { block.single(x); });
 }
 }

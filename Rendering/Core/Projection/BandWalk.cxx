@@ -133,7 +133,7 @@ private:
     loops.exceeds(bounds, this->minimaOf(group), flags.data(), this->Tiles);
     if (!this->Context.cuts.none())
     {
-      this->splatCounting(z, group, this->Band);
+      this->splatVisible(z, group, this->Band);
       return;
     }
     this->Scratch.count.splatted += findTileRuns(flags.data(), this->Tiles,
@@ -155,13 +155,13 @@ private:
       for (int z = this->Range.begin; z < this->Range.end; ++z)
       {
         this->Scratch.flags.assign(this->Tiles, 1);
-        this->splatCounting(z, g, band);
+        this->splatVisible(z, g, band);
       }
     }
   }
 
   /// Splats the visible samples of the tiles of a group that have flags.
-  void splatCounting(int z, int group, const BandTiles& band)
+  void splatVisible(int z, int group, const BandTiles& band)
   {
     unsigned char* const kinds = this->Scratch.flags.data();
     if (!std::memchr(kinds, 1, this->Tiles))
@@ -175,17 +175,17 @@ private:
     this->Scratch.count.splatted += this->Tiles - std::count(kinds, kinds + this->Tiles, NoSamples);
     const Span rows{ band.firstRow(group), band.endRow(group) };
     forRunsOf(AllSamples, kinds, this->Tiles, band.width,
-      [&](const Span& run) { this->splatWholly(z, rows, run); });
+      [&](const Span& run) { this->splatAllVisible(z, rows, run); });
     forRunsOf(SomeSamples, kinds, this->Tiles, band.width,
-      [&](const Span& run) { this->splatPartly(z, rows, run); });
+      [&](const Span& run) { this->splatSomeVisible(z, rows, run); });
   }
 
   /// Splats pixels for which all samples of a layer are visible, and no others.
-  void splatWholly(int z, const Span& rows, const Span& run)
+  void splatAllVisible(int z, const Span& rows, const Span& run)
   {
     const PixelRows<P> image = pixelsOf<P>(this->Context.image);
     const PixelRows<P> copies =
-      this->splatApart(this->slicesIn(z), rows, this->inRegisters(run), 1);
+      this->splatSeparately(this->slicesIn(z), rows, this->inRegisters(run), 1);
     for (int v = rows.begin; v < rows.end; ++v)
     {
       std::copy(copies.at(run.begin, v), copies.at(run.end, v), image.at(run.begin, v));
@@ -193,7 +193,7 @@ private:
   }
 
   /// Splats pixels for which some samples of a layer are visible.
-  void splatPartly(int z, const Span& rows, const Span& run)
+  void splatSomeVisible(int z, const Span& rows, const Span& run)
   {
     // Only worksheets of neighbouring slices share their voxels.
     const Span slices = this->slicesIn(z);
@@ -213,7 +213,7 @@ private:
     return { begin, std::min(begin + (run.end - begin + step - 1) / step * step, width) };
   }
 
-  /// As splatPartly(), for some slices.
+  /// As splatSomeVisible(), for some slices.
   void splatMasked(const Span& some, const Span& all, const Span& run)
   {
     const int width = run.end - run.begin;
@@ -242,7 +242,7 @@ private:
     }
     const RayLoops<P>& loops = this->Context.kernels;
     const PixelRows<P> image = pixelsOf<P>(this->Context.image);
-    const PixelRows<P> copies = this->splatApart(slices, rows, run, slices.end - slices.begin);
+    const PixelRows<P> copies = this->splatSeparately(slices, rows, run, slices.end - slices.begin);
     for (int k = slices.begin; k < slices.end; ++k)
     {
       for (int v = rows.begin; v < rows.end; ++v)
@@ -257,7 +257,7 @@ private:
   }
 
   /// Splats some slices into one copy of pixels each, or all into one copy.
-  PixelRows<P> splatApart(const Span& slices, const Span& rows, const Span& run, int copies)
+  PixelRows<P> splatSeparately(const Span& slices, const Span& rows, const Span& run, int copies)
   {
     this->Scratch.runs.assign(1, run);
     const PixelRows<P> apart = this->Scratch.copies.copy(

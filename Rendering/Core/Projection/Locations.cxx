@@ -4,8 +4,7 @@
 
 #include "Cells/ScreenScalars.h"
 #include "Common/Parallel.h"
-#include "Sampling/ValuesAtWinners.h"
-
+#include "Sampling/ValuesAtLocations.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -305,7 +304,7 @@ glm::dvec3 Locator::pointAt(const glm::dvec2& pixel, const ShearPixel& shown, do
     z = geometry.reversed() ? std::min(z, geometry.eye().z - nearest)
                             : std::max(z, geometry.eye().z + nearest);
   }
-  if (geometry.isOverview())
+  if (geometry.minifiesAnyAxis())
   {
     const glm::dvec2 at = geometry.onRay(shown.u, shown.v, z);
     glm::dvec3 point;

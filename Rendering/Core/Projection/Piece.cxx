@@ -5,7 +5,6 @@
 #include "Common/Parallel.h"
 #include "Volume/VoxelCopies.h"
 
-
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -284,7 +283,7 @@ void blank(
   image.bytes.resize(std::size_t(image.width) * image.height * sizeOf(image.type));
   image.spans.assign(image.height, Span{ image.width, 0 });
   image.mask.clear();
-  image.winners.assign(settings.keepWinners ? std::size_t(image.width) * image.height : 0, -1);
+  image.winners.assign(settings.recordLocations ? std::size_t(image.width) * image.height : 0, -1);
 }
 
 void decode(ShearImage& image, ScalarType type, Reduction reduction)

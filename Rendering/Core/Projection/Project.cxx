@@ -10,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <memory>
-#include <type_traits>
 #include <vector>
 
 namespace splatting
@@ -70,17 +69,10 @@ Acceleration choose(
 }
 
 /// Whether every sample must be evaluated.
-bool looksAtAll(const ProjectionSettings& settings, const VolumeIndex::Range& range)
+bool needsEverySample(const ProjectionSettings& settings, const VolumeIndex::Range& range)
 {
   return settings.reduction != Reduction::Maximum || range.hasInfinities() ||
-    (settings.keepWinners && range.nonFinite);
-}
-
-/// The type of sums of voxels.
-ScalarType accumulatorOf(ScalarType voxels)
-{
-  return dispatch(voxels,
-    [](auto* null) { return scalarTypeOf<Accumulator<std::remove_pointer_t<decltype(null)>>>(); });
+    (settings.recordLocations && range.nonFinite);
 }
 
 /// Allocates pixels: samples, or sums of worksheets.
@@ -88,9 +80,9 @@ void openImage(const ProjectionSettings& settings, ScalarType voxels, ShearImage
 {
   const bool samples = settings.quality == Quality::Preview && !computesWith(settings.reduction);
   const std::size_t pixels = std::size_t(image.width) * image.height;
-  image.type = samples ? voxels : accumulatorOf(voxels);
+  image.type = samples ? voxels : averageType(voxels);
   image.bytes.resize(pixels * sizeOf(image.type));
-  image.winners.resize(settings.keepWinners ? pixels : 0);
+  image.winners.resize(settings.recordLocations ? pixels : 0);
 }
 
 void learn(SkipStatistics& statistics, Acceleration used, const TileCount& count)
@@ -143,7 +135,7 @@ ProjectionMode& Projector::mode(Quality quality, bool perspective)
   return *mode;
 }
 
-void Projector::takeAtWinners(const VoxelArray& other, const ShearWarp& geometry,
+void Projector::takeAtLocations(const VoxelArray& other, const ShearWarp& geometry,
   const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image)
 {
   image.width = projected.width;
@@ -154,7 +146,7 @@ void Projector::takeAtWinners(const VoxelArray& other, const ShearWarp& geometry
   image.bytes.resize(projected.bytes.size());
   image.nonFinite = other.type == ScalarType::Float32 || other.type == ScalarType::Float64;
   this->mode(settings.quality, geometry.isPerspective())
-    .takeAtWinners({ other, geometry, this->Memory->slices, projected, image });
+    .takeAtLocations({ other, geometry, this->Memory->slices, projected, image });
 }
 
 /// The acceleration that is possible instead of the wanted one.
@@ -162,12 +154,12 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   const ProjectionSettings& settings, const ShearWarp& geometry, const Cuts& cuts,
   const LineIndex*& lines)
 {
-  if (looksAtAll(settings, index.range()))
+  if (needsEverySample(settings, index.range()))
   {
     return Acceleration::Dense;
   }
   if (wanted >= Acceleration::Lines && !index.range().nonFinite && cuts.none() &&
-    !geometry.isPerspective() && !settings.keepWinners && &geometry != &this->Memory->part &&
+    !geometry.isPerspective() && !settings.recordLocations && &geometry != &this->Memory->part &&
     !this->stopped())
   {
     lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),
@@ -274,7 +266,7 @@ Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
       : settings.acceleration,
     index, settings, geometry, cuts, lines);
   openImage(settings, index.volume().type, image);
-  const bool byRays = looksAtAll(settings, range);
+  const bool byRays = needsEverySample(settings, range);
   const bool skips = used == Acceleration::Bricks;
   ProjectionContext context{ index, settings, geometry, whole, kernelsFor(settings.instructionSet),
     range, memory.slices, memory.steps, memory.cuts, settings.floor, image, memory.walks,

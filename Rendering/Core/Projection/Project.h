@@ -89,10 +89,7 @@ struct ProjectionSettings
   double lineTolerance = 0.0;
   /// Whether the image has winners: of equal samples the nearest to the viewer. Not for
   /// Reduction::Mean. Bricks then replace chains.
-  bool keepWinners = false;
-  /// The voxels that rays of shear images select, for ShearWarp::factorise(). Not compared, because
-  /// images are.
-  Meets meets = Meets::All;
+  bool recordLocations = false;
   /// Pixels are clamped to at least this value (in preview rounded down to the scalar type).
   double floor = -std::numeric_limits<double>::infinity();
 
@@ -104,8 +101,8 @@ struct ProjectionSettings
       this->meanHigh == other.meanHigh && this->kernel == other.kernel &&
       this->footprintSampling == other.footprintSampling &&
       this->instructionSet == other.instructionSet && this->acceleration == other.acceleration &&
-      this->lineTolerance == other.lineTolerance && this->keepWinners == other.keepWinners &&
-      this->floor == other.floor;
+      this->lineTolerance == other.lineTolerance &&
+      this->recordLocations == other.recordLocations && this->floor == other.floor;
   }
 };
 
@@ -147,7 +144,7 @@ public:
    *
    * @param other  of the same type and size as the projected volume
    */
-  void takeAtWinners(const VoxelArray& other, const ShearWarp& geometry,
+  void takeAtLocations(const VoxelArray& other, const ShearWarp& geometry,
     const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image);
 
   /// Sets a function that gets the completed share, 0 to 1, while chains are made.

@@ -6,7 +6,6 @@
 #include "Common/Parallel.h"
 #include "Projection/WalkSpace.h"
 
-
 namespace splatting
 {
 namespace

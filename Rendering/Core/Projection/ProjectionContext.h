@@ -75,19 +75,6 @@ struct WalkSpace;
 void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
   const CutMap& cuts, OutlineSpace& space, ShearImage& image);
 
-template <class T>
-constexpr T leastValue()
-{
-  using Limits = std::numeric_limits<T>;
-  return Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
-}
-template <class T>
-constexpr T greatestValue()
-{
-  using Limits = std::numeric_limits<T>;
-  return Limits::has_infinity ? Limits::infinity() : Limits::max();
-}
-
 /// The number of the first voxel on a ray's path in a slice, from the viewer on, for which
 /// isWanted(di, dj); -1 if there is none.
 template <class F>

@@ -37,7 +37,7 @@ public:
   {
     ShearImage& image = this->Context.image;
     const std::size_t begin = std::size_t(v0) * image.width, end = std::size_t(v1) * image.width;
-    if (this->Settings.keepWinners)
+    if (this->Settings.recordLocations)
     {
       std::fill(image.winners.begin() + begin, image.winners.begin() + end, -1);
     }
@@ -67,7 +67,7 @@ public:
   /// must not depend on the side of the viewer.
   bool isReversed() const
   {
-    return (this->Settings.reduction == Reduction::Local || this->Settings.keepWinners) &&
+    return (this->Settings.reduction == Reduction::Local || this->Settings.recordLocations) &&
       this->Context.geometry.reversed();
   }
 
@@ -89,8 +89,8 @@ public:
             narrow(scratch.mask.data(), present, pixels);
           }
           const Row row{ step, v, pixels, isCut ? scratch.mask.data() : present };
-          this->Settings.keepWinners ? this->takeAndNote(row, samples, scratch)
-                                     : this->take(row, samples, scratch);
+          this->Settings.recordLocations ? this->takeAndNote(row, samples, scratch)
+                                         : this->take(row, samples, scratch);
         }
       });
   }

@@ -13,7 +13,6 @@
 #include "Projection/TileRuns.h"
 #include "Sampling/SliceSampler.h"
 
-
 #include <algorithm>
 #include <cstdint>
 #include <functional>
@@ -86,7 +85,7 @@ struct WalkSpace
   PerThread<RayScratch> rayBands;
   RayState rays;
   OutlineSpace outline;
-  std::vector<unsigned char> limits; ///< of all pixels, for WinnerWalk
+  std::vector<unsigned char> limits; ///< of all pixels, for LocationWalk
   std::vector<unsigned char> chunk;
 };
 

@@ -5,7 +5,6 @@
 #include "Projection/WalkSpace.h"
 #include "Sampling/SliceSampler.h"
 
-
 #include <algorithm>
 
 namespace splatting

@@ -4,7 +4,6 @@
 
 #include "Common/Parallel.h"
 
-
 #include <glm/common.hpp>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sampling/ParallelWorksheets.h"
 
-#include "Sampling/ValuesAtWinners.h"
+#include "Sampling/ValuesAtLocations.h"
 
 #include <memory>
 
@@ -23,7 +23,7 @@ public:
         context, this->Space.footprints, this->Space.reach, worksheetDepth(context.settings)));
   }
   template <class T>
-  void takeAtWinners(const AtWinners& winners) const
+  void takeAtLocations(const AtWinners& winners) const
   {
     fillAtWinners<T>(winners,
       [&](const PermutedVoxels<T>& voxels, int u, int v, int step)

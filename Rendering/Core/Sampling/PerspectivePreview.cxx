@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sampling/SliceSampler.h"
-#include "Sampling/ValuesAtWinners.h"
+#include "Sampling/ValuesAtLocations.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -267,7 +267,7 @@ public:
     walk(context, PerspectivePreview<T>(context, this->Picks, this->None));
   }
   template <class T>
-  void takeAtWinners(const AtWinners& winners) const
+  void takeAtLocations(const AtWinners& winners) const
   {
     fillAtWinners<T>(winners,
       [&](const PermutedVoxels<T>& voxels, int u, int v, int step)

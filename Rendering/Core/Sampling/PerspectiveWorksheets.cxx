@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sampling/PerspectiveFootprints.h"
-#include "Sampling/ValuesAtWinners.h"
+#include "Sampling/ValuesAtLocations.h"
 #include "Sampling/Worksheets.h"
 
 #include <algorithm>
@@ -123,7 +123,7 @@ private:
           weights[count++] = shares[q] * *weight;
         }
       }
-      loops.raiseBlend(target.at(span.begin, v), rows, weights, count, span.end - span.begin);
+      loops.raiseBlend(rows, weights, count, target.at(span.begin, v), span.end - span.begin);
     }
   }
 
@@ -227,7 +227,7 @@ public:
         context, this->Footprints, this->Reach, worksheetDepth(context.settings)));
   }
   template <class T>
-  void takeAtWinners(const AtWinners& winners) const
+  void takeAtLocations(const AtWinners& winners) const
   {
     fillAtWinners<T>(winners,
       [&](const PermutedVoxels<T>& voxels, int u, int v, int step)

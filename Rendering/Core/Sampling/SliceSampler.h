@@ -145,7 +145,7 @@ private:
 /// Projects with a sampler, according to the context: see BandWalk and RayWalk.
 template <class T, class P>
 void walkBands(ProjectionContext& context, const SliceSampler<T, P>& sampler);
-/// After walkBands(), before SliceSampler::finish(): see WinnerWalk.
+/// After walkBands(), before SliceSampler::finish(): see LocationWalk.
 template <class T, class P>
 void findWinners(ProjectionContext& context, const SliceSampler<T, P>& sampler);
 template <class T, class P>
@@ -180,7 +180,7 @@ public:
   /// Walks a sampler for the voxel type.
   virtual void project(ProjectionContext& context) = 0;
   /// Call it after project(). Only for modes whose samples are voxels or averages.
-  virtual void takeAtWinners(const AtWinners&) const = 0;
+  virtual void takeAtLocations(const AtWinners&) const = 0;
 };
 
 /// The mode of a Space, which has the data kept between frames for A = Accumulator<T>, and projects
@@ -198,13 +198,13 @@ public:
         std::get<Space<Accumulator<T>>>(this->Spaces).template project<T>(context);
       });
   }
-  void takeAtWinners(const AtWinners& winners) const override
+  void takeAtLocations(const AtWinners& winners) const override
   {
     dispatch(winners.other.type,
       [&](auto* null)
       {
         using T = std::remove_pointer_t<decltype(null)>;
-        std::get<Space<Accumulator<T>>>(this->Spaces).template takeAtWinners<T>(winners);
+        std::get<Space<Accumulator<T>>>(this->Spaces).template takeAtLocations<T>(winners);
       });
   }
 

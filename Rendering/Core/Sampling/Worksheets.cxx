@@ -4,7 +4,6 @@
 
 #include "Common/Parallel.h"
 
-
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -5,7 +5,6 @@
 #include "Common/Parallel.h"
 #include "Kernels/Kernels.h"
 
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -18,19 +17,6 @@ namespace splatting
 {
 namespace
 {
-template <class T>
-constexpr T lowest()
-{
-  return std::numeric_limits<T>::has_infinity ? -std::numeric_limits<T>::infinity()
-                                              : std::numeric_limits<T>::lowest();
-}
-template <class T>
-constexpr T highest()
-{
-  return std::numeric_limits<T>::has_infinity ? std::numeric_limits<T>::infinity()
-                                              : std::numeric_limits<T>::max();
-}
-
 /// Adds its lifetime to a number of seconds.
 class Stopwatch
 {
@@ -85,7 +71,7 @@ void transpose(const T* in, T* out, const glm::ivec3& size, int begin, int end)
 template <class T>
 struct Extremes
 {
-  T low = highest<T>(), high = lowest<T>();
+  T low = greatestValue<T>(), high = leastValue<T>();
   bool nonFinite = false;
 };
 
@@ -202,7 +188,7 @@ private:
     const glm::ivec3& size = this->Volume.dimensions;
     const T* const voxels = static_cast<const T*>(this->Volume.voxels);
     const VoxelLoops<T>& loops = kernelsFor(bestInstructionSet());
-    scratch.columns.assign(std::size_t(this->Count.x) * Edge, lowest<T>());
+    scratch.columns.assign(std::size_t(this->Count.x) * Edge, leastValue<T>());
     for (int j = y * Edge; j < std::min((y + 1) * Edge, size.y); ++j)
     {
       const T* rows[Edge]; // several memory streams keep the processor busy

@@ -4,7 +4,6 @@
 
 #include "Common/Parallel.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -136,12 +135,6 @@ void forRows(const ResampledAxis (&axes)[3], A* to, Body&& body)
   forAll(height * std::ptrdiff_t(axes[2].below.size()), 16,
     [&](std::ptrdiff_t row) { body(to + row * width, row % height, row / height); });
 }
-}
-
-ScalarType averageType(ScalarType type)
-{
-  return dispatch(type,
-    [](auto* null) { return scalarTypeOf<Accumulator<std::remove_pointer_t<decltype(null)>>>(); });
 }
 
 void gather(const StridedVoxels& from, std::ptrdiff_t count, void* to)

@@ -25,9 +25,6 @@ struct StridedVoxels
   std::ptrdiff_t stride = 1;
 };
 
-/// The type of averages of scalars of a type: its Accumulator.
-ScalarType averageType(ScalarType type);
-
 /// Copies the voxels contiguously, in their own type.
 void gather(const StridedVoxels& from, std::ptrdiff_t count, void* to);
 

@@ -6,11 +6,15 @@
 #ifndef Blanking_h
 #define Blanking_h
 
+#include "vtkSplattingMIPNamespace.h"
+
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataSet;
 class vtkImageData;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

@@ -5,11 +5,14 @@
 
 #include "Clipping/ClosedSurface.h"
 
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
 
 #include <glm/mat4x4.hpp>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkPolyData;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

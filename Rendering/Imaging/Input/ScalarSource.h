@@ -7,6 +7,7 @@
 #include "Volume/VoxelCopies.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
 #include "vtkWeakPointer.h"
 
@@ -15,9 +16,11 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataArray;
 class vtkDataSet;
 class vtkImageData;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {
@@ -69,7 +72,7 @@ public:
   vtkDataArray* Scalars() const { return this->Examined.scalars; }
   /// Whether small cells of a rectilinear grid may be missing, because it was resampled to larger
   /// steps.
-  bool IsCoarse() const { return this->Layout.coarse; }
+  bool UsesLargerSteps() const { return this->Layout.coarse; }
   /// The number of projected components, 1 to 4.
   int Components() const { return this->NumberOfComponents; }
   /// Whether the components are the colour and opacity of one sample.

@@ -8,12 +8,16 @@
 
 #include "Volume/VoxelCopies.h"
 
+#include "vtkSplattingMIPNamespace.h"
+
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
 #include <string>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataSet;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

@@ -9,8 +9,12 @@
 #include "Geometry/View.h"
 #include "Input/VolumeGrid.h"
 
+#include "vtkSplattingMIPNamespace.h"
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkMatrix4x4;
 class vtkPlaneCollection;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {

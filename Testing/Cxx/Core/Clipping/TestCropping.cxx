@@ -315,7 +315,7 @@ void testLongRows(Checks& check)
         for (int way = 0; way < 12; ++way)
         {
           scene.settings.acceleration = way % 3 == 1 ? Acceleration::Bricks : Acceleration::Dense;
-          scene.settings.keepWinners = way % 3 == 2;
+          scene.settings.recordLocations = way % 3 == 2;
           scene.settings.instructionSet = instructionSets[way / 3];
           check(sameBits(expected, toReference<T>(projected(volume, scene))), "long rows, type ",
             int(splatting::scalarTypeOf<T>()), ", cuts ", m, ", way ", way,
@@ -360,7 +360,7 @@ void testLongAverages(Checks& check)
         for (int way = 0; way < 16; ++way)
         {
           scene.settings.acceleration = way % 2 ? Acceleration::Bricks : Acceleration::Dense;
-          scene.settings.keepWinners = way / 2 % 2;
+          scene.settings.recordLocations = way / 2 % 2;
           scene.settings.instructionSet = instructionSets[way / 4];
           const auto image = toReference<A>(projected(volume, scene));
           bool within = image.hit == expected.hit;

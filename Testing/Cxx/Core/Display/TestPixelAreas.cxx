@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// TestPixelAreas
-//
-// Views whose pixels are wider than voxels: the extrema of areas of shear images.
-#include "PixelAreaTesting.h"
+// Views whose pixels are wider than voxels: extrema and averages of areas of shear images.
+#include "CoreTesting.h"
+#include "WideViews.h"
+
+#include "Display/Warp.h"
 
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -17,236 +19,384 @@ using namespace coretesting;
 
 namespace
 {
-/// For each pixel the largest value that was found in its area, by way of places of the image: all
-/// samples, and places on the lines between them.
-class Scatter
+using Images = std::vector<splatting::ShearImage>;
+using Geometries = std::vector<splatting::ShearWarp>;
+
+constexpr float Background = -100.0f; // below all values
+
+/// A float image of a function of the pixel, as wide as a preview's; some have holes.
+template <class F>
+splatting::ShearImage imageOf(
+  const splatting::ShearWarp& geometry, bool hasHoles, reference::Random& random, F&& f)
 {
-public:
-  static constexpr int Steps = 64; // from sample to sample
-
-  explicit Scatter(const glm::ivec2& viewport)
-    : Values(std::size_t(viewport.x) * viewport.y, Background),
-      Viewport(viewport)
+  const auto size = geometry.size();
+  std::array<int, 3> dimensions;
+  for (int a = 0; a < 3; ++a)
   {
+    dimensions[geometry.axes()[a]] = size[a];
   }
-
-  void add(const splatting::ShearImage& image, const splatting::ShearWarp& geometry)
+  splatting::ProjectionSettings settings;
+  settings.quality = splatting::Quality::Preview;
+  splatting::ShearImage image =
+    project(reference::constant<float>(dimensions, 0.0f), geometry, settings);
+  for (int v = 0; v < image.height; ++v)
   {
-    for (int v = 0; v < image.height; ++v)
+    for (int u = 0; u < image.width; ++u)
     {
-      for (int u = 0; u < image.width; ++u)
-      {
-        const bool isDue = image.covers(u, v) && isShown(geometry, u, v);
-        for (int n = 0; n < Steps && isDue; ++n)
-        {
-          const double share = double(n) / Steps;
-          const float here = image.row<float>(v)[u];
-          if (n == 0 || (image.covers(u + 1, v) && isShown(geometry, u + 1, v)))
-          {
-            const float next = n ? image.row<float>(v)[u + 1] : here;
-            this->put(geometry, { u + share, v }, (1.0 - share) * here + share * next);
-          }
-          if (n > 0 && image.covers(u, v + 1) && isShown(geometry, u, v + 1))
-          {
-            const float next = image.row<float>(v + 1)[u];
-            this->put(geometry, { u, v + share }, (1.0 - share) * here + share * next);
-          }
-        }
-      }
+      image.row<float>(v)[u] = static_cast<float>(f(u, v));
     }
   }
-
-  float at(std::size_t n) const { return this->Values[n]; }
-
-private:
-  void put(const splatting::ShearWarp& geometry, const glm::dvec2& place, double value)
+  if (hasHoles)
   {
-    const glm::dvec3 h = geometry.shearToScreen() * glm::dvec3(place, 1.0);
-    const glm::dvec2 p = glm::dvec2(h) / h.z;
-    // Places within 1e-9 of two areas are left to both, or to none: others are beside them.
-    const glm::ivec2 pixel(glm::floor(p + 0.5));
-    const glm::dvec2 off = glm::abs(p - glm::dvec2(pixel));
-    const bool isClear = off.x < 0.5 - 1e-9 && off.y < 0.5 - 1e-9;
-    if (isClear && pixel.x >= 0 && pixel.y >= 0 && pixel.x < this->Viewport.x &&
-      pixel.y < this->Viewport.y)
+    image.mask.resize(std::size_t(image.width) * image.height);
+    for (unsigned char& sample : image.mask)
     {
-      float& largest = this->Values[std::size_t(pixel.y) * this->Viewport.x + pixel.x];
-      largest = std::max(largest, static_cast<float>(value));
+      sample = random.uniform(0, 9) > 0;
     }
   }
+  return image;
+}
 
-  std::vector<float> Values;
-  glm::ivec2 Viewport;
-};
-
-void testExtrema(Checks& check)
+Images noise(const Geometries& geometries, bool hasHoles, reference::Random& random)
 {
-  const Sightings wide = forOverviews("extrema", 200,
-    [&](int n, const splatting::View& view, const Geometries& geometries, reference::Random& random)
+  Images images;
+  for (const splatting::ShearWarp& geometry : geometries)
+  {
+    images.push_back(
+      imageOf(geometry, hasHoles, random, [&](int, int) { return random.uniform(0.0, 1.0); }));
+    splatting::ShearImage& image = images.back();
+    image.winners.assign(std::size_t(image.width) * image.height, 0);
+    for (std::size_t n = 0; n < image.mask.size(); ++n)
     {
-      const Images images = noise(geometries, n % 4 == 0, random);
-      Images mirrored = images;
-      Scatter scatter(view.viewport);
-      for (std::size_t i = 0; i < images.size(); ++i)
+      image.winners[n] = image.mask[n] ? 0 : -1;
+    }
+  }
+  return images;
+}
+
+std::vector<float> picture(const Images& images, const Geometries& geometries,
+  splatting::Reduction reduction, const glm::ivec2& viewport, reference::Random& random)
+{
+  std::vector<float> pixels(std::size_t(viewport.x) * viewport.y, Background);
+  splatting::Warper().warpScalars(
+    images, geometries, reduction, viewport, anyInstructionSet(random), Background, pixels.data());
+  return pixels;
+}
+
+/// Whether a ray passes between the outermost voxels' centres, where the picture does not end:
+/// the outermost half slices are beyond.
+bool isShown(const splatting::ShearWarp& geometry, int u, int v)
+{
+  if (u >= geometry.rayCount().x || !meets(geometry, u, v, -0.5 - 1e-6))
+  {
+    return false;
+  }
+  const glm::dvec3 last = glm::dvec3(geometry.size()) - 1.0;
+  double near = last.z > 0.0 ? 0.0 : -0.5, far = last.z > 0.0 ? last.z : 0.5;
+  for (int a = 0; a < 2; ++a)
+  {
+    const splatting::AxisRays& rays = a == 0 ? geometry.columns() : geometry.rows();
+    const int n = a == 0 ? u : v;
+    const double first = (1e-6 - rays.at[n]) / rays.slope[n];
+    const double second = (last[a] - 1e-6 - rays.at[n]) / rays.slope[n];
+    near = std::max(near, geometry.reference() + std::min(first, second));
+    far = std::min(far, geometry.reference() + std::max(first, second));
+  }
+  return near <= far;
+}
+
+splatting::View someView(int n, reference::Random& random)
+{
+  const auto size = randomSize(random, 24);
+  return reduced(n % 2 ? randomPerspective(size, random) : anyView(size, random));
+}
+
+/// Calls f(n, view, geometries, random) for those of some views that are overviews, and counts
+/// them.
+template <class F>
+Sightings forOverviews(const char* series, int count, F&& f)
+{
+  Sightings overviews;
+  reference::forScenes(series, count,
+    [&](int n, reference::Random& random)
+    {
+      const splatting::View view = someView(n, random);
+      Geometries geometries;
+      splatting::ShearWarp::factorise(view, geometries);
+      const bool minifiesAnyAxis = !geometries.empty() && geometries.front().minifiesAnyAxis();
+      overviews.add(minifiesAnyAxis);
+      if (minifiesAnyAxis)
       {
-        scatter.add(images[i], geometries[i]);
-        float* const pixels = mirrored[i].row<float>(0);
-        std::transform(pixels, pixels + std::size_t(images[i].width) * images[i].height, pixels,
-          [](float x) { return -x; });
-      }
-      const auto largest =
-        picture(images, geometries, splatting::Reduction::Maximum, view.viewport, random);
-      const auto least =
-        picture(mirrored, geometries, splatting::Reduction::Minimum, view.viewport, random);
-      // Places are a step apart at most; values change by 1 from sample to sample at most. Corners
-      // lie beside lines, where the image is no larger than on both lines about them together.
-      for (std::size_t p = 0; p < largest.size(); ++p)
-      {
-        const float known = scatter.at(p);
-        check(largest[p] >= known - 1e-6f, "pixel ", p, " shows ", largest[p],
-          ", less than there is in its area: ", known);
-        check(least[p] == (largest[p] == Background ? Background : -largest[p]), "pixel ", p,
-          ": the least is no mirror of the largest");
+        f(n, view, geometries, random);
       }
     });
-  check(wide.areEnough(0.8), "only ", wide, " have wide pixels");
+  return overviews;
 }
 
-/// How near a straight line comes to a sample along both axes, in samples.
-double distanceToLine(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec2& sample)
+/// An interval of numbers x with a x + b >= 0 for some a and b.
+struct Interval
 {
-  const glm::dvec2 a = from - sample, way = to - from;
-  double nearest = std::numeric_limits<double>::infinity();
-  // It is nearest at an end, or where one coordinate is 0 or as large as the other.
-  for (const double at : { 0.0, 1.0, -a.x / way.x, -a.y / way.y, (a.y - a.x) / (way.x - way.y),
-         -(a.x + a.y) / (way.x + way.y) })
+  double low, high;
+
+  void cut(double a, double b)
   {
-    const double on = at > 0.0 ? std::min(at, 1.0) : 0.0; // of no way at all, NaN
-    const glm::dvec2 off = glm::abs(a + on * way);
-    nearest = std::min(nearest, std::max(off.x, off.y));
+    if (a > 0.0)
+    {
+      this->low = std::max(this->low, -b / a);
+    }
+    else if (a < 0.0 || b < 0.0)
+    {
+      this->high = a < 0.0 ? std::min(this->high, -b / a) : this->low - 1.0;
+    }
   }
-  return nearest;
-}
+  double length() const { return this->high - this->low; }
+  double middle() const { return 0.5 * (this->low + this->high); }
+};
 
-/// How near the outline of a pixel's area comes to a sample along both axes, in samples.
-double distanceToOutline(
-  const splatting::ShearWarp& geometry, int x, int y, const glm::dvec2& sample)
+/// What a pixel reads of all images of a view, by the definition.
+struct Reading
 {
-  const glm::dvec2 corners[] = { { -0.5, -0.5 }, { 0.5, -0.5 }, { 0.5, 0.5 }, { -0.5, 0.5 } };
-  const auto corner = [&](int n)
-  { return geometry.screenToShear() * glm::dvec3(glm::dvec2(x, y) + corners[n % 4], 1.0); };
-  double nearest = std::numeric_limits<double>::infinity();
-  for (int n = 0; n < 4; ++n)
+  bool isCertain = true; ///< by more than rounding
+  bool isDue = false;    ///< a sample of what is shown lies in the area
+  std::vector<double> values;
+  std::vector<splatting::ShearPixel> nearest; ///< of each value
+};
+
+class Reader
+{
+public:
+  Reader(const Images& images, const Geometries& geometries) : All(images), Geometry(geometries) {}
+
+  Reading at(int x, int y) const
   {
-    glm::dvec3 from = corner(n), to = corner(n + 1);
-    // What lies behind the eye, or next to it and far beside all samples, is cut off.
-    const double least = 1e-6 * std::max(from.z, to.z);
-    if (least <= 0.0)
+    Reading reading;
+    for (std::size_t n = 0; n < this->Geometry.size(); ++n)
     {
-      continue;
+      this->readRows(static_cast<int>(n), { x, y }, reading);
     }
-    glm::dvec3& low = from.z < to.z ? from : to;
-    const glm::dvec3& high = from.z < to.z ? to : from;
-    if (low.z < least)
-    {
-      low += (least - low.z) / (high.z - low.z) * (high - low);
-    }
-    nearest =
-      std::min(nearest, distanceToLine(glm::dvec2(from) / from.z, glm::dvec2(to) / to.z, sample));
+    return reading;
   }
-  return nearest;
-}
 
-/// Where areas have no place between samples, at rims and holes, pixels show what is interpolated
-/// at their centres between the samples that there are.
-bool showsPoint(
-  const splatting::ShearImage& image, const splatting::ShearWarp& geometry, int x, int y)
-{
-  const glm::dvec3 h = geometry.screenToShear() * glm::dvec3(x, y, 1.0);
-  return !isBetweenSamples(image, glm::dvec2(h) / h.z);
-}
+  float sample(const splatting::ShearPixel& p) const
+  {
+    return this->All[p.image].row<float>(p.v)[p.u];
+  }
 
-/// What a pixel shows of a sample depends on how near its area is.
-void testNothingElse(Checks& check)
-{
-  Sightings seen;
-  forOverviews("nothing else", 100,
-    [&](int, const splatting::View& view, const Geometries& geometries, reference::Random& random)
+private:
+  static constexpr double Rounding = 1e-7;
+
+  /// The part of a row (or, of 1, of a column) of an image that lies in a pixel's area, and no more
+  /// than a sample beside the image.
+  Interval part(int n, const glm::dvec2& pixel, int along, double line) const
+  {
+    Interval part{ -1.0, double(along == 0 ? this->All[n].width : this->All[n].height) };
+    const glm::dmat3& m = this->Geometry[n].shearToScreen();
+    const glm::dvec3 step = m[along], start = line * m[1 - along] + m[2];
+    for (int a = 0; a < 2; ++a)
     {
-      // One bright sample: a pyramid as wide as two samples.
-      Images images;
-      for (const splatting::ShearWarp& geometry : geometries)
+      for (const double side : { -1.0, 1.0 })
       {
-        images.push_back(imageOf(geometry, false, random, [](int, int) { return 0.0; }));
+        const double border = pixel[a] + 0.5 * side;
+        part.cut(side * (border * step.z - step[a]), side * (border * start.z - start[a]));
       }
-      const std::size_t which = random.uniform(0, static_cast<int>(images.size()) - 1);
-      splatting::ShearImage& image = images[which];
-      const int v = random.uniform(0, image.height - 1);
-      if (image.spans[v].empty())
+    }
+    part.cut(step.z, start.z);
+    return part;
+  }
+
+  void readRows(int n, const glm::dvec2& pixel, Reading& reading) const
+  {
+    bool meetsRows = false;
+    for (int v = -1; v <= this->All[n].height; ++v)
+    {
+      const Interval row = this->part(n, pixel, 0, v);
+      reading.isCertain &= std::abs(row.length()) > Rounding;
+      meetsRows |= row.length() > 0.0;
+      this->readRow(n, row, v, reading);
+    }
+    if (!meetsRows)
+    {
+      this->readBetweenRows(n, pixel, reading);
+    }
+  }
+
+  /// An area between two rows is read in the middle of its height.
+  void readBetweenRows(int n, const glm::dvec2& pixel, Reading& reading) const
+  {
+    Interval rows{ std::numeric_limits<double>::infinity(), 0.0 };
+    rows.high = -rows.low;
+    for (const glm::dvec2& corner :
+      { glm::dvec2(-0.5, -0.5), { 0.5, -0.5 }, { 0.5, 0.5 }, { -0.5, 0.5 } })
+    {
+      const glm::dvec3 h = this->Geometry[n].screenToShear() * glm::dvec3(pixel + corner, 1.0);
+      const glm::dvec2 p = glm::dvec2(h) / h.z;
+      const bool isInside = h.z > 0.0 && p.x > -1.0 && p.x < this->All[n].width;
+      reading.isCertain &= isInside;
+      rows = { std::min(rows.low, p.y), std::max(rows.high, p.y) };
+    }
+    if (rows.low > -1.0 && rows.high < this->All[n].height && reading.isCertain)
+    {
+      const double v = rows.middle();
+      this->readRow(n, this->part(n, pixel, 0, v), v, reading);
+    }
+  }
+
+  void readRow(int n, const Interval& row, double v, Reading& reading) const
+  {
+    if (row.length() < 0.0)
+    {
+      return;
+    }
+    for (const double end : { row.low, row.high })
+    {
+      reading.isCertain &= std::abs(end - std::round(end)) > Rounding;
+    }
+    bool isRead = false;
+    for (double u = std::ceil(row.low); u <= row.high; ++u)
+    {
+      this->readPoint(n, u, v, reading);
+      isRead = true;
+    }
+    if (!isRead)
+    {
+      this->readPoint(n, row.middle(), v, reading);
+    }
+  }
+
+  void readPoint(int n, double u, double v, Reading& reading) const
+  {
+    const splatting::ShearImage& image = this->All[n];
+    const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
+    double sum = 0.0;
+    for (int corner = 0; corner < 4; ++corner)
+    {
+      const int column = i + corner % 2, row = j + corner / 2;
+      const double weight = (1.0 - std::abs(u - column)) * (1.0 - std::abs(v - row));
+      if (weight > 0.0 && !image.covers(column, row))
       {
         return;
       }
-      const int u = random.uniform(image.spans[v].begin, image.spans[v].end - 1);
-      const bool isDue = isShown(geometries[which], u, v);
-      seen.add(isDue);
-      image.row<float>(v)[u] = 1.0f;
-      const auto found =
-        picture(images, geometries, splatting::Reduction::Maximum, view.viewport, random);
-      for (int y = 0; y < view.viewport.y; ++y)
-      {
-        for (int x = 0; x < view.viewport.x; ++x)
-        {
-          const double nearest = distanceToOutline(geometries[which], x, y, { u, v });
-          const glm::dvec3 h = geometries[which].shearToScreen() * glm::dvec3(u, v, 1.0);
-          const glm::dvec2 at = glm::abs(glm::dvec2(h) / h.z - glm::dvec2(x, y));
-          const bool inside = at.x <= 0.5 && at.y <= 0.5 && h.z > 0.0;
-          const float value = found[std::size_t(y) * view.viewport.x + x];
-          check(!isDue || !inside || at.x > 0.4999 || at.y > 0.4999 || value == 1.0f,
-            "a sample is lost in its pixel's area: ", value);
-          // Interpolated values fall to 0 within a sample.
-          const double most = !showsPoint(image, geometries[which], x, y) ? 1.0 - nearest
-            : nearest < 1.0                                               ? 1.0
-                                                                          : 0.0;
-          check(inside || value <= std::max(0.0, most) + 1e-6, "a pixel shows ", value,
-            " of a sample that is ", nearest, " away");
-        }
-      }
-    });
-  check(seen.areEnough(0.3), "only ", seen, " samples are shown");
-}
-
-/// The largest sample in each pixel's area: those within 1e-9 of two areas are left out.
-std::vector<float> largestSamples(
-  const Images& images, const Geometries& geometries, const glm::ivec2& viewport)
-{
-  std::vector<float> largest(std::size_t(viewport.x) * viewport.y, Background);
-  for (std::size_t n = 0; n < images.size(); ++n)
-  {
-    for (int v = 0; v < images[n].height; ++v)
+      sum += weight > 0.0 ? weight * image.row<float>(row)[column] : 0.0;
+    }
+    for (const double place : { u, v })
     {
-      for (int u = images[n].spans[v].begin; u < images[n].spans[v].end; ++u)
+      reading.isCertain &= std::abs(place - std::floor(place) - 0.5) > Rounding;
+    }
+    const splatting::ShearPixel nearest{ n, int(std::lround(u)), int(std::lround(v)) };
+    reading.isDue |=
+      nearest.u == u && nearest.v == v && isShown(this->Geometry[n], nearest.u, nearest.v);
+    reading.values.push_back(sum);
+    reading.nearest.push_back(nearest);
+  }
+
+  const Images& All;
+  const Geometries& Geometry;
+};
+
+/// Calls f(pixel, reading) for the pixels of a view where rounding decides nothing.
+template <class F>
+void forReadings(
+  const splatting::View& view, const Images& images, const Geometries& geometries, F&& f)
+{
+  const Reader reader(images, geometries);
+  for (int y = 0; y < view.viewport.y; ++y)
+  {
+    for (int x = 0; x < view.viewport.x; ++x)
+    {
+      const Reading reading = reader.at(x, y);
+      if (reading.isCertain)
       {
-        const glm::dvec3 h = geometries[n].shearToScreen() * glm::dvec3(u, v, 1.0);
-        const glm::dvec2 p = glm::dvec2(h) / h.z, pixel = glm::floor(p + 0.5);
-        const glm::dvec2 off = glm::abs(p - pixel), end(viewport);
-        const bool isClear = off.x < 0.5 - 1e-9 && off.y < 0.5 - 1e-9;
-        if (isClear && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < end.x && pixel.y < end.y &&
-          images[n].covers(u, v) && isShown(geometries[n], u, v))
-        {
-          float& own = largest[std::size_t(pixel.y) * viewport.x + std::size_t(pixel.x)];
-          own = std::max(own, images[n].row<float>(v)[u]);
-        }
+        f(std::size_t(y) * view.viewport.x + x, reading);
       }
     }
   }
-  return largest;
 }
 
-/// The location of a pixel is the largest sample in its area, or without any one that its value
-/// lies next to.
+/// Pixels show the extremum or the mean of what they read. The picture may end where no sample
+/// that is shown is in their areas, and where they read nothing they may show what is beside them.
+void testDefinition(Checks& check)
+{
+  Sightings read;
+  const Sightings wide = forOverviews("definition", 200,
+    [&](int n, const splatting::View& view, const Geometries& geometries, reference::Random& random)
+    {
+      using splatting::Reduction;
+      const Images images = noise(geometries, n % 4 == 0, random);
+      const auto largest = picture(images, geometries, Reduction::Maximum, view.viewport, random);
+      const auto least = picture(images, geometries, Reduction::Minimum, view.viewport, random);
+      const auto mean = picture(images, geometries, Reduction::Mean, view.viewport, random);
+      forReadings(view, images, geometries,
+        [&](std::size_t p, const Reading& reading)
+        {
+          const std::vector<double>& values = reading.values;
+          read.add(!values.empty());
+          check(!reading.isDue || largest[p] != Background, "a sample in the area of pixel ", p,
+            " is not shown");
+          if (values.empty() || largest[p] == Background)
+          {
+            return;
+          }
+          double sum = 0.0;
+          for (const double value : values)
+          {
+            sum += value;
+          }
+          const double expected[] = { *std::max_element(values.begin(), values.end()),
+            *std::min_element(values.begin(), values.end()), sum / double(values.size()) };
+          const float found[] = { largest[p], least[p], mean[p] };
+          for (int reduction = 0; reduction < 3; ++reduction)
+          {
+            check(std::abs(found[reduction] - expected[reduction]) < 1e-5, "pixel ", p, " shows ",
+              found[reduction], ", not ", expected[reduction], ", reduction ", reduction);
+          }
+        });
+    });
+  check(wide.areEnough(0.8), "only ", wide, " have wide pixels");
+  check(read.areEnough(0.05), "only ", read, " pixels read something");
+}
+
+/// No sample of what is shown is lost between pixels.
+void testEverySample(Checks& check)
+{
+  forOverviews("every sample", 100,
+    [&](int n, const splatting::View& view, const Geometries& geometries, reference::Random& random)
+    {
+      const Images images = noise(geometries, n % 4 == 0, random);
+      const auto found =
+        picture(images, geometries, splatting::Reduction::Maximum, view.viewport, random);
+      for (std::size_t i = 0; i < images.size(); ++i)
+      {
+        for (int v = 0; v < images[i].height; ++v)
+        {
+          for (int u = 0; u < images[i].width; ++u)
+          {
+            const glm::dvec3 h = geometries[i].shearToScreen() * glm::dvec3(u, v, 1.0);
+            const glm::dvec2 p = glm::dvec2(h) / h.z + 0.5;
+            // On the line between two areas it may be in either.
+            float shown = -1.0f;
+            bool isInside = images[i].covers(u, v) && isShown(geometries[i], u, v);
+            for (int side = 0; side < 4 && isInside; ++side)
+            {
+              const glm::ivec2 pixel(glm::floor(p + 1e-9 * (glm::dvec2(side % 2, side / 2) - 0.5)));
+              isInside = pixel.x >= 0 && pixel.y >= 0 && pixel.x < view.viewport.x &&
+                pixel.y < view.viewport.y;
+              shown = isInside
+                ? std::max(shown, found[std::size_t(pixel.y) * view.viewport.x + pixel.x])
+                : shown;
+            }
+            check(!isInside || shown >= images[i].row<float>(v)[u], "a sample of ",
+              images[i].row<float>(v)[u], " is lost in ", shown);
+          }
+        }
+      }
+    });
+}
+
+/// The location of a pixel is the largest of the samples that it reads, or that are nearest to what
+/// it reads.
 void testLocations(Checks& check)
 {
-  Sightings samples;
+  Sightings located;
   forOverviews("locations", 60,
     [&](int n, const splatting::View& view, const Geometries& geometries, reference::Random& random)
     {
@@ -256,35 +406,10 @@ void testLocations(Checks& check)
       std::vector<splatting::ShearPixel> shown(found.size());
       splatting::findShearPixels(images, geometries, splatting::Reduction::Maximum, glm::ivec2(0),
         view.viewport, shown.data());
-      const auto largest = largestSamples(images, geometries, view.viewport);
-      bool isSample = false;
       for (std::size_t p = 0; p < found.size(); ++p)
       {
         check((shown[p].image < 0) == (found[p] == Background), "pixel ", p,
-          " shows a sample or has a location, not both: ", found[p], ", ", shown[p].u, " ",
-          shown[p].v);
-        if (shown[p].image < 0)
-        {
-          continue;
-        }
-        const splatting::ShearImage& image = images[shown[p].image];
-        const float value = image.row<float>(shown[p].v)[shown[p].u];
-        const glm::dvec3 h =
-          geometries[shown[p].image].shearToScreen() * glm::dvec3(shown[p].u, shown[p].v, 1.0);
-        const glm::dvec2 off = glm::abs(glm::dvec2(h) / h.z -
-          glm::dvec2(double(p % view.viewport.x), double(p / view.viewport.x)));
-        const bool inside = off.x < 0.5 && off.y < 0.5;
-        isSample |= value == found[p];
-        const glm::dvec2 sample(shown[p].u, shown[p].v);
-        const int x = static_cast<int>(p % view.viewport.x);
-        const int y = static_cast<int>(p / view.viewport.x);
-        // A place is no farther than half a sample from the nearest one.
-        const double most = showsPoint(image, geometries[shown[p].image], x, y) ? 1.0 : 0.5;
-        const double away = distanceToOutline(geometries[shown[p].image], x, y, sample);
-        check(inside || away < most + 1e-6,
-          "a location is neither in its pixel's area nor the nearest to a place on its outline");
-        check(value <= found[p] || !inside, "a sample in the area is larger than the pixel");
-        check(value >= largest[p], "a location has ", value, ", but the area ", largest[p]);
+          " shows a sample or has a location, not both: ", found[p]);
         splatting::ShearPixel alone;
         const glm::ivec2 at(p % view.viewport.x, p / view.viewport.x);
         splatting::findShearPixels(
@@ -292,17 +417,75 @@ void testLocations(Checks& check)
         check(alone.image == shown[p].image && alone.u == shown[p].u && alone.v == shown[p].v,
           "a pixel alone has another location");
       }
-      samples.add(isSample);
+      const Reader reader(images, geometries);
+      forReadings(view, images, geometries,
+        [&](std::size_t p, const Reading& reading)
+        {
+          const splatting::ShearPixel& location = shown[p];
+          located.add(!reading.values.empty() && location.image >= 0);
+          if (reading.values.empty() || location.image < 0)
+          {
+            return;
+          }
+          float best = -1.0f;
+          bool isRead = false;
+          for (const splatting::ShearPixel& nearest : reading.nearest)
+          {
+            best = std::max(best, reader.sample(nearest));
+            isRead |=
+              nearest.image == location.image && nearest.u == location.u && nearest.v == location.v;
+          }
+          check(isRead && reader.sample(location) == best, "the location of pixel ", p, " has ",
+            reader.sample(location), ", not ", best);
+        });
     });
-  check(samples.areEnough(0.9), "pixels show samples themselves in only ", samples);
+  check(located.areEnough(0.04), "only ", located, " pixels have a location");
+}
+
+/// However many voxels a pixel is wide, and if it is so along one axis only, what it shows takes no
+/// more time than the image has samples: this would not end otherwise.
+void testWidePixels(Checks& check)
+{
+  reference::forScenes("wide pixels", 40,
+    [&](int n, reference::Random& random)
+    {
+      splatting::View view = anyView(randomSize(random, 24), random);
+      const double width = std::pow(10.0, random.uniform(1.0, 9.0));
+      glm::dmat4 scale(1.0);
+      for (int a = 0; a < 3; ++a)
+      {
+        // All axes of the screen, or one of the volume.
+        scale[a][a] = n % 2 || a == n / 2 % 3 ? 1.0 / width : 1.0;
+      }
+      glm::dmat4& m = view.indexToClip;
+      const glm::dvec4 middle = m * glm::dvec4(0.5 * (glm::dvec3(view.dimensions) - 1.0), 1.0);
+      m = m * scale;
+      m[3] += middle - m * glm::dvec4(0.5 * (glm::dvec3(view.dimensions) - 1.0), 1.0);
+      Geometries geometries;
+      splatting::ShearWarp::factorise(view, geometries);
+      Images images;
+      for (const splatting::ShearWarp& geometry : geometries)
+      {
+        images.push_back(imageOf(geometry, false, random, [](int, int) { return 7.0; }));
+      }
+      const auto means =
+        picture(images, geometries, splatting::Reduction::Mean, view.viewport, random);
+      const std::ptrdiff_t seen =
+        std::count_if(means.begin(), means.end(), [](float mean) { return mean != Background; });
+      check(seen > 0, "pixels of ", width, " voxels show nothing");
+      check(std::all_of(means.begin(), means.end(),
+              [](float mean) { return mean == Background || std::abs(mean - 7.0f) < 1e-5f; }),
+        "a constant image has another mean");
+    });
 }
 }
 
 int TestPixelAreas(int, char*[])
 {
   Checks check;
-  testExtrema(check);
-  testNothingElse(check);
+  testDefinition(check);
+  testEverySample(check);
   testLocations(check);
+  testWidePixels(check);
   return check.result();
 }

@@ -176,7 +176,7 @@ void testNaN(Checks& check)
       check(bricks.used == Acceleration::Bricks, "bricks were not used");
       check(sameImages(dense.image, bricks.image), "type ", int(splatting::scalarTypeOf<T>()),
         ", mode ", int(c.settings.quality), ": bricks change the picture of a volume with NaN");
-      c.settings.keepWinners = true;
+      c.settings.recordLocations = true;
       check(sameImages(dense.image, projected(volume, geometry, c, Acceleration::Auto).image),
         "type ", int(splatting::scalarTypeOf<T>()), ", mode ", int(c.settings.quality), ", axis ",
         geometry.principalAxis(), geometry.isPerspective() ? " in perspective" : "",

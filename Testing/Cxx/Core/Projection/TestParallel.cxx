@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The threads that run loops where VTK starts with the backend "Sequential": each number is met once,
-// a loop in a loop stays on its thread, and a program's number of threads holds.
+// The threads that run loops where VTK starts with the backend "Sequential": each number is met
+// once, a loop in a loop stays on its thread, and a program's number of threads holds.
 #include "CoreTesting.h"
 
 #include "Common/Parallel.h"
@@ -54,8 +54,8 @@ void testNestedLoops(coretesting::Checks& check)
     [&](std::ptrdiff_t, std::ptrdiff_t)
     {
       const std::thread::id outer = std::this_thread::get_id();
-      forInOwnThreads(
-        0, 8, 1, [&](std::ptrdiff_t, std::ptrdiff_t) { moved += std::this_thread::get_id() != outer; });
+      forInOwnThreads(0, 8, 1,
+        [&](std::ptrdiff_t, std::ptrdiff_t) { moved += std::this_thread::get_id() != outer; });
     });
   check(moved == 0, "a loop in a loop stays on its thread");
 }

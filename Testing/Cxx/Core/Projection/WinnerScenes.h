@@ -91,7 +91,7 @@ template <class T>
 std::vector<splatting::ShearImage> projectScene(
   const reference::Volume<T>& volume, const Scene& scene, splatting::ProjectionSettings& settings)
 {
-  settings.keepWinners = true;
+  settings.recordLocations = true;
   splatting::VolumeIndex index;
   index.reset(arrayOf(volume));
   std::vector<splatting::ShearImage> result;

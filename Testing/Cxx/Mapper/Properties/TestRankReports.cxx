@@ -58,7 +58,7 @@ void testViews(Checks& check, stage::Stage& stage, reference::Random& random)
     projectiontesting::imageOf(reference::uniformNoise<std::uint8_t>({ 5, 6, 7 }, random.bits()));
   const auto mapper = stage::splatting(image);
   stage.show(mapper);
-  const auto number = [&] { return viewNumber(mapper, stage.renderer, stage.volume); };
+  const auto number = [&] { return viewHash(mapper, stage.renderer, stage.volume); };
   const std::uint64_t before = number();
   check(number() == before, "the same view has another number");
   stage.renderer->GetActiveCamera()->Azimuth(random.uniform(1.0, 300.0));

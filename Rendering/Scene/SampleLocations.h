@@ -3,8 +3,8 @@
 /**
  * Sample positions of a volume's last picture, in VTK's terms.
  */
-#ifndef WinnerLocations_h
-#define WinnerLocations_h
+#ifndef SampleLocations_h
+#define SampleLocations_h
 
 #include "Cells/CellProjector.h"
 #include "Clipping/ClosedSurface.h"
@@ -14,15 +14,18 @@
 #include "Scene/ShownVolume.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
 
 #include <memory>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkImageData;
 class vtkRenderer;
 class vtkScalarsToColors;
 class vtkVolume;
+VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {
@@ -50,10 +53,10 @@ std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors);
  * Sample positions of the last frame of each renderer. Uses projector and cuts as the last frame
  * left them. Before a frame of another renderer it copies the data that picks need.
  */
-class WinnerLocations
+class SampleLocations
 {
 public:
-  WinnerLocations(const ScalarSource& source, ComponentProjector& projector, SceneCuts& cuts,
+  SampleLocations(const ScalarSource& source, ComponentProjector& projector, SceneCuts& cuts,
     const std::vector<ShearWarp>& images)
     : Source(source),
       Projector(projector),

@@ -37,10 +37,10 @@ P justBelow(P value)
  * whose bound in a layer is above the least limit of their pixels.
  */
 template <class T, class P>
-class WinnerWalk
+class LocationWalk
 {
 public:
-  WinnerWalk(const ProjectionContext& context, const SliceSampler<T, P>& sampler,
+  LocationWalk(const ProjectionContext& context, const SliceSampler<T, P>& sampler,
     BandScratch& scratch, int v0, int v1)
     : Context(context),
       Sampler(sampler),
@@ -305,7 +305,7 @@ void findWinners(ProjectionContext& context, const SliceSampler<T, P>& sampler)
       forBands(context.image.height, bandHeight(context.image.height), context.observer,
         [&](int v0, int v1)
         {
-          WinnerWalk<T, P> band(context, sampler, context.space.bands.Local(), v0, v1);
+          LocationWalk<T, P> band(context, sampler, context.space.bands.Local(), v0, v1);
           if (isFirst)
           {
             band.open();

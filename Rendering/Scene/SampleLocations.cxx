@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Scene/WinnerLocations.h"
+#include "Scene/SampleLocations.h"
 
 #include "ComponentProjector.h"
 #include "Input/ScalarSource.h"
@@ -72,7 +72,7 @@ std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors)
   return table;
 }
 
-void WinnerLocations::Forget()
+void SampleLocations::Forget()
 {
   this->Frames.clear();
   this->HasLast = false;
@@ -80,7 +80,7 @@ void WinnerLocations::Forget()
 }
 
 // Makes a frame independent of projector and cuts.
-void WinnerLocations::Frame::Copy()
+void SampleLocations::Frame::Copy()
 {
   Located& from = this->located;
   if (this->onScreen)
@@ -113,7 +113,7 @@ void WinnerLocations::Frame::Copy()
   }
 }
 
-void WinnerLocations::BeginFrame(vtkRenderer* renderer)
+void SampleLocations::BeginFrame(vtkRenderer* renderer)
 {
   if (this->HasLast && this->Frames.front()->shown.Renderer() != renderer)
   {
@@ -134,7 +134,7 @@ void WinnerLocations::BeginFrame(vtkRenderer* renderer)
 }
 
 // The frame of a renderer, which is moved to the front.
-WinnerLocations::Frame& WinnerLocations::FrameOf(vtkRenderer* renderer)
+SampleLocations::Frame& SampleLocations::FrameOf(vtkRenderer* renderer)
 {
   auto frame = std::find_if(this->Frames.begin(), this->Frames.end(),
     [=](const std::unique_ptr<Frame>& f) { return f->shown.Renderer() == renderer; });
@@ -146,7 +146,7 @@ WinnerLocations::Frame& WinnerLocations::FrameOf(vtkRenderer* renderer)
   return *this->Frames.front();
 }
 
-void WinnerLocations::Remember(
+void SampleLocations::Remember(
   const View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer)
 {
   Frame& frame = this->FrameOf(renderer);
@@ -174,20 +174,20 @@ void WinnerLocations::Remember(
   renderer->GetTiledSizeAndOrigin(&width, &height, &frame.left, &frame.bottom);
 }
 
-bool WinnerLocations::HasWinners() const
+bool SampleLocations::HasWinners() const
 {
   return this->Last() && (this->Projector.IsOnScreen() || !this->Images.empty()) &&
     this->Projector.HasWinners();
 }
 
 // Whether a frame is still shown and its voxels exist.
-bool WinnerLocations::IsIntact(const Frame& frame) const
+bool SampleLocations::IsIntact(const Frame& frame) const
 {
   return frame.shown.IsShown() && frame.version == this->Source.Version() &&
     this->Source.HasVolumes();
 }
 
-bool WinnerLocations::Pick(int x, int y, Sample& sample)
+bool SampleLocations::Pick(int x, int y, Sample& sample)
 {
   return std::any_of(this->Frames.begin(), this->Frames.end(),
     [&](const std::unique_ptr<Frame>& frame)
@@ -199,7 +199,7 @@ bool WinnerLocations::Pick(int x, int y, Sample& sample)
 }
 
 // @param pixel  of the viewport, may be outside
-bool WinnerLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
+bool SampleLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
 {
   const Located& located = frame.located;
   const glm::ivec2& viewport = located.view.viewport;
@@ -222,7 +222,7 @@ bool WinnerLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sam
 }
 
 // At the border of the image, rays without a sample may touch the volume by rounding.
-bool WinnerLocations::HasSample(const Frame& frame, const ShearPixel& pixel)
+bool SampleLocations::HasSample(const Frame& frame, const ShearPixel& pixel)
 {
   const Located& located = frame.located;
   const ShearImage& image = (*located.images)[pixel.image];
@@ -239,10 +239,10 @@ bool WinnerLocations::HasSample(const Frame& frame, const ShearPixel& pixel)
 }
 
 // @param pixel  of the viewport
-bool WinnerLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
+bool SampleLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
 {
   Located located = frame.located;
-  const bool hasWinners = located.settings.keepWinners;
+  const bool hasWinners = located.settings.recordLocations;
   if (!hasWinners && !frame.canProject)
   {
     return false;
@@ -276,7 +276,7 @@ bool WinnerLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sampl
 
 // Projects the pixel again if there are no depths.
 // @param pixel  of the viewport
-bool WinnerLocations::PickOnScreen(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
+bool SampleLocations::PickOnScreen(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
 {
   Located located = frame.located;
   if (!located.screen && !frame.canProject)
@@ -303,7 +303,7 @@ bool WinnerLocations::PickOnScreen(const Frame& frame, const glm::ivec2& pixel, 
   return true;
 }
 
-vtkImageData* WinnerLocations::Image()
+vtkImageData* SampleLocations::Image()
 {
   const Frame* const frame = this->Last();
   if (!frame || !frame->shown.IsShown())
@@ -343,7 +343,7 @@ vtkImageData* WinnerLocations::Image()
   return this->Output;
 }
 
-void WinnerLocations::ColorByDepth(
+void SampleLocations::ColorByDepth(
   Picture& picture, vtkScalarsToColors* colors, const double range[2])
 {
   if (!this->HasWinners())
@@ -377,7 +377,7 @@ void WinnerLocations::ColorByDepth(
   }
 }
 
-const std::vector<float>& WinnerLocations::ClipDepths(const Picture& picture, double opacity)
+const std::vector<float>& SampleLocations::ClipDepths(const Picture& picture, double opacity)
 {
   constexpr float none = 2.0f;
   this->Depths.assign(picture.pixels.size(), none);

@@ -4,14 +4,13 @@
  * The values of a volume at the winners of another volume's projection. For dependent components:
  * colours are taken from the sample with the projected opacity.
  */
-#ifndef splattingValuesAtWinners_h
-#define splattingValuesAtWinners_h
+#ifndef splattingValuesAtLocations_h
+#define splattingValuesAtLocations_h
 
 #include "Common/Parallel.h"
 #include "Sampling/PerspectiveFootprints.h"
 #include "Sampling/SliceSampler.h"
 #include "Sampling/Worksheets.h"
-
 
 namespace splatting
 {

@@ -26,14 +26,15 @@ Projected projectAndCarry(const reference::Volume<T>& volume, const reference::V
   const splatting::ShearWarp& geometry, splatting::ProjectionSettings settings,
   const splatting::Cropping& cropping)
 {
-  settings.keepWinners = true;
+  settings.recordLocations = true;
   splatting::VolumeIndex index;
   index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
   splatting::Projector projector;
   Projected result;
   projector.project(index, geometry, settings, cutsBy(geometry, {}, cropping), result.image);
-  projector.takeAtWinners({ other.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(other.size) },
-    geometry, settings, result.image, result.carried);
+  projector.takeAtLocations(
+    { other.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(other.size) }, geometry, settings,
+    result.image, result.carried);
   return result;
 }
 
@@ -167,7 +168,7 @@ void testItself(Checks& check)
 }
 }
 
-int TestValuesAtWinners(int, char*[])
+int TestValuesAtLocations(int, char*[])
 {
   Checks check;
   testPreview(check);
