@@ -106,29 +106,41 @@ void AddCaution(Volume& volume, const std::string& caution)
   volume.Caution += (volume.Caution.empty() ? "" : "\n") + caution;
 }
 
+namespace
+{
+/// Whether no place is farther from an even one than a share of the steps between them.
+bool AreEven(const std::vector<double>& places, double tolerance)
+{
+  const double steps = static_cast<double>(places.size() - 1);
+  const double length = places.back() - places.front();
+  for (std::size_t i = 1; i < places.size(); ++i)
+  {
+    const double even = places.front() + length * static_cast<double>(i) / steps;
+    if (!(std::fabs(places[i] - even) <= tolerance * std::fabs(length) / steps))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+}
+
 std::vector<double> SpaceEvenly(const std::vector<double>& places, double tolerance)
 {
   constexpr double MostPlaces = 8.0; // times as many as there are
   constexpr double NearLeast = 1.1;
-  if (places.size() < 2)
+  std::vector<double> even;
+  if (places.size() < 2 || AreEven(places, tolerance))
   {
-    return places;
+    even = places;
+    return even;
   }
   const double length = places.back() - places.front();
-  const auto evenPlace = [&](std::size_t i, double count)
-  { return places.front() + length * static_cast<double>(i) / count; };
   const double last = static_cast<double>(places.size() - 1);
-  bool isEven = true;
   double least = std::fabs(length);
   for (std::size_t i = 1; i < places.size(); ++i)
   {
-    const double off = places[i] - evenPlace(i, last);
-    isEven = isEven && std::fabs(off) <= tolerance * std::fabs(length) / last;
     least = std::min(least, std::fabs(places[i] - places[i - 1]));
-  }
-  if (isEven)
-  {
-    return places;
   }
   double sum = 0.0, summands = 0.0;
   for (std::size_t i = 1; i < places.size(); ++i)
@@ -138,10 +150,9 @@ std::vector<double> SpaceEvenly(const std::vector<double>& places, double tolera
     summands += step < NearLeast * least ? 1.0 : 0.0;
   }
   const double count = std::max(1.0, std::round(std::fabs(length) * summands / sum));
-  std::vector<double> even;
   for (std::size_t i = 0; count <= MostPlaces * last && i <= static_cast<std::size_t>(count); ++i)
   {
-    even.push_back(evenPlace(i, count));
+    even.push_back(places.front() + length * static_cast<double>(i) / count);
   }
   return even;
 }
