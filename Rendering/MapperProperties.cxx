@@ -3,6 +3,7 @@
 #include "MapperProperties.h"
 
 #include "ProjectionProperties.h"
+#include "TransferFunctions.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include "vtkMath.h"
@@ -40,6 +41,11 @@ const char* validate(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* pro
   if (const char* const fault = validate(*mapper))
   {
     return fault;
+  }
+  if (!FinalColor{ mapper->GetFinalColorWindow(), mapper->GetFinalColorLevel() }.isValid())
+  {
+    return "FinalColorWindow and FinalColorLevel are invalid: both must be finite and the window "
+           "not 0.";
   }
   if (mapper->GetBlendMode() == vtkVolumeMapper::SLICE_BLEND && !property->GetSliceFunction())
   {

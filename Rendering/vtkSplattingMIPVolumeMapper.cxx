@@ -39,9 +39,6 @@ vtkCxxSetObjectMacro(vtkSplattingMIPVolumeMapper, Controller, vtkMultiProcessCon
 
 namespace
 {
-const char* const NoColors =
-  "FinalColorWindow and FinalColorLevel are invalid: both must be finite and the window not 0.";
-
 /// Whether a blend mode is splatted; others are ray cast.
 bool isProjection(int blendMode)
 {
@@ -76,6 +73,7 @@ public:
         { this->ReportAbsence(self, renderer, volume); })
   {
   }
+  bool Begins(const std::string& cause, bool holds);
   void WarnAboutIgnoredProperties(vtkSplattingMIPVolumeMapper* self);
   void WarnAboutSurface(vtkSplattingMIPVolumeMapper* self);
   void WarnAboutBudget(vtkSplattingMIPVolumeMapper* self);
@@ -86,9 +84,7 @@ public:
   void ReportAbsence(vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
 
   ReportedProblems Reported;
-  std::set<std::string> Warned;      // warnings that were reported
-  bool BudgetReported = false;       // until the problem disappears
-  bool OpenSurfaceReported = false;  // likewise
+  std::set<std::string> Warned;      // warnings that were reported, and whose cause remains
   vtkRenderWindow* Window = nullptr; // during a render; may abort it
 
   FrameObserver Observer; // for several ranks
@@ -187,6 +183,17 @@ void vtkSplattingMIPVolumeMapper::Internals::ReportAbsence(
 }
 
 //------------------------------------------------------------------------------
+// Whether to warn of a cause: if it holds now, and did not when this was called last.
+bool vtkSplattingMIPVolumeMapper::Internals::Begins(const std::string& cause, bool holds)
+{
+  if (!holds)
+  {
+    this->Warned.erase(cause);
+  }
+  return holds && this->Warned.insert(cause).second;
+}
+
+//------------------------------------------------------------------------------
 // Warns of properties that ray casting ignores.
 void vtkSplattingMIPVolumeMapper::Internals::WarnAboutIgnoredProperties(
   vtkSplattingMIPVolumeMapper* self)
@@ -202,28 +209,24 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnAboutIgnoredProperties(
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Internals::WarnAboutSurface(vtkSplattingMIPVolumeMapper* self)
 {
-  const bool isOpen = this->Data.Cuts.Surface().IsOpen();
-  if (isOpen && !this->OpenSurfaceReported)
+  if (this->Begins("open surface", this->Data.Cuts.Surface().IsOpen()))
   {
     vtkWarningWithObjectMacro(self,
       << "The bounding surface is not closed: rays that cross it once show nothing. Close it, for "
          "instance with vtkFillHolesFilter.");
   }
-  this->OpenSurfaceReported = isOpen;
 }
 
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Internals::WarnAboutBudget(vtkSplattingMIPVolumeMapper* self)
 {
-  const bool exceeds = this->Data.Components.ExceedsBudget();
-  if (exceeds && !this->BudgetReported)
+  if (this->Begins("budget", this->Data.Components.ExceedsBudget()))
   {
     vtkWarningWithObjectMacro(
       self, << "An index for fast projection does not fit into IndexMemoryBudget ("
             << self->GetIndexMemoryBudget()
             << " bytes): this volume is projected without it. Raise the budget.");
   }
-  this->BudgetReported = exceeds;
 }
 
 //------------------------------------------------------------------------------
@@ -311,11 +314,6 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return "";
   }
-  const FinalColor finalColor = { this->GetFinalColorWindow(), this->GetFinalColorLevel() };
-  if (!finalColor.isValid())
-  {
-    return NoColors;
-  }
   if (!splatting::isFinite(view))
   {
     return TurnOfViews::Degenerate;
@@ -335,7 +333,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     addSlab(view, data.Grid(), vol, this->GetSlabCenter(), this->GetSlabThickness());
   }
   in.WarnAboutSurface(this);
-  data.Prepare(this, view, vol, finalColor);
+  data.Prepare(this, view, vol);
   if (const char* const fault =
         data.Components.ValidateVoxels(static_cast<Quality>(this->GetQualityMode())))
   {

@@ -31,8 +31,8 @@ void ProjectedVolume::EndFrame(vtkRenderer* renderer, vtkVolume* volume, double 
   }
 }
 
-void ProjectedVolume::Prepare(vtkSplattingMIPVolumeMapper* mapper, const View& view,
-  vtkVolume* volume, const FinalColor& finalColor)
+void ProjectedVolume::Prepare(
+  vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkVolume* volume)
 {
   const vtkIdType version = this->Source.Version();
   if (!this->Ranks.AreMany() && this->Components.SetSource(this->Source))
@@ -42,7 +42,8 @@ void ProjectedVolume::Prepare(vtkSplattingMIPVolumeMapper* mapper, const View& v
   this->Components.SetBudget(static_cast<std::size_t>(mapper->GetIndexMemoryBudget()));
   this->Components.SetRanks(this->Ranks.AreMany() ? &this->Ranks : nullptr);
   this->IndexTimeBefore = this->Source.Version() == version ? this->IndexTime() : 0.0;
-  this->Components.UpdateColors(volume->GetProperty(), finalColor,
+  this->Components.UpdateColors(volume->GetProperty(),
+    { mapper->GetFinalColorWindow(), mapper->GetFinalColorLevel() },
     settingsOf(mapper, vtkSplattingMIPVolumeMapper::PREVIEW, view));
   this->Components.SetCullBelowWindow(mapper->GetCullBelowWindow() != 0);
 }

@@ -51,8 +51,7 @@ public:
   void ForgetTimes() { this->Times.clear(); }
 
   /// Makes indices and colours.
-  void Prepare(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkVolume* volume,
-    const FinalColor& finalColor);
+  void Prepare(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkVolume* volume);
 
   /**
    * Projects, unless the last projection shows the same, in the mode that is chosen or a better one

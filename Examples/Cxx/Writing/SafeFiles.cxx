@@ -20,6 +20,26 @@ constexpr int Interrupts[] = { SIGINT, SIGTERM,
 #endif
 };
 
+/// The signals that were ignored when the program started, as SIGHUP is under nohup.
+bool IgnoredAtStart[std::size(Interrupts)] = {};
+
+#ifdef __linux__
+void FindIgnored(int, char**, char**)
+{
+  for (std::size_t n = 0; n < std::size(Interrupts); ++n)
+  {
+    struct sigaction action = {};
+    sigaction(Interrupts[n], nullptr, &action);
+    IgnoredAtStart[n] = action.sa_handler == SIG_IGN;
+  }
+}
+
+/// Runs before libraries are initialised, because UCX, which VTK may load with MPI, handles SIGHUP
+/// from then on.
+__attribute__((section(".preinit_array"), used)) void (*FindIgnoredFirst)(
+  int, char**, char**) = &FindIgnored;
+#endif
+
 /// The files that an interrupt must remove, or nullptr.
 std::atomic<const std::vector<std::string>*> Unfinished{ nullptr };
 
@@ -50,9 +70,9 @@ public:
     Unfinished = &this->Names;
     for (std::size_t n = 0; n < std::size(Interrupts); ++n)
     {
-      // Signals that are ignored, such as SIGHUP under nohup, remain so at any moment.
+      // Ignored signals remain ignored at any moment.
       this->Handlers[n] = std::signal(Interrupts[n], SIG_IGN);
-      if (this->Handlers[n] != SIG_IGN)
+      if (this->Handlers[n] != SIG_IGN && !IgnoredAtStart[n])
       {
         std::signal(Interrupts[n], RemoveUnfinished);
       }

@@ -130,14 +130,7 @@ void CellFrame<T>::findEnds(int x, int y, int count, double* near, double* far) 
   }
 }
 
-template struct CellFrame<std::int8_t>;
-template struct CellFrame<std::uint8_t>;
-template struct CellFrame<std::int16_t>;
-template struct CellFrame<std::uint16_t>;
-template struct CellFrame<std::int32_t>;
-template struct CellFrame<std::uint32_t>;
-template struct CellFrame<std::int64_t>;
-template struct CellFrame<std::uint64_t>;
-template struct CellFrame<float>;
-template struct CellFrame<double>;
+#define SPLATTING_INSTANTIATE(T) template struct CellFrame<T>;
+SPLATTING_TYPES(SPLATTING_INSTANTIATE)
+#undef SPLATTING_INSTANTIATE
 }

@@ -62,17 +62,6 @@ struct CellFrame
   bool mayBeEmpty; ///< whether a ray in the field may have no sample
   bool isFinite;   ///< whether values are relative to the lowest voxel, none below 0
 };
-
-extern template struct CellFrame<std::int8_t>;
-extern template struct CellFrame<std::uint8_t>;
-extern template struct CellFrame<std::int16_t>;
-extern template struct CellFrame<std::uint16_t>;
-extern template struct CellFrame<std::int32_t>;
-extern template struct CellFrame<std::uint32_t>;
-extern template struct CellFrame<std::int64_t>;
-extern template struct CellFrame<std::uint64_t>;
-extern template struct CellFrame<float>;
-extern template struct CellFrame<double>;
 }
 
 #endif

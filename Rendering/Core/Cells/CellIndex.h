@@ -145,8 +145,6 @@ struct ValueScale
                         : std::min(voxel, this->highest);
   }
 };
-extern template struct ValueScale<float>;
-extern template struct ValueScale<double>;
 
 /// What a voxel that bounds() gives is as a value.
 template <class T>

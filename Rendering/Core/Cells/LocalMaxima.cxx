@@ -304,17 +304,8 @@ void findLocalMaxima(const CellFrame<T>& frame, double threshold, ScreenScalars&
     });
 }
 
-#define SPLATTING_LOCAL(T)                                                                         \
-  template void findLocalMaxima<T>(const CellFrame<T>&, double, ScreenScalars&)
-SPLATTING_LOCAL(std::int8_t);
-SPLATTING_LOCAL(std::uint8_t);
-SPLATTING_LOCAL(std::int16_t);
-SPLATTING_LOCAL(std::uint16_t);
-SPLATTING_LOCAL(std::int32_t);
-SPLATTING_LOCAL(std::uint32_t);
-SPLATTING_LOCAL(std::int64_t);
-SPLATTING_LOCAL(std::uint64_t);
-SPLATTING_LOCAL(float);
-SPLATTING_LOCAL(double);
-#undef SPLATTING_LOCAL
+#define SPLATTING_INSTANTIATE(T)                                                                   \
+  template void findLocalMaxima<T>(const CellFrame<T>&, double, ScreenScalars&);
+SPLATTING_TYPES(SPLATTING_INSTANTIATE)
+#undef SPLATTING_INSTANTIATE
 }

@@ -467,14 +467,7 @@ void TileSplatter<T>::finish(bool finished, ScreenScalars& screen) const
   }
 }
 
-template class TileSplatter<std::int8_t>;
-template class TileSplatter<std::uint8_t>;
-template class TileSplatter<std::int16_t>;
-template class TileSplatter<std::uint16_t>;
-template class TileSplatter<std::int32_t>;
-template class TileSplatter<std::uint32_t>;
-template class TileSplatter<std::int64_t>;
-template class TileSplatter<std::uint64_t>;
-template class TileSplatter<float>;
-template class TileSplatter<double>;
+#define SPLATTING_INSTANTIATE(T) template class TileSplatter<T>;
+SPLATTING_TYPES(SPLATTING_INSTANTIATE)
+#undef SPLATTING_INSTANTIATE
 }

@@ -50,17 +50,6 @@ private:
   std::int32_t Seen[64][4];
   int SinceCheck = 0;
 };
-
-extern template class TileSplatter<std::int8_t>;
-extern template class TileSplatter<std::uint8_t>;
-extern template class TileSplatter<std::int16_t>;
-extern template class TileSplatter<std::uint16_t>;
-extern template class TileSplatter<std::int32_t>;
-extern template class TileSplatter<std::uint32_t>;
-extern template class TileSplatter<std::int64_t>;
-extern template class TileSplatter<std::uint64_t>;
-extern template class TileSplatter<float>;
-extern template class TileSplatter<double>;
 }
 
 #endif

@@ -64,6 +64,12 @@ template <> constexpr ScalarType scalarTypeOf<float>() { return ScalarType::Floa
 template <> constexpr ScalarType scalarTypeOf<double>() { return ScalarType::Float64; }
 // clang-format on
 
+// For explicit instantiations: f of each voxel type.
+#define SPLATTING_INTEGERS(f)                                                                      \
+  f(std::int8_t) f(std::uint8_t) f(std::int16_t) f(std::uint16_t) f(std::int32_t) f(std::uint32_t) \
+    f(std::int64_t) f(std::uint64_t)
+#define SPLATTING_TYPES(f) SPLATTING_INTEGERS(f) f(float) f(double)
+
 /**
  * Calls f with a null pointer to the C++ type of `type`, and returns its result.
  */

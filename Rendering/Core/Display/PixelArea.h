@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Where a pixel of the screen reads a shear image whose pixels are narrower: at the samples in its
- * area, row by row. A row without a sample in the area is read in its middle, and so is an area
- * between two rows: there the image is interpolated. So no sample is lost between pixels.
+ * The points at which a pixel of the screen reads a shear image whose pixels are narrower: the
+ * samples in its area, row by row. If the area contains no sample of a row, the row is interpolated
+ * in the middle of the area. If the area is between two rows, the image is interpolated in the
+ * middle of the area. Every sample is therefore in the area of some pixel.
  */
 #ifndef splattingPixelArea_h
 #define splattingPixelArea_h
@@ -124,7 +125,7 @@ inline PixelArea areaOf(const ShearWarp& geometry, double x, double y)
   return area;
 }
 
-/// An image at a point, interpolated bilinearly; NaN where a sample is missing for that.
+/// An image interpolated bilinearly at a point. NaN if one of the samples does not exist.
 template <class T>
 Accumulator<T> interpolatedAt(const ShearImage& image, const T* pixels, double u, double v)
 {

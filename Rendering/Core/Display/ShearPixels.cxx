@@ -120,8 +120,8 @@ void findShearPixels(const std::vector<ShearImage>& images,
     {
       for (std::ptrdiff_t y = first; y < last; ++y)
       {
-        // From the viewport's edge on, so that a pixel of two images has the same one in any
-        // rectangle.
+        // From the left edge of the viewport, so that rounding selects the same image for a pixel
+        // in every rectangle.
         const glm::dvec3 start(0.0, origin.y + static_cast<double>(y), 1.0);
         ShearPixel* const row = out + y * size.x;
         forSpans(

@@ -14,6 +14,7 @@
 #include "Kernels/CellCubics.h"
 #include "Kernels/CellLoops.h"
 #include "Kernels/CellMargins.h"
+#include "Kernels/CellOctants.h"
 #include "Kernels/CellRegisters.h"
 #include "Kernels/ScreenTilePixels.h"
 
@@ -36,7 +37,7 @@ class CellSplatter
   using V = typename R::Value;
   using M = typename R::Mask;
   using I = typename R::Index;
-  static constexpr int Cells = 16;
+  static constexpr int Cells = CellSlice<A>::Cells;
   static constexpr bool Split = sizeof(A) < sizeof(double);
   static_assert(Cut || !Shaded);
 
@@ -55,22 +56,21 @@ class CellSplatter
   };
 
 public:
-  CellSplatter(ScreenTile<A>& tile, const CellBlock<A>& block) : Tile(tile), Block(block)
+  CellSplatter(ScreenTile<A>& tile, const CellBlock<A>& block)
+    : Tile(tile),
+      Block(block),
+      Slice(block)
   {
     for (int n = 0; n < Cells; ++n)
     {
       const int x = n & 3, y = n >> 2;
-      this->Corner[0][n] = A(x - 2);
-      this->Corner[1][n] = A(y - 2);
-      this->Place[0][n] = block.start[0].most - this->Corner[0][n];
-      this->Place[1][n] = block.start[1].most - this->Corner[1][n];
       bool valid =
         x >= block.begin[0] && x < block.end[0] && y >= block.begin[1] && y < block.end[1];
       for (int a = 0; a < 2 && Cut; ++a)
       {
-        this->Low[a][n] = lowEnd(block.low[a] - this->Corner[a][n]);
-        this->High[a][n] = highEnd(block.high[a] - this->Corner[a][n]);
-        valid = valid && this->Low[a][n] < this->High[a][n];
+        this->Slice.Low[a][n] = lowEnd(block.low[a] - this->Slice.Corner[a][n]);
+        this->Slice.High[a][n] = highEnd(block.high[a] - this->Slice.Corner[a][n]);
+        valid = valid && this->Slice.Low[a][n] < this->Slice.High[a][n];
       }
       this->Valid[n] = valid ? CellValue<A>::Outside : CellValue<A>::None;
     }
@@ -137,9 +137,9 @@ private:
   {
     if (Cut)
     {
-      this->LowZ = lowEnd(this->Block.low[2] - A(z - 2));
-      this->HighZ = highEnd(this->Block.high[2] - A(z - 2));
-      if (!(this->LowZ < this->HighZ))
+      this->Slice.LowZ = lowEnd(this->Block.low[2] - A(z - 2));
+      this->Slice.HighZ = highEnd(this->Block.high[2] - A(z - 2));
+      if (!(this->Slice.LowZ < this->Slice.HighZ))
       {
         return;
       }
@@ -165,7 +165,8 @@ private:
     this->prepareSlice(z);
     if (this->Block.holes)
     {
-      this->splatCellsWithHoles(z, alive);
+      CellOctants<A, Perspective, Cut, Located, Shaded>(this->Tile, this->Block, this->Slice)
+        .splat(z, alive);
     }
     int pending = 0;
     for (int g = 0; g < Groups; ++g)
@@ -202,8 +203,8 @@ private:
       // Middle of what is left of the cells, from their first corners on, and half its sides.
       V m[3], h[3];
       this->narrow(z, n, m, h);
-      const V cx = R::add(R::load(this->Corner[0] + n), m[0]);
-      const V cy = R::add(R::load(this->Corner[1] + n), m[1]);
+      const V cx = R::add(R::load(this->Slice.Corner[0] + n), m[0]);
+      const V cy = R::add(R::load(this->Slice.Corner[1] + n), m[1]);
       const V mx = R::fma(R::set(b.across[0]), cx,
         R::fma(R::set(b.across[1]), cy, R::fma(R::set(b.across[2]), m[2], restX)));
       const V my = R::fma(
@@ -225,10 +226,10 @@ private:
       y0 = R::larger(R::ceil(R::sub(R::add(y0, atY), margin)), R::set(A(b.rows[0])));
       y1 = R::smaller(R::floor(R::add(R::add(y1, atY), margin)), R::set(A(b.rows[1])));
       alive[g] = static_cast<M>(alive[g] & R::atLeast(x1, x0) & R::atLeast(y1, y0));
-      R::store(this->X0 + n, x0);
-      R::store(this->X1 + n, x1);
-      R::store(this->Y0 + n, y0);
-      R::store(this->Y1 + n, y1);
+      R::store(this->Slice.X0 + n, x0);
+      R::store(this->Slice.X1 + n, x1);
+      R::store(this->Slice.Y0 + n, y0);
+      R::store(this->Slice.Y1 + n, y1);
     }
   }
 
@@ -290,10 +291,10 @@ private:
     for (int n = 0; n < Cells; ++n)
     {
       const std::int32_t* const seen = this->Block.seen[z * Cells + n];
-      this->X0[n] = A(seen[0]);
-      this->X1[n] = A(seen[1]);
-      this->Y0[n] = A(seen[2]);
-      this->Y1[n] = A(seen[3]);
+      this->Slice.X0[n] = A(seen[0]);
+      this->Slice.X1[n] = A(seen[1]);
+      this->Slice.Y0[n] = A(seen[2]);
+      this->Slice.Y1[n] = A(seen[3]);
       if (seen[0] > seen[1] || seen[2] > seen[3])
       {
         alive[n / R::N] = static_cast<M>(alive[n / R::N] & ~(1u << n % R::N));
@@ -331,11 +332,11 @@ private:
   {
     const A corner = A(z - 2);
     const A middle = fused(this->Block.alongT[2], corner + A(0.5), this->Block.middleT);
-    this->PlaceZ = this->Block.start[2].most - corner;
+    this->Slice.PlaceZ = this->Block.start[2].most - corner;
     for (int n = 0; n < Cells; ++n)
     {
-      this->MiddleT[n] = fused(this->Block.alongT[0], this->Corner[0][n] + A(0.5),
-        fused(this->Block.alongT[1], this->Corner[1][n] + A(0.5), middle));
+      this->Slice.MiddleT[n] = fused(this->Block.alongT[0], this->Slice.Corner[0][n] + A(0.5),
+        fused(this->Block.alongT[1], this->Slice.Corner[1][n] + A(0.5), middle));
       A bound = Shaded ? this->Top[n] * this->Block.mostFactor : this->Top[n];
       bound = Shaded && !this->Block.bounded ? CellValue<A>::Highest : bound;
       if (Located && bound >= this->Block.tiesFrom)
@@ -356,8 +357,9 @@ private:
     }
     const int n = g * R::N;
     const V one = R::set(1);
-    const V x0 = R::load(this->X0 + n), x1 = R::load(this->X1 + n), y1 = R::load(this->Y1 + n);
-    V x = x0, y = R::load(this->Y0 + n);
+    const V x0 = R::load(this->Slice.X0 + n), x1 = R::load(this->Slice.X1 + n),
+            y1 = R::load(this->Slice.Y1 + n);
+    V x = x0, y = R::load(this->Slice.Y0 + n);
     const V count = R::mul(R::add(R::sub(x1, x0), one), R::add(R::sub(y1, y), one));
     M small = static_cast<M>(alive & R::above(R::set(most), count));
     if (__builtin_popcount(small) < 4)
@@ -386,8 +388,8 @@ private:
 
   void listCell(int n, int& pending)
   {
-    const int x0 = static_cast<int>(this->X0[n]), x1 = static_cast<int>(this->X1[n]);
-    const int y0 = static_cast<int>(this->Y0[n]), y1 = static_cast<int>(this->Y1[n]);
+    const int x0 = static_cast<int>(this->Slice.X0[n]), x1 = static_cast<int>(this->Slice.X1[n]);
+    const int y0 = static_cast<int>(this->Slice.Y0[n]), y1 = static_cast<int>(this->Slice.Y1[n]);
     const V bound = R::set(this->Bound[n]);
     for (int x = x0; x <= x1; x += R::N)
     {
@@ -470,12 +472,12 @@ private:
     const V now = R::gather(this->Tile.values, at, on, R::set(CellValue<A>::Outside));
     const V px = R::sub(pixelX, R::set(A(b.x))), py = R::sub(pixelY, R::set(A(b.y)));
     // From the cell's middle on parameters are small, and precise.
-    const V middle = R::pick(this->MiddleT, id);
+    const V middle = R::pick(this->Slice.MiddleT, id);
     V o[3], d[3];
     for (int a = 0; a < 3; ++a)
     {
       const Sum start = this->along(px, py, b.startAcross[a], b.startUp[a],
-        a == 2 ? R::set(this->PlaceZ) : R::pick(this->Place[a], id), b.start[a].rest);
+        a == 2 ? R::set(this->Slice.PlaceZ) : R::pick(this->Slice.Place[a], id), b.start[a].rest);
       Sum direction{ R::set(b.forward[a].most), R::set(b.forward[a].rest) };
       if (Perspective)
       {
@@ -498,8 +500,8 @@ private:
     for (int a = 0; a < 3; ++a)
     {
       const bool isConstant = !Cut || a == 2;
-      const V low = isConstant ? R::set(this->LowZ) : R::pick(this->Low[a], id);
-      const V high = isConstant ? R::set(this->HighZ) : R::pick(this->High[a], id);
+      const V low = isConstant ? R::set(this->Slice.LowZ) : R::pick(this->Slice.Low[a], id);
+      const V high = isConstant ? R::set(this->Slice.HighZ) : R::pick(this->Slice.High[a], id);
       this->clip(a, o[a], d[a], low, high, enter, leave, on);
     }
     if (Cut)
@@ -555,152 +557,10 @@ private:
     }
   }
 
-  /// Cells with a corner that is hidden or infinite, which it takes out of `alive`.
-  void splatCellsWithHoles(int z, M alive[])
-  {
-    for (int n = 0; n < Cells; ++n)
-    {
-      if (!(alive[n / R::N] >> n % R::N & 1))
-      {
-        continue;
-      }
-      A corners[8];
-      bool hole = false;
-      for (int c = 0; c < 8; ++c)
-      {
-        const A* const slice =
-          c & 1 ? this->Block.right[z + (c >> 2)] : this->Block.left[z + (c >> 2)];
-        corners[c] = slice[n + 4 * (c >> 1 & 1)];
-        hole |= corners[c] >= CellValue<A>::Highest || corners[c] <= CellValue<A>::Lowest;
-      }
-      for (int c = 0; c < 8 && hole; ++c)
-      {
-        corners[c] = this->isInField(n, z, c) ? corners[c] : CellValue<A>::None;
-      }
-      if (hole)
-      {
-        alive[n / R::N] = static_cast<M>(alive[n / R::N] & ~(1u << n % R::N));
-        for (int y = static_cast<int>(this->Y0[n]); y <= static_cast<int>(this->Y1[n]); ++y)
-        {
-          for (int x = static_cast<int>(this->X0[n]); x <= static_cast<int>(this->X1[n]); ++x)
-          {
-            this->splatOctants(n, corners, x, y);
-          }
-        }
-      }
-    }
-  }
-
-  /// Whether an octant lies in the field, which ends in the middle of the outermost cells. Rays end
-  /// there, too, but rounding may leave them a part beyond.
-  bool isInField(int n, int z, int octant) const
-  {
-    const A first[3] = { this->Corner[0][n], this->Corner[1][n], A(z - 2) };
-    bool inside = true;
-    for (int a = 0; a < 3; ++a)
-    {
-      const A middle = first[a] + (octant >> a & 1 ? A(0.75) : A(0.25));
-      inside = inside && middle > this->Block.fieldLow[a] && middle < this->Block.fieldHigh[a];
-    }
-    return inside;
-  }
-
-  struct Segment
-  {
-    A enter, leave;
-
-    /// Cuts off what is outside of [low, high] along one axis.
-    void clip(A o, A d, A low, A high)
-    {
-      if (d == 0)
-      {
-        const bool isInside = o >= low - InFace<A> && o <= high + InFace<A>;
-        this->leave = isInside ? this->leave : -std::numeric_limits<A>::max();
-        return;
-      }
-      const A p = (low - o) / d, q = (high - o) / d;
-      const A begin = p < q ? p : q, end = p < q ? q : p;
-      this->enter = begin > this->enter ? begin : this->enter;
-      this->leave = end < this->leave ? end : this->leave;
-    }
-  };
-
-  /// Where the field is not interpolated: the voxels of a cell, each with an eighth of it.
-  void splatOctants(int n, const A (&corners)[8], int px, int py)
-  {
-    const CellBlock<A>& b = this->Block;
-    const int at = py * this->Tile.Stride + px;
-    if (this->Tile.values[at] == CellValue<A>::Outside)
-    {
-      return;
-    }
-    const A x = A(px - b.x), y = A(py - b.y), middle = this->MiddleT[n];
-    A o[3], d[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      const A place = a == 2 ? this->PlaceZ : this->Place[a][n];
-      const A start = fused(x, b.startAcross[a].most, fused(y, b.startUp[a].most, place));
-      const A startRest =
-        fused(x, b.startAcross[a].rest, fused(y, b.startUp[a].rest, b.start[a].rest));
-      A most = b.forward[a].most, rest = b.forward[a].rest;
-      if (Perspective)
-      {
-        most = fused(x, b.forwardAcross[a].most, fused(y, b.forwardUp[a].most, most));
-        rest = fused(x, b.forwardAcross[a].rest, fused(y, b.forwardUp[a].rest, rest));
-      }
-      o[a] = fused(most, middle, start) + fused(rest, middle, startRest);
-      const A direction = most + rest;
-      const bool isFlat = Perspective ? std::fabs(direction) < A(0x1p-43) : b.flat[a];
-      d[a] = isFlat ? A(0) : direction;
-    }
-    Segment ray{ -std::numeric_limits<A>::max(), std::numeric_limits<A>::max() };
-    A near = 0, far = 0;
-    if (Cut)
-    {
-      near = this->Tile.nears[at] - b.reference - middle + this->Tile.nearRests[at];
-      far = this->Tile.fars[at] - b.reference - middle + this->Tile.farRests[at];
-    }
-    if (Cut)
-    {
-      ray = { near, far };
-      for (int a = 0; a < 3; ++a)
-      {
-        ray.clip(o[a], d[a], a == 2 ? this->LowZ : this->Low[a][n],
-          a == 2 ? this->HighZ : this->High[a][n]);
-      }
-    }
-    for (int c = 0; c < 8; ++c)
-    {
-      Segment part = ray;
-      for (int a = 0; a < 3; ++a)
-      {
-        const bool upper = c >> a & 1;
-        part.clip(
-          o[a], d[a], upper ? A(0.5) : -BesideFace<A>, upper ? A(1) + BesideFace<A> : A(0.5));
-      }
-      if (!(part.leave - part.enter > Sliver<A>) || corners[c] == CellValue<A>::None)
-      {
-        continue;
-      }
-      A value = corners[c];
-      if (Shaded)
-      {
-        A share = fused(A(0.5), part.leave - part.enter, part.enter - near) / (far - near);
-        share = share > 0 ? share < 1 ? share : A(1) : A(0);
-        const bool finite = value < CellValue<A>::Highest && value > CellValue<A>::Lowest;
-        value = finite ? value * fused(A(1) - share, b.rate, b.ambient) : value;
-      }
-      raise<A, Located>(this->Tile, px, py, value, part.enter + middle + b.reference);
-    }
-  }
-
   ScreenTile<A>& Tile;
   const CellBlock<A>& Block;
-  alignas(64) A Corner[2][Cells], Place[2][Cells], Valid[Cells];
-  alignas(64) A Low[2][Cells], High[2][Cells], MiddleT[Cells];
-  alignas(64) A Top[Cells], Bound[Cells], X0[Cells], X1[Cells], Y0[Cells], Y1[Cells];
-  alignas(64) A K[8][Cells];
-  A PlaceZ = 0, LowZ = -BesideFace<A>, HighZ = 1 + BesideFace<A>;
+  CellSlice<A> Slice;
+  alignas(64) A Valid[Cells], Top[Cells], Bound[Cells], K[8][Cells];
   alignas(64) std::int32_t Pairs[64] = {};
 };
 

@@ -23,12 +23,6 @@
 #include <type_traits>
 #include <vector>
 
-// For explicit instantiations: f of each voxel type.
-#define SPLATTING_INTEGERS(f)                                                                      \
-  f(std::int8_t) f(std::uint8_t) f(std::int16_t) f(std::uint16_t) f(std::int32_t) f(std::uint32_t) \
-    f(std::int64_t) f(std::uint64_t)
-#define SPLATTING_TYPES(f) SPLATTING_INTEGERS(f) f(float) f(double)
-
 namespace splatting
 {
 /// Properties that walks use.

@@ -156,8 +156,8 @@ struct Interval
 /// What a pixel reads of all images of a view, by the definition.
 struct Reading
 {
-  bool isCertain = true; ///< by more than rounding
-  bool isDue = false;    ///< a sample of what is shown lies in the area
+  bool isCertain = true;  ///< by more than rounding
+  bool hasSample = false; ///< whether a visible sample is in the area
   std::vector<double> values;
   std::vector<splatting::ShearPixel> nearest; ///< of each value
 };
@@ -283,7 +283,7 @@ private:
       reading.isCertain &= std::abs(place - std::floor(place) - 0.5) > Rounding;
     }
     const splatting::ShearPixel nearest{ n, int(std::lround(u)), int(std::lround(v)) };
-    reading.isDue |=
+    reading.hasSample |=
       nearest.u == u && nearest.v == v && isShown(this->Geometry[n], nearest.u, nearest.v);
     reading.values.push_back(sum);
     reading.nearest.push_back(nearest);
@@ -330,7 +330,7 @@ void testDefinition(Checks& check)
         {
           const std::vector<double>& values = reading.values;
           read.add(!values.empty());
-          check(!reading.isDue || largest[p] != Background, "a sample in the area of pixel ", p,
+          check(!reading.hasSample || largest[p] != Background, "a sample in the area of pixel ", p,
             " is not shown");
           if (values.empty() || largest[p] == Background)
           {
@@ -355,7 +355,7 @@ void testDefinition(Checks& check)
   check(read.areEnough(0.05), "only ", read, " pixels read something");
 }
 
-/// No sample of what is shown is lost between pixels.
+/// Every visible sample is in the area of some pixel.
 void testEverySample(Checks& check)
 {
   forOverviews("every sample", 100,
