@@ -155,8 +155,7 @@ abi_of_wheel() {
 
 build() {
   export SPLATTINGMIP_DEBIAN11=$cache/debian11 CMAKE_TOOLCHAIN_FILE=$here/Wheel/debian11.cmake
-  # ccache finds what was compiled in another folder.
-  export CCACHE_BASEDIR=$cache CCACHE_NOHASHDIR=1 PATH=$work/venv/bin:$PATH
+  export PATH=$work/venv/bin:$PATH
   rm -rf "$work/linux"
   pip wheel --no-build-isolation --no-deps -w "$work/linux" "$work/project"
   # VTK's own libraries come from the package that the wheel depends on.
