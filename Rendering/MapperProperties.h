@@ -14,8 +14,8 @@ VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {
-/// As in ProjectionProperties.h. Checks the mapper's clipping planes, too, and in blend mode SLICE
-/// the property's slice function.
+/// As in ProjectionProperties.h. Checks the mapper's clipping planes and final colour window, too,
+/// and in blend mode SLICE the property's slice function.
 const char* validate(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* property);
 
 /// Returns whether sample positions are needed.

@@ -273,10 +273,10 @@ public:
 
   ///@{
   /**
-   * Set/Get whether scalars below the window are clamped: those, from the lowest one up, that all
-   * have its colour and opacity. What cannot exceed them is skipped. In modes other than EXACT
-   * edges against the background become brighter by up to half a pixel. Default off. Applies to
-   * MaximumType GLOBAL without recorded locations and dependent components.
+   * Set/Get whether scalars from the lowest one up that have the same colour and opacity are raised
+   * to the largest of them. Voxels that cannot exceed it are skipped. In modes other than EXACT
+   * edges against the background become brighter by up to half a pixel. Default off. Is ignored with
+   * dependent components, MaximumType other than GLOBAL, RecordLocations, DepthCoding, WriteDepth.
    */
   vtkSetMacro(CullBelowWindow, vtkTypeBool);
   vtkGetMacro(CullBelowWindow, vtkTypeBool);

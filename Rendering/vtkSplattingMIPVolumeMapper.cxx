@@ -84,7 +84,7 @@ public:
   void ReportAbsence(vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
 
   ReportedProblems Reported;
-  std::set<std::string> Warned;      // warnings that were reported, and whose cause remains
+  std::set<std::string> Warned;      // warned of, and still true
   vtkRenderWindow* Window = nullptr; // during a render; may abort it
 
   FrameObserver Observer; // for several ranks
@@ -151,7 +151,7 @@ double* vtkSplattingMIPVolumeMapper::GetBounds()
 }
 
 //------------------------------------------------------------------------------
-// Reports progress. Returns whether the window wants to continue.
+// Reports progress. Returns whether to continue.
 bool vtkSplattingMIPVolumeMapper::Internals::ReportProgress(
   vtkSplattingMIPVolumeMapper* self, double done)
 {
@@ -198,7 +198,7 @@ bool vtkSplattingMIPVolumeMapper::Internals::Begins(const std::string& cause, bo
 void vtkSplattingMIPVolumeMapper::Internals::WarnAboutIgnoredProperties(
   vtkSplattingMIPVolumeMapper* self)
 {
-  if ((self->GetSlab() || self->GetBoundingSurface()) && this->Warned.insert("ignored").second)
+  if (this->Begins("ignored", self->GetSlab() || self->GetBoundingSurface()))
   {
     vtkWarningWithObjectMacro(self,
       << "Slab and BoundingSurface are ignored by ray casters: choose an intensity projection as "
@@ -318,7 +318,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return TurnOfViews::Degenerate;
   }
-  if (data.Source.UsesLargerSteps() && in.Warned.insert("coarse").second)
+  if (in.Begins("coarse", data.Source.UsesLargerSteps()))
   {
     vtkWarningMacro(<< "The rectilinear grid is resampled to larger steps than its least, which is "
                        "too small for that: small cells may be lost. Extract a part of it.");
@@ -361,8 +361,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
 {
   Internals& in = *this->Internal;
-  if (needsLocations(this) && this->BlendMode == AVERAGE_INTENSITY_BLEND &&
-    in.Warned.insert("mean").second)
+  if (in.Begins("mean", needsLocations(this) && this->BlendMode == AVERAGE_INTENSITY_BLEND))
   {
     vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
                        "one, no depth coding and no depths: choose another blend mode.");

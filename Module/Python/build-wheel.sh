@@ -15,7 +15,8 @@
 # unpacked, not installed, from the address in the machine's apt sources.
 #
 # Needs Debian on x86-64, with cmake, ninja-build, ccache and g++, and the headers and the module venv of the
-# Python. Needs no root. Files are kept in build/wheels for the next run, or where SPLATTINGMIP_WHEELS says.
+# Python. Needs no root. Files are kept for the next run in the folder SPLATTINGMIP_WHEELS of the environment,
+# by default build/wheels.
 set -euo pipefail
 
 if (($# != 2)); then
@@ -57,7 +58,7 @@ update_lists() {
 
 # unpack FOLDER SUITE PACKAGE ...
 #
-# Unpacks Debian's packages into a folder, unless it is there. The folder's links lead nowhere else.
+# Unpacks Debian's packages into a folder, unless it exists. Links are made to point into the folder.
 unpack() {
   local folder=$1 suite=$2 package link
   shift 2
@@ -141,7 +142,7 @@ print(vtkSMPTools.GetBackend())')
 # from other packages.
 configure_cmake_package() {
   rm -f "$VTK_DIR"/VTK*-targets-*.cmake
-  # Says which headers of other packages to compile with, in words that older CMakes do not know.
+  # Older CMakes do not know this expression, which names headers of other packages.
   sed -i 's/\\\$<COMPILE_ONLY:[^>]*>//g' "$VTK_DIR/VTK-targets.cmake"
   cp "$here/Wheel/VTK-targets-wheel.cmake" "$VTK_DIR"
   echo 'find_package(Python3 REQUIRED COMPONENTS Interpreter Development.Module)

@@ -17,6 +17,19 @@ if typing.TYPE_CHECKING:
 
 _MODES = {"preview": 0, "standard": 1, "high": 2, "exact": 3}
 _BLENDS = {"maximum": 1, "minimum": 2, "mean": 3}
+# Settings of a mapper that the splatting mapper has, too, as far as VTK's mappers have them.
+_COMMON_SETTINGS = (
+    "BlendMode",
+    "ScalarMode",
+    "Cropping",
+    "CroppingRegionPlanes",
+    "CroppingRegionFlags",
+    "AverageIPScalarRange",
+    "VectorMode",
+    "VectorComponent",
+    "FinalColorWindow",
+    "FinalColorLevel",
+)
 # Of each axis the direction and what is up, so that the picture is not mirrored.
 _VIEWS = (((1, 0, 0), (0, -1, 0)), ((0, -1, 0), (-1, 0, 0)), ((0, 0, 1), (-1, 0, 0)))
 
@@ -68,8 +81,9 @@ def mip(
     Returns
     -------
     numpy.ndarray
-        Picture, its first row at the top; with `views` an array of pictures. Maxima and minima have the type of the array: those of
-        integers are rounded. Means are float32, or float64 for 32- and 64-bit integers and float64.
+        Picture, its first row at the top; with `views` an array of pictures. Maxima and minima have
+        the type of the array; those of integers are rounded. Means are float32, or float64 for
+        32- and 64-bit integers and float64.
 
     Raises
     ------
@@ -119,6 +133,10 @@ def mip(
         background = numpy.nanmax(volume)
     elif background is None:
         background = numpy.nanmin(volume)
+    elif not blend == "mean" and numpy.issubdtype(volume.dtype, numpy.integer):
+        limits = numpy.iinfo(volume.dtype)
+        if not limits.min <= background <= limits.max:
+            raise ValueError(f"background is {background}: choose a number that {volume.dtype} can hold.")
     projection.SetBackgroundValue(float(background))
     _update(projection)
 
@@ -130,8 +148,20 @@ def mip(
     if blend == "mean":
         return picture.copy()
     if numpy.issubdtype(volume.dtype, numpy.integer):
-        picture = numpy.rint(picture)
+        return _round(picture, volume.dtype).astype(result_type)
     return picture.astype(result_type)
+
+
+def _round(picture, integer):
+    """Round floats to a type of integers, the largest of which may have no float."""
+    import numpy
+
+    limits = numpy.iinfo(integer)
+    with numpy.errstate(invalid="ignore"):
+        rounded = numpy.rint(picture).astype(integer)
+    rounded[picture >= float(limits.max)] = limits.max
+    rounded[picture <= float(limits.min)] = limits.min
+    return rounded
 
 
 def _volume(array):
@@ -213,7 +243,7 @@ def _update(algorithm):
     if not done:
         raise MemoryError("There is not enough memory for the projection.")
     if errors:
-        raise ValueError(errors[0])
+        raise (MemoryError if " memory" in errors[0] else ValueError)(errors[0])
 
 
 def enable(mode: str = "exact") -> None:
@@ -240,7 +270,10 @@ def disable() -> None:
 
 
 def use_for(volume: typing.Any, mode: str = "exact") -> typing.Any:
-    """Give a volume the splatting mapper, with the input and settings of its present mapper.
+    """Give a volume the splatting mapper.
+
+    The new mapper has the old one's input, scalars, blend mode, cropping, clipping planes, vector
+    mode, final colour window and range of averages. Masks are not taken over.
 
     Parameters
     ----------
@@ -253,20 +286,25 @@ def use_for(volume: typing.Any, mode: str = "exact") -> typing.Any:
     -------
     vtkSplattingMIPVolumeMapper
         The volume's new mapper.
+
+    Raises
+    ------
+    ValueError
+        If the volume has no mapper or the mode is unknown.
     """
     old = volume.GetMapper()
+    if old is None:
+        raise ValueError("The volume has no mapper: give it one with an input first.")
     mapper = vtksplattingmip.vtkSplattingMIPVolumeMapper()
     if old.GetNumberOfInputConnections(0):
         mapper.SetInputConnection(old.GetInputConnection(0, 0))
-    mapper.SetBlendMode(old.GetBlendMode())
-    mapper.SetScalarMode(old.GetScalarMode())
+    for name in _COMMON_SETTINGS:
+        if hasattr(old, f"Get{name}"):
+            getattr(mapper, f"Set{name}")(getattr(old, f"Get{name}")())
     if old.GetArrayAccessMode() == 1:  # VTK_GET_ARRAY_BY_NAME
         mapper.SelectScalarArray(old.GetArrayName())
     else:
         mapper.SelectScalarArray(old.GetArrayId())
-    mapper.SetCropping(old.GetCropping())
-    mapper.SetCroppingRegionPlanes(old.GetCroppingRegionPlanes())
-    mapper.SetCroppingRegionFlags(old.GetCroppingRegionFlags())
     if old.GetClippingPlanes():
         mapper.SetClippingPlanes(old.GetClippingPlanes())
     mapper.SetQualityMode(_choice("mode", mode, _MODES))

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What functions.py calls through ctypes, which releases Python's lock.
+// Called by functions.py through ctypes, which releases Python's lock.
 #include "vtkAlgorithm.h"
 
 #include <new>

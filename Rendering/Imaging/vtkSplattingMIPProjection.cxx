@@ -65,6 +65,7 @@ public:
   bool ProjectView(vtkSplattingMIPProjection* self, const splatting::View& view,
     const splatting::ProjectionSettings& settings);
   bool PlaceOutput(vtkImageData* output, bool locate);
+  void FindViews(vtkSplattingMIPProjection* self);
   void Locate(const splatting::View& view, int n);
   std::string ProjectInput(vtkSplattingMIPProjection* self, vtkImageData* output);
   std::string ProjectViews(vtkSplattingMIPProjection* self, vtkImageData* output);
@@ -73,6 +74,13 @@ public:
   ComponentProjector Components;
   TurnOfViews Turn;
   splatting::Locator::Arrays Locations;                   // of the output
+  struct ViewOfTurn
+  {
+    int slice; // of the output
+    splatting::View view;
+    splatting::ProjectionSettings settings;
+  };
+  std::vector<ViewOfTurn> Views;                          // in the order of projection
   std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last view and the one before
   std::vector<splatting::Cuts> Cuts, CutsBefore;          // likewise
   int ViewsDone = 0;
@@ -278,35 +286,48 @@ std::string vtkSplattingMIPProjection::Internals::ProjectInput(
 }
 
 //------------------------------------------------------------------------------
+// Finds the views of the turn and their settings.
+void vtkSplattingMIPProjection::Internals::FindViews(vtkSplattingMIPProjection* self)
+{
+  const VolumeGrid& grid = this->Source.Grid();
+  this->Views.clear();
+  for (const int n : this->Turn.Order())
+  {
+    splatting::View view =
+      viewOf(grid, grid.indexToPhysical, this->Turn.WorldToClip(n), this->Turn.Size());
+    view.halfSpaces.clear(); // the camera's clipping range is ignored
+    if (self->Slab)
+    {
+      addSlab(view, grid.indexToPhysical, self->SlabCenter, self->SlabThickness);
+    }
+    if (self->Cropping)
+    {
+      view.cropping = croppingOf(grid, self->CroppingRegionPlanes, self->CroppingRegionFlags);
+    }
+    const splatting::ProjectionSettings settings =
+      settingsOf(*self, self->QualityMode, view, self->RecordLocations != 0);
+    this->Views.push_back({ n, view, settings });
+  }
+}
+
+//------------------------------------------------------------------------------
 // Fills the slices of the output. Returns an error message, or an empty string. After an abort some
 // slices are missing.
 std::string vtkSplattingMIPProjection::Internals::ProjectViews(
   vtkSplattingMIPProjection* self, vtkImageData* output)
 {
-  const glm::dmat4& toWorld = this->Source.Grid().indexToPhysical;
+  // Observers of progress may change settings. The next update uses those.
+  this->FindViews(self);
+  const double background = self->BackgroundValue;
   this->ViewsDone = 0;
   this->Reported = 0.0;
-  for (const int n : this->Turn.Order())
+  for (const auto& [n, view, settings] : this->Views)
   {
-    splatting::View view =
-      viewOf(this->Source.Grid(), toWorld, this->Turn.WorldToClip(n), this->Turn.Size());
-    view.halfSpaces.clear(); // the camera's clipping range is ignored
     if (!splatting::isFinite(view))
     {
       return TurnOfViews::Degenerate;
     }
-    if (self->Slab)
-    {
-      addSlab(view, toWorld, self->SlabCenter, self->SlabThickness);
-    }
-    if (self->Cropping)
-    {
-      view.cropping =
-        croppingOf(this->Source.Grid(), self->CroppingRegionPlanes, self->CroppingRegionFlags);
-    }
     std::swap(this->Images, this->ImagesBefore);
-    const splatting::ProjectionSettings settings =
-      settingsOf(*self, self->QualityMode, view, self->RecordLocations != 0);
     this->Images.clear();
     splatting::PixelRays rays;
     const bool isValid = this->Components.UsesCells(settings)
@@ -321,11 +342,11 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
       return {};
     }
     if (!this->Components.WarpScalars(
-          this->Images, view, self->BackgroundValue, output->GetScalarPointer(0, 0, n)))
+          this->Images, view, background, output->GetScalarPointer(0, 0, n)))
     {
       return {};
     }
-    if (self->RecordLocations && this->Components.HasWinners())
+    if (settings.recordLocations && this->Components.HasWinners())
     {
       this->Locate(view, n);
     }

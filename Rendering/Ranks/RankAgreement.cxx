@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <sstream>
 #include <type_traits>
 
 namespace splatting
@@ -187,7 +188,7 @@ std::string problemOf(const std::vector<RankReport>& reports, bool ofGrids)
   }
   if (!ofGrids && any([&](const RankReport& r) { return !r.isEmpty() && !sameScalars(r, *first); }))
   {
-    return "The ranks' scalars differ in type, hash of components, or in being of cells or "
+    return "The ranks' scalars differ in type, number of components, or in being of cells or "
            "points (pieces with hidden voxels are float): give all pieces the same.";
   }
   return {};

@@ -200,9 +200,14 @@ void BenchmarkStage::LookFrom(int view)
   camera->SetViewUp(turn->TransformDoubleVector(0.0, 1.0, 0.0));
   camera->SetViewAngle(this->ViewAngle > 0.0 ? this->ViewAngle : 30.0);
   this->Renderer->ResetCamera(bounds); // a sphere around the volume fits ...
-  if (this->ViewAngle <= 0.0)
+  if (this->ViewAngle > 0.0)           // ... and now the volume fills the window
   {
-    camera->Zoom(1.5); // ... and now the volume fills the window
+    camera->Dolly(1.5);
+    this->Renderer->ResetCameraClippingRange(bounds);
+  }
+  else
+  {
+    camera->Zoom(1.5);
   }
 }
 

@@ -52,6 +52,14 @@ class TestMip(unittest.TestCase):
             error = numpy.abs(found.astype(float) - volume.max(0)).max()
             self.assertLessEqual(error, 1e-4 if volume.dtype.kind == "f" else 0)
 
+    def test_limits_of_integers(self):
+        """The largest 64-bit integers have no float."""
+        for type_ in ("int8", "uint8", "int64", "uint64"):
+            limits = numpy.iinfo(type_)
+            for value in (limits.min, limits.max):
+                volume = numpy.full((3, 4, 5), value, type_)
+                numpy.testing.assert_array_equal(mip(volume), volume[0])
+
     def test_memory_layouts(self):
         volume = noise()
         for view in (volume[::-1, ::2], numpy.asfortranarray(volume), volume.transpose(2, 0, 1), volume.tolist()):
@@ -121,6 +129,9 @@ class TestMip(unittest.TestCase):
             (ValueError, {"spacing": (0, 1, 1), "pixel_spacing": 1}),
             (ValueError, {"shape": (0, 5)}),
             (ValueError, {"shape": (5, 10**6)}),
+            (ValueError, {"array": noise("B"), "background": -1}),
+            (ValueError, {"background": numpy.nan}),
+            (MemoryError, {"shape": (16384, 16384), "views": 9000, "mode": "preview"}),
         ):
             with self.assertRaises(error) as caught:
                 mip(**{"array": volume, **arguments})

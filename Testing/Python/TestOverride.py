@@ -62,7 +62,13 @@ class TestOverride(unittest.TestCase):
         old.CroppingOn()
         old.SetCroppingRegionPlanes(1, 2, 3, 4, 5, 6)
         old.SetCroppingRegionFlagsToFence()
+        old.SetAverageIPScalarRange(7, 8)
+        old.SetVectorMode(1)
+        old.SetVectorComponent(2)
+        old.SetFinalColorWindow(0.5)
+        old.SetFinalColorLevel(0.4)
         volume = vtkVolume()
+        self.assertRaises(ValueError, vtksplattingmip.use_for, volume)
         volume.SetMapper(old)
         self.assertIsNone(vtksplattingmip.use_for(volume).GetClippingPlanes())
         old.AddClippingPlane(vtkPlane())
@@ -72,7 +78,8 @@ class TestOverride(unittest.TestCase):
         self.assertEqual(new.GetQualityMode(), new.HIGH)
         for name in (
             "InputConnection", "BlendMode", "ArrayName", "ScalarMode", "Cropping", "CroppingRegionPlanes",
-            "CroppingRegionFlags", "ClippingPlanes",
+            "CroppingRegionFlags", "ClippingPlanes", "AverageIPScalarRange", "VectorMode",
+            "VectorComponent", "FinalColorWindow", "FinalColorLevel",
         ):
             arguments = (0, 0) if name == "InputConnection" else ()
             self.assertEqual(

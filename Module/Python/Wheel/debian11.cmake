@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # CMake toolchain file: the machine's compiler with the C and C++ libraries of Debian 11, which lie in the
-# folder SPLATTINGMIP_DEBIAN11 of the environment. What is built runs with glibc 2.28 and newer.
+# folder SPLATTINGMIP_DEBIAN11 of the environment. auditwheel checks that only symbols of glibc 2.28 are used.
 set(root "$ENV{SPLATTINGMIP_DEBIAN11}")
 set(CMAKE_FIND_ROOT_PATH "${root}")
 execute_process(COMMAND gcc -print-multiarch OUTPUT_VARIABLE arch OUTPUT_STRIP_TRAILING_WHITESPACE)

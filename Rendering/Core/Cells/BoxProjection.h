@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Where boxes of index space are seen.
+ * Projects boxes of index space to the screen.
  */
 #ifndef splattingBoxProjection_h
 #define splattingBoxProjection_h
@@ -57,7 +57,7 @@ struct PixelRectangle
   bool empty() const { return this->low.x > this->high.x || this->low.y > this->high.y; }
 };
 
-/// The pixels of the viewport that may see a box, and between which parameters of their rays.
+/// The pixels of the viewport whose rays may cross a box, and between which parameters.
 class ProjectedBox
 {
 public:

@@ -15,7 +15,7 @@
 namespace splatting
 {
 /**
- * What the threads of one projection share.
+ * The data of one projection that its threads share.
  */
 template <class T>
 struct CellFrame

@@ -146,7 +146,7 @@ struct ValueScale
   }
 };
 
-/// What a voxel that bounds() gives is as a value.
+/// Converts a voxel of bounds() to a value.
 template <class T>
 Accumulator<T> boundOf(T voxel, const CellScale<Accumulator<T>>& scale)
 {

@@ -41,7 +41,7 @@ void parallelFor(
 /// The number of threads that run a loop.
 int numberOfThreads();
 
-/// What runs loops in place of the backend "Sequential". A loop in a loop runs on one thread.
+/// Run loops in place of the backend "Sequential". A loop in a loop runs on one thread.
 void forInOwnThreads(
   std::ptrdiff_t first, std::ptrdiff_t last, std::ptrdiff_t grain, const LoopBody& body);
 int numberOfOwnThreads();

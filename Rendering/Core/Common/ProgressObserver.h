@@ -22,7 +22,7 @@ public:
 
   void setCallback(const Callback& callback) { this->Told = callback; }
 
-  /// Call it first, on the thread that wants the projection.
+  /// Call it first, on the thread that calls the projection.
   void start()
   {
     this->Owner = std::this_thread::get_id();

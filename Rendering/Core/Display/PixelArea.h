@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * The points at which a pixel of the screen reads a shear image whose pixels are narrower: the
- * samples in its area, row by row. If the area contains no sample of a row, the row is interpolated
- * in the middle of the area. If the area is between two rows, the image is interpolated in the
- * middle of the area. Every sample is therefore in the area of some pixel.
+ * samples in its area, row by row. If the area is between two rows, the row halfway between its
+ * lowest and its highest corner is interpolated instead. If a row has no sample in the area, it is
+ * interpolated in the middle of its part. Every sample is therefore in the area of some pixel.
  */
 #ifndef splattingPixelArea_h
 #define splattingPixelArea_h

@@ -66,7 +66,7 @@ SPLATTING_INLINE typename R::Value largestOnRay(const typename R::Value (&k)[8],
     const V s = R::div(R::choose(falls, c1, R::sub(R::sub(zero, c2), root)),
       R::choose(falls, R::sub(root, c2), R::mul(R::set(3), c3)));
     V peak = R::fma(s, R::fma(s, R::fma(s, c3, c2), c1), c0);
-    // Rounding must not lift it above what made it worth while to compute.
+    // Without rounding it is never above the bound.
     peak = R::smaller(peak, inner);
     const M found = static_cast<M>(more & R::above(square, zero) & R::above(s, zero) &
       R::above(R::set(1), s) & R::above(peak, value));

@@ -103,7 +103,7 @@ struct CellBlock
   A inverse[3];                              ///< 1 / forward of parallel views
   bool flat[3]; ///< whether parallel rays run within planes of constant x, y, z
 
-  /// The pixels that may see the block, inclusive, and the smallest value there.
+  /// The pixels whose rays may cross the block, inclusive, and the smallest value there.
   int columns[2], rows[2];
   A least;
   /// A point p is seen at pixel (x, y) + (across . p + acrossStart, up . p + upStart) / w.

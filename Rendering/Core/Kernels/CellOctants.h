@@ -43,7 +43,7 @@ struct CellSlice
   alignas(64) A Low[2][Cells], High[2][Cells]; ///< the part that cropping leaves, if it cuts
   A LowZ = -BesideFace<A>, HighZ = 1 + BesideFace<A>;
   alignas(64) A MiddleT[Cells]; ///< t - reference of the middle of each cell
-  alignas(64) A X0[Cells], X1[Cells], Y0[Cells], Y1[Cells]; ///< the pixels that may see each cell
+  alignas(64) A X0[Cells], X1[Cells], Y0[Cells], Y1[Cells]; ///< the pixels whose rays may cross each cell
 };
 
 /**
@@ -139,7 +139,7 @@ private:
     }
   };
 
-  /// Where the field is not interpolated: the voxels of a cell, each with an eighth of it.
+  /// Splats the octants of a cell, each with the value of its voxel, to a pixel.
   void splatOctants(int n, const A (&corners)[8], int px, int py)
   {
     const CellBlock<A>& b = this->Block;
@@ -173,9 +173,6 @@ private:
     {
       near = this->Tile.nears[at] - b.reference - middle + this->Tile.nearRests[at];
       far = this->Tile.fars[at] - b.reference - middle + this->Tile.farRests[at];
-    }
-    if (Cut)
-    {
       ray = { near, far };
       for (int a = 0; a < 3; ++a)
       {

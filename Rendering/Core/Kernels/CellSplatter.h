@@ -186,7 +186,7 @@ private:
     }
   }
 
-  /// The pixels that may see each cell.
+  /// Finds the pixels whose rays may cross each cell.
   void findSeen(int z, M alive[])
   {
     const CellBlock<A>& b = this->Block;

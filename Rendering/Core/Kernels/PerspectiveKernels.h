@@ -310,8 +310,8 @@ inline int crossRegisters(const Crossing<T>& c, const Span& run, int& first)
 template <class T>
 void cross(const Crossing<T>& crossing)
 {
-  const Crossing<T> c =
-    crossing; // a copy, because compilers assume that writing byte pixels changes the original
+  // A copy, because compilers assume that writing byte pixels changes the original.
+  const Crossing<T> c = crossing;
   for (int n = 0; n < c.runCount; ++n)
   {
     Span pixels = c.runs[n];

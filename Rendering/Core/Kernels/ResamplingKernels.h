@@ -305,7 +305,7 @@ void resample(const Resampling<A>& r, std::ptrdiff_t begin, std::ptrdiff_t end)
   }
 }
 
-/// Sums of rows, each with a weight; or what pixels become if they are less.
+/// Sets pixels to weighted sums of rows; with Raises only where that makes them larger.
 template <class A, bool Raises>
 struct BlendBlock
 {

@@ -170,8 +170,8 @@ private:
   {
     if (this->Depth == 0)
     {
-      resampling.voxels =
-        loaded.template voxel<A>(0, rows.begin, k); // for blended slices see splatRows()
+      // splatRows() applies the share of slice k.
+      resampling.voxels = loaded.template voxel<A>(0, rows.begin, k);
       resampling.voxelStride = loaded.rowLength;
       return;
     }

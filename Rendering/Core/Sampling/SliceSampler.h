@@ -16,7 +16,6 @@
 #include "Projection/ProjectionContext.h"
 #include "Sampling/LoadedVoxels.h"
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <tuple>

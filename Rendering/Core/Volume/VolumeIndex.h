@@ -137,8 +137,8 @@ public:
 
   /**
    * The chains along an axis, or nullptr if the budget has no room or `progress` stopped them. Made
-   * on demand, and again when the encoding changes. Plain rows with all voxels are kept in addition
-   * to the last other encoding. Not for volumes with NaN or infinities.
+   * on demand, and again when the encoding changes. Unsorted chains are kept in addition to the
+   * last sorted ones. Not for volumes with NaN or infinities.
    */
   const LineIndex* lines(
     int principalAxis, const LineEncoding& encoding, const LineIndex::Progress& progress = {});

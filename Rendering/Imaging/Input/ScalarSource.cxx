@@ -106,7 +106,7 @@ vtkMTimeType timeOf(vtkDataSet* input)
 }
 
 /// The error of the data set, except for its arrays and geometry.
-std::string loadInput(vtkDataSet* input)
+std::string validateDataSet(vtkDataSet* input)
 {
   if (!input)
   {
@@ -224,7 +224,7 @@ void* ScalarSource::Copy::Allocate(std::ptrdiff_t voxels, ScalarType type)
 std::string ScalarSource::Examine(vtkDataSet* input, const ScalarChoice& choice)
 {
   Key key;
-  std::string problem = loadInput(input);
+  std::string problem = validateDataSet(input);
   if (problem.empty())
   {
     problem = this->FindScalars(input, choice, key);

@@ -250,6 +250,54 @@ void testProgress(Checks& check)
   check(projectiontesting::sameScalars(turn->GetOutput(), whole), "and all is there again");
 }
 
+/// Settings that an observer changes during a turn apply from the next update on.
+void testChangesInProgress(Checks& check)
+{
+  reference::Random random(9);
+  const auto image = someImage(random);
+  const auto turn = projectiontesting::projectionOf(image);
+  turn->SetNumberOfViews(8);
+  turn->SetOutputSize(16, 16);
+  turn->SetQualityModeToPreview();
+  turn->Update();
+  const auto before = vtkSmartPointer<vtkImageData>::New();
+  before->DeepCopy(turn->GetOutput());
+  struct Changer
+  {
+    void change(vtkObject* object, unsigned long, void* progress)
+    {
+      if (*static_cast<double*>(progress) < 0.2) // VTK's own event precedes the projection
+      {
+        return;
+      }
+      auto* const filter = Filter::SafeDownCast(object);
+      filter->RecordLocationsOn();
+      filter->SetQualityModeToExact();
+      filter->SlabOn();
+      filter->SetSlabCenter(filter->GetFocalPoint());
+      filter->SetBackgroundValue(-7.0);
+    }
+  } changer;
+  turn->AddObserver(vtkCommand::ProgressEvent, &changer, &Changer::change);
+  turn->Modified();
+  turn->Update();
+  check(projectiontesting::sameScalars(turn->GetOutput(), before) &&
+      !turn->GetOutput()->GetPointData()->GetArray("Depth"),
+    "changes in progress have no effect");
+  turn->RemoveAllObservers();
+  turn->Modified();
+  turn->Update();
+  const auto fresh = projectiontesting::projectionOf(image);
+  fresh->SetNumberOfViews(8);
+  fresh->SetOutputSize(16, 16);
+  double done = 1.0;
+  changer.change(fresh, 0, &done);
+  fresh->Update();
+  check(projectiontesting::sameScalars(turn->GetOutput(), fresh->GetOutput()) &&
+      turn->GetOutput()->GetPointData()->GetArray("Depth"),
+    "they have one in the next update");
+}
+
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
 /// Whoever aborts a filter upstream wants nothing of what is made of its output.
 void testAbortUpstream(Checks& check)
@@ -410,6 +458,7 @@ int TestTurn(int, char*[])
   testGeometry(check);
   testLoneVoxel(check);
   testProgress(check);
+  testChangesInProgress(check);
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
   testAbortUpstream(check);
 #endif
