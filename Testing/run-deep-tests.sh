@@ -24,7 +24,7 @@
 #   paraview          the plugin in ParaView 5.11 (Debian 12); warnings are errors
 #   paraview-debian13 the plugin in ParaView 5.13 (Debian 13)
 #   packages          Debian packages, on Debian 12 and 13
-#   wheel             wheels for vtk 9.3.0 and 9.6.2 of PyPI, and for cvista if there is a python3.12
+#   wheel             wheels for vtk 9.3.0 and 9.6.2 of PyPI and for cvista, for each Python 3.11 to 3.13 that is there
 set -euo pipefail
 
 testing_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -172,7 +172,7 @@ part_wheel() {
       continue
     fi
     [[ $python == /usr/bin/python3 ]] || bash "$testing_dir/Hosts/test-wheel.sh" cvista "$python"
-    bash "$testing_dir/Hosts/test-wheel.sh" 9.3.0 "$python"
+    [[ $python == python3.13 ]] || bash "$testing_dir/Hosts/test-wheel.sh" 9.3.0 "$python" # PyPI has none for 3.13
     bash "$testing_dir/Hosts/test-wheel.sh" 9.6.2 "$python"
   done
 }

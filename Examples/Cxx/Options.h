@@ -30,10 +30,10 @@ struct Options
   std::vector<int> Modes;        // one, or several for stills side by side
   ProjectionSettings Projection; //
   ViewSettings View;             //
-  LookSettings Look;             // of the user, where these are true:
-  bool DepthCoding = false;      // in place of a colormap
+  LookSettings Look;             // the user's, where these are true:
   bool HasWindow = false;        // Look.Window
   bool HasLevel = false;         // Look.Level
+  bool DepthCoding = false;      // in place of a colormap
   std::string Output;            // an absolute path
   bool NoMarks = false;          // no letters for sides, no scale bar
   bool Compare = false;          // with the ray caster

@@ -2,17 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ProgressLine.h"
 
+#include "Reading/Reading.h"
+
 #include "vtkCommand.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <iostream>
-#include <utility>
 
 #include <unistd.h>
 
-ProgressLine::ProgressLine(std::string what, vtkAlgorithm* algorithm)
-  : What(std::move(what)),
+ProgressLine::ProgressLine(const std::string& what, vtkAlgorithm* algorithm)
+  : What(MakePrintable(what)),
     Start(std::chrono::steady_clock::now()),
     IsTerminal(isatty(fileno(stderr)) != 0),
     Algorithm(algorithm)

@@ -18,7 +18,7 @@ public:
   /**
    * Show the progress of an algorithm, if one is given.
    */
-  explicit ProgressLine(std::string what, vtkAlgorithm* algorithm = nullptr);
+  explicit ProgressLine(const std::string& what, vtkAlgorithm* algorithm = nullptr);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;

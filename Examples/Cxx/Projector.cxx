@@ -112,10 +112,10 @@ vtkSmartPointer<vtkImageData> Projector::Project(const std::string& what)
     to[p] = static_cast<unsigned char>(place > 0.0 ? std::lround(std::min(place, 255.0)) : 0);
     isEmpty = isEmpty && std::isnan(place);
   }
-  if (isEmpty && (this->Projection->GetSlab() || this->Projection->GetCropping()))
+  if (isEmpty)
   {
     throw std::runtime_error(
-      "no part of the volume is in the picture; change --crop, --slab-offset or --mask.");
+      "no part of the volume is in the picture; change --crop, --slab-offset, --mask or --zoom.");
   }
   return bytes;
 }

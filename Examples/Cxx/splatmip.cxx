@@ -249,6 +249,7 @@ void Run(const Options& options)
 
 int main(int argc, char* argv[])
 {
+  KeepIgnoredSignals();
   CLI::App app(
     "Maximum intensity projection of a volume by splatting in sheared object space", "splatmip");
   try

@@ -19,15 +19,16 @@ FRAMES = 5
 ROUNDS = 4  # the least time counts: a busy machine only adds
 # How a program chooses: statements before the first projection, and variables of the environment.
 CHOICES = {
-    "default": ("", {"VTK_SMP_MAX_THREADS": "2"}),
+    "default": ("", {}),
+    "two threads": ("", {"VTK_SMP_MAX_THREADS": "2"}),
     "one thread": ("", {"VTK_SMP_MAX_THREADS": "1"}),
     "Initialize(1)": ("vtkSMPTools.Initialize(1)", {}),
     "Initialize(2)": ("vtkSMPTools.Initialize(2)", {}),
     "Sequential": ("", {"VTK_SMP_BACKEND_IN_USE": "Sequential"}),
     "STDThread": ("vtkSMPTools.SetBackend('STDThread')", {"VTK_SMP_MAX_THREADS": "2"}),
 }
-# Of one thread's time.
-MOST_OF_PARALLEL = {"default": 0.65, "Initialize(2)": 0.8, "STDThread": 0.8}
+# Of one thread's time. Two threads must take 0.65; the others only show that a choice has an effect.
+MOST_OF_PARALLEL = {"default": 0.65, "two threads": 0.65, "Initialize(2)": 0.8, "STDThread": 0.8}
 
 
 def measure(choice):

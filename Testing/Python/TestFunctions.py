@@ -5,6 +5,7 @@
 import ast
 import importlib
 import multiprocessing
+import os
 import pathlib
 import pydoc
 import threading
@@ -25,8 +26,11 @@ CLASSES = {
 }
 
 
-def noise(type_="h", shape=(9, 8, 7), seed=None):
-    volume = numpy.random.default_rng(seed).integers(0, 100, shape)
+RANDOM = numpy.random.default_rng(int(os.environ.get("SPLATTINGMIP_TEST_SEED", "1")))
+
+
+def noise(type_="h", shape=(9, 8, 7)):
+    volume = RANDOM.integers(0, 100, shape)
     return (volume > 70 if type_ == "?" else volume).astype(type_)
 
 

@@ -19,9 +19,6 @@ namespace
 /// Steps that a frame may be off its place.
 constexpr double NearEnough = 0.1;
 
-/// Frames that are closer, in mm, are of the same slice.
-constexpr double SamePlace = 1e-3;
-
 /**
  * List the segments by their numbers and names.
  */
@@ -51,7 +48,7 @@ double FindStep(const SliceLine& line, double thickness, const std::string& path
   for (std::size_t i = 1; i < line.Places.size(); ++i)
   {
     const double step = line.Places[i] - line.Places[i - 1];
-    least = step > SamePlace && !(least > 0.0 && least < step) ? step : least;
+    least = least > 0.0 && least < step ? least : step;
   }
   for (const double step : { thickness, least > 0.0 ? least : 1.0 })
   {
@@ -116,16 +113,17 @@ void ReadSegments(const DICOMFiles& files, int label, const QuietReading& quiet,
   {
     Refuse(path, "its frames are of different kinds; " + note + ".");
   }
-  std::vector<std::size_t> order;
-  for (const auto& place : FindPlaces(planes))
+  const std::vector<std::vector<std::size_t>> places = FindPlaces(planes);
+  std::vector<std::size_t> firsts; // the frames of a place are of different segments
+  for (const auto& place : places)
   {
-    order.insert(order.end(), place.begin(), place.end());
+    firsts.push_back(place.front());
   }
-  const SliceLine line = FindLine(planes, order);
+  const SliceLine line = FindLine(planes, firsts);
   const double step = FindStep(line, files.front()->Thickness, path);
   const auto getSlice = [&](std::size_t i) { return std::lround(line.Places[i] / step); };
-  const SlicePlane& first = planes[order.front()];
-  const vtkIdType slices = getSlice(order.size() - 1) + 1;
+  const SlicePlane& first = planes[firsts.front()];
+  const vtkIdType slices = getSlice(places.size() - 1) + 1;
   const auto pixels = static_cast<vtkIdType>(first.Size[0] * first.Size[1]);
   CheckMemory(double(pixels) * double(slices), path);
   volume.Image = vtkSmartPointer<vtkImageData>::New();
@@ -134,11 +132,14 @@ void ReadSegments(const DICOMFiles& files, int label, const QuietReading& quiet,
   vtkDataArray* const labels = volume.Image->GetPointData()->GetScalars();
   labels->Fill(0.0);
   bool isOverlapping = false;
-  for (std::size_t i = 0; i < order.size(); ++i)
+  for (std::size_t i = 0; i < places.size(); ++i)
   {
-    const DICOMFrame& frame = frames[order[i]];
-    vtkDataArray* const stored = ReadPixels(*frame.File, quiet)->GetPointData()->GetScalars();
-    isOverlapping = AddFrame(frame, stored, label, pixels, getSlice(i), labels) || isOverlapping;
+    for (const std::size_t plane : places[i])
+    {
+      const DICOMFrame& frame = frames[plane];
+      vtkDataArray* const stored = ReadPixels(*frame.File, quiet)->GetPointData()->GetScalars();
+      isOverlapping = AddFrame(frame, stored, label, pixels, getSlice(i), labels) || isOverlapping;
+    }
   }
   volume.IsOriented = volume.HasLabels = true;
   PlaceVolume(volume, MakeSteps(first, line.Direction, step), first.Position, "mm");

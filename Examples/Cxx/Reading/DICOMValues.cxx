@@ -3,7 +3,6 @@
 #include "Reading/DICOM.h"
 
 #include "vtkDICOMItem.h"
-#include "vtkDICOMMetaData.h"
 #include "vtkDICOMSequence.h"
 #include "vtkDataArray.h"
 #include "vtkPointData.h"

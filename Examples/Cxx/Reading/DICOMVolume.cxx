@@ -11,7 +11,6 @@
 #include "vtkImageCast.h"
 #include "vtkNew.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>

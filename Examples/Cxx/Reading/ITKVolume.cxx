@@ -63,9 +63,9 @@ Header ReadHeader(const std::string& path, char separator)
     }
     const std::size_t end = line.find(separator);
     const std::string value = Trim(line.substr(end == std::string::npos ? 0 : end + 1));
-    if (end != std::string::npos && !value.empty())
+    const std::string key = end == std::string::npos ? "" : Trim(line.substr(0, end));
+    if (!key.empty() && !value.empty())
     {
-      const std::string key = Trim(line.substr(0, end));
       header.Fields.emplace(separator == ':' ? vtksys::SystemTools::LowerCase(key) : key, value);
     }
     const std::filesystem::path file = std::filesystem::path(path).parent_path() / value;
@@ -74,7 +74,7 @@ Header ReadHeader(const std::string& path, char separator)
     {
       header.Files.push_back(file.string());
     }
-    if (header.Has("ElementDataFile") && value != "LIST" && end != std::string::npos)
+    if (key == "ElementDataFile" && value.compare(0, 4, "LIST") != 0)
     {
       break; // of MetaImage: data follow
     }

@@ -102,12 +102,11 @@ vtkSmartPointer<vtkImageData> ReadFrame(nifti_image* header, std::int64_t number
  */
 vtkSmartPointer<vtkImageData> Scale(vtkImageData* image, double slope, double intercept)
 {
-  const bool isFloat = image->GetScalarType() == VTK_FLOAT || image->GetScalarSize() <= 2;
   vtkNew<vtkImageShiftScale> scale;
   scale->SetInputData(image);
   scale->SetShift(intercept / slope);
   scale->SetScale(slope);
-  scale->SetOutputScalarType(isFloat ? VTK_FLOAT : VTK_DOUBLE);
+  scale->SetOutputScalarType(FindFloatType(image->GetScalarType()));
   scale->Update();
   return scale->GetOutput();
 }

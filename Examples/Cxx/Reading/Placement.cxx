@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reading/Placement.h"
 
+#include "Reading/Reading.h"
+
 #include "vtkDataArray.h"
 #include "vtkPointData.h"
 
@@ -9,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace
@@ -149,7 +152,7 @@ std::vector<double> SpaceEvenly(const std::vector<double>& places, double tolera
     sum += step < NearLeast * least ? step : 0.0;
     summands += step < NearLeast * least ? 1.0 : 0.0;
   }
-  const double count = std::max(1.0, std::round(std::fabs(length) * summands / sum));
+  const double count = std::max(1.0, std::ceil(std::fabs(length) * summands / sum - 0.1));
   for (std::size_t i = 0; count <= MostPlaces * last && i <= static_cast<std::size_t>(count); ++i)
   {
     even.push_back(places.front() + length * static_cast<double>(i) / count);
@@ -161,7 +164,6 @@ vtkSmartPointer<vtkImageData> Interpolate(vtkImageData* image, int axis,
   const std::vector<double>& places, const std::vector<double>& newPlaces)
 {
   constexpr double Near = 1e-6; // so that NaN beside a sample does not reach it
-  const bool isFloat = image->GetScalarSize() <= 2 || image->GetScalarType() == VTK_FLOAT;
   int size[3];
   image->GetDimensions(size);
   const vtkIdType stride = std::accumulate(size, size + axis, vtkIdType(1), std::multiplies<>());
@@ -171,7 +173,7 @@ vtkSmartPointer<vtkImageData> Interpolate(vtkImageData* image, int axis,
   auto result = vtkSmartPointer<vtkImageData>::New();
   result->SetDimensions(size);
   const int components = image->GetNumberOfScalarComponents();
-  result->AllocateScalars(isFloat ? VTK_FLOAT : VTK_DOUBLE, components);
+  result->AllocateScalars(FindFloatType(image->GetScalarType()), components);
   vtkDataArray* const from = image->GetPointData()->GetScalars();
   vtkDataArray* const to = result->GetPointData()->GetScalars();
   vtkIdType point = 0;

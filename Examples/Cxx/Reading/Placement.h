@@ -34,9 +34,10 @@ void TurnToLPS(Steps& steps, std::array<double, 3>& origin);
 void AddCaution(Volume& volume, const std::string& caution);
 
 /**
- * Return even places from the first of the given ones, which rise or fall, to the last. The step is
- * the mean of those within a tenth of the least. Places that are off by less than the tolerance, in
- * steps, are returned as they are. Returns nothing if there were more than eight times as many.
+ * Return even places from the first of the given ones, which rise or fall, to the last. The step
+ * is the mean of those within a tenth of the least, or a little less, so that it divides the
+ * length. Places that are off by less than the tolerance, in steps, are returned as they are.
+ * Returns nothing if there were more than eight times as many.
  */
 std::vector<double> SpaceEvenly(const std::vector<double>& places, double tolerance);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reading/Reading.h"
 
+#include "vtkDataArray.h"
 #include "vtkImageExtractComponents.h"
 #include "vtkNew.h"
 
@@ -42,9 +43,12 @@ std::string MakePrintable(const std::string& text)
       : byte < 0xC2                        ? 0
       : byte < 0xE0                        ? 2
       : byte < 0xF0                        ? 3
-                                           : 4;
+      : byte < 0xF5                        ? 4
+                                           : 0;
     const std::string bytes = text.substr(i, length);
-    const bool isWhole = length > 0 && bytes.size() == length &&
+    const auto second = static_cast<unsigned char>(bytes.size() > 1 ? bytes[1] : 0);
+    const bool isOverlong = (byte == 0xE0 && second < 0xA0) || (byte == 0xF0 && second < 0x90);
+    const bool isWhole = length > 0 && bytes.size() == length && !isOverlong &&
       std::all_of(bytes.begin() + 1, bytes.end(), [](char c) { return (c & 0xC0) == 0x80; });
     const bool isControl =
       byte < ' ' || byte == 0x7F || (byte == 0xC2 && isWhole && (bytes[1] & 0x20) == 0);
@@ -86,6 +90,11 @@ vtkSmartPointer<vtkImageData> ExtractComponent(vtkImageData* image, int number)
   extract->SetComponents(number - 1);
   extract->Update();
   return extract->GetOutput();
+}
+
+int FindFloatType(int type)
+{
+  return type == VTK_FLOAT || vtkDataArray::GetDataTypeSize(type) <= 2 ? VTK_FLOAT : VTK_DOUBLE;
 }
 
 int FindScalarType(std::size_t bytes, bool isFloat, bool isSigned)

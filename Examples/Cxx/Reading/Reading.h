@@ -62,6 +62,11 @@ vtkSmartPointer<vtkImageData> ExtractComponent(vtkImageData* image, int number);
 int FindScalarType(std::size_t bytes, bool isFloat, bool isSigned);
 
 /**
+ * Return the type of floating-point numbers that has all values of another of VTK's types.
+ */
+int FindFloatType(int type);
+
+/**
  * Join words as in ".a, .b or .c".
  */
 std::string JoinWords(const std::vector<std::string>& words);

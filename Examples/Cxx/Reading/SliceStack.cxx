@@ -118,8 +118,8 @@ std::vector<std::size_t> FindLargestStack(const std::vector<SlicePlane>& planes,
     const SlicePlane& first = planes[usual->front()];
     std::ostringstream text;
     text << "only the largest stack is shown; " << planes.size() - usual->size() << " of "
-         << planes.size() << " slices do not fit, such as " << Describe(plane) << ", which has "
-         << DescribePixels(plane) << ", turned by " << GetAngle(plane, first)
+         << planes.size() << " slices do not fit, such as " << Describe(plane) << " with "
+         << DescribePixels(plane) << ", whose axes differ by " << GetAngle(plane, first)
          << " degrees; the others have " << DescribePixels(first);
     note = text.str();
   }

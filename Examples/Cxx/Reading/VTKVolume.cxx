@@ -189,9 +189,8 @@ vtkSmartPointer<vtkUnsignedCharArray> FindHidden(
  */
 vtkSmartPointer<vtkDataArray> CopyShown(vtkDataArray* values, vtkUnsignedCharArray* hidden)
 {
-  const bool isFloat = values->GetDataTypeSize() <= 2 || values->GetDataType() == VTK_FLOAT;
   const auto copy = vtkSmartPointer<vtkDataArray>::Take(
-    vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
+    vtkDataArray::CreateDataArray(FindFloatType(values->GetDataType())));
   copy->DeepCopy(values);
   for (vtkIdType i = 0; i < copy->GetNumberOfTuples(); ++i)
   {
@@ -327,7 +326,7 @@ Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& 
         ? volume.Image
         : Interpolate(volume.Image, axis, places[axis], even[axis]);
     }
-    volume.Notes.push_back("the grid is uneven and was interpolated to the least of its steps");
+    volume.Notes.push_back("the grid is uneven and was interpolated to even steps");
     AddCaution(volume, "grid interpolated");
   }
   else if (hidden)

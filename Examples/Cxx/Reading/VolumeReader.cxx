@@ -35,7 +35,7 @@ vtkSmartPointer<vtkImageData> Combine(vtkImageData* image, bool isLuminance)
   constexpr double Weights[3] = { 0.299, 0.587, 0.114 };
   auto combined = vtkSmartPointer<vtkImageData>::New();
   combined->CopyStructure(image);
-  combined->AllocateScalars(image->GetScalarSize() <= 4 ? VTK_FLOAT : VTK_DOUBLE, 1);
+  combined->AllocateScalars(FindFloatType(image->GetScalarType()), 1);
   vtkDataArray* const from = image->GetPointData()->GetScalars();
   vtkDataArray* const to = combined->GetPointData()->GetScalars();
   const int components = isLuminance ? 3 : from->GetNumberOfComponents();

@@ -197,13 +197,13 @@ class TestStacks(DICOMTest):
 
     def test_scout(self):
         """Of several stacks the largest is shown, and a note describes the others."""
-        for fields, words in (({"ImageOrientationPatient": (1, 0, 0, 0, 0, -1)}, "turned by 90 degrees;"),
+        for fields, words in (({"ImageOrientationPatient": (1, 0, 0, 0, 0, -1)}, "whose axes differ by 90 degrees;"),
                               ({"PixelSpacing": (2, 1.5)}, "10 x 12 pixels of 1.5 x 2 mm,"),
                               ({"Rows": 10, "Columns": 12}, "12 x 10 pixels of 1.5 x 1 mm,")):
             scout = {**make_slices()[0], "SOPInstanceUID": dicom.ROOT + ".7", **fields}
             text = self.assert_volume(self.write([*make_slices(), scout]), make_values(), PLACES, words=words)
             self.assertIn("only the largest stack is shown; 1 of 10 slices do not fit, such as "
-                          f"{self.name(9)} at (0, 0, 0) mm, which has ", text)
+                          f"{self.name(9)} at (0, 0, 0) mm with ", text)
 
     def test_copies(self):
         self.write(make_slices())

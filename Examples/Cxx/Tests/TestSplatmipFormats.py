@@ -425,7 +425,7 @@ class TestVTK(FormatTest):
             self.assert_volume(self.write(self.make_grid(make_values(), *places), name), make_values(), PLACES)
             grid = self.make_grid(ramp[keep], *places[:2], places[2][keep])
             self.assert_volume(self.write(grid, name), ramp.astype(numpy.float32), PLACES,
-                               words="uneven and was interpolated to the least of its steps")
+                               words="uneven and was interpolated to even steps")
         for z, words in ((numpy.r_[places[2][:29], 0], "neither rise nor fall"),
                          (numpy.r_[3, 3.01, places[2][2:]], "too uneven to interpolate")):
             self.assert_refused(self.write(self.make_grid(make_values(), *places[:2], z), name), words=words)

@@ -45,6 +45,14 @@ class TestInputs(splatmip.SplatmipTest):
         splatmip.write_meta(self.path("m.mha"))
         self.assert_kept(splatmip.write_vti(self.path("a.vti")), "m.mha", "--mask", self.path("m.mha"))
 
+    def test_list_of_slices(self):
+        header = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LIST 2\na.png\nb.png\n"
+        splatmip.write_file(self.path("a.mhd"), header.encode())
+        for name in ("a.png", "b.png"):
+            splatmip.write_file(self.path(name), b"\1\2\3\4")
+        for name in ("a.png", "b.png"):
+            self.assert_kept(self.path("a.mhd"), name)
+
     def test_dicom(self):
         """A slice, one of another series, and the file of which the others are found."""
         if not self.has_dicom():
@@ -101,12 +109,14 @@ class TestComplete(splatmip.SplatmipTest):
         return list(filter(None, sizes))
 
     def interrupt(self, number, is_ignored):
-        """Send a signal while a film is written. Returns the exit status."""
+        """Send a signal while a film is written, and all the time before if it is ignored. Returns the exit status."""
         handler = signal.SIG_IGN if is_ignored else signal.SIG_DFL
         with subprocess.Popen([splatmip.PROGRAM, *self.FILM], cwd=self.scratch.name, stdout=subprocess.DEVNULL,
                               preexec_fn=lambda: signal.signal(number, handler)) as program:
             while not self.find_sizes(".splatmip"):
                 self.assertIsNone(program.poll())
+                if is_ignored:
+                    program.send_signal(number)
                 time.sleep(0.001)
             program.send_signal(number)
         self.assertEqual(os.listdir(self.scratch.name), ["a.ogv"])

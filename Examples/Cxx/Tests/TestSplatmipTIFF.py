@@ -8,14 +8,9 @@ import ctypes.util
 import struct
 
 import numpy
+import tifffile
 
 import SplatmipTesting as splatmip
-
-try:
-    import tifffile
-except ImportError:
-    print("skipped: no tifffile")
-    raise SystemExit(0) from None
 
 UNIT = numpy.eye(3, 4)
 PLACES = numpy.array([[0.25, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 2, 0.0]]) * 1e-3

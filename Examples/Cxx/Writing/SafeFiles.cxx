@@ -14,11 +14,7 @@
 
 namespace
 {
-constexpr int Interrupts[] = { SIGINT, SIGTERM,
-#ifdef SIGHUP
-  SIGHUP
-#endif
-};
+constexpr int Interrupts[] = { SIGINT, SIGTERM, SIGHUP };
 
 /// The signals that were ignored when the program started, as SIGHUP is under nohup.
 bool IgnoredAtStart[std::size(Interrupts)] = {};
@@ -72,7 +68,7 @@ public:
     {
       // Ignored signals remain ignored at any moment.
       this->Handlers[n] = std::signal(Interrupts[n], SIG_IGN);
-      if (this->Handlers[n] != SIG_IGN && !IgnoredAtStart[n])
+      if (this->Handlers[n] != SIG_IGN)
       {
         std::signal(Interrupts[n], RemoveUnfinished);
       }
@@ -147,6 +143,17 @@ void KeepPermissions(const std::string& name, const std::string& output)
     std::filesystem::permissions(name, status.permissions(), error);
   }
 }
+}
+
+void KeepIgnoredSignals()
+{
+  for (std::size_t n = 0; n < std::size(Interrupts); ++n)
+  {
+    if (IgnoredAtStart[n])
+    {
+      std::signal(Interrupts[n], SIG_IGN);
+    }
+  }
 }
 
 void CheckWritable(const std::vector<std::string>& outputs)

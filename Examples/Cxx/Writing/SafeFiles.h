@@ -8,6 +8,12 @@
 #include <vector>
 
 /**
+ * Ignore the signals that were ignored when the program started, such as SIGHUP under nohup, even
+ * if a library handles them. Call it first.
+ */
+void KeepIgnoredSignals();
+
+/**
  * Refuse names of outputs that cannot be written: folders and devices, files without permission,
  * files in folders without permission. Leaves existing files as they are. Throws
  * std::runtime_error.

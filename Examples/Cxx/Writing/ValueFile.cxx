@@ -24,7 +24,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
-#include <stdexcept>
 
 namespace
 {

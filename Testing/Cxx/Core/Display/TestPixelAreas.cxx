@@ -169,12 +169,50 @@ public:
 
   Reading at(int x, int y) const
   {
-    Reading reading;
+    Reading all;
     for (std::size_t n = 0; n < this->Geometry.size(); ++n)
     {
+      Reading reading;
       this->readRows(static_cast<int>(n), { x, y }, reading);
+      // An image is not read beside its part of the picture, which the other images show.
+      all.isCertain &= reading.isCertain &&
+        (reading.hasSample || reading.values.empty() || this->Geometry.size() == 1);
+      all.hasSample |= reading.hasSample;
+      all.values.insert(all.values.end(), reading.values.begin(), reading.values.end());
+      all.nearest.insert(all.nearest.end(), reading.nearest.begin(), reading.nearest.end());
     }
-    return reading;
+    return all;
+  }
+
+  /// The largest sample less than two samples beside the area of a pixel.
+  double largestBeside(const glm::dvec2& pixel) const
+  {
+    double largest = Background;
+    for (std::size_t n = 0; n < this->Geometry.size(); ++n)
+    {
+      glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
+      for (const glm::dvec2& corner :
+        { glm::dvec2(-0.5, -0.5), { 0.5, -0.5 }, { 0.5, 0.5 }, { -0.5, 0.5 } })
+      {
+        const glm::dvec3 h = this->Geometry[n].screenToShear() * glm::dvec3(pixel + corner, 1.0);
+        const double far = std::numeric_limits<double>::infinity();
+        const glm::dvec2 p = h.z > 0.0 ? glm::dvec2(h) / h.z : glm::dvec2(far);
+        low = h.z > 0.0 ? glm::min(low, p) : glm::dvec2(-far);
+        high = glm::max(high, p);
+      }
+      for (int v = 0; v < this->All[n].height; ++v)
+      {
+        for (int u = 0; u < this->All[n].width; ++u)
+        {
+          const bool isBeside =
+            u > low.x - 2.0 && u < high.x + 2.0 && v > low.y - 2.0 && v < high.y + 2.0;
+          const bool isLarger =
+            isBeside && this->All[n].covers(u, v) && this->All[n].row<float>(v)[u] > largest;
+          largest = isLarger ? this->All[n].row<float>(v)[u] : largest;
+        }
+      }
+    }
+    return largest;
   }
 
   float sample(const splatting::ShearPixel& p) const
@@ -316,6 +354,8 @@ void forReadings(
 /// that is shown is in their areas, and where they read nothing they may show what is beside them.
 void testDefinition(Checks& check)
 {
+  // Values of 0 to 1 become float, and places differ by less than Reader::Rounding.
+  constexpr double rounding = 1e-6;
   Sightings read;
   const Sightings wide = forOverviews("definition", 200,
     [&](int n, const splatting::View& view, const Geometries& geometries, reference::Random& random)
@@ -325,15 +365,22 @@ void testDefinition(Checks& check)
       const auto largest = picture(images, geometries, Reduction::Maximum, view.viewport, random);
       const auto least = picture(images, geometries, Reduction::Minimum, view.viewport, random);
       const auto mean = picture(images, geometries, Reduction::Mean, view.viewport, random);
+      bool hasRead = false;
+      const Reader reader(images, geometries);
       forReadings(view, images, geometries,
         [&](std::size_t p, const Reading& reading)
         {
           const std::vector<double>& values = reading.values;
-          read.add(!values.empty());
+          hasRead = hasRead || !values.empty();
           check(!reading.hasSample || largest[p] != Background, "a sample in the area of pixel ", p,
             " is not shown");
           if (values.empty() || largest[p] == Background)
           {
+            check(largest[p] == Background ||
+                largest[p] <=
+                  reader.largestBeside(glm::dvec2(p % view.viewport.x, p / view.viewport.x)) +
+                    rounding,
+              "pixel ", p, " shows ", largest[p], ", which is not beside it");
             return;
           }
           double sum = 0.0;
@@ -346,24 +393,28 @@ void testDefinition(Checks& check)
           const float found[] = { largest[p], least[p], mean[p] };
           for (int reduction = 0; reduction < 3; ++reduction)
           {
-            check(std::abs(found[reduction] - expected[reduction]) < 1e-5, "pixel ", p, " shows ",
-              found[reduction], ", not ", expected[reduction], ", reduction ", reduction);
+            check(std::abs(found[reduction] - expected[reduction]) < rounding, "pixel ", p,
+              " shows ", found[reduction], ", not ", expected[reduction], ", reduction ",
+              reduction);
           }
         });
+      read.add(hasRead);
     });
   check(wide.areEnough(0.8), "only ", wide, " have wide pixels");
-  check(read.areEnough(0.05), "only ", read, " pixels read something");
+  check(read.areEnough(0.5), "only ", read, " have pixels that read something");
 }
 
 /// Every visible sample is in the area of some pixel.
 void testEverySample(Checks& check)
 {
+  Sightings seen;
   forOverviews("every sample", 100,
     [&](int n, const splatting::View& view, const Geometries& geometries, reference::Random& random)
     {
       const Images images = noise(geometries, n % 4 == 0, random);
       const auto found =
         picture(images, geometries, splatting::Reduction::Maximum, view.viewport, random);
+      bool isSeen = false;
       for (std::size_t i = 0; i < images.size(); ++i)
       {
         for (int v = 0; v < images[i].height; ++v)
@@ -384,12 +435,15 @@ void testEverySample(Checks& check)
                 ? std::max(shown, found[std::size_t(pixel.y) * view.viewport.x + pixel.x])
                 : shown;
             }
+            isSeen = isSeen || isInside;
             check(!isInside || shown >= images[i].row<float>(v)[u], "a sample of ",
               images[i].row<float>(v)[u], " is lost in ", shown);
           }
         }
       }
+      seen.add(isSeen);
     });
+  check(seen.areEnough(0.5), "only ", seen, " show a sample");
 }
 
 /// The location of a pixel is the largest of the samples that it reads, or that are nearest to what
@@ -417,16 +471,17 @@ void testLocations(Checks& check)
         check(alone.image == shown[p].image && alone.u == shown[p].u && alone.v == shown[p].v,
           "a pixel alone has another location");
       }
+      bool isLocated = false;
       const Reader reader(images, geometries);
       forReadings(view, images, geometries,
         [&](std::size_t p, const Reading& reading)
         {
           const splatting::ShearPixel& location = shown[p];
-          located.add(!reading.values.empty() && location.image >= 0);
           if (reading.values.empty() || location.image < 0)
           {
             return;
           }
+          isLocated = true;
           float best = -1.0f;
           bool isRead = false;
           for (const splatting::ShearPixel& nearest : reading.nearest)
@@ -438,8 +493,9 @@ void testLocations(Checks& check)
           check(isRead && reader.sample(location) == best, "the location of pixel ", p, " has ",
             reader.sample(location), ", not ", best);
         });
+      located.add(isLocated);
     });
-  check(located.areEnough(0.04), "only ", located, " pixels have a location");
+  check(located.areEnough(0.5), "only ", located, " have pixels with locations");
 }
 
 /// However many voxels a pixel is wide, and if it is so along one axis only, what it shows takes no
