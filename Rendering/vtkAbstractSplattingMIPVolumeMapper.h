@@ -41,7 +41,7 @@ public:
 
   ///@{
   /**
-   * Set/Get the projected components of scalars that have several, as in vtkSmartVolumeMapper.
+   * Set/Get which components of multi-component scalars are projected, as in vtkSmartVolumeMapper.
    * Default DISABLED. MAGNITUDE and COMPONENT use the first transfer functions of the property.
    * Magnitudes are float (double for 32- and 64-bit integers and double). Magnitudes and
    * interleaved components are copied.
@@ -76,11 +76,11 @@ public:
 
   ///@{
   /**
-   * Set/Get the quality mode. Default EXACT, clamped to [PREVIEW, EXACT]. In EXACT no maximum lies
-   * between samples; averages and dependent components are those of HIGH. In an overview, where
-   * pixels are wider than voxels in some direction, a pixel shows the extremum over its area (of
-   * averages the average), and EXACT shows voxels like PREVIEW. GetQualityModeUsed() returns the
-   * mode that is shown.
+   * Set/Get the quality mode. Default EXACT, clamped to [PREVIEW, EXACT]. EXACT misses no maximum
+   * between samples. It computes averages and dependent components as HIGH does. In overviews
+   * pixels are wider than voxels in some direction. They show the extremum (or the average) over
+   * their area, and EXACT shows voxels like PREVIEW. GetQualityModeUsed() returns the mode that is
+   * shown.
    */
   vtkSetClampMacro(QualityMode, int, PREVIEW, EXACT);
   vtkGetMacro(QualityMode, int);
@@ -96,7 +96,7 @@ public:
    * Set/Get whether a faster quality mode is used if frames take longer than the allocated render
    * time of the volume, as during interaction. Measured times decide: EXACT is replaced by HIGH,
    * HIGH by STANDARD, STANDARD by PREVIEW. The resolution stays. GetQualityModeUsed() returns the
-   * mode. Default on. Is ignored where rays are cast.
+   * mode. Default on. Is ignored if one of VTK's ray casters renders.
    */
   vtkSetClampMacro(AutoAdjustSampleDistances, vtkTypeBool, 0, 1);
   vtkGetMacro(AutoAdjustSampleDistances, vtkTypeBool);
@@ -118,9 +118,9 @@ public:
 
   ///@{
   /**
-   * Set/Get the reconstruction kernel h of HIGH along each axis, t in voxels [CS98, section 3].
-   * TRILINEAR (default): h(t) = 1-|t| for |t| < 1. COSINE_BELL: h(t) = (1 + cos(pi t / r)) / 2 for
-   * |t| < r = KernelRadius. Is ignored in the other modes.
+   * Set/Get the reconstruction kernel of HIGH [CS98, section 3]. h(t) is its factor along one axis,
+   * at a distance of t voxels. TRILINEAR (default): h(t) = 1-|t| for |t| < 1. COSINE_BELL: h(t) =
+   * (1 + cos(pi t / r)) / 2 for |t| < r = KernelRadius. Is ignored in the other modes.
    */
   vtkSetClampMacro(Kernel, int, TRILINEAR, COSINE_BELL);
   vtkGetMacro(Kernel, int);
@@ -132,8 +132,8 @@ public:
   ///@{
   /**
    * Set/Get the radius of the cosine bell in voxels. Default 1, clamped to [0.5, 1.5]. Weights are
-   * normalised to a sum of 1. Below 0.501 FootprintSampling 1 is treated as 2, because the bell
-   * would not contain the centre of the only sub-pixel.
+   * normalised to a sum of 1. If the radius is below 0.501, FootprintSampling 1 is treated as 2.
+   * Otherwise the bell would not contain the centre of the only sub-pixel.
    */
   vtkSetClampMacro(KernelRadius, double, 0.5, 1.5);
   vtkGetMacro(KernelRadius, double);
@@ -221,9 +221,9 @@ public:
   ///@{
   /**
    * Set/Get whether opaque geometry that was rendered before hides the volume behind it. Default
-   * on. Geometry inside the volume ends the rays of the shear image, in EXACT those of the screen's
-   * pixels. In modes other than EXACT its edges are as soft as the pixels of the shear image are
-   * large.
+   * on. Geometry inside the volume ends the rays of the shear image. In EXACT it ends the rays of
+   * screen pixels. In modes other than EXACT its edges are blurred by about one pixel of the shear
+   * image.
    */
   vtkSetMacro(IntermixIntersectingGeometry, vtkTypeBool);
   vtkGetMacro(IntermixIntersectingGeometry, vtkTypeBool);
@@ -244,10 +244,10 @@ public:
   ///@{
   /**
    * Set/Get the acceleration of global maxima in PREVIEW, STANDARD and HIGH. Default AUTO, clamped
-   * to [AUTO, SORTED_VOLUME]. The picture has the same bits with all of them, except for
-   * LineTolerance, CullBelowWindow and the sign of zeros. Where an acceleration is not supported,
-   * BRICKS or DENSE is used; see GetAccelerationUsed() and limits.md. Is ignored in EXACT, except
-   * in overviews.
+   * to [AUTO, SORTED_VOLUME]. All values give the same picture, bit for bit, if LineTolerance is 0
+   * and CullBelowWindow is off. Only the sign of zeros may differ. Where an acceleration is not
+   * supported, BRICKS or DENSE is used; see GetAccelerationUsed() and limits.md. Is ignored in
+   * EXACT, except in overviews.
    */
   vtkSetClampMacro(Acceleration, int, AUTO, SORTED_VOLUME);
   vtkGetMacro(Acceleration, int);
@@ -262,10 +262,10 @@ public:
 
   ///@{
   /**
-   * Set/Get the tolerance N of delta encoding [CS98, section 4], in grey levels of 255. A voxel v
-   * may join a chain whose value differs by up to N (high - v) / 255, where high is the largest
-   * scalar. Pixels of the shear image differ by no more. Default 0: no delta encoding. Clamped to
-   * [0, 64]. Is ignored by accelerations without chains.
+   * Set/Get the tolerance N of delta encoding [CS98, section 4], in units of 1/255 of the scalar
+   * range. A voxel v may join a chain whose value differs by up to N (high - v) / 255, where high
+   * is the largest scalar. Pixels of the shear image change by at most the same amount. Default 0:
+   * no delta encoding. Clamped to [0, 64]. Is ignored by accelerations without chains.
    */
   vtkSetClampMacro(LineTolerance, double, 0.0, 64.0);
   vtkGetMacro(LineTolerance, double);
@@ -273,9 +273,9 @@ public:
 
   ///@{
   /**
-   * Set/Get whether scalars from the lowest one up that have the same colour and opacity are raised
-   * to the largest of them. Voxels that cannot exceed it are skipped. In modes other than EXACT
-   * edges against the background become brighter by up to half a pixel. Default off. Is ignored with
+   * Set/Get whether low scalars are clamped. The limit is the largest scalar up to which all
+   * scalars have the same colour and opacity. Voxels that cannot exceed it are skipped. In modes
+   * other than EXACT edges move outwards by up to half a pixel. Default off. Is ignored with
    * dependent components, MaximumType other than GLOBAL, RecordLocations, DepthCoding, WriteDepth.
    */
   vtkSetMacro(CullBelowWindow, vtkTypeBool);
@@ -297,9 +297,10 @@ public:
   ///@{
   /**
    * Set/Get whether projections record sample positions for GetLocations(). Default off;
-   * DepthCoding and WriteDepth record them in any case. A ray's sample is the one whose value it
-   * shows, the nearest to the viewer of equal ones. Of independent components the first is
-   * recorded, of dependent ones the last. Averages have no positions and report a warning.
+   * DepthCoding and WriteDepth record them in any case. The position of a pixel is that of the
+   * sample whose value it shows. Of equal samples the nearest to the viewer is recorded. The
+   * position is that of the first independent component, or of the last dependent component.
+   * Averages have no positions and report a warning.
    */
   vtkSetMacro(RecordLocations, vtkTypeBool);
   vtkGetMacro(RecordLocations, vtkTypeBool);

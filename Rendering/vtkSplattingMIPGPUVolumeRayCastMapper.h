@@ -30,15 +30,16 @@
  * UseDepthPass, partitions, a shared depth texture, the range types of transfer functions and
  * label-map masks. With AutoAdjustSampleDistances the quality mode is reduced, not the resolution.
  *
- * Selections find the volume as a whole, where its picture is not transparent. Errors and warnings
- * of the splatting mapper are sent to observers of this mapper. Events are
+ * Selections contain the whole volume if the picture is not transparent at the selected pixels.
+ * Errors and warnings of the splatting mapper are sent to observers of this mapper. Events are
  * VolumeMapperRenderStartEvent, VolumeMapperRenderEndEvent and, if ReportProgress is on,
- * VolumeMapperRenderProgressEvent (call data: pointer to a double from 0 to 1). Changes of the
- * rendering mapper, with the reason, are logged with vtkLogger::VERBOSITY_1.
+ * VolumeMapperRenderProgressEvent (call data: pointer to a double from 0 to 1). When rendering
+ * switches between the splatting mapper and the superclass, this and the reason are logged with
+ * vtkLogger::VERBOSITY_1.
  *
- * The superclass renders a copy of the property, in which gray functions are RGB functions of the
- * same values, because it would convert the functions of the property itself. With a vtkMultiVolume
- * it gets the properties themselves.
+ * The superclass would convert the gray functions of the volume's property to RGB. It therefore
+ * renders a copy of the property, in which RGB functions with the same values replace gray
+ * functions. With a vtkMultiVolume it gets the properties themselves.
  *
  * @sa vtkSplattingMIPVolumeMapper vtkSmartVolumeMapper vtkObjectFactory
  */
@@ -112,7 +113,8 @@ protected:
   void GPURender(vtkRenderer* ren, vtkVolume* vol) override;
 
   /**
-   * Get why a volume is not splatted, as the end of a sentence, or nullptr.
+   * Get the reason why a volume is not splatted, or nullptr if it is splatted. The text completes a
+   * sentence that ends in "because".
    */
   const char* ReasonNotToSplat(vtkVolume* vol);
 

@@ -320,8 +320,9 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   }
   if (in.Begins("coarse", data.Source.UsesLargerSteps()))
   {
-    vtkWarningMacro(<< "The rectilinear grid is resampled to larger steps than its least, which is "
-                       "too small for that: small cells may be lost. Extract a part of it.");
+    vtkWarningMacro(
+      << "The least step of the rectilinear grid is too small for resampling. It is resampled "
+         "with larger steps, so that small cells may be lost: extract a part of it.");
   }
   if (!isProjection(this->BlendMode))
   {
@@ -363,8 +364,9 @@ void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
   Internals& in = *this->Internal;
   if (in.Begins("mean", needsLocations(this) && this->BlendMode == AVERAGE_INTENSITY_BLEND))
   {
-    vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
-                       "one, no depth coding and no depths: choose another blend mode.");
+    vtkWarningMacro(
+      << "An average is computed from all samples of a ray, so it has no location, no "
+         "depth coding and no depth: choose another blend mode.");
   }
   if (this->GetDepthCoding() && !ren->GetSelector())
   {

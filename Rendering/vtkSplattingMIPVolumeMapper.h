@@ -18,8 +18,8 @@
  * type. ScalarMode, SelectScalarArray() and VectorMode choose the scalars. NaN, voxels hidden by
  * ghost arrays and voxels hidden by MaskInput are no samples. A ray without samples is transparent.
  * Views may be parallel or perspective, with the eye also inside the volume. Up to four independent
- * components are projected separately; their colours are added. Of dependent components the last
- * is projected; the others are taken from its sample.
+ * components are projected separately; their colours are added. If components are dependent, the
+ * last one is projected. The values of the others are taken at the position of its sample.
  *
  * The blend modes MAXIMUM_INTENSITY (default), MINIMUM_INTENSITY and AVERAGE_INTENSITY are
  * splatted. An average is the mean of a ray's samples within AverageIPScalarRange. Other blend
@@ -30,8 +30,8 @@
  * geometry cut the rays. EXACT cuts them at the exact positions. The other modes, and overviews
  * (pixels wider than voxels), cut them by whole slices.
  *
- * vtkHardwareSelector and vtkPropPicker select the volume where its picture is not transparent, as
- * composite index 1, point 0 and cell 0. For voxels see PickVoxel().
+ * vtkHardwareSelector and vtkPropPicker select the whole volume where its picture is not
+ * transparent. The selection has composite index 1, point 0 and cell 0. For voxels see PickVoxel().
  *
  * The mapper invokes VolumeMapperRenderStartEvent, VolumeMapperRenderProgressEvent (call data:
  * pointer to a double from 0 to 1; only if it projects) and VolumeMapperRenderEndEvent, and
@@ -67,8 +67,8 @@ public:
 
   /**
    * Get the quality mode that the last projection shows: QualityMode, or a faster one (see
-   * AutoAdjustSampleDistances). PREVIEW for EXACT in overviews, HIGH for averages and dependent
-   * components in EXACT. EXACT before the first projection.
+   * AutoAdjustSampleDistances). If QualityMode is EXACT, returns PREVIEW in overviews, and HIGH for
+   * averages and dependent components. EXACT before the first projection.
    */
   int GetQualityModeUsed();
 
@@ -82,9 +82,9 @@ public:
    * Get the sample positions of the last render as point arrays, with one point for each pixel of
    * the viewport. Extent and coordinates are pixels of the window. "Voxel", three ints: i, j, k
    * relative to the first voxel of the image. "Depth", float: the distance from the camera in world
-   * units. "Position", three doubles: the world point. Pixels without a visible sample have voxel
-   * -1 and NaN. Returns nullptr if RecordLocations is off (with an error), or if the volume is not
-   * shown or its scalars have changed. Definitions: contract.md.
+   * units. "Position", three doubles: the world point. Pixels without a visible sample have -1 in
+   * "Voxel", and NaN in "Depth" and "Position". Returns nullptr if RecordLocations is off (with an
+   * error), or if the volume is not shown or its scalars have changed. Definitions: contract.md.
    */
   vtkImageData* GetLocations();
 
@@ -92,9 +92,10 @@ public:
   /**
    * Get the world position, the voxel (i, j, k relative to the first voxel of the image) or the
    * value of the sample that a pixel of the window shows; see GetLocations(). (x, y) are display
-   * coordinates as of vtkRenderWindowInteractor::GetEventPosition(). Without RecordLocations one
-   * pixel is projected. Return false (PickValue(): NaN) and leave the output unchanged if there is
-   * no sample, the volume is no longer shown, or its scalars have changed; see contract.md.
+   * coordinates, as returned by vtkRenderWindowInteractor::GetEventPosition(). If RecordLocations
+   * is off, this pixel is projected again. Return false (PickValue(): NaN) and leave the output
+   * unchanged if there is no sample, the volume is no longer shown, or its scalars have changed;
+   * see contract.md.
    */
   bool PickWorldPosition(int x, int y, double position[3]);
   bool PickVoxel(int x, int y, int ijk[3]);
@@ -146,8 +147,8 @@ public:
   vtkIdType GetNumberOfProjections();
 
   /**
-   * Get how many seconds the last projection took: from the volume to the shear image, in EXACT to
-   * the values of the picture's pixels.
+   * Get the time of the last projection in seconds. It covers the steps from the volume to the
+   * shear image, or in EXACT to the values of the screen's pixels.
    */
   double GetProjectionTime();
 
@@ -185,10 +186,10 @@ public:
   ///@}
 
   /**
-   * Update the input. With several ranks also find the bounds of all pieces, for cameras;
-   * collective. Call it before the first frame and after the input moves, because a volume is
-   * culled by its old bounds. Returns false, with an error, if the pieces do not belong to one
-   * image.
+   * Update the input. With several ranks this call is collective. It also finds the bounds of all
+   * pieces, which cameras need. Call it before the first frame and after the input moves, because a
+   * volume is culled by its old bounds. Returns false, with an error, if the pieces do not belong
+   * to one image.
    */
   bool UpdateWhole();
 

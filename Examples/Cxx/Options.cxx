@@ -126,17 +126,17 @@ void DeclareVolumeOptions(CLI::App& app, Options& options)
     ->type_name("FILE");
   Group group(app, "Input");
   group.Add("--series", options.Read.Series, "NUMBER", Between(1, 99999),
-    "Number of a DICOM series in the list that is printed. Default: the largest, or that of the "
-    "file");
+    "Number of a DICOM series in the printed list. Default: that of the file, or the largest");
   group.Add("--frame", options.Read.Frame, "NUMBER", Between(1, 99999),
-    "Number of a volume of several at the same place, such as times or echoes. Default: the first");
+    "Number of the volume to show, where the file has several, such as times or echoes. Default: "
+    "the first");
   group.Add("--channel", options.Read.Channel, "NUMBER", Between(1, 99999),
     "Number of a channel of a TIFF stack by ImageJ or OME. Default: the first");
   group.Add("--array", options.Read.Array, "NAME", CLI::Validator(),
     "Name of an array of a VTK file. Default: the active one, or the first");
   group.Add("--component", options.Read.Component, "NUMBER", CLI::Validator(CheckComponentWord, ""),
-    "Number of a value of several in each voxel; or luminance, for red, green and blue; or "
-    "magnitude, for vectors. Default: the first");
+    "Number of the component to show; or luminance, for red, green and blue; or magnitude, for "
+    "vectors. Default: the first");
 }
 
 void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
@@ -153,12 +153,12 @@ void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
   group.AddChoice("--blend", words.Blend, "BLEND", { "max", "min", "mean" },
     "Show the largest value along each ray, the least or the mean");
   group.AddFlag("--depth-shading", options.Projection.DepthShading,
-    "Dim values with the distance before the largest is found");
+    "Dim values by their distance from the viewer, then find the largest");
   group.Add("--slab", options.Projection.Slab, "MM", Between(1e-6, 1e9),
     "Thickness of a slab across the view, in the middle of the volume. Default: the whole volume");
   group
     .Add("--slab-offset", options.Projection.SlabOffset, "MM", Between(-1e9, 1e9),
-      "Distance by which the slab is moved to the viewer")
+      "Distance by which the slab is moved towards the viewer")
     ->needs("--slab");
   group
     .Add("--crop", words.Crop, "MM", Between(-1e9, 1e9),
@@ -176,8 +176,8 @@ void DeclareLookOptions(CLI::App& app, Options& options)
 {
   Group group(app, "Colours");
   group.Add("--window", options.Look.Window, "VALUE", Between(1e-30, 1e30),
-    "Range of values from black to white. Default: the file's, or from the median value to the one "
-    "that one voxel in 2000 exceeds");
+    "Range of values from black to white. Default: that of the file, or from the median to the "
+    "value that one voxel in 2000 exceeds");
   group.Add("--level", options.Look.Level, "VALUE", Between(-1e30, 1e30),
     "Value in the middle of that range. Default: as for --window");
   group.AddChoice("--colormap", options.Look.Colormap, "COLORMAP", GetColormapNames(), "Colormap");
@@ -234,7 +234,7 @@ void DeclareOutputOptions(CLI::App& app, Options& options, Words& words)
     "Leave out the scale bar and the letters for the patient's sides, which are drawn if the file "
     "has voxel size and orientation");
   group.AddFlag("--compare", options.Compare,
-    "Also time the modes beside VTK's ray caster (needs a display; takes a while)");
+    "Also measure the times of the modes and of VTK's ray caster (needs a display; takes a while)");
   group.AddFlag("--interactive", options.Interactive,
     "Open a window instead of writing: drag to turn, keys 1 to 4 switch the mode, q quits");
 }

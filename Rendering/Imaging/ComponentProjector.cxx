@@ -148,9 +148,8 @@ const char* ComponentProjector::ValidateVoxels(Quality quality)
       return channel.Index.range().magnitude > most;
     });
   return isTooLarge
-    ? "The scalars have magnitudes above 1e37 (of double 1e303; in exact mode beside "
-      "infinities 1e18 and 1e150), so that sums overflow: scale them, and set voxels "
-      "without a value to NaN."
+    ? "The scalars have magnitudes above 1e37 (double: 1e303; with infinities in exact mode "
+      "1e18 and 1e150), so that sums overflow: scale them, and set voxels without a value to NaN."
     : nullptr;
 }
 

@@ -61,8 +61,8 @@ public:
   ScalarType VolumeType() const { return this->Channels.front().Index.volume().type; }
   const VolumeIndex::Range& RangeOfPiece(std::size_t component);
 
-  /// Sets the interface to the other ranks, if the volumes are pieces; nullptr: they are whole. It
-  /// must outlive its use.
+  /// Sets the interface to the other ranks, if the volumes are pieces; nullptr: they are whole. The
+  /// interface must exist while it is used.
   void SetRanks(PieceExchange* ranks);
 
   /// An error message if voxels are too large for the arithmetic, or nullptr.

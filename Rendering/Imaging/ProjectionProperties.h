@@ -50,9 +50,9 @@ const char* validate(Object& object)
     { object.GetCropping() && !finite(object.GetCroppingRegionPlanes(), 6),
       "CroppingRegionPlanes are not finite: set them to places along the image's axes." },
     { !std::isfinite(object.GetKernelRadius()),
-      "KernelRadius is not a number: set it to 0.5 to 1.5." },
+      "KernelRadius is not a number: choose a value from 0.5 to 1.5." },
     { !std::isfinite(object.GetLineTolerance()),
-      "LineTolerance is not a number: set it to 0 to 64." },
+      "LineTolerance is not a number: choose a value from 0 to 64." },
     { isMaximum && object.GetMaximumType() == Object::LOCAL &&
         std::isnan(object.GetLocalMaximumThreshold()),
       "LocalMaximumThreshold is not a number: set it to the least scalar of local maxima." },

@@ -89,8 +89,8 @@ const char* validate(const TurnSettings& s)
 }
 
 const char* const TurnOfViews::Degenerate =
-  "The camera flattens the volume to a line or has no extent: give it a parallel scale, or a view "
-  "angle, above 0 and a view-up that is not its direction.";
+  "The camera flattens the volume to a line or has no extent: set its parallel scale or "
+  "its view angle above 0, and a view-up that is not parallel to its direction.";
 
 const char* TurnOfViews::Set(const TurnSettings& settings)
 {

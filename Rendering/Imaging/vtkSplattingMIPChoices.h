@@ -5,14 +5,15 @@
  *
  * VectorModes, the same values as vtkSmartVolumeMapper's:
  * - DISABLED: all components
- * - MAGNITUDE: their Euclidean length; a single component itself
+ * - MAGNITUDE: the Euclidean length of all components; a single component is projected unchanged
  * - COMPONENT: the component that VectorComponent names
  *
  * QualityModes, what a pixel shows [CS98, sections 2 and 3]. Modes from PREVIEW to HIGH compute the
  * pixels of a shear image. EXACT computes the pixels of the screen, cell by cell.
  * - PREVIEW: the largest voxel that the ray crosses: an exact voxel traversal
- * - STANDARD: the largest average of a slice of boxes over the pixel's area (3x3 weights)
- * - HIGH: the same of the volume interpolated with Kernel (5x5 weights, three slices)
+ * - STANDARD: the largest average over the pixel's area in one slice; voxels are boxes (3x3
+ *   weights)
+ * - HIGH: like STANDARD, but voxels are interpolated with Kernel (5x5 weights in three slices)
  * - EXACT: the extremum of the trilinear volume on the ray [Sakas et al. 1995]
  *
  * Kernels, the reconstruction kernels of HIGH: TRILINEAR, COSINE_BELL; see SetKernel().
@@ -23,8 +24,8 @@
  * - LOCAL: the first local maximum, from the viewer, that reaches a threshold
  *
  * Accelerations, which voxels a projection skips, and in which order it processes the others.
- * Chains are equal voxels along rows [CS98, section 4]. Sorted chains are used in PREVIEW, LINES in
- * other modes.
+ * Chains are equal voxels along rows [CS98, section 4]. SORTED_LINES and SORTED_VOLUME are used in
+ * PREVIEW only. In other modes LINES replaces them.
  * - AUTO: BRICKS where they skip enough tiles, else DENSE
  * - DENSE: all voxels, in memory order
  * - BRICKS: skips tiles of 8x4 pixels that no brick of 8x4x4 voxels can raise

@@ -73,7 +73,7 @@ public:
   ScalarSource Source;
   ComponentProjector Components;
   TurnOfViews Turn;
-  splatting::Locator::Arrays Locations;                   // of the output
+  splatting::Locator::Arrays Locations; // of the output
   struct ViewOfTurn
   {
     int slice; // of the output
@@ -464,8 +464,8 @@ int vtkSplattingMIPProjection::RequestData(
   }
   else if (this->RecordLocations && this->BlendMode == AVERAGE_INTENSITY_BLEND)
   {
-    vtkWarningMacro(<< "Averages are of all samples of a ray, so that there are no locations of "
-                       "them: choose maxima or minima, or turn RecordLocations off.");
+    vtkWarningMacro(<< "An average is computed from all samples of a ray, so it has no location: "
+                       "choose maxima or minima, or turn RecordLocations off.");
   }
   if (!problem.empty() || in.ViewsDone < in.Turn.Views())
   {

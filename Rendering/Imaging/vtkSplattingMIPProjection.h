@@ -9,7 +9,7 @@
  * as Hounsfield units. It needs no display, no render window and no OpenGL. One Update() computes
  * one view or all views of a turn.
  *
- * The input has point or cell scalars of any numeric type but bits, with 1 to 4 components. The
+ * The input has point or cell scalars with 1 to 4 components, of any numeric type except bits. The
  * array is that of SetInputArrayToProcess(), by default the scalars. NaN and voxels that ghost
  * arrays hide are no samples.
  *
@@ -19,21 +19,21 @@
  *
  * Origin, spacing and direction matrix place the output in the world, on the plane through the
  * focal point across the view. Parallel views with a Slab lie on the slab's middle plane. x is
- * right, y is up, z points to the viewer. A slice is as thick as the Slab, else 1. The first view
- * of a turn defines the matrix. The field data array "ViewAngle" has the angle of each view in
- * degrees. VTK's XML writers keep the placement; vtkNIFTIImageWriter needs it as a matrix, see
- * contract.md.
+ * right, y is up, z points to the viewer. The spacing along z is SlabThickness if Slab is on, else
+ * 1. The first view of a turn defines the matrix. The field data array "ViewAngle" has the angle of
+ * each view in degrees. VTK's XML writers keep the placement; vtkNIFTIImageWriter needs it as a
+ * matrix, see contract.md.
  *
- * Rays are parallel, or those of a perspective Camera. They end with the volume. Slab and Cropping
- * cut them.
+ * Rays are parallel, or those of a perspective Camera. They end at the border of the volume. Slab
+ * and Cropping cut them.
  *
- * Progress runs from 0 to 1 over all views. AbortExecute (with VTK 9.3 and newer also that of
- * filters upstream) is checked while a view is projected; the output is then empty. After
+ * Progress runs from 0 to 1 over all views. While a view is projected, AbortExecute is checked
+ * (with VTK 9.3 and newer also that of filters upstream). If it is set, the output is empty. After
  * AbortExecuteOff() the next Update() projects again. Errors, also lack of memory, are reported
  * once and leave the output empty.
  *
  * The same input gives the same bits for any number of threads and any instruction set. Each slice
- * has the bits of the single view by the camera of GetViewCamera(). In modes other than EXACT,
+ * has the same bits as a single view with the camera of GetViewCamera(). In modes other than EXACT,
  * opposite views of a whole turn with an even number of views share a projection if MaximumType
  * does not depend on the viewer's side and RecordLocations is off.
  *
@@ -149,9 +149,9 @@ public:
 
   ///@{
   /**
-   * Set/Get the direction, in the world, of the line through the focal point about which the viewer
-   * turns: counterclockwise where it points to the eye, as in vtkCamera::Azimuth(). Default (0, 0,
-   * 0): the view-up.
+   * Set/Get the direction of the rotation axis in world coordinates. The axis passes through the
+   * focal point. The viewer turns counterclockwise as seen from the tip of the axis, as in
+   * vtkCamera::Azimuth(). Default (0, 0, 0): the view-up.
    */
   vtkSetVector3Macro(RotationAxis, double);
   vtkGetVector3Macro(RotationAxis, double);
@@ -160,7 +160,7 @@ public:
   ///@{
   /**
    * Set/Get the angle in degrees over which the views are spread, any number but 0. Default 360.
-   * The last view is one step before it, so that a whole turn can be repeated.
+   * The last view is one step before this angle, so that a whole turn can be shown in a loop.
    */
   vtkSetMacro(TotalAngle, double);
   vtkGetMacro(TotalAngle, double);
@@ -239,7 +239,7 @@ public:
 
   ///@{
   /**
-   * Set/Get the projected components of scalars that have several; see
+   * Set/Get which components of multi-component scalars are projected; see
    * vtkSplattingMIPVolumeMapper::SetVectorMode(). Default DISABLED: each component by itself.
    * VectorComponent is 0 by default, clamped to [0, 3].
    */
@@ -269,9 +269,9 @@ public:
 
   ///@{
   /**
-   * Set/Get cropping as in vtkVolumeMapper: which of the 27 regions between six planes along the
-   * input's axes, in its coordinates, are projected. Defaults: off, planes 0 and 1, flags
-   * VTK_CROP_SUBVOLUME (the middle region), clamped to [0, 0x7ffffff].
+   * Set/Get cropping as in vtkVolumeMapper. Six planes, two across each axis of the input and in
+   * its coordinates, bound 27 regions. The flags select the regions that are projected. Defaults:
+   * off, planes 0 and 1, flags VTK_CROP_SUBVOLUME (the middle region), clamped to [0, 0x7ffffff].
    */
   vtkSetMacro(Cropping, vtkTypeBool);
   vtkGetMacro(Cropping, vtkTypeBool);
@@ -304,8 +304,9 @@ public:
   /**
    * Set/Get whether the output has sample positions as the point arrays "Voxel", "Depth" and
    * "Position"; see vtkSplattingMIPVolumeMapper::GetLocations(). Default off. Without a Camera,
-   * depths are distances from a plane that lies the diagonal of the volume's bounds before the
-   * focal point. Averages have no positions and report a warning.
+   * depths are distances from a plane in front of the focal point. The plane's distance from the
+   * focal point is the diagonal of the volume's bounds. Averages have no positions and report a
+   * warning.
    */
   vtkSetMacro(RecordLocations, vtkTypeBool);
   vtkGetMacro(RecordLocations, vtkTypeBool);
@@ -338,9 +339,9 @@ public:
   const char* GetInstructionSet();
 
   /**
-   * Set a camera to that of a view of the last Update(), from 0 to NumberOfViews - 1, for drawing
-   * over its slice. Its parallel scale or view angle is that of the slice's height. Returns false
-   * and leaves the camera unchanged if there is no such view.
+   * Set `camera` to the camera of a view, 0 to NumberOfViews - 1, of the last Update(). It serves
+   * to draw over the slice of this view. Its parallel scale or view angle corresponds to the height
+   * of the slice. Returns false and leaves the camera unchanged if there is no such view.
    */
   bool GetViewCamera(int view, vtkCamera* camera);
 

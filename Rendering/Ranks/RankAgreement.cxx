@@ -188,8 +188,8 @@ std::string problemOf(const std::vector<RankReport>& reports, bool ofGrids)
   }
   if (!ofGrids && any([&](const RankReport& r) { return !r.isEmpty() && !sameScalars(r, *first); }))
   {
-    return "The ranks' scalars differ in type, number of components, or in being of cells or "
-           "points (pieces with hidden voxels are float): give all pieces the same.";
+    return "The ranks' scalars differ in type (pieces with hidden voxels are float), in the number "
+           "of components, or in whether they belong to cells or points: give all pieces the same.";
   }
   return {};
 }
@@ -236,14 +236,15 @@ RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& prob
   }
   else if (mapper->GetDataSetInput() && mapper->GetDataSetInput()->GetNumberOfPoints() > 0)
   {
-    report.setProblem("Several ranks project pieces of a vtkImageData only: resample the input.");
+    report.setProblem(
+      "With several ranks the input must be a piece of a vtkImageData: resample the input.");
   }
   const int blend = mapper->GetBlendMode();
   if (blend != vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND &&
     blend != vtkVolumeMapper::MINIMUM_INTENSITY_BLEND)
   {
     report.setProblem(
-      "Several ranks project maxima and minima only, because sums and what is blended "
+      "With several ranks only maxima and minima are projected, because sums and blended values "
       "depend on the order of pieces: choose another blend mode.");
   }
   else if (blend == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND &&
@@ -509,8 +510,8 @@ void describeScalars(ComponentProjector& components, const ScalarSource& source,
   if (components.AreDependent())
   {
     report.setProblem(
-      "Several ranks do not project dependent components, which go with the place of "
-      "the maximum: set IndependentComponents of the vtkVolumeProperty.");
+      "With several ranks dependent components are not projected, because they are taken from the "
+      "position of the maximum: set IndependentComponents of the vtkVolumeProperty.");
   }
 }
 }

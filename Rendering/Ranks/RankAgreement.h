@@ -122,8 +122,8 @@ private:
 };
 
 /**
- * The report of a rank on its mapper's input: its grid and its errors, also those that only concern
- * several ranks. describeScalars() adds the scalars.
+ * The report of a rank on its mapper's input. It has the grid and the errors of the input, also
+ * errors that occur only with several ranks. describeScalars() adds the scalars.
  */
 RankReport reportOf(vtkSplattingMIPVolumeMapper* mapper, const std::string& problem);
 
@@ -135,7 +135,8 @@ void describeScalars(
 std::uint64_t viewHash(
   vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume);
 
-/// The vtkImageData of which a mapper projects a piece; nullptr if it has none, or no points.
+/// The input of a mapper, which is a piece of the whole vtkImageData. nullptr if the mapper has no
+/// such input, or if the input has no points.
 vtkImageData* pieceOf(vtkSplattingMIPVolumeMapper* mapper);
 }
 

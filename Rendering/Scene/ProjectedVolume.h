@@ -54,8 +54,8 @@ public:
   void Prepare(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkVolume* volume);
 
   /**
-   * Projects, unless the last projection shows the same, in the mode that is chosen or a better one
-   * up to QualityMode. There is no projection after an abort.
+   * Projects in the chosen mode. Does nothing if the last projection shows the same in this mode,
+   * or in a better one up to QualityMode. There is no projection after an abort.
    * @return  false if the view is invalid
    */
   bool Project(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkRenderer* renderer,

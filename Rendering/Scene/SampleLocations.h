@@ -72,9 +72,9 @@ public:
   /// Stores how this frame views the volume.
   void Remember(const View& view, const VolumeGrid& grid, vtkVolume* volume, vtkRenderer* renderer);
 
-  /// The sample of a pixel of the last frame's window. Pick() returns false if no picture that is
-  /// still shown, and whose voxels exist, has a sample there. Without winners it projects the
-  /// pixel.
+  /// The sample of a pixel of the last frame's window. Pick() searches the pictures that are still
+  /// shown and whose voxels exist. It returns false if none has a sample at this pixel. Without
+  /// winners it projects the pixel.
   struct Sample
   {
     glm::dvec3 position;

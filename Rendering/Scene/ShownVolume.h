@@ -35,8 +35,9 @@ public:
   /// May be deleted: compare it only.
   const vtkRenderWindow* Window() const { return this->ItsWindow; }
 
-  /// Whether no later frame of the renderer omitted the volume, and both exist, are still combined
-  /// and visible.
+  /// Whether later frames of the renderer also showed the volume. Returns false if renderer or
+  /// volume was deleted, if the volume was removed from the renderer or the renderer from its
+  /// window, or if the volume is invisible.
   bool IsShown() const;
 
 private:

@@ -73,7 +73,7 @@ public:
       this->Spread = { this->reachOf(0, 0.0), this->reachOf(1, 0.0) };
       return;
     }
-    // Where the box may contain the eye, or what lies beside it, pixels have no bounds.
+    // If the box may contain the eye or points beside the eye, its projection has no bounds.
     this->Near = !(this->T - this->Reach > 1e-3 * this->T);
     if (!this->Near)
     {
@@ -87,11 +87,12 @@ public:
   bool isNear() const { return this->Near; }
   const glm::dvec2& pixel() const { return this->Pixel; }
   const glm::dvec2& spread() const { return this->Spread; }
-  /// The parameter of the middle, and how much more or less it is in the box.
+  /// t() is the parameter t at the middle of the box. reach() is the largest difference from it in
+  /// the box.
   double t() const { return this->T; }
   double reach() const { return this->Reach; }
 
-  /// Those out of a rectangle.
+  /// Returns those of the pixels that are in a rectangle.
   PixelRectangle within(const PixelRectangle& pixels) const
   {
     constexpr double margin = 0.01;
@@ -107,7 +108,8 @@ public:
   }
 
 private:
-  /// How much row r, less `share` times the last one, changes within the box.
+  /// The largest change, from the box's middle, of row r of toPixel() minus `share` times its last
+  /// row.
   double reachOf(int r, double share) const
   {
     const glm::dmat3& m = this->Rays.toPixel();

@@ -25,10 +25,11 @@ constexpr int BrickCells = 2 * BlockCells;
 /**
  * A volume, or a piece of one, as cells.
  *
- * Along an axis cell c lies between voxels c - shift and c - shift + 1, which are clamped to the
- * volume: where the field ends at the outermost voxels' sides (of cell scalars, and along axes with
- * one voxel) there is a cell beyond each end, of which the inner half is in the field. Cells and
- * bricks are counted in the whole volume, so that those of pieces are those of the whole.
+ * Along an axis, cell c lies between voxels c - shift and c - shift + 1, which are clamped to the
+ * volume. For cell scalars, and along axes with one voxel, the field ends at the sides of the
+ * outermost voxels. Such an axis has one more cell at each end. The inner half of this cell is in
+ * the field. Cells and bricks are numbered in the whole volume, so a piece has the same cells and
+ * bricks as the whole.
  */
 struct CellGrid
 {
@@ -56,13 +57,15 @@ struct CellGrid
   }
   /// The first cell of a brick.
   glm::ivec3 brickCell(std::uint32_t brick) const;
-  /// The voxels of the piece between which an axis' cells [from, to) lie: first and last.
+  /// The first and the last voxel of the piece, along an axis, that are corners of cells [from,
+  /// to).
   glm::ivec2 voxelsOf(int axis, int from, int to) const;
 };
 
 /**
- * The largest voxel (of minima the least; NaN where all are hidden) of each brick of 8^3 cells and
- * each of its eight blocks of 4^3, with the voxels of their far faces; of the volume's type.
+ * The largest voxel of each brick of 8^3 cells, and of each of its eight blocks of 4^3 cells. The
+ * voxels of their far faces count, too. For minima it is the least voxel. It is NaN where all
+ * voxels are hidden. It has the volume's type.
  */
 struct CellBounds
 {

@@ -43,8 +43,7 @@ public:
   CellProjector();
   ~CellProjector();
 
-  /// A ray that crosses the field between its ends over less than this, in steps of t, has no
-  /// sample.
+  /// A ray has no sample if its part in the field, between its ends, is shorter than this in t.
   static constexpr double ShortestRay = 0x1p-20;
 
   /**
@@ -62,9 +61,10 @@ public:
     const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], ScreenScalars& screen);
 
   /**
-   * The same of a piece of a volume, or of nothing. Pixels have values that several pieces reduce:
-   * the largest of each pixel (of minima, too), NaN being none, and the least depth of the pieces
-   * that have it. finish() turns them into scalars. Not for Reduction::Local.
+   * Like project(), but for a piece of a volume, or for no voxels. The results are values, not
+   * scalars. To combine pieces, take the largest value of each pixel, also for minima; NaN is no
+   * value. Its depth is the least depth of the pieces that have this value. finish() turns them
+   * into scalars. Not for Reduction::Local.
    */
   bool projectPiece(CellIndex& index, const View& view, const ProjectionSettings& settings,
     const RayEnds& ends, bool locate, ScreenScalars& screen);

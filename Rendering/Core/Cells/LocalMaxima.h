@@ -11,9 +11,9 @@ namespace splatting
  * Replaces the maxima of rays by the first local maximum, from the viewer, at or above a threshold
  * [Sato et al. 1998]; rays without one keep their maximum.
  *
- * A value is a local maximum if the field falls behind it, or if the ray ends. Falls by less than
- * 2^-40 of the volume's range are rounding. Where parts of a ray are hidden, its field is that of
- * the other parts, one behind the other.
+ * A value is a local maximum if the field falls behind it, or if the ray ends. A decrease by less
+ * than 2^-40 of the volume's range is regarded as rounding. If parts of a ray are hidden, the other
+ * parts are joined in their order, and the field is evaluated along them.
  * @param screen  of the frame's global maxima, with depths
  */
 template <class T>

@@ -20,7 +20,7 @@ struct ScreenScalars
 {
   /// The rectangle of the viewport that the volume may be seen in. Rows from bottom to top.
   glm::ivec2 origin{ 0 }, size{ 0 };
-  /// Of the values, Float32 or Float64: the accumulator's type of the voxels.
+  /// The type of the values, Float32 or Float64: the accumulator's type for the type of the voxels.
   ScalarType type = ScalarType::Float32;
   /// size.x * size.y values; NaN where there is no sample.
   std::vector<unsigned char> bytes;

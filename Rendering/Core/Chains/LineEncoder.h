@@ -74,8 +74,8 @@ private:
   }
 
   /// dv(x), or slightly less: integers are rounded down, and three other roundings add less than
-  /// the margin. (Up to 32 bits only the quotient is rounded if the tolerance is a whole number,
-  /// and not beyond an integer.) At most high - x.
+  /// the margin. (Integers of up to 32 bits need no margin if the tolerance is a whole number: only
+  /// the quotient is rounded, and never up to or past the next integer.) At most high - x.
   std::conditional_t<Whole, Unsigned, double> allowed(T x) const
   {
     if constexpr (Whole)
@@ -129,7 +129,8 @@ int chainEnd(const T* row, int begin, int end, const Tolerance<T>& tolerance, T&
     low = std::min(low, row[n]);
     high = std::max(high, row[n]);
   }
-  // Never empty: the least values are not above any voxel, the greatest not below.
+  // The interval is never empty, because no least value is above a voxel and no greatest value is
+  // below one.
   value = Tolerance<T>::middle(std::max(least, low), std::min(greatest, high));
   return n;
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Previews from chains of voxels. A chain raises a run of pixels, as long as itself and its row's
- * ray path, to one value.
+ * Previews from chains of voxels. A chain raises a run of pixels to one value. The run is longer
+ * than the chain by the extent of the ray path in the chain's row.
  */
 #ifndef splattingLineWalk_h
 #define splattingLineWalk_h
@@ -68,7 +68,8 @@ public:
     }
   }
 
-  /// Takes all slices into some rows of pixels, which start from the floor.
+  /// Raises pixels of some rows by all slices. The pixels must have the initial value
+  /// previewFloor().
   void splat(int v0, int v1, LineScratch& scratch) const
   {
     switch (this->Index.encoding().order)

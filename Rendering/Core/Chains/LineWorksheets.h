@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Standard and high mode from chains of voxels [CS98, section 4]: the full footprint at the ends of
- * chains. Between ends, where each row of the footprint is in one chain, neighbouring pixels have
- * the same worksheet. It is computed once, by the same operations in the same order, and so has the
- * same bits.
+ * Computes standard and high mode from chains of voxels [CS98, section 4]. At the ends of chains
+ * the full footprint is evaluated. Between ends, where each row of the footprint is in one chain,
+ * neighbouring pixels have the same worksheet. It is computed once, by the same operations in the
+ * same order, and so has the same bits.
  */
 #ifndef splattingLineWorksheets_h
 #define splattingLineWorksheets_h
@@ -70,7 +70,8 @@ protected:
 private:
   /// Rows of pixels whose footprints are tested together, as many as a register block has.
   static constexpr int StripHeight = 4;
-  /// The number of pixels from which a run of the same worksheet pays, and that of a register.
+  /// LeastRun: the least length of a run with one worksheet value that is faster. Register: the
+  /// number of pixels of a register.
   static constexpr int LeastRun = 32, Register = 16;
 
   /// The voxels of the footprint in one loaded row, relative to the strip's first pixel.

@@ -39,10 +39,11 @@ private:
  * A surface of triangles.
  *
  * A triangle includes its edges, and points within 1e-9 pixels (relative to its coordinates) of
- * them, so that no ray passes between neighbours; in perspective views also the rounding errors of
- * rays (see ShearWarp). No ray outside the columns or rows of its corners crosses it. Triangles
- * that appear narrower than that are omitted, because the neighbour at the longest edge covers
- * them. The eye is inside if a line from it crosses the surface an odd number of times.
+ * them, so that no ray passes between neighbours. In perspective views this distance is enlarged by
+ * the rounding errors of rays (see ShearWarp). Only rays in the columns and rows between its
+ * corners cross it. Triangles that appear narrower than that are omitted, because the neighbour at
+ * the longest edge covers them. The eye is inside if a line from it crosses the surface an odd
+ * number of times.
  */
 class ClosedSurface
 {
@@ -80,7 +81,7 @@ private:
   std::vector<glm::ivec3> Triangles;
   std::vector<glm::dvec3> Positions; // the points in the order of the image's axes
   std::vector<Span> Rows;            // that may have pixels of each triangle
-  /// Of perspective images by their direction; of parallel images the first.
+  /// Perspective images use the element of their direction. Parallel images use the first element.
   std::array<SurfaceDepths, 6> Projections;
 };
 }

@@ -32,7 +32,8 @@ class CutMap
 public:
   /// Sets the cuts, which must outlive their use.
   /// @param geometry  of the whole volume
-  /// @param slices    of it, the first of which is slice 0 of the cuts' intervals and of the map
+  /// @param slices    the slices of the volume to use; slices.begin is slice 0 of the cuts'
+  ///   intervals and of this map
   void reset(const Cuts& cuts, const ShearWarp& geometry, const Span& slices);
   bool none() const { return this->Source->none(); }
   const Cuts& source() const { return *this->Source; }

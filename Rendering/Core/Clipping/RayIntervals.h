@@ -25,9 +25,9 @@ class SceneDepth;
  * The sample of a slice is visible if the ray crosses the slice's middle between its near and far
  * depth. If no sample is visible although the interval has a positive length, the slice nearest to
  * the middle of the interval is visible, so that thin parts show one slice. Points within 1e-9
- * voxels (relative to their coordinates) of a cut are inside. Rays that a surface or a depth buffer
- * does not shorten have all slices, regardless of cuts outside the volume. Rays of perspective
- * images begin at the eye, and have only slices of ShearWarp::slices().
+ * voxels (relative to their coordinates) of a cut are inside. If a surface or a depth buffer
+ * removes no part of a ray in the volume, the ray has all slices, even if it is cut outside the
+ * volume. Rays of perspective images begin at the eye, and have only slices of ShearWarp::slices().
  */
 class RayIntervals
 {
@@ -39,7 +39,8 @@ public:
   /**
    * Computes the intervals. They are empty() if nothing cuts the volume.
    * @param halfSpaces  of index space, as in View
-   * @param surface     the part outside is cut away; it is projected
+   * @param surface     the part outside the surface is cut away; find() calls project() of the
+   *   surface
    * @param depth       of the scene, ends rays; placed in the same view
    * @param set         of instructions; all give the same bits
    */
@@ -55,7 +56,7 @@ public:
   /// ShearWarp::takePixel().
   void takePixel(const RayIntervals& whole, const glm::ivec2& pixel, int width);
 
-  /// Copies intervals, with slices counted from another one.
+  /// Copies intervals. Slices are counted from `firstSlice`.
   void setShifted(const RayIntervals& other, int firstSlice);
 
   /// The first and the last slice of each pixel of a row; first > last if there is none.

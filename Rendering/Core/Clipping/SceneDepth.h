@@ -24,8 +24,9 @@ class PixelRays;
  * image (endRays()), each at the depth of the nearest screen pixel. A hidden pixel does not end its
  * ray, because its neighbours on the screen interpolate with the uncut ray.
  *
- * Depths within 2^-21 of the depth range of the box are before it at the front and behind it at the
- * back, because depth buffers have 24 bits, and vertices are transformed in single precision.
+ * A depth within 2^-21 of the front of the box counts as before it. A depth within 2^-21 of the
+ * back counts as behind it. Depth buffers have 24 bits, and vertices are transformed in single
+ * precision.
  */
 class SceneDepth
 {

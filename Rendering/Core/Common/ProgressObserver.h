@@ -32,7 +32,8 @@ public:
     this->ask();
   }
 
-  /// Sets the part of the whole work that follows, from one share to another. Default: all of it.
+  /// Sets which part of the whole work comes next: from share `from` to share `to`. Default: all of
+  /// it.
   void setPart(double from, double to)
   {
     this->From = from;

@@ -41,9 +41,9 @@ public:
 
   /**
    * Adds the time of a frame with a projection. The first frame of a view is not counted, because
-   * it allocates memory, textures and shaders. A change of the time of one mode is applied to the
-   * other modes, which therefore follow the volume's share of the window and the load of the
-   * machine.
+   * it allocates memory, textures and shaders. If the time of one mode changes, the times of the
+   * other modes are multiplied by the same factor. They therefore adapt to the size of the volume
+   * in the window and to the load of the machine.
    */
   void add(const View& view, int mode, double seconds);
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The voxel types of the core: VTK's thirteen numeric types are ten by size and sign.
+ * The voxel types of the core: VTK's thirteen numeric types become ten, because types of equal size
+ * and sign are the same.
  */
 #ifndef splattingScalarType_h
 #define splattingScalarType_h
@@ -103,7 +104,7 @@ decltype(auto) dispatch(ScalarType type, F&& f)
 }
 
 /**
- * No number of type T is less, or greater.
+ * The least and the greatest value of type T, infinities included.
  */
 template <class T>
 constexpr T leastValue()

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Values of the screen's pixels, row by row, where these are wider than pixels of the shear images:
- * the extremum or the average of the points at which they read them; see PixelArea.h.
+ * Computes the values of screen pixels, row by row, where screen pixels are wider than pixels of
+ * the shear images. A value is the extremum or the average of the shear images at the points of the
+ * pixel; see PixelArea.h.
  */
 #ifndef splattingAreaRows_h
 #define splattingAreaRows_h
@@ -58,7 +59,7 @@ public:
       }
       A value =
         this->Reduced == Reduction::Mean ? static_cast<A>(read.sum / read.count) : read.extremum;
-      // At rims and holes an area may have no point between samples.
+      // At borders and holes of an image there may be no samples around any point of an area.
       for (std::size_t i = 0; i < this->Images.size() && read.count == 0; ++i)
       {
         const WarpSource<A>& image = this->Images[i];

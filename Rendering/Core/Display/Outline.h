@@ -46,7 +46,7 @@ public:
   /// Moves all lines outwards by some pixels of the screen along both x and y.
   void growOnScreen(double pixels);
 
-  /// The x in `row` for which the point (x, 0, 0) from `start` is inside.
+  /// The numbers x in `row` for which the point start + (x, 0, 0) is inside.
   Span cut(Span row, const glm::dvec3& start) const;
 
   /// The part of a polygon of pixels (x, y, 1) inside.

@@ -4,7 +4,8 @@
  * The points at which a pixel of the screen reads a shear image whose pixels are narrower: the
  * samples in its area, row by row. If the area is between two rows, the row halfway between its
  * lowest and its highest corner is interpolated instead. If a row has no sample in the area, it is
- * interpolated in the middle of its part. Every sample is therefore in the area of some pixel.
+ * interpolated at the middle of the part that lies in the area. Every sample is therefore in the
+ * area of some pixel.
  */
 #ifndef splattingPixelArea_h
 #define splattingPixelArea_h
@@ -88,8 +89,8 @@ private:
   }
 };
 
-/// The part of the area of viewport pixel (x, y) that is in the image, or at most a sample beside
-/// it. In perspective views the rest may extend behind the eye.
+/// The part of the area of viewport pixel (x, y) that is in the image, enlarged by one sample on
+/// each side. The rest is omitted: in perspective views it may extend behind the eye.
 inline PixelArea areaOf(const ShearWarp& geometry, double x, double y)
 {
   const glm::dmat3& m = geometry.screenToShear();

@@ -24,9 +24,9 @@ struct ShearPixel
 
 /**
  * For each pixel of a rectangle of the viewport, row by row from the bottom, the shear pixel whose
- * location it shows: the nearest of those that Warper interpolates its value from. In overviews the
- * largest (of minima the least) of the shear pixels at or next to the points that the area reads.
- * None if the picture has no sample.
+ * location it shows: the nearest of those that Warper interpolates its value from. In overviews it
+ * is the shear pixel with the largest value (for minima the least) among those nearest to the
+ * points that the area reads. None if the picture has no sample.
  * @param images     as in Warper::warp()
  * @param hasSample  whether a shear pixel has a sample; by default whether it has a winner
  */

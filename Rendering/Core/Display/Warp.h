@@ -38,9 +38,10 @@ class Warper
 public:
   /**
    * Fills the picture with the shear images of a view. Each pixel shows the image whose axis its
-   * ray follows most. The picture ends at the outermost voxel centres (half a voxel further out
-   * along axes with one voxel, and along all if the geometry shows boxes); around an eye inside
-   * this box it has no end. Other pixels, and pixels without a sample, are transparent.
+   * ray follows most. The picture ends at the box of the outermost voxel centres. The box is half a
+   * voxel larger on each side along axes with one voxel, and along all axes if the geometry shows
+   * boxes. If the eye is inside this box, the picture has no end. Other pixels, and pixels without
+   * a sample, are transparent.
    *
    * In overviews pixels have the extremum or the average of their areas, see PixelArea.h, and the
    * picture ends where areas do not overlap the volume.

@@ -82,8 +82,8 @@ struct WarpSource
           nearest = value;
         }
       });
-    // Beside missing samples inside the volume the picture ends half-way to the last sample; at the
-    // border of the volume it ends with the silhouette.
+    // Inside the volume the picture ends half-way between a missing sample and the last existing
+    // one. At the border of the volume it ends at the silhouette.
     if (weight <= 0.0 || lost > 0.5)
     {
       return std::numeric_limits<A>::quiet_NaN();

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The voxels that the rays of a perspective image cross. In a slice all rows of pixels share the
- * columns' coordinates, and all columns the rows'.
+ * The voxels that the rays of a perspective image cross. In a slice the i coordinate of a ray
+ * depends only on its column of pixels, and the j coordinate only on its row.
  */
 #ifndef splattingAxisSteps_h
 #define splattingAxisSteps_h
@@ -42,8 +42,8 @@ public:
     return { &this->First[at], &this->Last[at], &this->Time[at], &this->Tick[at] };
   }
 
-  /// The voxels from the first to the last that some pixels cross in some slices, with at most one
-  /// more beside them, and at most two outside the volume at either end.
+  /// A range of voxels that includes all that some pixels cross in some slices. It has at most one
+  /// more voxel at each end. At most two voxels at each end are outside the volume.
   Span voxels(const Span& slices, const Span& pixels) const;
 
   /// The pixels whose rays enter or leave slice k in the volume, and those whose rays do both.

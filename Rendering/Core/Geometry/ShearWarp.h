@@ -39,8 +39,8 @@ struct AxisRays
 };
 
 /**
- * A convex cone, given by its edges, or polygon, given by its corners (x, y, 1), cut to dot(side,
- * edge) >= 0.
+ * Returns the part of a convex cone or polygon where dot(side, edge) >= 0. A cone is given by its
+ * edges, a polygon by its corners (x, y, 1).
  */
 std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm::dvec3& side);
 
@@ -56,12 +56,13 @@ std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& edges, const glm:
  * rays by at most 2^-25, and moves voxels of a 4096-slice volume by at most 1/16000 pixel.
  *
  * In perspective views the image contains the rays through the eye that follow the principal axis
- * most, in one of its two directions. Their slopes are equidistant, from -1 to 1, where the images
- * of two axes meet. Pixels are a voxel wide (0.1 % less, and reduced to make their number odd)
- * where the volume is farthest from the eye, and narrower in all other slices, so no voxel lies
- * between rays. Slopes are rounded to multiples of 2^-24, positions at the reference depth to
- * 2^-20, and the eye to 2^-10 of a voxel, so all positions are exact. No ray has slope 0, except by
- * rounding; a ray within a face between voxels belongs to the higher ones.
+ * most, in one of its two directions. Their slopes are equidistant and lie between -1 and 1. At -1
+ * and 1 the images of two axes meet. Where the volume is farthest from the eye, pixels are 0.1 %
+ * narrower than a voxel, and a little less if that makes their number odd. In all other slices they
+ * are narrower. So no voxel lies between rays. Slopes are rounded to multiples of 2^-24, positions
+ * at the reference depth to 2^-20, and the eye to 2^-10 of a voxel, so all positions are exact. No
+ * ray has slope 0, except by rounding. A ray within a face between voxels belongs to the voxels
+ * with the higher index.
  */
 class ShearWarp
 {
@@ -120,8 +121,8 @@ public:
   double reference() const { return this->Reference; }
   /// The distance of pixels in voxels at that depth.
   double pitch() const { return this->Pitch; }
-  /// The geometry of one pixel of the image, as pixel (0, 0). Perspective images have further
-  /// columns, as other images do.
+  /// The geometry of one pixel of the image, as pixel (0, 0). In perspective the result also has
+  /// columns to fill a register, as whole images have; see rayCount().
   void takePixel(const glm::ivec2& pixel, ShearWarp& part) const;
   /// Index coordinates of the ray of pixel (u, v) at depth z.
   glm::dvec2 onRay(int u, int v, double z) const
@@ -160,9 +161,9 @@ public:
   glm::dvec3 pixelOf(const glm::dvec3& point) const;
 
   /**
-   * The path of the rays of a parallel view in slice k. Voxels are boxes. A voxel counts if the ray
-   * crosses it over a positive length, so a ray through an edge or a corner does not count for the
-   * other voxels there. Rays never lie within a face: without shear they pass through voxel
+   * The path of the rays of a parallel view in slice k. Voxels are boxes. A voxel is in the path if
+   * the ray crosses it over a positive length. A voxel that the ray only touches at an edge or a
+   * corner is not in the path. Rays never lie within a face: without shear they pass through voxel
    * centres.
    */
   RayPath rayPath(int k) const;

@@ -81,7 +81,8 @@ inline bool isFinite(const View& view)
 
 /**
  * Whether all rays of the view are parallel, from the matrix. Rays whose direction changes by less
- * than 2^-20 over the volume count as parallel: no sample moves by more than 1/500 voxel in 4096.
+ * than 2^-20 over the volume count as parallel. In a volume of 4096 voxels this moves no sample by
+ * more than 1/500 voxel.
  */
 inline bool isParallel(const View& view)
 {

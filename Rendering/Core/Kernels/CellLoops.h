@@ -4,7 +4,8 @@
  * The innermost loops of exact projections: a block of 4^3 cells in, the pixels of a tile out.
  * CellKernels.cxx is compiled once per instruction set; all give the same bits.
  *
- * Values are numbers from 0 (the volume's lowest voxel, of minima its highest) on: see CellScale.
+ * Values are numbers not less than 0; see CellScale. The volume's lowest voxel (for minima its
+ * highest) has the value 0.
  */
 #ifndef splattingCellLoops_h
 #define splattingCellLoops_h
@@ -41,8 +42,8 @@ struct CellScale
 
 /**
  * A number as a sum, because rays need more digits than float has. The first term is a multiple of
- * `unit`: sums of such numbers and of their multiples by pixels are exact as far as a block's side.
- * The rest is 0 of double.
+ * `unit`. Sums of such terms, and of their products with pixel numbers, are exact within a block.
+ * The rest is 0 for double.
  */
 template <class A>
 struct CellSum
@@ -110,7 +111,8 @@ struct CellBlock
   A across[3], acrossStart, up[3], upStart;
   A inverses[2]; ///< the largest and the smallest 1 / w in the block
   A margin;      ///< pixels by which these may be wrong
-  /// The pixels that see each cell, where that does not hold: first and last column, then rows.
+  /// Near the eye, where this formula is invalid: the first and last column, then row, of the
+  /// pixels that see each cell. Else nullptr.
   const std::int32_t (*seen)[4];
 
   bool cut;                    ///< whether rays may begin or end within the block
@@ -149,7 +151,7 @@ struct RayEndLoops
   /// start + x step + t (forward + x turn), to the part in [low, high].
   void (*within)(double* near, double* far, int first, int n, double start, double step,
     double forward, double turn, double low, double high);
-  /// The same to the part where that is at least 0.
+  /// The same, but to the part where start + x step + t (forward + x turn) is at least 0.
   void (*before)(double* near, double* far, int first, int n, double start, double step,
     double forward, double turn);
 };

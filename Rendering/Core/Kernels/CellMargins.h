@@ -30,21 +30,22 @@ inline A nextAbove(A value)
   return value;
 }
 
-/// Cells are wider by this at each side: more than the rounding by which the places of a ray in two
-/// neighbours differ, so that no part of a ray which runs along their face slips through.
+/// Cells are enlarged by this at each side. It exceeds the rounding errors by which the positions
+/// of a ray in two neighbouring cells differ. A ray along their common face is therefore in at
+/// least one of them.
 template <class A>
 constexpr A BesideFace = sizeof(A) == sizeof(float) ? A(0x1p-23) : A(0x1p-46);
 
-/// The same where rays never leave a face: these places are as precise as views.
+/// The same for rays that stay within a face, whose positions are as precise as the view.
 template <class A>
 constexpr A InFace = sizeof(A) == sizeof(float) ? BesideFace<A> : A(0x1p-42);
 
-/// Parts of rays that are shorter may be there by rounding alone. They are left out where their
-/// neighbours do not have the same values: at cropping's planes and in octants.
+/// A shorter part of a ray in a cell may result from rounding alone. It is omitted if the
+/// neighbouring part may have other values: at cropping planes and in octants.
 template <class A>
 constexpr A Sliver = 2 * BesideFace<A>;
 
-/// Where a cell begins and ends that is cropped at some place.
+/// The begin and the end of a cell that is cropped at `low` or `high`.
 template <class A>
 inline A lowEnd(A low)
 {

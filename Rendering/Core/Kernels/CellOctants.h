@@ -43,7 +43,8 @@ struct CellSlice
   alignas(64) A Low[2][Cells], High[2][Cells]; ///< the part that cropping leaves, if it cuts
   A LowZ = -BesideFace<A>, HighZ = 1 + BesideFace<A>;
   alignas(64) A MiddleT[Cells]; ///< t - reference of the middle of each cell
-  alignas(64) A X0[Cells], X1[Cells], Y0[Cells], Y1[Cells]; ///< the pixels whose rays may cross each cell
+  alignas(64) A X0[Cells], X1[Cells], Y0[Cells],
+    Y1[Cells]; ///< the pixels whose rays may cross each cell
 };
 
 /**
@@ -106,7 +107,7 @@ public:
 
 private:
   /// Whether an octant lies in the field, which ends in the middle of the outermost cells. Rays end
-  /// there, too, but rounding may leave them a part beyond.
+  /// there, too, but because of rounding a short part may remain outside the field.
   bool isInField(int n, int z, int octant) const
   {
     const A first[3] = { this->Slice.Corner[0][n], this->Slice.Corner[1][n], A(z - 2) };

@@ -17,7 +17,7 @@ namespace splatting
 {
 namespace
 {
-/// Lanes of a register of A that has no type of its own below.
+/// The number of lanes of a register of type A for which no class is specialised below.
 template <class A>
 constexpr int lanesOf = SPLATTING_VECTOR_BYTES / static_cast<int>(sizeof(A));
 

@@ -200,7 +200,8 @@ private:
         continue;
       }
       const int n = g * R::N;
-      // Middle of what is left of the cells, from their first corners on, and half its sides.
+      // The part of each cell that narrow() leaves: its middle, relative to the cell's first
+      // corner, and half its sides.
       V m[3], h[3];
       this->narrow(z, n, m, h);
       const V cx = R::add(R::load(this->Slice.Corner[0] + n), m[0]);
@@ -240,7 +241,8 @@ private:
   }
 
   /// The part of cells in which the field may exceed all pixels that see the block. For any x the
-  /// field is not above the larger corners at x = 0 and at x = 1, interpolated.
+  /// field is not above the interpolation between the largest corner at x = 0 and the largest
+  /// corner at x = 1.
   SPLATTING_INLINE void narrow(int z, int n, V middle[3], V half[3]) const
   {
     const V point5 = R::set(A(0.5));
@@ -347,7 +349,8 @@ private:
     }
   }
 
-  /// Cells that few pixels see: pixel after pixel of all cells at a time. Returns the other ones.
+  /// Lists the pairs of cells that few pixels see. Each step lists one pixel for all of these
+  /// cells. Returns the other cells.
   M listSmallCells(int g, M alive, int& pending)
   {
     constexpr A most = A(6.5);
@@ -450,8 +453,8 @@ private:
     V p = R::mul(R::sub(low, o), inverse), q = R::mul(R::sub(high, o), inverse);
     if (Cut && this->Block.crops)
     {
-      // What is left by rounding: the value where a ray ends may be its largest one. Along a plane
-      // the places of rays are not precise enough.
+      // Corrects rounding errors, because the largest value of a ray may be the one at its end.
+      // Rays along a plane are not corrected, because their positions are not precise enough.
       const V zero = R::set(0), steep = R::set(1024);
       const M crosses = R::above(steep, R::larger(inverse, R::sub(zero, inverse)));
       const V step = R::choose(crosses, inverse, zero);
@@ -471,7 +474,7 @@ private:
     const V at = R::fma(pixelY, R::set(A(this->Tile.Stride)), pixelX);
     const V now = R::gather(this->Tile.values, at, on, R::set(CellValue<A>::Outside));
     const V px = R::sub(pixelX, R::set(A(b.x))), py = R::sub(pixelY, R::set(A(b.y)));
-    // From the cell's middle on parameters are small, and precise.
+    // Parameters relative to the cell's middle are small, and therefore precise.
     const V middle = R::pick(this->Slice.MiddleT, id);
     V o[3], d[3];
     for (int a = 0; a < 3; ++a)

@@ -14,7 +14,8 @@ namespace splatting
 {
 namespace
 {
-/// Without a function call on baseline x86-64. For doubles far below 2^51.
+/// Rounds to the nearest integer, without a function call on baseline x86-64. The magnitude of x
+/// must be far below 2^51.
 template <class D>
 inline D nearestInteger(D x)
 {
@@ -50,7 +51,8 @@ struct SlicesLeft
     // Also excludes infinities from the arithmetic.
     const D least = D{} + DepthLimits::Before, most = D{} + DepthLimits::Beyond;
     const D low = smaller(larger(near, least), most), high = smaller(larger(far, least), most);
-    // Rounds up and down: with the margins these are no integers. Depths are at least -1.
+    // Rounds `low` up and `high` down by adding and subtracting 0.5 first. This is correct because
+    // with the margins neither is an integer. Depths are at least -1.
     const D margin = rounding * (1.0 + larger(low, -low));
     const D lowest = nearestInteger(low - margin + 0.5);
     const D highest = nearestInteger(high + rounding * (1.0 + larger(high, -high)) - 0.5);

@@ -39,8 +39,9 @@ struct Span
   bool empty() const { return this->end <= this->begin; }
 };
 
-/// A register of pixels at an end of a row, from `first` on, that read some of the rows of voxels:
-/// row r at [begin[r], end[r]), relative to `first`. All rows are readable there.
+/// A register of pixels at an end of a row. It begins at pixel `first`. Its pixels [begin[r],
+/// end[r]), relative to `first`, read row r of voxels. The memory of all rows may be read for all
+/// of its pixels.
 struct Rim
 {
   int first;
@@ -130,7 +131,8 @@ struct VoxelLoops
 {
   /// Elements of a register.
   std::ptrdiff_t lanes;
-  /// Neighbouring pixels of a perspective image that select from one group of as many voxels.
+  /// The number of neighbouring pixels of a perspective image that select from one group of voxels.
+  /// The group has as many voxels.
   int group;
   /// image[x] = max(image[x], rows[0..count)[x]), without NaN.
   void (*maximum)(T* image, const T* const* rows, int count, std::ptrdiff_t n);
@@ -179,7 +181,8 @@ struct RayLoops
   void (*raise)(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n);
   /// image[x] = min(image[x], samples[x]).
   void (*lower)(P* image, const P* samples, const unsigned char* mask, std::ptrdiff_t n);
-  /// As `raise`, until ended[x]: above the threshold the first lower sample ends it.
+  /// As `raise`, but only while ended[x] is 0. If a pixel is not below the threshold, the first
+  /// sample below the pixel sets ended[x].
   void (*climb)(P* image, unsigned char* ended, P threshold, const P* samples,
     const unsigned char* mask, std::ptrdiff_t n);
   /// winners[x] = place for the first sample of a ray (winners[x] < 0), and where the image differs
@@ -230,7 +233,7 @@ struct CutLoops
   /// far[x] = min(far[x], the depth of the plane on the ray).
   void (*endAtPlane)(const PlaneRow& plane, double* far, std::ptrdiff_t n);
   /// The first and last of slices [begin, end) between the depths, see RayIntervals; first > last
-  /// if there are none. Returns whether any ray has not all of them.
+  /// if there are none. Returns whether a ray lacks at least one of these slices.
   bool (*slicesBetween)(const double* near, const double* far, int begin, int end,
     std::int16_t* first, std::int16_t* last, std::ptrdiff_t n);
   /// The extremes of all tiles of some rows of n pixels.

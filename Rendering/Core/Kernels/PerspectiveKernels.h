@@ -133,8 +133,9 @@ inline void crossRow(const Crossing<T>& c, int s, const Span& run, int v)
 }
 
 #if defined(__AVX2__)
-/// The voxels that some columns of pixels select from the last rows of voxels of a slice. Rows of
-/// pixels are narrower than rows of voxels, and the next one mostly crosses the same.
+/// The voxels that some columns of pixels select from the most recently used rows of voxels of a
+/// slice. They are kept, because rows of pixels are narrower than rows of voxels: the next row of
+/// pixels mostly crosses the same rows of voxels.
 template <class T>
 class PickedRows
 {
@@ -223,11 +224,11 @@ struct CrossedRow
     {
       return best;
     }
-    // Rays that change both columns and rows have a voxel between.
+    // A ray that changes both its column and its row crosses a third voxel between the two changes.
     TickOrder order = orderOf<width<T>>(this->columnTick + at, this->rowTick);
     if (order.ties)
     {
-      // The order of the faces needs more digits.
+      // The ticks are too coarse to find the order of the faces.
       order = orderOf<width<T>>(this->columnTime + at, this->rowTime);
     }
     const Register rowFirst = (Register)load<T>(this->last->entry + at);
@@ -282,8 +283,8 @@ private:
 
 /// Raises the registers of a run, for all rows of pixels. A register across the end of a row
 /// includes pixels of the next row, and leaves them unchanged, because rays beyond an image's edge
-/// cross no voxels. The caller raises the rest of the last rows: pixels [first, run.end) of rows
-/// from the result on.
+/// cross no voxels. Returns the first row that is not complete. From this row on the caller raises
+/// pixels [first, run.end).
 template <class T>
 inline int crossRegisters(const Crossing<T>& c, const Span& run, int& first)
 {

@@ -13,8 +13,8 @@ namespace splatting
 {
 namespace
 {
-/// Selects voxels for a register of pixels. The general case is not implemented: `group` is any,
-/// and `picks` is false.
+/// Selects voxels for a register of pixels. The general case is not implemented: its `picks` is
+/// false, and its `group` has no meaning.
 template <class T, int Size = sizeof(T)>
 struct Picker
 {
@@ -145,8 +145,9 @@ struct Picker<T, 4>
 #endif
 
 #if defined(__AVX2__)
-/// In a register of pixels, those that change columns before the ray changes rows, those that
-/// change them after it, and whether any do neither or are undecided by their ticks.
+/// `before` has the pixels of a register whose rays change columns before they change rows. `after`
+/// has those whose rays change columns later. `ties` is whether there are other pixels, which may
+/// be undecided by their ticks.
 #if defined(__AVX512F__)
 struct TickOrder
 {

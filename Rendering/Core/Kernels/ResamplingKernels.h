@@ -46,7 +46,7 @@ inline double positive(double x)
 }
 
 /// The positions of some pixels relative to the first voxel that they weigh, and the extents of
-/// their points along the ray. Returns the distance of rays.
+/// their points along the ray. Returns the distance between neighbouring rays.
 template <class A>
 inline double placePixels(const AxisWeights<A>& w, std::ptrdiff_t begin, std::ptrdiff_t count,
   double* __restrict place, double* __restrict spread)
@@ -62,7 +62,7 @@ inline double placePixels(const AxisWeights<A>& w, std::ptrdiff_t begin, std::pt
     spread[x] = own > leastSpread ? own : leastSpread;
     const double at = w.at[begin + x] + slope * w.depth;
     const double reach = 0.5 * (pitch + spread[x]) + w.support;
-    // The first voxel nearer than that.
+    // The first voxel whose distance from the pixel is less than `reach`.
     const double first = roundedDown(clamped(at - reach, w.low - 1.0, w.high - 1.0)) + 1.0;
     w.first[begin + x] = static_cast<std::int32_t>(first);
     place[x] = at - first;
@@ -241,7 +241,7 @@ struct Resampler<float>
 template <class A, int Taps>
 inline void resampleRegisters(const Resampling<A>& r, std::ptrdiff_t begin, std::ptrdiff_t end)
 {
-  // Rows of pixels from x on share the weights.
+  // The weights of the register at x are the same for all rows of pixels.
   for (std::ptrdiff_t x = begin; x < end; x += width<A>)
   {
     const Register lanes = loadRegister(static_cast<const LaneOf<A>*>(r.lanes) + x);

@@ -35,8 +35,9 @@ inline Pack<A> fetch(const Splat<A, S>& s, const S* voxels)
   }
 }
 
-/// V registers of voxels from `row` on, given those from the voxel before. If voxels must be
-/// converted, shifting these is cheaper. The last one is fetched, so that nothing unneeded is read.
+/// Replaces V registers of voxels, which begin one voxel before `row`, by those that begin at
+/// `row`. If voxels must be converted, shifting the registers is cheaper than loading. The last
+/// register is loaded, because shifting it would read voxels that are not needed.
 template <int V, class A, class S>
 inline void nextColumn(const Splat<A, S>& s, const S* row, Pack<A> (&voxels)[V])
 {

@@ -5,11 +5,11 @@
  *
  * In exact projections a sample lies where the pixel's ray has its extremum, and its voxel is the
  * nearest one. In other projections a sample is a slice, in preview a voxel. Its point is where the
- * ray of the screen pixel (in overviews of the shear pixel) crosses the middle of the slice. Its
- * voxel is the sample in preview. In standard and high mode it is the voxel of the slice that
- * contributes most: the largest weight times height above the volume's lowest value (for minima,
- * depth below the highest). If only a piece of the volume is available, it is the voxel nearest to
- * the point.
+ * ray of the screen pixel (in overviews of the shear pixel) crosses the middle of the slice. In
+ * preview its voxel is the sample itself. In standard and high mode it is the voxel that
+ * contributes most to the slice's sample. The contribution is its weight times its height above the
+ * volume's lowest value (for minima, its depth below the highest value). If only a piece of the
+ * volume is available, it is the voxel nearest to the point.
  */
 #ifndef splattingLocations_h
 #define splattingLocations_h
@@ -27,7 +27,8 @@ namespace splatting
 {
 struct ScreenScalars;
 
-/// A projection of a view with winners. Pointers must outlive its use.
+/// A projection of a view with winners. The objects that its pointers refer to must exist while it
+/// is used.
 struct Located
 {
   const std::vector<ShearImage>* images = nullptr;

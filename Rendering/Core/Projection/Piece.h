@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * Pieces of one volume that are projected separately, each onto the image of the whole. MAX is
- * associative, so the image of the whole is the maximum (or minimum) of theirs, bit for bit, if
- * each pixel of each slice's worksheet is computed by pieces that have all of its voxels, and by at
- * least one.
+ * associative, so the image of the whole is the maximum (or minimum) of their images, bit for bit.
+ * This has two conditions for each pixel of each slice's worksheet: at least one piece computes it,
+ * and only pieces that have all of its voxels compute it.
  */
 #ifndef splattingPiece_h
 #define splattingPiece_h
@@ -35,15 +35,15 @@ struct Box
 };
 
 /**
- * The number of voxels that a slice's worksheet reads beyond the voxel nearest to a ray in the
- * middle of the slice: in the slice, and in other slices. They determine the ghost layers of
- * pieces.
+ * The number of voxels that a slice's worksheet reads beyond the nearest voxel: `across` in the
+ * slice, `along` in other slices. The nearest voxel is the one nearest to the point where the ray
+ * crosses the middle of the slice. They determine the ghost layers of pieces.
  *
  * A ray moves by at most half a voxel before and behind the middle. The nearest voxel's side is at
  * most half a voxel away, and half of a pixel is half a voxel wide. Boxes of standard mode extend
- * by half a voxel, 1.5 to 2 in all, hats of high mode by one, and cosine bells by one and a half,
- * with weights of 0 at the end. A cell of the exact field lies between neighbouring voxels. Preview
- * reads single voxels.
+ * by half a voxel. With the other distances this is 1.5 to 2 voxels. Hats of high mode extend by
+ * one voxel, cosine bells by one and a half. The weights at the end are 0. A cell of the exact
+ * field lies between neighbouring voxels. Preview reads single voxels.
  */
 struct Reach
 {
@@ -53,8 +53,8 @@ struct Reach
 };
 Reach reachOf(Quality quality);
 
-/// The part of a piece whose voxels have `layers` other voxels of the piece on all sides, or none
-/// of the whole.
+/// The part of a piece whose voxels have `layers` other voxels of the piece on each side. A side
+/// where the whole volume ends needs none.
 Box interiorOf(const Box& piece, const glm::ivec3& whole, const glm::ivec3& layers);
 
 /// Whether each voxel of the whole is in one of the boxes.

@@ -39,8 +39,9 @@ enum class Acceleration
   SortedVolume
 };
 
-/// The reduction of the samples along a ray, which are the worksheets' values of the slices that it
-/// crosses, in preview the voxels; see vtkSplattingMIPVolumeMapper::SetMaximumType().
+/// The reduction of the samples along a ray; see vtkSplattingMIPVolumeMapper::SetMaximumType().
+/// Each slice that the ray crosses gives one sample, the value of its worksheet. In preview samples
+/// are voxels.
 enum class Reduction
 {
   Maximum,
@@ -81,9 +82,9 @@ struct ProjectionSettings
   /// 0: weights in closed form; N: from a general table with N x N sub-pixels.
   int footprintSampling = 0;
   InstructionSet instructionSet = bestInstructionSet();
-  /// Reductions other than Maximum are dense, as are volumes with infinities, and volumes with NaN
-  /// and winners. Bricks replace chains where rays are cut, in perspective and with NaN. Lines
-  /// replace sorted orders outside Quality::Preview.
+  /// Dense is used for reductions other than Maximum, for volumes with infinities, and for volumes
+  /// with NaN if winners are recorded. Bricks replace chains where rays are cut, in perspective and
+  /// with NaN. Lines replace sorted orders outside Quality::Preview.
   Acceleration acceleration = Acceleration::Auto;
   /// Delta encoding of lines: see LineEncoding. 0 gives the same bits as Dense.
   double lineTolerance = 0.0;

@@ -209,8 +209,8 @@ T previewFloor(const ProjectionContext& context)
   return std::max(low, roundedDown<T>(context.floor));
 }
 
-/// Initialises rows to "no sample": pixels that no sample can reach to the greatest value, so that
-/// they do not lower a tile's least value; other pixels to the floor.
+/// Initialises rows to "no sample". Pixels that no sample can reach get the greatest value, so that
+/// they do not lower a tile's least value. Other pixels get the floor.
 template <class P>
 void openRows(ShearImage& image, P floor, int v0, int v1)
 {

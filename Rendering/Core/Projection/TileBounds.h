@@ -236,8 +236,8 @@ private:
     return windows;
   }
 
-  /// In each direction a window is at most as wide as a tile, the drift of BrickDepth + 2 slices
-  /// and a footprint.
+  /// In each direction a window is at most as wide as the sum of a tile, the drift of BrickDepth +
+  /// 2 slices, and a footprint.
   static constexpr int MostBricks = 4 * 6;
 
   static int floorDivided(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
@@ -270,7 +270,8 @@ private:
     }
   }
 
-  /// With NaN voxels others weigh more, and only those of a neighbouring layer may count.
+  /// If some voxels are NaN, the other voxels have larger weights. It is possible that all
+  /// remaining voxels belong to a neighbouring layer.
   void takeLargest(P* own, const P* before, const P* after, int count) const
   {
     const P slack = this->Sampler.slack(), magnitude = this->Sampler.magnitude();

@@ -63,7 +63,8 @@ struct LoadedVoxels
     }
     this->sheets.fill(Sheet{});
   }
-  /// Rows of pixels from weighted rows of voxels, in perspective: `rows` of `length` for each part.
+  /// Allocates buffers for perspective views: `rows` rows of `length` pixels for each part, which
+  /// are computed from weighted rows of voxels.
   template <class A>
   void resizeResampled(int parts, int rows, int length)
   {

@@ -28,9 +28,10 @@ public:
 
   VoxelWindow window(int layer) const override { return this->Reach.layers[layer].window; }
 
-  /// Rounding can raise a worksheet above its largest voxel by slack() times the larger of that and
-  /// magnitude(): 75 products and sums, and a few operations for the bound itself. Sums of 8-bit
-  /// voxels are exact. With NaN voxels sums are also divided by sums of weights.
+  /// Rounding can raise a worksheet above its largest voxel by slack() times the larger of this
+  /// voxel and magnitude(). The errors are those of 75 products and sums, and of a few operations
+  /// for the bound itself. Sums of 8-bit voxels are exact. With NaN voxels sums are also divided by
+  /// sums of weights.
   A slack() const override
   {
     const int operations = this->Context.range.nonFinite ? 180 : 90;
@@ -129,8 +130,8 @@ protected:
   }
 
 private:
-  /// The number of pixels inside the volume from which separate rims pay, and that of the pixels of
-  /// a rim, at most a register of floats.
+  /// LeastOwn: the least number of pixels inside the volume for which separate rims are faster.
+  /// RimWidth: the number of pixels of a rim, at most a register of floats.
   static constexpr int LeastOwn = 64, RimWidth = 16;
 
   /// Splats border pixels from a copy of voxels, because their footprints read beyond the volume.

@@ -87,8 +87,8 @@ public:
   virtual P share(int) const { return 0; }
   /// The rounding error of a sample relative to its summands.
   virtual P slack() const { return 0; }
-  /// The magnitude of the summands if the bound is small, relative to base(). A sum near 0 may have
-  /// voxels far below 0.
+  /// The magnitude of the summands, relative to base(). It is used where the bound is smaller,
+  /// because a sum near 0 may have voxels far below 0.
   virtual P magnitude() const { return 0; }
 
   /// What is subtracted from voxels.
@@ -102,8 +102,8 @@ public:
   virtual void splat(const Span& slices, int v0, int v1, const std::vector<Span>& runs,
     const PixelRows<P>& pixels, LoadedVoxels& loaded) const = 0;
 
-  /// The same for all pixels of some of the image's rows, which are one run, and all slices of some
-  /// layers, in the order that suits memory.
+  /// The same for all slices of some layers, and for all pixels of some rows of the image, in the
+  /// order that suits memory. `all` contains one run, a whole row.
   virtual void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
     LoadedVoxels& loaded) const = 0;
 

@@ -38,8 +38,8 @@ struct SliceFootprint
   int partCount = 0;
 };
 
-/// Weights are rounded so that 8-bit sums are exact, for other types to the accumulator's
-/// precision.
+/// Weights for 8-bit voxels are rounded so that sums are exact. For other types they are rounded to
+/// the accumulator's precision.
 template <class T>
 constexpr int weightBits = sizeof(T) == 1 ? 16
   : std::is_same_v<Accumulator<T>, float> ? 24
@@ -155,8 +155,8 @@ protected:
 
   virtual void loadSheet(const LoadedVoxels::Sheet& sheet, LoadedVoxels& loaded) const;
 
-  /// Replaces load() and splatRows(), from the volume's voxels alone, if these suffice. Returns
-  /// false if this does not pay.
+  /// Does the work of load() and splatRows() directly from the volume's voxels, without copies.
+  /// Returns false, and does nothing, if copies are needed or not slower.
   virtual bool splatOwn(int, int, int, int, const Span&, const Target&, LoadedVoxels&) const
   {
     return false;
@@ -178,7 +178,7 @@ protected:
   virtual A wholeWeight() const { return 1; }
 
 private:
-  /// The widest registers contain two tiles, and take the same time for one.
+  /// The widest registers contain two tiles. One tile takes as long as two.
   static constexpr int RunUnit = 2 * TileWidth;
 
   static A baseOf(const VolumeIndex::Range& range)

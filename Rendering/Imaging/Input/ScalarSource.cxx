@@ -309,8 +309,8 @@ std::string ScalarSource::CheckComponents(const Key& key)
   if (available > 4 || (!key.independent && available == 3))
   {
     return "The scalars have " + std::to_string(available) +
-      " components, but there can be 1 to 4 independent or 2 or 4 dependent ones: choose their "
-      "magnitude or one of them with SetVectorMode.";
+      " components. Only 1 to 4 independent or 2 or 4 dependent ones can be projected: choose "
+      "their magnitude or one of them with SetVectorMode.";
   }
   if (!key.independent && available == 4 && key.scalars->GetDataType() != VTK_UNSIGNED_CHAR)
   {

@@ -68,7 +68,7 @@ public:
   static const char* const NoMemory;
 
   const VolumeGrid& Grid() const { return this->Layout.grid; }
-  /// The array that is projected, or whose components are.
+  /// The array that is projected, or that has the projected components.
   vtkDataArray* Scalars() const { return this->Examined.scalars; }
   /// Whether small cells of a rectilinear grid may be missing, because it was resampled to larger
   /// steps.

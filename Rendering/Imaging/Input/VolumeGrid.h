@@ -61,10 +61,10 @@ struct GridOfDataSet
  * point.
  *
  * A rectilinear grid whose points are within a thousandth of a step of equal distances is used as
- * it is. Others are resampled at the least step of each axis, reduced so as to end with the grid.
- * Points are interpolated; every cell has a voxel. If there are more than MostResampled voxels, all
- * steps are enlarged by one factor. An axis has at most 16384 voxels. (vtkResampleToImage takes ten
- * times as long, for all arrays, and treats cells as points.)
+ * it is. Others are resampled at the least step of each axis. This step is reduced so that the
+ * voxels end where the grid ends. Points are interpolated; every cell has a voxel. If there are
+ * more than MostResampled voxels, all steps are enlarged by one factor. An axis has at most 16384
+ * voxels. (vtkResampleToImage takes ten times as long, for all arrays, and treats cells as points.)
  */
 std::string describeGrid(vtkDataSet* data, bool cells, GridOfDataSet& result);
 }

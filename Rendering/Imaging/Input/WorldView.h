@@ -42,9 +42,9 @@ void addPlanes(View& view, const glm::dmat4& indexToWorld, vtkPlaneCollection* p
 Cropping croppingOf(const VolumeGrid& grid, const double planes[6], int flags);
 
 /**
- * Adds the two half-spaces of a slab orthogonal to the direction of projection: of the rays of a
- * parallel view; in perspective the direction in which w, the fourth coordinate of clip space,
- * grows. Centre and thickness are in world space.
+ * Adds the two half-spaces of a slab that is orthogonal to the direction of projection. In a
+ * parallel view this is the direction of the rays. In perspective it is the direction in which w,
+ * the fourth coordinate of clip space, grows. Centre and thickness are in world space.
  */
 void addSlab(View& view, const glm::dmat4& indexToWorld, const double centre[3], double thickness);
 }
