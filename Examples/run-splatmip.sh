@@ -11,7 +11,7 @@ set -euo pipefail
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build_dir=$source_dir/build/splatmip
 log=$(mktemp)
-echo "Building splatmip in $build_dir (a minute or two the first time)" >&2
+echo "Building splatmip in $build_dir (some minutes the first time)" >&2
 if ! bash "$source_dir/Module/build-on-debian.sh" "$build_dir" \
   -DBUILD_TESTING=OFF -DSPLATTINGMIP_WRAP_PYTHON=OFF >"$log" 2>&1; then
   cat "$log" >&2
