@@ -353,7 +353,7 @@ void testRefusals(Ranks& ranks, Scene& many, const std::vector<unsigned char>& e
 {
   many.mapper->SetBlendModeToAverageIntensity();
   many.render();
-  ranks.check(many.lastError.find("maxima and minima only") != std::string::npos,
+  ranks.check(many.lastError.find("only maxima and minima") != std::string::npos,
     "averages are not refused but: " + many.lastError);
   many.mapper->SetBlendModeToMaximumIntensity();
   many.mapper->SetMaximumTypeToLocal();
