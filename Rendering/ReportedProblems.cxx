@@ -24,4 +24,13 @@ bool ReportedProblems::Update(vtkRenderer* renderer, vtkVolume* volume, const st
   this->All.push_back({ renderer, volume, problem });
   return !isKnown;
 }
+
+bool ReportedProblems::Begins(const std::string& cause, bool holds)
+{
+  if (!holds)
+  {
+    this->Causes.erase(cause);
+  }
+  return holds && this->Causes.insert(cause).second;
+}
 }

@@ -6,6 +6,7 @@
 #include "vtkSplattingMIPNamespace.h"
 #include "vtkWeakPointer.h"
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,14 +18,17 @@ VTK_ABI_NAMESPACE_END
 namespace splatting
 {
 /**
- * The errors of the last frames of views, so that each error is reported once, and not in each
- * frame or view.
+ * The errors of the last frames of views, and the causes of warnings, so that each is reported
+ * once, and not in each frame or view.
  */
 class ReportedProblems
 {
 public:
   /// Sets the error of a view, or none (an empty string). Returns whether to report it.
   bool Update(vtkRenderer* renderer, vtkVolume* volume, const std::string& problem);
+
+  /// Whether to warn of a cause: if it holds now, and did not in the last call.
+  bool Begins(const std::string& cause, bool holds);
 
 private:
   struct Report
@@ -34,6 +38,7 @@ private:
     std::string problem;
   };
   std::vector<Report> All;
+  std::set<std::string> Causes; ///< that hold
 };
 }
 

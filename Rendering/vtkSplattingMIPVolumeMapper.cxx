@@ -28,7 +28,6 @@
 #include <algorithm>
 #include <limits>
 #include <new>
-#include <set>
 #include <string>
 
 using namespace splatting;
@@ -73,8 +72,6 @@ public:
         { this->ReportAbsence(self, renderer, volume); })
   {
   }
-  bool Begins(const std::string& cause, bool holds);
-  void WarnAboutIgnoredProperties(vtkSplattingMIPVolumeMapper* self);
   void WarnAboutSurface(vtkSplattingMIPVolumeMapper* self);
   void WarnAboutBudget(vtkSplattingMIPVolumeMapper* self);
   void ReleaseMemory();
@@ -84,7 +81,6 @@ public:
   void ReportAbsence(vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
 
   ReportedProblems Reported;
-  std::set<std::string> Warned;      // warned of, and still true
   vtkRenderWindow* Window = nullptr; // during a render; may abort it
 
   FrameObserver Observer; // for several ranks
@@ -183,33 +179,9 @@ void vtkSplattingMIPVolumeMapper::Internals::ReportAbsence(
 }
 
 //------------------------------------------------------------------------------
-// Whether to warn of a cause: if it holds now, and did not when this was called last.
-bool vtkSplattingMIPVolumeMapper::Internals::Begins(const std::string& cause, bool holds)
-{
-  if (!holds)
-  {
-    this->Warned.erase(cause);
-  }
-  return holds && this->Warned.insert(cause).second;
-}
-
-//------------------------------------------------------------------------------
-// Warns of properties that ray casting ignores.
-void vtkSplattingMIPVolumeMapper::Internals::WarnAboutIgnoredProperties(
-  vtkSplattingMIPVolumeMapper* self)
-{
-  if (this->Begins("ignored", self->GetSlab() || self->GetBoundingSurface()))
-  {
-    vtkWarningWithObjectMacro(self,
-      << "Slab and BoundingSurface are ignored by ray casters: choose an intensity projection as "
-         "the blend mode.");
-  }
-}
-
-//------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Internals::WarnAboutSurface(vtkSplattingMIPVolumeMapper* self)
 {
-  if (this->Begins("open surface", this->Data.Cuts.Surface().IsOpen()))
+  if (this->Reported.Begins("open surface", this->Data.Cuts.Surface().IsOpen()))
   {
     vtkWarningWithObjectMacro(self,
       << "The bounding surface is not closed: rays that cross it once show nothing. Close it, for "
@@ -220,7 +192,7 @@ void vtkSplattingMIPVolumeMapper::Internals::WarnAboutSurface(vtkSplattingMIPVol
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::Internals::WarnAboutBudget(vtkSplattingMIPVolumeMapper* self)
 {
-  if (this->Begins("budget", this->Data.Components.ExceedsBudget()))
+  if (this->Reported.Begins("budget", this->Data.Components.ExceedsBudget()))
   {
     vtkWarningWithObjectMacro(
       self, << "An index for fast projection does not fit into IndexMemoryBudget ("
@@ -318,7 +290,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return TurnOfViews::Degenerate;
   }
-  if (in.Begins("coarse", data.Source.UsesLargerSteps()))
+  if (in.Reported.Begins("coarse", data.Source.UsesLargerSteps()))
   {
     vtkWarningMacro(
       << "The least step of the rectilinear grid is too small for resampling. It is resampled "
@@ -329,6 +301,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
     this->RenderByRayCasting(ren, vol);
     return "";
   }
+  in.Reported.Begins("ray casting", false);
   if (this->GetSlab())
   {
     addSlab(view, data.Grid(), vol, this->GetSlabCenter(), this->GetSlabThickness());
@@ -362,7 +335,8 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
 {
   Internals& in = *this->Internal;
-  if (in.Begins("mean", needsLocations(this) && this->BlendMode == AVERAGE_INTENSITY_BLEND))
+  if (in.Reported.Begins(
+        "mean", needsLocations(this) && this->BlendMode == AVERAGE_INTENSITY_BLEND))
   {
     vtkWarningMacro(
       << "An average is computed from all samples of a ray, so it has no location, no "
@@ -402,7 +376,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
 {
   Internals& in = *this->Internal;
   const bool isForGpu = RayCastFallback::IsForGpu(this->BlendMode);
-  if (in.Warned.insert("ray casting").second)
+  if (in.Reported.Begins("ray casting", true))
   {
     vtkWarningMacro(<< "Rendering by "
                     << (isForGpu ? "vtkGPUVolumeRayCastMapper" : "vtkFixedPointVolumeRayCastMapper")
@@ -417,7 +391,11 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
                      "VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2).");
     return;
   }
-  in.WarnAboutIgnoredProperties(this);
+  if (in.Reported.Begins("ignored", this->GetSlab() || this->GetBoundingSurface()))
+  {
+    vtkWarningMacro(<< "Slab and BoundingSurface are ignored by ray casters: choose an intensity "
+                       "projection as the blend mode.");
+  }
   this->LastRenderUsedRayCasting = true;
   vtkImageData* const image = in.Data.Source.Image();
   if (!image)

@@ -61,10 +61,10 @@ public:
     const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], ScreenScalars& screen);
 
   /**
-   * Like project(), but for a piece of a volume, or for no voxels. The results are values, not
-   * scalars. To combine pieces, take the largest value of each pixel, also for minima; NaN is no
-   * value. Its depth is the least depth of the pieces that have this value. finish() turns them
-   * into scalars. Not for Reduction::Local.
+   * Projects a piece of a volume, which may be empty. Each pixel gets a value, or NaN if it has no
+   * sample. To combine the pieces, take the largest value of each pixel, also for minima, and the
+   * least depth of the pieces that have this value. Then finish() converts values to scalars. Not
+   * for Reduction::Local.
    */
   bool projectPiece(CellIndex& index, const View& view, const ProjectionSettings& settings,
     const RayEnds& ends, bool locate, ScreenScalars& screen);

@@ -172,7 +172,14 @@ public:
     {
       // A little further on, so that a ray at a face is in the cell that it runs into.
       const glm::dvec3 p = this->Start + (from + Ahead) * this->Direction;
-      const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(p)), grid.begin, grid.end - 1);
+      glm::ivec3 cell(glm::floor(p));
+      for (int a = 0; a < 3; ++a)
+      {
+        // Along a face rounding may give the cell that the ray has left.
+        const bool isLeft = this->Direction[a] != 0.0 && this->exit(cell, 1, a) <= from;
+        cell[a] += isLeft ? (this->Direction[a] > 0.0 ? 1 : -1) : 0;
+      }
+      cell = glm::clamp(cell, grid.begin, grid.end - 1);
       const glm::ivec3 brick = cell / BrickCells;
       const glm::ivec3 at = brick - grid.firstBrick;
       const std::size_t n = (std::size_t(at.z) * grid.bricks.y + at.y) * grid.bricks.x + at.x;
@@ -200,17 +207,24 @@ public:
 private:
   static constexpr double Ahead = 1e-9;
 
+  /// Where the ray crosses the last face of a box of cells along an axis.
+  double exit(const glm::ivec3& cell, int size, int axis) const
+  {
+    const double d = this->Direction[axis];
+    const double face = d > 0.0 ? cell[axis] + size : cell[axis];
+    return (face - this->Start[axis]) / d;
+  }
+
   /// Where the ray leaves a box of cells, at `to` at most; always after `from`.
   double leave(const glm::ivec3& cell, int size, double from, double to) const
   {
     double end = to;
     for (int a = 0; a < 3; ++a)
     {
-      const double d = this->Direction[a];
-      const double face = d > 0.0 ? cell[a] + size : cell[a];
-      end = d != 0.0 ? std::min(end, (face - this->Start[a]) / d) : end;
+      const double t = this->exit(cell, size, a);
+      end = t > from && t < end ? t : end;
     }
-    return std::max(end, from + Ahead);
+    return end;
   }
 
   void load(const glm::ivec3& cell, std::array<double, 8>& corners) const

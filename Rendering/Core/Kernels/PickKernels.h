@@ -13,8 +13,8 @@ namespace splatting
 {
 namespace
 {
-/// Selects voxels for a register of pixels. The general case is not implemented: its `picks` is
-/// false, and its `group` has no meaning.
+/// Selects voxels for a register of pixels. The general case selects nothing: `picks` is false, and
+/// `group` is not used.
 template <class T, int Size = sizeof(T)>
 struct Picker
 {

@@ -207,13 +207,19 @@ void testLoneVoxel(Checks& check)
   }
 }
 
-void testProgress(Checks& check)
+/// A turn of 20 small pictures.
+vtkSmartPointer<Filter> smallTurn()
 {
   reference::Random random(8);
-  const auto image = someImage(random);
-  const auto turn = projectiontesting::projectionOf(image);
+  const auto turn = projectiontesting::projectionOf(someImage(random));
   turn->SetNumberOfViews(20);
   turn->SetOutputSize(16, 16);
+  return turn;
+}
+
+void testProgress(Checks& check)
+{
+  const auto turn = smallTurn();
   struct Log
   {
     std::vector<double> progress;
@@ -253,11 +259,7 @@ void testProgress(Checks& check)
 /// Settings that an observer changes during a turn apply from the next update on.
 void testChangesInProgress(Checks& check)
 {
-  reference::Random random(9);
-  const auto image = someImage(random);
-  const auto turn = projectiontesting::projectionOf(image);
-  turn->SetNumberOfViews(8);
-  turn->SetOutputSize(16, 16);
+  const auto turn = smallTurn();
   turn->SetQualityModeToPreview();
   turn->Update();
   const auto before = vtkSmartPointer<vtkImageData>::New();
@@ -287,9 +289,7 @@ void testChangesInProgress(Checks& check)
   turn->RemoveAllObservers();
   turn->Modified();
   turn->Update();
-  const auto fresh = projectiontesting::projectionOf(image);
-  fresh->SetNumberOfViews(8);
-  fresh->SetOutputSize(16, 16);
+  const auto fresh = smallTurn();
   double done = 1.0;
   changer.change(fresh, 0, &done);
   fresh->Update();
@@ -302,10 +302,7 @@ void testChangesInProgress(Checks& check)
 /// Whoever aborts a filter upstream wants nothing of what is made of its output.
 void testAbortUpstream(Checks& check)
 {
-  reference::Random random(8);
-  const auto turn = projectiontesting::projectionOf(someImage(random));
-  turn->SetNumberOfViews(20);
-  turn->SetOutputSize(16, 16);
+  const auto turn = smallTurn();
   vtkNew<vtkCallbackCommand> abort;
   abort->SetCallback(
     [](vtkObject* filter, unsigned long, void*, void* progress)

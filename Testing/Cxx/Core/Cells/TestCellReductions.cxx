@@ -93,6 +93,47 @@ void testFieldEnds(Checks& check)
     });
 }
 
+/// A view along an axis, up to rounding, whose rays run along faces of cells.
+View viewAlongFaces(const std::array<int, 3>& size, Random& random)
+{
+  View view;
+  view.dimensions = { size[0], size[1], size[2] };
+  view.viewport = glm::ivec2(40);
+  const int axis = random.uniform(0, 2);
+  std::array<glm::dvec4, 3> rows{};
+  for (int n = 0; n < 2; ++n)
+  {
+    // One pixel per voxel; the first one is at -19 + place.
+    const int across = (axis + 1 + n) % 3, place = random.uniform(0, 10);
+    const double tilt =
+      (random.uniform(0, 1) ? 0.05 : -0.05) * std::pow(10.0, random.uniform(-18.0, -13.0));
+    rows[n][across] = 0.05;
+    rows[n][axis] = random.uniform(0, 3) ? tilt : 0.0;
+    rows[n].w = -0.05 * (0.5 + place);
+  }
+  rows[2][axis] = random.uniform(0, 1) ? 0.01 : -0.01;
+  setRows(view, rows[0], rows[1], rows[2], { 0.0, 0.0, 0.0, 1.0 });
+  return view;
+}
+
+/// Local maxima on rays that rounding moves from one side of a face to the other.
+template <class T>
+void testAlongFaces(Checks& check)
+{
+  forFamily<T>("local, along faces", 160, MostAmbiguous, check,
+    [&](Random& random, Counts& counts)
+    {
+      Scene<T> scene;
+      const std::array<int, 3> size = coretesting::randomSize(random, 12);
+      scene.volume = coretesting::wholeRangeNoise<T>(size, random);
+      scene.view = viewAlongFaces(size, random);
+      scene.view.showsBoxes = true; // no ray runs along the end of the field
+      scene.settings.reduction = Reduction::Local;
+      scene.settings.threshold = random.uniform(-1.0, 1.0); // no voxel's value, which rays cross
+      counts.add(compareScene(scene, check));
+    });
+}
+
 template <class T>
 void testAll(bool holes, Checks& check)
 {
@@ -110,6 +151,8 @@ int TestCellReductions(int, char*[])
   testAll<float>(false, check);
   testAll<float>(true, check);
   testFieldEnds<float>(check);
+  testAlongFaces<float>(check);
+  testAlongFaces<double>(check);
   testAll<std::int64_t>(false, check);
   testAll<double>(true, check);
   return check.result();
