@@ -302,7 +302,7 @@ std::vector<CellSegment<R>> CellOracle<R>::segments(const CellRay<R>& ray) const
     std::sort(places.begin(), places.end());
     for (std::size_t n = 0; n + 1 < places.size(); ++n)
     {
-      if (!(places[n] < places[n + 1]))
+      if (!(places[n + 1] - places[n] > this->Shortest))
       {
         continue;
       }
@@ -460,7 +460,7 @@ CellSample<R> CellOracle<R>::shaded(const CellRay<R>& ray, const CellShading& sh
 }
 
 template <class R>
-CellSample<R> CellOracle<R>::local(const CellRay<R>& ray, double threshold, double rounding) const
+CellSample<R> CellOracle<R>::local(const CellRay<R>& ray, double threshold, double range) const
 {
   CellSample<R> top;
   for (const CellSegment<R>& segment : this->segments(ray))
@@ -468,7 +468,8 @@ CellSample<R> CellOracle<R>::local(const CellRay<R>& ray, double threshold, doub
     const Course course = this->course(segment, ray);
     for (int n = 0; n < course.count; ++n)
     {
-      if (top.exists && course.values[n] < top.value - R(rounding))
+      const R size = range > 0 || !std::isfinite(top.value) ? R(range) : std::fabs(top.value);
+      if (top.exists && course.values[n] < top.value - R(0x1p-40) * size)
       {
         if (top.value >= threshold)
         {
@@ -480,6 +481,54 @@ CellSample<R> CellOracle<R>::local(const CellRay<R>& ray, double threshold, doub
     }
   }
   return top.exists && top.value >= threshold ? top : this->largest(ray);
+}
+
+template <class R>
+CellSample<R> CellOracle<R>::certain(const std::vector<CellRay<R>>& rays, bool minima) const
+{
+  const R sense = minima ? -1 : 1;
+  std::vector<std::vector<CellSegment<R>>> all;
+  std::vector<R> places;
+  for (const CellRay<R>& ray : rays)
+  {
+    all.push_back(this->segments(ray));
+    for (const CellSegment<R>& segment : all.back())
+    {
+      places.insert(places.end(), { segment.from, segment.to });
+    }
+  }
+  std::sort(places.begin(), places.end());
+  CellSample<R> sample;
+  for (std::size_t n = 0; n + 1 < places.size(); ++n)
+  {
+    const R from = places[n], to = places[n + 1];
+    if (!(to - from > this->Shortest))
+    {
+      continue;
+    }
+    // What the ray that shows least shows in this part.
+    CellSample<R> least{ true, Infinity<R>, from };
+    for (std::size_t r = 0; r < rays.size() && least.exists; ++r)
+    {
+      const auto segment = std::find_if(all[r].begin(), all[r].end(),
+        [&](const CellSegment<R>& s) { return s.from <= from && to <= s.to; });
+      if (segment == all[r].end())
+      {
+        least.exists = false;
+        continue;
+      }
+      CellSegment<R> part = *segment;
+      part.from = from;
+      part.to = to;
+      least.value = std::min(least.value, this->largestOf(part, rays[r], sense).value);
+    }
+    if (least.exists)
+    {
+      sample.raise(least.value, least.t);
+    }
+  }
+  sample.value *= sense;
+  return sample;
 }
 
 template <class R>

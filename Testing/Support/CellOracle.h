@@ -85,7 +85,7 @@ template <class R>
 class CellOracle
 {
 public:
-  /// @param shortest  octants that a ray crosses over less are left out
+  /// @param shortest  cells and octants that a ray crosses over less are left out
   explicit CellOracle(const CellScene<R>& scene, double shortest = 1e-13)
     : Scene(scene),
       Shortest(shortest)
@@ -106,9 +106,13 @@ public:
   CellSample<R> largest(const CellRay<R>& ray, bool minima = false) const;
   /// The largest of the segments' maxima, each shaded by the place of the segment's middle.
   CellSample<R> shaded(const CellRay<R>& ray, const CellShading& shading) const;
-  /// The first local maximum at or above a threshold, else the largest value. Falls of up to
-  /// `rounding` are none.
-  CellSample<R> local(const CellRay<R>& ray, double threshold, double rounding) const;
+  /// The first local maximum at or above a threshold, else the largest value. Falls of up to 2^-40
+  /// of the range are none. If voxels are infinite, the range is 0, and it is 2^-40 of the value.
+  CellSample<R> local(const CellRay<R>& ray, double threshold, double range) const;
+  /// A lower bound of largest() (of minima an upper one) for a ray whose place each cell may take
+  /// from any of these rays, which are parallel: the largest value that all of them show at the
+  /// same t.
+  CellSample<R> certain(const std::vector<CellRay<R>>& rays, bool minima) const;
 
   /// The field where a ray passes, of those segments that lie within `margin` of it: the least and
   /// the largest. False if there is none.

@@ -188,7 +188,7 @@ void addCut(Scene<T>& scene, CutKind kind, Random& random)
 template <class T>
 void testCut(const std::string& name, CutKind kind, int scenes, Checks& check)
 {
-  forFamily<T>(name, scenes, MostAmbiguous, check,
+  forFamily<T>(name, scenes, Continuous, check,
     [&](Random& random, Counts& counts)
     {
       Scene<T> scene;

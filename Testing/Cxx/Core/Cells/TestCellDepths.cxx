@@ -69,7 +69,7 @@ void compareDepths(const Scene<T>& scene, Counts& counts, Checks& check)
 template <class T>
 void testNoise(Checks& check)
 {
-  forFamily<T>("noise", 80, MostAmbiguous, check,
+  forFamily<T>("noise", 80, Continuous, check,
     [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
@@ -87,7 +87,7 @@ void testNoise(Checks& check)
 template <class T>
 void testTies(Checks& check)
 {
-  forFamily<T>("ties", 120, MostAmbiguous, check,
+  forFamily<T>("ties", 120, Continuous, check,
     [&](Random& random, Counts& counts)
     {
       Scene<T> scene;

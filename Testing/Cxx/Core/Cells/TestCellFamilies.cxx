@@ -36,7 +36,7 @@ void compareAlong(reference::Volume<T> volume, const glm::dvec3& direction, Rand
 template <class T>
 void testVessels(bool across, Checks& check)
 {
-  forFamily<T>(across ? "vessels across" : "vessels oblique", 80, MostAmbiguous, check,
+  forFamily<T>(across ? "vessels across" : "vessels oblique", 80, Continuous, check,
     [&](Random& random, Counts& counts)
     {
       const std::array<int, 3> size = { 21, 19, 22 };
@@ -60,7 +60,7 @@ void testVessels(bool across, Checks& check)
 template <class T>
 void testSingleVoxels(Checks& check)
 {
-  forFamily<T>("single voxels", 80, MostAmbiguous, check,
+  forFamily<T>("single voxels", 80, Continuous, check,
     [&](Random& random, Counts& counts)
     {
       const glm::dvec3 view = glm::normalize(randomDirection(random));
@@ -77,7 +77,7 @@ void testSingleVoxels(Checks& check)
 template <class T>
 void testTubes(Checks& check)
 {
-  forFamily<T>("tubes along the view", 60, MostAmbiguous, check,
+  forFamily<T>("tubes along the view", 60, Continuous, check,
     [&](Random& random, Counts& counts)
     {
       const glm::dvec3 view = glm::normalize(randomDirection(random));
@@ -95,7 +95,7 @@ void testTubes(Checks& check)
 template <class T>
 void testNoise(Checks& check)
 {
-  forFamily<T>("noise", 80, MostAmbiguous, check,
+  forFamily<T>("noise", 80, Continuous, check,
     [&](Random& random, Counts& counts)
     {
       // Sparse noise has few bright voxels.
@@ -109,7 +109,7 @@ void testNoise(Checks& check)
 template <class T>
 void testCheckerboards(Checks& check)
 {
-  forFamily<T>("checkerboards", 60, MostAmbiguous, check,
+  forFamily<T>("checkerboards", 60, Continuous, check,
     [&](Random& random, Counts& counts)
     {
       const int width = random.uniform(1, 3);

@@ -68,9 +68,7 @@ void makeHoles(reference::Volume<T>& volume, HoleKind kind, Random& random)
 template <class T>
 void testHoles(const std::string& name, HoleKind kind, Checks& check)
 {
-  // Rays along an axis or a diagonal run along the faces of octants. Up to 1 % of the samples of a
-  // series are of such a scene.
-  forFamily<T>(name, 320, 3e-2, check,
+  forFamily<T>(name, 320, Discontinuous, check,
     [&](Random& random, Counts& counts)
     {
       Scene<T> scene;

@@ -256,7 +256,7 @@ void testThreads(Checks& check)
 template <class T>
 void testLargestValues(Checks& check)
 {
-  forFamily<T>("largest values", 80, MostAmbiguous, check,
+  forFamily<T>("largest values", 80, Continuous, check,
     [&](Random& random, Counts& counts)
     {
       Scene<T> scene;

@@ -51,9 +51,9 @@ template <class T>
 void testReduction(const std::string& name, Reduction reduction, bool holes, Checks& check)
 {
   // Cells that a ray only touches are shaded by where it does, as octants have values of their own.
-  // In two of the forty scenes of a series all rays may run along edges.
   const bool isContinuous = !holes && reduction != Reduction::DepthShaded;
-  forFamily<T>(name + (holes ? ", holes" : ""), 160, isContinuous ? MostAmbiguous : 5e-2, check,
+  forFamily<T>(name + (holes ? ", holes" : ""), 160, isContinuous ? Continuous : Discontinuous,
+    check,
     [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
@@ -75,7 +75,7 @@ void testReduction(const std::string& name, Reduction reduction, bool holes, Che
 template <class T>
 void testFieldEnds(Checks& check)
 {
-  forFamily<T>("ends of the field", 160, 5e-2, check,
+  forFamily<T>("ends of the field", 160, Discontinuous, check,
     [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
@@ -120,7 +120,7 @@ View viewAlongFaces(const std::array<int, 3>& size, Random& random)
 template <class T>
 void testAlongFaces(Checks& check)
 {
-  forFamily<T>("local, along faces", 160, MostAmbiguous, check,
+  forFamily<T>("local, along faces", 160, Continuous, check,
     [&](Random& random, Counts& counts)
     {
       Scene<T> scene;

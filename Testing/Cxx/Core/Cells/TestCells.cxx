@@ -11,10 +11,10 @@ namespace
 using namespace celltesting;
 
 template <class T>
-void testNoise(Counts& counts, Checks& check)
+void testNoise(Checks& check)
 {
-  reference::forScenes(coretesting::seriesOf<T>("noise"), 400,
-    [&](int, Random& random)
+  forFamily<T>("noise", 400, Continuous, check,
+    [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
       std::array<int, 3> size = coretesting::randomSize(random, 14);
@@ -33,9 +33,7 @@ int TestCells(int, char*[])
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
-      Counts counts;
-      testNoise<T>(counts, check);
-      counts.report(coretesting::seriesOf<T>("noise"), check);
+      testNoise<T>(check);
     });
   return check.result();
 }
