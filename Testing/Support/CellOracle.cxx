@@ -460,7 +460,7 @@ CellSample<R> CellOracle<R>::shaded(const CellRay<R>& ray, const CellShading& sh
 }
 
 template <class R>
-CellSample<R> CellOracle<R>::local(const CellRay<R>& ray, double threshold, double range) const
+CellSample<R> CellOracle<R>::local(const CellRay<R>& ray, double threshold, double rounding) const
 {
   CellSample<R> top;
   for (const CellSegment<R>& segment : this->segments(ray))
@@ -468,8 +468,7 @@ CellSample<R> CellOracle<R>::local(const CellRay<R>& ray, double threshold, doub
     const Course course = this->course(segment, ray);
     for (int n = 0; n < course.count; ++n)
     {
-      const R size = range > 0 || !std::isfinite(top.value) ? R(range) : std::fabs(top.value);
-      if (top.exists && course.values[n] < top.value - R(0x1p-40) * size)
+      if (top.exists && course.values[n] < top.value - R(rounding))
       {
         if (top.value >= threshold)
         {

@@ -106,9 +106,9 @@ public:
   CellSample<R> largest(const CellRay<R>& ray, bool minima = false) const;
   /// The largest of the segments' maxima, each shaded by the place of the segment's middle.
   CellSample<R> shaded(const CellRay<R>& ray, const CellShading& shading) const;
-  /// The first local maximum at or above a threshold, else the largest value. Falls of up to 2^-40
-  /// of the range are none. If voxels are infinite, the range is 0, and it is 2^-40 of the value.
-  CellSample<R> local(const CellRay<R>& ray, double threshold, double range) const;
+  /// The first local maximum at or above a threshold, else the largest value. Falls of up to
+  /// `rounding` are none.
+  CellSample<R> local(const CellRay<R>& ray, double threshold, double rounding) const;
   /// A lower bound of largest() (of minima an upper one) for a ray whose place each cell may take
   /// from any of these rays, which are parallel: the largest value that all of them show at the
   /// same t.

@@ -213,7 +213,7 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
       this->Observer.ask();
       if (settings.reduction == Reduction::Local && !this->Observer.stopped())
       {
-        findLocalMaxima<T>(frame, settings.threshold, screen);
+        findLocalMaxima<T>(frame, index.range(), settings.threshold, screen);
       }
       return !this->Observer.stopped();
     });

@@ -19,17 +19,14 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 class FirstPeak
 {
 public:
+  /// @param rounding  smaller falls do not end a maximum
   FirstPeak(double threshold, double rounding) : Threshold(threshold), Rounding(rounding) {}
 
   /// Takes the next value; returns whether the one before it was a local maximum.
   bool take(double value, double t)
   {
     const bool counts = this->Value >= this->Threshold;
-    // Where voxels are infinite there is no range.
-    const double rounding = this->Rounding > 0.0 || !std::isfinite(this->Value)
-      ? this->Rounding
-      : 0x1p-40 * std::abs(this->Value);
-    if (counts && value < this->Value - rounding)
+    if (counts && value < this->Value - this->Rounding)
     {
       return true;
     }
@@ -84,8 +81,9 @@ private:
     const double x = c[1] - c[0], y = c[2] - c[0], z = c[4] - c[0];
     const double xy = c[3] - c[1] - y, xz = c[5] - c[4] - x, yz = c[6] - c[4] - y;
     const double xyz = c[7] - c[5] - c[6] + c[4] - xy;
-    const double k0 = c[0] + p.x * x + p.y * y + p.z * z + p.x * p.y * xy + p.x * p.z * xz +
-      p.y * p.z * yz + p.x * p.y * p.z * xyz;
+    const double k0 = c[0] +
+      (p.x * x + p.y * y + p.z * z + p.x * p.y * xy + p.x * p.z * xz + p.y * p.z * yz +
+        p.x * p.y * p.z * xyz);
     const double k1 = d.x * (x + p.y * xy + p.z * xz + p.y * p.z * xyz) +
       d.y * (y + p.x * xy + p.z * yz + p.x * p.z * xyz) +
       d.z * (z + p.x * xz + p.y * yz + p.x * p.y * xyz);
@@ -159,6 +157,7 @@ public:
     : Frame(frame),
       Start(start + glm::dvec3(frame.grid.shift)), // in cells
       Direction(direction),
+      Inverse(1.0 / direction),
       Threshold(threshold),
       Scale(std::abs(static_cast<double>(frame.values.scale.factor)))
   {
@@ -170,16 +169,7 @@ public:
     const CellGrid& grid = this->Frame.grid;
     while (from < to)
     {
-      // A little further on, so that a ray at a face is in the cell that it runs into.
-      const glm::dvec3 p = this->Start + (from + Ahead) * this->Direction;
-      glm::ivec3 cell(glm::floor(p));
-      for (int a = 0; a < 3; ++a)
-      {
-        // Along a face rounding may give the cell that the ray has left.
-        const bool isLeft = this->Direction[a] != 0.0 && this->exit(cell, 1, a) <= from;
-        cell[a] += isLeft ? (this->Direction[a] > 0.0 ? 1 : -1) : 0;
-      }
-      cell = glm::clamp(cell, grid.begin, grid.end - 1);
+      const glm::ivec3 cell = glm::clamp(this->cellAt(from), grid.begin, grid.end - 1);
       const glm::ivec3 brick = cell / BrickCells;
       const glm::ivec3 at = brick - grid.firstBrick;
       const std::size_t n = (std::size_t(at.z) * grid.bricks.y + at.y) * grid.bricks.x + at.x;
@@ -205,14 +195,30 @@ public:
   }
 
 private:
-  static constexpr double Ahead = 1e-9;
-
   /// Where the ray crosses the last face of a box of cells along an axis.
   double exit(const glm::ivec3& cell, int size, int axis) const
   {
-    const double d = this->Direction[axis];
-    const double face = d > 0.0 ? cell[axis] + size : cell[axis];
-    return (face - this->Start[axis]) / d;
+    const int face = cell[axis] + (this->Direction[axis] > 0.0 ? size : 0);
+    return (face - this->Start[axis]) * this->Inverse[axis];
+  }
+
+  /// The cell that the ray is in from t on. The same arithmetic decides where it leaves the cell,
+  /// so that rounding does not skip cells.
+  glm::ivec3 cellAt(double t) const
+  {
+    glm::ivec3 cell(glm::floor(this->Start + t * this->Direction));
+    for (int a = 0; a < 3; ++a)
+    {
+      const int step = this->Direction[a] > 0.0 ? 1 : this->Direction[a] < 0.0 ? -1 : 0;
+      if (this->exit(cell, 1, a) <= t)
+      {
+        cell[a] += step;
+        continue;
+      }
+      cell[a] -= step;
+      cell[a] += this->exit(cell, 1, a) <= t ? step : 0;
+    }
+    return cell;
   }
 
   /// Where the ray leaves a box of cells, at `to` at most; always after `from`.
@@ -243,14 +249,16 @@ private:
   }
 
   const CellFrame<T>& Frame;
-  glm::dvec3 Start, Direction;
+  glm::dvec3 Start, Direction, Inverse;
   double Threshold, Scale;
 };
 
 /// The first local maximum of a ray, if there is one at or above the threshold.
+/// @param start  where the ray's part begins, so that rounding does not grow with the distance of
+///               the eye
 template <class T>
 bool findPeak(const CellFrame<T>& frame, const glm::dvec3& start, const glm::dvec3& direction,
-  double near, double far, double threshold, FirstPeak& peak)
+  double length, double threshold, FirstPeak& peak)
 {
   const RayOfCells<T> ray(frame, start, direction, threshold);
   // The ray's parts in the regions that are shown, in the order in which it meets them.
@@ -258,7 +266,7 @@ bool findPeak(const CellFrame<T>& frame, const glm::dvec3& start, const glm::dve
   int count = 0;
   for (const CellBox& region : frame.regions.boxes)
   {
-    double from = near, to = far;
+    double from = 0.0, to = length;
     for (int a = 0; a < 3; ++a)
     {
       frame.kernels.within(
@@ -283,12 +291,15 @@ bool findPeak(const CellFrame<T>& frame, const glm::dvec3& start, const glm::dve
 }
 
 template <class T>
-void findLocalMaxima(const CellFrame<T>& frame, double threshold, ScreenScalars& screen)
+void findLocalMaxima(const CellFrame<T>& frame, const VolumeIndex::Range& range, double threshold,
+  ScreenScalars& screen)
 {
   using A = Accumulator<T>;
   const double scale = std::abs(static_cast<double>(frame.values.scale.factor));
-  const double range = scale * frame.highest - scale * frame.lowest;
-  const double rounding = std::isfinite(range) ? 0x1p-40 * range : 0.0;
+  // More than what the values of two cells differ by at their common face.
+  const double magnitude = scale * range.magnitude;
+  const double spread = std::min(scale * range.high - scale * range.low, 2.0 * magnitude);
+  const double rounding = 0x1p-40 * spread + 0x1p-48 * magnitude;
   parallelFor(0, screen.size.y, 1,
     [&](std::ptrdiff_t begin, std::ptrdiff_t end)
     {
@@ -306,12 +317,12 @@ void findLocalMaxima(const CellFrame<T>& frame, double threshold, ScreenScalars&
             continue;
           }
           FirstPeak peak(scale * threshold, rounding);
-          if (findPeak(frame, frame.rays.start(first.x + x, first.y),
-                frame.rays.direction(first.x + x, first.y), near[x], far[x], scale * threshold,
+          if (findPeak(frame, frame.rays.point(first.x + x, first.y, near[x]),
+                frame.rays.direction(first.x + x, first.y), far[x] - near[x], scale * threshold,
                 peak))
           {
             values[x] = static_cast<A>(peak.value() / scale);
-            depths[x] = static_cast<float>(peak.t());
+            depths[x] = static_cast<float>(near[x] + peak.t());
           }
         }
       }
@@ -319,7 +330,8 @@ void findLocalMaxima(const CellFrame<T>& frame, double threshold, ScreenScalars&
 }
 
 #define SPLATTING_INSTANTIATE(T)                                                                   \
-  template void findLocalMaxima<T>(const CellFrame<T>&, double, ScreenScalars&);
+  template void findLocalMaxima<T>(                                                                \
+    const CellFrame<T>&, const VolumeIndex::Range&, double, ScreenScalars&);
 SPLATTING_TYPES(SPLATTING_INSTANTIATE)
 #undef SPLATTING_INSTANTIATE
 }

@@ -238,7 +238,7 @@ public:
       Coarse(Plain, 8.0 * Beside<T>),
       Check(check)
   {
-    this->IsFinite = range.low <= range.high && !range.hasInfinities();
+    const bool isFinite = range.low <= range.high && !range.hasInfinities();
     R low = std::numeric_limits<R>::infinity(), high = -low;
     for (const R voxel : this->Plain.voxels)
     {
@@ -247,16 +247,18 @@ public:
     }
     this->Low = low <= high ? low : 0;
     this->Range = low <= high ? high - low : 0;
-    this->Lowest = this->IsFinite ? range.low : 0.0;
+    this->Lowest = isFinite ? range.low : 0.0;
     // Values are computed from the lowest voxel on, and added to it in the end.
     const R largest = low <= high ? std::max(std::fabs(low), std::fabs(high)) : R(0);
+    const R spread = range.hasInfinities() ? 2 * largest : this->Range;
+    this->Fall = static_cast<double>(0x1p-40 * spread + 0x1p-48 * largest);
     this->Tolerance = Bound<T> * this->Range + std::numeric_limits<A>::epsilon() * largest;
     if (scene.settings.reduction == Reduction::DepthShaded)
     {
       // Errors grow by the largest factor.
       this->Tolerance *=
         std::max(1.0, std::abs(scene.settings.ambient) + std::abs(scene.settings.changeRate));
-      const R most = this->IsFinite ? this->Range : largest;
+      const R most = isFinite ? this->Range : largest;
       this->ShareTolerance = std::abs(scene.settings.changeRate) * most * Precision<T>;
     }
   }
@@ -282,7 +284,7 @@ public:
       case Reduction::DepthShaded:
         return oracle.shaded(ray, { this->Lowest, s.ambient, s.changeRate });
       case Reduction::Local:
-        return oracle.local(ray, s.threshold, this->IsFinite ? double(this->Range) : 0.0);
+        return oracle.local(ray, s.threshold, this->Fall);
       default:
         return oracle.largest(ray, s.reduction == Reduction::Minimum);
     }
@@ -418,8 +420,7 @@ private:
   const reference::CellOracle<R> Oracle, Coarse;
   Checks& Check;
   R Low, Range, Tolerance, ShareTolerance = 0;
-  double Lowest;
-  bool IsFinite;
+  double Lowest, Fall;
 };
 
 /// Projects a scene and compares all pixels of it.
