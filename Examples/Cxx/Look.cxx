@@ -26,29 +26,13 @@ struct NamedColormap
   std::vector<ColorPoint> Points;
 };
 
-const std::vector<NamedColormap>& GetColormaps()
-{
-  static const std::vector<NamedColormap> maps = {
-    { "gray", { { 0, 0, 0, 0 }, { 1, 1, 1, 1 } } },
-    { "inverted", { { 0, 1, 1, 1 }, { 1, 0, 0, 0 } } },
-    { "hot", { { 0, 0, 0, 0 }, { 0.375, 1, 0, 0 }, { 0.75, 1, 1, 0 }, { 1, 1, 1, 1 } } },
-    { "bone",
-      { { 0, 0, 0, 0 }, { 0.375, 0.33, 0.33, 0.45 }, { 0.75, 0.66, 0.78, 0.78 }, { 1, 1, 1, 1 } } },
-  };
-  return maps;
-}
-
-const NamedColormap& FindColormap(const std::string& name)
-{
-  for (const NamedColormap& map : GetColormaps())
-  {
-    if (map.Name == name)
-    {
-      return map;
-    }
-  }
-  throw std::runtime_error("there is no colormap " + name + "; see splatmip --help.");
-}
+const std::vector<NamedColormap> Colormaps = {
+  { "gray", { { 0, 0, 0, 0 }, { 1, 1, 1, 1 } } },
+  { "inverted", { { 0, 1, 1, 1 }, { 1, 0, 0, 0 } } },
+  { "hot", { { 0, 0, 0, 0 }, { 0.375, 1, 0, 0 }, { 0.75, 1, 1, 0 }, { 1, 1, 1, 1 } } },
+  { "bone",
+    { { 0, 0, 0, 0 }, { 0.375, 0.33, 0.33, 0.45 }, { 0.75, 0.66, 0.78, 0.78 }, { 1, 1, 1, 1 } } },
+};
 
 /// Number of samples from which the window is chosen.
 constexpr vtkIdType FewVoxels = 1000000;
@@ -85,31 +69,23 @@ vtkSmartPointer<vtkColorTransferFunction> MakeColors(const LookSettings& look)
 {
   const double low = look.Level - 0.5 * look.Window;
   auto colors = vtkSmartPointer<vtkColorTransferFunction>::New();
-  for (const ColorPoint& point : FindColormap(look.Colormap).Points)
+  const auto map = std::find_if(Colormaps.begin(), Colormaps.end(),
+    [&](const NamedColormap& other) { return other.Name == look.Colormap; });
+  for (const ColorPoint& point : map->Points)
   {
     colors->AddRGBPoint(low + point.Position * look.Window, point.Red, point.Green, point.Blue);
   }
   return colors;
 }
 
-Palette MakePalette(const LookSettings& look)
+vtkSmartPointer<vtkColorTransferFunction> MakePalette(const LookSettings& look)
 {
-  const auto colors = MakeColors(look);
-  Palette palette;
-  for (int n = 0; n < 256; ++n)
-  {
-    const double value = look.Level + look.Window * (n / 255.0 - 0.5);
-    double rgb[3];
-    colors->GetColor(value, rgb);
-    std::transform(rgb, rgb + 3, palette[n].begin(),
-      [](double c) { return static_cast<unsigned char>(std::lround(255.0 * c)); });
-  }
-  return palette;
+  return MakeColors({ 255.0, 127.5, look.Colormap });
 }
 
 std::vector<std::string> GetColormapNames()
 {
-  return ListNames(GetColormaps());
+  return ListNames(Colormaps);
 }
 
 void ChooseWindowLevel(vtkImageData* image, int blendMode, double& window, double& level)

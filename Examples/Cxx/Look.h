@@ -7,7 +7,6 @@
 #include "vtkImageData.h"
 #include "vtkSmartPointer.h"
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -32,10 +31,9 @@ std::vector<std::string> GetColormapNames();
 vtkSmartPointer<vtkColorTransferFunction> MakeColors(const LookSettings& look);
 
 /**
- * Colours of bytes: 0 is the low end of the window, 255 the high one.
+ * Make the colours of bytes: 0 is the low end of the window, 255 the high one.
  */
-using Palette = std::array<std::array<unsigned char, 3>, 256>;
-Palette MakePalette(const LookSettings& look);
+vtkSmartPointer<vtkColorTransferFunction> MakePalette(const LookSettings& look);
 
 /**
  * Choose a window from the values. For maxima, black is the median value and white the value that

@@ -6,6 +6,8 @@
 
 #include "vtkCamera.h"
 #include "vtkMath.h"
+#include "vtkMatrix3x3.h"
+#include "vtkMatrix4x4.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkTextProperty.h"
 #include "vtkTransform.h"
@@ -45,12 +47,17 @@ void CheckDisplay()
 
 MIPScene::MIPScene(const Volume& volume, const ProjectionSettings& settings,
   const LookSettings& look, const ViewSettings& view, bool isOffScreen)
-  : View(view)
+  : View(view),
+    Image(volume.Image)
 {
+  // vtkFixedPointVolumeRayCastMapper ignores direction matrices.
+  vtkNew<vtkImageData> straight;
+  straight->ShallowCopy(volume.Image);
+  straight->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
   for (vtkVolumeMapper* mapper : { static_cast<vtkVolumeMapper*>(this->Splatting),
          static_cast<vtkVolumeMapper*>(this->RayCasting) })
   {
-    mapper->SetInputData(volume.Image);
+    mapper->SetInputData(straight);
     mapper->SetBlendModeToMaximumIntensity();
   }
   const double* spacing = volume.Image->GetSpacing();
@@ -59,7 +66,12 @@ MIPScene::MIPScene(const Volume& volume, const ProjectionSettings& settings,
   this->RayCasting->SetSampleDistance(static_cast<float>(*std::min_element(spacing, spacing + 3)));
   SetColors(this->Property, look);
   this->Prop->SetProperty(this->Property);
-  this->Prop->SetUserMatrix(volume.Orientation);
+  vtkNew<vtkMatrix4x4> orientation;
+  for (int n = 0; n < 9; ++n)
+  {
+    orientation->SetElement(n / 3, n % 3, volume.Image->GetDirectionMatrix()->GetData()[n]);
+  }
+  this->Prop->SetUserMatrix(orientation);
   this->UseSplatting(vtkSplattingMIPVolumeMapper::EXACT);
 
   const double paper = look.Colormap == "inverted" ? 1.0 : 0.0;
@@ -107,13 +119,10 @@ void MIPScene::FitCamera(double azimuth)
   camera->SetPosition(center[0] - away[0], center[1] - away[1], center[2] - away[2]);
   camera->SetViewUp(turn->TransformDoubleVector(0.0, 0.0, 1.0));
   this->Renderer->ResetCamera(bounds); // for the distance
-  double box[6];
-  this->Prop->GetMapper()->GetBounds(box);
-  camera->SetParallelScale(
-    GetFittingScale(box, this->Prop->GetUserMatrix(), this->View, turn) / this->View.Zoom);
+  camera->SetParallelScale(GetFittingScale(this->Image, this->View, turn) / this->View.Zoom);
   if (this->View.Perspective > 0.0)
   {
-    const auto fit = FitPerspective(box, this->Prop->GetUserMatrix(), this->View);
+    const auto fit = FitPerspective(this->Image, this->View);
     camera->ParallelProjectionOff();
     camera->SetViewAngle(vtkMath::DegreesFromRadians(
       2.0 * std::atan(fit.HalfHeight / this->View.Zoom / fit.Distance)));

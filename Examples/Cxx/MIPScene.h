@@ -61,6 +61,7 @@ private:
   void FitCamera(double azimuth);
 
   ViewSettings View;
+  vtkSmartPointer<vtkImageData> Image;
   vtkNew<vtkSplattingMIPVolumeMapper> Splatting;
   vtkNew<vtkFixedPointVolumeRayCastMapper> RayCasting;
   vtkNew<vtkVolumeProperty> Property;

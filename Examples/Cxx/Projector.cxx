@@ -6,7 +6,6 @@
 
 #include "vtkCamera.h"
 #include "vtkDataArray.h"
-#include "vtkMatrix3x3.h"
 #include "vtkPointData.h"
 #include "vtkTransform.h"
 
@@ -18,27 +17,6 @@
 
 namespace
 {
-/// Make an image with the orientation in its direction matrix, where the filter reads it.
-vtkSmartPointer<vtkImageData> Orient(const Volume& volume)
-{
-  auto image = vtkSmartPointer<vtkImageData>::New();
-  image->ShallowCopy(volume.Image);
-  double origin[4] = { 0.0, 0.0, 0.0, 1.0 };
-  std::copy_n(volume.Image->GetOrigin(), 3, origin);
-  volume.Orientation->MultiplyPoint(origin, origin);
-  image->SetOrigin(origin);
-  vtkNew<vtkMatrix3x3> direction;
-  for (int r = 0; r < 3; ++r)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      direction->SetElement(r, c, volume.Orientation->GetElement(r, c));
-    }
-  }
-  image->SetDirectionMatrix(direction);
-  return image;
-}
-
 /// Find the parallel scale in which the volume fits into all views.
 double LargestScale(const Volume& volume, const ViewSettings& view, int views)
 {
@@ -46,8 +24,7 @@ double LargestScale(const Volume& volume, const ViewSettings& view, int views)
   for (int n = 0; n < views; ++n)
   {
     const auto turn = MakeViewTurn(view, view.Azimuth + 360.0 * n / views);
-    scale =
-      std::max(scale, GetFittingScale(volume.Image->GetBounds(), volume.Orientation, view, turn));
+    scale = std::max(scale, GetFittingScale(volume.Image, view, turn));
   }
   return scale / view.Zoom;
 }
@@ -57,13 +34,12 @@ Projector::Projector(const Volume& volume, const ProjectionSettings& settings,
   const LookSettings& look, const ViewSettings& view, int views)
   : Look(look)
 {
-  const auto image = Orient(volume);
-  this->Projection->SetInputData(image);
+  this->Projection->SetInputData(volume.Image);
   std::array<double, 3> center;
-  image->GetCenter(center.data());
+  volume.Image->GetCenter(center.data());
   const auto turn = MakeViewTurn(view, view.Azimuth);
   const double* const away = turn->TransformDoubleVector(0.0, 1.0, 0.0);
-  const auto fit = FitPerspective(volume.Image->GetBounds(), volume.Orientation, view);
+  const auto fit = FitPerspective(volume.Image, view);
   const double distance = view.Perspective > 0.0 ? fit.Distance : 1.0;
   vtkNew<vtkCamera> camera;
   camera->SetParallelProjection(view.Perspective <= 0.0);

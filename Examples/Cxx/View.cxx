@@ -3,6 +3,7 @@
 #include "View.h"
 
 #include "vtkMath.h"
+#include "vtkMatrix3x3.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,33 +20,31 @@ vtkSmartPointer<vtkTransform> MakeViewTurn(const ViewSettings& view, double azim
 namespace
 {
 /**
- * Get the halves of four diagonals of a box; the other four are their negatives.
+ * Get the halves of four diagonals of an image; the other four are their negatives.
  */
-std::array<std::array<double, 4>, 4> GetDiagonals(const double box[6], vtkMatrix4x4* orientation)
+std::array<std::array<double, 3>, 4> GetDiagonals(vtkImageData* image)
 {
-  std::array<std::array<double, 4>, 4> diagonals;
+  std::array<std::array<double, 3>, 4> diagonals;
   for (int edge = 0; edge < 4; ++edge)
   {
     double* const diagonal = diagonals[edge].data();
     for (int axis = 0; axis < 3; ++axis)
     {
-      diagonal[axis] = 0.5 * (box[2 * axis + 1] - box[2 * axis]);
+      diagonal[axis] = 0.5 * (image->GetDimensions()[axis] - 1) * image->GetSpacing()[axis];
     }
     diagonal[1] *= edge & 1 ? -1.0 : 1.0;
     diagonal[2] *= edge & 2 ? -1.0 : 1.0;
-    diagonal[3] = 0.0;
-    orientation->MultiplyPoint(diagonal, diagonal);
+    image->GetDirectionMatrix()->MultiplyPoint(diagonal, diagonal);
   }
   return diagonals;
 }
 }
 
-double GetFittingScale(
-  const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view, vtkTransform* turn)
+double GetFittingScale(vtkImageData* image, const ViewSettings& view, vtkTransform* turn)
 {
   const double aspect = double(view.Size[0]) / view.Size[1];
   double scale = 0.0;
-  for (const auto& diagonal : GetDiagonals(box, orientation))
+  for (const auto& diagonal : GetDiagonals(image))
   {
     const double* seen = turn->GetLinearInverse()->TransformDoubleVector(diagonal.data());
     scale = std::max({ scale, std::fabs(seen[2]), std::fabs(seen[0]) / aspect });
@@ -53,11 +52,10 @@ double GetFittingScale(
   return scale > 0.0 ? 1.1 * scale : 1.0; // room for the label
 }
 
-PerspectiveFit FitPerspective(
-  const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view)
+PerspectiveFit FitPerspective(vtkImageData* image, const ViewSettings& view)
 {
   double radius = 0.0;
-  for (const auto& diagonal : GetDiagonals(box, orientation))
+  for (const auto& diagonal : GetDiagonals(image))
   {
     radius = std::max(radius, std::hypot(diagonal[0], diagonal[1], diagonal[2]));
   }

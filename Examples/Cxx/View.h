@@ -3,7 +3,7 @@
 #ifndef View_h
 #define View_h
 
-#include "vtkMatrix4x4.h"
+#include "vtkImageData.h"
 #include "vtkSmartPointer.h"
 #include "vtkTransform.h"
 
@@ -29,13 +29,12 @@ struct ViewSettings
 vtkSmartPointer<vtkTransform> MakeViewTurn(const ViewSettings& view, double azimuth);
 
 /**
- * Find the parallel scale in which a box, oriented as the volume is, fits into the view.
+ * Find the parallel scale in which the box of an image fits into the view.
  */
-double GetFittingScale(
-  const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view, vtkTransform* turn);
+double GetFittingScale(vtkImageData* image, const ViewSettings& view, vtkTransform* turn);
 
 /**
- * Distance of the eye from the centre of a box in a perspective view, and half the height of the
+ * Distance of the eye from the centre of an image in a perspective view, and half the height of the
  * view there, at zoom 1.
  */
 struct PerspectiveFit
@@ -44,7 +43,6 @@ struct PerspectiveFit
   double HalfHeight;
 };
 
-PerspectiveFit FitPerspective(
-  const double box[6], vtkMatrix4x4* orientation, const ViewSettings& view);
+PerspectiveFit FitPerspective(vtkImageData* image, const ViewSettings& view);
 
 #endif

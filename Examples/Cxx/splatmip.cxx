@@ -148,7 +148,7 @@ void WriteStill(const Volume& volume, const LookSettings& look, const Options& o
     comparison = std::make_unique<Comparison>(volume, look, options);
   }
   Projector projector(volume, options.Projection, look, options.View, 1);
-  const Palette palette = MakePalette(look);
+  const auto palette = MakePalette(look);
   if (IsValueFile(options.Output))
   {
     projector.GetProjection()->SetQualityMode(options.Modes.front());
@@ -181,8 +181,9 @@ void WriteTurn(const Volume& volume, const LookSettings& look, const Options& op
     options.View.Size[0], options.View.Size[1], projector.GetSeconds(),
     options.Rotate / projector.GetSeconds(), vtkSMPTools::GetEstimatedNumberOfThreads(),
     projector.GetProjection()->GetInstructionSet());
-  const FilmSettings film = { options.Rate, volume.IsInMillimeters, volume.Study };
-  WriteSeries(views, MakePalette(look), film, options.Output);
+  const FilmSettings film = { MakePalette(look), options.Rate, volume.IsInMillimeters,
+    volume.Study };
+  WriteSeries(views, film, options.Output);
   std::printf("\nturn: %s\n", options.Output.c_str());
 }
 

@@ -104,7 +104,6 @@ struct ValueMap
   double Padding[2] = { 1.0, 0.0 }; // codes from, to, that become NaN; none if they fall
 
   double GetValue(double stored) const;
-  bool operator==(const ValueMap& other) const;
 };
 
 /**
@@ -120,18 +119,10 @@ ValueMap FindValueMap(const DICOMFrame& frame, bool hidesPadding, std::vector<st
 int FindScalarType(const std::vector<const DICOMFrame*>& frames, const std::vector<ValueMap>& maps);
 
 /**
- * Copies frames of pixels to slices of values. Keeps the table of the last conversion, so one
- * object should be used for many frames.
+ * Convert a frame of pixels to a slice of values.
  */
-class SliceConverter
-{
-public:
-  void Convert(vtkImageData* stored, int frame, const ValueMap& map, vtkImageData* to, int slice);
-
-private:
-  ValueMap Map;
-  std::vector<double> Values; // by stored bits, of at most 16
-};
+void ConvertSlice(
+  vtkImageData* stored, int frame, const ValueMap& map, vtkImageData* to, int slice);
 
 /**
  * Return whether a file is a DICOM segmentation (SEG).

@@ -253,7 +253,7 @@ Sorted SortByTag(
  * distinguish them. It must have the same values at all places unless ranks are enough.
  */
 std::vector<std::size_t> ChooseByTag(const std::vector<DICOMFrame>& frames,
-  const std::vector<std::vector<std::size_t>>& places, vtkDICOMTag tag, std::size_t number,
+  const std::vector<std::vector<std::size_t>>& places, vtkDICOMTag tag, int number,
   bool areRanksEnough)
 {
   std::vector<std::size_t> order;
@@ -267,7 +267,7 @@ std::vector<std::size_t> ChooseByTag(const std::vector<DICOMFrame>& frames,
     {
       return {};
     }
-    order.push_back(std::next(sorted.begin(), static_cast<std::ptrdiff_t>(number))->second);
+    order.push_back(std::next(sorted.begin(), number)->second);
   }
   return order;
 }
@@ -374,22 +374,21 @@ std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
 {
   CheckCounts(frames, places);
   const std::size_t count = places[0].size();
-  CheckChoice(frames[0].File->Path, "volume", number, static_cast<int>(count));
-  const std::size_t chosen = number > 0 ? static_cast<std::size_t>(number) - 1 : 0;
+  number = Choose(frames[0].File->Path, "volume", number, static_cast<int>(count), notes);
   for (const bool areRanksEnough : { false, true })
   {
     for (const auto& [tag, name] : TimeTags)
     {
       const bool isRanked = tag != DC::ImageType && tag != DC::SOPInstanceUID;
       const auto order = count > 1 && (isRanked || !areRanksEnough)
-        ? ChooseByTag(frames, places, tag, chosen, areRanksEnough)
+        ? ChooseByTag(frames, places, tag, number - 1, areRanksEnough)
         : std::vector<std::size_t>();
       if (!order.empty())
       {
         const DICOMFrame& first = frames[order[0]];
-        notes.push_back(DescribeChoice("volume", number, static_cast<int>(count)) + ", " +
+        notes.back() += ", " +
           (areRanksEnough ? std::string("by the order of ") + name + " at each place"
-                          : name + (" " + first.Get(tag).AsString())));
+                          : name + (" " + first.Get(tag).AsString()));
         return order;
       }
     }

@@ -6,12 +6,12 @@
 #include "vtkDICOMSequence.h"
 #include "vtkDataArray.h"
 #include "vtkPointData.h"
+#include "vtkSMPTools.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <tuple>
 
 namespace
 {
@@ -111,39 +111,6 @@ void SetPadding(ValueMap& map, const DICOMFrame& frame, bool hidesPadding)
     map.Padding[1] = std::max(first, second);
   }
 }
-
-template <class From, class To>
-void Look(const From* from, vtkIdType count, const std::vector<double>& values, To* to)
-{
-  std::transform(
-    from, from + count, to, [&](From stored) { return static_cast<To>(values[stored]); });
-}
-
-/**
- * Convert values by a table of the stored bits, or one by one.
- */
-template <class To>
-void ConvertValues(vtkDataArray* from, vtkIdType first, vtkIdType count, const ValueMap& map,
-  const std::vector<double>& values, To* to)
-{
-  if (values.size() == 256)
-  {
-    Look(static_cast<const std::uint8_t*>(from->GetVoidPointer(first)), count, values, to);
-    return;
-  }
-  if (!values.empty())
-  {
-    Look(static_cast<const std::uint16_t*>(from->GetVoidPointer(first)), count, values, to);
-    return;
-  }
-  const int components = from->GetNumberOfComponents();
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    const vtkIdType place = first + i;
-    to[i] = static_cast<To>(
-      map.GetValue(from->GetComponent(place / components, static_cast<int>(place % components))));
-  }
-}
 }
 
 double ValueMap::GetValue(double stored) const
@@ -159,16 +126,6 @@ double ValueMap::GetValue(double stored) const
     return this->Table[static_cast<std::size_t>(std::clamp(code - this->FirstOfTable, 0.0, last))];
   }
   return this->Slope * code + this->Intercept;
-}
-
-bool ValueMap::operator==(const ValueMap& other) const
-{
-  const auto tie = [](const ValueMap& map)
-  {
-    return std::tie(map.Bits, map.Shift, map.IsSigned, map.Slope, map.Intercept, map.Table,
-      map.FirstOfTable, map.Padding[0], map.Padding[1]);
-  };
-  return tie(*this) == tie(other);
 }
 
 ValueMap FindValueMap(const DICOMFrame& frame, bool hidesPadding, std::vector<std::string>& notes)
@@ -228,31 +185,21 @@ int FindScalarType(const std::vector<const DICOMFrame*>& frames, const std::vect
                                                      : VTK_DOUBLE;
 }
 
-void SliceConverter::Convert(
-  vtkImageData* stored, int frame, const ValueMap& map, vtkImageData* to, int slice)
+void ConvertSlice(vtkImageData* stored, int frame, const ValueMap& map, vtkImageData* to, int slice)
 {
   vtkDataArray* const from = stored->GetPointData()->GetScalars();
-  const int bits = 8 * from->GetDataTypeSize();
-  const bool isSigned = from->GetDataTypeMin() < 0.0;
-  const std::size_t size = map.Bits > 0 && bits <= 16 ? std::size_t(1) << bits : 0;
-  if (!(map == this->Map) || this->Values.size() != size)
+  vtkDataArray* const values = to->GetPointData()->GetScalars();
+  const vtkIdType pixels = vtkIdType(to->GetDimensions()[0]) * to->GetDimensions()[1];
+  const auto convert = [&](vtkIdType begin, vtkIdType end)
   {
-    this->Map = map;
-    this->Values.resize(size);
-    for (std::size_t i = 0; i < size; ++i)
+    for (vtkIdType i = begin; i < end; ++i)
     {
-      const double code = static_cast<double>(i);
-      this->Values[i] =
-        map.GetValue(isSigned && 2 * i >= size ? code - static_cast<double>(size) : code);
+      for (int n = 0; n < from->GetNumberOfComponents(); ++n)
+      {
+        const double code = from->GetComponent(frame * pixels + i, n);
+        values->SetComponent(slice * pixels + i, n, map.GetValue(code));
+      }
     }
-  }
-  const int* const dimensions = to->GetDimensions();
-  const vtkIdType count =
-    vtkIdType(dimensions[0]) * dimensions[1] * to->GetNumberOfScalarComponents();
-  void* const values = to->GetScalarPointer(0, 0, slice);
-  switch (to->GetScalarType())
-  {
-    vtkTemplateMacro(
-      ConvertValues(from, frame * count, count, map, this->Values, static_cast<VTK_TT*>(values)));
-  }
+  };
+  vtkSMPTools::For(0, pixels, convert);
 }

@@ -67,7 +67,6 @@ vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
     slicesOf[frames[order[slice]].File].push_back(slice);
   }
   ProgressLine line("reading slices");
-  SliceConverter converter;
   std::size_t done = 0;
   for (const auto& [file, slices] : slicesOf)
   {
@@ -75,7 +74,7 @@ vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
     vtkImageData* const found = ReadPixels(*file, quiet);
     for (const std::size_t slice : slices)
     {
-      converter.Convert(found, chosen[slice]->Number, maps[slice], image, static_cast<int>(slice));
+      ConvertSlice(found, chosen[slice]->Number, maps[slice], image, static_cast<int>(slice));
     }
     file->Reader->GetOutput()->ReleaseData();
     done += slices.size();
@@ -187,7 +186,7 @@ Volume ReadDICOM(const std::string& path, const ReadSettings& settings, const Qu
   volume.Study = files.front()->Reader->GetMetaData();
   if (IsSegmentation(*files.front()))
   {
-    CheckChoice(path, "volume", settings.Frame, 1);
+    Choose(path, "volume", settings.Frame, 1, volume.Notes);
     ReadSegments(files, settings.Label, quiet, volume);
   }
   else

@@ -199,11 +199,9 @@ Volume ReadFrame(itk::ImageIOBase* io, const std::string& path, const ReadSettin
   }
   const bool isList = areComponentsFrames && count == 1;
   count = isList ? volume.Image->GetNumberOfScalarComponents() : count;
-  CheckChoice(path, "volume", settings.Frame, count);
+  const int number = Choose(path, "volume", settings.Frame, count, volume.Notes);
   if (count > 1)
   {
-    const int number = std::max(1, settings.Frame);
-    volume.Notes.push_back(DescribeChoice("volume", number, count));
     volume.Image =
       isList ? ExtractComponent(volume.Image, number) : ExtractFrame(volume.Image, number, count);
   }

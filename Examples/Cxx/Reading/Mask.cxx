@@ -6,6 +6,7 @@
 
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
@@ -23,13 +24,9 @@ constexpr double Tolerance = 0.1;
 vtkSmartPointer<vtkMatrix4x4> MakeIndexToPatient(const Volume& volume)
 {
   auto matrix = vtkSmartPointer<vtkMatrix4x4>::New();
+  matrix->DeepCopy(volume.Image->GetIndexToPhysicalMatrix());
   for (int row = 0; row < 3; ++row)
   {
-    for (int column = 0; column < 3; ++column)
-    {
-      matrix->SetElement(row, column,
-        volume.Orientation->GetElement(row, column) * volume.Image->GetSpacing()[column]);
-    }
     matrix->SetElement(row, 3, volume.Origin[row]);
   }
   return matrix;

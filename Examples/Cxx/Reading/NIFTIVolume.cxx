@@ -176,13 +176,9 @@ Volume ReadNIFTI(const std::string& path, const ReadSettings& settings, const Qu
   const Type& type = FindType(*header, path);
   CheckMemory(double(header->nx) * double(header->ny) * double(header->nz), path);
   const int count = static_cast<int>(header->nvox / (header->nx * header->ny * header->nz));
-  CheckChoice(path, "volume", settings.Frame, count);
   Volume volume;
-  if (count > 1)
-  {
-    volume.Notes.push_back(DescribeChoice("volume", settings.Frame, count));
-  }
-  volume.Image = ReadFrame(header.get(), std::max(1, settings.Frame) - 1, type);
+  const int frame = Choose(path, "volume", settings.Frame, count, volume.Notes);
+  volume.Image = ReadFrame(header.get(), frame - 1, type);
   if (!volume.Image)
   {
     RefuseDamaged(path, "");

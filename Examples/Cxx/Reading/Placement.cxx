@@ -5,6 +5,8 @@
 #include "Reading/Reading.h"
 
 #include "vtkDataArray.h"
+#include "vtkMatrix3x3.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 
 #include <vtksys/SystemTools.hxx>
@@ -51,8 +53,7 @@ void PlaceVolume(Volume& volume, Steps steps, std::array<double, 3> origin, cons
   const int* const size = volume.Image->GetDimensions();
   volume.Image->SetExtent(0, size[0] - 1, 0, size[1] - 1, 0, size[2] - 1);
   volume.Image->SetOrigin(0.0, 0.0, 0.0);
-  volume.Image->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
-  volume.Orientation = vtkSmartPointer<vtkMatrix4x4>::New();
+  vtkNew<vtkMatrix3x3> directions;
   const double unitLength = FindMillimeters(unit);
   const double scale = unitLength > 0.0 ? unitLength : 1.0;
   bool isSized = true;
@@ -69,7 +70,7 @@ void PlaceVolume(Volume& volume, Steps steps, std::array<double, 3> origin, cons
     }
     for (int row = 0; row < 3; ++row)
     {
-      volume.Orientation->SetElement(row, axis, step[row] / length);
+      directions->SetElement(row, axis, step[row] / length);
     }
     spacing[axis] = length * scale;
     volume.Origin[axis] = std::isfinite(origin[axis]) ? origin[axis] * scale : 0.0;
@@ -85,11 +86,12 @@ void PlaceVolume(Volume& volume, Steps steps, std::array<double, 3> origin, cons
   {
     volume.Notes.push_back(DescribeUnit(unit, unitLength));
   }
-  if (!(std::fabs(volume.Orientation->Determinant()) > 1e-3))
+  if (!(std::fabs(directions->Determinant()) > 1e-3))
   {
-    volume.Orientation->Identity();
+    directions->Identity();
     volume.IsOriented = false;
   }
+  volume.Image->SetDirectionMatrix(directions);
 }
 
 void TurnToLPS(Steps& steps, std::array<double, 3>& origin)

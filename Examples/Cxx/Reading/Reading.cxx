@@ -12,14 +12,6 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace
-{
-std::string GetOption(const std::string& what)
-{
-  return what == "volume" ? "--frame" : "--" + what;
-}
-}
-
 void Refuse(const std::string& path, const std::string& reason)
 {
   throw std::runtime_error(path + ": " + reason);
@@ -67,28 +59,36 @@ std::string ReadHead(const std::string& path)
   return head;
 }
 
-void CheckChoice(const std::string& path, const std::string& what, int number, int count)
+int Choose(const std::string& path, const std::string& what, int number, int count,
+  std::vector<std::string>& notes)
 {
+  const std::string option = what == "volume" ? "--frame" : "--" + what;
   if (number > count)
   {
     Refuse(path,
       "there is no " + what + " " + std::to_string(number) + " here, only " +
-        std::to_string(count) + "; give another " + GetOption(what) + ".");
+        std::to_string(count) + "; give another " + option + ".");
   }
-}
-
-std::string DescribeChoice(const std::string& what, int number, int count)
-{
-  return what + " " + std::to_string(std::max(number, 1)) + " of " + std::to_string(count) + " (" +
-    GetOption(what) + " chooses)";
+  number = std::max(number, 1);
+  if (count > 1)
+  {
+    notes.push_back(what + " " + std::to_string(number) + " of " + std::to_string(count) + " (" +
+      option + " chooses)");
+  }
+  return number;
 }
 
 vtkSmartPointer<vtkImageData> ExtractComponent(vtkImageData* image, int number)
 {
+  if (image->GetNumberOfScalarComponents() == 1)
+  {
+    return image;
+  }
   vtkNew<vtkImageExtractComponents> extract;
   extract->SetInputData(image);
   extract->SetComponents(number - 1);
   extract->Update();
+  extract->GetOutput()->SetDirectionMatrix(image->GetDirectionMatrix()); // filters omit it
   return extract->GetOutput();
 }
 

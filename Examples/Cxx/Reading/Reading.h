@@ -41,18 +41,15 @@ void CheckMemory(double voxels, const std::string& path);
 std::string ReadHead(const std::string& path);
 
 /**
- * Refuse a number (from 1 on, or 0 for any) of one of several volumes, channels or components that
- * a file does not have.
+ * Choose one of several volumes, channels or components by a number from 1 on, or 0 for the first.
+ * Refuses numbers that the file does not have. If there are several, a note names the option that
+ * chooses. Returns the number, from 1 on.
  */
-void CheckChoice(const std::string& path, const std::string& what, int number, int count);
+int Choose(const std::string& path, const std::string& what, int number, int count,
+  std::vector<std::string>& notes);
 
 /**
- * Return a note about one (from 1 on, or 0 for the first) of several, with the option that chooses.
- */
-std::string DescribeChoice(const std::string& what, int number, int count);
-
-/**
- * Return one of the components of an image, from 1 on.
+ * Return one of the components of an image, from 1 on; the image itself if it has one.
  */
 vtkSmartPointer<vtkImageData> ExtractComponent(vtkImageData* image, int number);
 

@@ -512,11 +512,10 @@ Volume ReadTIFF(const std::string& path, const ReadSettings& settings, const Qui
         " times, but " + std::to_string(pages.GetCount()) +
         " pages; save the volume as one file again.");
   }
-  CheckChoice(path, "channel", settings.Channel, layout.Channels);
-  CheckChoice(path, "volume", settings.Frame, layout.Times);
-  const int channel = std::max(1, settings.Channel), time = std::max(1, settings.Frame);
-  CheckMemory(double(pages.GetWidth()) * pages.GetHeight() * layout.Slices, path);
   Volume volume;
+  const int channel = Choose(path, "channel", settings.Channel, layout.Channels, volume.Notes);
+  const int time = Choose(path, "volume", settings.Frame, layout.Times, volume.Notes);
+  CheckMemory(double(pages.GetWidth()) * pages.GetHeight() * layout.Slices, path);
   volume.Image = vtkSmartPointer<vtkImageData>::New();
   volume.Image->SetDimensions(pages.GetWidth(), pages.GetHeight(), layout.Slices);
   volume.Image->AllocateScalars(pages.GetVTKType(), pages.GetComponents());
@@ -528,13 +527,5 @@ Volume ReadTIFF(const std::string& path, const ReadSettings& settings, const Qui
     isBehind ? pages.ReadBehind(page, pixels) : pages.Read(page, pixels);
   }
   PlaceStack(volume, layout);
-  if (layout.Channels > 1)
-  {
-    volume.Notes.push_back(DescribeChoice("channel", channel, layout.Channels));
-  }
-  if (layout.Times > 1)
-  {
-    volume.Notes.push_back(DescribeChoice("volume", time, layout.Times));
-  }
   return volume;
 }

@@ -340,7 +340,6 @@ Volume MakeVolume(vtkDataSet* data, const std::string& path, const std::string& 
 
 Volume ReadVTK(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
-  CheckChoice(path, "volume", settings.Frame, 1);
   const std::string ending =
     vtksys::SystemTools::LowerCase(std::filesystem::path(path).extension().string());
   vtkSmartPointer<vtkDataSet> data;
@@ -365,7 +364,9 @@ Volume ReadVTK(const std::string& path, const ReadSettings& settings, const Quie
     reader->SetFileName(path.c_str());
     data = RunReader(reader, path, quiet);
   }
-  return MakeVolume(data, path, settings.Array);
+  Volume volume = MakeVolume(data, path, settings.Array);
+  Choose(path, "volume", settings.Frame, 1, volume.Notes);
+  return volume;
 }
 
 Volume ReadVTKText(const std::string& text, const std::string& name, const QuietReading& quiet)

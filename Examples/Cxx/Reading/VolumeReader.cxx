@@ -67,17 +67,16 @@ void ChooseComponent(Volume& volume, const std::string& path, const std::string&
       "luminance is of red, green and blue, and voxels have " + std::to_string(components) +
         (components > 1 ? " values" : " value") + "; give another --component.");
   }
-  const int number = std::atoi(wanted.c_str()); // 0 if it is a word
-  CheckChoice(path, "component", number, components);
   if (isLuminance || wanted == "magnitude")
   {
     volume.Image = Combine(volume.Image, isLuminance);
     volume.Notes.push_back(wanted + " of " + std::to_string(components) + " components");
   }
-  else if (components > 1)
+  else
   {
-    volume.Image = ExtractComponent(volume.Image, std::max(number, 1));
-    volume.Notes.push_back(DescribeChoice("component", number, components));
+    const int number = std::atoi(wanted.c_str());
+    volume.Image =
+      ExtractComponent(volume.Image, Choose(path, "component", number, components, volume.Notes));
   }
   if (hidden)
   {

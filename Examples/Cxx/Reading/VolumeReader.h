@@ -4,7 +4,6 @@
 #define VolumeReader_h
 
 #include "vtkImageData.h"
-#include "vtkMatrix4x4.h"
 #include "vtkSmartPointer.h"
 
 #include <array>
@@ -31,16 +30,10 @@ struct ReadSettings
 struct Volume
 {
   /**
-   * At least one voxel; active point scalars of one component; no direction matrix.
+   * At least one voxel; active point scalars of one component. The direction matrix rotates to the
+   * patient's coordinates: +x left, +y back, +z head (LPS, as in DICOM).
    */
   vtkSmartPointer<vtkImageData> Image;
-
-  /**
-   * Rotation from Image's coordinates to the patient's: +x left, +y back, +z head (LPS, as in
-   * DICOM). It is the volume's prop matrix, because vtkFixedPointVolumeRayCastMapper ignores
-   * direction matrices.
-   */
-  vtkSmartPointer<vtkMatrix4x4> Orientation;
 
   /**
    * Position of the first voxel in the patient (LPS), as far as the file says; it is 0 in Image.

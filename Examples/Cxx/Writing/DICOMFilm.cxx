@@ -6,10 +6,10 @@
 #include "vtkDICOMMetaData.h"
 #include "vtkDICOMSCGenerator.h"
 #include "vtkDICOMWriter.h"
+#include "vtkImageConstantPad.h"
+#include "vtkImageMapToColors.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-
-#include <algorithm>
 
 namespace
 {
@@ -84,50 +84,50 @@ vtkSmartPointer<vtkDICOMMetaData> DescribeFilm(vtkObject* study)
   return elements;
 }
 
+bool IsGray(vtkColorTransferFunction* palette)
+{
+  double node[6]; // place, red, green, blue, ...
+  bool isGray = true;
+  for (int n = 0; n < palette->GetSize(); ++n)
+  {
+    palette->GetNodeValue(n, node);
+    isGray = isGray && node[1] == node[2] && node[2] == node[3];
+  }
+  return isGray;
+}
+
 /**
  * Paint frames as bytes if the palette is gray, else as colours. DICOM requires an even number of
  * bytes, which vtk-dicom does not ensure: where it is odd, a column of the darkest colour is added.
  */
-vtkSmartPointer<vtkImageData> PaintFrames(vtkImageData* slices, const Palette& palette)
+vtkSmartPointer<vtkImageData> PaintFrames(vtkImageData* slices, vtkColorTransferFunction* palette)
 {
   const bool isColored = slices->GetNumberOfScalarComponents() == 3;
-  const bool isGray = !isColored &&
-    std::all_of(palette.begin(), palette.end(),
-      [](const auto& color) { return color[0] == color[1] && color[1] == color[2]; });
-  const int components = isGray ? 1 : 3;
   const int* const size = slices->GetDimensions();
   const bool isOdd = size[0] * size[1] * size[2] % 2 != 0;
-  auto frames = vtkSmartPointer<vtkImageData>::New();
-  frames->SetDimensions(size[0] + isOdd, size[1], size[2]);
-  const double* const spacing = slices->GetSpacing();
-  frames->SetSpacing(spacing[0], spacing[1], 1.0);
-  frames->AllocateScalars(VTK_UNSIGNED_CHAR, components);
-  const auto* from = static_cast<unsigned char*>(slices->GetScalarPointer());
-  auto* to = static_cast<unsigned char*>(frames->GetScalarPointer());
-  const Palette::value_type black = {};
-  for (vtkIdType row = 0; row < vtkIdType(size[1]) * size[2]; ++row)
-  {
-    for (int column = 0; column < size[0]; ++column, from += isColored ? 3 : 1, to += components)
-    {
-      std::copy_n(isColored ? from : palette[*from].data(), components, to);
-    }
-    if (isOdd)
-    {
-      to = std::copy_n(isColored ? black.data() : palette[0].data(), components, to);
-    }
-  }
+  vtkNew<vtkImageConstantPad> pad;
+  pad->SetInputData(slices);
+  pad->SetOutputWholeExtent(0, size[0] - 1 + isOdd, 0, size[1] - 1, 0, size[2] - 1);
+  vtkNew<vtkImageMapToColors> paint;
+  paint->SetInputConnection(pad->GetOutputPort());
+  paint->SetLookupTable(isColored ? nullptr : palette);
+  paint->SetOutputFormat(!isColored && IsGray(palette) ? VTK_LUMINANCE : VTK_RGB);
+  paint->Update();
+  vtkSmartPointer<vtkImageData> frames = paint->GetOutput();
+  frames->SetOrigin(0.0, 0.0, 0.0);
+  frames->SetSpacing(slices->GetSpacing()[0], slices->GetSpacing()[1], 1.0);
   return frames;
 }
 }
 
-bool WriteDICOM(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
-  const std::vector<std::string>& names)
+bool WriteDICOM(
+  vtkImageData* slices, const FilmSettings& settings, const std::vector<std::string>& names)
 {
   const QuietReading quiet;
   vtkNew<FilmGenerator> generator;
   generator->IsInMillimeters = settings.IsInMillimeters;
   vtkNew<vtkDICOMWriter> writer;
-  writer->SetInputData(PaintFrames(slices, palette));
+  writer->SetInputData(PaintFrames(slices, settings.Palette));
   writer->SetGenerator(generator);
   writer->SetMetaData(DescribeFilm(settings.Study));
   writer->SetSeriesDescription("splatmip");

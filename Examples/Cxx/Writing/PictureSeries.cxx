@@ -7,6 +7,8 @@
 #include "Reading/Reading.h"
 #include "Writing/SafeFiles.h"
 
+#include "vtkExtractVOI.h"
+#include "vtkImageMapToColors.h"
 #include "vtkNew.h"
 #include "vtkPNGWriter.h"
 #include "vtkSmartPointer.h"
@@ -36,8 +38,8 @@ std::string NumberName(const std::string& path, int n)
     .string();
 }
 
-bool WritePNGs(vtkImageData* slices, const Palette& palette, const FilmSettings&,
-  const std::vector<std::string>& names)
+bool WritePNGs(
+  vtkImageData* slices, const FilmSettings& settings, const std::vector<std::string>& names)
 {
   const int count = slices->GetDimensions()[2];
   ProgressLine line("writing");
@@ -45,7 +47,7 @@ bool WritePNGs(vtkImageData* slices, const Palette& palette, const FilmSettings&
   for (int n = 0; n < count && isComplete; ++n)
   {
     line.Show(double(n) / count);
-    isComplete = WritePNG(Paint(slices, palette, n), names[n]);
+    isComplete = WritePNG(Paint(slices, settings.Palette, n), names[n]);
   }
   return isComplete;
 }
@@ -79,8 +81,8 @@ bool IsCompleteOgg(const std::string& path)
   return end == size && (page[5] & 4) != 0;
 }
 
-bool WriteTheora(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
-  const std::vector<std::string>& names)
+bool WriteTheora(
+  vtkImageData* slices, const FilmSettings& settings, const std::vector<std::string>& names)
 {
   const QuietReading quiet;
   vtkNew<vtkOggTheoraWriter> writer;
@@ -93,7 +95,7 @@ bool WriteTheora(vtkImageData* slices, const Palette& palette, const FilmSetting
   for (int n = 0; n < count; ++n)
   {
     line.Show(double(n) / count);
-    writer->SetInputData(Paint(slices, palette, n));
+    writer->SetInputData(Paint(slices, settings.Palette, n));
     if (n == 0)
     {
       writer->Start();
@@ -117,7 +119,7 @@ constexpr auto DICOMWriter = nullptr;
 struct SeriesFormat
 {
   const char* Name; // the ending
-  bool (*Write)(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
+  bool (*Write)(vtkImageData* slices, const FilmSettings& settings,
     const std::vector<std::string>& names); // nullptr if this build has no
   const char* Library;
 };
@@ -134,24 +136,18 @@ const SeriesFormat* FindFormat(const std::string& path)
 }
 }
 
-vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette, int n)
+vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, vtkColorTransferFunction* palette, int n)
 {
   const int* const size = slices->GetDimensions();
-  auto picture = vtkSmartPointer<vtkImageData>::New();
-  picture->SetDimensions(size[0], size[1], 1);
-  picture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  const auto* const from = static_cast<unsigned char*>(slices->GetScalarPointer(0, 0, n));
-  auto* const to = static_cast<unsigned char*>(picture->GetScalarPointer());
-  if (slices->GetNumberOfScalarComponents() == 3)
-  {
-    std::copy_n(from, 3 * picture->GetNumberOfPoints(), to);
-    return picture;
-  }
-  for (vtkIdType p = 0; p < picture->GetNumberOfPoints(); ++p)
-  {
-    std::copy_n(palette[from[p]].data(), 3, to + 3 * p);
-  }
-  return picture;
+  vtkNew<vtkExtractVOI> slice;
+  slice->SetInputData(slices);
+  slice->SetVOI(0, size[0] - 1, 0, size[1] - 1, n, n);
+  vtkNew<vtkImageMapToColors> paint;
+  paint->SetInputConnection(slice->GetOutputPort());
+  paint->SetLookupTable(slices->GetNumberOfScalarComponents() == 1 ? palette : nullptr);
+  paint->SetOutputFormatToRGB();
+  paint->Update();
+  return paint->GetOutput();
 }
 
 bool WritePNG(vtkImageData* image, const std::string& path)
@@ -198,10 +194,9 @@ std::vector<std::string> GetSeriesFiles(const std::string& path, int count)
   return names;
 }
 
-void WriteSeries(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
-  const std::string& path)
+void WriteSeries(vtkImageData* slices, const FilmSettings& settings, const std::string& path)
 {
   WriteSafely(GetSeriesFiles(path, slices->GetDimensions()[2]),
     [&](const std::vector<std::string>& names)
-    { return FindFormat(path)->Write(slices, palette, settings, names); });
+    { return FindFormat(path)->Write(slices, settings, names); });
 }

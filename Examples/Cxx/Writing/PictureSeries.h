@@ -3,8 +3,7 @@
 #ifndef PictureSeries_h
 #define PictureSeries_h
 
-#include "Look.h"
-
+#include "vtkColorTransferFunction.h"
 #include "vtkImageData.h"
 #include "vtkSmartPointer.h"
 
@@ -14,7 +13,7 @@
 /**
  * Make a picture of one slice, by the palette if it has no colours.
  */
-vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, const Palette& palette, int n);
+vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, vtkColorTransferFunction* palette, int n);
 
 /**
  * Write a PNG file. Returns whether it is complete.
@@ -26,9 +25,10 @@ bool WritePNG(vtkImageData* image, const std::string& path);
  */
 struct FilmSettings
 {
-  int Rate = 12;                // per second
-  bool IsInMillimeters = false; // unit of the slices' spacing
-  vtkObject* Study = nullptr;   // see Volume
+  vtkSmartPointer<vtkColorTransferFunction> Palette; // of bytes
+  int Rate = 12;                                     // per second
+  bool IsInMillimeters = false;                      // unit of the slices' spacing
+  vtkObject* Study = nullptr;                        // see Volume
 };
 
 /**
@@ -51,15 +51,14 @@ std::vector<std::string> GetSeriesFiles(const std::string& path, int count);
  * Write the slices of an image, bottom row first: bytes, which are indices of the palette, or
  * colours. Throws std::runtime_error with one sentence.
  */
-void WriteSeries(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
-  const std::string& path);
+void WriteSeries(vtkImageData* slices, const FilmSettings& settings, const std::string& path);
 
 /**
  * Write slices as one DICOM file with a frame for each: a multi-frame secondary capture of gray
  * bytes or true colours, in a series of its own in the study of the files that were read. Returns
  * whether the file is complete. Only in builds with vtk-dicom.
  */
-bool WriteDICOM(vtkImageData* slices, const Palette& palette, const FilmSettings& settings,
-  const std::vector<std::string>& names);
+bool WriteDICOM(
+  vtkImageData* slices, const FilmSettings& settings, const std::vector<std::string>& names);
 
 #endif
