@@ -5,11 +5,14 @@
 #include "vtkDataArray.h"
 #include "vtkImageExtractComponents.h"
 #include "vtkNew.h"
+#include "vtk_utf8.h"
 
 #include <vtksys/SystemInformation.hxx>
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 void Refuse(const std::string& path, const std::string& reason)
@@ -27,25 +30,13 @@ void RefuseDamaged(const std::string& path, const std::string& report)
 
 std::string MakePrintable(const std::string& text)
 {
-  std::string printable;
-  for (std::size_t i = 0; i < text.size();)
+  std::string valid, printable;
+  utf8::replace_invalid(text.begin(), text.end(), std::back_inserter(valid), '?');
+  for (auto place = valid.begin(); place != valid.end();)
   {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const std::size_t length = byte < 0x80 ? 1
-      : byte < 0xC2                        ? 0
-      : byte < 0xE0                        ? 2
-      : byte < 0xF0                        ? 3
-      : byte < 0xF5                        ? 4
-                                           : 0;
-    const std::string bytes = text.substr(i, length);
-    const auto second = static_cast<unsigned char>(bytes.size() > 1 ? bytes[1] : 0);
-    const bool isOverlong = (byte == 0xE0 && second < 0xA0) || (byte == 0xF0 && second < 0x90);
-    const bool isWhole = length > 0 && bytes.size() == length && !isOverlong &&
-      std::all_of(bytes.begin() + 1, bytes.end(), [](char c) { return (c & 0xC0) == 0x80; });
-    const bool isControl =
-      byte < ' ' || byte == 0x7F || (byte == 0xC2 && isWhole && (bytes[1] & 0x20) == 0);
-    printable += isWhole && !isControl ? bytes : "?";
-    i += isWhole ? length : 1;
+    const std::uint32_t letter = utf8::next(place, valid.end());
+    const bool isControl = letter < ' ' || (letter >= 0x7F && letter < 0xA0);
+    utf8::append(isControl ? '?' : letter, std::back_inserter(printable));
   }
   return printable;
 }

@@ -19,6 +19,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <set>
 #include <sstream>
 #include <tuple>
@@ -31,6 +32,16 @@ Value GetTag(TIFF* file, std::uint32_t tag)
   Value value = {};
   TIFFGetFieldDefaulted(file, tag, &value);
   return value;
+}
+
+/**
+ * Get a number, which libtiff stores in 16 or 32 bits.
+ */
+std::uint32_t GetNumber(TIFF* file, std::uint32_t tag)
+{
+  return TIFFFieldDataType(TIFFFieldWithTag(file, tag)) == TIFF_SHORT
+    ? GetTag<std::uint16_t>(file, tag)
+    : GetTag<std::uint32_t>(file, tag);
 }
 
 /// libtiff's last error.
@@ -55,7 +66,7 @@ public:
   int GetWidth() const { return static_cast<int>(this->Width); }
   int GetHeight() const { return static_cast<int>(this->Height); }
   int GetVTKType() const;
-  int GetComponents() const { return this->Samples; }
+  int GetComponents() const { return static_cast<int>(this->Samples); }
 
   /**
    * Get the number of pages, less masks and reduced copies of others.
@@ -90,9 +101,9 @@ private:
   std::vector<std::uint32_t> Pages;
   std::uint32_t Width = 0;
   std::uint32_t Height = 0;
-  std::uint16_t Bits = 1;
-  std::uint16_t Format = 1;
-  std::uint16_t Samples = 1;
+  std::uint32_t Bits = 1;
+  std::uint32_t Format = 1;
+  std::uint32_t Samples = 1;
   std::string Description;
   double Resolution[2] = { 0.0, 0.0 };
 };
@@ -142,73 +153,61 @@ void TIFFPages::RefuseTag(const char* tag, double value, const std::string& advi
 void TIFFPages::CheckType() const
 {
   TIFF* const file = this->File.get();
+  const auto get = [file](std::uint32_t tag) { return GetNumber(file, tag); };
   const std::string asGray = "save the stack as gray values, uncompressed";
-  const auto photometric = GetTag<std::uint16_t>(file, TIFFTAG_PHOTOMETRIC);
-  if (photometric != PHOTOMETRIC_MINISBLACK && photometric != PHOTOMETRIC_RGB)
-  {
-    this->RefuseTag("PhotometricInterpretation", photometric,
-      photometric == PHOTOMETRIC_MINISWHITE ? "invert the stack and save it again" : asGray);
-  }
-  const auto compression = GetTag<std::uint16_t>(file, TIFFTAG_COMPRESSION);
-  if (!TIFFIsCODECConfigured(compression))
-  {
-    this->RefuseTag("Compression", compression, asGray);
-  }
-  const auto planes = GetTag<std::uint16_t>(file, TIFFTAG_PLANARCONFIG);
-  if (planes != PLANARCONFIG_CONTIG && GetTag<std::uint16_t>(file, TIFFTAG_SAMPLESPERPIXEL) > 1)
-  {
-    this->RefuseTag("PlanarConfiguration", planes, "save the stack with interleaved samples");
-  }
-  const auto bits = GetTag<std::uint16_t>(file, TIFFTAG_BITSPERSAMPLE);
-  const auto format = GetTag<std::uint16_t>(file, TIFFTAG_SAMPLEFORMAT);
+  const auto photometric = get(TIFFTAG_PHOTOMETRIC), compression = get(TIFFTAG_COMPRESSION);
+  const auto planes = get(TIFFTAG_PLANARCONFIG), depth = get(TIFFTAG_IMAGEDEPTH);
+  const auto bits = get(TIFFTAG_BITSPERSAMPLE), format = get(TIFFTAG_SAMPLEFORMAT);
   const bool isFloat = format == SAMPLEFORMAT_IEEEFP;
-  if (format != SAMPLEFORMAT_UINT && format != SAMPLEFORMAT_INT && !isFloat)
+  const bool isInteger = format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT;
+  const bool hasBytes = bits == 8 || bits == 16 || bits == 32 || bits == 64;
+  const std::tuple<const char*, std::uint32_t, bool, std::string> tags[] = {
+    { "PhotometricInterpretation", photometric,
+      photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_RGB,
+      photometric == PHOTOMETRIC_MINISWHITE ? "invert the stack and save it again" : asGray },
+    { "Compression", compression, TIFFIsCODECConfigured(compression) != 0, asGray },
+    { "PlanarConfiguration", planes,
+      planes == PLANARCONFIG_CONTIG || get(TIFFTAG_SAMPLESPERPIXEL) == 1,
+      "save the stack with interleaved samples" },
+    { "SampleFormat", format, isInteger || isFloat, "save the stack as integers or float" },
+    { isFloat ? "SampleFormat = 3 (float) and BitsPerSample" : "BitsPerSample", bits,
+      hasBytes && (bits >= 32 || !isFloat), "save the stack with 8, 16 or 32 bits" },
+    { "ImageDepth", depth, depth <= 1, "save the stack with a page for each slice" }
+  };
+  for (const auto& [name, value, isSupported, advice] : tags)
   {
-    this->RefuseTag("SampleFormat", format, "save the stack as integers or float");
-  }
-  if ((bits != 8 && bits != 16 && bits != 32 && bits != 64) || (isFloat && bits < 32))
-  {
-    this->RefuseTag(isFloat ? "SampleFormat = 3 (float) and BitsPerSample" : "BitsPerSample", bits,
-      "save the stack with 8, 16 or 32 bits");
-  }
-  const auto depth = GetTag<std::uint32_t>(file, TIFFTAG_IMAGEDEPTH);
-  if (depth > 1)
-  {
-    this->RefuseTag("ImageDepth", depth, "save the stack with a page for each slice");
+    if (!isSupported)
+    {
+      this->RefuseTag(name, value, advice);
+    }
   }
 }
 
 void TIFFPages::CheckKind()
 {
   TIFF* const file = this->File.get();
-  const auto bits = GetTag<std::uint16_t>(file, TIFFTAG_BITSPERSAMPLE);
-  const auto format = GetTag<std::uint16_t>(file, TIFFTAG_SAMPLEFORMAT);
-  const auto width = GetTag<std::uint32_t>(file, TIFFTAG_IMAGEWIDTH);
-  const auto height = GetTag<std::uint32_t>(file, TIFFTAG_IMAGELENGTH);
-  const auto samples = GetTag<std::uint16_t>(file, TIFFTAG_SAMPLESPERPIXEL);
-  if (width < 1 || height < 1 || samples < 1)
-  {
-    this->RefuseReported();
-  }
   if (this->Pages.empty())
   {
-    this->Width = width;
-    this->Height = height;
-    this->Samples = samples;
-    this->Bits = bits;
-    this->Format = format;
     const auto* const text = GetTag<const char*>(file, TIFFTAG_IMAGEDESCRIPTION);
     this->Description = text ? text : "";
     this->Resolution[0] = GetTag<float>(file, TIFFTAG_XRESOLUTION);
     this->Resolution[1] = GetTag<float>(file, TIFFTAG_YRESOLUTION);
-    return;
   }
-  const std::tuple<const char*, std::uint32_t, std::uint32_t> tags[] = { { "ImageWidth", width,
-                                                                           this->Width },
-    { "ImageLength", height, this->Height }, { "SamplesPerPixel", samples, this->Samples },
-    { "BitsPerSample", bits, this->Bits }, { "SampleFormat", format, this->Format } };
-  for (const auto& [name, found, first] : tags)
+  const std::tuple<const char*, std::uint32_t, std::uint32_t&> tags[] = {
+    { "ImageWidth", TIFFTAG_IMAGEWIDTH, this->Width },
+    { "ImageLength", TIFFTAG_IMAGELENGTH, this->Height },
+    { "SamplesPerPixel", TIFFTAG_SAMPLESPERPIXEL, this->Samples },
+    { "BitsPerSample", TIFFTAG_BITSPERSAMPLE, this->Bits },
+    { "SampleFormat", TIFFTAG_SAMPLEFORMAT, this->Format }
+  };
+  for (const auto& [name, tag, first] : tags)
   {
+    const std::uint32_t found = GetNumber(file, tag);
+    if (found < 1)
+    {
+      this->RefuseReported();
+    }
+    first = this->Pages.empty() ? found : first;
     if (found != first)
     {
       this->RefuseTag(name, found,
@@ -292,55 +291,43 @@ void TIFFPages::ReadBehind(int number, char* pixels)
 constexpr int MostPages = 10'000'000;
 
 /**
- * The pages by the description.
+ * The pages by the description. A plane is a picture of slice, channel and time, which change in
+ * the order of the letters Z, C and T.
  */
 struct Layout
 {
   int Slices = 1;
   int Channels = 1;
   int Times = 1;
+  std::string Order = "ZCT";
   bool IsContiguous = false;       // pictures may follow each other behind one page
-  std::vector<int> Pages;          // of (slice, channel, time), the slice changing fastest
+  std::vector<int> Pages;          // of the planes
   std::array<double, 3> Size = {}; // of a voxel, in the unit, or 0
   std::string Unit;
 };
 
 /**
- * Find the number of a page by those of slice, channel and time, which change in the order of the
- * letters Z, C and T.
+ * Find the number of a plane, from 0 on.
  */
-std::int64_t FindPage(
-  const Layout& layout, const std::string& order, int slice, int channel, int time)
+std::int64_t FindPlane(const Layout& layout, int slice, int channel, int time)
 {
-  std::int64_t page = 0, step = 1;
-  for (const char axis : order)
+  std::int64_t plane = 0, step = 1;
+  for (const char axis : layout.Order)
   {
-    page += step * (axis == 'Z' ? slice : axis == 'C' ? channel : time);
+    plane += step * (axis == 'Z' ? slice : axis == 'C' ? channel : time);
     step *= axis == 'Z' ? layout.Slices : axis == 'C' ? layout.Channels : layout.Times;
   }
-  return page;
+  return plane;
 }
 
 /**
- * Number all pages in an order, unless there are too many. Returns whether it did.
+ * Assign the pages to the planes in their order, none if there are too many.
  */
-bool NumberPages(Layout& layout, const std::string& order)
+void NumberPages(Layout& layout)
 {
-  if (double(layout.Slices) * layout.Channels * layout.Times > MostPages)
-  {
-    return false;
-  }
-  for (int time = 0; time < layout.Times; ++time)
-  {
-    for (int channel = 0; channel < layout.Channels; ++channel)
-    {
-      for (int slice = 0; slice < layout.Slices; ++slice)
-      {
-        layout.Pages.push_back(static_cast<int>(FindPage(layout, order, slice, channel, time)));
-      }
-    }
-  }
-  return true;
+  const double count = double(layout.Slices) * layout.Channels * layout.Times;
+  layout.Pages.resize(count > MostPages ? 0 : static_cast<std::size_t>(count));
+  std::iota(layout.Pages.begin(), layout.Pages.end(), 0);
 }
 
 /**
@@ -370,6 +357,7 @@ Layout ParseImageJ(const TIFFPages& pages)
   const auto count = [&](const char* name) { return std::max(1, ParseNumber(fields[name])); };
   Layout layout;
   layout.IsContiguous = true;
+  layout.Order = "CZT";
   layout.Channels = count("channels");
   layout.Times = count("frames");
   layout.Slices = fields.count("slices")
@@ -377,7 +365,7 @@ Layout ParseImageJ(const TIFFPages& pages)
     : std::max(1,
         static_cast<int>(
           std::max(count("images"), pages.GetCount()) / (double(layout.Channels) * layout.Times)));
-  NumberPages(layout, "CZT");
+  NumberPages(layout);
   layout.Unit = fields["unit"] == "pixel" ? "" : fields["unit"];
   const double depth = std::atof(fields["spacing"].c_str());
   layout.Size = { 1.0 / pages.GetResolution()[0], 1.0 / pages.GetResolution()[1],
@@ -394,10 +382,10 @@ int GetNumber(vtkXMLDataElement* element, const char* name, int usual)
 /**
  * Assign pages to planes by elements TiffData. Returns whether one file has all.
  */
-bool AssignPages(Layout& layout, vtkXMLDataElement* pixels, const std::string& order)
+bool AssignPages(Layout& layout, vtkXMLDataElement* pixels)
 {
   const auto count = static_cast<int>(layout.Pages.size());
-  std::vector<int> pages(layout.Pages.size(), -1); // by the number in the order
+  std::vector<int> pages(layout.Pages.size(), -1);
   std::set<std::string> files;
   bool isAssigned = false;
   for (int n = 0; n < pixels->GetNumberOfNestedElements(); ++n)
@@ -410,7 +398,7 @@ bool AssignPages(Layout& layout, vtkXMLDataElement* pixels, const std::string& o
     vtkXMLDataElement* const file = data->FindNestedElementWithName("UUID");
     const char* const name = file ? file->GetAttribute("FileName") : nullptr;
     files.insert(name ? name : "");
-    const std::int64_t first = FindPage(layout, order, GetNumber(data, "FirstZ", 0),
+    const std::int64_t first = FindPlane(layout, GetNumber(data, "FirstZ", 0),
       GetNumber(data, "FirstC", 0), GetNumber(data, "FirstT", 0));
     const int page = GetNumber(data, "IFD", 0);
     const int planes = GetNumber(data, "PlaneCount", data->GetAttribute("IFD") ? 1 : count);
@@ -420,10 +408,7 @@ bool AssignPages(Layout& layout, vtkXMLDataElement* pixels, const std::string& o
       isAssigned = true;
     }
   }
-  for (int& page : layout.Pages)
-  {
-    page = isAssigned ? pages[static_cast<std::size_t>(page)] : page;
-  }
+  layout.Pages = isAssigned ? pages : layout.Pages;
   return files.size() < 2;
 }
 
@@ -447,7 +432,9 @@ Layout ParseOME(const TIFFPages& pages, const std::string& path)
   layout.Slices = std::max(1, GetNumber(pixels, "SizeZ", 1));
   layout.Channels = std::max(1, GetNumber(pixels, "SizeC", 1) / pages.GetComponents());
   layout.Times = std::max(1, GetNumber(pixels, "SizeT", 1));
-  if (NumberPages(layout, order) && !AssignPages(layout, pixels, order))
+  layout.Order = order;
+  NumberPages(layout);
+  if (!AssignPages(layout, pixels))
   {
     Refuse(path, "its planes are in several files, which is not supported; export one file.");
   }
@@ -479,7 +466,7 @@ Layout FindLayout(const TIFFPages& pages, const std::string& path)
   }
   Layout layout;
   layout.Slices = pages.GetCount();
-  NumberPages(layout, "Z");
+  NumberPages(layout);
   return layout;
 }
 
@@ -521,7 +508,7 @@ Volume ReadTIFF(const std::string& path, const ReadSettings& settings, const Qui
   volume.Image->AllocateScalars(pages.GetVTKType(), pages.GetComponents());
   for (int slice = 0; slice < layout.Slices; ++slice)
   {
-    const int plane = ((time - 1) * layout.Channels + channel - 1) * layout.Slices + slice;
+    const std::int64_t plane = FindPlane(layout, slice, channel - 1, time - 1);
     const int page = layout.Pages[static_cast<std::size_t>(plane)];
     auto* const pixels = static_cast<char*>(volume.Image->GetScalarPointer(0, 0, slice));
     isBehind ? pages.ReadBehind(page, pixels) : pages.Read(page, pixels);

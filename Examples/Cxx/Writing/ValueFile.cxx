@@ -28,8 +28,7 @@
 namespace
 {
 /**
- * NIfTI counts from left to right and back to front. VTK's writer adds the image's origin as it
- * lies along the image's axes.
+ * NIfTI counts from left to right and back to front.
  */
 vtkSmartPointer<vtkMatrix4x4> MakeForm(vtkImageData* values)
 {
@@ -37,14 +36,11 @@ vtkSmartPointer<vtkMatrix4x4> MakeForm(vtkImageData* values)
   for (int row = 0; row < 3; ++row)
   {
     const double sign = row < 2 ? -1.0 : 1.0;
-    double offset = values->GetOrigin()[row];
     for (int column = 0; column < 3; ++column)
     {
-      const double element = values->GetDirectionMatrix()->GetElement(row, column);
-      form->SetElement(row, column, sign * element);
-      offset -= element * values->GetOrigin()[column];
+      form->SetElement(row, column, sign * values->GetDirectionMatrix()->GetElement(row, column));
     }
-    form->SetElement(row, 3, sign * offset);
+    form->SetElement(row, 3, sign * values->GetOrigin()[row]);
   }
   return form;
 }
@@ -63,6 +59,7 @@ bool WriteWith(vtkImageWriter* writer, vtkImageData* values, const std::string& 
 bool WriteNIFTI(vtkImageData* values, const std::string& path)
 {
   const auto form = MakeForm(values);
+  values->SetOrigin(0.0, 0.0, 0.0); // which VTK's writer would add
   vtkNew<vtkNIFTIImageWriter> writer;
   writer->SetQFormMatrix(form);
   writer->SetSFormMatrix(form);
