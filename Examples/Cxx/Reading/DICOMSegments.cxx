@@ -4,7 +4,6 @@
 
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
-#include "Reading/SliceStack.h"
 
 #include "vtkDICOMItem.h"
 #include "vtkDICOMSequence.h"

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ProgressLine.h"
 #include "Reading/DICOM.h"
-#include "Reading/Formats.h"
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
-#include "Reading/SliceStack.h"
 
 #include "vtkDICOMMetaData.h"
 #include "vtkImageCast.h"

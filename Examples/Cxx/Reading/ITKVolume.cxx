@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/Formats.h"
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
 

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/Formats.h"
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
 
@@ -15,7 +14,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
+#include <vector>
 
 namespace
 {
@@ -25,47 +26,58 @@ struct Free
   void operator()(nifti_image* image) const { nifti_image_free(image); }
 };
 
+/// Of the values of a voxel.
 struct Type
 {
-  int Code;
   int VTKType;
   int Components;
 };
 
-constexpr Type Types[] = { { DT_UINT8, VTK_UNSIGNED_CHAR, 1 }, { DT_INT8, VTK_SIGNED_CHAR, 1 },
-  { DT_INT16, VTK_SHORT, 1 }, { DT_UINT16, VTK_UNSIGNED_SHORT, 1 }, { DT_INT32, VTK_INT, 1 },
-  { DT_UINT32, VTK_UNSIGNED_INT, 1 }, { DT_INT64, VTK_LONG_LONG, 1 },
-  { DT_UINT64, VTK_UNSIGNED_LONG_LONG, 1 }, { DT_FLOAT32, VTK_FLOAT, 1 },
-  { DT_FLOAT64, VTK_DOUBLE, 1 }, { DT_RGB24, VTK_UNSIGNED_CHAR, 3 },
-  { DT_RGBA32, VTK_UNSIGNED_CHAR, 4 }, { DT_COMPLEX64, VTK_FLOAT, 2 },
-  { DT_COMPLEX128, VTK_DOUBLE, 2 } };
-
-const Type& FindType(const nifti_image& header, const std::string& path)
+Type FindType(const nifti_image& header, const std::string& path)
 {
-  const auto* const type = std::find_if(std::begin(Types), std::end(Types),
-    [&](const Type& other) { return other.Code == header.datatype; });
-  if (type == std::end(Types))
+  const int code = header.datatype;
+  const bool isComplex = code == DT_COMPLEX64 || code == DT_COMPLEX128;
+  const bool isSigned = code == DT_INT8 || code == DT_INT16 || code == DT_INT32 || code == DT_INT64;
+  const int components = code == DT_RGB24 ? 3 : code == DT_RGBA32 ? 4 : isComplex ? 2 : 1;
+  const int type =
+    FindScalarType(header.nbyper / components, nifti_is_inttype(code) == 0, isSigned);
+  if (type == VTK_VOID)
   {
     Refuse(path,
-      std::string("values of type ") + nifti_datatype_string(header.datatype) + " (datatype " +
-        std::to_string(header.datatype) + ") are not supported; save the volume as float.");
+      std::string("values of type ") + nifti_datatype_string(code) + " (datatype " +
+        std::to_string(code) + ") are not supported; save the volume as float.");
   }
-  return *type;
+  return { type, components };
 }
 
 /**
- * Return whether a header has 1 to 7 dimensions: libnifti 3.0.1 does not check NIfTI-2.
+ * Read sizes of voxels, which libnifti replaces where they are 0. Returns nothing if the header has
+ * not 1 to 7 dimensions: libnifti 3.0.1 does not check NIfTI-2.
  */
-bool HasSoundDimension(const std::string& path)
+std::vector<double> ReadSizes(const std::string& path)
 {
   int version = 0;
   const std::unique_ptr<void, Free> header(nifti_read_header(path.c_str(), &version, 0));
-  if (!header || version != 2)
+  const auto* const first = static_cast<const nifti_1_header*>(header.get());
+  const auto* const second = static_cast<const nifti_2_header*>(header.get());
+  if (header && version != 2)
   {
-    return header != nullptr;
+    return { first->pixdim + 1, first->pixdim + 4 };
   }
-  const std::int64_t dimension = static_cast<const nifti_2_header*>(header.get())->dim[0];
-  return dimension >= 1 && dimension <= 7;
+  const bool isSound = header && second->dim[0] >= 1 && second->dim[0] <= 7;
+  return isSound ? std::vector<double>(second->pixdim + 1, second->pixdim + 4)
+                 : std::vector<double>();
+}
+
+/**
+ * Return whether the file of the data exists, or a compressed one. Otherwise libnifti would read
+ * any other file of that name.
+ */
+bool HasData(const nifti_image& header)
+{
+  std::filesystem::path path = header.iname;
+  path = path.extension() == ".gz" ? path.replace_extension() : path;
+  return std::filesystem::exists(path) || std::filesystem::exists(path.string() + ".gz");
 }
 
 /**
@@ -131,14 +143,14 @@ bool IsUsable(const nifti_dmat44& matrix)
 /**
  * Place a volume by the sform as it stands, else by the qform, else by the voxel size alone.
  */
-void Place(Volume& volume, const nifti_image& header)
+void Place(Volume& volume, const nifti_image& header, const std::vector<double>& sizes)
 {
   const nifti_dmat44* const form = header.sform_code > 0 && IsUsable(header.sto_xyz)
     ? &header.sto_xyz
     : header.qform_code > 0 && IsUsable(header.qto_xyz) ? &header.qto_xyz
                                                         : nullptr;
-  Steps steps = { { { std::fabs(header.dx), 0.0, 0.0 }, { 0.0, std::fabs(header.dy), 0.0 },
-    { 0.0, 0.0, std::fabs(header.dz) } } };
+  Steps steps = { { { std::fabs(sizes[0]), 0.0, 0.0 }, { 0.0, std::fabs(sizes[1]), 0.0 },
+    { 0.0, 0.0, std::fabs(sizes[2]) } } };
   std::array<double, 3> origin = {};
   for (int row = 0; row < 3 && form; ++row)
   {
@@ -166,14 +178,16 @@ void Place(Volume& volume, const nifti_image& header)
 Volume ReadNIFTI(const std::string& path, const ReadSettings& settings, const QuietReading&)
 {
   const SilentErrors silent; // the library prints errors at any debug level
+  const std::vector<double> sizes = ReadSizes(path);
   const std::unique_ptr<nifti_image, Free> header(
-    HasSoundDimension(path) ? nifti_image_read(path.c_str(), 0) : nullptr);
+    sizes.empty() ? nullptr : nifti_image_read(path.c_str(), 0));
   const auto isSound = [](std::int64_t size) { return size >= 1 && size <= VTK_INT_MAX; };
-  if (!header || !isSound(header->nx) || !isSound(header->ny) || !isSound(header->nz))
+  if (!header || !HasData(*header) || !isSound(header->nx) || !isSound(header->ny) ||
+    !isSound(header->nz))
   {
     RefuseDamaged(path, "");
   }
-  const Type& type = FindType(*header, path);
+  const Type type = FindType(*header, path);
   CheckMemory(double(header->nx) * double(header->ny) * double(header->nz), path);
   const int count = static_cast<int>(header->nvox / (header->nx * header->ny * header->nz));
   Volume volume;
@@ -189,7 +203,7 @@ Volume ReadNIFTI(const std::string& path, const ReadSettings& settings, const Qu
   {
     volume.Image = Scale(volume.Image, slope, intercept);
   }
-  Place(volume, *header);
+  Place(volume, *header, sizes);
   const double low = header->cal_min, high = header->cal_max;
   volume.Window = high > low && std::isfinite(high - low) ? high - low : 0.0;
   volume.Level = 0.5 * (low + high);

@@ -4,6 +4,7 @@
 #define Reading_h
 
 #include "Reading/QuietReading.h"
+#include "Reading/VolumeReader.h"
 
 #include "vtkErrorCode.h"
 #include "vtkImageData.h"
@@ -81,6 +82,25 @@ std::vector<std::string> ListNames(const Table& table)
   }
   return names;
 }
+
+/**
+ * Read a volume of one format, placed in the patient's coordinates (LPS) as far as the file gives
+ * its orientation. Libraries' messages go to the last argument. They throw std::runtime_error with
+ * one sentence.
+ */
+using ReadFunction = Volume(const std::string&, const ReadSettings&, const QuietReading&);
+
+ReadFunction ReadVTK;   // images and rectilinear grids
+ReadFunction ReadMeta;  // MetaImage
+ReadFunction ReadNRRD;  //
+ReadFunction ReadNIFTI; // and Analyze
+ReadFunction ReadTIFF;  // stacks, also by ImageJ and OME
+ReadFunction ReadDICOM; // a file, a folder or a DICOMDIR
+
+/**
+ * Read the text of a .vti file.
+ */
+Volume ReadVTKText(const std::string& text, const std::string& name, const QuietReading& quiet);
 
 template <class Reader>
 bool HasFailed(Reader* reader, const QuietReading& quiet)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Reading/SliceStack.h"
+#include "Reading/DICOM.h"
 
 #include "vtkMath.h"
 

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ProgressLine.h"
-#include "Reading/Formats.h"
 #include "Reading/Placement.h"
 #include "Reading/Reading.h"
 

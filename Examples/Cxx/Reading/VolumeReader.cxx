@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reading/VolumeReader.h"
 
-#include "Reading/Formats.h"
 #include "Reading/QuietReading.h"
 #include "Reading/Reading.h"
 #include "SplatmipAorta.h" // made from aorta-stent.vti by the build
