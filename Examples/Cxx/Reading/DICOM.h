@@ -62,34 +62,6 @@ std::array<Vector3, 3> MakeSteps(const SlicePlane& plane, const Vector3& directi
 std::string Describe(const SlicePlane& plane);
 
 /**
- * Find the largest number of planes that agree in orientation, pixels and size. Returns the numbers
- * of the given ones. A note says which do not.
- */
-std::vector<std::size_t> FindLargestStack(const std::vector<SlicePlane>& planes, std::string& note);
-
-/**
- * Find the planes of a stack at each place, numbers of the given ones, in the order of the places
- * along the normal.
- */
-std::vector<std::vector<std::size_t>> FindPlaces(const std::vector<SlicePlane>& planes);
-
-/**
- * The line along which slices follow each other. Its direction, a unit vector, is that from the
- * first slice to the last: not along the normal if a gantry tilts.
- */
-struct SliceLine
-{
-  Vector3 Direction;
-  std::vector<double> Places; // of the slices, from 0
-};
-
-/**
- * Find the line of planes in an order of rising places. Throws std::runtime_error with one sentence
- * if they are not above each other.
- */
-SliceLine FindLine(const std::vector<SlicePlane>& planes, const std::vector<std::size_t>& order);
-
-/**
  * A DICOM file of one or several frames. Each has a reader of its own, because a common one would
  * use the pixel format of the first file for all.
  */
@@ -114,6 +86,7 @@ struct DICOMFrame
   vtkDICOMValue Get(vtkDICOMTag tag) const { return this->File->Get(tag, this->Number); }
 };
 
+using DICOMFrames = std::vector<DICOMFrame>;
 using DICOMFiles = std::vector<std::unique_ptr<DICOMFile>>;
 
 /**
@@ -126,16 +99,41 @@ DICOMFiles OpenFiles(const std::vector<std::string>& paths, const QuietReading& 
 /**
  * Find all frames of the files, and where they lie.
  */
-std::vector<DICOMFrame> FindFrames(const DICOMFiles& files);
+DICOMFrames FindFrames(const DICOMFiles& files);
 
-std::vector<SlicePlane> GetPlanes(const std::vector<DICOMFrame>& frames);
+/**
+ * Find the largest number of frames that agree in orientation, pixels and size. A note says which
+ * do not.
+ */
+DICOMFrames FindLargestStack(const DICOMFrames& frames, std::vector<std::string>& notes);
+
+/**
+ * Find the frames of a stack at each place, in the order of the places along the normal.
+ */
+std::vector<DICOMFrames> FindPlaces(const DICOMFrames& frames);
 
 /**
  * Choose one of the frames at each place: where each place has several, those that belong together
  * by time, echo or the like, by their number from 1 on; 0 takes the first.
  */
-std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
-  const std::vector<std::vector<std::size_t>>& places, int number, std::vector<std::string>& notes);
+DICOMFrames ChooseTime(
+  const std::vector<DICOMFrames>& places, int number, std::vector<std::string>& notes);
+
+/**
+ * The line along which slices follow each other. Its direction, a unit vector, is that from the
+ * first slice to the last: not along the normal if a gantry tilts.
+ */
+struct SliceLine
+{
+  Vector3 Direction;
+  std::vector<double> Places; // of the slices, from 0
+};
+
+/**
+ * Find the line of slices in an order of rising places. Throws std::runtime_error with one sentence
+ * if they are not above each other.
+ */
+SliceLine FindLine(const DICOMFrames& slices);
 
 /**
  * Read the stored values of a file's frames.
@@ -169,7 +167,7 @@ ValueMap FindValueMap(const DICOMFrame& frame, bool hidesPadding, std::vector<st
 /**
  * Find the type that holds all possible values.
  */
-int FindScalarType(const std::vector<const DICOMFrame*>& frames, const std::vector<ValueMap>& maps);
+int FindScalarType(const DICOMFrames& frames, const std::vector<ValueMap>& maps);
 
 /**
  * Convert a frame of pixels to a slice of values.

@@ -228,21 +228,20 @@ struct IsLess
 };
 
 /// Frames at a place by the values of a tag.
-using Sorted = std::map<std::string, std::size_t, IsLess>;
+using Sorted = std::map<std::string, const DICOMFrame*, IsLess>;
 
 /**
  * Sort frames by a tag. Returns nothing if the tag does not distinguish them.
  */
-Sorted SortByTag(
-  const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& place, vtkDICOMTag tag)
+Sorted SortByTag(const DICOMFrames& place, vtkDICOMTag tag)
 {
   Sorted sorted;
-  for (const std::size_t i : place)
+  for (const DICOMFrame& frame : place)
   {
-    const vtkDICOMValue value = frames[i].Get(tag);
+    const vtkDICOMValue value = frame.Get(tag);
     if (value.IsValid())
     {
-      sorted.emplace(value.AsString(), i);
+      sorted.emplace(value.AsString(), &frame);
     }
   }
   return sorted.size() == place.size() ? sorted : Sorted();
@@ -252,42 +251,40 @@ Sorted SortByTag(
  * Choose the frame of a number at each place, in the order of a tag, or none if the tag does not
  * distinguish them. It must have the same values at all places unless ranks are enough.
  */
-std::vector<std::size_t> ChooseByTag(const std::vector<DICOMFrame>& frames,
-  const std::vector<std::vector<std::size_t>>& places, vtkDICOMTag tag, int number,
-  bool areRanksEnough)
+DICOMFrames ChooseByTag(
+  const std::vector<DICOMFrames>& places, vtkDICOMTag tag, int number, bool areRanksEnough)
 {
-  std::vector<std::size_t> order;
-  const Sorted first = SortByTag(frames, places[0], tag);
+  DICOMFrames slices;
+  const Sorted first = SortByTag(places[0], tag);
   for (const auto& place : places)
   {
-    const Sorted sorted = SortByTag(frames, place, tag);
+    const Sorted sorted = SortByTag(place, tag);
     const bool isSame = std::equal(sorted.begin(), sorted.end(), first.begin(), first.end(),
       [](const auto& a, const auto& b) { return a.first == b.first; });
     if (sorted.empty() || !(isSame || areRanksEnough))
     {
       return {};
     }
-    order.push_back(std::next(sorted.begin(), number)->second);
+    slices.push_back(*std::next(sorted.begin(), number)->second);
   }
-  return order;
+  return slices;
 }
 
 /**
  * Refuse places with different numbers of frames.
  */
-void CheckCounts(
-  const std::vector<DICOMFrame>& frames, const std::vector<std::vector<std::size_t>>& places)
+void CheckCounts(const std::vector<DICOMFrames>& places)
 {
   const auto [least, most] = std::minmax_element(
     places.begin(), places.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
   if (least->size() < most->size())
   {
-    const auto describe = [&](const auto& place)
+    const auto describe = [&](const DICOMFrames& place)
     {
       return std::to_string(place.size()) + (place.size() > 1 ? " slices at " : " slice at ") +
-        "the place of " + Describe(frames[place.back()].Plane);
+        "the place of " + Describe(place.back().Plane);
     };
-    Refuse(frames[most->front()].Plane.Name,
+    Refuse(most->front().Plane.Name,
       "there are " + describe(*most) + ", and " + describe(*least) +
         "; move what does not belong to the volume out of the folder, or choose another series.");
   }
@@ -326,9 +323,9 @@ DICOMFiles OpenFiles(
   return files;
 }
 
-std::vector<DICOMFrame> FindFrames(const DICOMFiles& files)
+DICOMFrames FindFrames(const DICOMFiles& files)
 {
-  std::vector<DICOMFrame> frames;
+  DICOMFrames frames;
   for (const auto& file : files)
   {
     if (file->Components != files.front()->Components)
@@ -359,53 +356,42 @@ std::vector<DICOMFrame> FindFrames(const DICOMFiles& files)
   return frames;
 }
 
-std::vector<SlicePlane> GetPlanes(const std::vector<DICOMFrame>& frames)
+DICOMFrames ChooseTime(
+  const std::vector<DICOMFrames>& places, int number, std::vector<std::string>& notes)
 {
-  std::vector<SlicePlane> planes;
-  for (const DICOMFrame& frame : frames)
-  {
-    planes.push_back(frame.Plane);
-  }
-  return planes;
-}
-
-std::vector<std::size_t> ChooseTime(const std::vector<DICOMFrame>& frames,
-  const std::vector<std::vector<std::size_t>>& places, int number, std::vector<std::string>& notes)
-{
-  CheckCounts(frames, places);
-  const std::size_t count = places[0].size();
-  number = Choose(frames[0].File->Path, "volume", number, static_cast<int>(count), notes);
+  CheckCounts(places);
+  const auto count = static_cast<int>(places[0].size());
+  number = Choose(places[0][0].File->Path, "volume", number, count, notes);
   for (const bool areRanksEnough : { false, true })
   {
     for (const auto& [tag, name] : TimeTags)
     {
       const bool isRanked = tag != DC::ImageType && tag != DC::SOPInstanceUID;
-      const auto order = count > 1 && (isRanked || !areRanksEnough)
-        ? ChooseByTag(frames, places, tag, number - 1, areRanksEnough)
-        : std::vector<std::size_t>();
-      if (!order.empty())
+      const DICOMFrames slices = count > 1 && (isRanked || !areRanksEnough)
+        ? ChooseByTag(places, tag, number - 1, areRanksEnough)
+        : DICOMFrames();
+      if (!slices.empty())
       {
-        const DICOMFrame& first = frames[order[0]];
         notes.back() += ", " +
           (areRanksEnough ? std::string("by the order of ") + name + " at each place"
-                          : name + (" " + first.Get(tag).AsString()));
-        return order;
+                          : name + (" " + slices[0].Get(tag).AsString()));
+        return slices;
       }
     }
   }
-  std::vector<std::size_t> order;
-  for (const auto& place : places)
-  {
-    order.push_back(place[0]);
-  }
   if (count > 1)
   {
-    Refuse(frames[places[0][0]].Plane.Name,
+    Refuse(places[0][0].Plane.Name,
       "there are " + std::to_string(count) + " slices at each place, here also " +
-        frames[places[0][1]].Plane.Name +
+        places[0][1].Plane.Name +
         ", and no element distinguishes them; move one set out of the folder.");
   }
-  return order;
+  DICOMFrames slices;
+  for (const DICOMFrames& place : places)
+  {
+    slices.push_back(place[0]);
+  }
+  return slices;
 }
 
 vtkImageData* ReadPixels(DICOMFile& file, const QuietReading& quiet)

@@ -105,23 +105,22 @@ void ReadSegments(const DICOMFiles& files, int label, const QuietReading& quiet,
       "there is no segment " + std::to_string(label) + " here, only " + JoinWords(names) +
         "; give another --label.");
   }
-  const std::vector<DICOMFrame> frames = FindFrames(files);
-  const std::vector<SlicePlane> planes = GetPlanes(frames);
-  std::string note;
-  if (FindLargestStack(planes, note).size() != planes.size())
+  const DICOMFrames frames = FindFrames(files);
+  std::vector<std::string> notes;
+  if (FindLargestStack(frames, notes).size() != frames.size())
   {
-    Refuse(path, "its frames are of different kinds; " + note + ".");
+    Refuse(path, "its frames are of different kinds; " + notes.back() + ".");
   }
-  const std::vector<std::vector<std::size_t>> places = FindPlaces(planes);
-  std::vector<std::size_t> firsts; // the frames of a place are of different segments
-  for (const auto& place : places)
+  const std::vector<DICOMFrames> places = FindPlaces(frames);
+  DICOMFrames firsts; // the frames of a place are of different segments
+  for (const DICOMFrames& place : places)
   {
     firsts.push_back(place.front());
   }
-  const SliceLine line = FindLine(planes, firsts);
+  const SliceLine line = FindLine(firsts);
   const double step = FindStep(line, files.front()->Thickness, path);
   const auto getSlice = [&](std::size_t i) { return std::lround(line.Places[i] / step); };
-  const SlicePlane& first = planes[firsts.front()];
+  const SlicePlane& first = firsts.front().Plane;
   const vtkIdType slices = getSlice(places.size() - 1) + 1;
   const auto pixels = static_cast<vtkIdType>(first.Size[0] * first.Size[1]);
   CheckMemory(double(pixels) * double(slices), path);
@@ -133,9 +132,8 @@ void ReadSegments(const DICOMFiles& files, int label, const QuietReading& quiet,
   bool isOverlapping = false;
   for (std::size_t i = 0; i < places.size(); ++i)
   {
-    for (const std::size_t plane : places[i])
+    for (const DICOMFrame& frame : places[i])
     {
-      const DICOMFrame& frame = frames[plane];
       vtkDataArray* const stored = ReadPixels(*frame.File, quiet)->GetPointData()->GetScalars();
       isOverlapping = AddFrame(frame, stored, label, pixels, getSlice(i), labels) || isOverlapping;
     }

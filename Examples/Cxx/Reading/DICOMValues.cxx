@@ -150,14 +150,14 @@ ValueMap FindValueMap(const DICOMFrame& frame, bool hidesPadding, std::vector<st
   return map;
 }
 
-int FindScalarType(const std::vector<const DICOMFrame*>& frames, const std::vector<ValueMap>& maps)
+int FindScalarType(const DICOMFrames& frames, const std::vector<ValueMap>& maps)
 {
   double low = 0.0, high = 0.0;
   bool isWhole = true, isNarrow = true;
   for (std::size_t i = 0; i < maps.size(); ++i)
   {
     ValueMap map = maps[i];
-    const int type = frames[i]->File->ScalarType;
+    const int type = frames[i].File->ScalarType;
     const bool hasPadding = map.Padding[0] <= map.Padding[1];
     isNarrow = isNarrow && (type == VTK_FLOAT || vtkDataArray::GetDataTypeSize(type) <= 2);
     isWhole = isWhole && map.Bits > 0 && !hasPadding && std::floor(map.Slope) == map.Slope &&

@@ -39,43 +39,36 @@ vtkSmartPointer<vtkImageData> Narrow(vtkImageData* image)
 }
 
 /**
- * Read the frames in an order, each file once.
+ * Read slices, each file once.
  */
-vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
-  const std::vector<std::size_t>& order, bool hidesPadding, const QuietReading& quiet,
-  std::vector<std::string>& notes)
+vtkSmartPointer<vtkImageData> ReadSlices(const DICOMFrames& slices, bool hidesPadding,
+  const QuietReading& quiet, std::vector<std::string>& notes)
 {
-  std::vector<const DICOMFrame*> chosen;
   std::vector<ValueMap> maps;
-  for (const std::size_t i : order)
+  std::map<DICOMFile*, std::vector<std::size_t>> slicesOf;
+  for (const DICOMFrame& slice : slices)
   {
-    chosen.push_back(&frames[i]);
-    maps.push_back(FindValueMap(frames[i], hidesPadding, notes));
+    slicesOf[slice.File].push_back(maps.size());
+    maps.push_back(FindValueMap(slice, hidesPadding, notes));
   }
-  const SlicePlane& plane = frames[order[0]].Plane;
-  const double voxels = double(plane.Size[0]) * plane.Size[1] * order.size();
-  CheckMemory(voxels, frames[order[0]].File->Path);
+  const SlicePlane& plane = slices[0].Plane;
+  CheckMemory(double(plane.Size[0]) * plane.Size[1] * slices.size(), slices[0].File->Path);
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetDimensions(static_cast<int>(plane.Size[0]), static_cast<int>(plane.Size[1]),
-    static_cast<int>(order.size()));
-  image->AllocateScalars(FindScalarType(chosen, maps), frames[order[0]].File->Components);
-  std::map<DICOMFile*, std::vector<std::size_t>> slicesOf;
-  for (std::size_t slice = 0; slice < order.size(); ++slice)
-  {
-    slicesOf[frames[order[slice]].File].push_back(slice);
-  }
+    static_cast<int>(slices.size()));
+  image->AllocateScalars(FindScalarType(slices, maps), slices[0].File->Components);
   ProgressLine line("reading slices");
   std::size_t done = 0;
-  for (const auto& [file, slices] : slicesOf)
+  for (const auto& [file, numbers] : slicesOf)
   {
-    line.Show(double(done) / double(order.size()));
+    line.Show(double(done) / double(slices.size()));
     vtkImageData* const found = ReadPixels(*file, quiet);
-    for (const std::size_t slice : slices)
+    for (const std::size_t n : numbers)
     {
-      ConvertSlice(found, chosen[slice]->Number, maps[slice], image, static_cast<int>(slice));
+      ConvertSlice(found, slices[n].Number, maps[n], image, static_cast<int>(n));
     }
     file->Reader->GetOutput()->ReleaseData();
-    done += slices.size();
+    done += numbers.size();
   }
   return Narrow(image);
 }
@@ -83,8 +76,8 @@ vtkSmartPointer<vtkImageData> ReadFrames(const std::vector<DICOMFrame>& frames,
 /**
  * Find even places for slices, or refuse them.
  */
-std::vector<double> FindEvenPlaces(const SliceLine& line, const std::vector<SlicePlane>& planes,
-  const std::vector<std::size_t>& order, std::vector<std::string>& notes)
+std::vector<double> FindEvenPlaces(
+  const SliceLine& line, const DICOMFrames& slices, std::vector<std::string>& notes)
 {
   const auto& places = line.Places;
   const std::vector<double> even = SpaceEvenly(places, EvenEnough);
@@ -100,13 +93,13 @@ std::vector<double> FindEvenPlaces(const SliceLine& line, const std::vector<Slic
     most = step(i) > step(most) ? i : most;
   }
   const auto describe = [&](std::size_t i)
-  { return Describe(planes[order[i - 1]]) + " and " + Describe(planes[order[i]]); };
+  { return Describe(slices[i - 1].Plane) + " and " + Describe(slices[i].Plane); };
   std::ostringstream text;
   text << "the slices are " << step(least) << " mm (between " << describe(least) << ") to "
        << step(most) << " mm apart (between " << describe(most) << ")";
   if (even.empty())
   {
-    Refuse(planes[order[least]].Name,
+    Refuse(slices[least].Plane.Name,
       text.str() +
         ", which is too uneven to interpolate; move what does not belong to the volume out of "
         "the folder.");
@@ -119,14 +112,12 @@ std::vector<double> FindEvenPlaces(const SliceLine& line, const std::vector<Slic
 /**
  * Find the window with which all frames ask to be shown, the first if they give several.
  */
-void FindWindow(
-  const std::vector<DICOMFrame>& frames, const std::vector<std::size_t>& order, Volume& volume)
+void FindWindow(const DICOMFrames& slices, Volume& volume)
 {
   std::set<std::pair<double, double>> found;
-  for (const std::size_t i : order)
+  for (const DICOMFrame& slice : slices)
   {
-    found.emplace(
-      frames[i].Get(DC::WindowWidth).AsDouble(), frames[i].Get(DC::WindowCenter).AsDouble());
+    found.emplace(slice.Get(DC::WindowWidth).AsDouble(), slice.Get(DC::WindowCenter).AsDouble());
   }
   const auto [width, center] = *found.begin();
   if (found.size() == 1 && width > 0.0 && std::isfinite(width) && std::isfinite(center))
@@ -142,36 +133,24 @@ void FindWindow(
 void ReadStack(
   const DICOMFiles& files, const ReadSettings& settings, const QuietReading& quiet, Volume& volume)
 {
-  std::string note;
-  std::vector<DICOMFrame> frames;
-  const std::vector<DICOMFrame> all = FindFrames(files);
-  for (const std::size_t i : FindLargestStack(GetPlanes(all), note))
-  {
-    frames.push_back(all[i]);
-  }
-  if (!note.empty())
-  {
-    volume.Notes.push_back(note);
-  }
-  const std::vector<SlicePlane> planes = GetPlanes(frames);
-  const auto order = ChooseTime(frames, FindPlaces(planes), settings.Frame, volume.Notes);
-  const SliceLine line = FindLine(planes, order);
-  const std::vector<double> even = FindEvenPlaces(line, planes, order, volume.Notes);
-  volume.Image = ReadFrames(frames, order, settings.HidesPadding, quiet, volume.Notes);
+  const DICOMFrames stack = FindLargestStack(FindFrames(files), volume.Notes);
+  const DICOMFrames slices = ChooseTime(FindPlaces(stack), settings.Frame, volume.Notes);
+  const SliceLine line = FindLine(slices);
+  const std::vector<double> even = FindEvenPlaces(line, slices, volume.Notes);
+  volume.Image = ReadSlices(slices, settings.HidesPadding, quiet, volume.Notes);
+  const SlicePlane& first = slices[0].Plane;
   if (even != line.Places)
   {
-    const SlicePlane& plane = planes[0];
-    CheckMemory(double(plane.Size[0]) * plane.Size[1] * even.size(), frames[0].File->Path);
+    CheckMemory(double(first.Size[0]) * first.Size[1] * even.size(), slices[0].File->Path);
     volume.Image = Interpolate(volume.Image, 2, line.Places, even);
     AddCaution(volume, "slices interpolated");
   }
-  FindWindow(frames, order, volume);
+  FindWindow(slices, volume);
   const double thickness = files.front()->Thickness;
   const double step = even.size() > 1 ? even.back() / static_cast<double>(even.size() - 1)
     : thickness > 0.0                 ? thickness
                                       : 1.0;
   volume.IsOriented = true;
-  const SlicePlane& first = planes[order[0]];
   PlaceVolume(volume, MakeSteps(first, line.Direction, step), first.Position, "mm");
 }
 }

@@ -83,14 +83,12 @@ Header ReadHeader(const std::string& path, char separator)
 
 int GetScalarType(const itk::ImageIOBase* io, const std::string& path)
 {
-  using Type = itk::IOComponentEnum;
-  const Type type = io->GetComponentType();
-  const bool isFloat = type == Type::FLOAT || type == Type::DOUBLE;
-  const auto all = { Type::CHAR, Type::SHORT, Type::INT, Type::LONG, Type::LONGLONG };
-  const bool isSigned = std::find(all.begin(), all.end(), type) != all.end();
-  const int found = type == Type::UNKNOWNCOMPONENTTYPE
+  const auto type = io->GetComponentType();
+  const std::string name = itk::ImageIOBase::GetComponentTypeAsString(type); // of C, or unknown
+  const bool isSigned = name.find("unsigned") == std::string::npos;
+  const int found = type == itk::IOComponentEnum::UNKNOWNCOMPONENTTYPE
     ? VTK_VOID
-    : FindScalarType(io->GetComponentSize(), isFloat, isSigned);
+    : FindScalarType(io->GetComponentSize(), name == "float" || name == "double", isSigned);
   if (found == VTK_VOID)
   {
     Refuse(path, "values of this type are not supported; save the volume as float.");
@@ -245,11 +243,6 @@ std::size_t CountVectors(const std::string& text)
   }
   return count;
 }
-
-bool StartsWith(const std::string& text, const std::string& start)
-{
-  return text.rfind(start, 0) == 0;
-}
 }
 
 Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
@@ -265,13 +258,13 @@ Volume ReadNRRD(const std::string& path, const ReadSettings& settings, const Qui
   GetGrid(io, steps, origin);
   const std::string space = GetEntry(io, "NRRD_space");
   const std::string named = vtksys::SystemTools::LowerCase(header.Get("space"));
-  if (StartsWith(space, "right-anterior-superior-time") || named == "left-anterior-superior" ||
-    named == "las")
+  if (vtksys::SystemTools::StringStartsWith(space, "right-anterior-superior-time") ||
+    named == "left-anterior-superior" || named == "las")
   {
     TurnToLPS(steps, origin); // ITK turns no spaces with time, and x in place of y of LAS
   }
-  volume.IsOriented =
-    StartsWith(space, "left-posterior-superior") || StartsWith(space, "right-anterior-superior");
+  volume.IsOriented = vtksys::SystemTools::StringStartsWith(space, "left-posterior-superior") ||
+    vtksys::SystemTools::StringStartsWith(space, "right-anterior-superior");
   const std::string directions = header.Get("space directions");
   const unsigned int axes = std::min(3U, io->GetNumberOfDimensions());
   if (CountVectors(directions) < axes &&

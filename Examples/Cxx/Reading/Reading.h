@@ -10,7 +10,11 @@
 #include "vtkImageData.h"
 #include "vtkSmartPointer.h"
 
+#include <vtksys/SystemTools.hxx>
+
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -81,6 +85,18 @@ std::vector<std::string> ListNames(const Table& table)
     names.emplace_back(entry.Name);
   }
   return names;
+}
+
+/**
+ * Find the entry of a table whose name is the end of a path in lower case; nullptr if there is
+ * none.
+ */
+template <class Entry, std::size_t Size>
+const Entry* FindByEnding(const Entry (&table)[Size], const std::string& path)
+{
+  const auto* const found = std::find_if(std::begin(table), std::end(table),
+    [&](const Entry& entry) { return vtksys::SystemTools::StringEndsWith(path, entry.Name); });
+  return found == std::end(table) ? nullptr : found;
 }
 
 /**

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 
 namespace
 {
@@ -95,63 +94,62 @@ std::array<Vector3, 3> MakeSteps(const SlicePlane& plane, const Vector3& directi
   return steps;
 }
 
-std::vector<std::size_t> FindLargestStack(const std::vector<SlicePlane>& planes, std::string& note)
+DICOMFrames FindLargestStack(const DICOMFrames& frames, std::vector<std::string>& notes)
 {
-  std::vector<std::vector<std::size_t>> kinds;
-  for (std::size_t i = 0; i < planes.size(); ++i)
+  std::vector<DICOMFrames> kinds;
+  for (const DICOMFrame& frame : frames)
   {
     const auto kind = std::find_if(kinds.begin(), kinds.end(),
-      [&](const auto& other)
+      [&](const DICOMFrames& other)
       {
-        const SlicePlane& first = planes[other.front()];
-        return HaveSameOrientation(first, planes[i]) && first.Size == planes[i].Size &&
-          HaveSameSpacing(first, planes[i]);
+        const SlicePlane& first = other.front().Plane;
+        return HaveSameOrientation(first, frame.Plane) && first.Size == frame.Plane.Size &&
+          HaveSameSpacing(first, frame.Plane);
       });
-    (kind == kinds.end() ? *kinds.insert(kind, std::vector<std::size_t>()) : *kind).push_back(i);
+    (kind == kinds.end() ? *kinds.insert(kind, DICOMFrames()) : *kind).push_back(frame);
   }
   const auto usual = std::max_element(
     kinds.begin(), kinds.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
   const auto odd = usual == kinds.begin() ? kinds.end() - 1 : kinds.begin();
   if (kinds.size() > 1)
   {
-    const SlicePlane& plane = planes[odd->front()];
-    const SlicePlane& first = planes[usual->front()];
+    const SlicePlane& plane = odd->front().Plane;
+    const SlicePlane& first = usual->front().Plane;
     std::ostringstream text;
-    text << "only the largest stack is shown; " << planes.size() - usual->size() << " of "
-         << planes.size() << " slices do not fit, such as " << Describe(plane) << " with "
+    text << "only the largest stack is shown; " << frames.size() - usual->size() << " of "
+         << frames.size() << " slices do not fit, such as " << Describe(plane) << " with "
          << DescribePixels(plane) << ", whose axes differ by " << GetAngle(plane, first)
          << " degrees; the others have " << DescribePixels(first);
-    note = text.str();
+    notes.push_back(text.str());
   }
   return *usual;
 }
 
-std::vector<std::vector<std::size_t>> FindPlaces(const std::vector<SlicePlane>& planes)
+std::vector<DICOMFrames> FindPlaces(const DICOMFrames& frames)
 {
-  const Vector3 normal = GetNormal(planes[0]);
-  std::vector<std::pair<double, std::size_t>> heights;
-  for (std::size_t i = 0; i < planes.size(); ++i)
-  {
-    heights.emplace_back(Dot(planes[i].Position, normal), i);
-  }
-  std::sort(heights.begin(), heights.end());
-  std::vector<std::vector<std::size_t>> places;
+  const SlicePlane& first = frames[0].Plane;
+  const Vector3 normal = GetNormal(first);
+  const auto getHeight = [&](const DICOMFrame& frame) { return Dot(frame.Plane.Position, normal); };
+  DICOMFrames sorted = frames;
+  std::stable_sort(sorted.begin(), sorted.end(),
+    [&](const DICOMFrame& a, const DICOMFrame& b) { return getHeight(a) < getHeight(b); });
+  std::vector<DICOMFrames> places;
   double last = 0.0;
-  for (const auto& [height, plane] : heights)
+  for (const DICOMFrame& frame : sorted)
   {
-    if (places.empty() || height - last > SamePlace * GetPixel(planes[0]))
+    if (places.empty() || getHeight(frame) - last > SamePlace * GetPixel(first))
     {
       places.emplace_back();
     }
-    places.back().push_back(plane);
-    last = height;
+    places.back().push_back(frame);
+    last = getHeight(frame);
   }
   return places;
 }
 
-SliceLine FindLine(const std::vector<SlicePlane>& planes, const std::vector<std::size_t>& order)
+SliceLine FindLine(const DICOMFrames& slices)
 {
-  const SlicePlane &first = planes[order.front()], &last = planes[order.back()];
+  const SlicePlane &first = slices.front().Plane, &last = slices.back().Plane;
   const Vector3 normal = GetNormal(first);
   SliceLine line = { Subtract(last.Position, first.Position), {} };
   if (!(Dot(line.Direction, normal) > 0.0)) // a single place
@@ -159,24 +157,24 @@ SliceLine FindLine(const std::vector<SlicePlane>& planes, const std::vector<std:
     line.Direction = normal;
   }
   vtkMath::Normalize(line.Direction.data());
-  std::size_t farthest = order.front();
+  const SlicePlane* farthest = &first;
   double most = 0.0;
-  for (const std::size_t i : order)
+  for (const DICOMFrame& slice : slices)
   {
-    Vector3 aside = Subtract(planes[i].Position, first.Position);
+    Vector3 aside = Subtract(slice.Plane.Position, first.Position);
     line.Places.push_back(Dot(aside, normal) / Dot(line.Direction, normal));
     for (int axis = 0; axis < 3; ++axis)
     {
       aside[axis] -= line.Places.back() * line.Direction[axis];
     }
-    farthest = vtkMath::Norm(aside.data()) > most ? i : farthest;
+    farthest = vtkMath::Norm(aside.data()) > most ? &slice.Plane : farthest;
     most = std::max(most, vtkMath::Norm(aside.data()));
   }
   if (most > HalfPixel * GetPixel(first))
   {
     std::ostringstream text;
     text
-      << Describe(planes[farthest]) << ": this slice is shifted sideways by " << most
+      << Describe(*farthest) << ": this slice is shifted sideways by " << most
       << " mm against the line from " << Describe(first) << " to " << Describe(last)
       << "; move what does not belong to the volume out of the folder, or choose another series.";
     throw std::runtime_error(text.str());

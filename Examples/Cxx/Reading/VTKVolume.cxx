@@ -15,8 +15,8 @@
 #include "vtkRectilinearGrid.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkXMLGenericDataObjectReader.h"
 #include "vtkXMLImageDataReader.h"
-#include "vtkXMLRectilinearGridReader.h"
 
 #include <vtksys/SystemTools.hxx>
 
@@ -357,9 +357,7 @@ Volume ReadVTK(const std::string& path, const ReadSettings& settings, const Quie
     {
       RefuseDamaged(path, quiet.GetReason());
     }
-    const vtkSmartPointer<vtkXMLReader> reader = ending == ".vtr"
-      ? vtkSmartPointer<vtkXMLReader>(vtkSmartPointer<vtkXMLRectilinearGridReader>::New())
-      : vtkSmartPointer<vtkXMLReader>(vtkSmartPointer<vtkXMLImageDataReader>::New());
+    vtkNew<vtkXMLGenericDataObjectReader> reader;
     reader->SetFileName(path.c_str());
     data = RunReader(reader, path, quiet);
   }

@@ -15,12 +15,10 @@
 
 #include <vtksys/SystemTools.hxx>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <new>
 #include <stdexcept>
 
@@ -106,21 +104,11 @@ constexpr VolumeFormat Formats[] = { { ".vti", ReadVTK }, { ".vtr", ReadVTK }, {
   { ".nii", ReadNIFTI }, { ".nii.gz", ReadNIFTI }, { ".hdr", ReadNIFTI }, { ".img", ReadNIFTI },
   { ".hdr.gz", ReadNIFTI }, { ".img.gz", ReadNIFTI }, { ".tif", ReadTIFF }, { ".tiff", ReadTIFF } };
 
-/**
- * Choose a function by the end of the name; nullptr if it is none of those.
- */
-ReadFunction* ChooseReader(const std::string& path)
-{
-  const std::string name = vtksys::SystemTools::LowerCase(path);
-  const auto* const format = std::find_if(std::begin(Formats), std::end(Formats),
-    [&](const VolumeFormat& each) { return vtksys::SystemTools::StringEndsWith(name, each.Name); });
-  return format == std::end(Formats) ? nullptr : format->Read;
-}
-
 Volume ReadAny(const std::string& path, const ReadSettings& settings, const QuietReading& quiet)
 {
   std::error_code error;
-  ReadFunction* const read = ChooseReader(path);
+  const auto* const format = FindByEnding(Formats, vtksys::SystemTools::LowerCase(path));
+  ReadFunction* const read = format ? format->Read : nullptr;
   const bool isDICOM = std::filesystem::is_directory(path, error) || (!read && IsDICOMFile(path));
   if (!isDICOM && !read)
   {

@@ -17,13 +17,11 @@
 #include "vtkOggTheoraWriter.h"
 #endif
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <numeric>
 
 namespace
@@ -126,14 +124,6 @@ struct SeriesFormat
 
 constexpr SeriesFormat Formats[] = { { ".png", WritePNGs, "" },
   { ".ogv", WriteTheora, "Ogg Theora in its VTK" }, { ".dcm", DICOMWriter, "vtk-dicom" } };
-
-const SeriesFormat* FindFormat(const std::string& path)
-{
-  const std::string ending = std::filesystem::path(path).extension().string();
-  const auto* const found = std::find_if(std::begin(Formats), std::end(Formats),
-    [&](const SeriesFormat& format) { return ending == format.Name; });
-  return found == std::end(Formats) ? nullptr : found;
-}
 }
 
 vtkSmartPointer<vtkImageData> Paint(vtkImageData* slices, vtkColorTransferFunction* palette, int n)
@@ -170,7 +160,7 @@ std::vector<std::string> GetSeriesEndings()
 
 std::string CheckSeriesName(const std::string& path)
 {
-  const SeriesFormat* const format = FindFormat(path);
+  const SeriesFormat* const format = FindByEnding(Formats, path);
   if (!format)
   {
     return "a turn is written as " + JoinWords(GetSeriesEndings());
@@ -182,7 +172,7 @@ std::string CheckSeriesName(const std::string& path)
 
 std::vector<std::string> GetSeriesFiles(const std::string& path, int count)
 {
-  if (std::filesystem::path(path).extension() != ".png")
+  if (!vtksys::SystemTools::StringEndsWith(path, ".png"))
   {
     return { path };
   }
@@ -198,5 +188,5 @@ void WriteSeries(vtkImageData* slices, const FilmSettings& settings, const std::
 {
   WriteSafely(GetSeriesFiles(path, slices->GetDimensions()[2]),
     [&](const std::vector<std::string>& names)
-    { return FindFormat(path)->Write(slices, settings, names); });
+    { return FindByEnding(Formats, path)->Write(slices, settings, names); });
 }

@@ -17,13 +17,9 @@
 #include "vtkSmartPointer.h"
 #include "vtkTIFFWriter.h"
 
-#include <vtksys/SystemTools.hxx>
-
 #include <tiffio.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <iterator>
 
 namespace
 {
@@ -110,14 +106,6 @@ struct ValueFormat
 constexpr ValueFormat Formats[] = { { ".nii", WriteNIFTI }, { ".nii.gz", WriteNIFTI },
   { ".mha", WriteMeta }, { ".tif", WriteTIFF }, { ".tiff", WriteTIFF } };
 
-const ValueFormat* FindFormat(const std::string& path)
-{
-  const auto* const found = std::find_if(std::begin(Formats), std::end(Formats),
-    [&](const ValueFormat& format)
-    { return vtksys::SystemTools::StringEndsWith(path, format.Name); });
-  return found == std::end(Formats) ? nullptr : found;
-}
-
 /**
  * Write a file and read it: the writers do not report all errors, such as that the disk is full.
  */
@@ -126,7 +114,7 @@ bool WriteAndRead(vtkImageData* values, const std::string& path)
   try
   {
     const QuietReading quiet;
-    return FindFormat(path)->Write(values, path) && !quiet.HasErrors() &&
+    return FindByEnding(Formats, path)->Write(values, path) && !quiet.HasErrors() &&
       ReadVolume(path, {}).Image->GetNumberOfPoints() == values->GetNumberOfPoints();
   }
   catch (const std::exception&)
@@ -143,7 +131,7 @@ std::vector<std::string> GetValueEndings()
 
 bool IsValueFile(const std::string& path)
 {
-  return FindFormat(path) != nullptr;
+  return FindByEnding(Formats, path) != nullptr;
 }
 
 void WriteValues(
