@@ -10,7 +10,6 @@
 
 #include <nifti2_io.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

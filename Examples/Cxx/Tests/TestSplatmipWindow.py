@@ -89,7 +89,8 @@ class TestWindow(splatmip.SplatmipTest):
         except RuntimeError as error:
             self.skipTest(str(error))
         self.addCleanup(screen.close)
-        options = (splatmip.write_vti(self.path("a.vti")), "--size", "256x256", "--no-marks", "--mode")
+        oblique = numpy.array([[0.9, -0.8, 0, 0], [1.2, 0.6, 0, 0], [0, 0, 2, 0]])
+        options = (splatmip.write_meta(self.path("a.mha"), places=oblique), "--size", "256x256", "--no-marks", "--mode")
         modes = ("preview", "standard", "high", "exact")
         pictures = [self.draw(*options, mode, "--output", "a.png")[0][:, :, 0] for mode in modes]
         for first, second in itertools.combinations(pictures, 2):

@@ -103,9 +103,7 @@ bool WriteTheora(
   writer->End();
   return !writer->GetError() && IsCompleteOgg(names.front());
 }
-#endif
-
-#ifndef SPLATMIP_HAS_THEORA
+#else
 constexpr auto WriteTheora = nullptr;
 #endif
 #ifdef SPLATMIP_HAS_DICOM
