@@ -134,18 +134,15 @@ void ComponentProjector::SetRanks(PieceExchange* ranks)
   }
 }
 
-// Sums of weighted voxels, or of a ray's samples, would overflow. Exact mode scales voxels by their
-// range, which is unknown beside infinities, and multiplies them.
+// Sums of weighted voxels, or of a ray's samples, would overflow.
 const char* ComponentProjector::ValidateVoxels(Quality quality)
 {
   const bool isTooLarge = std::any_of(this->Channels.begin(), this->Channels.end(),
     [isExact = quality == Quality::Exact](Channel& channel)
     {
-      const bool isDouble = averageType(channel.Index.volume().type) == ScalarType::Float64;
-      const double most = isExact && channel.Index.range().hasInfinities()
-        ? (isDouble ? 1e150 : 1e18)
-        : (isDouble ? 1e303 : 1e37);
-      return channel.Index.range().magnitude > most;
+      const VolumeIndex::Range& range = channel.Index.range();
+      return range.magnitude >
+        mostMagnitude(channel.Index.volume().type, isExact ? range : VolumeIndex::Range());
     });
   return isTooLarge
     ? "The scalars have magnitudes above 1e37 (double: 1e303; with infinities in exact mode "

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSplattingMIPProjection.h"
 
+#include "AbortCheck.h"
 #include "ComponentProjector.h"
 #include "Input/ScalarSource.h"
 #include "Input/WorldView.h"
@@ -23,7 +24,6 @@
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkVersionMacros.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,18 +37,6 @@ using namespace splatting;
 VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSplattingMIPProjection);
 vtkCxxSetObjectMacro(vtkSplattingMIPProjection, Camera, vtkCamera);
-
-namespace
-{
-bool isAborted(vtkAlgorithm* algorithm)
-{
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
-  return algorithm->CheckAbort();
-#else
-  return algorithm->GetAbortExecute() != 0;
-#endif
-}
-}
 
 //------------------------------------------------------------------------------
 class vtkSplattingMIPProjection::Internals

@@ -18,7 +18,7 @@ from vtksplattingmip import mip
 
 TYPES = ("?", "b", "B", "h", "H", "i", "I", "q", "Q", "e", "f", "d", ">i2", ">f4")
 CLASSES = {
-    "vtkImagingSplattingMIP": ["vtkSplattingMIPProjection"],
+    "vtkImagingSplattingMIP": ["vtkSplattingMIPProjection", "vtkSplattingMIPReslice"],
     "vtkRenderingSplattingMIP": [
         "vtkSplattingMIPGPUVolumeRayCastMapper",
         "vtkSplattingMIPVolumeMapper",

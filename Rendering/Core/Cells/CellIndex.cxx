@@ -232,8 +232,8 @@ void CellIndex::update(const CellGrid& grid, const VolumeIndex::Range& range)
   if (!(this->Grid == grid))
   {
     this->clear();
-    this->Grid = grid;
   }
+  this->Grid = grid; // its field may end elsewhere
   this->Range = range;
 }
 
@@ -290,6 +290,12 @@ std::size_t CellIndex::memorySize() const
       bounds.bricks.size() + bounds.blocks.size() + bounds.order.size() * sizeof(std::uint32_t);
   }
   return size;
+}
+
+double mostMagnitude(ScalarType type, const VolumeIndex::Range& range)
+{
+  const bool isDouble = averageType(type) == ScalarType::Float64;
+  return range.hasInfinities() ? (isDouble ? 1e150 : 1e18) : (isDouble ? 1e303 : 1e37);
 }
 
 namespace

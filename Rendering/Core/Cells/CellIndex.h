@@ -117,6 +117,10 @@ private:
   double Seconds = 0.0;
 };
 
+/// The largest magnitude of finite voxels. Cells scale voxels by their range, which is unknown
+/// beside infinities, and multiply them.
+double mostMagnitude(ScalarType type, const VolumeIndex::Range& range);
+
 /// From the values of the kernels to voxels.
 template <class A>
 struct ValueScale

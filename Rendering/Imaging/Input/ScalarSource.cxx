@@ -61,9 +61,8 @@ bool isSeparate(vtkSOADataArrayTemplate<T>* array)
 #endif
 }
 
-/// A component of an array; without address if it has an unusual layout.
 template <class T>
-StridedVoxels componentOf(vtkDataArray* array, int component)
+StridedVoxels componentOfType(vtkDataArray* array, int component)
 {
   const ScalarType type = scalarTypeOfVtk(array->GetDataType());
   auto* const structure = vtkSOADataArrayTemplate<T>::SafeDownCast(array);
@@ -74,15 +73,6 @@ StridedVoxels componentOf(vtkDataArray* array, int component)
   const bool isInterleaved = structure || array->HasStandardMemoryLayout();
   return { isInterleaved ? array->GetVoidPointer(component) : nullptr, type,
     array->GetNumberOfComponents() };
-}
-
-StridedVoxels componentOf(vtkDataArray* array, int component)
-{
-  switch (array->GetDataType())
-  {
-    vtkTemplateMacro(return componentOf<VTK_TT>(array, component));
-  }
-  return { nullptr, ScalarType::Float32, 1 };
 }
 
 std::ptrdiff_t count(const glm::ivec3& size)
@@ -181,6 +171,15 @@ ScalarType scalarTypeOfVtk(int vtkType)
     vtkTemplateMacro(return sizedType<VTK_TT>());
   }
   return ScalarType::Float32;
+}
+
+StridedVoxels componentOf(vtkDataArray* array, int component)
+{
+  switch (array->GetDataType())
+  {
+    vtkTemplateMacro(return componentOfType<VTK_TT>(array, component));
+  }
+  return { nullptr, ScalarType::Float32, 1 };
 }
 
 const char* const ScalarSource::NoMemory = "There is not enough memory to project this volume: "

@@ -170,6 +170,11 @@ private:
  * The core's type for a VTK type; Float32 for types that are not numeric.
  */
 ScalarType scalarTypeOfVtk(int vtkType);
+
+/**
+ * A component of an array. It has no address if the array has an unusual layout or is not numeric.
+ */
+StridedVoxels componentOf(vtkDataArray* array, int component);
 }
 
 #endif
