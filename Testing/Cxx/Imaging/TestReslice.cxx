@@ -328,7 +328,8 @@ void testSlabs(Checks& check)
             << counts.ambiguous << ", compared with vtkImageReslice " << counts.dense << std::endl;
   if (reference::onlyScene().empty())
   {
-    check(counts.samples > 0 && counts.ambiguous < 10 + counts.samples / 100, "too few samples are unambiguous");
+    check(counts.samples > 0 && counts.ambiguous < 10 + counts.samples / 100,
+      "too few samples are unambiguous");
   }
 }
 }

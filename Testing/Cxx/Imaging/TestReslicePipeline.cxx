@@ -100,6 +100,40 @@ void testInherited(Checks& check)
   check(!filter->GetSlabIsExact(), "exact with 2e37");
 }
 
+/// Values that are clamped, or lie near the middle between two whole numbers.
+void testRounding(Checks& check)
+{
+  Random random(16);
+  Settings s;
+  someImage(random, s);
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(3, 3, 3);
+  image->AllocateScalars(VTK_DOUBLE, 1);
+  for (const double value : { 2.5 - 0x1p-18, 2.5 - 0x1p-16, -2.5, -200.0, 300.0, 1e6, 1e12 })
+  {
+    std::fill_n(static_cast<double*>(image->GetScalarPointer()), 27, value);
+    image->GetPointData()->GetScalars()->Modified();
+    for (const int type : { VTK_UNSIGNED_CHAR, VTK_CHAR, VTK_SHORT, VTK_UNSIGNED_INT, VTK_FLOAT })
+    {
+      s.type = type;
+      vtkNew<vtkSplattingMIPReslice> filter;
+      vtkNew<vtkImageReslice> reslice;
+      for (vtkImageReslice* r : { static_cast<vtkImageReslice*>(filter), reslice.Get() })
+      {
+        r->SetInputData(image);
+        s.apply(r);
+        r->Update();
+      }
+      double range[2], expected[2];
+      filter->GetOutput()->GetScalarRange(range);
+      reslice->GetOutput()->GetScalarRange(expected);
+      check(filter->GetSlabIsExact() && range[0] == expected[0] && range[1] == expected[1], value,
+        " as type ", type, " is ", range[0], " to ", range[1], ", not ", expected[0], " to ",
+        expected[1]);
+    }
+  }
+}
+
 /// Default geometry, and a part of an output: the same bits as in the whole.
 void testParts(Checks& check)
 {
@@ -229,6 +263,7 @@ int TestReslicePipeline(int, char*[])
 {
   Checks check;
   testInherited(check);
+  testRounding(check);
   testParts(check);
   testChanges(check);
   testProgress(check);
