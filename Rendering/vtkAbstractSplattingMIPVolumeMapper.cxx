@@ -61,6 +61,13 @@ const char* vtkAbstractSplattingMIPVolumeMapper::GetAccelerationAsString()
 }
 
 //------------------------------------------------------------------------------
+const char* vtkAbstractSplattingMIPVolumeMapper::GetPictureBlendingAsString()
+{
+  static const char* const names[] = { "over", "add", "maximum" };
+  return names[this->PictureBlending];
+}
+
+//------------------------------------------------------------------------------
 void vtkAbstractSplattingMIPVolumeMapper::PrintPictureSettings(ostream& os, vtkIndent indent)
 {
   const auto onOff = [](vtkTypeBool value) { return value ? "On\n" : "Off\n"; };
@@ -91,6 +98,7 @@ void vtkAbstractSplattingMIPVolumeMapper::PrintPictureSettings(ostream& os, vtkI
      << this->DepthCodingRange[1] << ")\n";
   os << indent << "WriteDepth: " << onOff(this->WriteDepth);
   os << indent << "WriteDepthOpacity: " << this->WriteDepthOpacity << "\n";
+  os << indent << "PictureBlending: " << this->GetPictureBlendingAsString() << "\n";
 }
 
 //------------------------------------------------------------------------------

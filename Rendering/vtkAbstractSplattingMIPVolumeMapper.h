@@ -39,6 +39,16 @@ public:
    */
   vtkSplattingMIPChoicesMacro();
 
+  /**
+   * The values of PictureBlending.
+   */
+  enum PictureBlendings
+  {
+    OVER = 0,
+    ADD = 1,
+    MAXIMUM = 2
+  };
+
   ///@{
   /**
    * Set/Get which components of multi-component scalars are projected, as in vtkSmartVolumeMapper.
@@ -357,6 +367,21 @@ public:
   vtkGetMacro(WriteDepthOpacity, double);
   ///@}
 
+  ///@{
+  /**
+   * Set/Get how the picture is combined with what has been drawn. OVER (default): blended over it.
+   * ADD: the premultiplied colours and opacities are added and clamped, as light of several
+   * colours. MAXIMUM: the larger of both, in each channel. With ADD and MAXIMUM the order of
+   * volumes does not matter. Clamped to [OVER, MAXIMUM]. Is ignored by ray casters.
+   */
+  vtkSetClampMacro(PictureBlending, int, OVER, MAXIMUM);
+  vtkGetMacro(PictureBlending, int);
+  void SetPictureBlendingToOver() { this->SetPictureBlending(OVER); }
+  void SetPictureBlendingToAdd() { this->SetPictureBlending(ADD); }
+  void SetPictureBlendingToMaximum() { this->SetPictureBlending(MAXIMUM); }
+  const char* GetPictureBlendingAsString();
+  ///@}
+
 #ifndef __VTK_WRAP__
   /**
    * Print the settings of this class that change pictures, one per line. Ranks compare the text.
@@ -398,6 +423,7 @@ private:
   double DepthCodingRange[2] = { 0.0, 0.0 };
   vtkTypeBool WriteDepth = 0;
   double WriteDepthOpacity = 0.5;
+  int PictureBlending = OVER;
 
   vtkAbstractSplattingMIPVolumeMapper(const vtkAbstractSplattingMIPVolumeMapper&) = delete;
   void operator=(const vtkAbstractSplattingMIPVolumeMapper&) = delete;

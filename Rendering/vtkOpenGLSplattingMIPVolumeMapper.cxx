@@ -222,6 +222,28 @@ void drawBeside(vtkTextureObject* texture, const Parts& parts, const DrawArea& a
   draw(texture, { 0, row, width, area.size[1] }, area);
 }
 
+/// Restores the blend equation, for which vtkOpenGLState has no class.
+class ScopedBlendEquation
+{
+public:
+  explicit ScopedBlendEquation(vtkOpenGLState* state) : State(state)
+  {
+    state->vtkglGetIntegerv(GL_BLEND_EQUATION_RGB, &this->Color);
+    state->vtkglGetIntegerv(GL_BLEND_EQUATION_ALPHA, &this->Alpha);
+  }
+  ~ScopedBlendEquation()
+  {
+    this->State->vtkglBlendEquationSeparate(
+      static_cast<GLenum>(this->Color), static_cast<GLenum>(this->Alpha));
+  }
+  ScopedBlendEquation(const ScopedBlendEquation&) = delete;
+  ScopedBlendEquation& operator=(const ScopedBlendEquation&) = delete;
+
+private:
+  vtkOpenGLState* const State;
+  int Color = GL_FUNC_ADD, Alpha = GL_FUNC_ADD;
+};
+
 /// Copies parts through a framebuffer object of their own.
 void copy(vtkTextureObject* texture, vtkOpenGLFramebufferObject* buffer, const Parts& parts,
   const DrawArea& area)
@@ -274,11 +296,16 @@ void vtkOpenGLSplattingMIPVolumeMapper::DisplayImage(
   vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
   vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
   vtkOpenGLState::ScopedglBlendFuncSeparate blendFunction(state);
+  ScopedBlendEquation blendEquation(state);
   vtkOpenGLState::ScopedglDepthMask depthMask(state);
   state->vtkglDisable(GL_DEPTH_TEST);
   state->vtkglDepthMask(GL_FALSE);
   state->vtkglEnable(GL_BLEND);
-  state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  // Identifiers of a selector are no colours.
+  const int blending = ren->GetSelector() ? OVER : this->GetPictureBlending();
+  const GLenum rest = blending == OVER ? GL_ONE_MINUS_SRC_ALPHA : GL_ONE;
+  state->vtkglBlendFuncSeparate(GL_ONE, rest, GL_ONE, rest);
+  state->vtkglBlendEquation(blending == MAXIMUM ? GL_MAX : GL_FUNC_ADD);
 
   // In the current viewport, which is that of the renderer.
   DrawArea area;
@@ -286,7 +313,8 @@ void vtkOpenGLSplattingMIPVolumeMapper::DisplayImage(
     &area.viewport[0], &area.viewport[1], &area.corner[0], &area.corner[1]);
   std::copy(origin, origin + 2, area.origin);
   std::copy(size, size + 2, area.size);
-  const Parts opaque = takesCopies(window, area) ? opaqueParts(rgba, size) : Parts{};
+  const Parts opaque =
+    blending == OVER && takesCopies(window, area) ? opaqueParts(rgba, size) : Parts{};
   this->Texture->Activate();
   drawBeside(this->Texture, opaque, area);
   this->Texture->Deactivate();

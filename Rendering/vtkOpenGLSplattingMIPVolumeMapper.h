@@ -6,10 +6,10 @@
  *
  * vtkOpenGLSplattingMIPVolumeMapper is the class that the object factory creates for
  * vtkSplattingMIPVolumeMapper. It adds only the display. The picture is drawn as one texture, one
- * texel per pixel, and blended over the framebuffer. Large opaque rectangles are copied instead of
- * blended, which gives the same picture and is faster without a GPU. In windows with multisampling
- * nothing is copied, because OpenGL ES cannot copy into such windows. Depths are written through a
- * second texture if WriteDepth is on.
+ * texel per pixel, and blended as PictureBlending says. With OVER, large opaque rectangles are
+ * copied instead of blended, which gives the same picture and is faster without a GPU. In windows
+ * with multisampling nothing is copied, because OpenGL ES cannot copy into such windows. Depths are
+ * written through a second texture if WriteDepth is on.
  *
  * @sa vtkSplattingMIPVolumeMapper
  */

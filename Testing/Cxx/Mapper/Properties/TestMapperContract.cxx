@@ -47,6 +47,7 @@ void testDefaults(Mapper* mapper, stage::Checks& check)
   check(mapper->GetVectorMode() == Mapper::DISABLED && mapper->GetVectorComponent() == 0,
     "Default is all components.");
   check(mapper->GetMaskInput() == nullptr, "Default is no mask.");
+  check(mapper->GetPictureBlending() == Mapper::OVER, "Default blends over.");
   check(mapper->GetAutoAdjustSampleDistances() == 1, "Default adjusts to the time, as VTK does.");
   check(mapper->GetQualityModeUsed() == Mapper::EXACT, "A new mapper has used no other mode.");
   check(mapper->GetFinalColorWindow() == 1.0f && mapper->GetFinalColorLevel() == 0.5f,
@@ -75,6 +76,11 @@ void testClamping(Mapper* mapper, stage::Checks& check)
   {
     check(sets(mapper, &Mapper::SetQualityMode, &Mapper::GetQualityMode, value, expected),
       "SetQualityMode " + std::to_string(value));
+  }
+  for (const auto& [value, expected] : { std::pair(2, 2), { 1, 1 }, { -1, 0 }, { 5, 2 } })
+  {
+    check(sets(mapper, &Mapper::SetPictureBlending, &Mapper::GetPictureBlending, value, expected),
+      "SetPictureBlending " + std::to_string(value));
   }
   for (const auto& [value, expected] : { std::pair(0, 0), { 1, 1 }, { -1, 0 }, { 5, 1 } })
   {
@@ -194,6 +200,13 @@ void testNames(Mapper* mapper, stage::Checks& check)
   check(mapper->GetKernel() == Mapper::TRILINEAR &&
       std::string("trilinear") == mapper->GetKernelAsString(),
     "SetKernelToTrilinear");
+  mapper->SetPictureBlendingToAdd();
+  check(std::string("add") == mapper->GetPictureBlendingAsString(), "SetPictureBlendingToAdd");
+  mapper->SetPictureBlendingToMaximum();
+  check(
+    std::string("maximum") == mapper->GetPictureBlendingAsString(), "SetPictureBlendingToMaximum");
+  mapper->SetPictureBlendingToOver();
+  check(std::string("over") == mapper->GetPictureBlendingAsString(), "SetPictureBlendingToOver");
 }
 
 void testPrinting(Mapper* mapper, stage::Checks& check)

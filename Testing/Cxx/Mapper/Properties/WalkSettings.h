@@ -280,6 +280,8 @@ inline void addPictureSettings(Settings<Shown>& all)
     [](S& s, V v, World&) { s.splatting->SetDepthCodingRange(v[0], v[1]); } });
   all.push_back({ "WriteDepthOpacity", oneOf({ 0.5, 0.0, 0.9 }),
     [](S& s, V v, World&) { s.splatting->SetWriteDepthOpacity(v[0]); } });
+  all.push_back({ "PictureBlending", oneOf({ 0, 0, 1, 2 }),
+    [](S& s, V v, World&) { s.splatting->SetPictureBlending(int(v[0])); } });
 }
 
 inline Settings<Shown> settingsOfMapper(bool standsIn)
