@@ -15,12 +15,14 @@
 #include "vtkObjectFactoryCollection.h"
 #include "vtkOpenGLRenderPass.h"
 #include "vtkOutputWindow.h"
+#include "vtkRenderer.h"
 #include "vtkShaderProperty.h"
 #include "vtkVersion.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
+#include <string>
 
 using namespace splatting;
 
@@ -128,27 +130,61 @@ vtkSplattingMIPGPUVolumeRayCastMapper::vtkSplattingMIPGPUVolumeRayCastMapper()
     LoggedReason(""),
     StandIn(new splatting::VolumeStandIn)
 {
-  this->SplattingMapper->SetQualityMode(globalQualityMode);
-  using Self = vtkSplattingMIPGPUVolumeRayCastMapper;
-  vtkObject* const splatting = this->SplattingMapper;
-  splatting->AddObserver(vtkCommand::ErrorEvent, this, &Self::ForwardMessage);
-  splatting->AddObserver(vtkCommand::WarningEvent, this, &Self::ForwardMessage);
-  splatting->AddObserver(vtkCommand::VolumeMapperRenderProgressEvent, this, &Self::ForwardProgress);
+  this->GetSplattingMapper(0);
 }
 
 //------------------------------------------------------------------------------
 vtkSplattingMIPGPUVolumeRayCastMapper::~vtkSplattingMIPGPUVolumeRayCastMapper() = default;
 
 //------------------------------------------------------------------------------
-vtkSplattingMIPVolumeMapper* vtkSplattingMIPGPUVolumeRayCastMapper::GetSplattingMapper()
+vtkSplattingMIPVolumeMapper* vtkSplattingMIPGPUVolumeRayCastMapper::GetSplattingMapper(int port)
 {
-  return this->SplattingMapper;
+  vtkSmartPointer<vtkOpenGLSplattingMIPVolumeMapper>& mapper =
+    this->SplattingMappers[std::clamp(port, 0, this->GetNumberOfInputPorts() - 1)];
+  if (!mapper)
+  {
+    mapper = vtkSmartPointer<vtkOpenGLSplattingMIPVolumeMapper>::New();
+    mapper->SetQualityMode(globalQualityMode);
+    using Self = vtkSplattingMIPGPUVolumeRayCastMapper;
+    mapper->AddObserver(vtkCommand::ErrorEvent, this, &Self::ForwardMessage);
+    mapper->AddObserver(vtkCommand::WarningEvent, this, &Self::ForwardMessage);
+    mapper->AddObserver(vtkCommand::VolumeMapperRenderProgressEvent, this, &Self::ForwardProgress);
+  }
+  return mapper;
 }
 
 //------------------------------------------------------------------------------
-const char* vtkSplattingMIPGPUVolumeRayCastMapper::ReasonNotToSplat(vtkVolume* vol)
+vtkSplattingMIPGPUVolumeRayCastMapper::Parts vtkSplattingMIPGPUVolumeRayCastMapper::PartsOf(
+  vtkVolume* vol)
+{
+  auto* const several = vtkMultiVolume::SafeDownCast(vol);
+  if (!several)
+  {
+    return { { 0, vol } };
+  }
+  Parts parts;
+  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    vtkVolume* const part =
+      this->GetNumberOfInputConnections(port) > 0 ? several->GetVolume(port) : nullptr;
+    if (part)
+    {
+      parts.emplace_back(port, part);
+    }
+  }
+  return parts;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkSplattingMIPGPUVolumeRayCastMapper::ReasonNotToSplat(
+  vtkVolume* vol, const Parts& parts)
 {
   vtkInformation* const keys = vol->GetPropertyKeys();
+  const auto any = [&](bool (*has)(vtkVolume*))
+  {
+    return std::any_of(
+      parts.begin(), parts.end(), [=](const auto& part) { return has(part.second); });
+  };
   const struct
   {
     bool holds;
@@ -156,10 +192,13 @@ const char* vtkSplattingMIPGPUVolumeRayCastMapper::ReasonNotToSplat(vtkVolume* v
   } reasons[] = {
     { this->BlendMode != MAXIMUM_INTENSITY_BLEND && this->BlendMode != MINIMUM_INTENSITY_BLEND,
       "the blend mode is neither maximum nor minimum intensity" },
-    { vol->IsA("vtkMultiVolume") || this->GetInputCount() > 1, "there are several inputs" },
-    { vol->GetProperty()->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D,
+    { !vol->IsA("vtkMultiVolume") && this->GetInputCount() > 1, "there are several inputs" },
+    { any([](vtkVolume* part)
+        { return part->GetProperty()->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D; }),
       "the transfer functions are two-dimensional" },
-    { hasCode(vol->GetShaderProperty()), "the volume brings shader code" },
+    { hasCode(vol->GetShaderProperty()) ||
+        any([](vtkVolume* part) { return hasCode(part->GetShaderProperty()); }),
+      "the volume brings shader code" },
     { keys && keys->Has(vtkOpenGLRenderPass::RenderPasses()), "a render pass brings shader code" },
     { this->RenderToImage != 0, "it renders to an image" },
   };
@@ -176,29 +215,31 @@ const char* vtkSplattingMIPGPUVolumeRayCastMapper::ReasonNotToSplat(vtkVolume* v
 //------------------------------------------------------------------------------
 // Setters without a change cost nothing, and the splatting mapper detects which results a change
 // invalidates.
-void vtkSplattingMIPGPUVolumeRayCastMapper::CopySettings()
+void vtkSplattingMIPGPUVolumeRayCastMapper::CopySettings(bool severalInputs)
 {
-  vtkSplattingMIPVolumeMapper* const to = this->SplattingMapper;
-  // Not a connection, because VTK's garbage collector does not detect that both mappers share it.
-  to->SetInputDataObject(this->GetInput(0));
-  to->SetBlendMode(this->BlendMode);
-  to->SetCropping(this->Cropping);
-  to->SetCroppingRegionPlanes(this->CroppingRegionPlanes);
-  to->SetCroppingRegionFlags(this->CroppingRegionFlags);
-  to->SetClippingPlanes(this->ClippingPlanes);
-  to->SetScalarMode(this->ScalarMode);
-  if (this->ArrayAccessMode == VTK_GET_ARRAY_BY_NAME)
+  for (const auto& [port, to] : this->SplattingMappers)
   {
-    to->SelectScalarArray(this->ArrayName);
+    // Not a connection, because VTK's garbage collector does not detect that both mappers share it.
+    to->SetInputDataObject(this->GetInputDataObject(port, 0));
+    to->SetBlendMode(this->BlendMode);
+    to->SetCropping(this->Cropping && !severalInputs);
+    to->SetCroppingRegionPlanes(this->CroppingRegionPlanes);
+    to->SetCroppingRegionFlags(this->CroppingRegionFlags);
+    to->SetClippingPlanes(this->ClippingPlanes);
+    to->SetScalarMode(this->ScalarMode);
+    if (this->ArrayAccessMode == VTK_GET_ARRAY_BY_NAME)
+    {
+      to->SelectScalarArray(this->ArrayName);
+    }
+    else
+    {
+      to->SelectScalarArray(this->ArrayId);
+    }
+    to->SetFinalColorWindow(this->FinalColorWindow);
+    to->SetFinalColorLevel(this->FinalColorLevel);
+    to->SetAutoAdjustSampleDistances(this->AutoAdjustSampleDistances);
+    to->SetMaskInput(port == 0 && this->MaskType == BinaryMaskType ? this->MaskInput : nullptr);
   }
-  else
-  {
-    to->SelectScalarArray(this->ArrayId);
-  }
-  to->SetFinalColorWindow(this->FinalColorWindow);
-  to->SetFinalColorLevel(this->FinalColorLevel);
-  to->SetAutoAdjustSampleDistances(this->AutoAdjustSampleDistances);
-  to->SetMaskInput(this->MaskType == BinaryMaskType ? this->MaskInput : nullptr);
 }
 
 //------------------------------------------------------------------------------
@@ -229,10 +270,15 @@ bool vtkSplattingMIPGPUVolumeRayCastMapper::HasGrays(vtkVolume* vol)
 // The superclass's Render() updates the input and invokes the events.
 void vtkSplattingMIPGPUVolumeRayCastMapper::GPURender(vtkRenderer* ren, vtkVolume* vol)
 {
-  // In all modes, because the splatting mapper would otherwise keep data that are no longer
+  const Parts parts = this->PartsOf(vol);
+  for (const auto& part : parts)
+  {
+    this->GetSplattingMapper(part.first);
+  }
+  // In all modes, because the splatting mappers would otherwise keep data that are no longer
   // rendered.
-  this->CopySettings();
-  const char* const reason = this->ReasonNotToSplat(vol);
+  this->CopySettings(vol->IsA("vtkMultiVolume") != 0);
+  const char* const reason = this->ReasonNotToSplat(vol, parts);
   if (reason != this->LoggedReason)
   {
     vtkVLogF(vtkLogger::VERBOSITY_1, "%s renders by %s%s%s.", vtkLogIdentifier(this),
@@ -246,7 +292,15 @@ void vtkSplattingMIPGPUVolumeRayCastMapper::GPURender(vtkRenderer* ren, vtkVolum
     this->Superclass::GPURender(ren, this->HasGrays(vol) ? this->StandIn->Volume(vol, ren) : vol);
     return;
   }
-  this->SplattingMapper->Render(ren, vol);
+  for (const auto& [port, part] : parts)
+  {
+    if (part != vol)
+    {
+      const double count = static_cast<double>(parts.size());
+      part->SetAllocatedRenderTime(vol->GetAllocatedRenderTime() / count, ren);
+    }
+    this->GetSplattingMapper(port)->Render(ren, part);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -281,7 +335,10 @@ void vtkSplattingMIPGPUVolumeRayCastMapper::ForwardProgress(
 //------------------------------------------------------------------------------
 void vtkSplattingMIPGPUVolumeRayCastMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
-  this->SplattingMapper->ReleaseGraphicsResources(window);
+  for (const auto& each : this->SplattingMappers)
+  {
+    each.second->ReleaseGraphicsResources(window);
+  }
   this->Superclass::ReleaseGraphicsResources(window);
 }
 
@@ -293,7 +350,10 @@ void vtkSplattingMIPGPUVolumeRayCastMapper::PrintSelf(ostream& os, vtkIndent ind
   os << indent << "GlobalQualityMode: " << globalQualityMode << "\n";
   os << indent << "LastRenderUsedSplatting: " << (this->LastRenderUsedSplatting ? "Yes" : "No")
      << "\n";
-  os << indent << "SplattingMapper:\n";
-  this->SplattingMapper->PrintSelf(os, indent.GetNextIndent());
+  for (const auto& [port, mapper] : this->SplattingMappers)
+  {
+    os << indent << "SplattingMapper:" << (port ? " port " + std::to_string(port) : "") << "\n";
+    mapper->PrintSelf(os, indent.GetNextIndent());
+  }
 }
 VTK_ABI_NAMESPACE_END

@@ -14,7 +14,7 @@
  * changed can load it through VTK_AUTOLOAD_PATH. The blend modes MAXIMUM_INTENSITY and
  * MINIMUM_INTENSITY are rendered by an internal vtkSplattingMIPVolumeMapper. The superclass renders
  * - other blend modes;
- * - volumes with several inputs (vtkMultiVolume);
+ * - several inputs without a vtkMultiVolume;
  * - two-dimensional transfer functions;
  * - shader code of vtkShaderProperty and of render passes such as vtkDualDepthPeelingPass;
  * - RenderToImage.
@@ -24,6 +24,13 @@
  * FinalColorWindow, FinalColorLevel, AutoAdjustSampleDistances and binary MaskInput. The picture
  * has the same bits as that of a vtkSplattingMIPVolumeMapper with these properties. The index is
  * kept while other blend modes are rendered.
+ *
+ * The inputs of a vtkMultiVolume are splatted one by one, in the order of their ports, as if each
+ * of its volumes were in the renderer by itself: with its own matrix, property and splatting mapper
+ * (see GetSplattingMapper()). Each picture is blended over the previous ones, so that a volume with
+ * opaque dark colours hides those of lower ports: make low scalars transparent, or choose another
+ * PictureBlending. ClippingPlanes cut all inputs, MaskInput belongs to port 0, and Cropping is
+ * ignored, as by the superclass. (The superclass itself composites several inputs only.)
  *
  * Splatting ignores SampleDistance, LockSampleDistanceToInputSpacing, UseJittering,
  * ImageSampleDistance with its minimum and maximum, MaxMemoryInBytes, MaxMemoryFraction,
@@ -46,12 +53,15 @@
 #ifndef vtkSplattingMIPGPUVolumeRayCastMapper_h
 #define vtkSplattingMIPGPUVolumeRayCastMapper_h
 
-#include "vtkNew.h" // for the splatting mapper
 #include "vtkOpenGLGPUVolumeRayCastMapper.h"
 #include "vtkRenderingSplattingMIPModule.h" // for the export macro
+#include "vtkSmartPointer.h"                // for the splatting mappers
 #include "vtkSplattingMIPNamespace.h"
 
-#include <memory> // for the stand-in
+#include <map>     // for the splatting mappers
+#include <memory>  // for the stand-in
+#include <utility> // for std::pair
+#include <vector>  // for parts
 
 namespace splatting
 {
@@ -91,10 +101,11 @@ public:
   ///@}
 
   /**
-   * Get the splatting mapper, for properties that vtkGPUVolumeRayCastMapper does not have, such as
-   * QualityMode, Slab and MaximumType. The other properties are overwritten before each render.
+   * Get the splatting mapper of an input port, for properties that vtkGPUVolumeRayCastMapper does
+   * not have, such as QualityMode, Slab and MaximumType. Each port has its own; those above 0 are
+   * used with a vtkMultiVolume only. The other properties are overwritten before each render.
    */
-  vtkSplattingMIPVolumeMapper* GetSplattingMapper();
+  vtkSplattingMIPVolumeMapper* GetSplattingMapper(int port = 0);
 
   /**
    * Get whether the splatting mapper did the last render. False before the first one.
@@ -112,14 +123,18 @@ protected:
 
   void GPURender(vtkRenderer* ren, vtkVolume* vol) override;
 
+  /// Input ports and their volumes: of a vtkMultiVolume, else port 0.
+  using Parts = std::vector<std::pair<int, vtkVolume*>>;
+
   /**
    * Get the reason why a volume is not splatted, or nullptr if it is splatted. The text completes a
    * sentence that ends in "because".
    */
-  const char* ReasonNotToSplat(vtkVolume* vol);
+  const char* ReasonNotToSplat(vtkVolume* vol, const Parts& parts);
 
-  void CopySettings();
+  void CopySettings(bool severalInputs);
   bool HasGrays(vtkVolume* vol);
+  Parts PartsOf(vtkVolume* vol);
   void ForwardMessage(vtkObject* caller, unsigned long event, void* text);
   void ForwardProgress(vtkObject* caller, unsigned long event, void* done);
 
@@ -129,7 +144,7 @@ private:
   vtkSplattingMIPGPUVolumeRayCastMapper(const vtkSplattingMIPGPUVolumeRayCastMapper&) = delete;
   void operator=(const vtkSplattingMIPGPUVolumeRayCastMapper&) = delete;
 
-  vtkNew<vtkOpenGLSplattingMIPVolumeMapper> SplattingMapper;
+  std::map<int, vtkSmartPointer<vtkOpenGLSplattingMIPVolumeMapper>> SplattingMappers; // by port
   const char* LoggedReason; // what the log says last; "" before
   std::unique_ptr<splatting::VolumeStandIn> StandIn;
 };
