@@ -56,7 +56,8 @@ const char* validate(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* pro
 
 bool needsLocations(vtkSplattingMIPVolumeMapper* mapper)
 {
-  return mapper->GetRecordLocations() || mapper->GetDepthCoding() || mapper->GetWriteDepth();
+  return mapper->GetRecordLocations() || mapper->GetDepthCoding() || mapper->GetWriteDepth() ||
+    mapper->GetLabelInput();
 }
 
 ProjectionSettings settingsOf(vtkSplattingMIPVolumeMapper* mapper, int mode, const View& view)

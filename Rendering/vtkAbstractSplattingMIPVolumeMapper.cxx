@@ -15,6 +15,8 @@ VTK_ABI_NAMESPACE_BEGIN
 vtkCxxSetObjectMacro(vtkAbstractSplattingMIPVolumeMapper, MaskInput, vtkImageData);
 vtkCxxSetObjectMacro(vtkAbstractSplattingMIPVolumeMapper, BoundingSurface, vtkPolyData);
 vtkCxxSetObjectMacro(vtkAbstractSplattingMIPVolumeMapper, DepthCodingColors, vtkScalarsToColors);
+vtkCxxSetObjectMacro(vtkAbstractSplattingMIPVolumeMapper, LabelInput, vtkImageData);
+vtkCxxSetObjectMacro(vtkAbstractSplattingMIPVolumeMapper, LabelColors, vtkScalarsToColors);
 
 //------------------------------------------------------------------------------
 vtkAbstractSplattingMIPVolumeMapper::vtkAbstractSplattingMIPVolumeMapper()
@@ -28,6 +30,8 @@ vtkAbstractSplattingMIPVolumeMapper::~vtkAbstractSplattingMIPVolumeMapper()
   this->SetMaskInput(nullptr);
   this->SetBoundingSurface(nullptr);
   this->SetDepthCodingColors(nullptr);
+  this->SetLabelInput(nullptr);
+  this->SetLabelColors(nullptr);
 }
 
 //------------------------------------------------------------------------------
@@ -110,5 +114,7 @@ void vtkAbstractSplattingMIPVolumeMapper::PrintSelf(ostream& os, vtkIndent inden
   os << indent << "MaskInput: " << this->MaskInput << "\n";
   os << indent << "BoundingSurface: " << this->BoundingSurface << "\n";
   os << indent << "DepthCodingColors: " << this->DepthCodingColors << "\n";
+  os << indent << "LabelInput: " << this->LabelInput << "\n";
+  os << indent << "LabelColors: " << this->LabelColors << "\n";
 }
 VTK_ABI_NAMESPACE_END

@@ -307,8 +307,8 @@ public:
   ///@{
   /**
    * Set/Get whether projections record sample positions for GetLocations(). Default off;
-   * DepthCoding and WriteDepth record them in any case. The position of a pixel is that of the
-   * sample whose value it shows. Of equal samples the nearest to the viewer is recorded. The
+   * DepthCoding, WriteDepth and LabelInput record them in any case. The position of a pixel is that
+   * of the sample whose value it shows. Of equal samples the nearest to the viewer is recorded. The
    * position is that of the first independent component, or of the last dependent component.
    * Averages have no positions and report a warning.
    */
@@ -369,6 +369,26 @@ public:
 
   ///@{
   /**
+   * Set/Get integer labels, one for each voxel of the input, in the order of MaskInput. Edges of
+   * labels are drawn over the picture: pixels whose sample has a label that is not 0 and differs
+   * from that of one of the four neighbours. Default nullptr: no labels. Is ignored for averages
+   * and by ray casters, and reported as an error with several ranks.
+   */
+  virtual void SetLabelInput(vtkImageData*);
+  vtkGetObjectMacro(LabelInput, vtkImageData);
+  ///@}
+
+  ///@{
+  /**
+   * Set/Get the colours of labels: a look-up table or transfer function of the labels themselves.
+   * Default nullptr: six colours in turn.
+   */
+  virtual void SetLabelColors(vtkScalarsToColors*);
+  vtkGetObjectMacro(LabelColors, vtkScalarsToColors);
+  ///@}
+
+  ///@{
+  /**
    * Set/Get how the picture is combined with what has been drawn. OVER (default): blended over it.
    * ADD: the premultiplied colours and opacities are added and clamped, as light of several
    * colours. MAXIMUM: the larger of both, in each channel. With ADD and MAXIMUM the order of
@@ -423,6 +443,8 @@ private:
   double DepthCodingRange[2] = { 0.0, 0.0 };
   vtkTypeBool WriteDepth = 0;
   double WriteDepthOpacity = 0.5;
+  vtkImageData* LabelInput = nullptr;
+  vtkScalarsToColors* LabelColors = nullptr;
   int PictureBlending = OVER;
 
   vtkAbstractSplattingMIPVolumeMapper(const vtkAbstractSplattingMIPVolumeMapper&) = delete;

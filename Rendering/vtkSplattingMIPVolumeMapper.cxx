@@ -6,6 +6,7 @@
 #include "ProjectionProperties.h"
 #include "Ranks/FrameObserver.h"
 #include "ReportedProblems.h"
+#include "Scene/LabelEdges.h"
 #include "Scene/ProjectedVolume.h"
 #include "Scene/RayCastFallback.h"
 #include "Scene/SampleLocations.h"
@@ -340,12 +341,17 @@ void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
   {
     vtkWarningMacro(
       << "An average is computed from all samples of a ray, so it has no location, no "
-         "depth coding and no depth: choose another blend mode.");
+         "depth coding, no label and no depth: choose another blend mode.");
   }
   if (this->GetDepthCoding() && !ren->GetSelector())
   {
     in.Locations.ColorByDepth(
       in.Picture, this->GetDepthCodingColors(), this->GetDepthCodingRange());
+  }
+  if (this->GetLabelInput() && !ren->GetSelector())
+  {
+    drawLabelEdges(
+      in.Picture, in.Locations.VoxelsOf(in.Picture), this->GetLabelInput(), this->GetLabelColors());
   }
   this->DisplayPicture(ren);
   if (this->GetWriteDepth() && !in.Picture.pixels.empty())

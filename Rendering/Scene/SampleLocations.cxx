@@ -377,6 +377,29 @@ void SampleLocations::ColorByDepth(
   }
 }
 
+std::vector<int> SampleLocations::VoxelsOf(const Picture& picture) const
+{
+  std::vector<int> voxels(3 * picture.pixels.size(), -1);
+  if (!this->HasWinners())
+  {
+    return voxels;
+  }
+  Locator::Arrays arrays;
+  arrays.voxels = voxels.data();
+  Locator(this->Last()->located).fill(picture.origin, picture.size, arrays);
+  Picture seen = picture;
+  std::fill(seen.pixels.begin(), seen.pixels.end(), 1u);
+  this->SceneCuts.Hide(seen);
+  for (std::size_t n = 0; n < seen.pixels.size(); ++n)
+  {
+    if (!seen.pixels[n])
+    {
+      std::fill_n(&voxels[3 * n], 3, -1);
+    }
+  }
+  return voxels;
+}
+
 const std::vector<float>& SampleLocations::ClipDepths(const Picture& picture, double opacity)
 {
   constexpr float none = 2.0f;

@@ -88,6 +88,8 @@ public:
 
   /// Gives each pixel of a picture the colour of its depth, with its brightness.
   void ColorByDepth(Picture& picture, vtkScalarsToColors* colors, const double range[2]);
+  /// The voxels, i, j and k, of a picture's samples; -1 for pixels without a visible sample.
+  std::vector<int> VoxelsOf(const Picture& picture) const;
   /// The depth, 0 to 1, of each pixel of a picture with at least this opacity and a sample; 2 for
   /// other pixels.
   const std::vector<float>& ClipDepths(const Picture& picture, double opacity);

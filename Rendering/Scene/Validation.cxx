@@ -3,6 +3,7 @@
 #include "Scene/Validation.h"
 
 #include "MapperProperties.h"
+#include "Scene/LabelEdges.h"
 #include "Scene/ProjectedVolume.h"
 #include "Scene/ViewOfVolume.h"
 #include "vtkSplattingMIPVolumeMapper.h"
@@ -22,6 +23,10 @@ std::string loadInput(vtkSplattingMIPVolumeMapper* mapper, vtkVolume* volume, Pr
   if (volume->IsA("vtkMultiVolume"))
   {
     return "A vtkMultiVolume cannot be splatted: give each of its volumes a mapper of its own.";
+  }
+  if (mapper->GetLabelInput() && data.Ranks.Use(mapper->GetController()))
+  {
+    return "LabelInput is not supported with several ranks: remove it, or use one rank.";
   }
   ScalarChoice choice;
   choice.scalarMode = mapper->GetScalarMode();
@@ -77,6 +82,14 @@ std::string validateProperties(
   if (const char* const fault = validate(mapper, volume->GetProperty()))
   {
     return fault;
+  }
+  if (vtkImageData* const labels = mapper->GetLabelInput())
+  {
+    const std::string problem = validateLabels(labels, data.Grid().dimensions);
+    if (!problem.empty())
+    {
+      return problem;
+    }
   }
   vtkPolyData* const surface = mapper->GetBoundingSurface();
   const glm::dmat4 toIndex = surface ? worldToIndex(data.Grid(), volume) : glm::dmat4(1.0);

@@ -242,7 +242,7 @@ void testPictureSettings(Mapper* mapper, stage::Checks& check)
   }
   std::istringstream rest(text.substr(at + some.str().size()));
   const std::set<std::string> others{ "IndexMemoryBudget", "MaskInput", "BoundingSurface",
-    "DepthCodingColors" };
+    "DepthCodingColors", "LabelInput", "LabelColors" };
   for (std::string line; std::getline(rest, line);)
   {
     check(others.count(line.substr(0, line.find(':'))) == 1,

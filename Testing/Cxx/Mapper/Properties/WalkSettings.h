@@ -280,6 +280,12 @@ inline void addPictureSettings(Settings<Shown>& all)
     [](S& s, V v, World&) { s.splatting->SetDepthCodingRange(v[0], v[1]); } });
   all.push_back({ "WriteDepthOpacity", oneOf({ 0.5, 0.0, 0.9 }),
     [](S& s, V v, World&) { s.splatting->SetWriteDepthOpacity(v[0]); } });
+  all.push_back({ "LabelInput", onOrOff(3), [](S& s, V v, World& world) {
+                   s.splatting->SetLabelInput(v[0] != 0.0 ? world.input.mask.Get() : nullptr);
+                 } });
+  all.push_back({ "LabelColors", onOrOff(), [](S& s, V v, World& world) {
+                   s.splatting->SetLabelColors(v[0] != 0.0 ? world.depthColors.Get() : nullptr);
+                 } });
   all.push_back({ "PictureBlending", oneOf({ 0, 0, 1, 2 }),
     [](S& s, V v, World&) { s.splatting->SetPictureBlending(int(v[0])); } });
 }
