@@ -88,6 +88,7 @@ void vtkAbstractSplattingMIPVolumeMapper::PrintPictureSettings(ostream& os, vtkI
   os << indent << "DepthShadingAmbient: " << this->DepthShadingAmbient << "\n";
   os << indent << "DepthShadingChangeRate: " << this->DepthShadingChangeRate << "\n";
   os << indent << "LocalMaximumThreshold: " << this->LocalMaximumThreshold << "\n";
+  os << indent << "SignedOrigin: " << this->SignedOrigin << "\n";
   os << indent << "Slab: " << onOff(this->Slab);
   os << indent << "SlabThickness: " << this->SlabThickness << "\n";
   os << indent << "SlabCenter: (" << this->SlabCenter[0] << ", " << this->SlabCenter[1] << ", "

@@ -152,15 +152,16 @@ public:
   ///@{
   /**
    * Set/Get the maximum along a ray that blend mode MAXIMUM_INTENSITY shows. Default GLOBAL,
-   * clamped to [GLOBAL, LOCAL]. Samples of a ray are the voxels that it crosses in PREVIEW, the
+   * clamped to [GLOBAL, SIGNED]. Samples of a ray are the voxels that it crosses in PREVIEW, the
    * averages of its slices in STANDARD and HIGH, and the interpolated field in EXACT. DEPTH_SHADED
    * and LOCAL depend on the side of the viewer. DEPTH_SHADED gives shear images of floating point.
    */
-  vtkSetClampMacro(MaximumType, int, GLOBAL, LOCAL);
+  vtkSetClampMacro(MaximumType, int, GLOBAL, SIGNED);
   vtkGetMacro(MaximumType, int);
   void SetMaximumTypeToGlobal() { this->SetMaximumType(GLOBAL); }
   void SetMaximumTypeToDepthShaded() { this->SetMaximumType(DEPTH_SHADED); }
   void SetMaximumTypeToLocal() { this->SetMaximumType(LOCAL); }
+  void SetMaximumTypeToSigned() { this->SetMaximumType(SIGNED); }
   const char* GetMaximumTypeAsString();
   ///@}
 
@@ -185,6 +186,16 @@ public:
    */
   vtkSetMacro(LocalMaximumThreshold, double);
   vtkGetMacro(LocalMaximumThreshold, double);
+  ///@}
+
+  ///@{
+  /**
+   * Set/Get the scalar that SIGNED measures distances from: a pixel shows its maximum or its
+   * minimum, whichever is farther from this scalar. If both are equally far, it shows the maximum.
+   * Default 0. NaN and infinities are reported as an error, and so are dependent components.
+   */
+  vtkSetMacro(SignedOrigin, double);
+  vtkGetMacro(SignedOrigin, double);
   ///@}
 
   ///@{
@@ -427,6 +438,7 @@ private:
   double DepthShadingAmbient = 0.3;
   double DepthShadingChangeRate = 0.7;
   double LocalMaximumThreshold = 0.0;
+  double SignedOrigin = 0.0;
   vtkTypeBool Slab = 0;
   double SlabThickness = 10.0;
   double SlabCenter[3] = { 0.0, 0.0, 0.0 };

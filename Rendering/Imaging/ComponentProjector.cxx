@@ -6,6 +6,7 @@
 #include "Input/ScalarSource.h"
 #include "PieceExchange.h"
 #include "Projection/Piece.h"
+#include "Projection/SignedMaximum.h"
 #include "Volume/VoxelCopies.h"
 
 #include "vtkDataSetAttributes.h"
@@ -236,8 +237,8 @@ bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
   channel.Settings = this->SettingsOf(channel, settings);
   if (this->Ranks && !channel.Index.volume().voxels)
   {
-    blank(geometry, channel.Index.volume().type, channel.Settings, image);
     image.nonFinite = channel.Index.range().nonFinite;
+    blank(geometry, channel.Index.volume().type, channel.Settings, image);
     ++this->Done;
     return true;
   }
@@ -560,7 +561,8 @@ vtkSmartPointer<vtkImageData> ComponentProjector::MakeShearImage(
   ghosts->Fill(vtkDataSetAttributes::HIDDENPOINT);
   for (std::size_t c = 0; c < components; ++c)
   {
-    const ShearImage& image = this->Channels[c].Images[n];
+    const ShearImage& projected = this->Channels[c].Images[n];
+    const ShearImage image = projected.minima.empty() ? projected : shownValues(projected);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     {
       std::memcpy(

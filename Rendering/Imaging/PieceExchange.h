@@ -31,7 +31,7 @@ public:
   /// @param geometry  of the whole
   virtual void Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction) = 0;
   /// Collective. Turns the values of a piece into those of the whole, with the least depth of the
-  /// pieces that have a pixel's value.
+  /// pieces that have a pixel's value. Minima of Reduction::Signed are reduced likewise.
   virtual void Reduce(ScreenScalars& screen) = 0;
 };
 }

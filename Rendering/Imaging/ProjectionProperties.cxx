@@ -21,7 +21,7 @@ const char* nameOfKernel(int kernel)
 
 const char* nameOfMaximumType(int type)
 {
-  static const char* const names[] = { "global", "depth shaded", "local" };
+  static const char* const names[] = { "global", "depth shaded", "local", "signed" };
   return names[type];
 }
 

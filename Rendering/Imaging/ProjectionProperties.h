@@ -56,6 +56,9 @@ const char* validate(Object& object)
     { isMaximum && object.GetMaximumType() == Object::LOCAL &&
         std::isnan(object.GetLocalMaximumThreshold()),
       "LocalMaximumThreshold is not a number: set it to the least scalar of local maxima." },
+    { isMaximum && object.GetMaximumType() == Object::SIGNED &&
+        !std::isfinite(object.GetSignedOrigin()),
+      "SignedOrigin is not finite: set it to the scalar that distances are measured from." },
     { isMaximum && object.GetMaximumType() == Object::DEPTH_SHADED &&
         !(std::abs(object.GetDepthShadingAmbient()) +
             std::abs(object.GetDepthShadingChangeRate()) <=
@@ -88,6 +91,7 @@ Reduction reductionOf(Object& object)
   }
   return object.GetMaximumType() == Object::DEPTH_SHADED ? Reduction::DepthShaded
     : object.GetMaximumType() == Object::LOCAL           ? Reduction::Local
+    : object.GetMaximumType() == Object::SIGNED          ? Reduction::Signed
                                                          : Reduction::Maximum;
 }
 
@@ -123,6 +127,9 @@ ProjectionSettings settingsOf(Object& object, int mode, const View& view, bool l
       settings.meanLow = object.GetAverageIPScalarRange()[0];
       settings.meanHigh = object.GetAverageIPScalarRange()[1];
       break;
+    case Reduction::Signed:
+      settings.origin = object.GetSignedOrigin();
+      [[fallthrough]];
     case Reduction::Maximum:
       if (mode == Object::EXACT)
       {

@@ -22,6 +22,7 @@
  * - GLOBAL: the largest sample
  * - DEPTH_SHADED: the largest sample after dimming by depth (DMIP)
  * - LOCAL: the first local maximum, from the viewer, that reaches a threshold
+ * - SIGNED: the largest or the least sample, whichever is farther from SignedOrigin
  *
  * Accelerations, which voxels a projection skips, and in which order it processes the others.
  * Chains are equal voxels along rows [CS98, section 4]. SORTED_LINES and SORTED_VOLUME are used in
@@ -59,7 +60,8 @@
   {                                                                                                \
     GLOBAL = 0,                                                                                    \
     DEPTH_SHADED = 1,                                                                              \
-    LOCAL = 2                                                                                      \
+    LOCAL = 2,                                                                                     \
+    SIGNED = 3                                                                                     \
   };                                                                                               \
   enum Accelerations                                                                               \
   {                                                                                                \

@@ -540,6 +540,7 @@ void vtkSplattingMIPProjection::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DepthShadingAmbient: " << this->DepthShadingAmbient << "\n";
   os << indent << "DepthShadingChangeRate: " << this->DepthShadingChangeRate << "\n";
   os << indent << "LocalMaximumThreshold: " << this->LocalMaximumThreshold << "\n";
+  os << indent << "SignedOrigin: " << this->SignedOrigin << "\n";
   os << indent << "VectorMode: " << nameOfVectorMode(this->VectorMode) << "\n";
   os << indent << "VectorComponent: " << this->VectorComponent << "\n";
   os << indent << "Slab: " << onOff(this->Slab);

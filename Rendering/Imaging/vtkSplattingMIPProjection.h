@@ -222,19 +222,22 @@ public:
   /**
    * Set/Get the maximum along a ray and its parameters; see
    * vtkSplattingMIPVolumeMapper::SetMaximumType(). Defaults: GLOBAL, DepthShadingAmbient 0.3,
-   * DepthShadingChangeRate 0.7, LocalMaximumThreshold 0.
+   * DepthShadingChangeRate 0.7, LocalMaximumThreshold 0, SignedOrigin 0.
    */
-  vtkSetClampMacro(MaximumType, int, GLOBAL, LOCAL);
+  vtkSetClampMacro(MaximumType, int, GLOBAL, SIGNED);
   vtkGetMacro(MaximumType, int);
   void SetMaximumTypeToGlobal() { this->SetMaximumType(GLOBAL); }
   void SetMaximumTypeToDepthShaded() { this->SetMaximumType(DEPTH_SHADED); }
   void SetMaximumTypeToLocal() { this->SetMaximumType(LOCAL); }
+  void SetMaximumTypeToSigned() { this->SetMaximumType(SIGNED); }
   vtkSetMacro(DepthShadingAmbient, double);
   vtkGetMacro(DepthShadingAmbient, double);
   vtkSetMacro(DepthShadingChangeRate, double);
   vtkGetMacro(DepthShadingChangeRate, double);
   vtkSetMacro(LocalMaximumThreshold, double);
   vtkGetMacro(LocalMaximumThreshold, double);
+  vtkSetMacro(SignedOrigin, double);
+  vtkGetMacro(SignedOrigin, double);
   ///@}
 
   ///@{
@@ -386,6 +389,7 @@ private:
   double DepthShadingAmbient = 0.3;
   double DepthShadingChangeRate = 0.7;
   double LocalMaximumThreshold = 0.0;
+  double SignedOrigin = 0.0;
   int VectorMode = DISABLED;
   int VectorComponent = 0;
   vtkTypeBool Slab = 0;

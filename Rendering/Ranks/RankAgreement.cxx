@@ -418,6 +418,11 @@ int RankAgreement::Least(int here) const
 
 void RankAgreement::Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction)
 {
+  if (reduction == Reduction::Signed)
+  {
+    this->Reduce(image.minima.front(), geometry, Reduction::Minimum);
+    reduction = Reduction::Maximum;
+  }
   const ScalarType type = image.type, keys = encode(image, reduction);
   this->Received.resize(image.bytes.size());
   this->Controller->GetCommunicator()->AllReduceVoidArray(image.bytes.data(), this->Received.data(),
@@ -456,6 +461,10 @@ void RankAgreement::ReduceWinners(ShearImage& image, const ShearWarp& geometry)
 
 void RankAgreement::Reduce(ScreenScalars& screen)
 {
+  for (ScreenScalars& minima : screen.minima)
+  {
+    this->Reduce(minima);
+  }
   ShearImage& image = this->Pixels;
   image.type = screen.type;
   image.width = screen.size.x;

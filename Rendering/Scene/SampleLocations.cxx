@@ -225,7 +225,7 @@ bool SampleLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sam
 bool SampleLocations::HasSample(const Frame& frame, const ShearPixel& pixel)
 {
   const Located& located = frame.located;
-  const ShearImage& image = (*located.images)[pixel.image];
+  const ShearImage& image = pixel.of(*located.images);
   const int u = pixel.u, v = pixel.v;
   const bool isInside = image.meetsVolume(u - 1, v - 1) && image.meetsVolume(u + 1, v - 1) &&
     image.meetsVolume(u - 1, v + 1) && image.meetsVolume(u + 1, v + 1);
@@ -249,8 +249,8 @@ bool SampleLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sampl
   }
   const auto hasSample = [&](const ShearPixel& shear) { return this->HasSample(frame, shear); };
   ShearPixel shown;
-  findShearPixels(*located.images, *located.geometries, located.settings.reduction, pixel,
-    glm::ivec2(1), &shown, hasWinners ? std::function<bool(const ShearPixel&)>() : hasSample);
+  findShown(located, pixel, glm::ivec2(1), &shown,
+    hasWinners ? std::function<bool(const ShearPixel&)>() : hasSample);
   if (shown.image < 0)
   {
     return false;
@@ -259,18 +259,18 @@ bool SampleLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sampl
   {
     const PixelProjector::Pixel& alone = this->Projector.ProjectPixel(
       located.settings, shown, *located.geometries, *frame.projectionCuts);
-    if (alone.Images.front().winners[0] < 0)
+    shown = { 0, 0, 0, shown.minimum };
+    if (shown.of(alone.Images).winners[0] < 0)
     {
       return false;
     }
     located.images = &alone.Images;
     located.geometries = &alone.Geometries;
-    shown = { 0, 0, 0 };
   }
   const Locator locator(located);
   sample.position = locator.inWorld(locator.point(glm::dvec2(pixel), shown));
   sample.voxel = findVoxel(located, shown);
-  sample.value = valueOf((*located.images)[shown.image], shown.u, shown.v);
+  sample.value = valueOf(shown.of(*located.images), shown.u, shown.v);
   return true;
 }
 

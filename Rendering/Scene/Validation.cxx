@@ -91,6 +91,13 @@ std::string validateProperties(
       return problem;
     }
   }
+  if (!data.Ranks.AreMany() && data.Source.AreDependent() &&
+    mapper->GetBlendMode() == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND &&
+    mapper->GetMaximumType() == vtkSplattingMIPVolumeMapper::SIGNED)
+  {
+    return "Dependent components have no signed maximum, because the last one is an opacity: set "
+           "IndependentComponents of the vtkVolumeProperty, or choose another MaximumType.";
+  }
   vtkPolyData* const surface = mapper->GetBoundingSurface();
   const glm::dmat4 toIndex = surface ? worldToIndex(data.Grid(), volume) : glm::dmat4(1.0);
   const char* const fault = data.Cuts.Surface().Update(surface, toIndex);

@@ -82,6 +82,12 @@ inline reference::Outcome<double> reduced(
         ray, lowest, mapper->GetDepthShadingAmbient(), mapper->GetDepthShadingChangeRate())[0];
     case vtkSplattingMIPVolumeMapper::LOCAL:
       return reference::firstLocalMaximum(ray, mapper->GetLocalMaximumThreshold(), 0.0)[0];
+    case vtkSplattingMIPVolumeMapper::SIGNED:
+    {
+      const auto high = reference::largest(ray)[0], low = reference::smallest(ray)[0];
+      const double origin = mapper->GetSignedOrigin();
+      return std::abs(low.value - origin) > std::abs(high.value - origin) ? low : high;
+    }
     default:
       return reference::largest(ray)[0];
   }

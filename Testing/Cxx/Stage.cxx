@@ -305,8 +305,9 @@ void placeAtRandom(vtkImageData* image, reference::Random& random)
 void chooseSamples(
   vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, reference::Random& random)
 {
-  mapper->SetMaximumType(random.uniform(0, 2));
+  mapper->SetMaximumType(random.uniform(0, 3));
   mapper->SetLocalMaximumThreshold(100.0);
+  mapper->SetSignedOrigin(random.uniform(20.0, 200.0));
   mapper->SetSlab(random.uniform(0, 2) == 0);
   mapper->SetSlabCenter(image->GetCenter());
   mapper->SetSlabThickness(20.0);

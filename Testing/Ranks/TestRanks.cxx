@@ -286,6 +286,8 @@ void testLocations(Ranks& ranks)
       own->mapper->SetQualityMode(mode);
       own->mapper->SetBlendMode(scene % 3 ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
                                           : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
+      own->mapper->SetMaximumType(scene % 3 == 1 ? Mapper::SIGNED : Mapper::GLOBAL);
+      own->mapper->SetSignedOrigin(127.0);
       own->mapper->RecordLocationsOn();
       look(*own, whole, n % 12);
       own->window->Render();

@@ -79,6 +79,22 @@ inline std::vector<Way> waysOfAll()
         m->SetMaximumTypeToDepthShaded();
       },
       2 },
+    { "signed", // of bytes either extremum is shown
+      [](Mapper* m)
+      {
+        m->SetQualityModeToStandard();
+        m->SetMaximumTypeToSigned();
+        m->SetSignedOrigin(127.0);
+      },
+      1 },
+    { "exact, signed", // of other types either extremum is shown
+      [](Mapper* m)
+      {
+        m->SetQualityModeToExact();
+        m->SetMaximumTypeToSigned();
+        m->SetSignedOrigin(12000.0);
+      },
+      1 },
   };
 }
 

@@ -5,6 +5,7 @@
 #include "Cells/LocalMaxima.h"
 #include "Cells/TileSplatter.h"
 #include "Common/Parallel.h"
+#include "Projection/SignedMaximum.h"
 
 #include <algorithm>
 #include <mutex>
@@ -120,6 +121,16 @@ bool CellProjector::projectPiece(CellIndex& index, const View& view,
 void CellProjector::finish(
   const CellIndex& index, const ProjectionSettings& settings, ScreenScalars& screen)
 {
+  if (settings.reduction == Reduction::Signed)
+  {
+    ProjectionSettings part = settings;
+    part.reduction = Reduction::Minimum;
+    finish(index, part, screen.minima.front());
+    part.reduction = Reduction::Maximum;
+    finish(index, part, screen);
+    takeMinima(screen, settings.origin);
+    return;
+  }
   dispatch(screen.type,
     [&](auto* null)
     {
@@ -138,9 +149,38 @@ void CellProjector::finish(
 }
 
 bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-  const RayEnds& ends, bool locate, const Wanted& within, ScreenScalars& screen)
+  const RayEnds& ends, bool locate, const Wanted& wanted, ScreenScalars& screen)
 {
   this->Observer.start();
+  screen.minima.resize(settings.reduction == Reduction::Signed ? 1 : 0);
+  if (screen.minima.empty())
+  {
+    return this->projectReduction(index, view, settings, ends, locate, wanted, screen);
+  }
+  ProjectionSettings part = settings;
+  part.reduction = Reduction::Maximum;
+  this->Observer.setStage(0.0, 0.5);
+  if (!this->projectReduction(index, view, part, ends, locate, wanted, screen))
+  {
+    return false;
+  }
+  part.reduction = Reduction::Minimum;
+  this->Observer.setStage(0.5, 1.0);
+  if (!this->projectReduction(index, view, part, ends, locate, wanted, screen.minima.front()))
+  {
+    return false;
+  }
+  if (wanted.finished)
+  {
+    takeMinima(screen, settings.origin);
+  }
+  return true;
+}
+
+bool CellProjector::projectReduction(CellIndex& index, const View& view,
+  const ProjectionSettings& settings, const RayEnds& ends, bool locate, const Wanted& within,
+  ScreenScalars& screen)
+{
   if (!screen.rays.find(view))
   {
     return false;

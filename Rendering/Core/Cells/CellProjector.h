@@ -47,7 +47,8 @@ public:
   static constexpr double ShortestRay = 0x1p-20;
 
   /**
-   * Sets the rectangle of the viewport that shows the view's volume, and what its pixels show.
+   * Sets the rectangle of the viewport that shows the view's volume, and what its pixels show. For
+   * Reduction::Signed it projects maxima and minima, and combines them.
    * @param index     of the volume, or of a piece of it
    * @param settings  quality and acceleration are ignored; not for Reduction::Mean
    * @param locate    whether to find the depths of samples
@@ -63,8 +64,8 @@ public:
   /**
    * Projects a piece of a volume, which may be empty. Each pixel gets a value, or NaN if it has no
    * sample. To combine the pieces, take the largest value of each pixel, also for minima, and the
-   * least depth of the pieces that have this value. Then finish() converts values to scalars. Not
-   * for Reduction::Local.
+   * least depth of the pieces that have this value. Then finish() converts values to scalars. For
+   * Reduction::Signed do so with the screen's minima, too. Not for Reduction::Local.
    */
   bool projectPiece(CellIndex& index, const View& view, const ProjectionSettings& settings,
     const RayEnds& ends, bool locate, ScreenScalars& screen);
@@ -81,6 +82,9 @@ private:
     bool finished;
   };
   bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
+    const RayEnds& ends, bool locate, const Wanted& wanted, ScreenScalars& screen);
+
+  bool projectReduction(CellIndex& index, const View& view, const ProjectionSettings& settings,
     const RayEnds& ends, bool locate, const Wanted& wanted, ScreenScalars& screen);
 
   struct Scratch;

@@ -27,17 +27,25 @@ public:
   {
     this->Owner = std::this_thread::get_id();
     this->Stopped = false;
-    this->setPart(0.0, 1.0);
+    this->setStage(0.0, 1.0);
     this->begin(1);
     this->ask();
   }
 
-  /// Sets which part of the whole work comes next: from share `from` to share `to`. Default: all of
-  /// it.
+  /// Sets the stage of the whole work that comes next: from share `from` to share `to`. Default:
+  /// all of it.
+  void setStage(double from, double to)
+  {
+    this->StageFrom = from;
+    this->StageTo = to;
+    this->setPart(0.0, 1.0);
+  }
+
+  /// Sets which part of the stage comes next: from share `from` to share `to`. Default: all of it.
   void setPart(double from, double to)
   {
-    this->From = from;
-    this->To = to;
+    this->From = this->StageFrom + (this->StageTo - this->StageFrom) * from;
+    this->To = this->StageFrom + (this->StageTo - this->StageFrom) * to;
   }
 
   /// Starts a part that consists of some bands.
@@ -78,6 +86,8 @@ private:
   std::atomic<bool> Stopped{ false };
   bool Asking = false; // of the owner, which alone uses it
   std::atomic<int> Done{ 0 };
+  double StageFrom = 0.0;
+  double StageTo = 1.0;
   double From = 0.0;
   double To = 1.0;
   double Step = 1.0;

@@ -16,17 +16,18 @@ namespace splatting
 namespace
 {
 /// The nearest of the shear pixels that a point's value is interpolated from.
-ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& homogeneous,
+/// @param nearest  an image and an extremum
+ShearPixel nearestPixel(const ShearImage& image, ShearPixel nearest, const glm::dvec3& homogeneous,
   const std::function<bool(const ShearPixel&)>& hasSample)
 {
   const glm::dvec2 p = glm::dvec2(homogeneous) / homogeneous.z;
-  ShearPixel nearest;
   double lost = 0.0, largest = -1.0;
   forNeighbours(image, p,
     [&](int u, int v, double w)
     {
-      const bool has = hasSample ? hasSample({ number, u, v })
-                                 : image.winners[std::size_t(v) * image.width + u] >= 0;
+      const ShearPixel neighbour{ nearest.image, u, v, nearest.minimum };
+      const bool has =
+        hasSample ? hasSample(neighbour) : image.winners[std::size_t(v) * image.width + u] >= 0;
       if (!has)
       {
         lost += w;
@@ -34,10 +35,10 @@ ShearPixel nearestPixel(const ShearImage& image, int number, const glm::dvec3& h
       else if (w > largest)
       {
         largest = w;
-        nearest = { number, u, v };
+        nearest = neighbour;
       }
     });
-  return lost > 0.5 ? ShearPixel{} : nearest;
+  return largest < 0.0 || lost > 0.5 ? ShearPixel{} : nearest;
 }
 
 /// Where pixels show areas: the best of the samples that are read, or that are nearest to points
@@ -55,23 +56,24 @@ ShearPixel shownOfArea(const std::vector<ShearImage>& images,
     {
       continue;
     }
-    const T* const pixels = images[n].row<T>(0);
+    const ShearImage& image = images[n].ofExtremum(least);
+    const T* const pixels = image.row<T>(0);
     areaOf(geometries[n], pixel.x, pixel.y)
       .forPoints(
         [&](double column, double row)
         {
-          const auto value = interpolatedAt(images[n], pixels, column, row);
+          const auto value = interpolatedAt(image, pixels, column, row);
           if (value != value)
           {
             return;
           }
           const int u = static_cast<int>(std::floor(column + 0.5));
           const int v = static_cast<int>(std::floor(row + 0.5));
-          const T sample = images[n].row<T>(v)[u];
+          const T sample = image.row<T>(v)[u];
           if (shown.image < 0 || (least ? sample < best : sample > best))
           {
             best = sample;
-            shown = { static_cast<int>(n), u, v };
+            shown = { static_cast<int>(n), u, v, least };
           }
         });
   }
@@ -110,6 +112,7 @@ void findShearPixels(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& origin,
   const glm::ivec2& size, ShearPixel* out, const std::function<bool(const ShearPixel&)>& hasSample)
 {
+  const bool least = reduction == Reduction::Minimum;
   std::vector<Outline> shown;
   for (const ShearWarp& geometry : geometries)
   {
@@ -132,8 +135,8 @@ void findShearPixels(const std::vector<ShearImage>& images,
             const glm::dmat3& m = geometries[n].screenToShear();
             for (int x = std::max(span.begin, origin.x); x < span.end; ++x)
             {
-              row[x - origin.x] = nearestPixel(
-                images[n], static_cast<int>(n), m * glm::dvec3(x, start.y, 1.0), hasSample);
+              row[x - origin.x] = nearestPixel(images[n].ofExtremum(least),
+                { static_cast<int>(n), 0, 0, least }, m * glm::dvec3(x, start.y, 1.0), hasSample);
             }
           },
           [&](const Span& span)
@@ -147,7 +150,7 @@ void findShearPixels(const std::vector<ShearImage>& images,
     });
   if (!geometries.empty() && geometries.front().minifiesAnyAxis())
   {
-    findAreaPixels(images, geometries, reduction == Reduction::Minimum, origin, size, out);
+    findAreaPixels(images, geometries, least, origin, size, out);
   }
 }
 }

@@ -20,14 +20,23 @@ struct ShearPixel
 {
   int image = -1;
   int u = 0, v = 0;
+  bool minimum = false; ///< whether it shows the minimum of its ray
+
+  /// Its image in a view's images, in Reduction::Signed that of its extremum.
+  const ShearImage& of(const std::vector<ShearImage>& images) const
+  {
+    return images[this->image].ofExtremum(this->minimum);
+  }
 };
 
 /**
  * For each pixel of a rectangle of the viewport, row by row from the bottom, the shear pixel whose
  * location it shows: the nearest of those that Warper interpolates its value from. In overviews it
  * is the shear pixel with the largest value (for minima the least) among those nearest to the
- * points that the area reads. None if the picture has no sample.
+ * points that the area reads. None if the picture has no sample. Of images of Reduction::Signed
+ * the shear pixels of either extremum are found, see findShown().
  * @param images     as in Warper::warp()
+ * @param reduction  of Reduction::Signed Maximum or Minimum
  * @param hasSample  whether a shear pixel has a sample; by default whether it has a winner
  */
 void findShearPixels(const std::vector<ShearImage>& images,

@@ -5,6 +5,7 @@
 #include "Common/Parallel.h"
 #include "Display/AreaRows.h"
 #include "Display/WarpSource.h"
+#include "Projection/SignedMaximum.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,36 +86,18 @@ public:
   using Pixel = typename Sink::Pixel;
 
   /// All must outlive its use.
-  RowWarp(const std::vector<WarpSource<A>>& images, Reduction reduction, const Sink& sink,
-    ProgressObserver& observer)
+  RowWarp(const std::vector<WarpSource<A>>& images, Reduction reduction, const Sink& sink)
     : Images(images),
       To(sink),
-      Observer(observer),
       Areas(images, reduction)
   {
   }
 
-  /// Warps to a part of a viewport. `pixels` is its first pixel, and `stride` the distance of rows.
-  /// Returns false if the observer has stopped it.
-  bool warp(const Picture& place, Pixel* pixels, std::ptrdiff_t stride) const
+  /// Warps to a row of pixels. `start` is the first.
+  void warp(const glm::dvec3& start, int width, Pixel* out) const
   {
-    const bool showsAreas = this->Images.front().geometry.minifiesAnyAxis();
-    if (showsAreas)
-    {
-      this->Observer.start();
-    }
-    parallelFor(0, place.size.y, 16,
-      [&](std::ptrdiff_t first, std::ptrdiff_t last)
-      {
-        for (std::ptrdiff_t y = first; y < last && (!showsAreas || this->Observer.ask()); ++y)
-        {
-          const glm::dvec3 start(place.origin.x, place.origin.y + static_cast<double>(y), 1.0);
-          Pixel* const out = pixels + y * stride;
-          showsAreas ? this->warpAreas(start, place.size.x, out)
-                     : this->warpRow(start, place.size.x, out);
-        }
-      });
-    return !showsAreas || !this->Observer.stopped();
+    this->Images.front().geometry.minifiesAnyAxis() ? this->warpAreas(start, width, out)
+                                                    : this->warpRow(start, width, out);
   }
 
 private:
@@ -213,7 +196,6 @@ private:
 
   const std::vector<WarpSource<A>>& Images;
   const Sink& To;
-  ProgressObserver& Observer;
   AreaRows<A> Areas;
 };
 
@@ -246,21 +228,82 @@ const Accumulator<T>* samplesOf(
   return pixels;
 }
 
-/// Warps images of voxels of type T. `copied` is a buffer for copies, if they are needed.
+/// The part of a viewport that images are warped to: its first pixel, and the distance of rows.
+template <class Pixel>
+struct Target
+{
+  const Picture& place;
+  Pixel* pixels;
+  std::ptrdiff_t stride;
+};
+
+/// Calls warp(start, width, out) for each row of a target. If there is an observer, it returns
+/// false if the observer has stopped it.
+template <class Pixel, class F>
+bool forRows(const Target<Pixel>& target, ProgressObserver* observer, F&& warp)
+{
+  if (observer)
+  {
+    observer->start();
+  }
+  const Picture& place = target.place;
+  parallelFor(0, place.size.y, 16,
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
+    {
+      for (std::ptrdiff_t y = first; y < last && (!observer || observer->ask()); ++y)
+      {
+        const glm::dvec3 start(place.origin.x, place.origin.y + static_cast<double>(y), 1.0);
+        warp(start, place.size.x, target.pixels + y * target.stride);
+      }
+    });
+  return !observer || !observer->stopped();
+}
+
+/// Warps images of voxels of type T. `copied` has buffers for copies, if they are needed.
 template <class T, class Sink>
 bool warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
   Reduction reduction, const Kernels& kernels, const Sink& sink,
-  std::vector<std::vector<unsigned char>>& copied, const Picture& place,
-  typename Sink::Pixel* pixels, std::ptrdiff_t stride, ProgressObserver& observer)
+  std::vector<std::vector<unsigned char>>& copied, const Target<typename Sink::Pixel>& target,
+  ProgressObserver& observer)
 {
   using A = Accumulator<T>;
-  std::vector<WarpSource<A>> sources;
-  for (std::size_t n = 0; n < geometries.size(); ++n)
+  using Pixel = typename Sink::Pixel;
+  copied.resize(std::max(copied.size(), 2 * geometries.size()));
+  const auto sourcesOf = [&](bool minimum)
   {
-    const A* const own = samplesOf<T>(images[n], kernels, copied[n]);
-    sources.emplace_back(images[n], own, geometries[n]);
+    std::vector<WarpSource<A>> sources;
+    for (std::size_t n = 0; n < geometries.size(); ++n)
+    {
+      const ShearImage& image = images[n].ofExtremum(minimum);
+      const A* const own = samplesOf<T>(image, kernels, copied[2 * n + minimum]);
+      sources.emplace_back(image, own, geometries[n]);
+    }
+    return sources;
+  };
+  ProgressObserver* const asked = geometries.front().minifiesAnyAxis() ? &observer : nullptr;
+  if (reduction != Reduction::Signed)
+  {
+    const std::vector<WarpSource<A>> sources = sourcesOf(reduction == Reduction::Minimum);
+    const RowWarp<A, Sink> rows(sources, reduction, sink);
+    return forRows(target, asked,
+      [&](const glm::dvec3& start, int width, Pixel* out) { rows.warp(start, width, out); });
   }
-  return RowWarp<A, Sink>(sources, reduction, sink, observer).warp(place, pixels, stride);
+  const ScalarSink<A> scalars{ kernels, std::numeric_limits<A>::quiet_NaN() };
+  const std::vector<WarpSource<A>> highs = sourcesOf(false), lows = sourcesOf(true);
+  const RowWarp<A, ScalarSink<A>> maxima(highs, Reduction::Maximum, scalars);
+  const RowWarp<A, ScalarSink<A>> minima(lows, Reduction::Minimum, scalars);
+  return forRows(target, asked,
+    [&, origin = images.front().origin](const glm::dvec3& start, int width, Pixel* out)
+    {
+      std::vector<A> values(width), least(width);
+      maxima.warp(start, width, values.data());
+      minima.warp(start, width, least.data());
+      for (int x = 0; x < width; ++x)
+      {
+        values[x] = showsMinimum(values[x], least[x], origin) ? least[x] : values[x];
+      }
+      putValues(sink, values.data(), out, width);
+    });
 }
 }
 
@@ -274,15 +317,14 @@ bool Warper::warp(const std::vector<ShearImage>& images, const std::vector<Shear
   {
     return true;
   }
-  this->Copied.resize(std::max(this->Copied.size(), geometries.size()));
   const Kernels& kernels = kernelsFor(instructionSet);
   return dispatch(images.front().type,
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
       const ColorSink<Accumulator<T>> sink(kernels, table);
-      return warpImages<T>(images, geometries, reduction, kernels, sink, this->Copied, picture,
-        picture.pixels.data(), picture.size.x, this->Observer);
+      return warpImages<T>(images, geometries, reduction, kernels, sink, this->Copied,
+        { picture, picture.pixels.data(), picture.size.x }, this->Observer);
     });
 }
 
@@ -325,7 +367,6 @@ bool Warper::warpScalars(const std::vector<ShearImage>& images,
   {
     return true;
   }
-  this->Copied.resize(std::max(this->Copied.size(), geometries.size()));
   const Kernels& kernels = kernelsFor(instructionSet);
   return dispatch(images.front().type,
     [&](auto* null)
@@ -335,8 +376,8 @@ bool Warper::warpScalars(const std::vector<ShearImage>& images,
       const ScalarSink<A> sink{ kernels, static_cast<A>(background) };
       A* const first =
         static_cast<A*>(scalars) + std::ptrdiff_t(place.origin.y) * viewport.x + place.origin.x;
-      return warpImages<T>(images, geometries, reduction, kernels, sink, this->Copied, place, first,
-        viewport.x, this->Observer);
+      return warpImages<T>(images, geometries, reduction, kernels, sink, this->Copied,
+        { place, first, viewport.x }, this->Observer);
     });
 }
 }

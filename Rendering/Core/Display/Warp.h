@@ -44,7 +44,8 @@ public:
    * a sample, are transparent.
    *
    * In overviews pixels have the extremum or the average of their areas, see PixelArea.h, and the
-   * picture ends where areas do not overlap the volume.
+   * picture ends where areas do not overlap the volume. For Reduction::Signed each pixel shows the
+   * one of its maximum and its minimum, both interpolated, that is farther from the images' origin.
    * @param images      all of one type; those beyond the number of geometries are ignored
    * @param geometries  as ShearWarp::factorise() returns them
    * @return  false, with an invalid picture, if the observer has stopped it
@@ -53,7 +54,7 @@ public:
     Reduction reduction, const ColorTable& table, const glm::ivec2& viewport,
     InstructionSet instructionSet, Picture& picture);
 
-  /// As warp(), with the shear pixel of each pixel of the picture.
+  /// As warp(), with the shear pixel of each pixel of the picture. Not for Reduction::Signed.
   void warpPixels(const std::vector<ShearImage>& images, const std::vector<ShearPixel>& shown,
     const ColorTable& table, InstructionSet instructionSet, Picture& picture);
 

@@ -4,6 +4,7 @@
 
 #include "Cells/ScreenScalars.h"
 #include "Common/Parallel.h"
+#include "Display/Warp.h"
 #include "Sampling/ValuesAtLocations.h"
 
 #include <glm/geometric.hpp>
@@ -76,8 +77,9 @@ class VoxelFinder
 public:
   using A = Accumulator<T>;
 
-  VoxelFinder(const Located& located, const ShearWarp& geometry, GeneralTable& table)
+  VoxelFinder(const Located& located, const ShearWarp& geometry, bool minima, GeneralTable& table)
     : Source(located),
+      From(minima || located.settings.reduction == Reduction::Minimum ? located.high : located.low),
       Geometry(geometry),
       Voxels(located.volume, Geometry)
   {
@@ -133,15 +135,13 @@ private:
   glm::ivec2 inFootprint(int u, int v, int k) const
   {
     const glm::ivec3 last = this->Geometry.size() - 1;
-    const double from =
-      this->Source.settings.reduction == Reduction::Minimum ? this->Source.high : this->Source.low;
     if (!this->Geometry.isPerspective())
     {
       const glm::ivec2 low = glm::ivec2(u, v) - this->Footprints[k].nearest - MostReach;
       const glm::ivec2 high = low + 2 * MostReach;
       if (low.x >= 0 && low.y >= 0 && high.x <= last.x && high.y <= last.y && k > 0 && k < last.z)
       {
-        return this->inWholeFootprint(u, v, k, from);
+        return this->inWholeFootprint(u, v, k);
       }
     }
     // The outermost voxels and slices are repeated beyond the border.
@@ -170,11 +170,11 @@ private:
           footprint.weights[t]);
       }
     }
-    return shares.voxel(from);
+    return shares.voxel(this->From);
   }
 
   /// For footprints of parallel views inside the volume, in which each voxel occurs once.
-  glm::ivec2 inWholeFootprint(int u, int v, int k, double from) const
+  glm::ivec2 inWholeFootprint(int u, int v, int k) const
   {
     const SliceFootprint<A>& footprint = this->Footprints[k];
     const glm::ivec2 middle = glm::ivec2(u, v) - footprint.nearest;
@@ -189,7 +189,7 @@ private:
         continue;
       }
       const double value = static_cast<double>(voxels[this->Voxels.place(tap.di, tap.dj, 0)]);
-      const double weight = footprint.weights[t], share = weight * std::abs(value - from);
+      const double weight = footprint.weights[t], share = weight * std::abs(value - this->From);
       if (share > most || (share == most && weight > heaviest))
       {
         best = middle + glm::ivec2(tap.di, tap.dj);
@@ -201,6 +201,7 @@ private:
   }
 
   const Located& Source;
+  const double From; ///< the value that contributes nothing
   const ShearWarp& Geometry;
   PermutedVoxels<T> Voxels;
   std::vector<RayPath> Paths; ///< of parallel views
@@ -220,9 +221,43 @@ glm::ivec3 unpermuted(const ShearWarp& geometry, const glm::ivec3& voxel)
 }
 }
 
+void findShown(const Located& located, const glm::ivec2& origin, const glm::ivec2& size,
+  ShearPixel* out, const std::function<bool(const ShearPixel&)>& hasSample)
+{
+  const std::vector<ShearImage>& images = *located.images;
+  const std::vector<ShearWarp>& geometries = *located.geometries;
+  const ProjectionSettings& settings = located.settings;
+  if (settings.reduction != Reduction::Signed)
+  {
+    findShearPixels(images, geometries, settings.reduction, origin, size, out, hasSample);
+    return;
+  }
+  findShearPixels(images, geometries, Reduction::Maximum, origin, size, out, hasSample);
+  std::vector<ShearPixel> minima(std::size_t(size.x) * size.y);
+  findShearPixels(images, geometries, Reduction::Minimum, origin, size, minima.data(), hasSample);
+  // The same values as in the picture, to the last bit. Those below the origin are minima.
+  const glm::ivec2& viewport = located.view.viewport;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const auto choose = [&](auto null)
+  {
+    std::vector<decltype(null)> values(std::size_t(viewport.x) * viewport.y, null);
+    Warper().warpScalars(images, geometries, settings.reduction, viewport, settings.instructionSet,
+      none, values.data());
+    for (std::size_t n = 0; n < minima.size(); ++n)
+    {
+      const glm::ivec2 p =
+        origin + glm::ivec2(static_cast<int>(n % size.x), static_cast<int>(n / size.x));
+      const bool isMinimum = values[std::size_t(p.y) * viewport.x + p.x] < settings.origin;
+      out[n] = isMinimum ? minima[n] : out[n];
+    }
+  };
+  const ScalarType type = geometries.empty() ? ScalarType::Float32 : images.front().type;
+  averageType(type) == ScalarType::Float32 ? choose(static_cast<float>(none)) : choose(none);
+}
+
 glm::ivec3 findVoxel(const Located& located, const ShearPixel& pixel)
 {
-  const ShearImage& projected = (*located.images)[pixel.image];
+  const ShearImage& projected = pixel.of(*located.images);
   const ShearWarp& geometry = (*located.geometries)[pixel.image];
   const int step = projected.winners[std::size_t(pixel.v) * projected.width + pixel.u];
   ShearWarp alone;
@@ -232,13 +267,15 @@ glm::ivec3 findVoxel(const Located& located, const ShearPixel& pixel)
     {
       using T = std::remove_pointer_t<decltype(null)>;
       GeneralTable table;
-      return unpermuted(alone, VoxelFinder<T>(located, alone, table).find(0, 0, step));
+      return unpermuted(
+        alone, VoxelFinder<T>(located, alone, pixel.minimum, table).find(0, 0, step));
     });
 }
 
-void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec3>& voxels)
+void findVoxels(
+  const Located& located, std::size_t image, std::vector<glm::ivec3>& voxels, bool minima)
 {
-  const ShearImage& projected = (*located.images)[image];
+  const ShearImage& projected = (*located.images)[image].ofExtremum(minima);
   const ShearWarp& geometry = (*located.geometries)[image];
   voxels.assign(projected.winners.size(), glm::ivec3(-1));
   dispatch(located.volume.type,
@@ -246,7 +283,7 @@ void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec
     {
       using T = std::remove_pointer_t<decltype(null)>;
       GeneralTable table;
-      const VoxelFinder<T> finder(located, geometry, table);
+      const VoxelFinder<T> finder(located, geometry, minima, table);
       parallelFor(0, projected.height, 8,
         [&](std::ptrdiff_t first, std::ptrdiff_t last)
         {
@@ -269,7 +306,7 @@ Locator::Locator(const Located& located) : Source(located) {}
 
 double Locator::depthOf(const ShearPixel& shown) const
 {
-  const ShearImage& image = (*this->Source.images)[shown.image];
+  const ShearImage& image = shown.of(*this->Source.images);
   return image.winners[std::size_t(shown.v) * image.width + shown.u] / StepsPerSlice;
 }
 
@@ -397,12 +434,16 @@ void Locator::fill(const glm::ivec2& origin, const glm::ivec2& size, const Array
     return;
   }
   std::vector<ShearPixel> shown(std::size_t(size.x) * size.y);
-  findShearPixels(*this->Source.images, *this->Source.geometries, this->Source.settings.reduction,
-    origin, size, shown.data());
-  std::vector<std::vector<glm::ivec3>> voxels(this->Source.geometries->size());
-  for (std::size_t n = 0; arrays.voxels && n < voxels.size(); ++n)
+  findShown(this->Source, origin, size, shown.data());
+  // Of each image those of maxima, and in Reduction::Signed those of minima.
+  const bool areTwo = this->Source.settings.reduction == Reduction::Signed;
+  std::array<std::vector<std::vector<glm::ivec3>>, 2> voxels;
+  for (std::size_t n = 0; arrays.voxels && n < this->Source.geometries->size(); ++n)
   {
-    findVoxels(this->Source, n, voxels[n]);
+    for (int minima = 0; minima < (areTwo ? 2 : 1); ++minima)
+    {
+      findVoxels(this->Source, n, voxels[minima].emplace_back(), minima != 0);
+    }
   }
   this->fillFrom(origin, size, arrays,
     [&](const glm::ivec2& pixel, std::size_t at)
@@ -414,8 +455,9 @@ void Locator::fill(const glm::ivec2& origin, const glm::ivec2& size, const Array
       {
         const int width = (*this->Source.images)[from.image].width;
         sample.point = this->point(glm::dvec2(pixel), from);
-        sample.voxel =
-          arrays.voxels ? voxels[from.image][std::size_t(from.v) * width + from.u] : glm::ivec3(-1);
+        sample.voxel = arrays.voxels
+          ? voxels[areTwo && from.minimum][from.image][std::size_t(from.v) * width + from.u]
+          : glm::ivec3(-1);
       }
       return sample;
     });

@@ -10,6 +10,9 @@
  * contributes most to the slice's sample. The contribution is its weight times its height above the
  * volume's lowest value (for minima, its depth below the highest value). If only a piece of the
  * volume is available, it is the voxel nearest to the point.
+ *
+ * In Reduction::Signed a pixel has the location of its maximum or of its minimum, whichever its
+ * picture shows.
  */
 #ifndef splattingLocations_h
 #define splattingLocations_h
@@ -21,6 +24,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace splatting
@@ -94,11 +98,18 @@ private:
   Located Source;
 };
 
+/// As findShearPixels(), for a rectangle of the projection's viewport. In Reduction::Signed the
+/// shear pixels have the extremum that Warper shows.
+void findShown(const Located& located, const glm::ivec2& origin, const glm::ivec2& size,
+  ShearPixel* out, const std::function<bool(const ShearPixel&)>& hasSample = {});
+
 /// The voxel of a shear pixel with a winner.
 glm::ivec3 findVoxel(const Located& located, const ShearPixel& pixel);
 
 /// The voxel of each pixel of a shear image with winners, -1 for none.
-void findVoxels(const Located& located, std::size_t image, std::vector<glm::ivec3>& voxels);
+/// @param minima  in Reduction::Signed whether to find those of minima
+void findVoxels(
+  const Located& located, std::size_t image, std::vector<glm::ivec3>& voxels, bool minima = false);
 }
 
 #endif

@@ -275,8 +275,7 @@ ScalarType encode(ShearImage& image, Reduction reduction)
 void blank(
   const ShearWarp& whole, ScalarType voxels, const ProjectionSettings& settings, ShearImage& image)
 {
-  const bool computes =
-    settings.reduction == Reduction::Mean || settings.reduction == Reduction::DepthShaded;
+  const bool computes = computesWith(settings.reduction);
   image.type = settings.quality == Quality::Preview && !computes ? voxels : averageType(voxels);
   image.width = whole.width();
   image.height = whole.height();
@@ -284,6 +283,13 @@ void blank(
   image.spans.assign(image.height, Span{ image.width, 0 });
   image.mask.clear();
   image.winners.assign(settings.recordLocations ? std::size_t(image.width) * image.height : 0, -1);
+  image.minima.clear();
+  if (settings.reduction == Reduction::Signed)
+  {
+    image.origin = settings.origin;
+    const ShearImage minima = image;
+    image.minima.push_back(minima);
+  }
 }
 
 void decode(ShearImage& image, ScalarType type, Reduction reduction)

@@ -75,7 +75,7 @@ void keepInterior(const ShearWarp& whole, const ShearWarp& part, Quality quality
  */
 ScalarType encode(ShearImage& image, Reduction reduction);
 
-/// Makes the image of a piece without samples.
+/// Makes the image of a piece without samples. Its member nonFinite must be set before.
 /// @param voxels  the type of the volume
 void blank(
   const ShearWarp& whole, ScalarType voxels, const ProjectionSettings& settings, ShearImage& image);

@@ -197,6 +197,11 @@ void Projector::outline(const ShearWarp& geometry, const ProjectionSettings& set
   this->findWhole(geometry, settings);
   memory.wholeCuts.reset(cuts, geometry, { 0, geometry.size().z });
   outlineImage(geometry, memory.wholeSlices, memory.wholeCuts, memory.walks.outline, image);
+  for (ShearImage& minima : image.minima)
+  {
+    minima.spans = image.spans;
+    minima.mask = image.mask;
+  }
 }
 
 /// Finds the geometry of a piece of a volume, and its cuts.
@@ -229,12 +234,34 @@ void Projector::countSteps(const ShearWarp& whole, const ShearWarp& geometry,
   }
 }
 
-Acceleration Projector::project(VolumeIndex& index, const ShearWarp& whole,
+Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image, const glm::ivec3& first)
+{
+  this->Observer.start();
+  image.minima.resize(settings.reduction == Reduction::Signed ? 1 : 0);
+  if (image.minima.empty())
+  {
+    return this->projectReduction(index, geometry, settings, cuts, image, first);
+  }
+  image.origin = settings.origin;
+  ProjectionSettings part = settings;
+  part.reduction = Reduction::Maximum;
+  this->Observer.setStage(0.0, 0.5);
+  const Acceleration used = this->projectReduction(index, geometry, part, cuts, image, first);
+  if (!this->stopped())
+  {
+    part.reduction = Reduction::Minimum;
+    this->Observer.setStage(0.5, 1.0);
+    this->projectReduction(index, geometry, part, cuts, image.minima.front(), first);
+  }
+  return used;
+}
+
+Acceleration Projector::projectReduction(VolumeIndex& index, const ShearWarp& whole,
   const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image,
   const glm::ivec3& firstVoxel)
 {
   Scratch& memory = *this->Memory;
-  this->Observer.start();
   const glm::ivec3& held = index.volume().dimensions;
   const std::array<int, 3>& axes = whole.axes();
   const bool isPart = glm::ivec3(held[axes[0]], held[axes[1]], held[axes[2]]) != whole.size();

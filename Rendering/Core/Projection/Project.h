@@ -48,7 +48,8 @@ enum class Reduction
   Minimum,
   Mean,
   DepthShaded, ///< the maximum of samples, each multiplied by a factor of its depth
-  Local        ///< the first local maximum, from the viewer, at or above a threshold
+  Local,       ///< the first local maximum, from the viewer, at or above a threshold
+  Signed       ///< maximum or minimum, whichever is farther from an origin; if equal the maximum
 };
 
 /// Whether samples are used in arithmetic, so that the image's scalars have type Accumulator<T>.
@@ -74,6 +75,8 @@ struct ProjectionSettings
   double changeRate = 0.7;
   /// Of Reduction::Local.
   double threshold = -std::numeric_limits<double>::infinity();
+  /// Of Reduction::Signed.
+  double origin = 0.0;
   /// Of Reduction::Mean: the range of samples.
   double meanLow = -std::numeric_limits<double>::infinity();
   double meanHigh = std::numeric_limits<double>::infinity();
@@ -82,9 +85,9 @@ struct ProjectionSettings
   /// 0: weights in closed form; N: from a general table with N x N sub-pixels.
   int footprintSampling = 0;
   InstructionSet instructionSet = bestInstructionSet();
-  /// Dense is used for reductions other than Maximum, for volumes with infinities, and for volumes
-  /// with NaN if winners are recorded. Bricks replace chains where rays are cut, in perspective and
-  /// with NaN. Lines replace sorted orders outside Quality::Preview.
+  /// Dense is used for reductions other than Maximum and the maxima of Signed, for volumes with
+  /// infinities, and for volumes with NaN if winners are recorded. Bricks replace chains where rays
+  /// are cut, in perspective and with NaN. Lines replace sorted orders outside Quality::Preview.
   Acceleration acceleration = Acceleration::Auto;
   /// Delta encoding of lines: see LineEncoding. 0 gives the same bits as Dense.
   double lineTolerance = 0.0;
@@ -98,9 +101,9 @@ struct ProjectionSettings
   {
     return this->quality == other.quality && this->reduction == other.reduction &&
       this->ambient == other.ambient && this->changeRate == other.changeRate &&
-      this->threshold == other.threshold && this->meanLow == other.meanLow &&
-      this->meanHigh == other.meanHigh && this->kernel == other.kernel &&
-      this->footprintSampling == other.footprintSampling &&
+      this->threshold == other.threshold && this->origin == other.origin &&
+      this->meanLow == other.meanLow && this->meanHigh == other.meanHigh &&
+      this->kernel == other.kernel && this->footprintSampling == other.footprintSampling &&
       this->instructionSet == other.instructionSet && this->acceleration == other.acceleration &&
       this->lineTolerance == other.lineTolerance &&
       this->recordLocations == other.recordLocations && this->floor == other.floor;
@@ -122,7 +125,8 @@ public:
   ~Projector();
 
   /**
-   * For all modes except Quality::Exact, which CellProjector projects.
+   * For all modes except Quality::Exact, which CellProjector projects. For Reduction::Signed it
+   * projects maxima and minima, see ShearImage::minima.
    *
    * @param first  the first voxel of the index in the volume of geometry and cuts, along the
    *               volume's axes. If the index has a piece of the volume, the image has the samples
@@ -141,7 +145,7 @@ public:
 
   /**
    * Takes the values of another volume at the winners of the last projected image: in preview
-   * voxels, else averages with the same footprints.
+   * voxels, else averages with the same footprints. Not for Reduction::Signed.
    *
    * @param other  of the same type and size as the projected volume
    */
@@ -160,6 +164,9 @@ public:
   bool stopped() const { return this->Observer.stopped(); }
 
 private:
+  Acceleration projectReduction(VolumeIndex& index, const ShearWarp& geometry,
+    const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image,
+    const glm::ivec3& first);
   void findWhole(const ShearWarp& geometry, const ProjectionSettings& settings);
   const ShearWarp& findPart(const ShearWarp& whole, const glm::ivec3& first,
     const glm::ivec3& dimensions, const Cuts& cuts);

@@ -34,6 +34,15 @@ struct ShearImage
   bool keepsWinners() const { return !this->winners.empty(); }
   /// Whether NaN marks pixels without a sample, and infinities are possible.
   bool nonFinite = false;
+  /// Of Reduction::Signed, whose maxima are in this image: one image with the minima. Else empty.
+  std::vector<ShearImage> minima;
+  double origin = 0.0; ///< see ProjectionSettings
+
+  /// The image that has the minima of rays, or the maxima.
+  const ShearImage& ofExtremum(bool minimum) const
+  {
+    return minimum && !this->minima.empty() ? this->minima.front() : *this;
+  }
 
   template <class T>
   T* row(int v)

@@ -25,6 +25,7 @@ bool isRefused(const std::string& word, Change&& change)
   filter->SetCroppingRegionPlanes(0.0, 1.0, 0.0, NAN, 0.0, 1.0);
   filter->SetLocalMaximumThreshold(NAN);
   filter->SetDepthShadingAmbient(INFINITY);
+  filter->SetSignedOrigin(INFINITY);
   filter->SetAverageIPScalarRange(9.0, 8.0);
   change(filter.Get());
   const char* const fault = validate(*filter);
@@ -42,6 +43,8 @@ void testFaults(Checks& check)
     "a NaN threshold");
   check(isRefused("DepthShading", [](Filter* f) { f->SetMaximumTypeToDepthShaded(); }),
     "endless shading");
+  check(isRefused("SignedOrigin", [](Filter* f) { f->SetMaximumTypeToSigned(); }),
+    "an infinite origin");
   check(isRefused("AverageIPScalarRange", [](Filter* f) { f->SetBlendModeToAverageIntensity(); }),
     "an empty range");
 }
@@ -78,7 +81,7 @@ void testEffects(Checks& check)
 {
   for (int mode = Filter::PREVIEW; mode <= Filter::EXACT; ++mode)
   {
-    for (int n = 0; n < 5; ++n)
+    for (int n = 0; n < 6; ++n)
     {
       const auto settings = [&](auto change)
       {
@@ -86,7 +89,10 @@ void testEffects(Checks& check)
         filter->SetBlendMode(n == 3 ? Filter::MINIMUM_INTENSITY_BLEND
             : n == 4                ? Filter::AVERAGE_INTENSITY_BLEND
                                     : Filter::MAXIMUM_INTENSITY_BLEND);
-        filter->SetMaximumType(n == 1 ? Filter::DEPTH_SHADED : n == 2 ? Filter::LOCAL : 0);
+        filter->SetMaximumType(n == 1 ? Filter::DEPTH_SHADED
+            : n == 2                  ? Filter::LOCAL
+            : n == 5                  ? Filter::SIGNED
+                                      : Filter::GLOBAL);
         change(filter.Get());
         return settingsOf(
           *filter, mode, coretesting::magnifiedView(), filter->GetRecordLocations() != 0);
@@ -98,13 +104,14 @@ void testEffects(Checks& check)
           expected ? ": has no effect" : ": has an effect");
       };
       // Exact are extrema only; means are those of high mode then.
-      const bool isExact = mode == Filter::EXACT && n < 4;
+      const bool isExact = mode == Filter::EXACT && n != 4;
       const bool isHigh = mode == Filter::HIGH || (mode == Filter::EXACT && !isExact);
       test("shading", n == 1, [](Filter* f) { f->SetDepthShadingAmbient(0.1); });
       test("threshold", n == 2, [](Filter* f) { f->SetLocalMaximumThreshold(5.0); });
+      test("origin", n == 5, [](Filter* f) { f->SetSignedOrigin(5.0); });
       test("range", n == 4, [](Filter* f) { f->SetAverageIPScalarRange(0.0, 7.0); });
-      test(
-        "acceleration", n == 0 && !isExact, [](Filter* f) { f->SetAcceleration(Filter::LINES); });
+      test("acceleration", (n == 0 || n == 5) && !isExact,
+        [](Filter* f) { f->SetAcceleration(Filter::LINES); });
       test("locations", n != 4, [](Filter* f) { f->RecordLocationsOn(); });
       test("kernel", isHigh, [](Filter* f) { f->SetKernel(Filter::COSINE_BELL); });
       test("radius", false, [](Filter* f) { f->SetKernelRadius(0.7); });

@@ -276,7 +276,9 @@ public:
   {
     return this->expected(this->Oracle, ray);
   }
-  Sample expected(const reference::CellOracle<R>& oracle, const reference::CellRay<R>& ray) const
+  /// @param value  of the engine: where maximum and minimum are equally far, it may be either's
+  Sample expected(
+    const reference::CellOracle<R>& oracle, const reference::CellRay<R>& ray, A value = 0) const
   {
     const ProjectionSettings& s = this->Source.settings;
     switch (s.reduction)
@@ -285,6 +287,9 @@ public:
         return oracle.shaded(ray, { this->Lowest, s.ambient, s.changeRate });
       case Reduction::Local:
         return oracle.local(ray, s.threshold, this->Fall);
+      case Reduction::Signed:
+        return this->farther(oracle.largest(ray), oracle.largest(ray, true), value);
+>>>>>>> fcdddf4 (Add signed maxima: the extremum of each ray that is farther from an origin)
       default:
         return oracle.largest(ray, s.reduction == Reduction::Minimum);
     }
@@ -311,9 +316,21 @@ public:
   }
 
 private:
-  Sample sampleOf(const reference::CellRay<R>& ray, int x, int y, const ScreenScalars& screen) const
+  /// Of two samples the one that is farther from the origin, if both are infinitely far the
+  /// maximum. The engine's extrema may each be wrong by the tolerance, and so may the difference of
+  /// their distances be by twice as much.
+  Sample farther(const Sample& maximum, const Sample& minimum, A value) const
   {
-    return this->crosses(ray, x, y, screen) ? this->expected(ray) : Sample();
+    const R origin = this->Source.settings.origin;
+    const R lead = std::fabs(minimum.value - origin) - std::fabs(maximum.value - origin);
+    const bool isNearer = std::fabs(value - minimum.value) < std::fabs(value - maximum.value);
+    return (std::fabs(lead) <= 2 * this->Tolerance ? isNearer : lead > 0) ? minimum : maximum;
+  }
+
+  Sample sampleOf(
+    const reference::CellRay<R>& ray, int x, int y, A value, const ScreenScalars& screen) const
+  {
+    return this->crosses(ray, x, y, screen) ? this->expected(this->Oracle, ray, value) : Sample();
   }
 
   /// 0 if both are the same, infinite if only one is a sample.
@@ -331,7 +348,7 @@ private:
   {
     const A value = valueAt<A>(screen, x, y);
     const reference::CellRay<R> ray = this->Oracle.ray(x, y);
-    const Sample sample = this->sampleOf(ray, x, y, screen);
+    const Sample sample = this->sampleOf(ray, x, y, value, screen);
     ++counts.pixels;
     counts.samples += sample.exists;
     const R error = this->error(value, sample), tolerance = this->tolerance(ray);
@@ -382,8 +399,8 @@ private:
         const glm::dvec3 side(n & 1, n >> 1 & 1, n >> 2);
         rays.push_back(this->Oracle.ray(x, y, size * (2.0 * side - 1.0)));
         const bool crosses = this->crosses(rays.back(), x, y, screen);
-        samples.push_back(crosses ? this->expected(this->Oracle, rays.back()) : Sample());
-        samples.push_back(crosses ? this->expected(this->Coarse, rays.back()) : Sample());
+        samples.push_back(crosses ? this->expected(this->Oracle, rays.back(), value) : Sample());
+        samples.push_back(crosses ? this->expected(this->Coarse, rays.back(), value) : Sample());
       }
     }
     const Reduction reduction = this->Source.settings.reduction;

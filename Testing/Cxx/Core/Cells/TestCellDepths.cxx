@@ -21,7 +21,7 @@ void compareDepths(const Scene<T>& scene, Counts& counts, Checks& check)
   engine.project(screen);
   const Comparison<T> comparison(scene, engine.range(), check);
   const reference::CellOracle<R>& oracle = comparison.oracle();
-  const bool minima = scene.settings.reduction == Reduction::Minimum;
+  const bool isMaximum = scene.settings.reduction == Reduction::Maximum;
   for (int y = 0; y < scene.view.viewport.y; ++y)
   {
     for (int x = 0; x < scene.view.viewport.x; ++x)
@@ -51,7 +51,7 @@ void compareDepths(const Scene<T>& scene, Counts& counts, Checks& check)
       const bool isIn = oracle.fieldAt(ray, at, 8 * margin, least, largest) &&
         value >= least - slope * margin && value <= largest + slope * margin;
       R plateau = 0;
-      const bool isFirst = minima || oracle.largest(ray).value != value ||
+      const bool isFirst = !isMaximum || oracle.largest(ray).value != value ||
         !oracle.firstPlateau(ray, R(value), plateau) || at <= plateau + 64 * margin;
       if (!isIn || !isFirst)
       {
@@ -78,7 +78,12 @@ void testNoise(Checks& check)
       scene.view = randomCellView(size, 80, random);
       scene.view.showsBoxes = random.uniform(0, 2) == 0;
       scene.locate = true;
-      scene.settings.reduction = random.uniform(0, 2) ? Reduction::Maximum : Reduction::Minimum;
+      constexpr Reduction reductions[] = { Reduction::Maximum, Reduction::Minimum,
+        Reduction::Signed };
+      scene.settings.reduction = reductions[random.uniform(0, 2)];
+      const auto [low, high] =
+        std::minmax_element(scene.volume.voxels.begin(), scene.volume.voxels.end());
+      scene.settings.origin = 0.5 * static_cast<double>(*low) + 0.5 * static_cast<double>(*high);
       compareDepths(scene, counts, check);
     });
 }

@@ -86,6 +86,10 @@ void reduce(const ScreenScalars& part, ScreenScalars& whole)
       whole.depths[n] = std::min(whole.depths[n], part.depths[n]);
     }
   }
+  for (std::size_t n = 0; n < whole.minima.size(); ++n)
+  {
+    reduce<A>(part.minima[n], whole.minima[n]);
+  }
 }
 
 /// The picture of two pieces with a voxel layer in common.
@@ -138,8 +142,8 @@ Scene<T> anyScene(const std::array<int, 3>& size, Random& random)
   scene.view.showsBoxes = random.uniform(0, 2) == 0;
   scene.locate = true;
   constexpr Reduction reductions[] = { Reduction::Maximum, Reduction::Minimum,
-    Reduction::DepthShaded };
-  scene.settings.reduction = reductions[random.uniform(0, 2)];
+    Reduction::DepthShaded, Reduction::Signed };
+  scene.settings.reduction = reductions[random.uniform(0, 3)];
   if (random.uniform(0, 1))
   {
     const glm::dvec3 normal = coretesting::anyVector(random, -1.0, 1.0);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Exact minima, depth-shaded maxima and local maxima of random scenes.
+ * Exact minima, depth-shaded, local and signed maxima of random scenes.
  */
 #include "CellViews.h"
 
@@ -25,6 +25,21 @@ void setThreshold(Scene<T>& scene, Random& random)
   scene.settings.threshold = threshold == threshold && random.uniform(0, 9)
     ? threshold
     : -std::numeric_limits<double>::infinity();
+}
+
+/// An origin between the voxels, so that both extrema are shown.
+template <class T>
+void setOrigin(Scene<T>& scene, Random& random)
+{
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const T voxel : scene.volume.voxels)
+  {
+    const double value = static_cast<double>(voxel);
+    low = std::isfinite(value) ? std::min(low, value) : low;
+    high = std::isfinite(value) ? std::max(high, value) : high;
+  }
+  const double share = random.uniform(0.3, 0.7);
+  scene.settings.origin = low <= high ? (1.0 - share) * low + share * high : 0.0;
 }
 
 template <class T>
@@ -65,6 +80,7 @@ void testReduction(const std::string& name, Reduction reduction, bool holes, Che
       scene.settings.reduction = reduction;
       setShading(scene.settings, random);
       setThreshold(scene, random);
+      setOrigin(scene, random);
       addCuts<T>(scene.view, random);
       counts.add(compareScene(scene, check));
     });
@@ -150,6 +166,7 @@ void testAll(bool holes, Checks& check)
   testReduction<T>("minima", Reduction::Minimum, holes, check);
   testReduction<T>("depth-shaded", Reduction::DepthShaded, holes, check);
   testReduction<T>("local", Reduction::Local, holes, check);
+  testReduction<T>("signed", Reduction::Signed, holes, check);
 }
 }
 

@@ -301,6 +301,9 @@ Expected<S> expectedOf(const reference::CutRay<S>& ray, const splatting::Project
       expected.inexact =
         reference::depthShaded(reference::toDouble(ray), base, s.ambient, s.changeRate);
       expected.bound = bounds.ofShade(error, s.ambient + std::abs(s.changeRate));
+      break;
+    case Reduction::Signed:
+      break; // two projections, see TestSignedMaximum
   }
   return expected;
 }

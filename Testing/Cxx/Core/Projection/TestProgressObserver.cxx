@@ -93,6 +93,8 @@ int TestProgressObserver(int, char*[])
         settings.quality = quality;
         settings.acceleration = acceleration;
         testStops(settings, check);
+        settings.reduction = splatting::Reduction::Signed;
+        testStops(settings, check);
       }
     }
   }

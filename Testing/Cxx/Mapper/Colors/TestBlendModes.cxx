@@ -324,7 +324,8 @@ void testDefinitions(stage::Stage& stage, stage::Checks& check)
       mapper->SetDepthShadingAmbient(random.uniform(0.0, 1.0));
       mapper->SetDepthShadingChangeRate(random.uniform(0.0, 1.0));
       mapper->SetLocalMaximumThreshold(random.uniform(0.0, 255.0));
-      for (int kind = 0; kind < 5; ++kind)
+      mapper->SetSignedOrigin(random.uniform(100.0, 160.0));
+      for (int kind = 0; kind < 6; ++kind)
       {
         kind == 0     ? mapper->SetBlendModeToMinimumIntensity()
           : kind == 1 ? mapper->SetBlendModeToAverageIntensity()
@@ -369,7 +370,13 @@ void testReuse(stage::Stage& stage, stage::Checks& check)
   mapper->SetDepthShadingAmbient(1.0);
   mapper->SetDepthShadingChangeRate(0.0);
   check(stage.pixels() == maximum, "Without shades it is the maximum.");
+  mapper->SetMaximumTypeToSigned();
+  check(projectionsOfTurn() == 0, "The far side's signed maximum is the same.");
+  check(stage.pixels() == maximum, "Of scalars that are not negative it is the maximum.");
+  mapper->SetSignedOrigin(300.0);
+  const stage::Pixels farthest = stage.pixels();
   mapper->SetBlendModeToMinimumIntensity();
+  check(stage.pixels() == farthest, "From an origin above all scalars the minimum is farthest.");
   check(projectionsOfTurn() == 0, "The far side's minimum is the same.");
   check(stage.pixels() != maximum, "The minimum is no maximum.");
   mapper->SetBlendModeToAverageIntensity();

@@ -79,6 +79,8 @@ void testSettings(Mapper* mapper, Checks& check)
   check(changes(Mapper::HIGH, [&] { mapper->SetDepthShadingChangeRate(0.1); }), "the rate");
   check(changes(Mapper::HIGH, [&] { mapper->SetMaximumTypeToLocal(); }), "local maxima");
   check(changes(Mapper::HIGH, [&] { mapper->SetLocalMaximumThreshold(7.0); }), "the threshold");
+  check(changes(Mapper::HIGH, [&] { mapper->SetMaximumTypeToSigned(); }), "signed maxima");
+  check(changes(Mapper::HIGH, [&] { mapper->SetSignedOrigin(7.0); }), "the origin");
   check(changes(Mapper::HIGH, [&] { mapper->SetBlendModeToAverageIntensity(); }), "averages");
   check(changes(Mapper::HIGH, [&] { mapper->SetAverageIPScalarRange(2.0, 5.0); }), "the range");
   check(changes(Mapper::HIGH, [&] { mapper->SetFootprintSampling(9); }), "the footprint");

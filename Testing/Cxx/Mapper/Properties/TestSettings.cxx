@@ -80,6 +80,12 @@ void testWithoutMeaning(stage::Stage& stage, stage::Checks& check)
         m->SetMaximumTypeToLocal();
         m->SetLocalMaximumThreshold(NaN);
       } },
+    { "SignedOrigin",
+      [](Mapper* m)
+      {
+        m->SetMaximumTypeToSigned();
+        m->SetSignedOrigin(NaN);
+      } },
     { "DepthShadingAmbient",
       [](Mapper* m)
       {
@@ -114,6 +120,7 @@ void testWithoutEffect(stage::Stage& stage, stage::Checks& check)
     { "DepthShadingAmbient", [](Mapper* m) { m->SetDepthShadingAmbient(NaN); } },
     { "DepthShadingChangeRate", [](Mapper* m) { m->SetDepthShadingChangeRate(5.0); } },
     { "LocalMaximumThreshold", [](Mapper* m) { m->SetLocalMaximumThreshold(NaN); } },
+    { "SignedOrigin", [](Mapper* m) { m->SetSignedOrigin(NaN); } },
     { "AverageIPScalarRange", [](Mapper* m) { m->SetAverageIPScalarRange(3.0, 2.0); } },
     { "KernelRadius of another kernel", [](Mapper* m) { m->SetKernelRadius(0.7); } },
     { "LineTolerance without chains", [](Mapper* m) { m->SetLineTolerance(5.0); } },

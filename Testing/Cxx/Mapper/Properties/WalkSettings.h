@@ -122,13 +122,16 @@ void addProjectionSettings(Settings<Object>& all, const Of& of)
     [](auto* p, V v) { p->SetKernelRadius(v[0]); });
   add("FootprintSampling", oneOf({ 0, 0, 0, 1, 3 }),
     [](auto* p, V v) { p->SetFootprintSampling(int(v[0])); });
-  add("MaximumType", oneOf({ 0, 0, 1, 1, 2 }), [](auto* p, V v) { p->SetMaximumType(int(v[0])); });
+  add("MaximumType", oneOf({ 0, 0, 1, 1, 2, 3, 3 }),
+    [](auto* p, V v) { p->SetMaximumType(int(v[0])); });
   add("DepthShadingAmbient", oneOf({ 0.3, 0.0, 1.0, -1.0 }),
     [](auto* p, V v) { p->SetDepthShadingAmbient(v[0]); });
   add("DepthShadingChangeRate", oneOf({ 0.7, 0.0, 2.0 }),
     [](auto* p, V v) { p->SetDepthShadingChangeRate(v[0]); });
   add("LocalMaximumThreshold", oneOf({ 0.0, 30.0, 60.0, 1e6 }),
     [](auto* p, V v) { p->SetLocalMaximumThreshold(v[0]); });
+  add("SignedOrigin", oneOf({ 0.0, 30.0, 60.0, 120.0 }),
+    [](auto* p, V v) { p->SetSignedOrigin(v[0]); });
   add("VectorMode", oneOf({ -1, -1, -1, 0, 1 }), [](auto* p, V v) { p->SetVectorMode(int(v[0])); });
   add("VectorComponent", oneOf({ 0, 0, 0, 0, 1, 3 }),
     [](auto* p, V v) { p->SetVectorComponent(int(v[0])); });

@@ -461,6 +461,14 @@ void testBadInput(stage::Stage& stage, stage::Checks& check)
   stage.window->Render();
   check(errors.texts.size() == 1 && mapper->GetNumberOfProjections() == 1,
     "Four dependent bytes afterwards are shown.");
+  mapper->SetMaximumTypeToSigned();
+  stage.window->Render();
+  check(errors.texts.size() == 2 && errors.texts[1].find("no signed maximum") != std::string::npos,
+    "Their signed maximum is refused.");
+  stage.property->IndependentComponentsOn();
+  stage.window->Render();
+  check(errors.texts.size() == 2 && mapper->GetNumberOfProjections() == 2,
+    "That of independent bytes is shown.");
 }
 }
 
