@@ -32,6 +32,9 @@ const std::vector<NamedColormap> Colormaps = {
   { "hot", { { 0, 0, 0, 0 }, { 0.375, 1, 0, 0 }, { 0.75, 1, 1, 0 }, { 1, 1, 1, 1 } } },
   { "bone",
     { { 0, 0, 0, 0 }, { 0.375, 0.33, 0.33, 0.45 }, { 0.75, 0.66, 0.78, 0.78 }, { 1, 1, 1, 1 } } },
+  { "cold-hot",
+    { { 0, 0.6, 1, 1 }, { 0.25, 0, 0.3, 1 }, { 0.5, 0, 0, 0 }, { 0.75, 1, 0.3, 0 },
+      { 1, 1, 1, 0.6 } } },
 };
 
 /// Number of samples from which the window is chosen.
@@ -52,6 +55,24 @@ std::vector<double> SampleValues(vtkDataArray* scalars, vtkIdType voxels)
     {
       values.push_back(value);
     }
+  }
+  return values;
+}
+
+/**
+ * The same, or of all values if most are not finite. Throws std::runtime_error if none is finite.
+ */
+std::vector<double> SampleFiniteValues(vtkImageData* image)
+{
+  vtkDataArray* const scalars = image->GetPointData()->GetScalars();
+  std::vector<double> values = SampleValues(scalars, FewVoxels);
+  if (values.empty())
+  {
+    values = SampleValues(scalars, scalars->GetNumberOfTuples());
+  }
+  if (values.empty())
+  {
+    throw std::runtime_error("the volume has no finite value; export it again.");
   }
   return values;
 }
@@ -90,18 +111,7 @@ std::vector<std::string> GetColormapNames()
 
 void ChooseWindowLevel(vtkImageData* image, int blendMode, double& window, double& level)
 {
-  window = 1.0;
-  level = 0.5;
-  vtkDataArray* const scalars = image->GetPointData()->GetScalars();
-  std::vector<double> values = SampleValues(scalars, FewVoxels);
-  if (values.empty())
-  {
-    values = SampleValues(scalars, scalars->GetNumberOfTuples()); // most are not finite
-  }
-  if (values.empty())
-  {
-    throw std::runtime_error("the volume has no finite value; export it again.");
-  }
+  std::vector<double> values = SampleFiniteValues(image);
   const bool isMinimum = blendMode == vtkSplattingMIPProjection::MINIMUM_INTENSITY_BLEND;
   const bool isMean = blendMode == vtkSplattingMIPProjection::AVERAGE_INTENSITY_BLEND;
   double low = GetQuantile(values, isMinimum ? 0.0005 : isMean ? 0.05 : 0.5);
@@ -113,4 +123,20 @@ void ChooseWindowLevel(vtkImageData* image, int blendMode, double& window, doubl
   }
   window = low < high ? high - low : 1.0;
   level = low < high ? 0.5 * (low + high) : low;
+}
+
+void ChooseSignedWindow(vtkImageData* image, double origin, double& window, double& level)
+{
+  std::vector<double> distances = SampleFiniteValues(image);
+  for (double& distance : distances)
+  {
+    distance = std::abs(distance - origin);
+  }
+  double half = GetQuantile(distances, 0.9995);
+  if (!(half > 0.0))
+  {
+    half = *std::max_element(distances.begin(), distances.end());
+  }
+  window = half > 0.0 ? 2.0 * half : 1.0;
+  level = origin;
 }

@@ -44,4 +44,10 @@ vtkSmartPointer<vtkColorTransferFunction> MakePalette(const LookSettings& look);
  */
 void ChooseWindowLevel(vtkImageData* image, int blendMode, double& window, double& level);
 
+/**
+ * The same for signed maxima: the level is the origin. One voxel in 2000 is farther from it than
+ * the ends of the window.
+ */
+void ChooseSignedWindow(vtkImageData* image, double origin, double& window, double& level);
+
 #endif

@@ -150,8 +150,13 @@ void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
     .Add("--kernel-radius", options.Projection.KernelRadius, "VOXELS", Between(0.5, 1.5),
       "Radius of the cosine bell in voxels, 0.5 to 1.5")
     ->capture_default_str();
-  group.AddChoice("--blend", words.Blend, "BLEND", { "max", "min", "mean" },
-    "Show the largest value along each ray, the least or the mean");
+  group.AddChoice("--blend", words.Blend, "BLEND", { "max", "min", "mean", "signed" },
+    "Show the largest value along each ray, the least, the mean, or with signed the one of the "
+    "largest and the least that is farther from --origin");
+  group
+    .Add("--origin", options.Projection.Origin, "VALUE", Between(-1e30, 1e30),
+      "Value that --blend signed measures distances from")
+    ->capture_default_str();
   group.AddFlag("--depth-shading", options.Projection.DepthShading,
     "Dim values by their distance from the viewer, then find the largest");
   group.Add("--slab", options.Projection.Slab, "MM", Between(1e-6, 1e9),
@@ -177,10 +182,12 @@ void DeclareLookOptions(CLI::App& app, Options& options)
   Group group(app, "Colours");
   group.Add("--window", options.Look.Window, "VALUE", Between(1e-30, 1e30),
     "Range of values from black to white. Default: that of the file, or from the median to the "
-    "value that one voxel in 2000 exceeds");
+    "value that one voxel in 2000 exceeds; with --blend signed, the same distance on both sides of "
+    "--origin");
   group.Add("--level", options.Look.Level, "VALUE", Between(-1e30, 1e30),
     "Value in the middle of that range. Default: as for --window");
-  group.AddChoice("--colormap", options.Look.Colormap, "COLORMAP", GetColormapNames(), "Colormap");
+  group.AddChoice("--colormap", options.Look.Colormap, "COLORMAP", GetColormapNames(),
+    "Colormap. Default of --blend signed: cold-hot, which diverges from black");
   group.AddFlag("--depth-coding", options.DepthCoding,
     "Show depth as hue, from red (near) over green to blue (far). The picture has a legend");
 }
@@ -280,6 +287,7 @@ void TranslateWords(const Words& words, Options& options)
   settings.BlendMode = words.Blend == "min" ? vtkSplattingMIPProjection::MINIMUM_INTENSITY_BLEND
     : words.Blend == "mean"                 ? vtkSplattingMIPProjection::AVERAGE_INTENSITY_BLEND
                                             : vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
+  settings.Signed = words.Blend == "signed";
   settings.Cropping = !words.Crop.empty();
   std::copy(words.Crop.begin(), words.Crop.end(), settings.Crop.begin());
 }
@@ -321,7 +329,7 @@ void CheckCombinations(const Options& options)
     throw CLI::ValidationError("--mode", "all is for stills; choose one mode");
   }
   if (settings.DepthShading &&
-    settings.BlendMode != vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND)
+    (settings.Signed || settings.BlendMode != vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND))
   {
     throw CLI::ValidationError("--depth-shading", "it is for maxima; leave --blend out");
   }
@@ -331,6 +339,15 @@ void CheckCombinations(const Options& options)
   {
     throw CLI::ValidationError(
       "--depth-coding", "means have no depth, and values have no colours; leave it out");
+  }
+  if (options.DepthCoding && settings.Signed)
+  {
+    throw CLI::ValidationError(
+      "--depth-coding", "signed maxima have colours of their own; leave it out");
+  }
+  if (settings.Origin != 0.0 && !settings.Signed)
+  {
+    throw CLI::ValidationError("--origin", "it is for --blend signed");
   }
   for (int axis = 0; axis < 3 && settings.Cropping; ++axis)
   {
@@ -387,6 +404,10 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
   options.Output = std::filesystem::absolute(words.Output).string();
   options.HasWindow = app.count("--window") > 0;
   options.HasLevel = app.count("--level") > 0;
+  if (options.Projection.Signed && app.count("--colormap") == 0)
+  {
+    options.Look.Colormap = "cold-hot";
+  }
   CheckCombinations(options);
   CheckOutputName(options);
   return options;

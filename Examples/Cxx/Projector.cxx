@@ -81,12 +81,19 @@ vtkSmartPointer<vtkImageData> Projector::Project(const std::string& what)
   auto* const to = static_cast<unsigned char*>(bytes->GetScalarPointer());
   vtkDataArray* const scalars = found->GetPointData()->GetScalars();
   const double low = this->Look.Level - 0.5 * this->Look.Window;
+  const auto indexOf = [&](double value)
+  {
+    const double place = 255.0 * (value - low) / this->Look.Window;
+    return static_cast<unsigned char>(place > 0.0 ? std::lround(std::min(place, 255.0)) : 0);
+  };
+  const bool isSigned = this->Projection->GetMaximumType() == vtkSplattingMIPProjection::SIGNED;
+  const unsigned char background = isSigned ? indexOf(this->Projection->GetSignedOrigin()) : 0;
   bool isEmpty = true;
   for (vtkIdType p = 0; p < found->GetNumberOfPoints(); ++p)
   {
-    const double place = 255.0 * (scalars->GetComponent(p, 0) - low) / this->Look.Window;
-    to[p] = static_cast<unsigned char>(place > 0.0 ? std::lround(std::min(place, 255.0)) : 0);
-    isEmpty = isEmpty && std::isnan(place);
+    const double value = scalars->GetComponent(p, 0);
+    to[p] = std::isnan(value) ? background : indexOf(value);
+    isEmpty = isEmpty && std::isnan(value);
   }
   if (isEmpty)
   {

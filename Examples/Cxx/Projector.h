@@ -22,6 +22,8 @@ struct ProjectionSettings
   double KernelRadius = 1.0; // voxels
   int BlendMode = vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
   bool DepthShading = false;
+  bool Signed = false;     // with the blend mode of maxima
+  double Origin = 0.0;     // of signed maxima
   double Slab = 0.0;       // thickness in mm, or 0 for no slab
   double SlabOffset = 0.0; // from the volume's centre to the viewer, mm
   bool Cropping = false;
@@ -40,7 +42,10 @@ void Apply(
   target->SetKernel(settings.Kernel);
   target->SetKernelRadius(settings.KernelRadius);
   target->SetBlendMode(settings.BlendMode);
-  target->SetMaximumType(settings.DepthShading ? Target::DEPTH_SHADED : Target::GLOBAL);
+  target->SetMaximumType(settings.Signed ? Target::SIGNED
+      : settings.DepthShading            ? Target::DEPTH_SHADED
+                                         : Target::GLOBAL);
+  target->SetSignedOrigin(settings.Origin);
   target->SetSlab(settings.Slab > 0.0);
   target->SetSlabThickness(settings.Slab > 0.0 ? settings.Slab : 1.0);
   target->SetSlabCenter(slabCenter[0], slabCenter[1], slabCenter[2]);

@@ -32,13 +32,18 @@
 namespace
 {
 /**
- * Complete the look: the user's window, else the file's, else one from the values.
+ * Complete the look: the user's window, else the file's, else one from the values. The file's
+ * window is not meant for signed maxima.
  */
 LookSettings CompleteLook(const Options& options, const Volume& volume)
 {
   LookSettings look = options.Look;
   double window = volume.Window, level = volume.Level;
-  if (window <= 0.0)
+  if (options.Projection.Signed)
+  {
+    ChooseSignedWindow(volume.Image, options.Projection.Origin, window, level);
+  }
+  else if (window <= 0.0)
   {
     ChooseWindowLevel(volume.Image, options.Projection.BlendMode, window, level);
   }
@@ -276,7 +281,7 @@ void Run(const Options& options)
   CheckBeforehand(options);
   ReadSettings read = options.Read;
   read.Label = options.Mask.Path.empty() ? options.Mask.Label : 0;
-  read.HidesPadding =
+  read.HidesPadding = options.Projection.Signed ||
     options.Projection.BlendMode != vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
   Volume volume = options.Input.empty() ? ReadBuiltInVolume() : ReadVolume(options.Input, read);
   if (!options.Mask.Path.empty())

@@ -16,7 +16,7 @@ if typing.TYPE_CHECKING:
     import numpy.typing
 
 _MODES = {"preview": 0, "standard": 1, "high": 2, "exact": 3}
-_BLENDS = {"maximum": 1, "minimum": 2, "mean": 3}
+_BLENDS = {"maximum": 1, "minimum": 2, "mean": 3, "signed": 1}
 # Settings of a mapper that the splatting mapper has, too, as far as VTK's mappers have them.
 _COMMON_SETTINGS = (
     "BlendMode",
@@ -63,7 +63,8 @@ def mip(
     mode
         "preview", "standard", "high" or "exact"; see vtkSplattingMIPVolumeMapper.
     blend
-        "maximum", "minimum" or "mean".
+        "maximum", "minimum", "mean", or "signed": the maximum or the minimum, whichever is farther
+        from 0.
     up
         Direction that is up in the picture, as a vector. By default the first axis goes down, or
         the second one if the view is along the first.
@@ -74,7 +75,7 @@ def mip(
         an axis, and else the least of `spacing`.
     background
         Value of pixels without a sample. By default the least value of the array, for "minimum" the
-        greatest.
+        greatest, for "signed" 0.
     views
         Number of views of a whole turn about the picture's vertical.
 
@@ -124,6 +125,8 @@ def mip(
     projection.SetViewUp(*up[::-1])
     projection.SetQualityMode(_choice("mode", mode, _MODES))
     projection.SetBlendMode(_choice("blend", blend, _BLENDS))
+    if blend == "signed":
+        projection.SetMaximumTypeToSigned()
     projection.SetOutputSize(int(shape[1]), int(shape[0]))
     projection.SetOutputSpacing(pixel_spacing[1], pixel_spacing[0])
     if views is not None:
@@ -131,6 +134,8 @@ def mip(
         projection.SetRotationAxis(*-down[::-1])
     if background is None and blend == "minimum":
         background = numpy.nanmax(volume)
+    elif background is None and blend == "signed":
+        background = 0
     elif background is None:
         background = numpy.nanmin(volume)
     elif not blend == "mean" and numpy.issubdtype(volume.dtype, numpy.integer):

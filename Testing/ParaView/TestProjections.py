@@ -26,6 +26,12 @@ def local_maximum(lines, threshold):
     return best
 
 
+def signed_maximum(lines, origin):
+    """The largest or the smallest sample, whichever is farther from the origin."""
+    high, low = lines.max(axis=0), lines.min(axis=0)
+    return numpy.where(abs(low - origin) > abs(high - origin), low, high)
+
+
 class TestProjections(Stage.Test):
     def setUp(self):
         super().setUp()
@@ -65,6 +71,12 @@ class TestProjections(Stage.Test):
         self.expect(lambda lines: local_maximum(lines, 200))
         self.display.MIPLocalMaximumThreshold = 254
         self.expect(lambda lines: local_maximum(lines, 254))
+
+    def test_signed_maximum(self):
+        self.display.MIPProjection = "Signed Maximum"
+        self.expect(lambda lines: lines.max(axis=0))
+        self.display.MIPSignedOrigin = 128
+        self.expect(lambda lines: signed_maximum(lines.astype(int), 128))
 
     def test_slab(self):
         # Six voxels along the view have their centres in the slab.

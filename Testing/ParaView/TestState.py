@@ -16,6 +16,7 @@ SETTINGS = {
     "MIPDepthShadingAmbient": 0.25,
     "MIPDepthShadingChangeRate": 0.5,
     "MIPLocalMaximumThreshold": 77.0,
+    "MIPSignedOrigin": 55.0,
     "MIPQuality": "Standard",
     "MIPInteractiveQuality": "Preview",
     "MIPKernel": "Cosine Bell",

@@ -43,6 +43,12 @@ class TestMip(unittest.TestCase):
                 numpy.testing.assert_array_equal(
                     mip(volume, direction=axis, mode=mode, blend="minimum"), volume.min(axis)
                 )
+                signed = volume - 50
+                high, low = signed.max(axis), signed.min(axis)
+                numpy.testing.assert_array_equal(
+                    mip(signed, direction=axis, mode=mode, blend="signed"),
+                    numpy.where(-low > high, low, high),
+                )
             mean = mip(volume, direction=axis, mode="preview", blend="mean")
             numpy.testing.assert_allclose(mean, volume.mean(axis), rtol=1e-5)
             self.assertEqual(mean.dtype, numpy.float32)

@@ -71,7 +71,8 @@ class TestProgram(splatmip.SplatmipTest):
                           ("--mask", "m.mha"))),
                       ("--rotate", "4", "--interactive"), ("--depth-shading", "--blend", "min"),
                       ("--depth-coding", "--blend", "mean"), ("--depth-coding", "--colormap", "hot"),
-                      ("--depth-coding", "--output", "v.nii")):
+                      ("--depth-coding", "--output", "v.nii"), ("--depth-coding", "--blend", "signed"),
+                      ("--depth-shading", "--blend", "signed"), ("--origin", "7")):
             self.assert_refused("missing.vti", *words, words=words[0], code=2)
         self.assert_refused("--component", "1", words="--component requires file", code=2)
         for words in ("--compare", "--interactive"):
@@ -197,6 +198,22 @@ class TestOptions(splatmip.SplatmipTest):
         rows, columns = numpy.nonzero((pixels < 10) & (abs(numpy.arange(200) - 100) < 60))
         inside = (rows > 15) & (rows < 160)
         self.assertLess(abs(columns[inside].mean() - 100 - 8 * 4.5), 4)
+
+    def test_signed(self):
+        """Blocks of 1000 above and below the origin are yellow and cyan; elsewhere it is black."""
+        for origin in (0, 300):
+            self.values[:] = origin
+            self.values[10:14, 20:23, 24:27] = origin + 1000
+            self.values[30:34, 20:23, 24:27] = origin - 1000
+            self.write(self.values)
+            pixels = self.draw(self.file, "--no-marks", "--size", "200x200", "--blend", "signed", "--origin",
+                               origin, "--output", "a.png")[0][20:]
+            yellow, cyan = ((abs(pixels - colour) < 8).all(axis=2)
+                            for colour in ((255, 255, 153), (153, 255, 255)))
+            self.assertLess(abs(int(yellow.sum()) - int(cyan.sum())), 40)
+            self.assertGreater(yellow.sum(), 200)
+            self.assertGreater(numpy.nonzero(yellow)[0].mean(), numpy.nonzero(cyan)[0].mean())
+            self.assertGreater((pixels == 0).all(axis=2).mean(), 0.8)
 
     def test_default_window(self):
         """Of maxima, minima and means something is seen where neither user nor file give a window."""

@@ -170,6 +170,7 @@ void vtkSplattingMIPRepresentation::SetProjection(int projection)
                                              : vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND);
   mapper->SetMaximumType(projection == DEPTH_SHADED ? vtkSplattingMIPVolumeMapper::DEPTH_SHADED
       : projection == LOCAL                         ? vtkSplattingMIPVolumeMapper::LOCAL
+      : projection == SIGNED                        ? vtkSplattingMIPVolumeMapper::SIGNED
                                                     : vtkSplattingMIPVolumeMapper::GLOBAL);
 }
 
@@ -196,6 +197,11 @@ void vtkSplattingMIPRepresentation::SetDepthShadingChangeRate(double rate)
 void vtkSplattingMIPRepresentation::SetLocalMaximumThreshold(double threshold)
 {
   this->GetSplattingMapper()->SetLocalMaximumThreshold(threshold);
+}
+
+void vtkSplattingMIPRepresentation::SetSignedOrigin(double origin)
+{
+  this->GetSplattingMapper()->SetSignedOrigin(origin);
 }
 
 void vtkSplattingMIPRepresentation::SetSlab(bool slab)

@@ -49,7 +49,8 @@ public:
     MINIMUM = 1,
     AVERAGE = 2,
     DEPTH_SHADED = 3,
-    LOCAL = 4
+    LOCAL = 4,
+    SIGNED = 5
   };
 
   enum InteractiveQualities
@@ -83,6 +84,7 @@ public:
   void SetDepthShadingAmbient(double ambient);
   void SetDepthShadingChangeRate(double rate);
   void SetLocalMaximumThreshold(double threshold);
+  void SetSignedOrigin(double origin);
   void SetSlab(bool slab);
   void SetSlabThickness(double thickness);
   void SetSlabCenter(double x, double y, double z);

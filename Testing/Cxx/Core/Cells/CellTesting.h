@@ -289,7 +289,6 @@ public:
         return oracle.local(ray, s.threshold, this->Fall);
       case Reduction::Signed:
         return this->farther(oracle.largest(ray), oracle.largest(ray, true), value);
->>>>>>> fcdddf4 (Add signed maxima: the extremum of each ray that is farther from an origin)
       default:
         return oracle.largest(ray, s.reduction == Reduction::Minimum);
     }
