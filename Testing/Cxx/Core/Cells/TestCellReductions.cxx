@@ -80,8 +80,8 @@ void testReduction(const std::string& name, Reduction reduction, bool holes, Che
       scene.settings.reduction = reduction;
       setShading(scene.settings, random);
       setThreshold(scene, random);
-      setOrigin(scene, random);
       addCuts<T>(scene.view, random);
+      setOrigin(scene, random);
       counts.add(compareScene(scene, check));
     });
 }

@@ -75,6 +75,7 @@ void copyChoices(vtkSplattingMIPVolumeMapper* mapper, vtkSplattingMIPProjection*
   filter->SetBlendMode(mapper->GetBlendMode());
   filter->SetMaximumType(mapper->GetMaximumType());
   filter->SetLocalMaximumThreshold(mapper->GetLocalMaximumThreshold());
+  filter->SetSignedOrigin(mapper->GetSignedOrigin());
   filter->SetSlab(mapper->GetSlab());
   filter->SetSlabCenter(mapper->GetSlabCenter());
   filter->SetSlabThickness(mapper->GetSlabThickness());
