@@ -304,7 +304,6 @@ int TestSignedMaximum(int, char*[])
   testComponents(check);
   std::cout << count.maxima << " maxima, " << count.minima << " minima, " << count.ties
             << " pixels whose extrema are equally far, " << count.infinite << " infinite\n";
-  check(reference::scenesRun() < 80 ||
-      count.areAll(), "not all cases have occurred");
+  check(reference::scenesRun() < 80 || count.areAll(), "not all cases have occurred");
   return check.result();
 }
