@@ -89,8 +89,8 @@ public:
   static const int ViewsOfAxes[3];
 
   /**
-   * Perspective views with this view angle in degrees, the volume in a sphere that fits the window;
-   * or parallel ones (0, the default), half as large again.
+   * Perspective views with this view angle in degrees, or parallel ones (0, the default). In both
+   * the volume is half as large again as when its bounding sphere fits the window.
    */
   void SetViewAngle(double degrees) { this->ViewAngle = degrees; }
   double GetViewAngle() const { return this->ViewAngle; }
