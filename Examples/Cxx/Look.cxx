@@ -5,6 +5,8 @@
 #include "Reading/Reading.h"
 
 #include "vtkDataArray.h"
+#include "vtkNamedColors.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSplattingMIPProjection.h"
 
@@ -90,6 +92,14 @@ vtkSmartPointer<vtkColorTransferFunction> MakeColors(const LookSettings& look)
 {
   const double low = look.Level - 0.5 * look.Window;
   auto colors = vtkSmartPointer<vtkColorTransferFunction>::New();
+  if (!look.Color.empty())
+  {
+    vtkNew<vtkNamedColors> names;
+    const vtkColor3d color = names->GetColor3d(look.Color);
+    colors->AddRGBPoint(low, 0.0, 0.0, 0.0);
+    colors->AddRGBPoint(low + look.Window, color.GetRed(), color.GetGreen(), color.GetBlue());
+    return colors;
+  }
   const auto map = std::find_if(Colormaps.begin(), Colormaps.end(),
     [&](const NamedColormap& other) { return other.Name == look.Colormap; });
   for (const ColorPoint& point : map->Points)
@@ -101,7 +111,7 @@ vtkSmartPointer<vtkColorTransferFunction> MakeColors(const LookSettings& look)
 
 vtkSmartPointer<vtkColorTransferFunction> MakePalette(const LookSettings& look)
 {
-  return MakeColors({ 255.0, 127.5, look.Colormap });
+  return MakeColors({ 255.0, 127.5, look.Colormap, look.Color });
 }
 
 std::vector<std::string> GetColormapNames()

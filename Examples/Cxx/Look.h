@@ -11,13 +11,15 @@
 #include <vector>
 
 /**
- * Mapping from values to colours: a window around a level, and a colormap.
+ * Mapping from values to colours: a window around a level, and a colormap or, if a colour is named,
+ * the colours from black to it.
  */
 struct LookSettings
 {
   double Window = 1.0;
   double Level = 0.5;
   std::string Colormap = "gray";
+  std::string Color; // a name of vtkNamedColors
 };
 
 /**

@@ -6,6 +6,8 @@
 #include "Writing/PictureSeries.h"
 #include "Writing/ValueFile.h"
 
+#include "vtkNamedColors.h"
+#include "vtkNew.h"
 #include "vtkSplattingMIPProjection.h"
 #include "vtkVersion.h"
 
@@ -30,6 +32,8 @@ struct Words
   std::string Kernel = "trilinear";
   std::string Blend = "max";
   std::vector<double> Crop;
+  std::string Blending = "over";
+  std::string Colors;
   std::string View;
   std::string Size = "400x600";
   std::string Output = "splatmip.png";
@@ -64,6 +68,26 @@ std::string CheckComponentWord(const std::string& text)
   return isNumber || text == "luminance" || text == "magnitude"
     ? ""
     : "not a number from 1 on, luminance or magnitude";
+}
+
+std::vector<std::string> SplitColors(const std::string& text)
+{
+  std::vector<std::string> colors;
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, ',');)
+  {
+    colors.push_back(word);
+  }
+  return colors;
+}
+
+std::string CheckColors(const std::string& text)
+{
+  vtkNew<vtkNamedColors> names;
+  const auto colors = SplitColors(text);
+  const bool areKnown = std::all_of(colors.begin(), colors.end(),
+    [&](const std::string& color) { return names->ColorExists(color); });
+  return !colors.empty() && areKnown ? "" : "not names of colours such as red,lime";
 }
 
 /**
@@ -119,10 +143,11 @@ private:
 void DeclareVolumeOptions(CLI::App& app, Options& options)
 {
   app
-    .add_option("file", options.Input,
+    .add_option("file", options.Inputs,
       "A " + JoinWords(GetVolumeEndings()) +
         " file, a DICOM file, a DICOMDIR or a folder with DICOM files. Default: a built-in CT of a "
-        "stented aorta")
+        "stented aorta. Several files are several volumes, which --blending combines; give the "
+        "slices of one volume as a folder")
     ->type_name("FILE");
   Group group(app, "Input");
   group.Add("--series", options.Read.Series, "NUMBER", Between(1, 99999),
@@ -177,7 +202,7 @@ void DeclareProjectionOptions(CLI::App& app, Options& options, Words& words)
     "Show only voxels with this number in the mask or the DICOM segmentation");
 }
 
-void DeclareLookOptions(CLI::App& app, Options& options)
+void DeclareLookOptions(CLI::App& app, Options& options, Words& words)
 {
   Group group(app, "Colours");
   group.Add("--window", options.Look.Window, "VALUE", Between(1e-30, 1e30),
@@ -188,6 +213,15 @@ void DeclareLookOptions(CLI::App& app, Options& options)
     "Value in the middle of that range. Default: as for --window");
   group.AddChoice("--colormap", options.Look.Colormap, "COLORMAP", GetColormapNames(),
     "Colormap. Default of --blend signed: cold-hot, which diverges from black");
+  group.Add("--color", words.Colors, "COLOR,...", CLI::Validator(CheckColors, ""),
+    "Colours from black to this one, in place of a colormap, one for each file: names of CSS or "
+    "vtkNamedColors, of "
+    "which green is dark and lime bright. Default for several files: gray for the first, the "
+    "--colormap (then hot by default) for the others");
+  group.Add("--blending", words.Blending, "BLENDING", CLI::IsMember({ "over", "add", "maximum" }),
+    "Combine the pictures of several files, each with a window of its own, at the positions in the "
+    "files, in a view that fits all: each over those before it, with an opacity that rises "
+    "linearly over its window; or by the sum or the maximum of each colour channel");
   group.AddFlag("--depth-coding", options.DepthCoding,
     "Show depth as hue, from red (near) over green to blue (far). The picture has a legend");
 }
@@ -288,6 +322,10 @@ void TranslateWords(const Words& words, Options& options)
     : words.Blend == "mean"                 ? vtkSplattingMIPProjection::AVERAGE_INTENSITY_BLEND
                                             : vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
   settings.Signed = words.Blend == "signed";
+  options.Colors = SplitColors(words.Colors);
+  options.Blending = words.Blending == "add" ? vtkSplattingMIPVolumeMapper::ADD
+    : words.Blending == "maximum"            ? vtkSplattingMIPVolumeMapper::MAXIMUM
+                                             : vtkSplattingMIPVolumeMapper::OVER;
   settings.Cropping = !words.Crop.empty();
   std::copy(words.Crop.begin(), words.Crop.end(), settings.Crop.begin());
 }
@@ -302,7 +340,8 @@ void DeclareCombinations(CLI::App& app)
     { "--compare",
       { "--rotate", "--blend", "--depth-shading", "--depth-coding", "--slab", "--crop",
         "--mask" } },
-    { "--slab-offset", { "--rotate" } }, { "--depth-coding", { "--colormap" } }
+    { "--slab-offset", { "--rotate" } }, { "--depth-coding", { "--colormap", "--color" } },
+    { "--color", { "--colormap" } }
   };
   for (const auto& [name, others] : exclusions)
   {
@@ -345,6 +384,15 @@ void CheckCombinations(const Options& options)
     throw CLI::ValidationError(
       "--depth-coding", "signed maxima have colours of their own; leave it out");
   }
+  if (!options.Colors.empty() && settings.Signed)
+  {
+    throw CLI::ValidationError("--color", "signed maxima have two colours; leave it out");
+  }
+  const std::size_t volumes = std::max<std::size_t>(options.Inputs.size(), 1);
+  if (!options.Colors.empty() && options.Colors.size() != volumes)
+  {
+    throw CLI::ValidationError("--color", "give as many colours as files");
+  }
   if (settings.Origin != 0.0 && !settings.Signed)
   {
     throw CLI::ValidationError("--origin", "it is for --blend signed");
@@ -358,11 +406,47 @@ void CheckCombinations(const Options& options)
   }
 }
 
+/**
+ * Refuse several files with options that are for one.
+ */
+void CheckSeveral(const CLI::App& app, const Options& options)
+{
+  if (options.Inputs.size() < 2)
+  {
+    return;
+  }
+  if (app.count("--blending") == 0)
+  {
+    throw CLI::ValidationError("file",
+      "several files are several volumes and need --blending; give the slices of one volume as a "
+      "folder");
+  }
+  for (const char* const name :
+    { "--series", "--frame", "--channel", "--array", "--component", "--crop", "--mask", "--label",
+      "--window", "--level", "--depth-coding", "--compare", "--interactive" })
+  {
+    if (app.count(name) > 0)
+    {
+      throw CLI::ValidationError(name, "it is for one file; leave it out, or give one file");
+    }
+  }
+  if (options.Projection.Signed)
+  {
+    throw CLI::ValidationError("--blend", "signed is for one file; choose another one");
+  }
+  if (std::filesystem::path(options.Output).extension() == ".dcm" || IsValueFile(options.Output))
+  {
+    throw CLI::ValidationError("--output", "several volumes are written as .png or .ogv");
+  }
+}
+
 const char* const Examples = R"(Examples:
   splatmip scan.nii.gz --azimuth 30 --output scan.png
       a picture, the camera 30 degrees to the patient's left
   splatmip dicom-folder --view left --slab 30 --window 600 --level 300
       a slab of 30 mm of the largest series in a folder, white from the value 600 on
+  splatmip dapi.tif actin.tif --color blue,lime --blending add
+      two channels in one picture; for PET over CT: splatmip ct pet --blending over
   splatmip dicom-folder --rotate 36 --output turn.ogv
       a film of a turn around the patient; for other films write numbered pictures by --output
       turn.png, then: ffmpeg -i turn-%05d.png turn.gif
@@ -386,7 +470,7 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
   Words words;
   DeclareVolumeOptions(app, options);
   DeclareProjectionOptions(app, options, words);
-  DeclareLookOptions(app, options);
+  DeclareLookOptions(app, options, words);
   DeclareViewOptions(app, options, words);
   DeclareOutputOptions(app, options, words);
   DeclareCombinations(app);
@@ -408,7 +492,12 @@ Options ParseOptions(CLI::App& app, int argc, char* argv[])
   {
     options.Look.Colormap = "cold-hot";
   }
+  else if (options.Inputs.size() > 1 && app.count("--colormap") == 0)
+  {
+    options.Look.Colormap = "hot";
+  }
   CheckCombinations(options);
+  CheckSeveral(app, options);
   CheckOutputName(options);
   return options;
 }

@@ -9,6 +9,8 @@
 #include "Reading/VolumeReader.h"
 #include "View.h"
 
+#include "vtkSplattingMIPVolumeMapper.h"
+
 #include <CLI/CLI.hpp>
 
 #include <string>
@@ -24,22 +26,24 @@ extern const std::vector<std::string> ModeNames;
  */
 struct Options
 {
-  std::string Input;             // empty: the built-in volume
-  ReadSettings Read;             // choices in it
-  MaskSettings Mask;             // voxels to show
-  std::vector<int> Modes;        // one, or several for stills side by side
-  ProjectionSettings Projection; //
-  ViewSettings View;             //
-  LookSettings Look;             // the user's, where these are true:
-  bool HasWindow = false;        // Look.Window
-  bool HasLevel = false;         // Look.Level
-  bool DepthCoding = false;      // in place of a colormap
-  std::string Output;            // an absolute path
-  bool NoMarks = false;          // no letters for sides, no scale bar
-  bool Compare = false;          // with the ray caster
-  bool Interactive = false;      // in a window
-  int Rotate = 0;                // views, or 0
-  int Rate = 12;                 // views per second
+  std::vector<std::string> Inputs;                  // volumes; none: the built-in one
+  ReadSettings Read;                                // choices in it
+  MaskSettings Mask;                                // voxels to show
+  std::vector<int> Modes;                           // one, or several for stills side by side
+  ProjectionSettings Projection;                    //
+  ViewSettings View;                                //
+  LookSettings Look;                                // the user's, where these are true:
+  bool HasWindow = false;                           // Look.Window
+  bool HasLevel = false;                            // Look.Level
+  std::vector<std::string> Colors;                  // of the volumes, in place of a colormap
+  int Blending = vtkSplattingMIPVolumeMapper::OVER; // of the pictures of several volumes
+  bool DepthCoding = false;                         // in place of a colormap
+  std::string Output;                               // an absolute path
+  bool NoMarks = false;                             // no letters for sides, no scale bar
+  bool Compare = false;                             // with the ray caster
+  bool Interactive = false;                         // in a window
+  int Rotate = 0;                                   // views, or 0
+  int Rate = 12;                                    // views per second
 };
 
 /**

@@ -17,29 +17,63 @@
 
 namespace
 {
-/// Find the parallel scale in which the volume fits into all views.
-double LargestScale(const Volume& volume, const ViewSettings& view, int views)
+/// Find the parallel scale in which the frame fits into all views.
+double LargestScale(vtkImageData* frame, const ViewSettings& view, int views)
 {
   double scale = 0.0;
   for (int n = 0; n < views; ++n)
   {
     const auto turn = MakeViewTurn(view, view.Azimuth + 360.0 * n / views);
-    scale = std::max(scale, GetFittingScale(volume.Image, view, turn));
+    scale = std::max(scale, GetFittingScale(frame, view, turn));
   }
   return scale / view.Zoom;
 }
 }
 
-Projector::Projector(const Volume& volume, const ProjectionSettings& settings,
+vtkSmartPointer<vtkImageData> MakeFrame(const std::vector<vtkImageData*>& images)
+{
+  // Equal grids give the grid itself, in spite of rounding.
+  constexpr double Tolerance = 1e-3, Most = 1e6; // voxels
+  auto frame = vtkSmartPointer<vtkImageData>::New();
+  frame->CopyStructure(images.front());
+  int extent[6];
+  frame->GetExtent(extent);
+  for (vtkImageData* const image : images)
+  {
+    const int* const size = image->GetDimensions();
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      double place[3];
+      image->TransformIndexToPhysicalPoint(corner & 1 ? size[0] - 1 : 0,
+        corner & 2 ? size[1] - 1 : 0, corner & 4 ? size[2] - 1 : 0, place);
+      images.front()->TransformPhysicalPointToContinuousIndex(place, place);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (!(std::fabs(place[axis]) < Most))
+        {
+          throw std::runtime_error(
+            "the volumes are too far apart for one picture; check their positions.");
+        }
+        int* const range = extent + 2 * axis;
+        range[0] = std::min(range[0], static_cast<int>(std::floor(place[axis] + Tolerance)));
+        range[1] = std::max(range[1], static_cast<int>(std::ceil(place[axis] - Tolerance)));
+      }
+    }
+  }
+  frame->SetExtent(extent);
+  return frame;
+}
+
+Projector::Projector(const Volume& volume, vtkImageData* frame, const ProjectionSettings& settings,
   const LookSettings& look, const ViewSettings& view, int views)
   : Look(look)
 {
   this->Projection->SetInputData(volume.Image);
   std::array<double, 3> center;
-  volume.Image->GetCenter(center.data());
+  frame->GetCenter(center.data());
   const auto turn = MakeViewTurn(view, view.Azimuth);
   const double* const away = turn->TransformDoubleVector(0.0, 1.0, 0.0);
-  const auto fit = FitPerspective(volume.Image, view);
+  const auto fit = FitPerspective(frame, view);
   const double distance = view.Perspective > 0.0 ? fit.Distance : 1.0;
   vtkNew<vtkCamera> camera;
   camera->SetParallelProjection(view.Perspective <= 0.0);
@@ -56,7 +90,7 @@ Projector::Projector(const Volume& volume, const ProjectionSettings& settings,
   this->Projection->SetNumberOfViews(views);
   this->Projection->SetOutputSize(view.Size[0], view.Size[1]);
   const double halfHeight =
-    view.Perspective > 0.0 ? fit.HalfHeight / view.Zoom : LargestScale(volume, view, views);
+    view.Perspective > 0.0 ? fit.HalfHeight / view.Zoom : LargestScale(frame, view, views);
   const double spacing = 2.0 * halfHeight / view.Size[1];
   this->Projection->SetOutputSpacing(spacing, spacing);
   this->Projection->SetBackgroundValue(std::numeric_limits<double>::quiet_NaN());

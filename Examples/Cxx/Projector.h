@@ -12,6 +12,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 /**
  * Settings of a projection except the quality mode.
@@ -55,14 +56,23 @@ void Apply(
 }
 
 /**
+ * Make an image, without values, whose box contains several: the grid of the first, extended by
+ * whole voxels. Throws std::runtime_error if they are too far apart.
+ */
+vtkSmartPointer<vtkImageData> MakeFrame(const std::vector<vtkImageData*>& images);
+
+/**
  * One view of a volume, or several around the patient's long axis, by vtkSplattingMIPProjection,
  * which needs no display.
  */
 class Projector
 {
 public:
-  Projector(const Volume& volume, const ProjectionSettings& settings, const LookSettings& look,
-    const ViewSettings& view, int views);
+  /**
+   * The box of the frame fits into the views.
+   */
+  Projector(const Volume& volume, vtkImageData* frame, const ProjectionSettings& settings,
+    const LookSettings& look, const ViewSettings& view, int views);
 
   vtkSplattingMIPProjection* GetProjection() { return this->Projection; }
 

@@ -10,6 +10,7 @@
 #include "Reading/Mask.h"
 #include "Reading/Reading.h"
 #include "Reading/VolumeReader.h"
+#include "Writing/Blending.h"
 #include "Writing/Picture.h"
 #include "Writing/PictureSeries.h"
 #include "Writing/SafeFiles.h"
@@ -21,23 +22,42 @@
 #include "vtkRenderWindowInteractor.h"
 #include "vtkSMPTools.h"
 
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace
 {
 /**
- * Complete the look: the user's window, else the file's, else one from the values. The file's
- * window is not meant for signed maxima.
+ * A volume, and how it is shown.
  */
-LookSettings CompleteLook(const Options& options, const Volume& volume)
+struct Layer
+{
+  Volume Data;
+  LookSettings Look;
+};
+
+/**
+ * Complete the look of volume n: the user's window, else the file's, else one from the values. The
+ * file's window is not meant for signed maxima.
+ */
+LookSettings CompleteLook(const Options& options, const Volume& volume, std::size_t n)
 {
   LookSettings look = options.Look;
+  if (!options.Colors.empty())
+  {
+    look.Color = options.Colors[n];
+  }
+  else if (n == 0 && options.Inputs.size() > 1)
+  {
+    look.Colormap = "gray";
+  }
   double window = volume.Window, level = volume.Level;
   if (options.Projection.Signed)
   {
@@ -66,17 +86,48 @@ void PrintVolume(const Volume& volume, const LookSettings& look)
 }
 
 /**
- * Draw the views with labels and marks.
+ * Make a projector for each volume, with the same views.
  */
-vtkSmartPointer<vtkImageData> DrawViews(
-  Projector& projector, const Volume& volume, const Options& options, std::string label)
+std::vector<Projector> MakeProjectors(
+  const std::vector<Layer>& layers, const Options& options, int views)
 {
-  vtkSplattingMIPProjection* const projection = projector.GetProjection();
-  projection->SetRecordLocations(options.DepthCoding);
-  auto views = projector.Project(label.empty() ? "projecting" : "projecting, " + label);
+  std::vector<vtkImageData*> images;
+  for (const Layer& layer : layers)
+  {
+    images.push_back(layer.Data.Image);
+  }
+  const auto frame = MakeFrame(images);
+  std::vector<Projector> projectors;
+  for (const Layer& layer : layers)
+  {
+    projectors.emplace_back(layer.Data, frame, options.Projection, layer.Look, options.View, views);
+  }
+  return projectors;
+}
+
+/**
+ * Draw the views with labels and marks: bytes for one volume, colours for several.
+ */
+vtkSmartPointer<vtkImageData> DrawViews(std::vector<Projector>& projectors, int mode,
+  const std::vector<Layer>& layers, const Options& options, std::string label)
+{
+  std::vector<PaletteSlices> slices;
+  for (std::size_t n = 0; n < layers.size(); ++n)
+  {
+    projectors[n].GetProjection()->SetQualityMode(mode);
+    projectors[n].GetProjection()->SetRecordLocations(options.DepthCoding);
+    slices.push_back({ projectors[n].Project(label.empty() ? "projecting" : "projecting, " + label),
+      MakePalette(layers[n].Look) });
+  }
+  auto views = layers.size() == 1 ? slices.front().Bytes : Blend(slices, options.Blending);
+  const Volume& volume = layers.front().Data;
+  vtkSplattingMIPProjection* const projection = projectors.front().GetProjection();
   const auto add = [&label](const std::string& line)
   { label += label.empty() || line.empty() ? line : "\n" + line; };
-  add(volume.Caution);
+  for (const Layer& layer : layers)
+  {
+    add(layer.Data.Caution);
+  }
   if (options.DepthCoding)
   {
     const DepthRange range = FindDepthRange(projection);
@@ -146,17 +197,18 @@ double Comparison::AddMode(int mode)
 /**
  * Write the modes side by side, or the values of one.
  */
-void WriteStill(const Volume& volume, const LookSettings& look, const Options& options)
+void WriteStill(const std::vector<Layer>& layers, const Options& options)
 {
+  const auto& [volume, look] = layers.front();
   std::unique_ptr<Comparison> comparison;
   if (options.Compare)
   {
     comparison = std::make_unique<Comparison>(volume, look, options);
   }
-  Projector projector(volume, options.Projection, look, options.View, 1);
-  const auto palette = MakePalette(look);
+  auto projectors = MakeProjectors(layers, options, 1);
   if (IsValueFile(options.Output))
   {
+    Projector& projector = projectors.front();
     projector.GetProjection()->SetQualityMode(options.Modes.front());
     projector.Project("projecting");
     WriteValues(projector.GetProjection()->GetOutput(), volume.Origin, options.Output);
@@ -167,9 +219,8 @@ void WriteStill(const Volume& volume, const LookSettings& look, const Options& o
   for (const int mode : options.Modes)
   {
     const std::string time = comparison ? "  " + FormatTime(comparison->AddMode(mode)) : "";
-    projector.GetProjection()->SetQualityMode(mode);
-    const auto views = DrawViews(projector, volume, options, ModeNames[mode] + time);
-    row->AddInputData(Paint(views, palette, 0));
+    const auto views = DrawViews(projectors, mode, layers, options, ModeNames[mode] + time);
+    row->AddInputData(Paint(views, MakePalette(look), 0));
   }
   row->Update();
   WriteSafely({ options.Output },
@@ -178,15 +229,20 @@ void WriteStill(const Volume& volume, const LookSettings& look, const Options& o
   std::printf("\npicture: %s\n", options.Output.c_str());
 }
 
-void WriteTurn(const Volume& volume, const LookSettings& look, const Options& options)
+void WriteTurn(const std::vector<Layer>& layers, const Options& options)
 {
-  Projector projector(volume, options.Projection, look, options.View, options.Rotate);
-  projector.GetProjection()->SetQualityMode(options.Modes.front());
-  const auto views = DrawViews(projector, volume, options, "");
+  const auto& [volume, look] = layers.front();
+  auto projectors = MakeProjectors(layers, options, options.Rotate);
+  const auto views = DrawViews(projectors, options.Modes.front(), layers, options, "");
+  double seconds = 0.0;
+  for (const Projector& projector : projectors)
+  {
+    seconds += projector.GetSeconds();
+  }
   std::printf("\n%d views of %d x %d in %.2f s, %.0f per second; %d threads, %s\n", options.Rotate,
-    options.View.Size[0], options.View.Size[1], projector.GetSeconds(),
-    options.Rotate / projector.GetSeconds(), vtkSMPTools::GetEstimatedNumberOfThreads(),
-    projector.GetProjection()->GetInstructionSet());
+    options.View.Size[0], options.View.Size[1], seconds, options.Rotate / seconds,
+    vtkSMPTools::GetEstimatedNumberOfThreads(),
+    projectors.front().GetProjection()->GetInstructionSet());
   const FilmSettings film = { MakePalette(look), options.Rate, volume.IsInMillimeters,
     volume.Study };
   WriteSeries(views, film, options.Output);
@@ -271,19 +327,19 @@ void CheckBeforehand(const Options& options)
   if (!options.Interactive)
   {
     const auto outputs = GetOutputFiles(options);
-    CheckNotInput(outputs, { options.Input, options.Mask.Path });
+    CheckNotInput(outputs, options.Inputs);
+    CheckNotInput(outputs, { options.Mask.Path });
     CheckWritable(outputs);
   }
 }
 
-void Run(const Options& options)
+Volume ReadInput(const std::string& path, const Options& options)
 {
-  CheckBeforehand(options);
   ReadSettings read = options.Read;
   read.Label = options.Mask.Path.empty() ? options.Mask.Label : 0;
   read.HidesPadding = options.Projection.Signed ||
     options.Projection.BlendMode != vtkSplattingMIPProjection::MAXIMUM_INTENSITY_BLEND;
-  Volume volume = options.Input.empty() ? ReadBuiltInVolume() : ReadVolume(options.Input, read);
+  Volume volume = path.empty() ? ReadBuiltInVolume() : ReadVolume(path, read);
   if (!options.Mask.Path.empty())
   {
     ApplyMask(options.Mask, volume);
@@ -297,19 +353,50 @@ void Run(const Options& options)
   {
     CheckNotInput(GetOutputFiles(options), volume.Files);
   }
-  const LookSettings look = CompleteLook(options, volume);
-  PrintVolume(volume, look);
+  return volume;
+}
+
+/**
+ * Read the volumes, and place them relative to the first one.
+ */
+std::vector<Layer> ReadLayers(const Options& options)
+{
+  std::vector<Layer> layers;
+  for (const std::string& path :
+    options.Inputs.empty() ? std::vector<std::string>{ "" } : options.Inputs)
+  {
+    Volume volume = ReadInput(path, options);
+    const Volume& first = layers.empty() ? volume : layers.front().Data;
+    if (volume.IsOriented != first.IsOriented || volume.IsInMillimeters != first.IsInMillimeters)
+    {
+      Refuse(path,
+        "only some of the files have voxel size and orientation; convert all to one format that "
+        "has them.");
+    }
+    volume.Image->SetOrigin(volume.Origin[0] - first.Origin[0], volume.Origin[1] - first.Origin[1],
+      volume.Origin[2] - first.Origin[2]);
+    const LookSettings look = CompleteLook(options, volume, layers.size());
+    PrintVolume(volume, look);
+    layers.push_back({ std::move(volume), look });
+  }
+  return layers;
+}
+
+void Run(const Options& options)
+{
+  CheckBeforehand(options);
+  const std::vector<Layer> layers = ReadLayers(options);
   if (options.Interactive)
   {
-    Interact(volume, look, options);
+    Interact(layers.front().Data, layers.front().Look, options);
   }
   else if (options.Rotate > 0)
   {
-    WriteTurn(volume, look, options);
+    WriteTurn(layers, options);
   }
   else
   {
-    WriteStill(volume, look, options);
+    WriteStill(layers, options);
   }
 }
 }

@@ -72,21 +72,30 @@ class TestProgram(splatmip.SplatmipTest):
                       ("--rotate", "4", "--interactive"), ("--depth-shading", "--blend", "min"),
                       ("--depth-coding", "--blend", "mean"), ("--depth-coding", "--colormap", "hot"),
                       ("--depth-coding", "--output", "v.nii"), ("--depth-coding", "--blend", "signed"),
-                      ("--depth-shading", "--blend", "signed"), ("--origin", "7")):
+                      ("--depth-shading", "--blend", "signed"), ("--origin", "7"),
+                      ("--color", "red", "--colormap", "hot"), ("--color", "red", "--blend", "signed"),
+                      ("--color", "red,lime"), ("--color", "reddish"), ("--color", ",red"), ("--blending", "mean")):
             self.assert_refused("missing.vti", *words, words=words[0], code=2)
+        for words in (("--series", 1), ("--frame", 1), ("--channel", 1), ("--array", "a"), ("--component", 1),
+                      ("--crop", "0,9,0,9,0,9"), ("--mask", "m.mha"), ("--label", 1), ("--window", 9), ("--level", 9),
+                      ("--depth-coding",), ("--compare",), ("--interactive",), ("--color", "red"),
+                      ("--blend", "signed"), ("--output", "a.mha"), ("--output", "a.dcm", "--rotate", 4)):
+            self.assert_refused("a.vti", "b.vti", "--blending", "add", *words, words=words[0], code=2)
+        for words in ((), ("--color", "red,lime")):
+            self.assert_refused("a.vti", "b.vti", *words, words="need --blending", code=2)
         self.assert_refused("--component", "1", words="--component requires file", code=2)
         for words in ("--compare", "--interactive"):
             self.assert_refused("missing.vti", words, words="no display")
         self.assertEqual(os.listdir(self.scratch.name), [])
 
     def test_help(self):
-        """Options in groups, and three commands, of which each option is one that there is."""
+        """Options in groups, and four commands, of which each option is one that there is."""
         self.assertRegex(self.run_well("--version"), r"^splatmip \d+\.\d+\.\d+, VTK \d+\.\d+\.\d+\n$")
         options, examples = self.run_well("--help").split("Examples:")
         for group in ("Input", "Projection", "Colours", "View", "Output"):
             self.assertIn(f"\n{group}:\n", options)
         commands = [line.split() for line in examples.splitlines() if line.startswith("  splatmip")]
-        self.assertEqual(len(commands), 3)
+        self.assertEqual(len(commands), 4)
         for option in (word for command in commands for word in command if word.startswith("--")):
             self.assertRegex(options, rf"(?m)^  {option}\b")
 
@@ -257,6 +266,74 @@ class TestOptions(splatmip.SplatmipTest):
             places, *colors = numpy.array(points).T
             expected = numpy.stack([numpy.interp(gray[:, :, 0] / 255, places, color) for color in colors], axis=2)
             self.assertLessEqual(abs(self.show("--colormap", name) - 255 * expected).max(), 1, name)
+        expected = gray * numpy.array([255, 165, 0]) / 255
+        self.assertLessEqual(abs(self.show("--color", "orange") - expected).max(), 1)
+
+
+def blend(below, above, opacity, blending):
+    """A picture on top of another one, as bytes."""
+    if blending == "over":
+        return (opacity * above + (255 - opacity) * below + 127) // 255
+    return numpy.minimum(below + above, 255) if blending == "add" else numpy.maximum(below, above)
+
+
+class TestSeveral(splatmip.SplatmipTest):
+    """Several volumes in one picture."""
+    COSINE, SINE = math.cos(0.3), math.sin(0.3)
+    PLACES = numpy.array([[1.5 * COSINE, -SINE, 0, 30], [1.5 * SINE, COSINE, 0, -20], [0, 0, 2, 10.0]])
+
+    def turn(self, *arguments):
+        """All pixels of two views, without label and marks."""
+        self.run_well("--size", "50x60", "--rotate", 2, "--output", "a.png", "--no-marks", *arguments)
+        return numpy.stack([splatmip.read_picture(self.path(f"a-0000{n}.png")) for n in range(2)])
+
+    def test_blending(self):
+        """The picture is what NumPy makes of those of single volumes; the order matters to over only."""
+        places, random = self.PLACES, numpy.random.default_rng()
+        files = [splatmip.write_meta(self.path(f"{n}.mha"), random.integers(0, top, (9, 10, 11), numpy.int16), places)
+                 for n, top in enumerate((200, 1000, 30000))]
+        grays = [self.turn(file) for file in files]
+        for names, looks in ((("red", "lime", "orange"), [("--color", name) for name in ("red", "lime", "orange")]),
+                             ((), (("--colormap", "gray"), ("--colormap", "hot"), ("--colormap", "hot")))):
+            singles = [self.turn(file, *look) for file, look in zip(files, looks)]
+            for blending in ("over", "add", "maximum"):
+                order = [0, *random.permutation([1, 2])] if not names else random.permutation(3)
+                expected = singles[order[0]]
+                for n in order[1:]:
+                    expected = blend(expected, singles[n], grays[n], blending)
+                for each, is_equal in ((order, True), (order[::-1], blending != "over"))[:2 if names else 1]:
+                    colors = ("--color", ",".join(names[n] for n in each)) if names else ()
+                    picture = self.turn(*(files[n] for n in each), "--blending", blending, *colors)
+                    self.assertEqual((picture == expected).all(), is_equal, (blending, names, each))
+                self.assertFalse(any((expected == single).all() for single in singles))
+
+    def test_grids(self):
+        """A part of a grid, with its axes in another order, is where the whole has the same values."""
+        places, random = self.PLACES, numpy.random.default_rng()
+        inside = numpy.zeros((11, 10, 9), numpy.int16)  # for any seed black is 0 and white is 1000
+        inside[5:8, 4:7, 5:7] = 1000 * random.integers(0, 2, (3, 3, 2))
+        inside[6, 5, 5] = 1000
+        whole = splatmip.write_meta(self.path("whole.mha"), inside, places)
+        other = numpy.zeros_like(inside)
+        other[1:4, 1:9, 1:8] = 1000
+        other = splatmip.write_meta(self.path("other.mha"), other, places)
+        turned = numpy.column_stack([places[:, 2], places[:, 0], places[:, 1], places @ [3, 2, 4, 1]])
+        part = splatmip.write_meta(self.path("part.mha"), inside[4:9, 2:8, 3:8].transpose(1, 2, 0).copy(), turned)
+        for words in ((), ("--perspective", 40), ("--slab", 12)):
+            words = ("--color", "red,lime", "--blending", "add", "--mode", "exact", *words)
+            wanted = self.turn(other, whole, *words)
+            self.assertGreater(wanted[..., 1].max(), 100)
+            found = self.turn(other, part, *words), self.turn(part, other, *words)[..., [1, 0, 2]]
+            for picture in found:  # rounding
+                self.assertLessEqual(abs(picture - wanted).max(), 1, words)
+        far = splatmip.write_meta(self.path("far.mha"), None, places + [0, 0, 0, 1e8])
+        self.assert_several_refused(far, "far apart")
+        self.assert_several_refused(splatmip.write_vti(self.path("a.vti")), "orientation")
+
+    def assert_several_refused(self, path, words):
+        result = self.run_program(self.path("whole.mha"), path, "--blending", "add")
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"\Asplatmip: [^\n]*" + words + r"[^\n]*\.\n\Z")
 
 
 def draw_letter(letter):
