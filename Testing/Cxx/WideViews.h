@@ -9,10 +9,23 @@
 #include "Geometry/Magnification.h"
 #include "Geometry/ShearWarp.h"
 
+#include "Random.h"
+
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace coretesting
 {
+/// The same view of a volume whose slices are displaced along its first two axes.
+inline splatting::View skewed(splatting::View view, reference::Random& random)
+{
+  glm::dmat4 shear(1.0);
+  shear[2] = glm::dvec4(random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5), 1.0, 0.0);
+  const glm::dvec3 centre = 0.5 * glm::dvec3(view.dimensions - 1);
+  const glm::dmat4 toCentre = glm::translate(glm::dmat4(1.0), centre);
+  view.indexToClip = view.indexToClip * toCentre * shear * glm::inverse(toCentre);
+  return view;
+}
+
 /// In which a voxel is twelve pixels wide.
 inline splatting::View magnifiedView()
 {

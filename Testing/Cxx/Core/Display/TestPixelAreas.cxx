@@ -108,7 +108,8 @@ bool isShown(const splatting::ShearWarp& geometry, int u, int v)
 splatting::View someView(int n, reference::Random& random)
 {
   const auto size = randomSize(random, 24);
-  return reduced(n % 2 ? randomPerspective(size, random) : anyView(size, random));
+  const splatting::View view = n % 2 ? randomPerspective(size, random) : anyView(size, random);
+  return reduced(random.uniform(0, 1) ? skewed(view, random) : view);
 }
 
 /// Calls f(n, view, geometries, random) for those of some views that are overviews, and counts

@@ -5,6 +5,7 @@
 // pixels are as wide as they are.
 #include "CoreTesting.h"
 #include "Geometry/Magnification.h"
+#include "WideViews.h"
 
 #include <algorithm>
 #include <cmath>
@@ -281,6 +282,24 @@ void testDegenerateViews(Checks& check)
   check(!splatting::isParallel(perspective), "a perspective view is taken for a parallel one");
 }
 
+/// Half the angle between two of the directions that are tried.
+constexpr double HalfStep = 1e-3;
+
+/// How many voxels a pixel spans across its ray, in the direction of the largest span of many. The
+/// largest of all is that one over the cosine of half a step at most.
+double largestSpan(const glm::dmat4& indexToCamera, double zoom)
+{
+  const glm::dmat3 toIndex(glm::inverse(indexToCamera));
+  const glm::dvec3 ray = glm::normalize(toIndex[2]);
+  double largest = 0.0;
+  for (double angle = 0.0; angle < 3.15; angle += 2.0 * HalfStep)
+  {
+    const glm::dvec3 side = (std::cos(angle) * toIndex[0] + std::sin(angle) * toIndex[1]) / zoom;
+    largest = std::max(largest, glm::length(side - glm::dot(side, ray) * ray));
+  }
+  return largest;
+}
+
 /// How wide a pixel is in voxels.
 void testWidths(Checks& check)
 {
@@ -295,9 +314,9 @@ void testWidths(Checks& check)
       view.viewport = { 90, 70 };
       const glm::dvec3 eye = glm::normalize(anyVector(random, -1.0, 1.0)) * 100.0;
       const glm::dvec2 half = 0.5 * glm::dvec2(view.viewport) / zoom;
-      view.indexToClip = glm::ortho(-half.x, half.x, -half.y, half.y, 1.0, 1000.0) *
-        glm::lookAt(eye, glm::dvec3(0.0), anyVector(random, -1.0, 1.0)) *
-        glm::scale(glm::dmat4(1.0), spacing);
+      const glm::dmat4 camera = glm::lookAt(eye, glm::dvec3(0.0), anyVector(random, -1.0, 1.0));
+      const glm::dmat4 projection = glm::ortho(-half.x, half.x, -half.y, half.y, 1.0, 1000.0);
+      view.indexToClip = projection * camera * glm::scale(glm::dmat4(1.0), spacing);
       const double width = splatting::voxelsPerPixel(view);
       const double least = std::min({ spacing.x, spacing.y, spacing.z });
       const double most = std::max({ spacing.x, spacing.y, spacing.z });
@@ -310,6 +329,12 @@ void testWidths(Checks& check)
       const double ofCubes = splatting::voxelsPerPixel(view);
       check(std::abs(ofCubes * zoom - 1.0) < 1e-6, "pixels are ", ofCubes, " cubes wide, not ",
         1.0 / zoom);
+      view.indexToClip = projection * camera * glm::scale(glm::dmat4(1.0), spacing);
+      const splatting::View skew = skewed(view, random);
+      const double span = largestSpan(glm::inverse(projection) * skew.indexToClip, zoom);
+      const double found = splatting::voxelsPerPixel(skew);
+      check(found >= span - 1e-9 && found <= span / std::cos(HalfStep) + 1e-9, "pixels are ", found,
+        " voxels of a skewed grid wide, not ", span);
     });
   splatting::View inside;
   inside.dimensions = { 30, 30, 30 };
