@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Pictures of vtkSplattingMIPProjection against the definition: where a pixel's ray meets the shear
-// image, between the four rays beside it, each reduced sample by sample; in exact mode the field on
-// its own ray. In a process without a display, which never loads OpenGL.
+// image, between the four rays beside it, each reduced sample by sample; in overviews from the
+// samples in the pixel's area; in exact mode the field on its own ray. Half of the images are
+// skewed. In a process without a display, which never loads OpenGL.
 #include "AverageTesting.h"
-#include "ProjectionTesting.h"
+#include "PixelOracle.h"
 
 #include "FieldMaximum.h"
-#include "Reductions.h"
 
 #include "vtkMatrix4x4.h"
 
@@ -22,21 +22,7 @@ namespace
 {
 using coretesting::Checks;
 using Filter = vtkSplattingMIPProjection;
-
-/// What pixels of the shear image are, by brute force.
-struct Oracle
-{
-  reference::ShearGrid grid;
-  reference::ShearView view;
-  std::vector<unsigned char> meets, hit;
-  std::vector<double> values;
-};
-
-/// A parallel view in index space: a ray through `corner + x across + y up` runs along `direction`.
-struct Rays
-{
-  glm::dvec3 corner, across, up, direction;
-};
+using namespace projectiontesting;
 
 glm::dmat4 indexToWorld(vtkImageData* image)
 {
@@ -161,6 +147,14 @@ reference::RayCuts cutsOf(Filter* filter, vtkImageData* image)
   return cuts;
 }
 
+/// Overviews of exact mode show the voxels of mode PREVIEW, but averages are those of HIGH.
+bool showsVoxels(Filter* filter)
+{
+  return filter->GetQualityMode() == Filter::PREVIEW ||
+    (filter->GetQualityMode() == Filter::EXACT &&
+      filter->GetBlendMode() != Filter::AVERAGE_INTENSITY_BLEND);
+}
+
 template <class T>
 Oracle oracleOf(
   const reference::Volume<T>& volume, Filter* filter, vtkImageData* image, const Rays& rays)
@@ -169,7 +163,7 @@ Oracle oracleOf(
   findView(rays, oracle.view);
   oracle.grid = reference::makeShearGrid(volume.size, oracle.view);
   const reference::Volume<double> exact = reference::toDouble(volume);
-  const auto samples = filter->GetQualityMode() == Filter::PREVIEW
+  const auto samples = showsVoxels(filter)
     ? reference::voxelSamples(exact, oracle.view)
     : reference::slabSamples(exact, oracle.view, kernelOf(filter));
   const reference::RayCutter cutter(oracle.grid, oracle.view, cutsOf(filter, image));
@@ -188,67 +182,6 @@ Oracle oracleOf(
     }
   }
   return oracle;
-}
-
-/// How much of a ray lies in the box of the outermost voxel centres, the picture's outline;
-/// negative if it misses it.
-double lengthInside(const std::array<int, 3>& size, const glm::dvec3& at, const glm::dvec3& along)
-{
-  double begin = -HUGE_VAL, end = HUGE_VAL;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double thin = size[a] == 1 ? 0.5 : 0.0;
-    const double low = (-thin - at[a]) / along[a], high = (size[a] - 1 + thin - at[a]) / along[a];
-    begin = std::max(begin, std::min(low, high));
-    end = std::min(end, std::max(low, high));
-  }
-  return end - begin;
-}
-
-/// What a pixel must be: nothing if it must have the background. False if that is open.
-struct Expected
-{
-  bool certain = true;
-  bool hit = false;
-  double value = 0.0;
-  double slack = 0.0; ///< what it may differ by, beside rounding
-};
-
-Expected expectedPixel(
-  const Oracle& oracle, const std::array<int, 3>& size, const Rays& rays, const glm::dvec3& point)
-{
-  Expected expected;
-  const double inside = lengthInside(size, point, rays.direction);
-  expected.certain = std::abs(inside) > 1e-5;
-  if (inside < 0.0)
-  {
-    return expected;
-  }
-  const auto& axes = oracle.grid.axes;
-  const double depth = point[axes[2]] - oracle.grid.middle;
-  const double pu = point[axes[0]] + oracle.grid.margin[0] + oracle.view.shear[0] * depth;
-  const double pv = point[axes[1]] + oracle.grid.margin[1] + oracle.view.shear[1] * depth;
-  const int u = static_cast<int>(std::floor(pu)), v = static_cast<int>(std::floor(pv));
-  double sum = 0.0, weight = 0.0, lost = 0.0;
-  for (int n = 0; n < 4; ++n)
-  {
-    const int i = u + n % 2, j = v + n / 2;
-    const double w = std::abs(u + 1 - n % 2 - pu) * std::abs(v + 1 - n / 2 - pv);
-    if (i < 0 || j < 0 || i >= oracle.grid.width || j >= oracle.grid.height)
-    {
-      continue;
-    }
-    const std::size_t pixel = std::size_t(j) * oracle.grid.width + i;
-    if (oracle.meets[pixel])
-    {
-      (oracle.hit[pixel] ? weight : lost) += w;
-      sum += oracle.hit[pixel] ? w * oracle.values[pixel] : 0.0;
-    }
-  }
-  expected.certain = expected.certain && std::abs(lost - 0.5) > 1e-5 && weight > 1e-5;
-  expected.hit = weight > 1e-5 && lost <= 0.5;
-  expected.value = sum / weight;
-  return expected;
 }
 
 /// In exact mode: the largest value of the field on the pixel's own ray, or the least.
@@ -278,7 +211,7 @@ Expected expectedOnRay(const reference::Volume<double>& field, Filter* filter, v
 
 struct Count
 {
-  int pixels = 0, hits = 0;
+  int pixels = 0, hits = 0, ofOverviews = 0;
   double worst = 0.0;
 };
 
@@ -296,7 +229,8 @@ void compare(Checks& check, const reference::Volume<T>& volume, Filter* filter, 
   {
     return;
   }
-  const bool isExact = filter->GetQualityMode() == Filter::EXACT;
+  const bool isOverview = voxelsPerPixel(rays) > 1.0;
+  const bool isExact = filter->GetQualityMode() == Filter::EXACT && !isOverview;
   const Oracle oracle = isExact ? Oracle() : oracleOf(volume, filter, image, rays);
   const reference::Volume<double> field = reference::toDouble(volume);
   const double low = double(*std::min_element(volume.voxels.begin(), volume.voxels.end()));
@@ -316,8 +250,9 @@ void compare(Checks& check, const reference::Volume<T>& volume, Filter* filter, 
     for (int x = 0; x < size[0]; ++x)
     {
       const glm::dvec3 point = rays.corner + double(x) * rays.across + double(y) * rays.up;
-      const Expected expected = isExact ? expectedOnRay(field, filter, image, rays, point)
-                                        : expectedPixel(oracle, volume.size, rays, point);
+      const Expected expected = isOverview ? Area(oracle, volume.size, rays, point).expected(filter)
+        : isExact                          ? expectedOnRay(field, filter, image, rays, point)
+                                           : expectedPixel(oracle, volume.size, rays, point);
       if (!expected.certain)
       {
         continue;
@@ -333,6 +268,7 @@ void compare(Checks& check, const reference::Volume<T>& volume, Filter* filter, 
           " pixel ", x, " ", y, " is ", found, ", not ", expected.value, ": ", error, " bounds");
         count.worst = std::max(count.worst, error);
         ++count.hits;
+        count.ofOverviews += isOverview;
       }
     }
   }
@@ -382,6 +318,16 @@ void chooseAtRandom(Filter* filter, vtkImageData* image, bool integers, referenc
   }
 }
 
+/// Displaces the slices of an image along its first two axes.
+void skew(vtkImageData* image, reference::Random& random)
+{
+  vtkNew<vtkMatrix3x3> shear, direction;
+  shear->SetElement(0, 2, random.uniform(-1.5, 1.5));
+  shear->SetElement(1, 2, random.uniform(-1.5, 1.5));
+  vtkMatrix3x3::Multiply3x3(image->GetDirectionMatrix(), shear, direction);
+  image->SetDirectionMatrix(direction);
+}
+
 /// A view from anywhere, of some pixels, whose principal axis the oracle knows.
 glm::dvec3 lookAtRandom(Filter* filter, vtkImageData* image, reference::Random& random)
 {
@@ -389,18 +335,17 @@ glm::dvec3 lookAtRandom(Filter* filter, vtkImageData* image, reference::Random& 
   reference::ShearView view;
   do
   {
-    direction = projectiontesting::randomDirection(random);
-    up = projectiontesting::randomDirection(random);
+    direction = randomDirection(random);
+    up = randomDirection(random);
     filter->SetViewDirection(direction.x, direction.y, direction.z);
     filter->SetViewUp(up.x, up.y, up.z);
     const int size[2] = { random.uniform(1, 28), random.uniform(1, 28) };
     filter->SetOutputSize(size[0], size[1]);
-    // Pixels no wider than voxels, which show points; see TestPixelAreas for others.
+    // Most of them narrower than voxels. Wider ones make an overview.
     const double* const voxel = image->GetSpacing();
     const double least = std::min({ voxel[0], voxel[1], voxel[2] });
-    const double spacing[2] = { least * random.uniform(0.2, 1.0),
-      least * random.uniform(0.2, 1.0) };
-    filter->SetOutputSpacing(spacing[0], spacing[1]);
+    const double x = least * random.uniform(0.2, 1.5), y = least * random.uniform(0.2, 1.5);
+    filter->SetOutputSpacing(x, y);
   } while (
     !findView(raysOf(filter, image, {}), view) || glm::length(glm::cross(direction, up)) < 0.1);
   const double* const bounds = image->GetBounds();
@@ -419,22 +364,28 @@ void testType(Checks& check, Count& all)
       const std::array<int, 3> size = { random.uniform(n % 6 ? 2 : 1, 9),
         random.uniform(n % 5 ? 2 : 1, 9), random.uniform(n % 4 ? 2 : 1, 9) };
       const auto volume = coretesting::wholeRangeNoise<T>(size, random.bits());
-      const auto image = projectiontesting::imageOf(volume);
-      projectiontesting::placeAtRandom(image, random);
-      const auto filter = projectiontesting::projectionOf(image);
+      const auto image = imageOf(volume);
+      placeAtRandom(image, random);
+      if (random.uniform(0, 1))
+      {
+        skew(image, random);
+      }
+      const auto filter = projectionOf(image);
       glm::dvec3 focus = lookAtRandom(filter, image, random);
       chooseAtRandom(filter, image, std::is_integral_v<T>, random);
       if (random.uniform(0, 1))
       {
-        focus += 2.0 * projectiontesting::randomDirection(random);
+        focus += 2.0 * randomDirection(random);
         filter->CenterOnVolumeOff();
         filter->SetFocalPoint(focus.x, focus.y, focus.z);
       }
       compare(check, volume, filter, image, focus, count);
     });
   all.hits += count.hits;
+  all.ofOverviews += count.ofOverviews;
   std::cout << "type " << type << ": largest error " << count.worst << " of the bound, "
-            << count.hits << " of " << count.pixels << " pixels with a sample\n";
+            << count.hits << " of " << count.pixels << " pixels with a sample, "
+            << count.ofOverviews << " of overviews\n";
 }
 
 /// What this process has loaded has nothing to do with a display.
@@ -465,6 +416,8 @@ int TestProjection(int, char*[])
     [&](auto* null) { testType<std::remove_pointer_t<decltype(null)>>(check, all); });
   // Eight scenes of each type; fewer may miss more.
   check(all.hits > 600 || reference::scenesRun() < 80, "only ", all.hits, " pixels with a sample");
+  check(all.ofOverviews > 60 || reference::scenesRun() < 80, "only ", all.ofOverviews,
+    " pixels of overviews with a sample");
   testLibraries(check);
   return check.result();
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // vtkSplattingMIPProjection through the camera of a renderer shows what the mapper renders there:
-// shear images bit for bit, pictures to half a gray level.
+// shear images bit for bit, pictures to half a gray level. Half of the images are skewed.
 #include "Stage.h"
 
 #include "vtkSplattingMIPProjection.h"
@@ -11,6 +11,7 @@
 #include "vtkCamera.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
 #include "vtkPointData.h"
 #include "vtkRenderer.h"
 #include "vtkUnsignedCharArray.h"
@@ -198,6 +199,13 @@ int TestProjectionAndMapper(int, char*[])
     [&](int n, reference::Random& own)
     {
       stage.viewAngle = n % 3 == 2 ? 35.0 : 0.0;
+      vtkNew<vtkMatrix3x3> skew;
+      if (own.uniform(0, 1))
+      {
+        skew->SetElement(0, 2, own.uniform(-1.5, 1.5));
+        skew->SetElement(1, 2, own.uniform(-0.5, 0.5));
+      }
+      image->SetDirectionMatrix(skew);
       const stage::Vector direction = { own.uniform(-1.0, 1.0), own.uniform(-1.0, 1.0),
         own.uniform(0.1, 1.0) };
       stage.look(direction, { 0.1, 1.0, 0.2 }, own.uniform(0.6, 1.2));
