@@ -17,8 +17,9 @@ namespace
 using Mapper = vtkSplattingMIPVolumeMapper;
 using Bytes = reference::Volume<std::uint8_t>;
 
-constexpr int Width = 130;
-constexpr int Height = 110;
+/// Of the window for exact mode, whose oracle is slow.
+constexpr int Width = 76;
+constexpr int Height = 64;
 /// A millionth of the range, and as much for rays that are computed otherwise.
 constexpr double FilterTolerance = 2.0 * 255.0 / 1e6;
 const stage::Vector Up = { 0.1, 1.0, 0.05 };
@@ -159,13 +160,13 @@ void testOtherModes(stage::Stage& stage, const std::string& series, stage::Check
 int TestSkew(int, char*[])
 {
   stage::Checks check;
-  stage::Stage stage(Width, Height);
+  stage::Stage small(Width, Height), large(130, 110);
   for (double angle : { 0.0, 40.0 })
   {
-    stage.viewAngle = angle;
+    small.viewAngle = large.viewAngle = angle;
     const std::string series = angle > 0.0 ? "perspective" : "parallel";
-    testExact(stage, series, check);
-    testOtherModes(stage, series, check);
+    testExact(small, series, check);
+    testOtherModes(large, series, check);
   }
   return check.exitCode();
 }
