@@ -37,7 +37,7 @@
  * and 64-bit integers) before ScalarShift, ScalarScale and rounding are applied. They have the same
  * bits for any number of threads. The input is not copied, except for interleaved components. An
  * index of it (about 1/57 of its memory) is kept until the scalars change. The whole extent of the
- * input is requested. As in vtkImageReslice, the input's ghost arrays are ignored.
+ * input is requested. As in vtkImageReslice, voxels that ghost arrays hide are used like others.
  *
  * @sa vtkImageReslice vtkSplattingMIPProjection
  */
