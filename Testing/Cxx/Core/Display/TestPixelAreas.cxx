@@ -246,6 +246,14 @@ private:
   void readRows(int n, const glm::dvec2& pixel, Reading& reading) const
   {
     bool meetsRows = false;
+    // A row along a side of the area is in it, or not, by rounding.
+    for (const glm::dvec2& corner :
+      { glm::dvec2(-0.5, -0.5), { 0.5, -0.5 }, { 0.5, 0.5 }, { -0.5, 0.5 } })
+    {
+      const glm::dvec3 h = this->Geometry[n].screenToShear() * glm::dvec3(pixel + corner, 1.0);
+      const double v = h.y / h.z;
+      reading.isCertain &= !(h.z > 0.0) || std::abs(v - std::round(v)) > Rounding;
+    }
     for (int v = -1; v <= this->All[n].height; ++v)
     {
       const Interval row = this->part(n, pixel, 0, v);
