@@ -57,7 +57,7 @@ const char* validate(vtkSplattingMIPVolumeMapper* mapper, vtkVolumeProperty* pro
 bool needsLocations(vtkSplattingMIPVolumeMapper* mapper)
 {
   return mapper->GetRecordLocations() || mapper->GetDepthCoding() || mapper->GetWriteDepth() ||
-    mapper->GetLabelInput();
+    (mapper->GetLabelInput() && mapper->GetLabelMode() == vtkSplattingMIPVolumeMapper::SAMPLE);
 }
 
 ProjectionSettings settingsOf(vtkSplattingMIPVolumeMapper* mapper, int mode, const View& view)

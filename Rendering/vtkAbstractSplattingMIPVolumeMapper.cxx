@@ -65,6 +65,12 @@ const char* vtkAbstractSplattingMIPVolumeMapper::GetAccelerationAsString()
 }
 
 //------------------------------------------------------------------------------
+const char* vtkAbstractSplattingMIPVolumeMapper::GetLabelModeAsString()
+{
+  return this->LabelMode == SAMPLE ? "sample" : "projected";
+}
+
+//------------------------------------------------------------------------------
 const char* vtkAbstractSplattingMIPVolumeMapper::GetPictureBlendingAsString()
 {
   static const char* const names[] = { "over", "add", "maximum" };
@@ -103,6 +109,7 @@ void vtkAbstractSplattingMIPVolumeMapper::PrintPictureSettings(ostream& os, vtkI
      << this->DepthCodingRange[1] << ")\n";
   os << indent << "WriteDepth: " << onOff(this->WriteDepth);
   os << indent << "WriteDepthOpacity: " << this->WriteDepthOpacity << "\n";
+  os << indent << "LabelMode: " << this->GetLabelModeAsString() << "\n";
   os << indent << "PictureBlending: " << this->GetPictureBlendingAsString() << "\n";
 }
 

@@ -49,6 +49,15 @@ public:
     MAXIMUM = 2
   };
 
+  /**
+   * The values of LabelMode.
+   */
+  enum LabelModes
+  {
+    SAMPLE = 0,
+    PROJECTED = 1
+  };
+
   ///@{
   /**
    * Set/Get which components of multi-component scalars are projected, as in vtkSmartVolumeMapper.
@@ -318,10 +327,10 @@ public:
   ///@{
   /**
    * Set/Get whether projections record sample positions for GetLocations(). Default off;
-   * DepthCoding, WriteDepth and LabelInput record them in any case. The position of a pixel is that
-   * of the sample whose value it shows. Of equal samples the nearest to the viewer is recorded. The
-   * position is that of the first independent component, or of the last dependent component.
-   * Averages have no positions and report a warning.
+   * DepthCoding, WriteDepth and LabelInput (in LabelMode SAMPLE) record them in any case. The
+   * position of a pixel is that of the sample whose value it shows. Of equal samples the nearest to
+   * the viewer is recorded. The position is that of the first independent component, or of the last
+   * dependent component. Averages have no positions and report a warning.
    */
   vtkSetMacro(RecordLocations, vtkTypeBool);
   vtkGetMacro(RecordLocations, vtkTypeBool);
@@ -381,12 +390,27 @@ public:
   ///@{
   /**
    * Set/Get integer labels, one for each voxel of the input, in the order of MaskInput. Edges of
-   * labels are drawn over the picture: pixels whose sample has a label that is not 0 and differs
-   * from that of one of the four neighbours. Default nullptr: no labels. Is ignored for averages
-   * and by ray casters, and reported as an error with several ranks.
+   * labels are drawn over the picture: pixels whose label (see LabelMode) is not 0 and differs from
+   * that of one of the four neighbours. Default nullptr: no labels. Is ignored by ray casters, and
+   * for averages if LabelMode is SAMPLE; reported as an error with several ranks.
    */
   virtual void SetLabelInput(vtkImageData*);
   vtkGetObjectMacro(LabelInput, vtkImageData);
+  ///@}
+
+  ///@{
+  /**
+   * Set/Get the label that a pixel has. SAMPLE (default): that of the voxel of its sample.
+   * PROJECTED: that of the first voxel with a label that is not 0 on its ray, from the viewer,
+   * whatever is brighter. It copies LabelInput to one byte for each voxel. Voxels are boxes, and
+   * cuts hide them as in PREVIEW, in all quality modes. MaskInput does not hide labels. Clamped to
+   * [SAMPLE, PROJECTED].
+   */
+  vtkSetClampMacro(LabelMode, int, SAMPLE, PROJECTED);
+  vtkGetMacro(LabelMode, int);
+  void SetLabelModeToSample() { this->SetLabelMode(SAMPLE); }
+  void SetLabelModeToProjected() { this->SetLabelMode(PROJECTED); }
+  const char* GetLabelModeAsString();
   ///@}
 
   ///@{
@@ -457,6 +481,7 @@ private:
   double WriteDepthOpacity = 0.5;
   vtkImageData* LabelInput = nullptr;
   vtkScalarsToColors* LabelColors = nullptr;
+  int LabelMode = SAMPLE;
   int PictureBlending = OVER;
 
   vtkAbstractSplattingMIPVolumeMapper(const vtkAbstractSplattingMIPVolumeMapper&) = delete;

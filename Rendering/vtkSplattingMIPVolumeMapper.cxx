@@ -7,6 +7,7 @@
 #include "Ranks/FrameObserver.h"
 #include "ReportedProblems.h"
 #include "Scene/LabelEdges.h"
+#include "Scene/ProjectedLabels.h"
 #include "Scene/ProjectedVolume.h"
 #include "Scene/RayCastFallback.h"
 #include "Scene/SampleLocations.h"
@@ -79,6 +80,7 @@ public:
   void DropRayCaster();
   bool ReportProgress(vtkSplattingMIPVolumeMapper* self, double done);
   bool IsAborted() const;
+  std::vector<int> LabelledVoxels(vtkSplattingMIPVolumeMapper* self);
   void ReportAbsence(vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
 
   ReportedProblems Reported;
@@ -90,6 +92,7 @@ public:
   splatting::Picture Picture;
   double Shear[2] = { 0.0, 0.0 };
 
+  std::unique_ptr<ProjectedLabels> Labels;    // while LabelMode is PROJECTED
   std::unique_ptr<RayCastFallback> RayCaster; // created on demand, because it takes megabytes
 };
 
@@ -209,6 +212,7 @@ void vtkSplattingMIPVolumeMapper::Internals::ReleaseMemory()
   this->Data.Clear();
   this->Locations.Forget();
   this->Picture = {};
+  this->Labels = nullptr;
   this->DropRayCaster();
 }
 
@@ -236,6 +240,10 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
   in.Data.BeginFrame();
+  if (!this->GetLabelInput() || this->GetLabelMode() == SAMPLE)
+  {
+    in.Labels = nullptr;
+  }
   std::string problem;
   try
   {
@@ -332,6 +340,23 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 }
 
 //------------------------------------------------------------------------------
+// The voxel whose label each pixel of the picture has, see LabelMode.
+std::vector<int> vtkSplattingMIPVolumeMapper::Internals::LabelledVoxels(
+  vtkSplattingMIPVolumeMapper* self)
+{
+  if (self->GetLabelMode() == SAMPLE)
+  {
+    return this->Locations.VoxelsOf(this->Picture);
+  }
+  if (!this->Labels)
+  {
+    this->Labels = std::make_unique<ProjectedLabels>();
+  }
+  return this->Labels->VoxelsOf(this->Picture, self->GetLabelInput(), this->Locations.LastView(),
+    this->Data.Cuts, static_cast<std::size_t>(self->GetIndexMemoryBudget()));
+}
+
+//------------------------------------------------------------------------------
 // Displays the picture, coloured by depth if DepthCoding is on, and its depths.
 void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
 {
@@ -351,7 +376,7 @@ void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
   if (this->GetLabelInput() && !ren->GetSelector())
   {
     drawLabelEdges(
-      in.Picture, in.Locations.VoxelsOf(in.Picture), this->GetLabelInput(), this->GetLabelColors());
+      in.Picture, in.LabelledVoxels(this), this->GetLabelInput(), this->GetLabelColors());
   }
   this->DisplayPicture(ren);
   if (this->GetWriteDepth() && !in.Picture.pixels.empty())
@@ -537,7 +562,9 @@ double* vtkSplattingMIPVolumeMapper::GetShear()
 //------------------------------------------------------------------------------
 vtkIdType vtkSplattingMIPVolumeMapper::GetIndexMemorySize()
 {
-  return static_cast<vtkIdType>(this->Internal->Data.IndexMemorySize());
+  const Internals& in = *this->Internal;
+  return static_cast<vtkIdType>(
+    in.Data.IndexMemorySize() + (in.Labels ? in.Labels->MemorySize() : 0));
 }
 
 //------------------------------------------------------------------------------

@@ -59,6 +59,12 @@ std::uint32_t colorOf(double label, vtkScalarsToColors* colors)
 
 namespace splatting
 {
+vtkDataArray* scalarsOfLabels(vtkImageData* labels)
+{
+  bool onCells = false;
+  return scalarsOf(labels, onCells);
+}
+
 std::string validateLabels(vtkImageData* labels, const glm::ivec3& size)
 {
   bool onCells = false;

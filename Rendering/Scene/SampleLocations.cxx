@@ -387,16 +387,7 @@ std::vector<int> SampleLocations::VoxelsOf(const Picture& picture) const
   Locator::Arrays arrays;
   arrays.voxels = voxels.data();
   Locator(this->Last()->located).fill(picture.origin, picture.size, arrays);
-  Picture seen = picture;
-  std::fill(seen.pixels.begin(), seen.pixels.end(), 1u);
-  this->SceneCuts.Hide(seen);
-  for (std::size_t n = 0; n < seen.pixels.size(); ++n)
-  {
-    if (!seen.pixels[n])
-    {
-      std::fill_n(&voxels[3 * n], 3, -1);
-    }
-  }
+  this->SceneCuts.Hide(picture, voxels);
   return voxels;
 }
 

@@ -86,6 +86,8 @@ public:
   /// frame, and if the picture is no longer shown or its voxels are gone.
   vtkImageData* Image();
 
+  /// The view of the last frame, after Remember().
+  const View& LastView() const { return this->Last()->located.view; }
   /// Gives each pixel of a picture the colour of its depth, with its brightness.
   void ColorByDepth(Picture& picture, vtkScalarsToColors* colors, const double range[2]);
   /// The voxels, i, j and k, of a picture's samples; -1 for pixels without a visible sample.

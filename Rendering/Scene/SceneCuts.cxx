@@ -16,11 +16,17 @@ void SceneCuts::Find(const View& view, const std::vector<ShearWarp>& images, vtk
 {
   placePicture(images, view.viewport, this->Area);
   this->FindScene(view, renderer, volume, intermixes, readDepth);
-  this->Present.resize(images.size());
+  this->FindFor(view, images, this->Present);
+}
+
+void SceneCuts::FindFor(
+  const View& view, const std::vector<ShearWarp>& images, std::vector<Cuts>& cuts)
+{
+  cuts.resize(images.size());
   for (std::size_t n = 0; n < images.size(); ++n)
   {
-    this->Present[n].cropping = view.cropping;
-    this->Present[n].intervals.find(
+    cuts[n].cropping = view.cropping;
+    cuts[n].intervals.find(
       images[n], view.halfSpaces, this->Bounds.Get(), this->Seen ? &this->Seen->depth : nullptr);
   }
 }
@@ -80,6 +86,20 @@ void SceneCuts::Hide(Picture& picture) const
   if (this->Seen)
   {
     this->Seen->depth.hide(picture);
+  }
+}
+
+void SceneCuts::Hide(const Picture& picture, std::vector<int>& voxels) const
+{
+  Picture seen = picture;
+  std::fill(seen.pixels.begin(), seen.pixels.end(), 1u);
+  this->Hide(seen);
+  for (std::size_t n = 0; n < seen.pixels.size(); ++n)
+  {
+    if (!seen.pixels[n])
+    {
+      std::fill_n(&voxels[3 * n], 3, -1);
+    }
   }
 }
 

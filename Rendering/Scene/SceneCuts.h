@@ -42,6 +42,9 @@ public:
   void Find(const View& view, const std::vector<ShearWarp>& images, vtkRenderer* renderer,
     vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
 
+  /// As Find(), in the scene of the last Find() or FindOnScreen(), for other images of its view.
+  void FindFor(const View& view, const std::vector<ShearWarp>& images, std::vector<Cuts>& cuts);
+
   /// The cuts of each image, from Find().
   const std::vector<Cuts>& Get() const { return this->Present; }
 
@@ -63,6 +66,8 @@ public:
 
   /// Clears the pixels of a picture that the scene hides.
   void Hide(Picture& picture) const;
+  /// Sets the voxels of these pixels, three numbers for each, to -1.
+  void Hide(const Picture& picture, std::vector<int>& voxels) const;
 
 private:
   /// Depths that a renderer's last frame rendered before a volume.

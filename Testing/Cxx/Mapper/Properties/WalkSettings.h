@@ -289,6 +289,8 @@ inline void addPictureSettings(Settings<Shown>& all)
   all.push_back({ "LabelColors", onOrOff(), [](S& s, V v, World& world) {
                    s.splatting->SetLabelColors(v[0] != 0.0 ? world.depthColors.Get() : nullptr);
                  } });
+  all.push_back({ "LabelMode", oneOf({ 0, 1 }),
+    [](S& s, V v, World&) { s.splatting->SetLabelMode(int(v[0])); } });
   all.push_back({ "PictureBlending", oneOf({ 0, 0, 1, 2 }),
     [](S& s, V v, World&) { s.splatting->SetPictureBlending(int(v[0])); } });
 }

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Scene/ProjectedLabels.h"
+
+#include "Common/Parallel.h"
+#include "ComponentProjector.h"
+#include "Projection/Locations.h"
+#include "Scene/LabelEdges.h"
+#include "Scene/SceneCuts.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace splatting
+{
+// Returns whether labels have changed.
+bool ProjectedLabels::Load(vtkImageData* labels, const glm::ivec3& size)
+{
+  if (this->Labels == labels && this->Time == labels->GetMTime())
+  {
+    return false;
+  }
+  vtkDataArray* const scalars = scalarsOfLabels(labels);
+  this->IsLabel.resize(std::size_t(size.x) * size.y * size.z);
+  parallelFor(0, static_cast<std::ptrdiff_t>(this->IsLabel.size()), 0,
+    [&](std::ptrdiff_t first, std::ptrdiff_t last)
+    {
+      for (std::ptrdiff_t n = first; n < last; ++n)
+      {
+        this->IsLabel[n] = scalars->GetComponent(n, 0) != 0.0;
+      }
+    });
+  this->Index.reset({ this->IsLabel.data(), ScalarType::UInt8, size });
+  this->Labels = labels;
+  this->Time = labels->GetMTime();
+  return true;
+}
+
+std::vector<int> ProjectedLabels::VoxelsOf(const Picture& picture, vtkImageData* labels,
+  const View& view, SceneCuts& scene, std::size_t budget)
+{
+  std::vector<int> voxels(3 * picture.pixels.size(), -1);
+  std::vector<ShearWarp> rays;
+  if (!ShearWarp::factorise(view, rays) || rays.empty())
+  {
+    return voxels;
+  }
+  std::vector<Cuts> cuts;
+  scene.FindFor(view, rays, cuts);
+  ProjectionSettings settings;
+  settings.quality = Quality::Preview;
+  settings.recordLocations = true;
+  const bool isOutdated = this->Load(labels, view.dimensions) || !(cuts == this->RayCuts) ||
+    !haveSameRays(rays, this->Rays, true);
+  this->Index.setBudget(budget);
+  this->Rays = std::move(rays);
+  this->RayCuts = std::move(cuts);
+  if (isOutdated)
+  {
+    this->Images.resize(std::max(this->Images.size(), this->Rays.size()));
+    for (std::size_t n = 0; n < this->Rays.size(); ++n)
+    {
+      this->Projector.project(
+        this->Index, this->Rays[n], settings, this->RayCuts[n], this->Images[n]);
+    }
+  }
+  Located located;
+  located.images = &this->Images;
+  located.geometries = &this->Rays;
+  located.volume = this->Index.volume();
+  located.high = 1.0;
+  located.settings = settings;
+  located.view = view;
+  Locator::Arrays arrays;
+  arrays.voxels = voxels.data();
+  Locator(located).fill(picture.origin, picture.size, arrays);
+  scene.Hide(picture, voxels);
+  return voxels;
+}
+}
