@@ -467,6 +467,7 @@ void testCuts(Scene& scene, stage::Checks& check, reference::Random& random)
     scene.viewAngle = view / Count * 30.0;
     const auto direction = stage::anyDirection(random);
     scene.look(direction, { direction[1], direction[2], -direction[0] }, 0.5);
+    scene.pixels(); // with the cut before, in the same view
     Color normal = stage::anyDirection(random), across;
     scene.renderer->GetActiveCamera()->GetDirectionOfProjection(across.data());
     vtkNew<vtkPlane> plane;
@@ -524,11 +525,12 @@ void testUncut(stage::Checks& check, reference::Random& random)
   check(share > 0.95, "Only " + std::to_string(share) + " of the pixels show their own ray.");
   check(warnings.texts.empty(), "There is a warning.");
   // In the same view: the other side, other labels, none.
-  vtkCamera* const camera = scene.renderer->GetActiveCamera();
   scene.viewAngle = 0.0;
-  scene.look(stage::anyDirection(random), { 0.1, 0.2, 0.9 }, 0.4);
+  const auto direction = stage::anyDirection(random);
+  scene.look(direction, { direction[1], direction[2], -direction[0] }, 0.4);
   scene.pixels();
-  camera->Azimuth(180.0);
+  scene.look({ -direction[0], -direction[1], -direction[2] },
+    { direction[1], direction[2], -direction[0] }, 0.4);
   compareProjected(scene, Walk(scene, 0.5, {}, {}), "other side", check);
   scene.labels->DeepCopy(innerBoxes(scene.image, random));
   compareProjected(scene, Walk(scene, 0.5, {}, {}), "other labels", check);
