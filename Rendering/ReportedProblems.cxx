@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ReportedProblems.h"
 
+#include "vtkObject.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 
@@ -25,12 +26,16 @@ bool ReportedProblems::Update(vtkRenderer* renderer, vtkVolume* volume, const st
   return !isKnown;
 }
 
-bool ReportedProblems::Begins(const std::string& cause, bool holds)
+void ReportedProblems::Warn(
+  vtkObject* source, const std::string& cause, bool holds, const std::string& text)
 {
   if (!holds)
   {
     this->Causes.erase(cause);
   }
-  return holds && this->Causes.insert(cause).second;
+  else if (this->Causes.insert(cause).second)
+  {
+    vtkWarningWithObjectMacro(source, << text);
+  }
 }
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
+class vtkObject;
 class vtkRenderer;
 class vtkVolume;
 VTK_ABI_NAMESPACE_END
@@ -27,8 +28,9 @@ public:
   /// Sets the error of a view, or none (an empty string). Returns whether to report it.
   bool Update(vtkRenderer* renderer, vtkVolume* volume, const std::string& problem);
 
-  /// Whether to warn of a cause: if it holds now, and did not in the last call.
-  bool Begins(const std::string& cause, bool holds);
+  /// Warns of a cause if it holds now, and did not in the last call.
+  /// @param source  the warning's object
+  void Warn(vtkObject* source, const std::string& cause, bool holds, const std::string& text);
 
 private:
   struct Report

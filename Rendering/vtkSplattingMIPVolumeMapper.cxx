@@ -7,7 +7,6 @@
 #include "Ranks/FrameObserver.h"
 #include "ReportedProblems.h"
 #include "Scene/LabelEdges.h"
-#include "Scene/ProjectedLabels.h"
 #include "Scene/ProjectedVolume.h"
 #include "Scene/RayCastFallback.h"
 #include "Scene/SampleLocations.h"
@@ -74,13 +73,10 @@ public:
         { this->ReportAbsence(self, renderer, volume); })
   {
   }
-  void WarnAboutSurface(vtkSplattingMIPVolumeMapper* self);
-  void WarnAboutBudget(vtkSplattingMIPVolumeMapper* self);
   void ReleaseMemory();
   void DropRayCaster();
   bool ReportProgress(vtkSplattingMIPVolumeMapper* self, double done);
   bool IsAborted() const;
-  std::vector<int> LabelledVoxels(vtkSplattingMIPVolumeMapper* self);
   void ReportAbsence(vtkSplattingMIPVolumeMapper* self, vtkRenderer* renderer, vtkVolume* volume);
 
   ReportedProblems Reported;
@@ -92,7 +88,7 @@ public:
   splatting::Picture Picture;
   double Shear[2] = { 0.0, 0.0 };
 
-  std::unique_ptr<ProjectedLabels> Labels;    // while LabelMode is PROJECTED
+  LabelEdges Labels;
   std::unique_ptr<RayCastFallback> RayCaster; // created on demand, because it takes megabytes
 };
 
@@ -183,36 +179,13 @@ void vtkSplattingMIPVolumeMapper::Internals::ReportAbsence(
 }
 
 //------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::Internals::WarnAboutSurface(vtkSplattingMIPVolumeMapper* self)
-{
-  if (this->Reported.Begins("open surface", this->Data.Cuts.Surface().IsOpen()))
-  {
-    vtkWarningWithObjectMacro(self,
-      << "The bounding surface is not closed: rays that cross it once show nothing. Close it, for "
-         "instance with vtkFillHolesFilter.");
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkSplattingMIPVolumeMapper::Internals::WarnAboutBudget(vtkSplattingMIPVolumeMapper* self)
-{
-  if (this->Reported.Begins("budget", this->Data.Components.ExceedsBudget()))
-  {
-    vtkWarningWithObjectMacro(
-      self, << "An index for fast projection does not fit into IndexMemoryBudget ("
-            << self->GetIndexMemoryBudget()
-            << " bytes): this volume is projected without it. Raise the budget.");
-  }
-}
-
-//------------------------------------------------------------------------------
 // Releases memory, after a frame that ran out of memory.
 void vtkSplattingMIPVolumeMapper::Internals::ReleaseMemory()
 {
   this->Data.Clear();
   this->Locations.Forget();
   this->Picture = {};
-  this->Labels = nullptr;
+  this->Labels.Clear();
   this->DropRayCaster();
 }
 
@@ -240,10 +213,7 @@ void vtkSplattingMIPVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   this->Timer->StartTimer();
   this->LastRenderUsedRayCasting = false;
   in.Data.BeginFrame();
-  if (!this->GetLabelInput() || this->GetLabelMode() == SAMPLE)
-  {
-    in.Labels = nullptr;
-  }
+  in.Labels.BeginFrame(this);
   std::string problem;
   try
   {
@@ -299,23 +269,27 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return TurnOfViews::Degenerate;
   }
-  if (in.Reported.Begins("coarse", data.Source.UsesLargerSteps()))
-  {
-    vtkWarningMacro(
-      << "The least step of the rectilinear grid is too small for resampling. It is resampled "
-         "with larger steps, so that small cells may be lost: extract a part of it.");
-  }
-  if (!isProjection(this->BlendMode))
+  in.Reported.Warn(this, "coarse", data.Source.UsesLargerSteps(),
+    "The least step of the rectilinear grid is too small for resampling. It is resampled with "
+    "larger steps, so that small cells may be lost: extract a part of it.");
+  const bool isRayCast = !isProjection(this->BlendMode);
+  in.Reported.Warn(this, "ray casting", isRayCast,
+    std::string("Rendering by ") +
+      (RayCastFallback::IsForGpu(this->BlendMode) ? "vtkGPUVolumeRayCastMapper"
+                                                  : "vtkFixedPointVolumeRayCastMapper") +
+      ", because the blend mode is no intensity projection.");
+  if (isRayCast)
   {
     this->RenderByRayCasting(ren, vol);
     return "";
   }
-  in.Reported.Begins("ray casting", false);
   if (this->GetSlab())
   {
     addSlab(view, data.Grid(), vol, this->GetSlabCenter(), this->GetSlabThickness());
   }
-  in.WarnAboutSurface(this);
+  in.Reported.Warn(this, "open surface", data.Cuts.Surface().IsOpen(),
+    "The bounding surface is not closed: rays that cross it once show nothing. Close it, for "
+    "instance with vtkFillHolesFilter.");
   data.Prepare(this, view, vol);
   if (const char* const fault =
         data.Components.ValidateVoxels(static_cast<Quality>(this->GetQualityMode())))
@@ -328,7 +302,10 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
   {
     return TurnOfViews::Degenerate;
   }
-  in.WarnAboutBudget(this);
+  in.Reported.Warn(this, "budget", data.Components.ExceedsBudget(),
+    "An index for fast projection does not fit into IndexMemoryBudget (" +
+      std::to_string(this->GetIndexMemoryBudget()) +
+      " bytes): this volume is projected without it. Raise the budget.");
   if (data.Components.IsProjected() && (!this->DisplayOnRootOnly || data.Ranks.IsRoot()) &&
     data.Components.Warp(data.Images, view, in.Picture))
   {
@@ -340,43 +317,21 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
 }
 
 //------------------------------------------------------------------------------
-// The voxel whose label each pixel of the picture has, see LabelMode.
-std::vector<int> vtkSplattingMIPVolumeMapper::Internals::LabelledVoxels(
-  vtkSplattingMIPVolumeMapper* self)
-{
-  if (self->GetLabelMode() == SAMPLE)
-  {
-    return this->Locations.VoxelsOf(this->Picture);
-  }
-  if (!this->Labels)
-  {
-    this->Labels = std::make_unique<ProjectedLabels>();
-  }
-  return this->Labels->VoxelsOf(this->Picture, self->GetLabelInput(), this->Locations.LastView(),
-    this->Data.Cuts, static_cast<std::size_t>(self->GetIndexMemoryBudget()));
-}
-
-//------------------------------------------------------------------------------
 // Displays the picture, coloured by depth if DepthCoding is on, and its depths.
 void vtkSplattingMIPVolumeMapper::DisplayLocated(vtkRenderer* ren)
 {
   Internals& in = *this->Internal;
-  if (in.Reported.Begins(
-        "mean", needsLocations(this) && this->BlendMode == AVERAGE_INTENSITY_BLEND))
-  {
-    vtkWarningMacro(
-      << "An average is computed from all samples of a ray, so it has no location, no "
-         "depth coding, no label and no depth: choose another blend mode.");
-  }
+  in.Reported.Warn(this, "mean", needsLocations(this) && this->BlendMode == AVERAGE_INTENSITY_BLEND,
+    "An average is computed from all samples of a ray, so it has no location, no depth coding, no "
+    "label of a sample and no depth: choose another blend mode.");
   if (this->GetDepthCoding() && !ren->GetSelector())
   {
     in.Locations.ColorByDepth(
       in.Picture, this->GetDepthCodingColors(), this->GetDepthCodingRange());
   }
-  if (this->GetLabelInput() && !ren->GetSelector())
+  if (!ren->GetSelector())
   {
-    drawLabelEdges(
-      in.Picture, in.LabelledVoxels(this), this->GetLabelInput(), this->GetLabelColors());
+    in.Labels.Draw(this, in.Locations, in.Data.Cuts, in.Picture);
   }
   this->DisplayPicture(ren);
   if (this->GetWriteDepth() && !in.Picture.pixels.empty())
@@ -406,13 +361,6 @@ void vtkSplattingMIPVolumeMapper::DisplayPicture(vtkRenderer* ren)
 void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume* vol)
 {
   Internals& in = *this->Internal;
-  const bool isForGpu = RayCastFallback::IsForGpu(this->BlendMode);
-  if (in.Reported.Begins("ray casting", true))
-  {
-    vtkWarningMacro(<< "Rendering by "
-                    << (isForGpu ? "vtkGPUVolumeRayCastMapper" : "vtkFixedPointVolumeRayCastMapper")
-                    << ", because the blend mode is no intensity projection.");
-  }
   // The ray caster's constructor needs an implementation of the display, and does not check it.
   if (!in.RayCaster && !vtkSmartPointer<vtkRayCastImageDisplayHelper>::New())
   {
@@ -422,11 +370,9 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
                      "VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2).");
     return;
   }
-  if (in.Reported.Begins("ignored", this->GetSlab() || this->GetBoundingSurface()))
-  {
-    vtkWarningMacro(<< "Slab and BoundingSurface are ignored by ray casters: choose an intensity "
-                       "projection as the blend mode.");
-  }
+  in.Reported.Warn(this, "ignored", this->GetSlab() || this->GetBoundingSurface(),
+    "Slab and BoundingSurface are ignored by ray casters: choose an intensity projection as the "
+    "blend mode.");
   this->LastRenderUsedRayCasting = true;
   vtkImageData* const image = in.Data.Source.Image();
   if (!image)
@@ -442,7 +388,7 @@ void vtkSplattingMIPVolumeMapper::RenderByRayCasting(vtkRenderer* ren, vtkVolume
   {
     in.RayCaster = std::make_unique<RayCastFallback>(components);
   }
-  if (ren->GetSelector() && !isForGpu)
+  if (ren->GetSelector() && !RayCastFallback::IsForGpu(this->BlendMode))
   {
     in.RayCaster->FindMask(this, image, ren, vol, in.Picture);
     this->DisplayPicture(ren);
@@ -563,8 +509,7 @@ double* vtkSplattingMIPVolumeMapper::GetShear()
 vtkIdType vtkSplattingMIPVolumeMapper::GetIndexMemorySize()
 {
   const Internals& in = *this->Internal;
-  return static_cast<vtkIdType>(
-    in.Data.IndexMemorySize() + (in.Labels ? in.Labels->MemorySize() : 0));
+  return static_cast<vtkIdType>(in.Data.IndexMemorySize() + in.Labels.MemorySize());
 }
 
 //------------------------------------------------------------------------------

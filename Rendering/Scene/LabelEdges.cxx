@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scene/LabelEdges.h"
 
+#include "Scene/ProjectedLabels.h"
+#include "Scene/SampleLocations.h"
+#include "vtkAbstractSplattingMIPVolumeMapper.h"
+
 #include "vtkAbstractMapper.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
@@ -11,6 +15,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace
 {
@@ -55,36 +61,10 @@ std::uint32_t colorOf(double label, vtkScalarsToColors* colors)
   rgba[3] = 255;
   return pixel;
 }
-}
 
-namespace splatting
-{
-vtkDataArray* scalarsOfLabels(vtkImageData* labels)
-{
-  bool onCells = false;
-  return scalarsOf(labels, onCells);
-}
-
-std::string validateLabels(vtkImageData* labels, const glm::ivec3& size)
-{
-  bool onCells = false;
-  vtkDataArray* const scalars = scalarsOf(labels, onCells);
-  if (!scalars || scalars->GetDataType() == VTK_FLOAT || scalars->GetDataType() == VTK_DOUBLE ||
-    scalars->GetNumberOfComponents() != 1)
-  {
-    return "LabelInput must have scalars of an integer type with one component: convert it with "
-           "vtkImageCast.";
-  }
-  if (labelSize(labels, onCells) != size ||
-    scalars->GetNumberOfTuples() != vtkIdType(size.x) * size.y * size.z)
-  {
-    return "LabelInput must have one label for each voxel of the input: give both the same "
-           "dimensions.";
-  }
-  return {};
-}
-
-void drawLabelEdges(Picture& picture, const std::vector<int>& voxels, vtkImageData* labels,
+/// @param voxels  i, j and k of the voxel whose label each pixel has; -1: none, label 0
+/// @param colors  nullptr: six colours in turn
+void drawEdges(splatting::Picture& picture, const std::vector<int>& voxels, vtkImageData* labels,
   vtkScalarsToColors* colors)
 {
   bool onCells = false;
@@ -119,5 +99,78 @@ void drawLabelEdges(Picture& picture, const std::vector<int>& voxels, vtkImageDa
       }
     }
   }
+}
+}
+
+namespace splatting
+{
+vtkDataArray* scalarsOfLabels(vtkImageData* labels)
+{
+  bool onCells = false;
+  return scalarsOf(labels, onCells);
+}
+
+std::string validateLabels(vtkImageData* labels, const glm::ivec3& size)
+{
+  bool onCells = false;
+  vtkDataArray* const scalars = scalarsOf(labels, onCells);
+  if (!scalars || scalars->GetDataType() == VTK_FLOAT || scalars->GetDataType() == VTK_DOUBLE ||
+    scalars->GetNumberOfComponents() != 1)
+  {
+    return "LabelInput must have scalars of an integer type with one component: convert it with "
+           "vtkImageCast.";
+  }
+  if (labelSize(labels, onCells) != size ||
+    scalars->GetNumberOfTuples() != vtkIdType(size.x) * size.y * size.z)
+  {
+    return "LabelInput must have one label for each voxel of the input: give both the same "
+           "dimensions.";
+  }
+  return {};
+}
+
+LabelEdges::LabelEdges() = default;
+
+LabelEdges::~LabelEdges() = default;
+
+void LabelEdges::BeginFrame(vtkAbstractSplattingMIPVolumeMapper* mapper)
+{
+  if (!mapper->GetLabelInput() ||
+    mapper->GetLabelMode() == vtkAbstractSplattingMIPVolumeMapper::SAMPLE)
+  {
+    this->Clear();
+  }
+}
+
+void LabelEdges::Draw(vtkAbstractSplattingMIPVolumeMapper* mapper, const SampleLocations& locations,
+  SceneCuts& cuts, Picture& picture)
+{
+  vtkImageData* const labels = mapper->GetLabelInput();
+  if (!labels)
+  {
+    return;
+  }
+  if (mapper->GetLabelMode() == vtkAbstractSplattingMIPVolumeMapper::SAMPLE)
+  {
+    drawEdges(picture, locations.VoxelsOf(picture), labels, mapper->GetLabelColors());
+    return;
+  }
+  if (!this->Projected)
+  {
+    this->Projected = std::make_unique<ProjectedLabels>();
+  }
+  const std::vector<int> voxels = this->Projected->VoxelsOf(picture, labels, locations.LastView(),
+    cuts, static_cast<std::size_t>(mapper->GetIndexMemoryBudget()));
+  drawEdges(picture, voxels, labels, mapper->GetLabelColors());
+}
+
+void LabelEdges::Clear()
+{
+  this->Projected = nullptr;
+}
+
+std::size_t LabelEdges::MemorySize() const
+{
+  return this->Projected ? this->Projected->MemorySize() : 0;
 }
 }

@@ -12,17 +12,22 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstddef>
+#include <memory>
 #include <string>
-#include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
+class vtkAbstractSplattingMIPVolumeMapper;
 class vtkDataArray;
 class vtkImageData;
-class vtkScalarsToColors;
 VTK_ABI_NAMESPACE_END
 
 namespace splatting
 {
+class ProjectedLabels;
+class SampleLocations;
+class SceneCuts;
+
 /// The point scalars or, without any, the cell scalars.
 vtkDataArray* scalarsOfLabels(vtkImageData* labels);
 
@@ -30,14 +35,30 @@ vtkDataArray* scalarsOfLabels(vtkImageData* labels);
 std::string validateLabels(vtkImageData* labels, const glm::ivec3& size);
 
 /**
- * Draws each pixel whose label is not 0 and differs from that of one of its four neighbours, in the
- * label's colour, opaque. Pixels outside the picture have label 0.
- *
- * @param voxels  i, j and k of the voxel whose label each pixel has; -1: none, label 0
- * @param colors  nullptr: six colours in turn
+ * Draws the edges of a mapper's labels over its pictures: each pixel whose label is not 0 and
+ * differs from that of one of its four neighbours, in the label's colour, opaque. Pixels outside
+ * the picture have label 0.
  */
-void drawLabelEdges(Picture& picture, const std::vector<int>& voxels, vtkImageData* labels,
-  vtkScalarsToColors* colors);
+class LabelEdges
+{
+public:
+  LabelEdges();
+  ~LabelEdges();
+
+  /// Releases what this frame does not need.
+  void BeginFrame(vtkAbstractSplattingMIPVolumeMapper* mapper);
+  /// Draws the edges, if the mapper has labels.
+  /// @param locations  of the picture
+  /// @param cuts       of the current frame
+  void Draw(vtkAbstractSplattingMIPVolumeMapper* mapper, const SampleLocations& locations,
+    SceneCuts& cuts, Picture& picture);
+  void Clear();
+  /// Bytes of the data kept between frames.
+  std::size_t MemorySize() const;
+
+private:
+  std::unique_ptr<ProjectedLabels> Projected; // while LabelMode is PROJECTED
+};
 }
 
 #endif
