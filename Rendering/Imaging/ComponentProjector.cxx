@@ -562,7 +562,8 @@ vtkSmartPointer<vtkImageData> ComponentProjector::MakeShearImage(
   for (std::size_t c = 0; c < components; ++c)
   {
     const ShearImage& projected = this->Channels[c].Images[n];
-    const ShearImage image = projected.minima.empty() ? projected : shownValues(projected);
+    const ShearImage combined = projected.minima.empty() ? ShearImage() : shownValues(projected);
+    const ShearImage& image = projected.minima.empty() ? projected : combined;
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     {
       std::memcpy(

@@ -26,7 +26,8 @@ struct ScreenScalars
   std::vector<unsigned char> bytes;
   /// If asked for, the parameters t of the samples on the pixels' rays; else empty.
   std::vector<float> depths;
-  /// Of a piece in Reduction::Signed, until CellProjector::finish(): the minima. Else empty.
+  /// In Reduction::Signed the minima, which CellProjector::finish() combines with the maxima. Else
+  /// empty.
   std::vector<ScreenScalars> minima;
   PixelRays rays;
 

@@ -292,17 +292,24 @@ bool warpImages(const std::vector<ShearImage>& images, const std::vector<ShearWa
   const std::vector<WarpSource<A>> highs = sourcesOf(false), lows = sourcesOf(true);
   const RowWarp<A, ScalarSink<A>> maxima(highs, Reduction::Maximum, scalars);
   const RowWarp<A, ScalarSink<A>> minima(lows, Reduction::Minimum, scalars);
+  struct Extrema
+  {
+    std::vector<A> high, low;
+  };
+  PerThread<Extrema> extrema;
   return forRows(target, asked,
     [&, origin = images.front().origin](const glm::dvec3& start, int width, Pixel* out)
     {
-      std::vector<A> values(width), least(width);
-      maxima.warp(start, width, values.data());
-      minima.warp(start, width, least.data());
+      Extrema& row = extrema.Local();
+      row.high.resize(width);
+      row.low.resize(width);
+      maxima.warp(start, width, row.high.data());
+      minima.warp(start, width, row.low.data());
       for (int x = 0; x < width; ++x)
       {
-        values[x] = showsMinimum(values[x], least[x], origin) ? least[x] : values[x];
+        row.high[x] = showsMinimum(row.high[x], row.low[x], origin) ? row.low[x] : row.high[x];
       }
-      putValues(sink, values.data(), out, width);
+      putValues(sink, row.high.data(), out, width);
     });
 }
 }

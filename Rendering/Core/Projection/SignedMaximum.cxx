@@ -48,6 +48,5 @@ void takeMinima(ScreenScalars& screen, double origin)
     }
   };
   screen.type == ScalarType::Float32 ? take(screen.row<float>(0)) : take(screen.row<double>(0));
-  screen.minima.clear();
 }
 }

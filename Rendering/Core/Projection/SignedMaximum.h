@@ -28,7 +28,6 @@ bool showsMinimum(T maximum, T minimum, double origin)
 ShearImage shownValues(const ShearImage& image);
 
 /// Replaces values, and depths if there are any, by those of the minima where these are shown.
-/// Removes the minima.
 void takeMinima(ScreenScalars& screen, double origin);
 }
 

@@ -538,8 +538,11 @@ void testUncut(stage::Checks& check, reference::Random& random)
   scene.mapper->SetLabelInput(scene.labels);
   compareProjected(scene, Walk(scene, 0.5, {}, {}), "other input", check);
   const stage::Pixels shown = scene.pixels();
+  const vtkIdType memory = scene.mapper->GetIndexMemorySize();
   scene.mapper->SetLabelInput(nullptr);
   check(scene.pixels() != shown, "Labels are shown.");
+  check(memory - scene.mapper->GetIndexMemorySize() >= scene.labels->GetNumberOfPoints(),
+    "The copy of the labels is not counted, or is kept without labels.");
   scene.mapper->SetLabelInput(scene.labels);
   testCuts(scene, check, random);
 }
