@@ -202,20 +202,14 @@ private:
     return (face - this->Start[axis]) * this->Inverse[axis];
   }
 
-  /// The cell that the ray is in from t on. The same arithmetic decides where it leaves the cell,
-  /// so that rounding does not skip cells.
+  /// The cell that the ray is in from t on. At a face rounding may find the cell before it. The
+  /// arithmetic of exit() decides, so that each cell is left once.
   glm::ivec3 cellAt(double t) const
   {
     glm::ivec3 cell(glm::floor(this->Start + t * this->Direction));
     for (int a = 0; a < 3; ++a)
     {
       const int step = this->Direction[a] > 0.0 ? 1 : this->Direction[a] < 0.0 ? -1 : 0;
-      if (this->exit(cell, 1, a) <= t)
-      {
-        cell[a] += step;
-        continue;
-      }
-      cell[a] -= step;
       cell[a] += this->exit(cell, 1, a) <= t ? step : 0;
     }
     return cell;

@@ -407,6 +407,17 @@ private:
     {
       samples.push_back(this->Coarse.certain(rays, reduction == Reduction::Minimum));
     }
+    const reference::CellRay<R> own = this->Oracle.ray(x, y);
+    if (reduction == Reduction::Local && this->crosses(own, x, y, screen))
+    {
+      // The least fall is 16 times what rounding changes a value by, and compares two values, of
+      // which each is the result of two roundings.
+      for (const double share : { 0.75, 1.25 })
+      {
+        samples.push_back(
+          this->Oracle.local(own, this->Source.settings.threshold, share * this->Fall));
+      }
+    }
     R least = std::numeric_limits<R>::infinity(), largest = -least;
     bool none = false;
     for (const Sample& sample : samples)
@@ -419,7 +430,6 @@ private:
     {
       return none && (value == value || least <= largest);
     }
-    const reference::CellRay<R> own = this->Oracle.ray(x, y);
     if (this->ShareTolerance > 0 && this->runsAlongFace(own))
     {
       return true;

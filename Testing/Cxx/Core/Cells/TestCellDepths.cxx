@@ -79,11 +79,12 @@ void testNoise(Checks& check)
       scene.view.showsBoxes = random.uniform(0, 2) == 0;
       scene.locate = true;
       constexpr Reduction reductions[] = { Reduction::Maximum, Reduction::Minimum,
-        Reduction::Signed };
-      scene.settings.reduction = reductions[random.uniform(0, 2)];
+        Reduction::Signed, Reduction::Local };
+      scene.settings.reduction = reductions[random.uniform(0, 3)];
       const auto [low, high] =
         std::minmax_element(scene.volume.voxels.begin(), scene.volume.voxels.end());
       scene.settings.origin = 0.5 * static_cast<double>(*low) + 0.5 * static_cast<double>(*high);
+      scene.settings.threshold = scene.settings.origin;
       compareDepths(scene, counts, check);
     });
 }
