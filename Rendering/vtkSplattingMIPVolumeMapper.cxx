@@ -99,7 +99,7 @@ vtkSplattingMIPVolumeMapper::vtkSplattingMIPVolumeMapper() : Internal(new Intern
   components.GetProjector().setProgress([this](double done) { this->UpdateProgress(done); });
   components.SetObserver(
     [this](double done) { return this->Internal->ReportProgress(this, done); });
-  components.GetWarper().setObserver([this](double) { return !this->Internal->IsAborted(); });
+  components.SetScreenObserver([this](double) { return !this->Internal->IsAborted(); });
 }
 
 //------------------------------------------------------------------------------
@@ -307,7 +307,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
       std::to_string(this->GetIndexMemoryBudget()) +
       " bytes): this volume is projected without it. Raise the budget.");
   if (data.Components.IsProjected() && (!this->DisplayOnRootOnly || data.Ranks.IsRoot()) &&
-    data.Components.Warp(data.Images, view, in.Picture))
+    data.Components.MakePicture(data.Images, view, in.Picture))
   {
     data.Cuts.Hide(in.Picture);
     in.Locations.Remember(view, data.Grid(), vol, ren);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ComponentProjector.h"
 
-#include "Cells/ScreenColors.h"
+#include "Display/ScreenColors.h"
 #include "Input/ScalarSource.h"
 #include "PieceExchange.h"
 #include "Projection/Piece.h"
@@ -426,7 +426,7 @@ bool ComponentProjector::ProjectOnScreen(
   return true;
 }
 
-const ScreenScalars& ComponentProjector::ProjectPixelOnScreen(
+const CellScalars& ComponentProjector::ProjectPixelOnScreen(
   const View& view, ProjectionSettings settings, const RayEnds& ends, const glm::ivec2& pixel)
 {
   settings.floor = ProjectionSettings().floor; // samples below the window are located, too
@@ -441,104 +441,84 @@ const ScreenScalars& ComponentProjector::ProjectPixelOnScreen(
   return this->PixelOnScreen;
 }
 
-// In overviews the other components are taken from the sample that the area shows.
-void ComponentProjector::FindShown(const std::vector<ShearWarp>& geometries, const View& view)
+template <class F>
+bool ComponentProjector::ForScreens(
+  const std::vector<ShearWarp>& geometries, const View& view, const F& f)
 {
+  // In overviews the other components are taken from the sample that the area shows.
   const Channel& last = this->Channels.back();
-  this->Shown.clear();
-  if (geometries.empty() || !geometries.front().minifiesAnyAxis() ||
-    !this->TakesAtLocations(last.Settings))
+  const bool takesPixels = !this->OnScreen && !geometries.empty() &&
+    geometries.front().minifiesAnyAxis() && this->TakesAtLocations(last.Settings);
+  if (takesPixels)
   {
-    return;
+    this->Shown.find(last.Images, geometries, last.Settings.reduction, view.viewport);
   }
-  Picture place;
-  placePicture(geometries, view.viewport, place);
-  this->Shown.resize(std::size_t(place.size.x) * place.size.y);
-  findShearPixels(
-    last.Images, geometries, last.Settings.reduction, place.origin, place.size, this->Shown.data());
-}
-
-bool ComponentProjector::Warp(
-  const std::vector<ShearWarp>& geometries, const View& view, Picture& picture)
-{
-  this->FindShown(geometries, view);
   for (std::size_t c = 0; c < this->Channels.size(); ++c)
   {
-    Channel& channel = this->Channels[c];
-    const bool first = c == 0;
-    Picture& layer = first ? picture : this->Layer;
+    const Channel& channel = this->Channels[c];
     if (this->OnScreen)
     {
-      colorScreen(channel.Screen, this->Colors.Of(c), channel.Settings.instructionSet, layer);
+      f(c, channel.Screen);
     }
-    else if (this->Shown.empty())
+    else if (takesPixels)
     {
-      if (!this->Warper.warp(channel.Images, geometries, channel.Settings.reduction,
-            this->Colors.Of(c), view.viewport, channel.Settings.instructionSet, layer))
+      this->Shown.set(channel.Images);
+      f(c, this->Shown);
+    }
+    else
+    {
+      this->Warped.set(channel.Images, geometries, channel.Settings.reduction, view.viewport,
+        channel.Settings.instructionSet);
+      f(c, this->Warped);
+      if (this->Warped.stopped())
       {
         return false;
       }
-    }
-    else
-    {
-      placePicture(geometries, view.viewport, layer);
-      this->Warper.warpPixels(
-        channel.Images, this->Shown, this->Colors.Of(c), channel.Settings.instructionSet, layer);
-    }
-    if (first)
-    {
-      continue;
-    }
-    if (this->Dependent && &channel == &this->Channels.back())
-    {
-      multiplyByOpacity(this->Layer, picture);
-    }
-    else
-    {
-      addSaturated(this->Layer, picture);
     }
   }
   return true;
 }
 
-bool ComponentProjector::WarpScalars(
+bool ComponentProjector::MakePicture(
+  const std::vector<ShearWarp>& geometries, const View& view, Picture& picture)
+{
+  return this->ForScreens(geometries, view,
+    [&](std::size_t c, const ScreenScalars& screen)
+    {
+      Picture& layer = c == 0 ? picture : this->Layer;
+      colorScreen(screen, this->Colors.Of(c), this->Settings().instructionSet, layer);
+      if (c > 0)
+      {
+        this->Dependent&& c + 1 == this->Channels.size() ? multiplyByOpacity(layer, picture)
+                                                         : addSaturated(layer, picture);
+      }
+    });
+}
+
+bool ComponentProjector::CopyScalars(
   const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars)
 {
   const std::size_t components = this->Channels.size();
   const std::size_t pixels = std::size_t(view.viewport.x) * view.viewport.y;
-  const auto warp = [&](Channel& channel, auto* values)
-  {
-    using A = std::remove_pointer_t<decltype(values)>;
-    std::fill_n(values, pixels, static_cast<A>(background));
-    if (this->OnScreen)
-    {
-      copyScreen(channel.Screen, view.viewport, values);
-      return true;
-    }
-    return this->Warper.warpScalars(channel.Images, geometries, channel.Settings.reduction,
-      view.viewport, channel.Settings.instructionSet, background, values);
-  };
-  const auto interleave = [&](auto* to)
+  const auto copy = [&](auto* to)
   {
     using A = std::remove_pointer_t<decltype(to)>;
     this->Plane.resize(components > 1 ? pixels * sizeof(A) : 0);
     A* const plane = components > 1 ? reinterpret_cast<A*>(this->Plane.data()) : to;
-    for (std::size_t c = 0; c < components; ++c)
-    {
-      if (!warp(this->Channels[c], plane))
+    return this->ForScreens(geometries, view,
+      [&](std::size_t c, const ScreenScalars& screen)
       {
-        return false;
-      }
-      for (std::size_t n = 0; components > 1 && n < pixels; ++n)
-      {
-        to[n * components + c] = plane[n];
-      }
-    }
-    return true;
+        std::fill_n(plane, pixels, static_cast<A>(background));
+        copyScreen(screen, view.viewport, plane);
+        for (std::size_t n = 0; components > 1 && n < pixels; ++n)
+        {
+          to[n * components + c] = plane[n];
+        }
+      });
   };
-  const ScalarType type = this->Channels.front().Index.volume().type;
-  return averageType(type) == ScalarType::Float32 ? interleave(static_cast<float*>(scalars))
-                                                  : interleave(static_cast<double*>(scalars));
+  return averageType(this->VolumeType()) == ScalarType::Float32
+    ? copy(static_cast<float*>(scalars))
+    : copy(static_cast<double*>(scalars));
 }
 
 vtkSmartPointer<vtkImageData> ComponentProjector::MakeShearImage(

@@ -115,22 +115,26 @@ public:
   bool IsOnScreen() const { return this->OnScreen; }
   /// As ProjectOnScreen(), for one pixel of the viewport, with its depth. Not for pieces. The
   /// result is valid until the next call.
-  const ScreenScalars& ProjectPixelOnScreen(
+  const CellScalars& ProjectPixelOnScreen(
     const View& view, ProjectionSettings settings, const RayEnds& ends, const glm::ivec2& pixel);
 
-  /// Makes the picture of a view. Returns false, without a picture, if the warper's observer has
-  /// stopped it.
-  bool Warp(const std::vector<ShearWarp>& geometries, const View& view, Picture& picture);
+  /// Makes the picture of a view. Returns false, without a picture, if the observer has stopped it.
+  bool MakePicture(const std::vector<ShearWarp>& geometries, const View& view, Picture& picture);
 
   /**
-   * Writes scalars instead of colours: all components of each pixel, row by row of the whole
+   * Copies scalars instead of colours: all components of each pixel, row by row of the whole
    * viewport from the bottom.
    * @param background  the value of pixels without a sample
    * @param scalars     of type averageType() of the images' type
-   * @return  false, with invalid scalars, if the warper's observer has stopped it
+   * @return  false, with invalid scalars, if the observer has stopped it
    */
-  bool WarpScalars(
+  bool CopyScalars(
     const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars);
+  /// Sets the function that returns whether to continue these two; see WarpedScalars.
+  void SetScreenObserver(const ProgressObserver::Callback& callback)
+  {
+    this->Warped.setObserver(callback);
+  }
 
   /// Sets the function that gets the completed share of a projection and returns whether to
   /// continue.
@@ -162,7 +166,6 @@ public:
   double OverallProgress(double done) const;
 
   splatting::Projector& GetProjector() { return this->Projector; }
-  splatting::Warper& GetWarper() { return this->Warper; }
 
 private:
   struct Channel
@@ -172,12 +175,14 @@ private:
     ProjectionSettings Settings;
     std::vector<ShearImage> Images; // at least as many as the view has
     CellIndex Cells;
-    ScreenScalars Screen;     // of projections by cells
+    CellScalars Screen;       // of projections by cells
     VolumeIndex::Range Range; // of the projected volume
     Acceleration Used = Acceleration::Dense;
   };
 
-  void FindShown(const std::vector<ShearWarp>& geometries, const View& view);
+  /// Calls f(component, scalars). Returns false if the observer has stopped it.
+  template <class F>
+  bool ForScreens(const std::vector<ShearWarp>& geometries, const View& view, const F& f);
   ProjectionSettings SettingsOf(const Channel& channel, ProjectionSettings settings) const;
   bool TakesAtLocations(const ProjectionSettings& settings) const;
   const Channel& LocatedChannel() const
@@ -210,10 +215,10 @@ private:
   splatting::Projector Projector;
   CellProjector Cells;
   PixelProjector Pixels;
-  ScreenScalars PixelOnScreen;
-  splatting::Warper Warper;
+  CellScalars PixelOnScreen;
+  WarpedScalars Warped;
   Picture Layer; // picture of one component
-  std::vector<ShearPixel> Shown;
+  ShearPixelScalars Shown;
   std::vector<unsigned char> Plane; // scalars of one component
 };
 }

@@ -3,7 +3,7 @@
 #ifndef TransferFunctions_h
 #define TransferFunctions_h
 
-#include "Display/Warp.h"
+#include "Display/ScreenColors.h"
 
 #include "vtkSplattingMIPNamespace.h"
 

@@ -81,7 +81,7 @@ vtkSplattingMIPProjection::vtkSplattingMIPProjection() : Internal(new Internals)
 {
   this->Internal->Components.SetObserver(
     [this](double done) { return this->Internal->ReportProgress(this, done); });
-  this->Internal->Components.GetWarper().setObserver([this](double) { return !isAborted(this); });
+  this->Internal->Components.SetScreenObserver([this](double) { return !isAborted(this); });
 }
 
 //------------------------------------------------------------------------------
@@ -329,7 +329,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     {
       return {};
     }
-    if (!this->Components.WarpScalars(
+    if (!this->Components.CopyScalars(
           this->Images, view, background, output->GetScalarPointer(0, 0, n)))
     {
       return {};

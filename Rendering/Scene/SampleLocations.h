@@ -112,7 +112,7 @@ private:
     std::vector<ShearImage> images;
     std::vector<ShearWarp> geometries;
     std::vector<Cuts> cuts;
-    ScreenScalars screen;
+    CellScalars screen;
     ClosedSurface surface;
     SceneDepth depth;
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scene/SceneCuts.h"
 
-#include "Cells/ScreenColors.h"
-
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 
@@ -48,7 +46,7 @@ void SceneCuts::FindScene(const View& view, vtkRenderer* renderer, vtkVolume* vo
 bool SceneCuts::FindOnScreen(const View& view, vtkRenderer* renderer, vtkVolume* volume,
   bool intermixes, const DepthReader& readDepth)
 {
-  if (!placePicture(view, this->Area))
+  if (!CellProjector::place(view, this->Area))
   {
     return false;
   }

@@ -5,6 +5,7 @@
 #include "Cells/LocalMaxima.h"
 #include "Cells/TileSplatter.h"
 #include "Common/Parallel.h"
+#include "Display/Picture.h"
 #include "Projection/SignedMaximum.h"
 
 #include <algorithm>
@@ -97,29 +98,48 @@ CellProjector::CellProjector() : Memory(new Scratch) {}
 
 CellProjector::~CellProjector() = default;
 
+bool CellProjector::place(const View& view, Picture& picture)
+{
+  PixelRays rays;
+  picture.origin = picture.size = glm::ivec2(0);
+  if (!rays.find(view))
+  {
+    return false;
+  }
+  const CellGrid grid({}, glm::ivec3(0), view.dimensions, view.showsBoxes);
+  const PixelRectangle pixels =
+    ProjectedBox(rays, CellBox(grid.low, grid.high)).within({ glm::ivec2(0), view.viewport - 1 });
+  if (!pixels.empty())
+  {
+    picture.origin = pixels.low;
+    picture.size = pixels.high - pixels.low + 1;
+  }
+  return true;
+}
+
 bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-  const RayEnds& ends, bool locate, ScreenScalars& screen)
+  const RayEnds& ends, bool locate, CellScalars& screen)
 {
   return this->project(
     index, view, settings, ends, locate, Wanted{ { 0, 0 }, view.viewport, true }, screen);
 }
 
 bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-  const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], ScreenScalars& screen)
+  const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], CellScalars& screen)
 {
   return this->project(
     index, view, settings, ends, locate, Wanted{ within[0], within[1], true }, screen);
 }
 
 bool CellProjector::projectPiece(CellIndex& index, const View& view,
-  const ProjectionSettings& settings, const RayEnds& ends, bool locate, ScreenScalars& screen)
+  const ProjectionSettings& settings, const RayEnds& ends, bool locate, CellScalars& screen)
 {
   return this->project(
     index, view, settings, ends, locate, Wanted{ { 0, 0 }, view.viewport, false }, screen);
 }
 
 void CellProjector::finish(
-  const CellIndex& index, const ProjectionSettings& settings, ScreenScalars& screen)
+  const CellIndex& index, const ProjectionSettings& settings, CellScalars& screen)
 {
   if (settings.reduction == Reduction::Signed)
   {
@@ -149,7 +169,7 @@ void CellProjector::finish(
 }
 
 bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-  const RayEnds& ends, bool locate, const Wanted& wanted, ScreenScalars& screen)
+  const RayEnds& ends, bool locate, const Wanted& wanted, CellScalars& screen)
 {
   this->Observer.start();
   screen.minima.resize(settings.reduction == Reduction::Signed ? 1 : 0);
@@ -179,7 +199,7 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
 
 bool CellProjector::projectReduction(CellIndex& index, const View& view,
   const ProjectionSettings& settings, const RayEnds& ends, bool locate, const Wanted& within,
-  ScreenScalars& screen)
+  CellScalars& screen)
 {
   if (!screen.rays.find(view))
   {

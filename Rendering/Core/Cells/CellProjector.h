@@ -11,7 +11,7 @@
 #define splattingCellProjector_h
 
 #include "Cells/CellIndex.h"
-#include "Cells/ScreenScalars.h"
+#include "Cells/CellScalars.h"
 #include "Common/ProgressObserver.h"
 #include "Geometry/View.h"
 #include "Projection/Project.h"
@@ -21,6 +21,7 @@
 namespace splatting
 {
 class ClosedSurface;
+struct Picture;
 class SceneDepth;
 
 /// What ends rays besides the half-spaces and the cropping of a view.
@@ -46,6 +47,10 @@ public:
   /// A ray has no sample if its part in the field, between its ends, is shorter than this in t.
   static constexpr double ShortestRay = 0x1p-20;
 
+  /// Sets the picture's origin and size to the rectangle of the viewport that shows the volume.
+  /// Returns false if the view is invalid.
+  static bool place(const View& view, Picture& picture);
+
   /**
    * Sets the rectangle of the viewport that shows the view's volume, and what its pixels show. For
    * Reduction::Signed it projects maxima and minima, and combines them.
@@ -55,11 +60,11 @@ public:
    * @return  false if the view is invalid or the observer has stopped the projection
    */
   bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, bool locate, ScreenScalars& screen);
+    const RayEnds& ends, bool locate, CellScalars& screen);
   /// The same for a part of the viewport only.
   /// @param within  the part's origin and size
   bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], ScreenScalars& screen);
+    const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], CellScalars& screen);
 
   /**
    * Projects a piece of a volume, which may be empty. Each pixel gets a value, or NaN if it has no
@@ -68,9 +73,9 @@ public:
    * Reduction::Signed do so with the screen's minima, too. Not for Reduction::Local.
    */
   bool projectPiece(CellIndex& index, const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, bool locate, ScreenScalars& screen);
+    const RayEnds& ends, bool locate, CellScalars& screen);
   static void finish(
-    const CellIndex& index, const ProjectionSettings& settings, ScreenScalars& screen);
+    const CellIndex& index, const ProjectionSettings& settings, CellScalars& screen);
 
   ProgressObserver& observer() { return this->Observer; }
 
@@ -82,10 +87,10 @@ private:
     bool finished;
   };
   bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, bool locate, const Wanted& wanted, ScreenScalars& screen);
+    const RayEnds& ends, bool locate, const Wanted& wanted, CellScalars& screen);
 
   bool projectReduction(CellIndex& index, const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, bool locate, const Wanted& wanted, ScreenScalars& screen);
+    const RayEnds& ends, bool locate, const Wanted& wanted, CellScalars& screen);
 
   struct Scratch;
   std::unique_ptr<Scratch> Memory;

@@ -285,8 +285,8 @@ bool findPeak(const CellFrame<T>& frame, const glm::dvec3& start, const glm::dve
 }
 
 template <class T>
-void findLocalMaxima(const CellFrame<T>& frame, const VolumeIndex::Range& range, double threshold,
-  ScreenScalars& screen)
+void findLocalMaxima(
+  const CellFrame<T>& frame, const VolumeIndex::Range& range, double threshold, CellScalars& screen)
 {
   using A = Accumulator<T>;
   const double scale = std::abs(static_cast<double>(frame.values.scale.factor));
@@ -325,7 +325,7 @@ void findLocalMaxima(const CellFrame<T>& frame, const VolumeIndex::Range& range,
 
 #define SPLATTING_INSTANTIATE(T)                                                                   \
   template void findLocalMaxima<T>(                                                                \
-    const CellFrame<T>&, const VolumeIndex::Range&, double, ScreenScalars&);
+    const CellFrame<T>&, const VolumeIndex::Range&, double, CellScalars&);
 SPLATTING_TYPES(SPLATTING_INSTANTIATE)
 #undef SPLATTING_INSTANTIATE
 }

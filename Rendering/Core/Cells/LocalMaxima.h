@@ -20,7 +20,7 @@ namespace splatting
  */
 template <class T>
 void findLocalMaxima(const CellFrame<T>& frame, const VolumeIndex::Range& range, double threshold,
-  ScreenScalars& screen);
+  CellScalars& screen);
 }
 
 #endif

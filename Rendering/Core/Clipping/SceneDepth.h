@@ -19,10 +19,10 @@ class PixelRays;
 /**
  * Depths of the scene, one per screen pixel, and the position of the volume relative to them.
  *
- * The volume is the box that its picture shows (see Warper), in the view's half-spaces. Depths
- * before it hide it, pixel by pixel of the screen (hide()). Depths inside end the rays of the shear
- * image (endRays()), each at the depth of the nearest screen pixel. A hidden pixel does not end its
- * ray, because its neighbours on the screen interpolate with the uncut ray.
+ * The volume is the box that its picture shows (see WarpedScalars), in the view's half-spaces.
+ * Depths before it hide it, pixel by pixel of the screen (hide()). Depths inside end the rays of
+ * the shear image (endRays()), each at the depth of the nearest screen pixel. A hidden pixel does
+ * not end its ray, because its neighbours on the screen interpolate with the uncut ray.
  *
  * A depth within 2^-21 of the front of the box counts as before it. A depth within 2^-21 of the
  * back counts as behind it. Depth buffers have 24 bits, and vertices are transformed in single

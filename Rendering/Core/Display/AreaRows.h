@@ -36,17 +36,16 @@ public:
     }
   }
 
-  /// The values of a row's pixels [x, x + n). `start` is the row's first pixel. NaN without a
-  /// sample.
-  void find(const glm::dvec3& start, int x, int n, A* values) const
+  /// The values of a row of pixels. `start` is the first. NaN without a sample.
+  void find(const glm::dvec3& start, int width, A* values) const
   {
     std::array<Span, MostImages> met, shown;
     for (std::size_t i = 0; i < this->Images.size(); ++i)
     {
-      met[i] = this->Met[i].cut({ x, x + n }, start);
-      shown[i] = this->Images[i].shown.cut({ x, x + n }, start);
+      met[i] = this->Met[i].cut({ 0, width }, start);
+      shown[i] = this->Images[i].shown.cut({ 0, width }, start);
     }
-    for (int p = x; p < x + n; ++p)
+    for (int p = 0; p < width; ++p)
     {
       const glm::dvec3 pixel = start + glm::dvec3(double(p), 0.0, 0.0);
       Read read;
@@ -69,7 +68,7 @@ public:
           break;
         }
       }
-      values[p - x] = value;
+      values[p] = value;
     }
   }
 

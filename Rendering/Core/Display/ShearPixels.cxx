@@ -4,11 +4,13 @@
 
 #include "Common/Parallel.h"
 #include "Display/Outline.h"
+#include "Display/Picture.h"
 #include "Display/PixelArea.h"
 #include "Display/WarpSource.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 namespace splatting
@@ -152,5 +154,41 @@ void findShearPixels(const std::vector<ShearImage>& images,
   {
     findAreaPixels(images, geometries, least, origin, size, out);
   }
+}
+
+void ShearPixelScalars::find(const std::vector<ShearImage>& images,
+  const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& viewport)
+{
+  Picture place;
+  placePicture(geometries, viewport, place);
+  this->origin = place.origin;
+  this->size = place.size;
+  this->Shown.resize(std::size_t(place.size.x) * place.size.y);
+  findShearPixels(images, geometries, reduction, place.origin, place.size, this->Shown.data());
+}
+
+void ShearPixelScalars::set(const std::vector<ShearImage>& images)
+{
+  this->type = averageType(images.front().type);
+  this->Images = &images;
+}
+
+const void* ShearPixelScalars::valuesOfRow(int y, void* space) const
+{
+  dispatch(this->Images->front().type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      using A = Accumulator<T>;
+      A* const values = static_cast<A*>(space);
+      for (int x = 0; x < this->size.x; ++x)
+      {
+        const ShearPixel& from = this->Shown[std::ptrdiff_t(y) * this->size.x + x];
+        values[x] = from.image < 0
+          ? std::numeric_limits<A>::quiet_NaN()
+          : static_cast<A>((*this->Images)[from.image].row<T>(from.v)[from.u]);
+      }
+    });
+  return space;
 }
 }

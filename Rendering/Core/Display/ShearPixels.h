@@ -3,6 +3,7 @@
 #ifndef splattingShearPixels_h
 #define splattingShearPixels_h
 
+#include "Display/ScreenScalars.h"
 #include "Projection/Project.h"
 #include "Projection/ShearImage.h"
 
@@ -31,11 +32,11 @@ struct ShearPixel
 
 /**
  * For each pixel of a rectangle of the viewport, row by row from the bottom, the shear pixel whose
- * location it shows: the nearest of those that Warper interpolates its value from. In overviews it
- * is the shear pixel with the largest value (for minima the least) among those nearest to the
- * points that the area reads. None if the picture has no sample. Of images of Reduction::Signed
- * the shear pixels of either extremum are found, see findShown().
- * @param images     as in Warper::warp()
+ * location it shows: the nearest of those that WarpedScalars interpolates its value from. In
+ * overviews it is the shear pixel with the largest value (for minima the least) among those nearest
+ * to the points that the area reads. None if the picture has no sample. Of images of
+ * Reduction::Signed the shear pixels of either extremum are found, see findShown().
+ * @param images     as in WarpedScalars::set()
  * @param reduction  of Reduction::Signed Maximum or Minimum
  * @param hasSample  whether a shear pixel has a sample; by default whether it has a winner
  */
@@ -43,6 +44,25 @@ void findShearPixels(const std::vector<ShearImage>& images,
   const std::vector<ShearWarp>& geometries, Reduction reduction, const glm::ivec2& origin,
   const glm::ivec2& size, ShearPixel* out,
   const std::function<bool(const ShearPixel&)>& hasSample = {});
+
+/**
+ * The values of the shear pixels whose locations an overview shows, without interpolation.
+ */
+class ShearPixelScalars : public ScreenScalars
+{
+public:
+  /// Finds the shear pixels of a viewport; see findShearPixels().
+  void find(const std::vector<ShearImage>& images, const std::vector<ShearWarp>& geometries,
+    Reduction reduction, const glm::ivec2& viewport);
+  /// Sets the images whose values are shown, which must exist while rows are read.
+  void set(const std::vector<ShearImage>& images);
+
+  const void* valuesOfRow(int y, void* space) const override;
+
+private:
+  std::vector<ShearPixel> Shown;
+  const std::vector<ShearImage>* Images = nullptr;
+};
 }
 
 #endif

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Projection/Locations.h"
 
-#include "Cells/ScreenScalars.h"
+#include "Cells/CellScalars.h"
 #include "Common/Parallel.h"
 #include "Display/Warp.h"
 #include "Sampling/ValuesAtLocations.h"
@@ -236,23 +236,26 @@ void findShown(const Located& located, const glm::ivec2& origin, const glm::ivec
   std::vector<ShearPixel> minima(std::size_t(size.x) * size.y);
   findShearPixels(images, geometries, Reduction::Minimum, origin, size, minima.data(), hasSample);
   // The same values as in the picture, to the last bit. Those below the origin are minima.
-  const glm::ivec2& viewport = located.view.viewport;
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  WarpedScalars warped;
+  warped.set(
+    images, geometries, settings.reduction, located.view.viewport, settings.instructionSet);
   const auto choose = [&](auto null)
   {
-    std::vector<decltype(null)> values(std::size_t(viewport.x) * viewport.y, null);
-    Warper().warpScalars(images, geometries, settings.reduction, viewport, settings.instructionSet,
-      none, values.data());
-    for (std::size_t n = 0; n < minima.size(); ++n)
+    std::vector<decltype(null)> space(warped.size.x);
+    const glm::ivec2 first = glm::max(origin, warped.origin),
+                     end = glm::min(origin + size, warped.origin + warped.size);
+    for (int y = first.y; y < end.y; ++y)
     {
-      const glm::ivec2 p =
-        origin + glm::ivec2(static_cast<int>(n % size.x), static_cast<int>(n / size.x));
-      const bool isMinimum = values[std::size_t(p.y) * viewport.x + p.x] < settings.origin;
-      out[n] = isMinimum ? minima[n] : out[n];
+      const auto* const values =
+        static_cast<const decltype(null)*>(warped.valuesOfRow(y - warped.origin.y, space.data()));
+      for (int x = first.x; x < end.x; ++x)
+      {
+        const std::size_t n = std::size_t(y - origin.y) * size.x + x - origin.x;
+        out[n] = values[x - warped.origin.x] < settings.origin ? minima[n] : out[n];
+      }
     }
   };
-  const ScalarType type = geometries.empty() ? ScalarType::Float32 : images.front().type;
-  averageType(type) == ScalarType::Float32 ? choose(static_cast<float>(none)) : choose(none);
+  warped.type == ScalarType::Float32 ? choose(0.0f) : choose(0.0);
 }
 
 glm::ivec3 findVoxel(const Located& located, const ShearPixel& pixel)
@@ -317,7 +320,7 @@ glm::dvec3 Locator::point(const glm::dvec2& pixel, const ShearPixel& shown) cons
 
 Locator::Sample Locator::onScreen(const glm::ivec2& pixel) const
 {
-  const ScreenScalars& screen = *this->Source.screen;
+  const CellScalars& screen = *this->Source.screen;
   const glm::ivec2 p = pixel - screen.origin;
   Sample sample;
   if (p.x >= 0 && p.y >= 0 && p.x < screen.size.x && p.y < screen.size.y)

@@ -29,7 +29,7 @@
 
 namespace splatting
 {
-struct ScreenScalars;
+class CellScalars;
 
 /// A projection of a view with winners. The objects that its pointers refer to must exist while it
 /// is used.
@@ -40,7 +40,7 @@ struct Located
   VoxelArray volume; ///< the projected volume; without voxels if only a piece is available
   double low = 0.0, high = 0.0; ///< the range of its finite voxels
   /// The result of an exact projection, with depths. There are no images then.
-  const ScreenScalars* screen = nullptr;
+  const CellScalars* screen = nullptr;
   ProjectionSettings settings; ///< of the projection
   View view;
   glm::dmat4 indexToWorld{ 1.0 };
@@ -99,7 +99,7 @@ private:
 };
 
 /// As findShearPixels(), for a rectangle of the projection's viewport. In Reduction::Signed the
-/// shear pixels have the extremum that Warper shows.
+/// shear pixels have the extremum that WarpedScalars shows.
 void findShown(const Located& located, const glm::ivec2& origin, const glm::ivec2& size,
   ShearPixel* out, const std::function<bool(const ShearPixel&)>& hasSample = {});
 

@@ -101,6 +101,16 @@ ProjectiveRenderer::ProjectiveRenderer(const PaperVolume& volume) : Volume(volum
 }
 
 //------------------------------------------------------------------------------
+void PaperRenderer::Show(const std::vector<splatting::ShearImage>& images,
+  const splatting::ShearWarp& geometry, const splatting::View& view)
+{
+  const splatting::InstructionSet best = splatting::bestInstructionSet();
+  const std::vector<splatting::ShearWarp> geometries{ geometry };
+  this->Warped.set(images, geometries, splatting::Reduction::Maximum, view.viewport, best);
+  splatting::colorScreen(this->Warped, this->Greys, best, this->Frame);
+}
+
+//------------------------------------------------------------------------------
 void ProjectiveRenderer::Render(const splatting::View& view)
 {
   const splatting::ShearWarp geometry(view);
@@ -118,8 +128,7 @@ void ProjectiveRenderer::Render(const splatting::View& view)
   {
     image.spans.push_back({ range[0], range[1] });
   }
-  this->Warper.warp(this->Images, { geometry }, splatting::Reduction::Maximum, this->Greys,
-    view.viewport, splatting::bestInstructionSet(), this->Frame);
+  this->Show(this->Images, geometry, view);
 }
 
 //------------------------------------------------------------------------------
@@ -128,9 +137,7 @@ void ReferenceRenderer::Render(const splatting::View& view)
   const splatting::ShearWarp geometry(view);
   const std::vector<splatting::ShearImage> images{ MakeShearImage(
     this->Project(this->Volume, ToReference(geometry))) };
-  splatting::Warper warper;
-  warper.warp(images, { geometry }, splatting::Reduction::Maximum, this->Greys, view.viewport,
-    splatting::bestInstructionSet(), this->Frame);
+  this->Show(images, geometry, view);
 }
 
 //------------------------------------------------------------------------------

@@ -7,6 +7,7 @@
 #ifndef PaperRenderer_h
 #define PaperRenderer_h
 
+#include "Display/ScreenColors.h"
 #include "Display/Warp.h"
 #include "Paper/PaperScene.h"
 #include "Projection.h"
@@ -38,8 +39,15 @@ public:
 protected:
   PaperRenderer();
 
+  /// Warps a shear image of maxima to the frame.
+  void Show(const std::vector<splatting::ShearImage>& images, const splatting::ShearWarp& geometry,
+    const splatting::View& view);
+
   splatting::ColorTable Greys;
   splatting::Picture Frame;
+
+private:
+  splatting::WarpedScalars Warped;
 };
 
 /**
@@ -78,7 +86,6 @@ private:
   splatting::VolumeIndex Index; // for the slices along the first axis, as splatting has them
   reference::ByteImage Bytes;
   std::vector<splatting::ShearImage> Images = std::vector<splatting::ShearImage>(1); // of bytes
-  splatting::Warper Warper;
 };
 
 /**

@@ -56,8 +56,7 @@ void SplattingRenderer::Render(const splatting::View& view)
 {
   const splatting::ShearWarp geometry(view);
   this->Projector.project(this->Index, geometry, this->Settings, {}, this->Images.front());
-  this->Warper.warp(this->Images, { geometry }, this->Settings.reduction, this->Greys,
-    view.viewport, this->Settings.instructionSet, this->Frame);
+  this->Show(this->Images, geometry, view);
 }
 
 //------------------------------------------------------------------------------

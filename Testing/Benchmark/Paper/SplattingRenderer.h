@@ -48,7 +48,6 @@ private:
   splatting::ProjectionSettings Settings;
   splatting::Projector Projector;
   std::vector<splatting::ShearImage> Images = std::vector<splatting::ShearImage>(1);
-  splatting::Warper Warper;
 };
 
 #endif

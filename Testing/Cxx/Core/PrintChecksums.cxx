@@ -5,8 +5,8 @@
 // processors must print the same: test-arm64.sh compares them. Scenes are made of what IEEE 754
 // rounds correctly (no sines but those of cosine bells, which are the product's own).
 #include "Cells/CellProjector.h"
-#include "Cells/ScreenColors.h"
 #include "CoreTesting.h"
+#include "Display/ScreenColors.h"
 #include "Display/Warp.h"
 
 #include <cstring>
@@ -47,7 +47,7 @@ public:
         }
       });
   }
-  void add(const splatting::ScreenScalars& screen)
+  void add(const splatting::CellScalars& screen)
   {
     splatting::dispatch(screen.type,
       [&](auto* null)
@@ -129,12 +129,11 @@ std::uint64_t checksumOfCells(const reference::Volume<T>& volume, const splattin
   whole.reset(voxels);
   splatting::CellIndex index;
   index.update({ voxels, glm::ivec3(0), toGlm(volume.size), view.showsBoxes }, whole.range());
-  splatting::ScreenScalars screen;
+  splatting::CellScalars screen;
   splatting::CellProjector().project(index, view, settings, {}, true, screen);
   Checksum sum;
   sum.add(screen);
   splatting::Picture picture;
-  splatting::placePicture(view, picture);
   splatting::colorScreen(screen, tableFor<T>(), settings.instructionSet, picture);
   sum.add(picture);
   return sum.hash();
@@ -154,9 +153,10 @@ std::uint64_t checksumOf(const reference::Volume<T>& volume, const splatting::Vi
     images.push_back(project(volume, geometry, settings, view.halfSpaces));
     sum.add(images.back());
   }
+  splatting::WarpedScalars warped;
+  warped.set(images, geometries, settings.reduction, view.viewport, settings.instructionSet);
   splatting::Picture picture;
-  splatting::Warper().warp(images, geometries, settings.reduction, tableFor<T>(), view.viewport,
-    settings.instructionSet, picture);
+  splatting::colorScreen(warped, tableFor<T>(), settings.instructionSet, picture);
   sum.add(picture);
   return sum.hash();
 }

@@ -257,7 +257,6 @@ void testPerspective(Checks& check)
   reference::forScenes("perspective", 500,
     [&](int n, reference::Random& random)
     {
-      splatting::Warper warper;
       std::vector<splatting::ShearWarp> geometries;
       PixelCounts counts;
       auto size = randomSize(random, 30);
@@ -276,9 +275,8 @@ void testPerspective(Checks& check)
         {
           image.nonFinite = special;
         }
-        splatting::Picture picture;
-        warper.warp(images, geometries, splatting::Reduction::Maximum, table, view.viewport,
-          anyInstructionSet(random), picture);
+        const splatting::Picture picture =
+          pictureOf(images, geometries, table, view.viewport, anyInstructionSet(random));
         checkPerspectivePicture(check, view, geometries, images, picture, counts);
       }
 
@@ -447,9 +445,7 @@ void testSeams(Checks& check)
         images.push_back(smoothImage(geometry, f));
         step = std::max(step, geometry.pitch() / std::abs(geometry.reference() - geometry.eye().z));
       }
-      splatting::Picture picture;
-      splatting::Warper().warp(images, geometries, splatting::Reduction::Maximum, table,
-        view.viewport, splatting::bestInstructionSet(), picture);
+      const splatting::Picture picture = pictureOf(images, geometries, table, view.viewport);
       shown.add(compareWithFunction(check, view, picture, f, f.bound(step)));
     });
   std::cout << "seams: the volume is shown in " << shown << std::endl;
@@ -467,9 +463,8 @@ void testEveryWayGivesTheSameBits(Checks& check)
       std::vector<splatting::ShearWarp> geometries;
       splatting::ShearWarp::factorise(view, geometries);
       const std::vector<splatting::ShearImage> images = noiseImages(geometries, random);
-      splatting::Picture expected;
-      splatting::Warper().warp(images, geometries, splatting::Reduction::Maximum, table,
-        view.viewport, splatting::InstructionSet::Baseline, expected);
+      const splatting::Picture expected =
+        pictureOf(images, geometries, table, view.viewport, splatting::InstructionSet::Baseline);
       for (splatting::InstructionSet set : instructionSets)
       {
         for (int threads : { 1, 2 })
@@ -477,9 +472,8 @@ void testEveryWayGivesTheSameBits(Checks& check)
           vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
             [&]
             {
-              splatting::Picture picture;
-              splatting::Warper().warp(images, geometries, splatting::Reduction::Maximum, table,
-                view.viewport, set, picture);
+              const splatting::Picture picture =
+                pictureOf(images, geometries, table, view.viewport, set);
               check(picture.pixels == expected.pixels, splatting::nameOf(set), " with ", threads,
                 " threads gives other bits");
             });

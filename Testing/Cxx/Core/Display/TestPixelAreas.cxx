@@ -5,6 +5,8 @@
 #include "CoreTesting.h"
 #include "WideViews.h"
 
+#include "Display/ScreenColors.h"
+#include "Display/ShearPixels.h"
 #include "Display/Warp.h"
 
 #include <glm/common.hpp>
@@ -78,8 +80,9 @@ std::vector<float> picture(const Images& images, const Geometries& geometries,
   splatting::Reduction reduction, const glm::ivec2& viewport, reference::Random& random)
 {
   std::vector<float> pixels(std::size_t(viewport.x) * viewport.y, Background);
-  splatting::Warper().warpScalars(
-    images, geometries, reduction, viewport, anyInstructionSet(random), Background, pixels.data());
+  splatting::WarpedScalars warped;
+  warped.set(images, geometries, reduction, viewport, anyInstructionSet(random));
+  splatting::copyScreen(warped, viewport, pixels.data());
   return pixels;
 }
 

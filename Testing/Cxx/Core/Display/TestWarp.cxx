@@ -62,10 +62,8 @@ void testLinearImages(Checks& check)
       const std::vector<splatting::ShearImage> images{ imageOf(geometry, f) };
       const splatting::ShearImage& image = images.front();
       const splatting::ColorTable table = countingTable(-400.0, 400.0);
-      splatting::Picture picture;
-      splatting::Warper warper;
-      warper.warp(images, { geometry }, splatting::Reduction::Maximum, table, view.viewport,
-        anyInstructionSet(random), picture);
+      const splatting::Picture picture =
+        pictureOf(images, { geometry }, table, view.viewport, anyInstructionSet(random));
       for (int y = 0; y < view.viewport.y; ++y)
       {
         for (int x = 0; x < view.viewport.x; ++x)
@@ -113,9 +111,8 @@ void testOddPixels(Checks& check)
     std::vector<splatting::ShearImage> images{ imageOf(geometry, [](int, int) { return 50.0; }) };
     images.front().row<float>(15)[15] = value;
     images.front().nonFinite = true;
-    splatting::Picture picture;
-    splatting::Warper().warp(images, { geometry }, splatting::Reduction::Maximum,
-      countingTable(0.0, 100.0), view.viewport, splatting::bestInstructionSet(), picture);
+    const splatting::Picture picture =
+      pictureOf(images, { geometry }, countingTable(0.0, 100.0), view.viewport);
     // One screen pixel per shear pixel, perhaps half-way between: at most four show the odd one.
     int others = 0;
     for (std::uint32_t color : picture.pixels)
@@ -139,10 +136,8 @@ void testOutsideTheViewport(Checks& check)
   splatting::View view = viewWithShear({ 30, 30, 5 }, 2, 0.25, 0.5);
   view.indexToClip[3][0] = 5.0; // far to the right
   const splatting::ShearWarp geometry(view);
-  splatting::Picture picture;
-  splatting::Warper().warp({ imageOf(geometry, [](int, int) { return 1.0; }) }, { geometry },
-    splatting::Reduction::Maximum, countingTable(0.0, 1.0), view.viewport,
-    splatting::bestInstructionSet(), picture);
+  const splatting::Picture picture = pictureOf({ imageOf(geometry, [](int, int) { return 1.0; }) },
+    { geometry }, countingTable(0.0, 1.0), view.viewport);
   check(picture.pixels.empty(), "a volume outside the viewport leaves a picture");
 }
 }

@@ -7,6 +7,7 @@
 #define WarpTesting_h
 
 #include "CoreTesting.h"
+#include "Display/ScreenColors.h"
 #include "Display/Warp.h"
 
 #include <limits>
@@ -84,6 +85,19 @@ inline std::uint32_t colorAt(const splatting::Picture& picture, int x, int y)
   const bool inPicture = px >= 0 && py >= 0 && px < picture.size.x && py < picture.size.y;
   return inPicture ? picture.pixels[std::size_t(py) * picture.size.x + px] : 0;
 }
+}
+
+/// The picture of shear images' maxima.
+inline splatting::Picture pictureOf(const std::vector<splatting::ShearImage>& images,
+  const std::vector<splatting::ShearWarp>& geometries, const splatting::ColorTable& table,
+  const glm::ivec2& viewport,
+  splatting::InstructionSet instructionSet = splatting::bestInstructionSet())
+{
+  splatting::WarpedScalars warped;
+  warped.set(images, geometries, splatting::Reduction::Maximum, viewport, instructionSet);
+  splatting::Picture picture;
+  splatting::colorScreen(warped, table, instructionSet, picture);
+  return picture;
 }
 
 #endif

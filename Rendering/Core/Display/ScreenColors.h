@@ -3,15 +3,25 @@
 #ifndef splattingScreenColors_h
 #define splattingScreenColors_h
 
-#include "Cells/ScreenScalars.h"
 #include "Display/Picture.h"
-#include "Display/Warp.h"
+#include "Display/ScreenScalars.h"
+#include "Kernels/Kernels.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace splatting
 {
-/// Sets the picture's origin and size to the rectangle of the viewport that shows the field. False
-/// if the view is invalid.
-bool placePicture(const View& view, Picture& picture);
+/**
+ * Premultiplied RGBA colours (bytes in this order in memory) at equal steps over [low, high];
+ * values outside take the first or the last.
+ */
+struct ColorTable
+{
+  double low = 0.0;
+  double high = 0.0;
+  std::vector<std::uint32_t> colors;
+};
 
 /// Fills the picture with the colours of scalars. Pixels without a sample are transparent.
 void colorScreen(const ScreenScalars& screen, const ColorTable& table,

@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef splattingScreenScalars_h
-#define splattingScreenScalars_h
+#ifndef splattingCellScalars_h
+#define splattingCellScalars_h
 
 #include "Cells/PixelRays.h"
-#include "Common/ScalarType.h"
-
-#include <glm/vec2.hpp>
+#include "Display/ScreenScalars.h"
 
 #include <cstddef>
 #include <vector>
@@ -14,23 +12,24 @@
 namespace splatting
 {
 /**
- * What the pixels of a viewport show: scalars, and on request where on their rays these lie.
+ * The result of a projection by cells: values, and on request where on their rays the samples lie.
  */
-struct ScreenScalars
+class CellScalars : public ScreenScalars
 {
-  /// The rectangle of the viewport that the volume may be seen in. Rows from bottom to top.
-  glm::ivec2 origin{ 0 }, size{ 0 };
-  /// The type of the values, Float32 or Float64: the accumulator's type for the type of the voxels.
-  ScalarType type = ScalarType::Float32;
+public:
   /// size.x * size.y values; NaN where there is no sample.
   std::vector<unsigned char> bytes;
   /// If asked for, the parameters t of the samples on the pixels' rays; else empty.
   std::vector<float> depths;
   /// In Reduction::Signed the minima, which CellProjector::finish() combines with the maxima. Else
   /// empty.
-  std::vector<ScreenScalars> minima;
+  std::vector<CellScalars> minima;
   PixelRays rays;
 
+  const void* valuesOfRow(int y, void*) const override
+  {
+    return this->bytes.data() + std::size_t(y) * this->size.x * sizeOf(this->type);
+  }
   template <class A>
   A* row(int y)
   {
@@ -39,7 +38,7 @@ struct ScreenScalars
   template <class A>
   const A* row(int y) const
   {
-    return const_cast<ScreenScalars*>(this)->row<A>(y);
+    return const_cast<CellScalars*>(this)->row<A>(y);
   }
 };
 }
