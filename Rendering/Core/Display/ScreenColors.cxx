@@ -37,10 +37,6 @@ void colorRows(const ScreenScalars& screen, const ColorTable& table, const Works
     {
       std::uint32_t* const pixels = picture.pixels.data() + std::ptrdiff_t(y) * screen.size.x;
       loops.lookUp(values, low, scale, last, table.colors.data(), pixels, screen.size.x);
-      for (int x = 0; x < screen.size.x; ++x)
-      {
-        pixels[x] = values[x] == values[x] ? pixels[x] : 0;
-      }
     });
 }
 

@@ -311,6 +311,10 @@ void lookUp(const A* __restrict values, A low, A scale, std::int32_t last,
       // An assignment would be compiled to gather instructions, which are slower.
       std::memcpy(out + begin + x, colors + at[x], sizeof(std::uint32_t));
     }
+    for (std::ptrdiff_t x = begin; x < begin + count; ++x)
+    {
+      out[x] = values[x] == values[x] ? out[x] : 0;
+    }
   }
 }
 

@@ -348,7 +348,7 @@ struct WorksheetLoops
   /// The same at (u, v) of start + x step = (u w, v w, w).
   void (*interpolateProjective)(const A* image, std::ptrdiff_t stride, const double* start,
     const double* step, A* out, std::ptrdiff_t n);
-  /// out[x] = colors[nearest entry to scale (values[x] - low)], clamped to [0, last].
+  /// out[x] = colors[nearest entry to scale (values[x] - low)], clamped to [0, last]; 0 for NaN.
   void (*lookUp)(const A* values, A low, A scale, std::int32_t last, const std::uint32_t* colors,
     std::uint32_t* out, std::ptrdiff_t n);
 };
