@@ -84,7 +84,7 @@ public:
 
   FrameObserver Observer; // for several ranks
   ProjectedVolume Data;
-  SampleLocations Locations{ Data.Source, Data.Components, Data.Cuts, Data.Images };
+  SampleLocations Locations{ Data.Source, Data.Components, Data.Cuts };
   splatting::Picture Picture;
   double Shear[2] = { 0.0, 0.0 };
 
@@ -307,7 +307,7 @@ const char* vtkSplattingMIPVolumeMapper::RenderBySplatting(vtkRenderer* ren, vtk
       std::to_string(this->GetIndexMemoryBudget()) +
       " bytes): this volume is projected without it. Raise the budget.");
   if (data.Components.IsProjected() && (!this->DisplayOnRootOnly || data.Ranks.IsRoot()) &&
-    data.Components.MakePicture(data.Images, view, in.Picture))
+    data.Components.MakePicture(view, in.Picture))
   {
     data.Cuts.Hide(in.Picture);
     in.Locations.Remember(view, data.Grid(), vol, ren);
@@ -480,20 +480,20 @@ double vtkSplattingMIPVolumeMapper::PickValue(int x, int y)
 //------------------------------------------------------------------------------
 vtkImageData* vtkSplattingMIPVolumeMapper::GetShearImage()
 {
-  return this->Internal->Data.ShearImage();
+  return this->Internal->Data.Components.ShearImageOf(this->Internal->Data.Source);
 }
 
 //------------------------------------------------------------------------------
 int vtkSplattingMIPVolumeMapper::GetPrincipalAxis()
 {
-  const splatting::ShearWarp* const image = this->Internal->Data.MainImage();
+  const splatting::ShearWarp* const image = this->Internal->Data.Components.MainImage();
   return image ? image->principalAxis() : -1;
 }
 
 //------------------------------------------------------------------------------
 void vtkSplattingMIPVolumeMapper::GetShear(double shear[2])
 {
-  const splatting::ShearWarp* const image = this->Internal->Data.MainImage();
+  const splatting::ShearWarp* const image = this->Internal->Data.Components.MainImage();
   shear[0] = image ? -image->columns().slope[image->rayCount().x / 2] : 0.0;
   shear[1] = image ? -image->rows().slope[image->rayCount().y / 2] : 0.0;
 }

@@ -6,37 +6,18 @@
 #include "Input/ScalarSource.h"
 #include "PieceExchange.h"
 #include "Projection/Piece.h"
-#include "Projection/SignedMaximum.h"
+#include "ShearImageOutput.h"
 #include "Volume/VoxelCopies.h"
 
-#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
-#include "vtkNew.h"
-#include "vtkPointData.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <type_traits>
+#include <utility>
 
 namespace splatting
 {
-std::size_t mainImage(const std::vector<ShearWarp>& images)
-{
-  const auto largest = std::max_element(images.begin(), images.end(),
-    [](const ShearWarp& a, const ShearWarp& b)
-    { return a.rayCount().x * a.rayCount().y < b.rayCount().x * b.rayCount().y; });
-  return static_cast<std::size_t>(largest - images.begin());
-}
-
-bool haveSameRays(const std::vector<ShearWarp>& a, const std::vector<ShearWarp>& b, bool ordered)
-{
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-    [=](const ShearWarp& left, const ShearWarp& right)
-    { return left.sameShear(right) && (!ordered || left.reversed() == right.reversed()); });
-}
-
 bool ComponentProjector::SetSource(ScalarSource& source)
 {
   source.Update();
@@ -89,6 +70,10 @@ void ComponentProjector::Clear()
   this->Channels.resize(1);
   this->Layer = {};
   this->Plane = {};
+  this->Splat = {};
+  this->Next = {};
+  this->CellDepth.clear();
+  this->ShearImageOutput = nullptr;
   this->Dependent = false;
   this->Version = 0;
   this->Projected = false;
@@ -256,9 +241,10 @@ bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
 
 // Projects one image of all components. takeAtLocations() must follow the projection directly,
 // because it uses the projector's state.
-bool ComponentProjector::ProjectImage(
-  std::size_t n, const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts)
+bool ComponentProjector::ProjectImage(std::size_t n, const ProjectionSettings& settings)
 {
+  const ShearWarp& geometry = this->Splat.geometries[n];
+  const Cuts& cuts = this->Splat.cuts[n];
   if (!this->TakesAtLocations(settings))
   {
     return std::all_of(this->Channels.begin(), this->Channels.end(),
@@ -284,22 +270,20 @@ bool ComponentProjector::ProjectImage(
   return true;
 }
 
-bool ComponentProjector::Project(const std::vector<ShearWarp>& geometries,
-  const ProjectionSettings& settings, const std::vector<Cuts>& cuts)
+// Projects all components into all images. Returns false if it was stopped.
+bool ComponentProjector::ProjectImages(const ProjectionSettings& settings)
 {
-  this->Projected = false;
-  this->OnScreen = false;
-  this->Done = 0;
-  this->Parts = geometries.size();
+  const std::size_t images = this->Splat.geometries.size();
+  this->Parts = images;
   for (Channel& channel : this->Channels)
   {
-    channel.Images.resize(std::max(channel.Images.size(), geometries.size()));
+    channel.Images.resize(std::max(channel.Images.size(), images));
     channel.Settings = this->SettingsOf(channel, settings); // also if there is no image
   }
   bool done = true;
-  for (std::size_t n = 0; n < geometries.size() && done; ++n)
+  for (std::size_t n = 0; n < images && done; ++n)
   {
-    done = this->ProjectImage(n, geometries[n], settings, cuts[n]);
+    done = this->ProjectImage(n, settings);
   }
   // If one rank stops, all ranks stop.
   if (this->Ranks ? this->Ranks->Any(!done) : !done)
@@ -308,21 +292,66 @@ bool ComponentProjector::Project(const std::vector<ShearWarp>& geometries,
   }
   if (this->Ranks)
   {
-    this->Exchange(geometries, settings, cuts);
+    this->Exchange(settings);
   }
-  this->Projected = true;
+  return true;
+}
+
+// Whether the last projection was by cells of this view.
+bool ComponentProjector::ShowsCells(const View& view, const RayEnds& ends) const
+{
+  return this->OnScreen && this->CellView == view && this->CellSurface == ends.surfaceVersion &&
+    (ends.depth ? *ends.depth == this->CellDepth : this->CellDepth.empty());
+}
+
+bool ComponentProjector::Project(const View& view, const ProjectionSettings& shown,
+  const ProjectionSettings& wanted, const RayEnds& ends)
+{
+  const bool isOfCells = this->UsesCells(shown), usesCells = this->UsesCells(wanted);
+  if (isOfCells ? !PixelRays().find(view) : !this->Next.set(view, ends))
+  {
+    return false;
+  }
+  // Of equal samples the nearest is located.
+  const bool ordered = isOrdered(shown.reduction) || shown.recordLocations || this->Dependent;
+  const bool isShown = this->IsUpToDate(shown) &&
+    (isOfCells ? this->ShowsCells(view, ends)
+               : !this->OnScreen && this->Next.projectsAs(this->Splat, ordered));
+  // If one rank projects, all ranks project.
+  const bool isKept = this->Ranks ? !this->Ranks->Any(!isShown) : isShown;
+  if (!isKept && isOfCells && !usesCells && !this->Next.set(view, ends))
+  {
+    return false;
+  }
+  if (!isKept || !isOfCells)
+  {
+    std::swap(this->Splat, this->Next); // also of a kept projection, for its warp
+  }
+  if (isKept)
+  {
+    return true;
+  }
+  this->Projected = false;
+  this->ShearImageOutput = nullptr;
+  this->OnScreen = usesCells;
+  this->Done = 0;
+  this->Projected =
+    usesCells ? this->ProjectCells(view, wanted, ends) : this->ProjectImages(wanted);
+  this->Projections += this->Projected;
   return true;
 }
 
 bool ComponentProjector::HasWinners() const
 {
-  return this->Projected && this->LocatedChannel().Settings.recordLocations;
+  return this->Projected && (this->OnScreen || !this->Splat.geometries.empty()) &&
+    this->LocatedChannel().Settings.recordLocations;
 }
 
 void ComponentProjector::Describe(Located& located) const
 {
   const Channel& channel = this->LocatedChannel();
   located.images = this->OnScreen ? nullptr : &channel.Images;
+  located.geometries = &this->Splat.geometries;
   located.screen = this->OnScreen ? &channel.Screen : nullptr;
   located.volume = channel.Index.volume();
   if (this->Ranks)
@@ -347,19 +376,19 @@ const PixelProjector::Pixel& ComponentProjector::ProjectPixel(const ProjectionSe
 }
 
 // Turns the images of pieces into those of the whole.
-void ComponentProjector::Exchange(const std::vector<ShearWarp>& geometries,
-  const ProjectionSettings& settings, const std::vector<Cuts>& cuts)
+void ComponentProjector::Exchange(const ProjectionSettings& settings)
 {
-  for (std::size_t n = 0; n < geometries.size(); ++n)
+  for (std::size_t n = 0; n < this->Splat.geometries.size(); ++n)
   {
+    const ShearWarp& geometry = this->Splat.geometries[n];
     for (Channel& channel : this->Channels)
     {
-      this->Ranks->Reduce(channel.Images[n], geometries[n], settings.reduction);
+      this->Ranks->Reduce(channel.Images[n], geometry, settings.reduction);
       if (settings.reduction == Reduction::DepthShaded)
       {
         fillEmpty(channel.Images[n], channel.Range.low);
       }
-      this->Projector.outline(geometries[n], settings, cuts[n], channel.Images[n]);
+      this->Projector.outline(geometry, settings, this->Splat.cuts[n], channel.Images[n]);
     }
   }
 }
@@ -386,12 +415,11 @@ void ComponentProjector::UpdateCells(Channel& channel, const View& view)
   channel.Range = range;
 }
 
-bool ComponentProjector::ProjectOnScreen(
+// Projects all components by cells. Returns false if it was stopped.
+bool ComponentProjector::ProjectCells(
   const View& view, const ProjectionSettings& settings, const RayEnds& ends)
 {
-  this->Projected = false;
-  this->OnScreen = true;
-  this->Done = 0;
+  this->Splat = {};
   this->Parts = 1;
   bool done = true;
   for (Channel& channel : this->Channels)
@@ -422,7 +450,9 @@ bool ComponentProjector::ProjectOnScreen(
       CellProjector::finish(channel.Cells, channel.Settings, channel.Screen);
     }
   }
-  this->Projected = true;
+  this->CellView = view;
+  this->CellSurface = ends.surfaceVersion;
+  ends.depth ? void(this->CellDepth = *ends.depth) : this->CellDepth.clear();
   return true;
 }
 
@@ -442,9 +472,9 @@ const CellScalars& ComponentProjector::ProjectPixelOnScreen(
 }
 
 template <class F>
-bool ComponentProjector::ForScreens(
-  const std::vector<ShearWarp>& geometries, const View& view, const F& f)
+bool ComponentProjector::ForScreens(const View& view, const F& f)
 {
+  const std::vector<ShearWarp>& geometries = this->Splat.geometries;
   // In overviews the other components are taken from the sample that the area shows.
   const Channel& last = this->Channels.back();
   const bool takesPixels = !this->OnScreen && !geometries.empty() &&
@@ -479,10 +509,9 @@ bool ComponentProjector::ForScreens(
   return true;
 }
 
-bool ComponentProjector::MakePicture(
-  const std::vector<ShearWarp>& geometries, const View& view, Picture& picture)
+bool ComponentProjector::MakePicture(const View& view, Picture& picture)
 {
-  return this->ForScreens(geometries, view,
+  return this->ForScreens(view,
     [&](std::size_t c, const ScreenScalars& screen)
     {
       Picture& layer = c == 0 ? picture : this->Layer;
@@ -495,8 +524,7 @@ bool ComponentProjector::MakePicture(
     });
 }
 
-bool ComponentProjector::CopyScalars(
-  const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars)
+bool ComponentProjector::CopyScalars(const View& view, double background, void* scalars)
 {
   const std::size_t components = this->Channels.size();
   const std::size_t pixels = std::size_t(view.viewport.x) * view.viewport.y;
@@ -505,7 +533,7 @@ bool ComponentProjector::CopyScalars(
     using A = std::remove_pointer_t<decltype(to)>;
     this->Plane.resize(components > 1 ? pixels * sizeof(A) : 0);
     A* const plane = components > 1 ? reinterpret_cast<A*>(this->Plane.data()) : to;
-    return this->ForScreens(geometries, view,
+    return this->ForScreens(view,
       [&](std::size_t c, const ScreenScalars& screen)
       {
         std::fill_n(plane, pixels, static_cast<A>(background));
@@ -521,44 +549,23 @@ bool ComponentProjector::CopyScalars(
     : copy(static_cast<double*>(scalars));
 }
 
-vtkSmartPointer<vtkImageData> ComponentProjector::MakeShearImage(
-  const std::vector<ShearWarp>& geometries, const ScalarSource& source) const
+vtkImageData* ComponentProjector::ShearImageOf(const ScalarSource& source)
 {
-  const auto output = vtkSmartPointer<vtkImageData>::New();
-  const std::size_t n = mainImage(geometries);
-  const ShearWarp& geometry = geometries[n];
-  const ShearImage& first = this->Channels.front().Images[n];
-  const std::size_t components = this->Channels.size(), size = sizeOf(first.type);
-  output->SetDimensions(first.width, first.height, 1);
-  output->SetOrigin(geometry.columns().at.front(), geometry.rows().at.front(), 0.0);
-  output->SetSpacing(geometry.pitch(), geometry.pitch(), 1.0);
-  output->AllocateScalars(source.VtkTypeOf(first.type), static_cast<int>(components));
-  const std::size_t pixels = static_cast<std::size_t>(output->GetNumberOfPoints());
-  auto* const scalars = static_cast<unsigned char*>(output->GetScalarPointer());
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-  ghosts->SetNumberOfValues(output->GetNumberOfPoints());
-  ghosts->Fill(vtkDataSetAttributes::HIDDENPOINT);
-  for (std::size_t c = 0; c < components; ++c)
+  const ShearWarp* const geometry = this->MainImage();
+  if (!geometry)
   {
-    const ShearImage& projected = this->Channels[c].Images[n];
-    const ShearImage combined = projected.minima.empty() ? ShearImage() : shownValues(projected);
-    const ShearImage& image = projected.minima.empty() ? projected : combined;
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
-    {
-      std::memcpy(
-        scalars + (pixel * components + c) * size, image.bytes.data() + pixel * size, size);
-      const int u = static_cast<int>(pixel % image.width),
-                v = static_cast<int>(pixel / image.width);
-      const vtkIdType id = static_cast<vtkIdType>(pixel);
-      if (image.covers(u, v) &&
-        !std::isnan(output->GetPointData()->GetScalars()->GetComponent(id, static_cast<int>(c))))
-      {
-        ghosts->SetValue(id, 0);
-      }
-    }
+    this->ShearImageOutput = nullptr;
   }
-  output->GetPointData()->AddArray(ghosts);
-  return output;
+  else if (!this->ShearImageOutput)
+  {
+    std::vector<const ShearImage*> images;
+    for (const Channel& channel : this->Channels)
+    {
+      images.push_back(&channel.Images[geometry - this->Splat.geometries.data()]);
+    }
+    this->ShearImageOutput =
+      makeShearImage(images, *geometry, source.VtkTypeOf(images.front()->type));
+  }
+  return this->ShearImageOutput;
 }
 }

@@ -4,22 +4,25 @@
 #define ComponentProjector_h
 
 #include "Cells/CellProjector.h"
+#include "Clipping/SceneDepth.h"
 #include "ComponentColors.h"
 #include "Display/Warp.h"
 #include "PixelProjector.h"
 #include "Projection/Locations.h"
 #include "Projection/Project.h"
+#include "Projection/SplatView.h"
 
+#include "vtkImageData.h"
 #include "vtkSmartPointer.h"
 #include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
-class vtkImageData;
 class vtkVolumeProperty;
 VTK_ABI_NAMESPACE_END
 
@@ -27,13 +30,6 @@ namespace splatting
 {
 class PieceExchange;
 class ScalarSource;
-
-/// The index of the largest image; there must be one.
-std::size_t mainImage(const std::vector<ShearWarp>& images);
-
-/// Whether two views have the same rays and equally sharp images, and, if `ordered`, the same side
-/// of the viewer.
-bool haveSameRays(const std::vector<ShearWarp>& a, const std::vector<ShearWarp>& b, bool ordered);
 
 /**
  * Projects the components of a data set and combines them to one picture.
@@ -83,43 +79,34 @@ public:
   /// Sets whether scalars below the window are clamped; see CullBelowWindow. Needs UpdateColors().
   void SetCullBelowWindow(bool cull) { this->Cull = cull; }
 
-  /// Whether ProjectOnScreen() projects these settings, not Project().
-  bool UsesCells(const ProjectionSettings& settings) const
-  {
-    return settings.quality == Quality::Exact && !this->TakesAtLocations(settings);
-  }
-
   /**
-   * Whether the last projection has these settings, regardless of the viewer's side.
+   * Projects all components by the engine for the settings, unless the last projection shows the
+   * view. If the observer stops it, there is no projection. Collective.
+   * @param shown   settings: if the last projection has these, it is kept
+   * @param wanted  settings of a new projection
+   * @return  false if the view is invalid
    */
-  bool IsUpToDate(const ProjectionSettings& settings) const;
-
-  /**
-   * Projects all components into all images of a view, each with its cuts. Returns false, without
-   * images, if the observer has stopped it.
-   */
-  bool Project(const std::vector<ShearWarp>& geometries, const ProjectionSettings& settings,
-    const std::vector<Cuts>& cuts);
+  bool Project(const View& view, const ProjectionSettings& shown, const ProjectionSettings& wanted,
+    const RayEnds& ends);
 
   /// Whether there is a projection.
   bool IsProjected() const { return this->Projected; }
   /// Marks the projection as outdated.
   void Forget() { this->Projected = false; }
+  /// How often Project() has projected.
+  vtkIdType NumberOfProjections() const { return this->Projections; }
 
-  /**
-   * Projects all components onto the screen, by cells. Collective.
-   * @return  false, without a projection, if the observer has stopped it or the view is invalid
-   */
-  bool ProjectOnScreen(const View& view, const ProjectionSettings& settings, const RayEnds& ends);
-  /// Whether the last projection was by cells, and needs no geometries.
+  /// Whether the last projection was by cells. There are no shear images then.
   bool IsOnScreen() const { return this->OnScreen; }
-  /// As ProjectOnScreen(), for one pixel of the viewport, with its depth. Not for pieces. The
-  /// result is valid until the next call.
+  /// The shear images' cuts.
+  const std::vector<Cuts>& CutsOfImages() const { return this->Splat.cuts; }
+  /// Projects one pixel of the viewport by cells, with its depth. Not for pieces. The result is
+  /// valid until the next call.
   const CellScalars& ProjectPixelOnScreen(
     const View& view, ProjectionSettings settings, const RayEnds& ends, const glm::ivec2& pixel);
 
   /// Makes the picture of a view. Returns false, without a picture, if the observer has stopped it.
-  bool MakePicture(const std::vector<ShearWarp>& geometries, const View& view, Picture& picture);
+  bool MakePicture(const View& view, Picture& picture);
 
   /**
    * Copies scalars instead of colours: all components of each pixel, row by row of the whole
@@ -128,8 +115,7 @@ public:
    * @param scalars     of type averageType() of the images' type
    * @return  false, with invalid scalars, if the observer has stopped it
    */
-  bool CopyScalars(
-    const std::vector<ShearWarp>& geometries, const View& view, double background, void* scalars);
+  bool CopyScalars(const View& view, double background, void* scalars);
   /// Sets the function that returns whether to continue these two; see WarpedScalars.
   void SetScreenObserver(const ProgressObserver::Callback& callback)
   {
@@ -140,10 +126,11 @@ public:
   /// continue.
   void SetObserver(const ProgressObserver::Callback& callback);
 
-  /// The largest shear image, with all components. Its ghost array hides pixels without a sample.
-  /// There must be images.
-  vtkSmartPointer<vtkImageData> MakeShearImage(
-    const std::vector<ShearWarp>& geometries, const ScalarSource& source) const;
+  /// The geometry of the largest shear image; nullptr if there is none.
+  const ShearWarp* MainImage() const { return this->Projected ? this->Splat.main() : nullptr; }
+  /// The largest shear image, with all components; nullptr if there is none. Its ghost array hides
+  /// pixels without a sample.
+  vtkImageData* ShearImageOf(const ScalarSource& source);
 
   /// Whether there are sample positions of the located component: the last of dependent ones, else
   /// the first.
@@ -182,7 +169,7 @@ private:
 
   /// Calls f(component, scalars). Returns false if the observer has stopped it.
   template <class F>
-  bool ForScreens(const std::vector<ShearWarp>& geometries, const View& view, const F& f);
+  bool ForScreens(const View& view, const F& f);
   ProjectionSettings SettingsOf(const Channel& channel, ProjectionSettings settings) const;
   bool TakesAtLocations(const ProjectionSettings& settings) const;
   const Channel& LocatedChannel() const
@@ -193,10 +180,16 @@ private:
   {
     return this->Dependent ? this->Channels.back() : this->Channels.front();
   }
-  void Exchange(const std::vector<ShearWarp>& geometries, const ProjectionSettings& settings,
-    const std::vector<Cuts>& cuts);
-  bool ProjectImage(
-    std::size_t n, const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts);
+  bool UsesCells(const ProjectionSettings& settings) const
+  {
+    return settings.quality == Quality::Exact && !this->TakesAtLocations(settings);
+  }
+  bool IsUpToDate(const ProjectionSettings& settings) const;
+  bool ShowsCells(const View& view, const RayEnds& ends) const;
+  bool ProjectCells(const View& view, const ProjectionSettings& settings, const RayEnds& ends);
+  bool ProjectImages(const ProjectionSettings& settings);
+  bool ProjectImage(std::size_t n, const ProjectionSettings& settings);
+  void Exchange(const ProjectionSettings& settings);
   void UpdateCells(Channel& channel, const View& view);
   bool ProjectChannel(Channel& channel, ShearImage& image, const ShearWarp& geometry,
     const ProjectionSettings& settings, const Cuts& cuts);
@@ -208,6 +201,12 @@ private:
   bool OnScreen = false;
   int Done = 0;          // completed images of components
   std::size_t Parts = 1; // images of a component
+  vtkIdType Projections = 0;
+  SplatView Splat; // of the last projection; none if it was by cells
+  SplatView Next;  // of the next one
+  View CellView;   // of the last projection by cells, and what ended its rays
+  SceneDepth CellDepth;
+  std::int64_t CellSurface = 0;
   vtkIdType Version = 0; // of the source
   PieceExchange* Ranks = nullptr;
 
@@ -220,6 +219,7 @@ private:
   Picture Layer; // picture of one component
   ShearPixelScalars Shown;
   std::vector<unsigned char> Plane; // scalars of one component
+  vtkSmartPointer<vtkImageData> ShearImageOutput;
 };
 }
 

@@ -50,8 +50,6 @@ public:
   std::string Validate(
     vtkSplattingMIPProjection* self, vtkDataArray* array, int association, vtkImageData* input);
   bool ReportProgress(vtkSplattingMIPProjection* self, double done);
-  bool ProjectView(vtkSplattingMIPProjection* self, const splatting::View& view,
-    const splatting::ProjectionSettings& settings);
   bool PlaceOutput(vtkImageData* output, bool locate);
   void FindViews(vtkSplattingMIPProjection* self);
   void Locate(const splatting::View& view, int n);
@@ -68,12 +66,9 @@ public:
     splatting::View view;
     splatting::ProjectionSettings settings;
   };
-  std::vector<ViewOfTurn> Views;                          // in the order of projection
-  std::vector<splatting::ShearWarp> Images, ImagesBefore; // of the last view and the one before
-  std::vector<splatting::Cuts> Cuts, CutsBefore;          // likewise
+  std::vector<ViewOfTurn> Views; // in the order of projection
   int ViewsDone = 0;
   double Reported = 0.0; // progress
-  vtkSmartPointer<vtkImageData> ShearImageOutput;
 };
 
 //------------------------------------------------------------------------------
@@ -193,38 +188,6 @@ bool vtkSplattingMIPProjection::Internals::ReportProgress(
 }
 
 //------------------------------------------------------------------------------
-// Projects a view, unless the last one had the same rays. Returns false if it was stopped.
-bool vtkSplattingMIPProjection::Internals::ProjectView(vtkSplattingMIPProjection* self,
-  const splatting::View& view, const splatting::ProjectionSettings& settings)
-{
-  if (this->Components.UsesCells(settings))
-  {
-    self->NumberOfProjections += this->Components.ProjectOnScreen(view, settings, {});
-    return this->Components.IsProjected();
-  }
-  this->Cuts.resize(this->Images.size());
-  for (std::size_t n = 0; n < this->Images.size(); ++n)
-  {
-    this->Cuts[n].cropping = view.cropping;
-    this->Cuts[n].intervals.find(this->Images[n], view.halfSpaces);
-  }
-  // The nearest of equal samples is located.
-  const bool ordered = splatting::isOrdered(settings.reduction) || settings.recordLocations;
-  if (haveSameRays(this->Images, this->ImagesBefore, ordered) && this->Cuts == this->CutsBefore &&
-    this->Components.IsUpToDate(settings))
-  {
-    return true;
-  }
-  if (!this->Components.Project(this->Images, settings, this->Cuts))
-  {
-    return false;
-  }
-  std::swap(this->Cuts, this->CutsBefore);
-  ++self->NumberOfProjections;
-  return true;
-}
-
-//------------------------------------------------------------------------------
 // Sets the geometry of the output and allocates its arrays. Returns false if there is not enough
 // memory.
 bool vtkSplattingMIPProjection::Internals::PlaceOutput(vtkImageData* output, bool locate)
@@ -315,22 +278,12 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
     {
       return TurnOfViews::Degenerate;
     }
-    std::swap(this->Images, this->ImagesBefore);
-    this->Images.clear();
-    splatting::PixelRays rays;
-    const bool isValid = this->Components.UsesCells(settings)
-      ? rays.find(view)
-      : splatting::ShearWarp::factorise(view, this->Images);
-    if (!isValid)
+    if (!this->Components.Project(view, settings, settings, {}))
     {
       return TurnOfViews::Degenerate;
     }
-    if (!this->ProjectView(self, view, settings) || !this->ReportProgress(self, 0.0))
-    {
-      return {};
-    }
-    if (!this->Components.CopyScalars(
-          this->Images, view, background, output->GetScalarPointer(0, 0, n)))
+    if (!this->Components.IsProjected() || !this->ReportProgress(self, 0.0) ||
+      !this->Components.CopyScalars(view, background, output->GetScalarPointer(0, 0, n)))
     {
       return {};
     }
@@ -347,12 +300,7 @@ std::string vtkSplattingMIPProjection::Internals::ProjectViews(
 // Writes the sample positions of view n, from the last projection.
 void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, int n)
 {
-  if (this->Images.empty() && !this->Components.IsOnScreen())
-  {
-    return;
-  }
   splatting::Located located;
-  located.geometries = &this->Images;
   located.view = view;
   located.indexToWorld = this->Source.Grid().indexToPhysical;
   this->Components.Describe(located);
@@ -432,8 +380,7 @@ int vtkSplattingMIPProjection::RequestData(
   vtkImageData* const output = vtkImageData::GetData(outputs);
   int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   vtkDataArray* const array = this->GetInputArrayToProcess(0, inputs, association);
-  in.ShearImageOutput = nullptr;
-  this->NumberOfProjections = 0;
+  const vtkIdType before = in.Components.NumberOfProjections();
   std::string problem;
   try
   {
@@ -446,6 +393,7 @@ int vtkSplattingMIPProjection::RequestData(
     in.Components.Clear();
     problem = ScalarSource::NoMemory;
   }
+  this->NumberOfProjections = in.Components.NumberOfProjections() - before;
   if (!problem.empty())
   {
     vtkErrorMacro(<< problem);
@@ -491,16 +439,7 @@ bool vtkSplattingMIPProjection::GetViewCamera(int view, vtkCamera* camera)
 //------------------------------------------------------------------------------
 vtkImageData* vtkSplattingMIPProjection::GetShearImage()
 {
-  Internals& in = *this->Internal;
-  if (!in.Components.IsProjected() || in.Images.empty())
-  {
-    in.ShearImageOutput = nullptr;
-  }
-  else if (!in.ShearImageOutput)
-  {
-    in.ShearImageOutput = in.Components.MakeShearImage(in.Images, in.Source);
-  }
-  return in.ShearImageOutput;
+  return this->Internal->Components.ShearImageOf(this->Internal->Source);
 }
 
 //------------------------------------------------------------------------------

@@ -3,7 +3,6 @@
 #include "Scene/ProjectedLabels.h"
 
 #include "Common/Parallel.h"
-#include "ComponentProjector.h"
 #include "Projection/Locations.h"
 #include "Scene/LabelEdges.h"
 #include "Scene/SceneCuts.h"
@@ -43,33 +42,29 @@ std::vector<int> ProjectedLabels::VoxelsOf(const Picture& picture, vtkImageData*
   const View& view, SceneCuts& scene, std::size_t budget)
 {
   std::vector<int> voxels(3 * picture.pixels.size(), -1);
-  std::vector<ShearWarp> rays;
-  if (!ShearWarp::factorise(view, rays) || rays.empty())
+  SplatView rays;
+  if (!rays.set(view, scene.Get()) || rays.geometries.empty())
   {
     return voxels;
   }
-  std::vector<Cuts> cuts;
-  scene.FindFor(view, rays, cuts);
   ProjectionSettings settings;
   settings.quality = Quality::Preview;
   settings.recordLocations = true;
-  const bool isOutdated = this->Load(labels, view.dimensions) || !(cuts == this->RayCuts) ||
-    !haveSameRays(rays, this->Rays, true);
+  const bool isOutdated = this->Load(labels, view.dimensions) || !rays.projectsAs(this->Rays, true);
   this->Index.setBudget(budget);
   this->Rays = std::move(rays);
-  this->RayCuts = std::move(cuts);
   if (isOutdated)
   {
-    this->Images.resize(std::max(this->Images.size(), this->Rays.size()));
-    for (std::size_t n = 0; n < this->Rays.size(); ++n)
+    this->Images.resize(std::max(this->Images.size(), this->Rays.geometries.size()));
+    for (std::size_t n = 0; n < this->Rays.geometries.size(); ++n)
     {
       this->Projector.project(
-        this->Index, this->Rays[n], settings, this->RayCuts[n], this->Images[n]);
+        this->Index, this->Rays.geometries[n], settings, this->Rays.cuts[n], this->Images[n]);
     }
   }
   Located located;
   located.images = &this->Images;
-  located.geometries = &this->Rays;
+  located.geometries = &this->Rays.geometries;
   located.volume = this->Index.volume();
   located.high = 1.0;
   located.settings = settings;

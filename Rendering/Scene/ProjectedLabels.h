@@ -6,9 +6,9 @@
 #ifndef ProjectedLabels_h
 #define ProjectedLabels_h
 
-#include "Clipping/Cuts.h"
 #include "Display/Picture.h"
 #include "Projection/Project.h"
+#include "Projection/SplatView.h"
 
 #include "vtkSplattingMIPNamespace.h"
 #include "vtkType.h"
@@ -54,8 +54,7 @@ private:
   std::vector<unsigned char> IsLabel;
   VolumeIndex Index;
   splatting::Projector Projector;
-  std::vector<ShearWarp> Rays;
-  std::vector<Cuts> RayCuts;
+  SplatView Rays;
   std::vector<ShearImage> Images;
 };
 }

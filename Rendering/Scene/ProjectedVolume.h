@@ -9,13 +9,9 @@
 #include "Ranks/RankAgreement.h"
 #include "Scene/SceneCuts.h"
 
-#include "vtkSmartPointer.h"
 #include "vtkSplattingMIPNamespace.h"
 
-#include <vector>
-
 VTK_ABI_NAMESPACE_BEGIN
-class vtkImageData;
 class vtkRenderer;
 class vtkSplattingMIPVolumeMapper;
 class vtkVolume;
@@ -34,7 +30,6 @@ public:
   ScalarSource Source;
   ComponentProjector Components;
   SceneCuts Cuts;
-  std::vector<ShearWarp> Images;
 
   /// The voxel grid; with several ranks that of the whole.
   const VolumeGrid& Grid() const
@@ -64,13 +59,8 @@ public:
   /// Releases all memory, after a frame that ran out of memory.
   void Clear();
 
-  /// The largest shear image; nullptr if there is none.
-  const ShearWarp* MainImage() const;
-  /// See vtkSplattingMIPVolumeMapper::GetShearImage().
-  vtkImageData* ShearImage();
-
   /// See the mapper's methods of these names.
-  vtkIdType NumberOfProjections() const { return this->Projections; }
+  vtkIdType NumberOfProjections() const { return this->Components.NumberOfProjections(); }
   int QualityModeUsed() const;
   double ProjectionTime() const { return this->TimeToProject; }
   double IndexTime() const { return this->Source.Time() + this->Components.Time(); }
@@ -81,18 +71,12 @@ public:
 
 private:
   int ChooseMode(vtkSplattingMIPVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume);
-  bool FindCuts(vtkSplattingMIPVolumeMapper* mapper, const View& view, vtkRenderer* renderer,
-    vtkVolume* volume, const SceneCuts::DepthReader& readDepth, const ProjectionSettings& settings);
-  bool IsUpToDate(const View& view, const ProjectionSettings& settings) const;
 
-  std::vector<ShearWarp> ImagesBefore; // of the frame before
-  vtkIdType Projections = 0, ProjectionsBefore = 0;
-  int ModeUsed = 3; // in the last complete projection
+  vtkIdType ProjectionsBefore = 0; // before this frame
+  int ModeUsed = 3;                // in the last complete projection
   double TimeToProject = 0.0;
-  double CutTime = 0.0; // the part of TimeToProject for the current cuts
   RenderTimes Times;
   double IndexTimeBefore = 0.0; // before this frame
-  vtkSmartPointer<vtkImageData> ShearImageOutput;
 };
 }
 

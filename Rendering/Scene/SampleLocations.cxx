@@ -158,11 +158,10 @@ void SampleLocations::Remember(
   located = {};
   located.view = view;
   located.indexToWorld = indexToWorld(grid, volume);
-  located.geometries = &this->Images;
   this->Projector.Describe(located);
   frame.onScreen = this->Projector.IsOnScreen();
-  frame.ends = this->SceneCuts.OnScreen();
-  frame.projectionCuts = &this->SceneCuts.OfProjection();
+  frame.ends = this->SceneCuts.Get();
+  frame.projectionCuts = &this->Projector.CutsOfImages();
   if (frame.onScreen && !this->Projector.HasWinners())
   {
     located.screen = nullptr;
@@ -176,8 +175,7 @@ void SampleLocations::Remember(
 
 bool SampleLocations::HasWinners() const
 {
-  return this->Last() && (this->Projector.IsOnScreen() || !this->Images.empty()) &&
-    this->Projector.HasWinners();
+  return this->Last() && this->Projector.HasWinners();
 }
 
 // Whether a frame is still shown and its voxels exist.

@@ -56,12 +56,10 @@ std::vector<glm::dvec3> depthColors(vtkScalarsToColors* colors);
 class SampleLocations
 {
 public:
-  SampleLocations(const ScalarSource& source, ComponentProjector& projector, SceneCuts& cuts,
-    const std::vector<ShearWarp>& images)
+  SampleLocations(const ScalarSource& source, ComponentProjector& projector, SceneCuts& cuts)
     : Source(source),
       Projector(projector),
-      SceneCuts(cuts),
-      Images(images)
+      SceneCuts(cuts)
   {
   }
 
@@ -131,7 +129,6 @@ private:
   const ScalarSource& Source;
   ComponentProjector& Projector;
   splatting::SceneCuts& SceneCuts;
-  const std::vector<ShearWarp>& Images;
   std::vector<std::unique_ptr<Frame>> Frames; // the last frame first
   bool HasLast = false; // whether projector and cuts belong to the first frame
   std::vector<float> Depths;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scene/SceneCuts.h"
 
+#include "Cells/CellProjector.h"
+#include "Geometry/Magnification.h"
+
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 
@@ -9,30 +12,29 @@
 
 namespace splatting
 {
-void SceneCuts::Find(const View& view, const std::vector<ShearWarp>& images, vtkRenderer* renderer,
-  vtkVolume* volume, bool intermixes, const DepthReader& readDepth)
+bool SceneCuts::Find(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
+  const DepthReader& readDepth)
 {
-  placePicture(images, view.viewport, this->Area);
-  this->FindScene(view, renderer, volume, intermixes, readDepth);
-  this->FindFor(view, images, this->Present);
-}
-
-void SceneCuts::FindFor(
-  const View& view, const std::vector<ShearWarp>& images, std::vector<Cuts>& cuts)
-{
-  cuts.resize(images.size());
-  for (std::size_t n = 0; n < images.size(); ++n)
+  // A picture ends at the outer faces of voxels or within, but for rounding. In overviews the areas
+  // of more pixels may meet it.
+  View boxes = view;
+  boxes.showsBoxes = true;
+  if (!CellProjector::place(boxes, this->Area))
   {
-    cuts[n].cropping = view.cropping;
-    cuts[n].intervals.find(
-      images[n], view.halfSpaces, this->Bounds.Get(), this->Seen ? &this->Seen->depth : nullptr);
+    return false;
   }
-}
-
-// Finds what hides the volume in the scene.
-void SceneCuts::FindScene(const View& view, vtkRenderer* renderer, vtkVolume* volume,
-  bool intermixes, const DepthReader& readDepth)
-{
+  if (minifiesAnyAxis(view))
+  {
+    this->Area.origin = glm::ivec2(0);
+    this->Area.size = view.viewport;
+  }
+  else if (this->Area.size.x > 0)
+  {
+    constexpr int margin = 2;
+    const glm::ivec2 end = glm::min(this->Area.origin + this->Area.size + margin, view.viewport);
+    this->Area.origin = glm::max(this->Area.origin - margin, glm::ivec2(0));
+    this->Area.size = end - this->Area.origin;
+  }
   this->Seen = renderer->GetSelector()
     ? this->FindLastScene(view, renderer, volume, intermixes)
     : this->ReadSceneDepth(renderer, volume, intermixes, readDepth);
@@ -41,42 +43,12 @@ void SceneCuts::FindScene(const View& view, vtkRenderer* renderer, vtkVolume* vo
     this->Seen->indexToClip = view.indexToClip;
     this->Seen->depth.place(view);
   }
-}
-
-bool SceneCuts::FindOnScreen(const View& view, vtkRenderer* renderer, vtkVolume* volume,
-  bool intermixes, const DepthReader& readDepth)
-{
-  if (!CellProjector::place(view, this->Area))
-  {
-    return false;
-  }
-  this->FindScene(view, renderer, volume, intermixes, readDepth);
   return true;
 }
 
-RayEnds SceneCuts::OnScreen()
+RayEnds SceneCuts::Get()
 {
-  return { this->Bounds.Get(), this->Seen ? &this->Seen->depth : nullptr };
-}
-
-bool SceneCuts::AreKeptOnScreen(const View& view) const
-{
-  return this->KeptView == view && this->KeptSurface == this->Bounds.Version() &&
-    (this->Seen ? this->Seen->depth == this->KeptDepth : this->KeptDepth.empty());
-}
-
-void SceneCuts::KeepOnScreen(const View& view)
-{
-  this->KeptView = view;
-  this->KeptSurface = this->Bounds.Version();
-  if (this->Seen)
-  {
-    this->KeptDepth = this->Seen->depth;
-  }
-  else
-  {
-    this->KeptDepth.clear();
-  }
+  return { this->Bounds.Get(), this->Seen ? &this->Seen->depth : nullptr, this->Bounds.Version() };
 }
 
 void SceneCuts::Hide(Picture& picture) const

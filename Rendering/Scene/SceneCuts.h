@@ -3,9 +3,10 @@
 #ifndef SceneCuts_h
 #define SceneCuts_h
 
-#include "Cells/CellProjector.h"
-#include "Clipping/Cuts.h"
+#include "Clipping/RayEnds.h"
 #include "Clipping/SceneDepth.h"
+#include "Display/Picture.h"
+#include "Geometry/View.h"
 #include "Input/BoundingSurface.h"
 
 #include "vtkSplattingMIPNamespace.h"
@@ -24,8 +25,7 @@ VTK_ABI_NAMESPACE_END
 namespace splatting
 {
 /**
- * The cuts of a volume by clipping, cropping, a bounding surface and the scene, and whether they
- * have changed since the last projection.
+ * The cuts of a volume by a bounding surface and by the scene.
  */
 class SceneCuts
 {
@@ -36,33 +36,14 @@ public:
   using DepthReader = std::function<bool(const int origin[2], const int size[2], float* depths)>;
 
   /**
-   * Computes the cuts of all images of a view.
+   * Finds the cuts of a view. Returns false if the view is invalid.
    * @param intermixes  whether geometry in the scene hides the volume and ends rays in it
    */
-  void Find(const View& view, const std::vector<ShearWarp>& images, vtkRenderer* renderer,
-    vtkVolume* volume, bool intermixes, const DepthReader& readDepth);
-
-  /// As Find(), in the scene of the last Find() or FindOnScreen(), for other images of its view.
-  void FindFor(const View& view, const std::vector<ShearWarp>& images, std::vector<Cuts>& cuts);
-
-  /// The cuts of each image, from Find().
-  const std::vector<Cuts>& Get() const { return this->Present; }
-
-  /// As Find(), for projections onto the screen. Returns false if the view is invalid.
-  bool FindOnScreen(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
+  bool Find(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
     const DepthReader& readDepth);
-  /// The cuts from FindOnScreen().
-  RayEnds OnScreen();
-  /// Whether these cuts and the view equal those of KeepOnScreen().
-  bool AreKeptOnScreen(const View& view) const;
-  void KeepOnScreen(const View& view);
 
-  /// Whether Get() equals the cuts of Keep().
-  bool AreKept() const { return this->Present == this->Kept; }
-  /// Stores the current cuts as those of a projection. Get() is invalid until the next Find().
-  void Keep() { std::swap(this->Present, this->Kept); }
-  /// The cuts of Keep().
-  const std::vector<Cuts>& OfProjection() const { return this->Kept; }
+  /// What the last Find() has found.
+  RayEnds Get();
 
   /// Clears the pixels of a picture that the scene hides.
   void Hide(Picture& picture) const;
@@ -82,8 +63,6 @@ private:
   /// Frames after which an unused scene is removed.
   static constexpr vtkTypeInt64 FramesKept = 64;
 
-  void FindScene(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
-    const DepthReader& readDepth);
   Scene* FindLastScene(
     const View& view, const vtkRenderer* renderer, const vtkVolume* volume, bool intermixes);
   Scene* ReadSceneDepth(
@@ -91,15 +70,10 @@ private:
   Scene& SceneOf(const vtkRenderer* renderer, const vtkVolume* volume);
 
   BoundingSurface Bounds;
-  std::vector<Cuts> Present, Kept;
-  /// Of the last projection onto the screen.
-  View KeptView;
-  vtkIdType KeptSurface = 0;
-  SceneDepth KeptDepth;
   std::vector<Scene> Scenes;
   Scene* Seen = nullptr; // of the current frame, or nullptr
   vtkTypeInt64 Frame = 0;
-  Picture Area; // rectangle of the viewport that shows the volume
+  Picture Area; // rectangle of the viewport that contains every picture of the volume
 };
 }
 

@@ -12,6 +12,7 @@
 
 #include "Cells/CellIndex.h"
 #include "Cells/CellScalars.h"
+#include "Clipping/RayEnds.h"
 #include "Common/ProgressObserver.h"
 #include "Geometry/View.h"
 #include "Projection/Project.h"
@@ -20,16 +21,7 @@
 
 namespace splatting
 {
-class ClosedSurface;
 struct Picture;
-class SceneDepth;
-
-/// What ends rays besides the half-spaces and the cropping of a view.
-struct RayEnds
-{
-  const ClosedSurface* surface = nullptr; ///< rays are cut to the hull of their part inside
-  const SceneDepth* depth = nullptr;      ///< placed in the view
-};
 
 /**
  * Projects volumes by cells. Holds the threads' work space between frames.

@@ -4,6 +4,8 @@
 // What things in a scene leave of a volume: with a plane across the view, what is before it; and
 // whether that is what it was.
 #include "CoreTesting.h"
+#include "Display/Outline.h"
+#include "Projection/SplatView.h"
 #include "Scene/SceneCuts.h"
 
 #include "vtkNew.h"
@@ -26,7 +28,8 @@ struct Scene
   vtkNew<vtkRenderer> renderer;
   vtkNew<vtkVolume> volume;
   splatting::View view;
-  std::vector<splatting::ShearWarp> images;
+  splatting::SplatView splat;
+  splatting::SplatView kept;
   SceneCuts cuts;
   double depth = 1.0; ///< of all pixels
   bool isRead = false;
@@ -36,21 +39,24 @@ struct Scene
     const auto size = coretesting::randomSize(random, 9);
     // Depths of views are about 1/2, however the volume is turned.
     this->view = coretesting::randomView(size, random);
-    splatting::ShearWarp::factorise(this->view, this->images);
+    this->splat.set(this->view, {});
     this->renderer->PreserveDepthBufferOn(); // there is something to intermix with
   }
 
   void find(bool intermixes)
   {
     this->isRead = false;
-    this->cuts.Find(this->view, this->images, this->renderer, this->volume, intermixes,
+    this->cuts.Find(this->view, this->renderer, this->volume, intermixes,
       [this](const int*, const int* extent, float* depths)
       {
         this->isRead = true;
         std::fill_n(depths, extent[0] * extent[1], float(this->depth));
         return true;
       });
+    this->splat.set(this->view, this->cuts.Get());
   }
+
+  bool isKept() const { return this->splat.projectsAs(this->kept, true); }
 };
 
 /// Whether the plane is in the volume where a pixel shows it. Next to where the volume ends it may
@@ -81,10 +87,10 @@ Place placeOf(const Scene& scene, const glm::dvec2& pixel)
 /// Rays end at the plane where it is in the volume. Returns how many lose samples.
 int testIntervals(Checks& check, const Scene& scene)
 {
-  const splatting::ShearWarp& image = scene.images.front();
-  const splatting::RayIntervals& intervals = scene.cuts.Get().front().intervals;
+  const splatting::ShearWarp& image = scene.splat.geometries.front();
+  const splatting::RayIntervals& intervals = scene.splat.cuts.front().intervals;
   splatting::Picture picture;
-  splatting::placePicture(scene.images, scene.view.viewport, picture);
+  splatting::placePicture(scene.splat.geometries, scene.view.viewport, picture);
   int cut = 0;
   for (int v = 0; v < image.height(); ++v)
   {
@@ -125,11 +131,26 @@ int testIntervals(Checks& check, const Scene& scene)
   return cut;
 }
 
+/// The number of pixels that may show the volume and that the scene does not hide.
 std::size_t countSeen(const Scene& scene)
 {
   splatting::Picture picture;
-  splatting::placePicture(scene.images, scene.view.viewport, picture);
-  picture.pixels.assign(std::size_t(picture.size.x) * picture.size.y, 1u);
+  splatting::placePicture(scene.splat.geometries, scene.view.viewport, picture);
+  picture.pixels.assign(std::size_t(picture.size.x) * picture.size.y, 0u);
+  for (const splatting::ShearWarp& geometry : scene.splat.geometries)
+  {
+    const splatting::Outline outline =
+      geometry.minifiesAnyAxis() ? splatting::metByAreas(geometry) : splatting::shownBy(geometry);
+    for (int y = 0; y < picture.size.y; ++y)
+    {
+      const glm::dvec3 start(picture.origin.x, picture.origin.y + y, 1.0);
+      const splatting::Span row = outline.cut({ 0, picture.size.x }, start);
+      for (int x = row.begin; x < row.end; ++x)
+      {
+        picture.pixels[std::size_t(y) * picture.size.x + x] = 1;
+      }
+    }
+  }
   scene.cuts.Hide(picture);
   return picture.pixels.size() - std::count(picture.pixels.begin(), picture.pixels.end(), 0u);
 }
@@ -137,17 +158,17 @@ std::size_t countSeen(const Scene& scene)
 void testScene(Checks& check, coretesting::Sightings& seen, reference::Random& random)
 {
   Scene scene(random);
-  if (scene.images.empty())
+  if (scene.splat.geometries.empty())
   {
     return;
   }
   scene.find(false);
-  check(!scene.isRead && scene.cuts.Get().front().intervals.empty(),
+  check(!scene.isRead && scene.splat.cuts.front().intervals.empty(),
     "depths are read although nothing intermixes");
   const std::size_t all = countSeen(scene);
-  scene.cuts.Keep();
+  scene.kept = scene.splat;
   scene.find(true);
-  check(scene.isRead && scene.cuts.AreKept(), "an empty scene cuts");
+  check(scene.isRead && scene.isKept(), "an empty scene cuts");
   // A plane somewhere in the volume.
   const glm::dvec4 middle(0.5 * glm::dvec3(scene.view.dimensions - 1), 1.0);
   const double reach = 0.002 * glm::length(glm::dvec3(scene.view.dimensions));
@@ -155,18 +176,18 @@ void testScene(Checks& check, coretesting::Sightings& seen, reference::Random& r
   scene.depth = double(float(scene.depth));
   scene.find(true);
   const int cut = testIntervals(check, scene);
-  check(cut == 0 || !scene.cuts.AreKept(), "a plane is not noticed");
+  check(cut == 0 || !scene.isKept(), "a plane is not noticed");
   seen.add(cut > 0);
-  scene.cuts.Keep();
+  scene.kept = scene.splat;
   scene.find(true);
-  check(scene.cuts.AreKept(), "the same plane is taken for another");
+  check(scene.isKept(), "the same plane is taken for another");
   scene.depth = 0.0;
   scene.find(true);
   check(countSeen(scene) == 0 && all > 0, "what is behind everything is seen");
   scene.view.cropping.flags = 1;
   scene.depth = 1.0;
   scene.find(true);
-  check(!scene.cuts.AreKept() && countSeen(scene) == all, "cropping is not noticed");
+  check(!scene.isKept() && countSeen(scene) == all, "cropping is not noticed");
 }
 }
 
