@@ -114,10 +114,15 @@ void testTuples(stage::Stage& stage, stage::Checks& check)
       mapper->SetBlendMode(random.uniform(0, 1) ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
                                                 : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
       stage.show(mapper);
-      lookAtRandom(stage, 1.0, random);
-      stage.window->Render();
-      check(!mapper->GetLastRenderUsedRayCasting() && carriesTuples(stage, mapper, image),
-        "Each pixel has the tuple that wins.");
+      const stage::Vector direction = stage::anyDirection(random), up = stage::anyDirection(random);
+      // From the opposite side other voxels of equal opacity win.
+      for (const double side : { 1.0, -1.0 })
+      {
+        stage.look({ side * direction[0], side * direction[1], side * direction[2] }, up, 1.0);
+        stage.window->Render();
+        check(!mapper->GetLastRenderUsedRayCasting() && carriesTuples(stage, mapper, image),
+          "Each pixel has the tuple that wins.");
+      }
     });
 }
 
