@@ -28,6 +28,25 @@ def read(path):
     return image.GetDimensions(), values.reshape(image.GetNumberOfPoints(), -1)
 
 
+def compress(path):
+    """Write a picture again, with as few bytes as there are for the same colours."""
+    reader = vtk.vtkPNGReader()
+    reader.SetFileName(str(path))
+    components = vtk.vtkImageExtractComponents()
+    components.SetInputConnection(reader.GetOutputPort())
+    values = read(path)[1]
+    if (values == values[:, :1]).all():
+        components.SetComponents(0)  # gray
+    else:
+        components.SetComponents(0, 1, 2)
+    components.Update()
+    writer = vtk.vtkPNGWriter()
+    writer.SetInputConnection(components.GetOutputPort())
+    writer.SetCompressionLevel(9)
+    writer.SetFileName(str(path))
+    writer.Write()
+
+
 def compare(found, expected):
     """What is wrong, or nothing. Lines and letters may be drawn otherwise by another OpenGL, or
     another FreeType; projections are the same bits everywhere."""
@@ -55,6 +74,8 @@ def main():
             command[place] = str(drawn)
             command[0] = {"splatmip": program, "python3": sys.executable}[command[0]]
             result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+            if "--write" in options and result.returncode == 0:
+                compress(drawn)
             fault = compare(drawn, picture) if result.returncode == 0 else result.stderr
             faults += [f"{picture.name} {fault}"] * bool(fault)
             shown.discard(str(picture.relative_to(README.parent)))
