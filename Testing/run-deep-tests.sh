@@ -50,8 +50,8 @@ part_more() {
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
       chromium-driver python3-selenium >/dev/null
   fi
-  bash "$testing_dir/Package/VTKsOwn/fetch-on-debian.sh" "$build_dir/vtk-tests"
-  build tests -DSPLATTINGMIP_BUILD_BENCHMARK=ON "-DSPLATTINGMIP_VTK_TESTS=$build_dir/vtk-tests"
+  bash "$testing_dir/Hosts/fetch-vtk.sh" "$build_dir/vtk"
+  build tests -DSPLATTINGMIP_BUILD_BENCHMARK=ON "-DSPLATTINGMIP_VTK_SOURCE=$build_dir/vtk"
   run_tests tests -L deep
 }
 

@@ -2,10 +2,11 @@
 # SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# fetch-on-debian.sh FOLDER
+# fetch-vtk.sh FOLDER
 #
-# Puts four of VTK's own tests into FOLDER, unless it exists. They come in no package but in the
-# source of one, which anybody may fetch from where packages come from.
+# Puts VTK's sources into FOLDER, unless it exists: those that Debian's packages of VTK are made from,
+# without Debian's patches. They are downloaded from the addresses in the machine's apt sources. Needs
+# root.
 set -euo pipefail
 
 folder=$1
@@ -13,9 +14,10 @@ folder=$1
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
+apt-get update -qq # without lists there are no addresses
 apt-get indextargets --format '$(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' |
   sed -n 's|^.*/debian/* .*|deb-src &|p' >"$scratch/sources.list"
-mkdir -p "$scratch/lists/partial" "$scratch/cache/archives/partial" "$scratch/tests"
+mkdir -p "$scratch/lists/partial" "$scratch/cache/archives/partial"
 apt=(
   apt-get -qq
   -o "Dir::Etc::SourceList=$scratch/sources.list" -o Dir::Etc::SourceParts=-
@@ -24,8 +26,8 @@ apt=(
 )
 "${apt[@]}" update
 (cd "$scratch" && "${apt[@]}" source --download-only vtk9)
-tar -xf "$scratch"/vtk9_*.orig.tar.xz -C "$scratch/tests" --wildcards --transform 's|.*/||' \
-  '*/TestGPURayCast*BlendModes.cxx' '*/TestGPURayCastCompositeToMIP.cxx' \
-  '*/TestGPURayCastMIPToComposite.cxx'
-mkdir -p "$(dirname "$folder")"
-mv "$scratch/tests" "$folder"
+# What is unpacked only in part has another name.
+rm -rf "$folder.part"
+mkdir -p "$folder.part"
+tar -xf "$scratch"/vtk9_*.orig.tar.xz -C "$folder.part" --strip-components=1
+mv "$folder.part" "$folder"
