@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A program outside this tree: renders a sphere of values and looks for it in the picture.
+// A program outside this tree: renders a volume and looks for it in the picture.
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkNew.h>
 #include <vtkPiecewiseFunction.h>
+#include <vtkRTAnalyticSource.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
-#include <vtkSampleFunction.h>
-#include <vtkSphere.h>
 #include <vtkSplattingMIPVolumeMapper.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkVolume.h>
@@ -34,13 +33,7 @@ bool showsVolume(vtkRenderWindow* window)
 
 int main()
 {
-  vtkNew<vtkSphere> sphere;
-  sphere->SetRadius(0.5);
-  vtkNew<vtkSampleFunction> source; // negative inside the sphere
-  source->SetImplicitFunction(sphere);
-  source->SetSampleDimensions(40, 40, 40);
-  source->ComputeNormalsOff();
-
+  vtkNew<vtkRTAnalyticSource> source;
   vtkNew<vtkSplattingMIPVolumeMapper> mapper;
   mapper->SetInputConnection(source->GetOutputPort());
   vtkNew<vtkColorTransferFunction> red;
