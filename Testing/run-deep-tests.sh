@@ -23,6 +23,7 @@
 #   arm64             the core's tests on 64-bit ARM, emulated
 #   paraview          the plugin in ParaView 5.11 (Debian 12); warnings are errors
 #   paraview-debian13 the plugin in ParaView 5.13 (Debian 13)
+#   remote            VTK 9.1's own build, which fetches the module as a remote module
 #   packages          Debian packages, on Debian 12 and 13
 #   wheel             wheels for vtk 9.3.0 and 9.6.2 of PyPI and for cvista, for each Python 3.11 to 3.13 that is there
 set -euo pipefail
@@ -157,6 +158,10 @@ part_paraview() {
 
 part_paraview-debian13() {
   bash "$testing_dir/Hosts/test-paraview.sh" trixie
+}
+
+part_remote() {
+  bash "$testing_dir/Hosts/test-remote.sh" bookworm
 }
 
 part_packages() {
