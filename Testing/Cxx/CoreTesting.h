@@ -7,14 +7,15 @@
 #ifndef CoreTesting_h
 #define CoreTesting_h
 
+#include "Checks.h"
 #include "Geometry/ShearWarp.h"
 #include "PerspectiveProjection.h"
 #include "Projection.h"
 #include "Projection/Project.h"
-#include "Random.h"
+#include "RandomScene.h"
+#include "Reductions.h"
+#include "Scenes.h"
 #include "Volume.h"
-
-#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <array>
@@ -29,34 +30,7 @@
 
 namespace coretesting
 {
-/// Counts failures and prints the first few of them.
-class Checks
-{
-public:
-  template <class... Message>
-  bool operator()(bool condition, const Message&... message)
-  {
-    if (!condition && ++this->Failures <= 20)
-    {
-      std::cerr << "ERROR: ";
-      (std::cerr << ... << message) << reference::howToRepeat() << std::endl;
-    }
-    return condition;
-  }
-  int result()
-  {
-    (*this)(reference::onlyScene().empty() || reference::scenesRun() > 0, "There is no scene ",
-      reference::onlyScene());
-    if (this->Failures)
-    {
-      std::cerr << this->Failures << " checks failed" << std::endl;
-    }
-    return this->Failures ? EXIT_FAILURE : EXIT_SUCCESS;
-  }
-
-private:
-  int Failures = 0;
-};
+using reference::Checks;
 
 /**
  * Counts the scenes of a series that show something, so that no test passes because there was
@@ -100,111 +74,6 @@ std::string seriesOf(const std::string& scenes)
   return scenes + ", type " + std::to_string(static_cast<int>(splatting::scalarTypeOf<T>()));
 }
 
-/// All of them; those that the processor lacks are the best that it has.
-inline constexpr splatting::InstructionSet instructionSets[] = {
-  splatting::InstructionSet::Baseline, splatting::InstructionSet::AVX2,
-  splatting::InstructionSet::AVX512, splatting::InstructionSet::AVX512VBMI
-};
-
-inline splatting::InstructionSet anyInstructionSet(reference::Random& random)
-{
-  return instructionSets[random.uniform(0, 3)];
-}
-
-inline splatting::Acceleration anyAcceleration(reference::Random& random)
-{
-  return static_cast<splatting::Acceleration>(random.uniform(0, 5));
-}
-
-/// Any in a box.
-inline glm::dvec3 anyVector(reference::Random& random, double low, double high)
-{
-  glm::dvec3 v;
-  for (int a = 0; a < 3; ++a)
-  {
-    v[a] = random.uniform(low, high);
-  }
-  return v;
-}
-
-inline glm::ivec3 toGlm(const std::array<int, 3>& size)
-{
-  return { size[0], size[1], size[2] };
-}
-
-/// A parallel view with a given principal axis and shears, one screen pixel per shear pixel.
-inline splatting::View viewWithShear(
-  const std::array<int, 3>& size, int axis, double shearX, double shearY)
-{
-  const int i = axis == 0 ? 1 : 0, j = axis == 2 ? 1 : 2;
-  splatting::View view;
-  view.dimensions = toGlm(size);
-  view.viewport = { 400, 400 };
-  glm::dmat4& m = view.indexToClip;
-  m = glm::dmat4(0.0);
-  m[i][0] = m[j][1] = 2.0 / 400;
-  m[axis][0] = shearX * 2.0 / 400;
-  m[axis][1] = shearY * 2.0 / 400;
-  m[axis][2] = 1e-3;
-  m[3][3] = 1.0;
-  return view;
-}
-
-/// A view from anywhere, with any spacing.
-inline splatting::View randomView(const std::array<int, 3>& size, reference::Random& random)
-{
-  splatting::View view;
-  view.dimensions = toGlm(size);
-  view.viewport = { random.uniform(50, 400), random.uniform(50, 400) };
-  glm::dmat4 m(1.0);
-  m = glm::scale(m, glm::dvec3(0.02, 0.02, 0.001));
-  for (int turn = 0; turn < 3; ++turn)
-  {
-    const glm::dvec3 axis{ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
-      random.uniform(0.1, 1.0) };
-    m = glm::rotate(m, random.uniform(0.0, 6.3), glm::normalize(axis));
-  }
-  m = glm::scale(m, anyVector(random, 0.3, 3.0));
-  view.indexToClip = glm::translate(m, -0.5 * glm::dvec3(view.dimensions - 1));
-  return view;
-}
-
-/// A perspective view: from inside the volume, from nearby or from afar, some from half-way between
-/// voxels or along an axis, with any spacing, view angles from 5 to 120 degrees, some off-axis.
-inline splatting::View randomPerspective(const std::array<int, 3>& size, reference::Random& random)
-{
-  splatting::View view;
-  view.dimensions = toGlm(size);
-  view.viewport = { random.uniform(20, 200), random.uniform(20, 200) };
-  const glm::dvec3 spacing = anyVector(random, 0.5, 2.0);
-  const double reach = std::pow(10.0, random.uniform(-1.0, 2.5));
-  glm::dvec3 eye, focus;
-  for (int a = 0; a < 3; ++a)
-  {
-    focus[a] = random.uniform(0.0, size[a] - 1.0);
-    eye[a] = 0.5 * (size[a] - 1) + reach * size[a] * random.uniform(-1.0, 1.0);
-  }
-  if (random.uniform(0, 3) == 0)
-  {
-    // Where rays meet edges, and look along an axis or a diagonal.
-    eye = glm::round(2.0 * eye) / 2.0;
-    for (int a = 0; a < 3; ++a)
-    {
-      focus[a] = eye[a] + random.uniform(-1, 1);
-    }
-  }
-  const glm::dvec3 up{ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.9 };
-  const double angle = glm::radians(random.uniform(5.0, 120.0));
-  const double top = 0.1 * std::tan(0.5 * angle), right = top * view.viewport.x / view.viewport.y;
-  const double shift = random.uniform(0, 1) ? random.uniform(-0.5, 0.5) : 0.0;
-  const glm::dmat4 projection =
-    glm::frustum((shift - 1.0) * right, (shift + 1.0) * right, -top, top, 0.1, 10000.0);
-  view.indexToClip = projection *
-    glm::lookAt(eye * spacing, focus * spacing + glm::dvec3(1e-9), up) *
-    glm::scale(glm::dmat4(1.0), spacing);
-  return view;
-}
-
 /// The view of a volume whose axes were permuted and reversed, so that it looks the same.
 inline splatting::View transformedView(
   const splatting::View& view, const reference::AxisSymmetry& symmetry)
@@ -223,80 +92,6 @@ inline splatting::View transformedView(
   }
   result.indexToClip[3] = last;
   return result;
-}
-
-/// One of the images of a perspective view.
-inline splatting::ShearWarp randomPerspectiveImage(
-  const std::array<int, 3>& size, reference::Random& random)
-{
-  std::vector<splatting::ShearWarp> images;
-  while (images.empty())
-  {
-    const splatting::View view = randomPerspective(size, random);
-    splatting::ShearWarp::factorise(view, images);
-  }
-  return images[random.uniform(0, static_cast<int>(images.size()) - 1)];
-}
-
-/// Shears at which rays meet edges and corners: no shear, diagonals, simple fractions.
-inline double specialShear(reference::Random& random)
-{
-  static const double shears[] = { 0.0, 1.0, 0.5, 0.25, 0.75, 1.0 / 3.0, 0x1p-24, 1.0 - 0x1p-24 };
-  const double shear = shears[random.uniform(0, 7)];
-  return random.uniform(0, 1) ? shear : -shear;
-}
-
-/// Half of the views are random, half have special shears.
-inline splatting::View anyView(const std::array<int, 3>& size, reference::Random& random)
-{
-  if (random.uniform(0, 1))
-  {
-    return randomView(size, random);
-  }
-  const int axis = random.uniform(0, 2);
-  const double shearX = specialShear(random), shearY = specialShear(random);
-  return viewWithShear(size, axis, shearX, shearY);
-}
-
-inline std::array<int, 3> randomSize(reference::Random& random, int largest)
-{
-  return { random.uniform(1, largest), random.uniform(1, largest), random.uniform(1, largest) };
-}
-
-/// Noise over the whole range of a type; [-1, 1] for floating point.
-template <class T>
-reference::Volume<T> wholeRangeNoise(const std::array<int, 3>& size, std::uint64_t seed)
-{
-  using Limits = std::numeric_limits<T>;
-  return reference::uniformNoise<T>(size, seed, Limits::is_integer ? Limits::lowest() : T(-1),
-    Limits::is_integer ? Limits::max() : T(1));
-}
-
-template <class T>
-reference::Volume<T> wholeRangeNoise(const std::array<int, 3>& size, reference::Random& random)
-{
-  return wholeRangeNoise<T>(size, random.bits());
-}
-
-/// Noise; of floating point one volume in three has NaN and infinities, some of them mostly NaN.
-template <class T>
-reference::Volume<T> volumeWithOddValues(const std::array<int, 3>& size, reference::Random& random)
-{
-  reference::Volume<T> volume = wholeRangeNoise<T>(size, random);
-  if constexpr (std::numeric_limits<T>::has_infinity)
-  {
-    const int share = random.uniform(0, 2) == 0 ? random.uniform(1, 9) : 0;
-    for (T& voxel : volume.voxels)
-    {
-      if (random.uniform(0, 9) < share)
-      {
-        const T odd[] = { std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::quiet_NaN(),
-          std::numeric_limits<T>::infinity(), -std::numeric_limits<T>::infinity() };
-        voxel = odd[random.uniform(0, 3)];
-      }
-    }
-  }
-  return volume;
 }
 
 inline reference::ShearView referenceView(const splatting::ShearWarp& geometry)
@@ -329,6 +124,54 @@ inline splatting::Cuts cutsBy(const splatting::ShearWarp& geometry,
   return cuts;
 }
 
+/// The same cuts, as the references take them.
+inline reference::RayCuts rayCutsOf(
+  const std::vector<glm::dvec4>& halfSpaces, const splatting::Cropping& cropping)
+{
+  reference::RayCuts cuts;
+  for (const glm::dvec4& h : halfSpaces)
+  {
+    cuts.halfSpaces.push_back({ h.x, h.y, h.z, h.w });
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    cuts.planes[a] = { cropping.planes[a].x, cropping.planes[a].y };
+  }
+  cuts.regions = cropping.flags;
+  return cuts;
+}
+
+inline reference::RayCuts anyCuts(const std::array<int, 3>& size, reference::Random& random)
+{
+  std::vector<glm::dvec4> halfSpaces;
+  if (random.chance(0.8))
+  {
+    halfSpaces = anyHalfSpaces(size, random);
+  }
+  splatting::Cropping cropping;
+  if (random.oneIn(2))
+  {
+    cropping = anyCropping(size, random);
+  }
+  return rayCutsOf(halfSpaces, cropping);
+}
+
+inline splatting::Cuts cutsBy(const splatting::ShearWarp& geometry, const reference::RayCuts& cuts)
+{
+  std::vector<glm::dvec4> halfSpaces;
+  for (const auto& h : cuts.halfSpaces)
+  {
+    halfSpaces.emplace_back(h[0], h[1], h[2], h[3]);
+  }
+  splatting::Cropping cropping;
+  for (int a = 0; a < 3; ++a)
+  {
+    cropping.planes[a] = { cuts.planes[a][0], cuts.planes[a][1] };
+  }
+  cropping.flags = cuts.regions;
+  return cutsBy(geometry, halfSpaces, cropping);
+}
+
 inline splatting::ShearImage project(splatting::VolumeIndex& index,
   const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
   const splatting::Cuts& cuts)
@@ -341,11 +184,40 @@ inline splatting::ShearImage project(splatting::VolumeIndex& index,
 template <class T>
 splatting::ShearImage project(const reference::Volume<T>& volume,
   const splatting::ShearWarp& geometry, const splatting::ProjectionSettings& settings,
-  const std::vector<glm::dvec4>& halfSpaces = {}, const splatting::Cropping& cropping = {})
+  const splatting::Cuts& cuts = {})
 {
   splatting::VolumeIndex index;
   index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
-  return project(index, geometry, settings, cutsBy(geometry, halfSpaces, cropping));
+  return project(index, geometry, settings, cuts);
+}
+
+/// What is projected to one image, except for the volume.
+struct Case
+{
+  splatting::ShearWarp geometry;
+  bool reversed = false; ///< the viewer is at the highest slice
+  splatting::ProjectionSettings settings;
+  reference::RayCuts cuts;
+  std::size_t budget = std::numeric_limits<std::size_t>::max();
+};
+
+template <class T>
+splatting::ShearImage projected(const reference::Volume<T>& volume, const Case& c)
+{
+  splatting::VolumeIndex index;
+  index.setBudget(c.budget);
+  index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
+  return project(index, c.geometry, c.settings, cutsBy(c.geometry, c.cuts));
+}
+
+inline reference::RayCutter cutterOf(const Case& c, const std::array<int, 3>& size)
+{
+  if (c.geometry.isPerspective())
+  {
+    return { referenceRays(c.geometry), c.cuts };
+  }
+  const reference::ShearView view = referenceView(c.geometry);
+  return { reference::makeShearGrid(size, view), view, c.cuts };
 }
 
 /// The pixels of an image of type P in the reference's form.

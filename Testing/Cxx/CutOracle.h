@@ -25,7 +25,7 @@
 
 namespace cutscenes
 {
-using coretesting::Checks;
+using namespace coretesting;
 using reference::Random;
 using splatting::RayIntervals;
 using splatting::ShearWarp;
@@ -70,22 +70,6 @@ constexpr double Doubt = 1e-6;
 /// Where rays and edges are nearer, as a share of the triangle; rays of perspective images are
 /// rounded.
 constexpr double MeshDoubt = 1e-5;
-
-inline glm::dvec3 randomVector(Random& random)
-{
-  return coretesting::anyVector(random, -1.0, 1.0);
-}
-
-inline glm::dvec3 randomPoint(Random& random, const glm::ivec3& size)
-{
-  return { random.uniform(-0.5, size.x - 0.5), random.uniform(-0.5, size.y - 0.5),
-    random.uniform(-0.5, size.z - 0.5) };
-}
-
-inline glm::dvec4 halfSpaceThrough(const glm::dvec3& point, const glm::dvec3& normal)
-{
-  return { normal, -glm::dot(normal, point) };
-}
 
 inline std::vector<glm::dvec4> halfSpacesOfBox(const glm::dvec3& low, const glm::dvec3& high)
 {

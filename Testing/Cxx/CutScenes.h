@@ -17,33 +17,13 @@
 
 namespace cutscenes
 {
-inline std::vector<glm::dvec4> randomHalfSpaces(Random& random, const glm::ivec3& size)
-{
-  std::vector<glm::dvec4> result;
-  for (int count = random.uniform(1, 6); count > 0; --count)
-  {
-    const glm::dvec3 normal = randomVector(random);
-    // Most of the volume stays on the inner side of many planes.
-    glm::dvec4 h = halfSpaceThrough(randomPoint(random, size), normal);
-    const bool isInside = glm::dot(h, glm::dvec4(0.5 * glm::dvec3(size), 1.0)) > 0.0;
-    result.push_back(isInside ? h : -h);
-  }
-  if (random.uniform(0, 2) == 0)
-  {
-    // A slab, of which some rays have less than a slice.
-    const glm::dvec3 normal = randomVector(random), point = randomPoint(random, size);
-    result.push_back(halfSpaceThrough(point, normal));
-    result.push_back(-halfSpaceThrough(point + random.uniform(0.1, 1.0) * normal, normal));
-  }
-  return result;
-}
-
 /// A sphere, stretched and turned, with the radius changed by up to `bumps`.
 inline Mesh randomBlob(Random& random, const glm::ivec3& size, double bumps)
 {
   const int rings = random.uniform(3, 9), sectors = random.uniform(3, 11);
-  const glm::dvec3 centre = randomPoint(random, size);
-  const glm::dmat3 stretch{ randomVector(random), randomVector(random), randomVector(random) };
+  const glm::dvec3 centre = anyPoint(toArray(size), random);
+  const glm::dmat3 stretch{ anyVector(random, -1.0, 1.0), anyVector(random, -1.0, 1.0),
+    anyVector(random, -1.0, 1.0) };
   Mesh mesh;
   const auto add = [&](double polar, double azimuth)
   {

@@ -7,18 +7,15 @@
 #define ProjectionTesting_h
 
 #include "CoreTesting.h"
+#include "RandomImage.h"
 
 #include "vtkSplattingMIPProjection.h"
 
 #include "vtkCommand.h"
 #include "vtkImageData.h"
-#include "vtkMatrix3x3.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkTypeTraits.h"
-
-#include <glm/gtc/matrix_transform.hpp>
 
 #include <cstring>
 #include <string>
@@ -26,17 +23,6 @@
 
 namespace projectiontesting
 {
-/// Of length 1, and not near 0 before.
-inline glm::dvec3 randomDirection(reference::Random& random)
-{
-  glm::dvec3 v(0.0);
-  while (glm::length(v) < 0.2 || glm::length(v) > 1.0)
-  {
-    v = { random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0) };
-  }
-  return glm::normalize(v);
-}
-
 template <class T>
 vtkSmartPointer<vtkImageData> imageOf(const reference::Volume<T>& volume)
 {
@@ -47,39 +33,13 @@ vtkSmartPointer<vtkImageData> imageOf(const reference::Volume<T>& volume)
   return image;
 }
 
-/// Another extent, spacing, origin and direction.
-inline void placeAtRandom(vtkImageData* image, reference::Random& random)
+/// Noise like a CT's, anywhere.
+inline vtkSmartPointer<vtkImageData> anyImage(
+  const std::array<int, 3>& size, reference::Random& random)
 {
-  int extent[6];
-  image->GetExtent(extent);
-  for (int a = 0; a < 3; ++a)
-  {
-    const int first = random.uniform(-5, 5);
-    extent[2 * a + 1] += first - extent[2 * a];
-    extent[2 * a] = first;
-  }
-  image->SetExtent(extent);
-  double spacing[3], origin[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    spacing[a] = random.uniform(0.5, 2.0);
-    origin[a] = random.uniform(-50.0, 50.0);
-  }
-  image->SetSpacing(spacing);
-  image->SetOrigin(origin);
-  const double angle = random.uniform(0.0, 6.3);
-  const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), angle, randomDirection(random));
-  for (int r = 0; r < 3; ++r)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      image->GetDirectionMatrix()->SetElement(r, c, turn[c][r]);
-    }
-  }
-  // The image does not watch its matrix.
-  vtkNew<vtkMatrix3x3> direction;
-  direction->DeepCopy(image->GetDirectionMatrix());
-  image->SetDirectionMatrix(direction);
+  auto image = imageOf(reference::uniformNoise<std::int16_t>(size, random, -1000, 3000));
+  coretesting::placeAtRandom(image, random, true);
+  return image;
 }
 
 inline vtkSmartPointer<vtkSplattingMIPProjection> projectionOf(vtkImageData* image)

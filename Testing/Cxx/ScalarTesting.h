@@ -121,7 +121,7 @@ inline vtkSmartPointer<vtkUnsignedCharArray> flags(
   unsigned char current = 0;
   for (vtkIdType n = 0; n < count; ++n)
   {
-    current = n % 3 == 0 ? (random.uniform(0.0, 1.0) < share ? value : 0) : current;
+    current = n % 3 == 0 ? (random.chance(share) ? value : 0) : current;
     array->SetValue(n, current);
   }
   return array;
@@ -184,7 +184,7 @@ inline bool isBlack(const stage::Pixels& pixels)
 
 /// Whether both give the same shear images (and, unless voxels are of another kind, pictures).
 inline void expectSame(stage::Stage& stage, vtkVolumeMapper* expected, vtkVolumeMapper* actual,
-  const std::string& name, stage::Checks& check, bool pictures = true)
+  const std::string& name, reference::Checks& check, bool pictures = true)
 {
   auto* const left = Mapper::SafeDownCast(expected);
   auto* const right = Mapper::SafeDownCast(actual);

@@ -17,7 +17,6 @@
 #include "vtkPointData.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
-#include "vtkTesting.h"
 #include "vtkThreadedImageAlgorithm.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
@@ -32,32 +31,6 @@
 
 namespace stage
 {
-
-//------------------------------------------------------------------------------
-bool Checks::operator()(bool condition, const std::string& what)
-{
-  if (!condition)
-  {
-    std::cout << "FAILED: " << what << reference::howToRepeat() << std::endl;
-    ++this->Failures;
-  }
-  return condition;
-}
-
-//------------------------------------------------------------------------------
-void Checks::skip(const std::string& file)
-{
-  std::cout << "skipped: no data (" << file << ")" << std::endl;
-  this->Skips = true;
-}
-
-//------------------------------------------------------------------------------
-int Checks::exitCode()
-{
-  (*this)(reference::onlyScene().empty() || reference::scenesRun() > 0,
-    "there is no scene " + reference::onlyScene());
-  return this->Failures > 0 ? EXIT_FAILURE : this->Skips ? VTK_SKIP_RETURN_CODE : EXIT_SUCCESS;
-}
 
 //------------------------------------------------------------------------------
 Messages::Messages(vtkObject* object, unsigned long event) : Object(object)
@@ -182,16 +155,8 @@ reference::Image<double> Stage::gray()
 //------------------------------------------------------------------------------
 Vector anyDirection(reference::Random& random)
 {
-  Vector direction;
-  do
-  {
-    for (double& component : direction)
-    {
-      component = random.uniform(-1.0, 1.0);
-    }
-  } while (vtkMath::Norm(direction.data()) < 0.2);
-  vtkMath::Normalize(direction.data());
-  return direction;
+  const glm::dvec3 direction = coretesting::anyDirection(random);
+  return { direction.x, direction.y, direction.z };
 }
 
 //------------------------------------------------------------------------------
@@ -281,37 +246,16 @@ void draw(reference::Volume<std::uint8_t>& volume, const Capsule& capsule)
 }
 }
 
-//------------------------------------------------------------------------------
-void placeAtRandom(vtkImageData* image, reference::Random& random)
-{
-  const int* size = image->GetDimensions();
-  int extent[6];
-  for (int a = 0; a < 3; ++a)
-  {
-    extent[2 * a] = random.uniform(-40, 40);
-    extent[2 * a + 1] = extent[2 * a] + size[a] - 1;
-  }
-  image->SetExtent(extent);
-  Vector spacing, origin;
-  for (int a = 0; a < 3; ++a)
-  {
-    spacing[a] = random.uniform(0.6, 1.4);
-    origin[a] = random.uniform(-90.0, 90.0);
-  }
-  image->SetSpacing(spacing.data());
-  image->SetOrigin(origin.data());
-}
-
 void chooseSamples(
   vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, reference::Random& random)
 {
   mapper->SetMaximumType(random.uniform(0, 3));
   mapper->SetLocalMaximumThreshold(100.0);
   mapper->SetSignedOrigin(random.uniform(20.0, 200.0));
-  mapper->SetSlab(random.uniform(0, 2) == 0);
+  mapper->SetSlab(random.oneIn(3));
   mapper->SetSlabCenter(image->GetCenter());
   mapper->SetSlabThickness(20.0);
-  mapper->SetCropping(random.uniform(0, 2) == 0);
+  mapper->SetCropping(random.oneIn(3));
   mapper->SetCroppingRegionFlags(VTK_CROP_INVERTED_CROSS);
   const double* const b = image->GetBounds();
   mapper->SetCroppingRegionPlanes(0.7 * b[0] + 0.3 * b[1], 0.2 * b[0] + 0.8 * b[1],
@@ -329,6 +273,13 @@ reference::Volume<std::uint8_t> blobsAndTubes(
     draw(volume, randomCapsule(random, size, number));
   }
   return volume;
+}
+
+reference::Volume<std::uint8_t> anyBlobs(reference::Random& random)
+{
+  const std::array<int, 3> size = coretesting::anySize(random, 32, 52);
+  const int count = random.uniform(4, 16);
+  return blobsAndTubes(size, count, random);
 }
 
 //------------------------------------------------------------------------------

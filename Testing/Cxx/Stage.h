@@ -8,9 +8,11 @@
 #ifndef Stage_h
 #define Stage_h
 
+#include "Checks.h"
 #include "ImageComparison.h"
 #include "Projection.h"
-#include "Random.h"
+#include "RandomImage.h"
+#include "Scenes.h"
 #include "Volume.h"
 
 #include "vtkNew.h"
@@ -37,30 +39,6 @@ namespace stage
 
 using Vector = std::array<double, 3>;
 using Pixels = std::vector<unsigned char>;
-
-/**
- * Counts what does not hold, and says it. Not "Error:", which VTK's tests search for.
- */
-class Checks
-{
-public:
-  /**
-   * Returns the condition.
-   */
-  bool operator()(bool condition, const std::string& what);
-  /**
-   * Says that something is left out, as this file of test data is missing.
-   */
-  void skip(const std::string& file);
-  /**
-   * Of a test that skips something and has nothing else to say, VTK_SKIP_RETURN_CODE.
-   */
-  int exitCode();
-
-private:
-  int Failures = 0;
-  bool Skips = false;
-};
 
 /**
  * The warnings or errors of an object, which are not printed while this lives.
@@ -135,11 +113,6 @@ Vector anyDirection(reference::Random& random);
  */
 vtkSmartPointer<vtkImageData> toImageData(const reference::Volume<std::uint8_t>& volume);
 
-/**
- * Gives the voxels another spacing, origin and extent.
- */
-void placeAtRandom(vtkImageData* image, reference::Random& random);
-
 /// Sets which samples of an image's rays a mapper takes, and which of them counts: maximum type,
 /// slab and cropping.
 void chooseSamples(
@@ -152,6 +125,8 @@ void chooseSamples(
  */
 reference::Volume<std::uint8_t> blobsAndTubes(
   const std::array<int, 3>& size, int count, reference::Random& random);
+/// From 4 to 16 of them, in a volume of 32 to 52 voxels along each axis.
+reference::Volume<std::uint8_t> anyBlobs(reference::Random& random);
 /**
  * The same ones whatever SPLATTINGMIP_TEST_SEED is, for tests that know what their pictures look
  * like.

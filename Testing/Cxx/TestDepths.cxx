@@ -105,7 +105,7 @@ std::string text(const Rgb& c)
   return std::to_string(c[0]) + " " + std::to_string(c[1]) + " " + std::to_string(c[2]);
 }
 
-void testColors(stage::Checks& check)
+void testColors(reference::Checks& check)
 {
   Scene scene;
   scene.mapper->DepthCodingOn();
@@ -160,7 +160,7 @@ void testColors(stage::Checks& check)
 }
 
 /// Every pixel, of a volume of which no two voxels of a line are alike, by a search along lines.
-void testSearch(stage::Checks& check)
+void testSearch(reference::Checks& check)
 {
   const std::array<int, 3> size = { 40, 40, 40 };
   auto volume = stage::blobsAndTubes(size, 6);
@@ -199,7 +199,7 @@ void testSearch(stage::Checks& check)
 }
 
 /// The buffer itself, beside the positions of samples.
-void testBuffer(Scene& scene, const std::string& what, stage::Checks& check)
+void testBuffer(Scene& scene, const std::string& what, reference::Checks& check)
 {
   scene.stage.window->Render();
   std::vector<float> buffer(std::size_t(Size) * Size);
@@ -269,7 +269,7 @@ struct LaterSphere
   }
 };
 
-void testDepthBuffer(stage::Checks& check, double viewAngle)
+void testDepthBuffer(reference::Checks& check, double viewAngle)
 {
   Scene scene;
   vtkNew<vtkPiecewiseFunction> opacity;
@@ -312,7 +312,7 @@ void testDepthBuffer(stage::Checks& check, double viewAngle)
 }
 
 /// Geometry that is there before keeps its depth.
-void testOpaqueBefore(stage::Checks& check)
+void testOpaqueBefore(reference::Checks& check)
 {
   Scene scene;
   scene.mapper->WriteDepthOn();
@@ -343,7 +343,7 @@ void testOpaqueBefore(stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestDepths(int argc, char* argv[])
 {
-  stage::Checks check;
+  reference::Checks check;
   testColors(check);
   testSearch(check);
   testDepthBuffer(check, 0.0);

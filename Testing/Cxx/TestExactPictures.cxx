@@ -158,7 +158,7 @@ reference::Image<double> pictureOf(stage::Stage& stage, vtkVolumeMapper* mapper)
 constexpr double GrayTolerance = 0.5 + 1.0 / 16 + 0.01;
 
 void compareWithOracle(const Truth& truth, const reference::Image<double>& picture,
-  const std::string& what, stage::Checks& check)
+  const std::string& what, reference::Checks& check)
 {
   int compared = 0, wrong = 0;
   double worst = 0.0;
@@ -179,7 +179,7 @@ void compareWithOracle(const Truth& truth, const reference::Image<double>& pictu
 }
 
 void comparePictures(
-  stage::Stage& stage, stage::Checks& check, const std::string& name, vtkImageData* image)
+  stage::Stage& stage, reference::Checks& check, const std::string& name, vtkImageData* image)
 {
   double range[2];
   image->GetScalarRange(range);
@@ -214,7 +214,7 @@ void comparePictures(
 }
 
 void compareFile(
-  stage::Stage& stage, stage::Checks& check, const std::string& folder, const std::string& name)
+  stage::Stage& stage, reference::Checks& check, const std::string& folder, const std::string& name)
 {
   const std::string file = folder + "/" + name;
   if (!vtksys::SystemTools::FileExists(file, true))
@@ -229,7 +229,7 @@ void compareFile(
 }
 
 /// Means are those of HIGH.
-void testMeans(stage::Stage& stage, stage::Checks& check)
+void testMeans(stage::Stage& stage, reference::Checks& check)
 {
   const auto image = stage::toImageData(stage::blobsAndTubes({ 40, 40, 40 }, 5));
   const auto mapper = stage::splatting(image);
@@ -246,7 +246,7 @@ void testMeans(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Each pixel has its own ray, so views with other rays are projected anew.
-void testReuse(stage::Stage& stage, stage::Checks& check)
+void testReuse(stage::Stage& stage, reference::Checks& check)
 {
   const auto image = stage::toImageData(stage::blobsAndTubes({ 40, 40, 40 }, 5));
   const auto mapper = stage::splatting(image);
@@ -273,7 +273,7 @@ void testReuse(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Where pixels are wider than voxels EXACT shows previews of their areas.
-void testOverviews(stage::Stage& stage, stage::Checks& check)
+void testOverviews(stage::Stage& stage, reference::Checks& check)
 {
   const auto image = stage::toImageData(stage::blobsAndTubes({ 40, 40, 40 }, 5));
   const auto mapper = stage::splatting(image);
@@ -289,7 +289,7 @@ void testOverviews(stage::Stage& stage, stage::Checks& check)
 }
 
 /// As other better images, one in EXACT is kept while a faster mode is wanted.
-void testKept(stage::Stage& stage, stage::Checks& check)
+void testKept(stage::Stage& stage, reference::Checks& check)
 {
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 64, 64 }, 9));
   const auto mapper = stage::splatting(image);
@@ -317,7 +317,7 @@ void testKept(stage::Stage& stage, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestExactPictures(int argc, char* argv[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(Size, Size);
   testMeans(stage, check);
   testReuse(stage, check);

@@ -203,7 +203,7 @@ double threshold(const Expectation& expected)
 }
 
 void judge(const Expectation& expected, const reference::Image<double>& baseline,
-  const reference::Image<double>& picture, stage::Checks& check)
+  const reference::Image<double>& picture, reference::Checks& check)
 {
   const stage::Likeness found(baseline, picture);
   const double difference = 255.0 * std::pow(10.0, -found.psnr / 20.0);
@@ -234,7 +234,7 @@ int TestMIPImage(int argc, char* argv[])
     std::cout << "There is no scene " << sceneName << " with mode " << mode << "." << std::endl;
     return EXIT_FAILURE;
   }
-  stage::Checks check;
+  reference::Checks check;
   const vtkSmartPointer<vtkImageData> image = imageOf(*scene, argc, argv);
   if (!image)
   {

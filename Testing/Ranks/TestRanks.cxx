@@ -4,6 +4,8 @@
 // mpiexec -n N splatmip-test-ranks: several ranks show the picture of one, bit for bit, from pieces
 // of any size, and come to the same end where one of them has nothing, has something wrong, or does
 // not see its piece.
+#include "Checks.h"
+#include "Scenes.h"
 #include "Volume.h"
 #include "Ways.h"
 
@@ -44,17 +46,12 @@ struct Ranks
 {
   vtkMPIController* controller;
   int count, own;
-  int failures = 0;
+  reference::Checks checks = {};
 
   /// What does not hold on any rank is told there.
   bool check(bool condition, const std::string& what)
   {
-    if (!condition && ++this->failures <= 20)
-    {
-      std::cerr << "ERROR: rank " << this->own << " of " << this->count << ": " << what
-                << std::endl;
-    }
-    return condition;
+    return this->checks(condition, "rank ", this->own, " of ", this->count, ": ", what);
   }
   bool any(bool here) const
   {
@@ -557,7 +554,7 @@ int main(int argc, char* argv[])
   testProblems(ranks);
   testAbort(ranks);
   testRoot(ranks);
-  const bool failed = ranks.any(ranks.failures > 0);
+  const bool failed = ranks.any(ranks.checks.exitCode() != EXIT_SUCCESS);
   controller->Finalize();
   return failed ? 1 : 0;
 }

@@ -20,7 +20,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
-#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace reference
@@ -62,13 +62,12 @@ struct Volume
  * Every voxel is independent and uniform in [low, high].
  */
 template <class T>
-Volume<T> uniformNoise(const std::array<int, 3>& size, std::uint64_t seed, T low, T high)
+Volume<T> uniformNoise(const std::array<int, 3>& size, Random&& voxels, T low, T high)
 {
   Volume<T> volume(size);
-  Random random(seed);
   for (T& voxel : volume.voxels)
   {
-    voxel = random.uniform(low, high);
+    voxel = voxels.uniform(low, high);
   }
   return volume;
 }
@@ -77,17 +76,18 @@ Volume<T> uniformNoise(const std::array<int, 3>& size, std::uint64_t seed, T low
  * As above over the whole range of an integer type, over [-1, 1] for floating types.
  */
 template <class T>
-Volume<T> uniformNoise(const std::array<int, 3>& size, std::uint64_t seed)
+Volume<T> uniformNoise(const std::array<int, 3>& size, Random&& voxels)
 {
-  if constexpr (std::is_floating_point<T>::value)
-  {
-    return uniformNoise<T>(size, seed, T(-1), T(1));
-  }
-  else
-  {
-    return uniformNoise<T>(
-      size, seed, std::numeric_limits<T>::lowest(), std::numeric_limits<T>::max());
-  }
+  using Limits = std::numeric_limits<T>;
+  return uniformNoise<T>(size, std::move(voxels), Limits::is_integer ? Limits::lowest() : T(-1),
+    Limits::is_integer ? Limits::max() : T(1));
+}
+
+/// The same, whose voxels are one choice of a scene.
+template <class T, class... Limits>
+Volume<T> uniformNoise(const std::array<int, 3>& size, Random& scene, Limits... limits)
+{
+  return uniformNoise<T>(size, scene.fork(), limits...);
 }
 
 template <class T>

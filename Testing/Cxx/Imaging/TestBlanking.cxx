@@ -14,13 +14,13 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 /// An image, or a rectilinear grid of the same size.
 vtkSmartPointer<vtkDataSet> anyDataSet(const std::array<int, 3>& size, reference::Random& random)
 {
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     auto image = vtkSmartPointer<vtkImageData>::New();
     image->SetDimensions(size[0], size[1], size[2]);
@@ -49,10 +49,11 @@ vtkSmartPointer<vtkUnsignedCharArray> anyFlags(
   auto flags = vtkSmartPointer<vtkUnsignedCharArray>::New();
   flags->SetName(vtkDataSetAttributes::GhostArrayName());
   const int often = random.uniform(1, 3);
+  reference::Random many = random.fork();
   for (vtkIdType n = 0; n < count; ++n)
   {
-    const bool has = random.uniform(0, 3) < often;
-    const bool isDuplicate = random.uniform(0, 1);
+    const bool has = many.chance(often / 4.0);
+    const bool isDuplicate = many.uniform(0, 1);
     flags->InsertNextValue(static_cast<unsigned char>((has ? bit : 0) | (isDuplicate ? 1 : 0)));
   }
   return flags;
@@ -94,12 +95,12 @@ void testScene(Checks& check, reference::Random& random)
 {
   const auto data =
     anyDataSet({ random.uniform(2, 5), random.uniform(2, 5), random.uniform(1, 5) }, random);
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     data->GetPointData()->AddArray(
       anyFlags(data->GetNumberOfPoints(), vtkDataSetAttributes::HIDDENPOINT, random));
   }
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     data->GetCellData()->AddArray(
       anyFlags(data->GetNumberOfCells(), vtkDataSetAttributes::HIDDENCELL, random));
@@ -141,5 +142,5 @@ int TestBlanking(int, char*[])
   Checks check;
   reference::forScenes(
     "blanking", 400, [&](int, reference::Random& random) { testScene(check, random); });
-  return check.result();
+  return check.exitCode();
 }

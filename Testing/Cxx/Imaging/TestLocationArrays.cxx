@@ -11,7 +11,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 /// One array, and that what is written through the pointer is in it.
@@ -54,5 +54,5 @@ int TestLocationArrays(int, char*[])
       testArray(check, image, "Position", 3, VTK_DOUBLE, arrays.positions);
       check(!arrays.clipDepths, "depths of the screen are not asked for");
     });
-  return check.result();
+  return check.exitCode();
 }

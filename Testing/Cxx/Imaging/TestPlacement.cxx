@@ -23,7 +23,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using Filter = vtkSplattingMIPProjection;
 
 /// Pixels are less than half a voxel wide, so that they show points.
@@ -45,9 +45,8 @@ glm::dvec3 placeOf(vtkImageData* picture, double x, double y)
 vtkSmartPointer<vtkCamera> someCamera(vtkImageData* image, bool parallel, reference::Random& random)
 {
   const glm::dvec3 focus = vector(image->GetCenter());
-  const glm::dvec3 eye =
-    focus - 2.0 * image->GetLength() * projectiontesting::randomDirection(random);
-  const glm::dvec3 up = projectiontesting::randomDirection(random);
+  const glm::dvec3 eye = focus - 2.0 * image->GetLength() * coretesting::anyDirection(random);
+  const glm::dvec3 up = coretesting::anyDirection(random);
   auto camera = vtkSmartPointer<vtkCamera>::New();
   camera->SetFocalPoint(&focus.x);
   camera->SetPosition(&eye.x);
@@ -66,7 +65,7 @@ vtkSmartPointer<Filter> someView(vtkImageData* image, bool parallel, reference::
   const auto camera = someCamera(image, parallel, random);
   filter->SetCamera(camera);
   filter->SetOutputSize(Size[0], Size[1]);
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     const double step = image->GetLength() / 320.0;
     const double x = step * random.uniform(0.5, 1.5), y = step * random.uniform(0.5, 1.5);
@@ -87,18 +86,10 @@ double missOf(vtkCamera* camera, const glm::dvec3& pixel, const glm::dvec3& samp
   return glm::length(aside - glm::dot(aside, ray) * ray);
 }
 
-vtkSmartPointer<vtkImageData> someNoise(reference::Random& random)
-{
-  auto image = projectiontesting::imageOf(
-    reference::uniformNoise<std::int16_t>({ 17, 21, 19 }, random.bits(), -1000, 3000));
-  projectiontesting::placeAtRandom(image, random);
-  return image;
-}
-
 /// The samples that pixels show lie on the rays through the places of the pixels.
 void testRays(Checks& check, bool parallel, reference::Random& random)
 {
-  const auto image = someNoise(random);
+  const auto image = projectiontesting::anyImage({ 17, 21, 19 }, random);
   const auto filter = someView(image, parallel, random);
   filter->RecordLocationsOn();
   filter->Update();
@@ -130,7 +121,7 @@ void testVoxel(Checks& check, bool parallel, reference::Random& random)
   const int voxel[3] = { random.uniform(4, 12), random.uniform(4, 16), random.uniform(4, 14) };
   volume.at(voxel[0], voxel[1], voxel[2]) = 100.0f;
   const auto image = projectiontesting::imageOf(volume);
-  projectiontesting::placeAtRandom(image, random);
+  coretesting::placeAtRandom(image, random, true);
   const auto filter = someView(image, parallel, random);
   filter->GetCamera()->SetWindowCenter(0.0, 0.0);
   filter->GetCamera()->SetViewAngle(40.0);
@@ -167,13 +158,12 @@ void testVoxel(Checks& check, bool parallel, reference::Random& random)
 /// Axes are right-handed and of length 1, the third to the viewer; the slab's middle is the plane.
 void testAxes(Checks& check, bool parallel, reference::Random& random)
 {
-  const auto image = someNoise(random);
+  const auto image = projectiontesting::anyImage({ 17, 21, 19 }, random);
   const auto filter = someView(image, parallel, random);
   vtkCamera* const camera = filter->GetCamera();
   for (const bool slab : { false, true })
   {
-    const glm::dvec3 centre =
-      vector(image->GetCenter()) + 3.0 * projectiontesting::randomDirection(random);
+    const glm::dvec3 centre = vector(image->GetCenter()) + 3.0 * coretesting::anyDirection(random);
     filter->SetSlab(slab);
     filter->SetSlabThickness(7.5);
     filter->SetSlabCenter(&const_cast<glm::dvec3&>(centre).x);
@@ -200,7 +190,7 @@ void testAxes(Checks& check, bool parallel, reference::Random& random)
 /// A turn lies where its first view lies, and tells the angles.
 void testTurn(Checks& check, reference::Random& random)
 {
-  const auto image = someNoise(random);
+  const auto image = projectiontesting::anyImage({ 17, 21, 19 }, random);
   const auto filter = someView(image, true, random);
   filter->Update();
   vtkNew<vtkImageData> first;
@@ -236,7 +226,7 @@ double distanceOf(vtkImageData* a, vtkImageData* b)
 /// directions.)
 void testDownstream(Checks& check, bool parallel, reference::Random& random)
 {
-  const auto image = someNoise(random);
+  const auto image = projectiontesting::anyImage({ 17, 21, 19 }, random);
   const auto filter = someView(image, parallel, random);
   vtkNew<vtkImageShiftScale> scale;
   scale->SetInputConnection(filter->GetOutputPort());
@@ -329,7 +319,7 @@ int TestPlacement(int, char*[])
       testVoxel(check, parallel, random);
       testAxes(check, parallel, random);
       testDownstream(check, parallel, random);
-      const auto image = someNoise(random);
+      const auto image = projectiontesting::anyImage({ 17, 21, 19 }, random);
       const auto filter = someView(image, parallel, random);
       filter->SlabOn();
       filter->SetSlabCenter(image->GetCenter());
@@ -340,5 +330,5 @@ int TestPlacement(int, char*[])
     }
     testTurn(check, random);
   }
-  return check.result();
+  return check.exitCode();
 }

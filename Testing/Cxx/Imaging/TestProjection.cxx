@@ -20,7 +20,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using Filter = vtkSplattingMIPProjection;
 using namespace projectiontesting;
 
@@ -293,7 +293,7 @@ void chooseAtRandom(Filter* filter, vtkImageData* image, bool integers, referenc
   filter->SetDepthShadingAmbient(random.uniform(0.0, 0.6));
   filter->SetDepthShadingChangeRate(random.uniform(0.1, 0.4));
   const double* const centre = image->GetCenter();
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     filter->SlabOn();
     filter->SetSlabThickness(random.uniform(1.0, 6.0));
@@ -301,7 +301,7 @@ void chooseAtRandom(Filter* filter, vtkImageData* image, bool integers, referenc
       random.uniform(-2.0, 2.0) };
     filter->SetSlabCenter(centre[0] + off[0], centre[1] + off[1], centre[2] + off[2]);
   }
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     filter->CroppingOn();
     filter->SetCroppingRegionFlags(random.uniform(1, 0x7ffffff));
@@ -335,8 +335,8 @@ glm::dvec3 lookAtRandom(Filter* filter, vtkImageData* image, reference::Random& 
   reference::ShearView view;
   do
   {
-    direction = randomDirection(random);
-    up = randomDirection(random);
+    direction = coretesting::anyDirection(random);
+    up = coretesting::anyDirection(random);
     filter->SetViewDirection(direction.x, direction.y, direction.z);
     filter->SetViewUp(up.x, up.y, up.z);
     const int size[2] = { random.uniform(1, 28), random.uniform(1, 28) };
@@ -363,19 +363,19 @@ void testType(Checks& check, Count& all)
     {
       const std::array<int, 3> size = { random.uniform(n % 6 ? 2 : 1, 9),
         random.uniform(n % 5 ? 2 : 1, 9), random.uniform(n % 4 ? 2 : 1, 9) };
-      const auto volume = coretesting::wholeRangeNoise<T>(size, random.bits());
+      const auto volume = reference::uniformNoise<T>(size, random);
       const auto image = imageOf(volume);
-      placeAtRandom(image, random);
-      if (random.uniform(0, 1))
+      coretesting::placeAtRandom(image, random, true);
+      if (random.oneIn(2))
       {
         skew(image, random);
       }
       const auto filter = projectionOf(image);
       glm::dvec3 focus = lookAtRandom(filter, image, random);
       chooseAtRandom(filter, image, std::is_integral_v<T>, random);
-      if (random.uniform(0, 1))
+      if (random.oneIn(2))
       {
-        focus += 2.0 * randomDirection(random);
+        focus += 2.0 * coretesting::anyDirection(random);
         filter->CenterOnVolumeOff();
         filter->SetFocalPoint(focus.x, focus.y, focus.z);
       }
@@ -419,5 +419,5 @@ int TestProjection(int, char*[])
   check(all.ofOverviews > 60 || reference::scenesRun() < 80, "only ", all.ofOverviews,
     " pixels of overviews with a sample");
   testLibraries(check);
-  return check.result();
+  return check.exitCode();
 }

@@ -15,14 +15,13 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using Filter = vtkSplattingMIPProjection;
 using Change = std::function<void(Filter*)>;
 
 vtkSmartPointer<vtkImageData> someImage()
 {
-  return projectiontesting::imageOf(
-    reference::uniformNoise<std::uint8_t>({ 9, 8, 7 }, std::uint64_t(3)));
+  return projectiontesting::imageOf(reference::uniformNoise<std::uint8_t>({ 9, 8, 7 }, 3));
 }
 
 /// One sentence with the word in it; then, after the change is taken back, the same picture.
@@ -263,5 +262,5 @@ int TestProjectionInput(int, char*[])
   testArrays(check);
   testMemory(check);
   testExtremes(check);
-  return check.result();
+  return check.exitCode();
 }

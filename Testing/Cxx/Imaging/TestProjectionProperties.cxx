@@ -13,7 +13,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 using Filter = vtkSplattingMIPProjection;
 
@@ -133,5 +133,5 @@ int TestProjectionProperties(int, char*[])
   testFaults(check);
   testMethods(check);
   testEffects(check);
-  return check.result();
+  return check.exitCode();
 }

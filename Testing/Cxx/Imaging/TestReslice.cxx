@@ -12,7 +12,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using reference::Random;
 using namespace reslicetesting;
 
@@ -25,7 +25,7 @@ vtkSmartPointer<vtkImageData> randomImage(Random& random, bool isWide, int compo
   for (int a = 0; a < 3; ++a)
   {
     extent[2 * a] = random.uniform(-3, 3);
-    extent[2 * a + 1] = extent[2 * a] + (random.uniform(0, 5) ? random.uniform(1, 11) : 0);
+    extent[2 * a + 1] = extent[2 * a] + (!random.oneIn(6) ? random.uniform(1, 11) : 0);
     spacing[a] = dyadic ? std::ldexp(1.0, random.uniform(-1, 1)) : random.uniform(0.3, 2.0);
     origin[a] = dyadic ? 0.25 * random.uniform(-9, 9) : random.uniform(-9.0, 9.0);
   }
@@ -40,11 +40,12 @@ vtkSmartPointer<vtkImageData> randomImage(Random& random, bool isWide, int compo
   const double least = std::is_unsigned_v<T> ? 0.0 : -most;
   T* const voxels = static_cast<T*>(image->GetScalarPointer());
   // Lines between octants would be ambiguous.
-  const bool hasHoles = std::is_floating_point_v<T> && !dyadic && random.uniform(0, 2) == 0;
+  const bool hasHoles = std::is_floating_point_v<T> && !dyadic && random.oneIn(3);
+  Random many = random.fork();
   for (vtkIdType n = 0; n < image->GetNumberOfPoints() * components; ++n)
   {
-    voxels[n] = static_cast<T>(random.uniform(least, most));
-    if (hasHoles && random.uniform(0, 9) == 0)
+    voxels[n] = static_cast<T>(many.uniform(least, most));
+    if (hasHoles && many.oneIn(10))
     {
       voxels[n] = std::numeric_limits<T>::quiet_NaN();
     }
@@ -55,8 +56,8 @@ vtkSmartPointer<vtkImageData> randomImage(Random& random, bool isWide, int compo
 glm::dmat4 randomMatrix(Random& random)
 {
   const double angle = random.uniform(0.0, 6.3);
-  glm::dmat4 m = glm::rotate(glm::dmat4(1.0), angle, projectiontesting::randomDirection(random));
-  if (random.uniform(0, 1)) // with shear and scale
+  glm::dmat4 m = glm::rotate(glm::dmat4(1.0), angle, coretesting::anyDirection(random));
+  if (random.oneIn(2)) // with shear and scale
   {
     for (int n = 0; n < 3; ++n)
     {
@@ -76,8 +77,8 @@ void alignAxes(Settings& s, vtkImageData* image, Random& random)
   for (int n = 0; n < 3; ++n)
   {
     const int a = (first + n * step) % 3;
-    s.axes[n][a] = random.uniform(0, 1) ? 1.0 : -1.0;
-    s.spacing[n] = image->GetSpacing()[a] * (random.uniform(0, 1) ? 1.0 : 0.5);
+    s.axes[n][a] = random.sign();
+    s.spacing[n] = image->GetSpacing()[a] * (random.oneIn(2) ? 1.0 : 0.5);
   }
 }
 
@@ -92,10 +93,10 @@ Settings randomSettings(vtkImageData* image, bool isAligned, Random& random)
     s.origin[a] = 0.25 * random.uniform(-9, 9);
   }
   s.slices = random.uniform(2, 9);
-  s.fraction = random.uniform(0, 1) ? 1.0 : random.uniform(-0.9, 0.9);
-  s.minima = random.uniform(0, 2) == 0;
-  s.trapezoid = random.uniform(0, 1) == 1;
-  s.border = random.uniform(0, 2) != 0;
+  s.fraction = random.oneIn(2) ? 1.0 : random.uniform(-0.9, 0.9);
+  s.minima = random.oneIn(3);
+  s.trapezoid = random.oneIn(2);
+  s.border = !random.oneIn(3);
   const double thicknesses[] = { 0.5, 0.5, 0.0, 0.25, 0.75 };
   s.thickness = thicknesses[random.uniform(0, 4)];
   s.hasTransform = !isAligned && random.uniform(0, 1);
@@ -289,13 +290,13 @@ void testSlabs(Checks& check)
   reference::forScenes(coretesting::seriesOf<T>("slabs"), 320,
     [&](int, Random& random)
     {
-      const bool isAligned = random.uniform(0, 2) == 0, isWide = random.uniform(0, 1) == 1;
-      const int components = random.uniform(0, 3) ? 1 : random.uniform(2, 6);
+      const bool isAligned = random.oneIn(3), isWide = random.oneIn(2);
+      const int components = !random.oneIn(4) ? 1 : random.uniform(2, 6);
       const auto image = randomImage<T>(random, isWide, components, isAligned);
       Settings s = randomSettings(image, isAligned, random);
       s.firstComponent = components > 1 ? random.uniform(0, 2) % components : 0;
       s.components = random.uniform(-1, 3);
-      if (!isWide && random.uniform(0, 1))
+      if (!isWide && random.oneIn(2))
       {
         const double scales[] = { 0.5, -0.25, 1.0 };
         s.shift = random.uniform(-10.0, 10.0);
@@ -307,7 +308,7 @@ void testSlabs(Checks& check)
       filter->SetInputData(image);
       s.apply(filter);
       filter->SetGenerateStencilOutput(random.uniform(0, 1));
-      if (random.uniform(0, 3) == 0)
+      if (random.oneIn(4))
       {
         filter->SetStencilData(randomStencil(s.extent, random));
       }
@@ -339,5 +340,5 @@ int TestReslice(int, char*[])
   Checks check;
   coretesting::forEachType(
     [&](auto* null) { testSlabs<std::remove_pointer_t<decltype(null)>>(check); });
-  return check.result();
+  return check.exitCode();
 }

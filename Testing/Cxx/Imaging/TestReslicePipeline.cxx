@@ -18,7 +18,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using reference::Random;
 using reslicetesting::Settings;
 
@@ -267,5 +267,5 @@ int TestReslicePipeline(int, char*[])
   testParts(check);
   testChanges(check);
   testProgress(check);
-  return check.result();
+  return check.exitCode();
 }

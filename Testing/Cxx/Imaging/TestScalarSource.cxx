@@ -20,7 +20,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 template <class Array>
@@ -30,11 +30,12 @@ vtkSmartPointer<vtkDataArray> anyArray(int components, vtkIdType count, referenc
   array->SetName("scalars");
   array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(count);
+  reference::Random many = random.fork();
   for (vtkIdType n = 0; n < count; ++n)
   {
     for (int c = 0; c < components; ++c)
     {
-      const int value = random.uniform(1, 250);
+      const int value = many.uniform(1, 250);
       array->SetComponent(n, c, value);
     }
   }
@@ -64,12 +65,12 @@ struct Scene
       : kind == 2             ? anyArray<vtkFloatArray>(components, count, random)
                               : anyArray<vtkSOADataArrayTemplate<short>>(components, count, random);
     attributes->SetScalars(this->scalars);
-    if (random.uniform(0, 1))
+    if (random.oneIn(2))
     {
       this->ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
       for (vtkIdType n = 0; n < count; ++n)
       {
-        const bool isHidden = random.uniform(0, 3) == 0;
+        const bool isHidden = random.oneIn(4);
         const unsigned char flag =
           static_cast<unsigned char>(this->cells ? int(vtkDataSetAttributes::HIDDENCELL)
                                                  : int(vtkDataSetAttributes::HIDDENPOINT));
@@ -215,5 +216,5 @@ int TestScalarSource(int, char*[])
   Checks check;
   reference::forScenes(
     "scalars", 600, [&](int, reference::Random& random) { testScene(check, random); });
-  return check.result();
+  return check.exitCode();
 }

@@ -20,7 +20,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using Filter = vtkSplattingMIPProjection;
 
 /// Pixels of the views that have been compared.
@@ -146,17 +146,12 @@ reference::Volume<T> anyVolume(
       return coretesting::volumeWithOddValues<T>(size, random);
     }
   }
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
-    return coretesting::wholeRangeNoise<T>(size, random.bits());
+    return reference::uniformNoise<T>(size, random);
   }
-  const int low = std::is_signed_v<T> ? -5 : 0;
-  reference::Volume<T> volume(size);
-  for (T& voxel : volume.voxels)
-  {
-    voxel = static_cast<T>(random.uniform(low, low + 10));
-  }
-  return volume;
+  const T low = std::is_signed_v<T> ? T(-5) : T(0);
+  return reference::uniformNoise<T>(size, random, low, T(low + 10));
 }
 
 /// An origin between the least and the largest finite voxel.
@@ -178,15 +173,15 @@ double originOf(const reference::Volume<T>& volume, reference::Random& random)
 /// A view from anywhere, parallel or in perspective, magnified or an overview.
 void lookAtRandom(Filter* filter, vtkImageData* image, reference::Random& random)
 {
-  const glm::dvec3 direction = projectiontesting::randomDirection(random);
-  const glm::dvec3 up = projectiontesting::randomDirection(random);
+  const glm::dvec3 direction = coretesting::anyDirection(random);
+  const glm::dvec3 up = coretesting::anyDirection(random);
   const double* const spacing = image->GetSpacing();
   const double least = std::min({ spacing[0], spacing[1], spacing[2] });
-  const double pixel = least * (random.uniform(0, 2) ? random.uniform(0.3, 1.0) : 2.5);
+  const double pixel = least * (!random.oneIn(3) ? random.uniform(0.3, 1.0) : 2.5);
   const int size[2] = { random.uniform(16, 32), random.uniform(16, 32) };
   filter->SetOutputSize(size[0], size[1]);
   filter->SetOutputSpacing(pixel, pixel);
-  if (random.uniform(0, 2))
+  if (!random.oneIn(3))
   {
     filter->SetViewDirection(direction.x, direction.y, direction.z);
     filter->SetViewUp(up.x, up.y, up.z);
@@ -209,10 +204,10 @@ void chooseAtRandom(Filter* filter, vtkImageData* image, int mode, reference::Ra
   filter->SetAcceleration(random.uniform<int>(Filter::AUTO, Filter::SORTED_VOLUME));
   filter->SetRecordLocations(random.uniform(0, 1));
   filter->SetBackgroundValue(NAN);
-  filter->SetSlab(random.uniform(0, 3) == 0);
+  filter->SetSlab(random.oneIn(4));
   filter->SetSlabThickness(0.3 * image->GetLength());
   filter->SetSlabCenter(image->GetCenter());
-  filter->SetCropping(random.uniform(0, 3) == 0);
+  filter->SetCropping(random.oneIn(4));
   const double* const b = image->GetBounds();
   filter->SetCroppingRegionPlanes(0.7 * b[0] + 0.3 * b[1], 0.2 * b[0] + 0.8 * b[1],
     0.6 * b[2] + 0.4 * b[3], 0.3 * b[2] + 0.7 * b[3], 0.6 * b[4] + 0.4 * b[5],
@@ -228,9 +223,9 @@ void testType(Checks& check, Count& count)
     [&](int n, reference::Random& random)
     {
       const auto volume =
-        anyVolume<T>(coretesting::randomSize(random, 14), random.uniform(0, 1) != 0, random);
+        anyVolume<T>(coretesting::randomSize(random, 14), !random.oneIn(2), random);
       const auto image = projectiontesting::imageOf(volume);
-      projectiontesting::placeAtRandom(image, random);
+      coretesting::placeAtRandom(image, random, true);
       const auto filter = projectiontesting::projectionOf(image);
       lookAtRandom(filter, image, random);
       chooseAtRandom(filter, image, n % 4, random);
@@ -305,5 +300,5 @@ int TestSignedMaximum(int, char*[])
   std::cout << count.maxima << " maxima, " << count.minima << " minima, " << count.ties
             << " pixels whose extrema are equally far, " << count.infinite << " infinite\n";
   check(reference::scenesRun() < 80 || count.areAll(), "not all cases have occurred");
-  return check.result();
+  return check.exitCode();
 }

@@ -20,7 +20,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 vtkSmartPointer<vtkPolyData> sphere(const glm::dvec3& centre, double radius)
@@ -121,5 +121,5 @@ int TestSurfaceTriangles(int, char*[])
   Checks check;
   reference::forScenes(
     "surfaces", 40, [&](int, reference::Random& random) { testScene(check, random); });
-  return check.result();
+  return check.exitCode();
 }

@@ -16,16 +16,8 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using Filter = vtkSplattingMIPProjection;
-
-vtkSmartPointer<vtkImageData> someImage(reference::Random& random)
-{
-  auto image = projectiontesting::imageOf(
-    reference::uniformNoise<std::int16_t>({ 23, 31, 27 }, random.bits(), -1000, 3000));
-  projectiontesting::placeAtRandom(image, random);
-  return image;
-}
 
 /// Another filter's view through one camera.
 vtkSmartPointer<vtkImageData> singleView(Filter* turn, vtkImageData* image, vtkCamera* camera)
@@ -70,7 +62,7 @@ void testViews(Checks& check)
   reference::forScenes("turns", 4,
     [&](int n, reference::Random& random)
     {
-      const auto image = someImage(random);
+      const auto image = projectiontesting::anyImage({ 23, 31, 27 }, random);
       const auto turn = projectiontesting::projectionOf(image);
       turn->SetOutputSize(40, 32);
       turn->SetQualityMode(n);
@@ -103,7 +95,7 @@ void testViews(Checks& check)
 void testPerspective(Checks& check)
 {
   reference::Random random(6);
-  const auto image = someImage(random);
+  const auto image = projectiontesting::anyImage({ 23, 31, 27 }, random);
   const auto turn = projectiontesting::projectionOf(image);
   vtkNew<vtkCamera> camera;
   const double* const centre = image->GetCenter();
@@ -141,7 +133,7 @@ void testPerspective(Checks& check)
 void testGeometry(Checks& check)
 {
   reference::Random random(7);
-  const auto image = someImage(random);
+  const auto image = projectiontesting::anyImage({ 23, 31, 27 }, random);
   const auto turn = projectiontesting::projectionOf(image);
   turn->SetOutputSize(50, 20);
   turn->SetNumberOfViews(8);
@@ -211,7 +203,8 @@ void testLoneVoxel(Checks& check)
 vtkSmartPointer<Filter> smallTurn()
 {
   reference::Random random(8);
-  const auto turn = projectiontesting::projectionOf(someImage(random));
+  const auto turn =
+    projectiontesting::projectionOf(projectiontesting::anyImage({ 23, 31, 27 }, random));
   turn->SetNumberOfViews(20);
   turn->SetOutputSize(16, 16);
   return turn;
@@ -326,7 +319,7 @@ void testAbortUpstream(Checks& check)
 void testReuse(Checks& check)
 {
   reference::Random random(9);
-  const auto image = someImage(random);
+  const auto image = projectiontesting::anyImage({ 23, 31, 27 }, random);
   const auto filter = projectiontesting::projectionOf(image);
   filter->SetQualityModeToHigh(); // a shear image for all sizes of pixels
   filter->SetOutputSize(30, 30);
@@ -403,10 +396,10 @@ void compareCells(Checks& check, vtkImageData* points)
 void testComponents(Checks& check)
 {
   reference::Random random(10);
-  const auto one = projectiontesting::imageOf(
-    reference::uniformNoise<std::uint8_t>({ 13, 11, 12 }, random.bits()));
-  const auto two = projectiontesting::imageOf(
-    reference::uniformNoise<std::uint8_t>({ 13, 11, 12 }, random.bits()));
+  const auto one =
+    projectiontesting::imageOf(reference::uniformNoise<std::uint8_t>({ 13, 11, 12 }, random));
+  const auto two =
+    projectiontesting::imageOf(reference::uniformNoise<std::uint8_t>({ 13, 11, 12 }, random));
   const auto both = withBoth(one, two);
   const auto filter = projectiontesting::projectionOf(both);
   filter->SetViewDirection(0.3, 1.0, -0.2);
@@ -461,5 +454,5 @@ int TestTurn(int, char*[])
 #endif
   testReuse(check);
   testComponents(check);
-  return check.result();
+  return check.exitCode();
 }

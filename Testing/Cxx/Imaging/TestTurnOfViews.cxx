@@ -21,7 +21,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 glm::dvec3 vector(const double* v)
@@ -33,24 +33,24 @@ glm::dvec3 vector(const double* v)
 TurnSettings anySettings(vtkCamera* camera, reference::Random& random)
 {
   TurnSettings settings;
-  settings.direction = 3.0 * projectiontesting::randomDirection(random);
-  settings.up = projectiontesting::randomDirection(random);
+  settings.direction = 3.0 * coretesting::anyDirection(random);
+  settings.up = coretesting::anyDirection(random);
   settings.focalPoint = coretesting::anyVector(random, -30.0, 30.0);
   settings.diagonal = random.uniform(5.0, 50.0);
   settings.size.x = random.uniform(1, 90);
   settings.size.y = random.uniform(1, 90);
   settings.views = random.uniform(1, 12);
-  settings.angle = random.uniform(0, 1) ? random.uniform(-400.0, 400.0) : 360.0;
-  if (random.uniform(0, 1))
+  settings.angle = random.oneIn(2) ? random.uniform(-400.0, 400.0) : 360.0;
+  if (random.oneIn(2))
   {
-    settings.axis = 2.0 * projectiontesting::randomDirection(random);
+    settings.axis = 2.0 * coretesting::anyDirection(random);
   }
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     settings.spacing = glm::dvec2(random.uniform(0.1, 3.0));
-    settings.spacing.y *= random.uniform(0, 1) ? 1.0 : random.uniform(0.5, 2.0);
+    settings.spacing.y *= random.oneIn(2) ? 1.0 : random.uniform(0.5, 2.0);
   }
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     const glm::dvec3 eye = settings.focalPoint - 40.0 * glm::normalize(settings.direction);
     camera->SetFocalPoint(&settings.focalPoint.x);
@@ -181,5 +181,5 @@ int TestTurnOfViews(int, char*[])
   Checks check;
   reference::forScenes(
     "turns", 1000, [&](int, reference::Random& random) { testScene(check, random); });
-  return check.result();
+  return check.exitCode();
 }

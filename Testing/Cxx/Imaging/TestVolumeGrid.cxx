@@ -15,7 +15,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 /// A point of a data set, or the middle of a cell's corners.
@@ -62,7 +62,7 @@ void testImage(Checks& check, reference::Random& random)
   vtkNew<vtkImageData> image;
   const auto size = coretesting::randomSize(random, 4);
   image->SetDimensions(size[0], size[1], size[2]);
-  projectiontesting::placeAtRandom(image, random);
+  coretesting::placeAtRandom(image, random, true);
   const bool cells = random.uniform(0, 1);
   GridOfDataSet result;
   const std::string problem = describeGrid(image, cells, result);
@@ -84,7 +84,7 @@ void testImage(Checks& check, reference::Random& random)
 vtkSmartPointer<vtkDoubleArray> anyCoordinates(bool isEven, reference::Random& random)
 {
   auto coordinates = vtkSmartPointer<vtkDoubleArray>::New();
-  const double sign = random.uniform(0, 1) ? 1.0 : -1.0, step = random.uniform(0.5, 2.0);
+  const double sign = random.sign(), step = random.uniform(0.5, 2.0);
   double at = random.uniform(-20.0, 20.0);
   for (int n = random.uniform(isEven ? 1 : 3, 6); n > 0; --n)
   {
@@ -175,5 +175,5 @@ int TestVolumeGrid(int, char*[])
     "images", 200, [&](int, reference::Random& random) { testImage(check, random); });
   reference::forScenes(
     "rectilinear grids", 400, [&](int, reference::Random& random) { testGrid(check, random); });
-  return check.result();
+  return check.exitCode();
 }

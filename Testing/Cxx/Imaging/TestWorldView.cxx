@@ -15,7 +15,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 /// A volume somewhere, a camera that sees it, and both matrices.
@@ -29,12 +29,12 @@ struct Scene
   {
     const double angle = random.uniform(0.0, 6.3);
     glm::dmat4 m = glm::translate(glm::dmat4(1.0), coretesting::anyVector(random, -9.0, 9.0));
-    m = glm::rotate(m, angle, projectiontesting::randomDirection(random));
+    m = glm::rotate(m, angle, coretesting::anyDirection(random));
     for (int a = 0; a < 3; ++a)
     {
       this->grid.dimensions[a] = random.uniform(2, 9);
       this->grid.first[a] = random.uniform(-9.0, 9.0);
-      this->grid.spacing[a] = random.uniform(0.5, 2.0) * (random.uniform(0, 2) ? 1.0 : -1.0);
+      this->grid.spacing[a] = random.uniform(0.5, 2.0) * (!random.oneIn(3) ? 1.0 : -1.0);
     }
     m = glm::scale(m, this->grid.spacing);
     for (int n = 0; n < 16; ++n)
@@ -42,8 +42,8 @@ struct Scene
       this->toWorld->SetElement(n / 4, n % 4, m[n % 4][n / 4]);
     }
     const glm::dvec3 middle(m * glm::dvec4(0.5 * glm::dvec3(this->grid.dimensions - 1), 1.0));
-    const glm::dvec3 eye = middle + 40.0 * projectiontesting::randomDirection(random);
-    const glm::dvec3 up = projectiontesting::randomDirection(random);
+    const glm::dvec3 eye = middle + 40.0 * coretesting::anyDirection(random);
+    const glm::dvec3 up = coretesting::anyDirection(random);
     this->camera->SetFocalPoint(middle.x, middle.y, middle.z);
     this->camera->SetPosition(eye.x, eye.y, eye.z);
     this->camera->SetViewUp(up.x, up.y, up.z);
@@ -119,7 +119,7 @@ void testPlanes(
   for (int n = random.uniform(1, 3); n > 0; --n)
   {
     vtkNew<vtkPlane> plane;
-    const glm::dvec3 normal = projectiontesting::randomDirection(random);
+    const glm::dvec3 normal = coretesting::anyDirection(random);
     const glm::dvec3 origin = scene.inWorld(scene.anyPoint(random));
     plane->SetNormal(normal.x, normal.y, normal.z);
     plane->SetOrigin(origin.x, origin.y, origin.z);
@@ -189,10 +189,10 @@ int TestWorldView(int, char*[])
       check(!isSingular(scene.world()), "a volume is taken to be flat");
       glm::dmat4 flat = scene.world();
       const int a = random.uniform(0, 2);
-      flat[a] = random.uniform(0, 1) ? flat[(a + 1) % 3] : glm::dvec4(0.0);
+      flat[a] = random.oneIn(2) ? flat[(a + 1) % 3] : glm::dvec4(0.0);
       check(isSingular(flat), "a flat volume is not noticed");
       flat[a][random.uniform(0, 2)] = std::nan("");
       check(isSingular(flat), "NaN is not noticed");
     });
-  return check.result();
+  return check.exitCode();
 }

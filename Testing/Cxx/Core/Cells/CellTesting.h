@@ -32,7 +32,7 @@
 
 namespace celltesting
 {
-using coretesting::Checks;
+using reference::Checks;
 using reference::Random;
 using splatting::CellScalars;
 using splatting::ProjectionSettings;

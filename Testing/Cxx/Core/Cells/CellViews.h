@@ -15,13 +15,13 @@ namespace celltesting
 inline glm::dmat3 randomPlacement(Random& random)
 {
   glm::dmat4 m(1.0);
-  const bool turns = random.uniform(0, 2) != 0;
+  const bool turns = !random.oneIn(3);
   if (turns)
   {
     const glm::dvec3 axis = coretesting::anyVector(random, -1.0, 1.0) + glm::dvec3(0.0, 0.0, 1.1);
     m = glm::rotate(m, random.uniform(0.0, 6.3), glm::normalize(axis));
   }
-  if (random.uniform(0, 2) == 0)
+  if (random.oneIn(3))
   {
     m = glm::scale(m, coretesting::anyVector(random, 0.6, 1.5)); // of the prop
   }
@@ -30,7 +30,7 @@ inline glm::dmat3 randomPlacement(Random& random)
     const glm::dvec3 axis = coretesting::anyVector(random, -1.0, 1.0) + glm::dvec3(1.1, 0.0, 0.0);
     m = glm::rotate(m, random.uniform(0.0, 6.3), glm::normalize(axis));
   }
-  if (random.uniform(0, 3) != 0)
+  if (!random.oneIn(4))
   {
     m = glm::scale(m, coretesting::anyVector(random, 0.5, 2.0)); // spacing
   }
@@ -44,7 +44,7 @@ inline glm::dvec3 randomDirection(Random& random)
   switch (random.uniform(0, 4))
   {
     case 0: // an axis
-      d[random.uniform(0, 2)] = random.uniform(0, 1) ? 1.0 : -1.0;
+      d[random.uniform(0, 2)] = random.sign();
       return d;
     case 1: // a diagonal
       while (d == glm::dvec3(0.0))
@@ -62,11 +62,7 @@ inline glm::dvec3 randomDirection(Random& random)
       return d;
     }
     default:
-      while (glm::length(d) < 0.1)
-      {
-        d = coretesting::anyVector(random, -1.0, 1.0);
-      }
-      return d;
+      return coretesting::anyDirection(random);
   }
 }
 
@@ -80,7 +76,7 @@ struct Camera
   {
     this->forward = glm::normalize(place * direction);
     glm::dvec3 side(0.0);
-    if (random.uniform(0, 1))
+    if (random.oneIn(2))
     {
       side = coretesting::anyVector(random, -1.0, 1.0);
     }
@@ -125,13 +121,13 @@ inline View parallelView(const std::array<int, 3>& size, double pixels, int larg
   glm::dvec4 z = camera.row(camera.forward, middle);
   // From voxels to pixels, then to the clip cube. Some pixels' centres lie in faces of cells.
   glm::dvec2 centre(0.0);
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     centre = { random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0) };
   }
   x = pixels * x + glm::dvec4(0.0, 0.0, 0.0, centre.x);
   y = pixels * y + glm::dvec4(0.0, 0.0, 0.0, centre.y);
-  const double w = random.uniform(0, 3) ? 1.0 : random.uniform(0, 1) ? 2.5 : -0.5;
+  const double w = !random.oneIn(4) ? 1.0 : random.oneIn(2) ? 2.5 : -0.5;
   const double depth = 1.0 / (2.0 * glm::length(placement * glm::dvec3(view.dimensions)));
   setRows(view, 2.0 * w / view.viewport.x * x, 2.0 * w / view.viewport.y * y, depth * w * z,
     { 0.0, 0.0, 0.0, w });
@@ -158,11 +154,11 @@ inline View perspectiveView(const std::array<int, 3>& size, double pixels, int l
     focus[a] += random.uniform(-0.3, 0.3) * size[a];
   }
   glm::dvec3 eye = focus - glm::inverse(placement) * (camera.forward * distance * extent);
-  if (random.uniform(0, 2) == 0)
+  if (random.oneIn(3))
   {
     eye = glm::round(2.0 * eye) / 2.0; // rays meet edges
   }
-  const double w = random.uniform(0, 2) ? 1.0 : 3.0;
+  const double w = !random.oneIn(3) ? 1.0 : 3.0;
   const double reach = std::max(distance * extent, 1.0);
   // `pixels` per voxel at the distance of the middle.
   const glm::dvec4 x = camera.row(camera.right, eye) * (pixels * reach);
@@ -178,15 +174,14 @@ inline View perspectiveView(const std::array<int, 3>& size, double pixels, int l
 /// Any of these. Half are perspective, a third of those with the eye in the volume or nearby.
 inline View randomCellView(const std::array<int, 3>& size, int largestWindow, Random& random)
 {
-  const double pixels = random.uniform(1.0, random.uniform(0, 1) ? 3.0 : 8.0);
+  const double pixels = random.uniform(1.0, random.oneIn(2) ? 3.0 : 8.0);
   const glm::dmat3 placement = randomPlacement(random);
   const glm::dvec3 direction = randomDirection(random);
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     return parallelView(size, pixels, largestWindow, direction, placement, random);
   }
-  const double distance =
-    random.uniform(0, 2) ? random.uniform(0.6, 6.0) : random.uniform(0.05, 0.6);
+  const double distance = !random.oneIn(3) ? random.uniform(0.6, 6.0) : random.uniform(0.05, 0.6);
   return perspectiveView(size, pixels, largestWindow, distance, direction, placement, random);
 }
 }

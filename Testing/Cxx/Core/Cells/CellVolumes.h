@@ -58,20 +58,11 @@ struct Plate
   }
 };
 
-inline glm::dvec3 anyUnitVector(Random& random)
-{
-  glm::dvec3 v(0.0);
-  while (glm::length(v) < 0.1)
-  {
-    v = coretesting::anyVector(random, -1.0, 1.0);
-  }
-  return glm::normalize(v);
-}
-
 /// Across the view, or oblique to it.
 inline glm::dvec3 vesselDirection(const glm::dvec3& view, bool across, Random& random)
 {
-  const glm::dvec3 side = glm::normalize(glm::cross(view, anyUnitVector(random) + 1e-3));
+  const glm::dvec3 side =
+    glm::normalize(glm::cross(view, coretesting::anyDirection(random) + 1e-3));
   return across ? side : glm::normalize(side + random.uniform(0.3, 2.0) * view);
 }
 }

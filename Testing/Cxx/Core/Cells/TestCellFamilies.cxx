@@ -16,9 +16,9 @@ using namespace celltesting;
 /// A view along a direction, as any other but for that.
 View viewAlong(const std::array<int, 3>& size, const glm::dvec3& direction, Random& random)
 {
-  const double pixels = random.uniform(1.0, random.uniform(0, 1) ? 3.0 : 8.0);
+  const double pixels = random.uniform(1.0, random.oneIn(2) ? 3.0 : 8.0);
   const glm::dmat3 placement = randomPlacement(random);
-  return random.uniform(0, 1)
+  return random.oneIn(2)
     ? parallelView(size, pixels, 120, direction, placement, random)
     : perspectiveView(size, pixels, 120, random.uniform(1.0, 5.0), direction, placement, random);
 }
@@ -46,7 +46,7 @@ void testVessels(bool across, Checks& check)
       vessel.width = random.uniform(1.0, 2.5);
       vessel.direction = vesselDirection(view, across, random);
       // The plate lies behind the vessel or before it.
-      const double sense = random.uniform(0, 1) ? 1.0 : -1.0;
+      const double sense = random.sign();
       vessel.point = middle - sense * random.uniform(3.0, 5.0) * view;
       Plate plate{ view, 0.0, 0.0, random.uniform(0.3, 0.9) };
       plate.from = glm::dot(middle, view) + sense * 4.0 - 1.2;
@@ -84,7 +84,7 @@ void testTubes(Checks& check)
       const double tilt = std::pow(10.0, random.uniform(-6.0, -0.7));
       Vessel vessel;
       vessel.width = random.uniform(1.0, 2.0);
-      vessel.direction = glm::normalize(view + tilt * anyUnitVector(random));
+      vessel.direction = glm::normalize(view + tilt * coretesting::anyDirection(random));
       vessel.point = glm::dvec3(8.0) + coretesting::anyVector(random, -2.0, 2.0);
       const auto volume =
         volumeOf<T>({ 18, 16, 17 }, [&](const glm::dvec3& p) { return vessel.at(p); });
@@ -113,7 +113,7 @@ void testCheckerboards(Checks& check)
     [&](Random& random, Counts& counts)
     {
       const int width = random.uniform(1, 3);
-      const double rise = random.uniform(0, 1) ? 0.0 : 0.01;
+      const double rise = random.oneIn(2) ? 0.0 : 0.01;
       auto volume = volumeOf<T>({ 15, 17, 16 },
         [&](const glm::dvec3& p)
         {
@@ -183,5 +183,5 @@ int TestCellFamilies(int, char*[])
   testFamilies<std::int16_t>(check);
   testFamilies<float>(check);
   testFamilies<double>(check);
-  return check.result();
+  return check.exitCode();
 }

@@ -52,15 +52,16 @@ void makeHoles(reference::Volume<T>& volume, HoleKind kind, Random& random)
   }
   const double share = kind == MostHidden ? 0.9 : random.uniform(0.01, 0.3);
   const int sign = random.uniform(0, 2); // of infinities
+  Random many = random.fork();
   for (T& voxel : volume.voxels)
   {
-    if (random.uniform(0.0, 1.0) > share)
+    if (!many.chance(share))
     {
       continue;
     }
     const bool isHidden =
-      kind == FewHidden || kind == MostHidden || (kind == Everything && random.uniform(0, 1));
-    const bool isNegative = sign == 2 ? random.uniform(0, 1) : sign;
+      kind == FewHidden || kind == MostHidden || (kind == Everything && many.oneIn(2));
+    const bool isNegative = sign == 2 ? many.uniform(0, 1) : sign;
     voxel = isHidden ? hidden : isNegative ? -infinity : infinity;
   }
 }
@@ -73,15 +74,15 @@ void testHoles(const std::string& name, HoleKind kind, Checks& check)
     {
       Scene<T> scene;
       const std::array<int, 3> size = coretesting::randomSize(random, 14);
-      scene.volume = coretesting::wholeRangeNoise<T>(size, random);
+      scene.volume = reference::uniformNoise<T>(size, random);
       makeHoles(scene.volume, kind, random);
       scene.view = randomCellView(size, 80, random);
-      scene.view.showsBoxes = random.uniform(0, 2) == 0;
-      if (random.uniform(0, 2) == 0)
+      scene.view.showsBoxes = random.oneIn(3);
+      if (random.oneIn(3))
       {
         scene.settings.reduction = Reduction::Minimum;
       }
-      if (random.uniform(0, 3) == 0)
+      if (random.oneIn(4))
       {
         const glm::dvec3 normal = coretesting::anyVector(random, -1.0, 1.0);
         scene.view.halfSpaces.emplace_back(
@@ -138,5 +139,5 @@ int TestCellHoles(int, char*[])
   testSingleVoxels(check);
   testAll<float>(check);
   testAll<double>(check);
-  return check.result();
+  return check.exitCode();
 }

@@ -139,26 +139,18 @@ Scene<T> anyScene(const std::array<int, 3>& size, Random& random)
   Scene<T> scene;
   scene.volume = coretesting::volumeWithOddValues<T>(size, random);
   scene.view = randomCellView(size, 200, random);
-  scene.view.showsBoxes = random.uniform(0, 2) == 0;
+  scene.view.showsBoxes = random.oneIn(3);
   scene.locate = true;
   constexpr Reduction reductions[] = { Reduction::Maximum, Reduction::Minimum,
     Reduction::DepthShaded, Reduction::Signed };
   scene.settings.reduction = reductions[random.uniform(0, 3)];
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
-    const glm::dvec3 normal = coretesting::anyVector(random, -1.0, 1.0);
-    scene.view.halfSpaces.emplace_back(
-      normal, -glm::dot(normal, 0.4 * glm::dvec3(scene.view.dimensions)));
+    scene.view.halfSpaces = coretesting::anyHalfSpaces(size, random);
   }
-  if (random.uniform(0, 2) == 0)
+  if (random.oneIn(3))
   {
-    for (int a = 0; a < 3; ++a)
-    {
-      const double low = random.uniform(0.0, size[a] + 0.0);
-      scene.view.cropping.planes[a] = { random.uniform(0, 1) ? low : std::round(low), low + 3.0 };
-    }
-    scene.view.cropping.flags =
-      static_cast<std::uint32_t>(random.bits()) & splatting::Cropping::All;
+    scene.view.cropping = coretesting::anyCropping(size, random);
   }
   return scene;
 }
@@ -225,7 +217,7 @@ void testThreads(Checks& check)
       Scene<T> scene = anyScene<T>({ 40, 37, 35 }, random);
       const glm::dmat3 placement = randomPlacement(random);
       const glm::dvec3 direction = randomDirection(random);
-      scene.view = random.uniform(0, 1)
+      scene.view = random.oneIn(2)
         ? parallelView(scene.volume.size, 9.0, 520, direction, placement, random)
         : perspectiveView(scene.volume.size, 9.0, 520, 1.5, direction, placement, random);
       Engine<T> engine(scene);
@@ -265,15 +257,15 @@ void testLargestValues(Checks& check)
     {
       Scene<T> scene;
       const std::array<int, 3> size = coretesting::randomSize(random, 14);
-      scene.volume = coretesting::wholeRangeNoise<T>(size, random);
+      scene.volume = reference::uniformNoise<T>(size, random);
       const T largest =
-        random.uniform(0, 1) ? std::numeric_limits<T>::max() : std::numeric_limits<T>::max() / 64;
+        random.oneIn(2) ? std::numeric_limits<T>::max() : std::numeric_limits<T>::max() / 64;
       for (T& voxel : scene.volume.voxels)
       {
         voxel *= largest;
       }
       scene.view = randomCellView(size, 80, random);
-      scene.settings.reduction = random.uniform(0, 1) ? Reduction::Minimum : Reduction::Maximum;
+      scene.settings.reduction = random.oneIn(2) ? Reduction::Minimum : Reduction::Maximum;
       counts.add(compareScene(scene, check));
     });
 }
@@ -291,5 +283,5 @@ int TestCellInvariance(int, char*[])
   testThreads<double>(check);
   testLargestValues<float>(check);
   testLargestValues<double>(check);
-  return check.result();
+  return check.exitCode();
 }

@@ -22,7 +22,7 @@ void setThreshold(Scene<T>& scene, Random& random)
 {
   const int voxel = random.uniform(0, static_cast<int>(scene.volume.voxels.size()) - 1);
   const double threshold = static_cast<double>(scene.volume.voxels[voxel]);
-  scene.settings.threshold = threshold == threshold && random.uniform(0, 9)
+  scene.settings.threshold = threshold == threshold && !random.oneIn(10)
     ? threshold
     : -std::numeric_limits<double>::infinity();
 }
@@ -42,23 +42,24 @@ void setOrigin(Scene<T>& scene, Random& random)
   scene.settings.origin = low <= high ? (1.0 - share) * low + share * high : 0.0;
 }
 
-template <class T>
-void addCuts(View& view, Random& random)
+/// Not on faces of cells, where rounding decides which shades there are.
+void addCuts(View& view, const std::array<int, 3>& size, Random& random)
 {
-  const glm::dvec3 middle = 0.5 * glm::dvec3(view.dimensions);
-  if (random.uniform(0, 2) == 0)
+  if (random.oneIn(3))
   {
-    const glm::dvec3 normal = coretesting::anyVector(random, -1.0, 1.0);
-    view.halfSpaces.emplace_back(normal, -glm::dot(normal, middle));
-  }
-  if (random.uniform(0, 2) == 0)
-  {
-    for (int a = 0; a < 3; ++a)
+    view.halfSpaces = coretesting::anyHalfSpaces(size, random);
+    for (glm::dvec4& h : view.halfSpaces)
     {
-      const double low = middle[a] * random.uniform(0.0, 1.2);
-      view.cropping.planes[a] = { low, low + random.uniform(0.1, 6.0) };
+      h.w += 0.013;
     }
-    view.cropping.flags = static_cast<std::uint32_t>(random.bits()) & splatting::Cropping::All;
+  }
+  if (random.oneIn(3))
+  {
+    view.cropping = coretesting::anyCropping(size, random);
+    for (glm::dvec2& planes : view.cropping.planes)
+    {
+      planes += glm::dvec2(0.013, 0.027); // and no regions without thickness
+    }
   }
 }
 
@@ -74,13 +75,13 @@ void testReduction(const std::string& name, Reduction reduction, bool holes, Che
       Scene<T> scene;
       const std::array<int, 3> size = coretesting::randomSize(random, 18);
       scene.volume = holes ? coretesting::volumeWithOddValues<T>(size, random)
-                           : coretesting::wholeRangeNoise<T>(size, random);
+                           : reference::uniformNoise<T>(size, random);
       scene.view = randomCellView(size, 80, random);
-      scene.view.showsBoxes = random.uniform(0, 2) == 0;
+      scene.view.showsBoxes = random.oneIn(3);
       scene.settings.reduction = reduction;
       setShading(scene.settings, random);
       setThreshold(scene, random);
-      addCuts<T>(scene.view, random);
+      addCuts(scene.view, size, random);
       setOrigin(scene, random);
       counts.add(compareScene(scene, check));
     });
@@ -95,7 +96,7 @@ void testFieldEnds(Checks& check)
     [&](Random& random, Counts& counts)
     {
       Scene<T> scene;
-      scene.volume = coretesting::wholeRangeNoise<T>({ 4, 5, 3 }, random);
+      scene.volume = reference::uniformNoise<T>({ 4, 5, 3 }, random);
       for (std::size_t n = 0; n < scene.volume.voxels.size(); n += 2)
       {
         scene.volume.voxels[n] = std::numeric_limits<T>::quiet_NaN();
@@ -123,12 +124,12 @@ View viewAlongFaces(const std::array<int, 3>& size, Random& random)
     // One pixel per voxel; the first one is at -19 + place.
     const int across = (axis + 1 + n) % 3, place = random.uniform(0, 10);
     const double tilt =
-      (random.uniform(0, 1) ? 0.05 : -0.05) * std::pow(10.0, random.uniform(-18.0, -5.0));
+      (random.oneIn(2) ? 0.05 : -0.05) * std::pow(10.0, random.uniform(-18.0, -5.0));
     rows[n][across] = 0.05;
-    rows[n][axis] = random.uniform(0, 3) ? tilt : 0.0;
+    rows[n][axis] = !random.oneIn(4) ? tilt : 0.0;
     rows[n].w = -0.05 * (0.5 + place);
   }
-  rows[2][axis] = random.uniform(0, 1) ? 0.01 : -0.01;
+  rows[2][axis] = random.oneIn(2) ? 0.01 : -0.01;
   setRows(view, rows[0], rows[1], rows[2], { 0.0, 0.0, 0.0, 1.0 });
   return view;
 }
@@ -142,12 +143,12 @@ void testAlongFaces(Checks& check)
     {
       Scene<T> scene;
       const std::array<int, 3> size = coretesting::randomSize(random, 12);
-      scene.volume = coretesting::wholeRangeNoise<T>(size, random);
+      scene.volume = reference::uniformNoise<T>(size, random);
       scene.view = viewAlongFaces(size, random);
       scene.view.showsBoxes = true; // no ray runs along the end of the field
       scene.settings.reduction = Reduction::Local;
       scene.settings.threshold = random.uniform(-1.0, 1.0); // no voxel's value, which rays cross
-      if (sizeof(T) == sizeof(double) && random.uniform(0, 1))
+      if (sizeof(T) == sizeof(double) && random.oneIn(2))
       {
         // Rounding grows with the magnitude of voxels.
         for (T& voxel : scene.volume.voxels)
@@ -182,5 +183,5 @@ int TestCellReductions(int, char*[])
   testAlongFaces<double>(check);
   testAll<std::int64_t>(false, check);
   testAll<double>(true, check);
-  return check.result();
+  return check.exitCode();
 }

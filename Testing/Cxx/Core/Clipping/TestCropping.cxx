@@ -21,33 +21,6 @@ using splatting::Quality;
 
 namespace
 {
-/// VTK's: subvolume, fence, inverted fence, cross, inverted cross.
-constexpr unsigned named[] = { 0x0002000, 0x2ebfeba, 0x5140145, 0x0417410, 0x7be8bef };
-
-struct Scene
-{
-  splatting::ShearWarp geometry;
-  splatting::ProjectionSettings settings;
-  reference::RayCuts cuts;
-};
-
-template <class T>
-splatting::ShearImage projected(const reference::Volume<T>& volume, const Scene& scene)
-{
-  splatting::Cropping cropping;
-  for (int a = 0; a < 3; ++a)
-  {
-    cropping.planes[a] = { scene.cuts.planes[a][0], scene.cuts.planes[a][1] };
-  }
-  cropping.flags = scene.cuts.regions;
-  std::vector<glm::dvec4> halfSpaces;
-  for (const auto& h : scene.cuts.halfSpaces)
-  {
-    halfSpaces.push_back({ h[0], h[1], h[2], h[3] });
-  }
-  return project(volume, scene.geometry, scene.settings, halfSpaces, cropping);
-}
-
 /// The maximum over the samples that count.
 template <class S>
 reference::Image<S> expectedOf(const reference::RaySamples<S>& rays,
@@ -74,7 +47,7 @@ reference::Image<S> expectedOf(const reference::RaySamples<S>& rays,
 /// Every region by itself, the named sets, and some that nobody has named.
 std::vector<unsigned> allFlags(reference::Random& random)
 {
-  std::vector<unsigned> flags(std::begin(named), std::end(named));
+  std::vector<unsigned> flags(std::begin(namedRegions), std::end(namedRegions));
   for (int region = 0; region < 27; ++region)
   {
     flags.push_back(1u << region);
@@ -88,45 +61,17 @@ std::vector<unsigned> allFlags(reference::Random& random)
   return flags;
 }
 
-/// Planes inside the volume most of the time, on voxel centres and between them, and beyond it.
-void placePlanes(
-  reference::Random& random, const std::array<int, 3>& size, reference::RayCuts& cuts)
-{
-  for (int a = 0; a < 3; ++a)
-  {
-    double p = random.uniform(-0.5, 0.5 * size[a]),
-           q = random.uniform(0.5 * size[a], size[a] - 0.5);
-    switch (random.uniform(0, 5))
-    {
-      case 0: // on voxel centres
-        p = std::round(p);
-        q = std::round(q);
-        break;
-      case 1: // within a voxel, perhaps
-        q = p + random.uniform(0.0, 0.9);
-        break;
-      case 2: // one voxel
-        q = p = std::round(p);
-        break;
-      case 3: // all in the middle
-        p = -3.0;
-        q = size[a] + 2.5;
-        break;
-    }
-    cuts.planes[a] = { p, q };
-  }
-}
-
 /// A few spots on a flat ground, so that bricks and chains have something to leave out.
 template <class T>
 reference::Volume<T> spots(reference::Random& random, const std::array<int, 3>& size)
 {
-  reference::Volume<T> volume = wholeRangeNoise<T>(size, random);
-  if (random.uniform(0, 1))
+  reference::Volume<T> volume = reference::uniformNoise<T>(size, random);
+  if (random.oneIn(2))
   {
+    reference::Random many = random.fork();
     for (T& voxel : volume.voxels)
     {
-      voxel = random.uniform(0, 30) ? T(0) : voxel;
+      voxel = !many.oneIn(31) ? T(0) : voxel;
     }
   }
   return volume;
@@ -139,7 +84,7 @@ void testPreview(Checks& check)
     [&](int, reference::Random& random)
     {
       const auto volume = spots<T>(random, randomSize(random, 14));
-      Scene scene;
+      Case scene;
       scene.geometry = splatting::ShearWarp(anyView(volume.size, random));
       scene.settings.quality = Quality::Preview;
       const reference::ShearView view = referenceView(scene.geometry);
@@ -148,9 +93,9 @@ void testPreview(Checks& check)
       for (unsigned flags : allFlags(random))
       {
         scene.cuts = {};
-        placePlanes(random, volume.size, scene.cuts);
+        scene.cuts = rayCutsOf({}, anyCropping(volume.size, random));
         scene.cuts.regions = flags;
-        if (random.uniform(0, 4) == 0)
+        if (random.oneIn(5))
         {
           scene.cuts.halfSpaces = { { 0.3, -0.2, 1.0,
             -random.uniform(0.0, double(volume.size[2])) } };
@@ -158,7 +103,7 @@ void testPreview(Checks& check)
         scene.settings.acceleration = anyAcceleration(random);
         scene.settings.instructionSet = anyInstructionSet(random);
         const auto expected = expectedOf(rays, grid, view, scene.cuts);
-        check(sameBits(expected, toReference<T>(projected(volume, scene))), "type ",
+        check.same(expected, toReference<T>(projected(volume, scene)), 0.0, "type ",
           int(splatting::scalarTypeOf<T>()), ", flags ", std::hex, flags, std::dec,
           ", acceleration ", int(scene.settings.acceleration), ", ", scene.cuts.halfSpaces.size(),
           " half-spaces: other samples; axis ", view.axis, ", shear ", view.shear[0], " ",
@@ -174,11 +119,11 @@ void testAverages(Checks& check)
   reference::forScenes(seriesOf<T>("averages"), 6,
     [&](int, reference::Random& random)
     {
-      const auto volume = wholeRangeNoise<T>(randomSize(random, 6), random);
+      const auto volume = reference::uniformNoise<T>(randomSize(random, 6), random);
       const bool isStandard = random.uniform(0, 1);
       const auto bounds = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
       const double low = double(*bounds.first), high = double(*bounds.second);
-      Scene scene;
+      Case scene;
       scene.geometry = splatting::ShearWarp(anyView(volume.size, random));
       scene.settings.quality = isStandard ? Quality::Standard : Quality::High;
       const reference::ShearView view = referenceView(scene.geometry);
@@ -191,7 +136,7 @@ void testAverages(Checks& check)
       for (unsigned flags : allFlags(random))
       {
         scene.cuts = {};
-        placePlanes(random, volume.size, scene.cuts);
+        scene.cuts = rayCutsOf({}, anyCropping(volume.size, random));
         scene.cuts.regions = flags;
         scene.settings.acceleration = Acceleration::Dense;
         const auto expected = expectedOf(rays, grid, view, scene.cuts);
@@ -206,7 +151,7 @@ void testAverages(Checks& check)
           ": other averages; axis ", view.axis, ", shear ", view.shear[0], " ", view.shear[1],
           ", size ", volume.size[0], " ", volume.size[1], " ", volume.size[2]);
         scene.settings.acceleration = anyAcceleration(random);
-        check(sameBits(dense, toReference<A>(projected(volume, scene))), "mode ",
+        check.same(dense, toReference<A>(projected(volume, scene)), 0.0, "mode ",
           int(scene.settings.quality), ", acceleration ", int(scene.settings.acceleration),
           " changes the picture");
       }
@@ -220,12 +165,12 @@ void testLarge(Checks& check)
     [&](int n, reference::Random& random)
     {
       const auto volume = spots<std::int16_t>(random, { 70, 58, 45 });
-      Scene scene;
+      Case scene;
       scene.geometry = splatting::ShearWarp(anyView(volume.size, random));
       scene.settings.quality = static_cast<Quality>(n % 3);
-      placePlanes(random, volume.size, scene.cuts);
-      scene.cuts.regions = n % 2 ? named[n % 5] : static_cast<unsigned>(random.bits()) & 0x7ffffff;
-      if (random.uniform(0, 2) == 0)
+      scene.cuts = rayCutsOf({}, anyCropping(volume.size, random));
+      scene.cuts.regions = anyRegions(random);
+      if (random.oneIn(3))
       {
         // A slab, which may be thinner than a slice.
         const double normal[] = { random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 1.0 };
@@ -239,8 +184,8 @@ void testLarge(Checks& check)
       {
         const reference::ShearView view = referenceView(scene.geometry);
         const auto grid = reference::makeShearGrid(volume.size, view);
-        check(sameBits(toReference<std::int16_t>(dense),
-                expectedOf(reference::voxelSamples(volume, view), grid, view, scene.cuts)),
+        check.same(toReference<std::int16_t>(dense),
+          expectedOf(reference::voxelSamples(volume, view), grid, view, scene.cuts), 0.0,
           "large volume: other samples");
       }
       for (int acceleration = 0; acceleration < 6; ++acceleration)
@@ -253,28 +198,6 @@ void testLarge(Checks& check)
         check(same, "large volume: acceleration ", acceleration, " changes the picture");
       }
     });
-}
-
-/// Planes at any angle, a box or a thin slab.
-reference::RayCuts cutsAtAnyAngle(reference::Random& random, const std::array<int, 3>& size)
-{
-  reference::RayCuts cuts;
-  const auto within = [&](int a) { return random.uniform(0.0, size[a] - 1.0); };
-  const int planes = random.uniform(0, 3);
-  for (int n = 0; n < planes; ++n)
-  {
-    const glm::dvec3 normal = anyVector(random, -1.0, 1.0);
-    const glm::dvec3 point{ within(0), within(1), within(2) };
-    cuts.halfSpaces.push_back({ normal.x, normal.y, normal.z, -glm::dot(normal, point) });
-  }
-  if (planes == 1 && random.uniform(0, 1))
-  {
-    const auto& h = cuts.halfSpaces.front();
-    cuts.halfSpaces.push_back({ -h[0], -h[1], -h[2], -h[3] + random.uniform(0.0, 4.0) });
-  }
-  placePlanes(random, size, cuts);
-  cuts.regions = random.uniform(0, 2) ? (1u << 27) - 1 : named[random.uniform(0, 4)];
-  return cuts;
 }
 
 /// Rows that fill registers, whose slices count for runs of pixels: loops that are each instruction
@@ -296,7 +219,7 @@ void testLongRows(Checks& check)
         size[0] = 1024 / static_cast<int>(sizeof(T)) + random.uniform(0, 40);
       }
       const auto volume = spots<T>(random, size);
-      Scene scene;
+      Case scene;
       splatting::View sheared = anyView(size, random);
       if (areOneByOne)
       {
@@ -310,14 +233,14 @@ void testLongRows(Checks& check)
       const auto rays = reference::voxelSamples(volume, view);
       for (int m = 0; m < 6; ++m)
       {
-        scene.cuts = cutsAtAnyAngle(random, size);
+        scene.cuts = anyCuts(size, random);
         const auto expected = expectedOf(rays, grid, view, scene.cuts);
         for (int way = 0; way < 12; ++way)
         {
           scene.settings.acceleration = way % 3 == 1 ? Acceleration::Bricks : Acceleration::Dense;
           scene.settings.recordLocations = way % 3 == 2;
           scene.settings.instructionSet = instructionSets[way / 3];
-          check(sameBits(expected, toReference<T>(projected(volume, scene))), "long rows, type ",
+          check.same(expected, toReference<T>(projected(volume, scene)), 0.0, "long rows, type ",
             int(splatting::scalarTypeOf<T>()), ", cuts ", m, ", way ", way,
             ": other samples; axis ", view.axis, ", shear ", view.shear[0], " ", view.shear[1],
             ", size ", size[0], " ", size[1], " ", size[2]);
@@ -340,10 +263,10 @@ void testLongAverages(Checks& check)
       {
         size[a] = a == n % 3 ? random.uniform(60, 150) : random.uniform(4, 12);
       }
-      const auto volume = wholeRangeNoise<T>(size, random);
+      const auto volume = reference::uniformNoise<T>(size, random);
       const auto bounds = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
       const double low = double(*bounds.first), high = double(*bounds.second);
-      Scene scene;
+      Case scene;
       scene.geometry = splatting::ShearWarp(anyView(size, random));
       scene.settings.quality = Quality::Standard;
       const reference::ShearView view = referenceView(scene.geometry);
@@ -354,7 +277,7 @@ void testLongAverages(Checks& check)
         2e-13 * std::max(std::abs(low), std::abs(high)) + 1e-300;
       for (int m = 0; m < 3; ++m)
       {
-        scene.cuts = m == 0 ? reference::RayCuts{} : cutsAtAnyAngle(random, size);
+        scene.cuts = m == 0 ? reference::RayCuts{} : anyCuts(size, random);
         const auto expected = expectedOf(rays, grid, view, scene.cuts);
         reference::Image<A> first;
         for (int way = 0; way < 16; ++way)
@@ -399,20 +322,14 @@ void testPerspective(Checks& check)
 {
   Sightings mixed, sure;
   reference::forScenes("regions in perspective", 300,
-    [&](int n, reference::Random& random)
+    [&](int, reference::Random& random)
     {
       int samples = 0, doubtful = 0, shown = 0;
       std::vector<splatting::ShearWarp> images;
       const std::array<int, 3> size = randomSize(random, 17);
       splatting::ShearWarp::factorise(randomPerspective(size, random), images);
-      reference::RayCuts cuts;
-      placePlanes(random, size, cuts);
-      splatting::Cropping cropping;
-      for (int a = 0; a < 3; ++a)
-      {
-        cropping.planes[a] = { cuts.planes[a][0], cuts.planes[a][1] };
-      }
-      cropping.flags = n % 2 ? named[n % 5] : static_cast<unsigned>(random.bits()) & 0x7ffffff;
+      const splatting::Cropping cropping = anyCropping(size, random);
+      const reference::RayCuts cuts = rayCutsOf({}, cropping);
       for (const splatting::ShearWarp& image : images)
       {
         for (int k = 0; k < image.size().z; ++k)
@@ -458,12 +375,12 @@ void testUnion(Checks& check)
   reference::forScenes("unions", 6,
     [&](int, reference::Random& random)
     {
-      const auto volume = wholeRangeNoise<std::uint8_t>(randomSize(random, 12), random);
+      const auto volume = reference::uniformNoise<std::uint8_t>(randomSize(random, 12), random);
       const auto quality = static_cast<Quality>(random.uniform(0, 2));
-      Scene scene;
+      Case scene;
       scene.geometry = splatting::ShearWarp(anyView(volume.size, random));
       scene.settings.quality = quality;
-      placePlanes(random, volume.size, scene.cuts);
+      scene.cuts = rayCutsOf({}, anyCropping(volume.size, random));
       const auto imageOf = [&](unsigned flags)
       {
         scene.cuts.regions = flags;
@@ -487,7 +404,7 @@ void testUnion(Checks& check)
           }
         }
       }
-      check(sameBits(whole, together), "regions together are not the whole, mode ", int(quality));
+      check.same(whole, together, 0.0, "regions together are not the whole, mode ", int(quality));
     });
 }
 }
@@ -507,5 +424,5 @@ int TestCropping(int, char*[])
   testLarge(check);
   testUnion(check);
   testPerspective(check);
-  return check.result();
+  return check.exitCode();
 }

@@ -77,8 +77,8 @@ Scene randomScene(Random& random, int cutters)
   const DepthRange range = placePlanes(scene.view, random);
   if (cutters & HalfSpaces)
   {
-    scene.view.halfSpaces = randomHalfSpaces(random, scene.view.dimensions);
-    if (random.uniform(0, 1))
+    scene.view.halfSpaces = anyHalfSpaces(toArray(scene.view.dimensions), random);
+    if (random.oneIn(2))
     {
       addNearPlane(scene.view);
     }
@@ -128,13 +128,13 @@ BoxScenes anyBox(int n, Random& random)
   View& view = box.planes.view;
   view = coretesting::randomPerspective(coretesting::randomSize(random, 20), random);
   box.mesh.view = box.wide.view = box.narrow.view = view;
-  box.low = randomPoint(random, view.dimensions);
+  box.low = anyPoint(toArray(view.dimensions), random);
   if (n % 3 == 0)
   {
     const glm::dvec4 eye = glm::inverse(view.indexToClip)[2];
     box.low = glm::dvec3(eye) / eye.w - random.uniform(0.1, 5.0);
   }
-  box.high = box.low + glm::abs(randomVector(random)) * 20.0;
+  box.high = box.low + glm::abs(anyVector(random, 1.0, -1.0)) * 20.0;
   if (n % 2)
   {
     box.low = glm::floor(box.low) + 0.5;
@@ -244,10 +244,10 @@ void testPictures(Checks& check)
     [&](int n, Random& random)
     {
       const std::array<int, 3> size = coretesting::randomSize(random, 30);
-      const auto volume = reference::uniformNoise<std::uint8_t>(size, random.bits(), 0, 255);
+      const auto volume = reference::uniformNoise<std::uint8_t>(size, random, 0, 255);
       const View view = coretesting::randomPerspective(volume.size, random);
-      const glm::dvec3 point = randomPoint(random, view.dimensions);
-      const glm::dvec4 plane = halfSpaceThrough(point, randomVector(random));
+      const glm::dvec3 point = anyPoint(toArray(view.dimensions), random);
+      const glm::dvec4 plane = halfSpaceThrough(point, anyVector(random, -1.0, 1.0));
       reference::RayCuts cuts;
       cuts.halfSpaces.push_back({ plane.x, plane.y, plane.z, plane.w });
       splatting::ProjectionSettings settings;
@@ -258,7 +258,8 @@ void testPictures(Checks& check)
       ShearWarp::factorise(view, images);
       for (const ShearWarp& geometry : images)
       {
-        const auto image = coretesting::project(volume, geometry, settings, { plane });
+        const auto image = coretesting::project(volume, geometry, settings,
+          coretesting::cutsBy(geometry, std::vector<glm::dvec4>{ plane }));
         const reference::PerspectiveRays rays = coretesting::referenceRays(geometry);
         const reference::RayCutter cutter(rays, cuts);
         const auto samples = reference::voxelSamples(volume, rays);
@@ -369,5 +370,5 @@ int TestPerspectiveCuts(int, char*[])
   testEyeAndCorners(check);
   testReuse(check);
   testPictures(check);
-  return check.result();
+  return check.exitCode();
 }

@@ -24,7 +24,7 @@ void spreadDepths(View& view, Random& random)
     low = std::min(low, z);
     high = std::max(high, z);
   }
-  const double scale = (random.uniform(0, 1) ? 1.2 : -1.2) / (high - low);
+  const double scale = (random.oneIn(2) ? 1.2 : -1.2) / (high - low);
   for (int c = 0; c < 4; ++c)
   {
     view.indexToClip[c][2] *= scale;
@@ -50,7 +50,7 @@ Scene randomScene(Random& random, int cutters)
   scene.view = coretesting::anyView(size, random);
   if (cutters & HalfSpaces)
   {
-    scene.view.halfSpaces = randomHalfSpaces(random, scene.view.dimensions);
+    scene.view.halfSpaces = anyHalfSpaces(toArray(scene.view.dimensions), random);
   }
   if (cutters & (Convex | Bumpy))
   {
@@ -76,8 +76,8 @@ void compareBox(Checks& check, const View& view, bool isRounded, Random& random,
 {
   Scene planes, mesh, wide, narrow;
   planes.view = mesh.view = wide.view = narrow.view = view;
-  glm::dvec3 low = randomPoint(random, view.dimensions);
-  glm::dvec3 high = low + glm::abs(randomVector(random)) * 20.0;
+  glm::dvec3 low = anyPoint(toArray(view.dimensions), random);
+  glm::dvec3 high = low + glm::abs(anyVector(random, 1.0, -1.0)) * 20.0;
   if (isRounded)
   {
     low = glm::floor(low);
@@ -396,5 +396,5 @@ int TestRayIntervals(int, char*[])
   testWatertight(check);
   testNeedles(check);
   testOpenSurface(check);
-  return check.result();
+  return check.exitCode();
 }

@@ -363,7 +363,7 @@ splatting::View seamView(int n, reference::Random& random)
     : way < 4                        ? directions[way]
                                      : anyVector(random, -1.0, 1.0);
   const glm::dvec3 up = direction == z ? glm::dvec3(0.0, 1.0, 0.0) : z;
-  return wideView(size, eyes[place], direction, up, random.uniform(0, 2) ? 65 : 129);
+  return wideView(size, eyes[place], direction, up, !random.oneIn(3) ? 65 : 129);
 }
 
 /// What a pixel's ray and those of its area's outline have.
@@ -489,5 +489,5 @@ int TestPerspectiveWarp(int, char*[])
   testPerspective(check);
   testSeams(check);
   testEveryWayGivesTheSameBits(check);
-  return check.result();
+  return check.exitCode();
 }

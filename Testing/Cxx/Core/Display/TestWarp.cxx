@@ -148,5 +148,5 @@ int TestWarp(int, char*[])
   testLinearImages(check);
   testOddPixels(check);
   testOutsideTheViewport(check);
-  return check.result();
+  return check.exitCode();
 }

@@ -37,9 +37,10 @@ constexpr bool isFloat = std::numeric_limits<T>::has_infinity;
 template <class T>
 reference::Volume<T> randomVolume(reference::Random& random, int largest, Quality quality)
 {
-  reference::Volume<T> volume = wholeRangeNoise<T>(randomSize(random, largest), random);
+  reference::Volume<T> volume = reference::uniformNoise<T>(randomSize(random, largest), random);
   const bool levels = random.uniform(0, 1);
-  const int odd = isFloat<T> && random.uniform(0, 2) == 0 ? random.uniform(1, 5) : 0;
+  const int odd = isFloat<T> && random.oneIn(3) ? random.uniform(1, 5) : 0;
+  reference::Random many = random.fork();
   for (T& voxel : volume.voxels)
   {
     if constexpr (!isFloat<T>)
@@ -50,121 +51,15 @@ reference::Volume<T> randomVolume(reference::Random& random, int largest, Qualit
     else
     {
       voxel = levels ? std::round(voxel * T(4)) / T(4) : voxel;
-      if (random.uniform(0, 9) < odd)
+      if (many.chance(odd / 10.0))
       {
         const T values[] = { std::numeric_limits<T>::quiet_NaN(),
           std::numeric_limits<T>::infinity(), -std::numeric_limits<T>::infinity() };
-        voxel = values[quality == Quality::Preview ? std::max(0, random.uniform(-3, 2)) : 0];
+        voxel = values[quality == Quality::Preview ? std::max(0, many.uniform(-3, 2)) : 0];
       }
     }
   }
   return volume;
-}
-
-struct Case
-{
-  splatting::ShearWarp geometry;
-  bool reversed = false; ///< the viewer is at the highest slice
-  splatting::ProjectionSettings settings;
-  reference::RayCuts cuts;
-  std::size_t budget = std::numeric_limits<std::size_t>::max();
-};
-
-inline std::array<double, 4> randomHalfSpace(
-  reference::Random& random, const std::array<int, 3>& size)
-{
-  std::array<double, 4> h{ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
-    random.uniform(-1.0, 1.0), 0.0 };
-  for (int a = 0; a < 3; ++a)
-  {
-    h[3] -= h[a] * random.uniform(0.0, double(size[a]));
-  }
-  return h;
-}
-
-/// None, some anywhere, one across an axis, or two that leave a slab which may be thinner than a
-/// slice.
-inline std::vector<std::array<double, 4>> randomHalfSpaces(
-  reference::Random& random, const std::array<int, 3>& size)
-{
-  std::vector<std::array<double, 4>> halfSpaces;
-  switch (random.uniform(0, 4))
-  {
-    case 0:
-      break;
-    case 1: // through voxel centres or between them
-    {
-      const int a = random.uniform(0, 2);
-      std::array<double, 4> h{};
-      h[a] = random.uniform(0, 1) ? 1.0 : -1.0;
-      h[3] = -h[a] * 0.5 * random.uniform(0, 2 * size[a] - 2);
-      halfSpaces.push_back(h);
-      break;
-    }
-    case 2:
-      halfSpaces.push_back(randomHalfSpace(random, size));
-      halfSpaces.push_back(halfSpaces[0]);
-      for (double& h : halfSpaces[1])
-      {
-        h = -h;
-      }
-      halfSpaces[1][3] += random.uniform(0.05, 2.5);
-      break;
-    default:
-      for (int n = random.uniform(1, 3); n > 0; --n)
-      {
-        halfSpaces.push_back(randomHalfSpace(random, size));
-      }
-  }
-  return halfSpaces;
-}
-
-/// Planes anywhere, on voxel centres, or closer than voxels.
-inline void cropAtRandom(
-  reference::Random& random, const std::array<int, 3>& size, reference::RayCuts& cuts)
-{
-  for (int a = 0; a < 3; ++a)
-  {
-    double p = random.uniform(-1.5, size[a] + 0.5), q = random.uniform(-1.5, size[a] + 0.5);
-    if (random.uniform(0, 3) == 0)
-    {
-      p = std::round(p);
-      q = std::round(q);
-    }
-    else if (random.uniform(0, 3) == 0)
-    {
-      q = p + random.uniform(0.0, 0.7);
-    }
-    cuts.planes[a] = { std::min(p, q), std::max(p, q) };
-  }
-  // A quarter of the regions.
-  const std::uint64_t some = random.bits(), others = random.bits();
-  cuts.regions = static_cast<unsigned>(some & others) & ((1u << 27) - 1);
-}
-
-inline splatting::Cropping croppingOf(const reference::RayCuts& cuts)
-{
-  splatting::Cropping cropping;
-  for (int a = 0; a < 3; ++a)
-  {
-    cropping.planes[a] = { cuts.planes[a][0], cuts.planes[a][1] };
-  }
-  cropping.flags = cuts.regions;
-  return cropping;
-}
-
-template <class T>
-splatting::ShearImage projected(const reference::Volume<T>& volume, const Case& c)
-{
-  std::vector<glm::dvec4> halfSpaces;
-  for (const auto& h : c.cuts.halfSpaces)
-  {
-    halfSpaces.emplace_back(h[0], h[1], h[2], h[3]);
-  }
-  splatting::VolumeIndex index;
-  index.setBudget(c.budget);
-  index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
-  return project(index, c.geometry, c.settings, cutsBy(c.geometry, halfSpaces, croppingOf(c.cuts)));
 }
 
 inline reference::Kernel kernelOf(Quality quality)
@@ -191,16 +86,6 @@ reference::RaySamples<S> samplesOf(
   };
   return geometry.isPerspective() ? samples(referenceRays(geometry))
                                   : samples(referenceView(geometry));
-}
-
-inline reference::RayCutter cutterOf(const Case& c, const std::array<int, 3>& size)
-{
-  if (c.geometry.isPerspective())
-  {
-    return { referenceRays(c.geometry), c.cuts };
-  }
-  const reference::ShearView view = referenceView(c.geometry);
-  return { reference::makeShearGrid(size, view), view, c.cuts };
 }
 
 /// How far samples and results may be off.
@@ -425,12 +310,12 @@ void chooseSettings(reference::Random& random, const reference::RaySamples<S>& r
   const Bounds& bounds, splatting::ProjectionSettings& s)
 {
   s.ambient = random.uniform(0.05, 1.0);
-  s.changeRate = random.uniform(0, 3) ? random.uniform(0.0, 1.0) : -0.04;
-  s.threshold = random.uniform(0, 3) ? randomLevel(random, rays) : -Infinity;
-  s.threshold = random.uniform(0, 9) ? s.threshold : bounds.high;
+  s.changeRate = !random.oneIn(4) ? random.uniform(0.0, 1.0) : -0.04;
+  s.threshold = !random.oneIn(4) ? randomLevel(random, rays) : -Infinity;
+  s.threshold = !random.oneIn(10) ? s.threshold : bounds.high;
   s.meanLow = -Infinity;
   s.meanHigh = Infinity;
-  if (random.uniform(0, 2))
+  if (!random.oneIn(3))
   {
     // No level of plateaus: whole rays would hang on rounding errors of averages.
     const double range = bounds.high - bounds.low;
@@ -438,10 +323,10 @@ void chooseSettings(reference::Random& random, const reference::RaySamples<S>& r
     s.meanHigh = bounds.high - range * random.uniform(0.1, 0.5);
   }
   // Both ends are in the range.
-  if (random.uniform(0, 2) == 0 && s.quality == Quality::Preview)
+  if (random.oneIn(3) && s.quality == Quality::Preview)
   {
     s.meanLow = randomLevel(random, rays);
-    s.meanHigh = random.uniform(0, 1) ? randomLevel(random, rays) : Infinity;
+    s.meanHigh = random.oneIn(2) ? randomLevel(random, rays) : Infinity;
     s.meanHigh = std::max(s.meanLow, s.meanHigh);
   }
 }
@@ -455,7 +340,7 @@ void testVariants(Checks& check, const reference::Volume<T>& volume, Case c,
   {
     c.settings.instructionSet = set;
     c.settings.acceleration = anyAcceleration(random);
-    c.budget = random.uniform(0, 1) ? 0 : std::numeric_limits<std::size_t>::max();
+    c.budget = random.oneIn(2) ? 0 : std::numeric_limits<std::size_t>::max();
     check(sameImages(projected(volume, c), expected), "type ", int(splatting::scalarTypeOf<T>()),
       ", mode ", int(c.settings.quality), ", reduction ", int(c.settings.reduction), ", axis ",
       c.geometry.principalAxis(), ": ", splatting::nameOf(set), ", acceleration ",
@@ -473,12 +358,7 @@ void testReductions(Checks& check, const reference::Volume<T>& volume,
   const Bounds bounds = boundsOf(volume, c.geometry, quality);
   for (int cuts = 0; cuts < 2; ++cuts)
   {
-    c.cuts = {};
-    c.cuts.halfSpaces = randomHalfSpaces(random, volume.size);
-    if (random.uniform(0, 1))
-    {
-      cropAtRandom(random, volume.size, c.cuts);
-    }
+    c.cuts = anyCuts(volume.size, random);
     c.settings.quality = quality;
     chooseSettings(random, rays, bounds, c.settings);
     for (Reduction reduction : reductions)

@@ -17,28 +17,22 @@ using splatting::Quality;
 
 namespace
 {
-struct Case
-{
-  splatting::ProjectionSettings settings;
-  std::vector<glm::dvec4> halfSpaces;
-  std::size_t budget = std::numeric_limits<std::size_t>::max();
-};
-
 /// Noise on a flat background, with a few voxels that stand out wherever they like: at rims, too.
 template <class T>
 reference::Volume<T> spottedVolume(reference::Random& random)
 {
   const std::array<int, 3> size = randomSize(random, 45);
-  reference::Volume<T> volume = wholeRangeNoise<T>(size, random);
+  reference::Volume<T> volume = reference::uniformNoise<T>(size, random);
   const T low = *std::min_element(volume.voxels.begin(), volume.voxels.end());
-  const bool flat = random.uniform(0, 3) == 0;
+  const bool flat = random.oneIn(4);
+  reference::Random many = random.fork();
   for (T& voxel : volume.voxels)
   {
-    if (flat || random.uniform(0, 2) != 0)
+    if (flat || !many.oneIn(3))
     {
       voxel = low;
     }
-    else if (random.uniform(0, 200) != 0)
+    else if (!many.oneIn(201))
     {
       voxel = static_cast<T>(voxel / 4); // leaves room above
     }
@@ -47,7 +41,7 @@ reference::Volume<T> spottedVolume(reference::Random& random)
   for (int n = 0; n < spots; ++n)
   {
     const int x = random.uniform(0, size[0] - 1), y = random.uniform(0, size[1] - 1);
-    const int z = random.uniform(0, 1) ? random.uniform(0, size[2] - 1) : 0;
+    const int z = random.oneIn(2) ? random.uniform(0, size[2] - 1) : 0;
     volume.at(x, y, z) = std::numeric_limits<T>::is_integer ? std::numeric_limits<T>::max() : T(1);
   }
   return volume;
@@ -58,18 +52,13 @@ Case randomCase(reference::Random& random, const std::array<int, 3>& size)
   Case c;
   c.settings.quality = static_cast<Quality>(random.uniform(0, 2));
   c.settings.instructionSet = anyInstructionSet(random);
-  if (random.uniform(0, 3) == 0)
+  if (random.oneIn(4))
   {
     c.settings.kernel = { splatting::Reconstruction::CosineBell, random.uniform(0.5, 1.5) };
   }
-  if (random.uniform(0, 3) == 0)
+  if (random.oneIn(4))
   {
-    glm::dvec4 plane{ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 1.0, 0.0 };
-    for (int a = 0; a < 3; ++a)
-    {
-      plane.w -= plane[a] * random.uniform(0.0, double(size[a]));
-    }
-    c.halfSpaces.push_back(plane);
+    c.cuts = anyCuts(size, random);
   }
   return c;
 }
@@ -94,8 +83,8 @@ Result projected(const reference::Volume<T>& volume, const splatting::ShearWarp&
   settings.acceleration = acceleration;
   splatting::Projector projector;
   Result result;
-  result.used = projector.project(
-    index, geometry, settings, coretesting::cutsBy(geometry, c.halfSpaces), result.image);
+  result.used =
+    projector.project(index, geometry, settings, cutsBy(geometry, c.cuts), result.image);
   result.memory = index.memorySize();
   result.share =
     index.statistics(geometry.principalAxis(), static_cast<int>(settings.quality), false).share;
@@ -148,7 +137,7 @@ void hideSome(reference::Volume<T>& volume, reference::Random& random)
   for (int n = 0; n <= last; ++n)
   {
     const bool isHidden = kind < 3 ? n == single
-      : kind < 6                   ? random.uniform(0.0, 1.0) < share
+      : kind < 6                   ? random.chance(share)
       : kind < 9                   ? n / (volume.size[0] * volume.size[1]) < plane
                                    : true;
     volume.voxels[n] = isHidden ? nan : volume.voxels[n];
@@ -244,7 +233,7 @@ void testRims(Checks& check)
       const auto steep = [&]
       {
         const double shear = random.uniform(0.6, 1.0);
-        return random.uniform(0, 1) ? shear : -shear;
+        return random.oneIn(2) ? shear : -shear;
       };
       const std::array<int, 3> size{ random.uniform(4, 20), random.uniform(4, 20),
         random.uniform(5, 12) };
@@ -254,7 +243,7 @@ void testRims(Checks& check)
         std::array<int, 3> at{ random.uniform(0, size[0] - 1), random.uniform(0, size[1] - 1),
           random.uniform(0, size[2] - 1) };
         const int rim = random.uniform(0, 1);
-        at[rim] = random.uniform(0, 1) ? size[rim] - 1 : 0;
+        at[rim] = random.oneIn(2) ? size[rim] - 1 : 0;
         volume.at(at) = 30000;
       }
       const double shearX = steep(), shearY = steep();
@@ -276,7 +265,7 @@ void testBudget(Checks& check)
     {
       const std::array<int, 3> size{ random.uniform(1, 90), random.uniform(1, 20),
         random.uniform(1, 20) };
-      const reference::Volume<T> volume = wholeRangeNoise<T>(size, random);
+      const reference::Volume<T> volume = reference::uniformNoise<T>(size, random);
       const double shearX = random.uniform(-1.0, 1.0), shearY = random.uniform(-1.0, 1.0);
       splatting::ShearWarp geometry(viewWithShear(size, 0, shearX, shearY));
       while (n % 4 == 0 && (geometry.principalAxis() != 0 || !geometry.isPerspective()))
@@ -331,7 +320,7 @@ void testFloor(Checks& check)
               expected.value[p] = std::max(expected.value[p], static_cast<P>(value));
             }
           }
-          check(sameBits(expected, toReference<P>(raised.image)), "type ",
+          check.same(expected, toReference<P>(raised.image), 0.0, "type ",
             int(splatting::scalarTypeOf<T>()), ", mode ", int(c.settings.quality), ", axis ",
             geometry.principalAxis(), geometry.isPerspective() ? " in perspective" : "",
             ": the floor does more or less");
@@ -433,5 +422,5 @@ int TestAccelerations(int, char*[])
   testBudget<double>(check);
   testAuto(check);
   testMemory(check);
-  return check.result();
+  return check.exitCode();
 }

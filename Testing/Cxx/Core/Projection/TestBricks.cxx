@@ -128,19 +128,20 @@ void testType(Checks& check)
     { 1, 1, 1 } };
   reference::forScenes(seriesOf<T>("shapes"), 5,
     [&](int n, reference::Random& random)
-    { testMaxima(check, wholeRangeNoise<T>(sizes[n], random)); });
+    { testMaxima(check, reference::uniformNoise<T>(sizes[n], random)); });
   reference::forScenes(seriesOf<T>("any shape"), 20,
     [&](int, reference::Random& random)
     {
       const std::array<int, 3> size = randomSize(random, 40);
-      reference::Volume<T> volume = wholeRangeNoise<T>(size, random);
+      reference::Volume<T> volume = reference::uniformNoise<T>(size, random);
       testMaxima(check, volume);
       if constexpr (!std::numeric_limits<T>::is_integer)
       {
         const double share = random.uniform(0.0, 1.0);
+        reference::Random many = random.fork();
         for (T& voxel : volume.voxels)
         {
-          voxel = random.uniform(0.0, 1.0) < share ? std::numeric_limits<T>::quiet_NaN() : voxel;
+          voxel = many.chance(share) ? std::numeric_limits<T>::quiet_NaN() : voxel;
         }
         testMaxima(check, volume);
       }
@@ -154,5 +155,5 @@ int TestBricks(int, char*[])
 {
   Checks check;
   forEachType([&](auto* null) { testType<std::remove_pointer_t<decltype(null)>>(check); });
-  return check.result();
+  return check.exitCode();
 }

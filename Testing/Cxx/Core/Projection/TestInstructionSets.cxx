@@ -49,7 +49,7 @@ bool has(InstructionSet set)
 
 int TestInstructionSets(int, char*[])
 {
-  coretesting::Checks check;
+  reference::Checks check;
   const splatting::Kernels* last = nullptr; // the best so far that can be used
   InstructionSet best = InstructionSet::Baseline;
   for (int n = 0; n < 4; ++n)
@@ -69,5 +69,5 @@ int TestInstructionSets(int, char*[])
   }
   check(splatting::bestInstructionSet() == best, "the best instruction set is ",
     splatting::nameOf(best), ", not ", splatting::nameOf(splatting::bestInstructionSet()));
-  return check.result();
+  return check.exitCode();
 }

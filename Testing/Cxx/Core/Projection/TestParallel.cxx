@@ -18,7 +18,7 @@ using namespace splatting;
 
 namespace
 {
-void testLoops(coretesting::Checks& check)
+void testLoops(reference::Checks& check)
 {
   for (const std::ptrdiff_t count : { 0, 1, 7, 1000 })
   {
@@ -47,7 +47,7 @@ void testLoops(coretesting::Checks& check)
   }
 }
 
-void testNestedLoops(coretesting::Checks& check)
+void testNestedLoops(reference::Checks& check)
 {
   std::atomic<int> moved{ 0 };
   forInOwnThreads(0, 8, 1,
@@ -60,7 +60,7 @@ void testNestedLoops(coretesting::Checks& check)
   check(moved == 0, "a loop in a loop stays on its thread");
 }
 
-void testNumberOfThreads(coretesting::Checks& check)
+void testNumberOfThreads(reference::Checks& check)
 {
   vtkSMPTools::Initialize(1);
   check(numberOfOwnThreads() == 1, "one thread");
@@ -70,10 +70,10 @@ void testNumberOfThreads(coretesting::Checks& check)
 
 int TestParallel(int, char*[])
 {
-  coretesting::Checks check;
+  reference::Checks check;
   testLoops(check);
   testNestedLoops(check);
   testNumberOfThreads(check);
   check(numberOfThreads() >= 1, "there is a thread");
-  return check.result();
+  return check.exitCode();
 }

@@ -73,19 +73,13 @@ void reduce(splatting::ShearImage& all, const splatting::ShearImage& one,
     });
 }
 
-struct Scene
-{
-  splatting::ShearWarp geometry;
-  splatting::ProjectionSettings settings;
-  splatting::Cuts cuts;
-};
-
 template <class T>
-splatting::ShearImage projectPieces(const reference::Volume<T>& volume, const Scene& scene,
+splatting::ShearImage projectPieces(const reference::Volume<T>& volume, const Case& scene,
   const std::vector<Box>& pieces, splatting::Projector& projector)
 {
   splatting::VolumeIndex whole;
   whole.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
+  const splatting::Cuts cuts = cutsBy(scene.geometry, scene.cuts);
   splatting::ShearImage all;
   splatting::ScalarType type = splatting::ScalarType::UInt8;
   for (const Box& piece : pieces)
@@ -99,52 +93,38 @@ splatting::ShearImage projectPieces(const reference::Volume<T>& volume, const Sc
     index.reset({ voxels.data(), splatting::scalarTypeOf<T>(), piece.end - piece.begin });
     index.setRangeOfWhole(whole.range());
     splatting::ShearImage image;
-    projector.project(index, scene.geometry, scene.settings, scene.cuts, image, piece.begin);
+    projector.project(index, scene.geometry, scene.settings, cuts, image, piece.begin);
     type = image.type;
     const splatting::ScalarType keys = encode(image, scene.settings.reduction);
     all.bytes.empty() ? void(all = image) : reduce(all, image, keys, scene.settings.reduction);
   }
-  projector.outline(scene.geometry, scene.settings, scene.cuts, all);
+  projector.outline(scene.geometry, scene.settings, cuts, all);
   decode(all, type, scene.settings.reduction);
   return all;
 }
 
-Scene randomScene(const std::array<int, 3>& size, reference::Random& random)
+Case randomScene(const std::array<int, 3>& size, reference::Random& random)
 {
-  Scene scene;
+  Case scene;
   const bool perspective = random.uniform(0, 1);
   splatting::View view = anyView(size, random);
-  view.showsBoxes = random.uniform(0, 3) == 0;
+  view.showsBoxes = random.oneIn(4);
   scene.geometry = perspective ? randomPerspectiveImage(size, random) : splatting::ShearWarp(view);
   splatting::ProjectionSettings& settings = scene.settings;
   settings.quality = Qualities[random.uniform(0, 2)];
-  if (settings.quality == Quality::High && random.uniform(0, 2) == 0)
+  if (settings.quality == Quality::High && random.oneIn(3))
   {
     settings.kernel = { splatting::Reconstruction::CosineBell, random.uniform(0.5, 1.5) };
   }
-  settings.footprintSampling = random.uniform(0, 5) == 0 ? 10 : 0;
+  settings.footprintSampling = random.oneIn(6) ? 10 : 0;
   const Reduction reductions[] = { Reduction::Maximum, Reduction::Maximum, Reduction::Minimum,
     Reduction::DepthShaded };
   settings.reduction = reductions[random.uniform(0, 3)];
   settings.acceleration = static_cast<splatting::Acceleration>(random.uniform(0, 3));
-  std::vector<glm::dvec4> halfSpaces;
-  for (int n = random.uniform(0, 5) - 3; n > 0; --n)
+  if (random.oneIn(2))
   {
-    const glm::dvec3 normal = anyVector(random, -1.0, 1.0);
-    halfSpaces.emplace_back(
-      normal, random.uniform(0.0, 2.0) - glm::dot(normal, 0.5 * glm::dvec3(toGlm(size) - 1)));
+    scene.cuts = anyCuts(size, random);
   }
-  splatting::Cropping cropping;
-  if (random.uniform(0, 3) == 0)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      cropping.planes[a][0] = random.uniform(-1.0, size[a] * 0.7);
-      cropping.planes[a][1] = random.uniform(cropping.planes[a][0], size[a] + 1.0);
-    }
-    cropping.flags = static_cast<std::uint32_t>(random.bits()) & splatting::Cropping::All;
-  }
-  scene.cuts = cutsBy(scene.geometry, halfSpaces, cropping);
   return scene;
 }
 
@@ -160,7 +140,7 @@ void testPieces(Checks& check, const char* series, int count, int largest, Sight
       {
         const std::array<int, 3> size = randomSize(random, largest);
         const reference::Volume<T> volume = volumeWithOddValues<T>(size, random);
-        const Scene scene = randomScene(size, random);
+        const Case scene = randomScene(size, random);
         std::vector<Box> parts;
         cut({ glm::ivec3(0), toGlm(size) }, random.uniform(1, 4), random, parts);
         empty.add(
@@ -172,14 +152,15 @@ void testPieces(Checks& check, const char* series, int count, int largest, Sight
         }
         splatting::VolumeIndex index;
         index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(size) });
+        const splatting::Cuts cuts = cutsBy(scene.geometry, scene.cuts);
         splatting::ShearImage expected;
-        projector.project(index, scene.geometry, scene.settings, scene.cuts, expected);
+        projector.project(index, scene.geometry, scene.settings, cuts, expected);
         const splatting::ShearImage found = projectPieces(volume, scene, parts, projector);
         check(sameImages(found, expected), "a scene of type ", int(splatting::scalarTypeOf<T>()),
           " differs: quality ", int(scene.settings.quality), ", reduction ",
           int(scene.settings.reduction), ", ", parts.size(), " pieces, perspective ",
           scene.geometry.isPerspective(), ", axis ", scene.geometry.principalAxis(), ", cut ",
-          !scene.cuts.none(), ", NaN ", index.range().nonFinite, ", acceleration ",
+          !cuts.none(), ", NaN ", index.range().nonFinite, ", acceleration ",
           int(scene.settings.acceleration), ", size ", size[0], " ", size[1], " ", size[2]);
       }
     });
@@ -199,7 +180,7 @@ void testCover(Checks& check)
       {
         const int first = random.uniform(0, 2), last = random.uniform(0, 2);
         box.begin[first] -= random.uniform(0, 1);
-        box.end[last] -= random.uniform(0, 3) == 0;
+        box.end[last] -= random.oneIn(4);
       }
       bool all = true;
       for (int v = 0; v < size.x * size.y * size.z; ++v)
@@ -271,5 +252,5 @@ int TestPieces(int, char*[])
       testPieces<T>(check, "large pieces", 10, 70, empty);
     });
   check(empty.areEnough(0.02), "pieces hold nothing in only ", empty);
-  return check.result();
+  return check.exitCode();
 }

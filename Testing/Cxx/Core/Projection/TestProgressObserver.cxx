@@ -99,5 +99,5 @@ int TestProgressObserver(int, char*[])
     }
   }
   vtkSMPTools::SetBackend(usual.c_str());
-  return check.result();
+  return check.exitCode();
 }

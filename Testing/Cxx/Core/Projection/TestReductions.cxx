@@ -16,8 +16,8 @@ namespace
 splatting::View viewFromAnySide(const std::array<int, 3>& size, reference::Random& random)
 {
   splatting::View view = anyView(size, random);
-  const double side = random.uniform(0, 1) ? 1.0 : -1.0;
-  const double w = random.uniform(0, 7) ? 1.0 : -1.0;
+  const double side = random.sign();
+  const double w = !random.oneIn(8) ? 1.0 : -1.0;
   for (int c = 0; c < 4; ++c)
   {
     view.indexToClip[c] *= w;
@@ -80,18 +80,14 @@ void testLarge(Checks& check)
   reference::forScenes(seriesOf<T>("large volumes"), 4,
     [&](int, reference::Random& random)
     {
-      const auto volume = wholeRangeNoise<T>({ 75, 50, 41 }, random);
+      const auto volume = reference::uniformNoise<T>({ 75, 50, 41 }, random);
       // From both sides along the first axis, too, where slices may be transposed.
       const int axis = random.uniform(0, 2);
       const double shearX = random.uniform(-1.0, 1.0), shearY = random.uniform(-1.0, 1.0);
       splatting::View view = viewWithShear(volume.size, axis, shearX, shearY);
-      view.indexToClip[axis][2] *= random.uniform(0, 1) ? 1.0 : -1.0;
+      view.indexToClip[axis][2] *= random.sign();
       Case c = caseOf(view);
-      c.cuts.halfSpaces = randomHalfSpaces(random, volume.size);
-      if (random.uniform(0, 1))
-      {
-        cropAtRandom(random, volume.size, c.cuts);
-      }
+      c.cuts = anyCuts(volume.size, random);
       testLargeVolume(check, volume, c, random);
     });
 }
@@ -103,7 +99,7 @@ void testRelations(Checks& check)
   reference::forScenes("relations", 30,
     [&](int n, reference::Random& random)
     {
-      const auto volume = wholeRangeNoise<std::int16_t>(randomSize(random, 9), random);
+      const auto volume = reference::uniformNoise<std::int16_t>(randomSize(random, 9), random);
       splatting::View view = viewFromAnySide(volume.size, random);
       Case c = caseOf(view);
       c.settings.quality = static_cast<Quality>(n % 3);
@@ -139,7 +135,7 @@ void testRelations(Checks& check)
         negated.value[p] = static_cast<std::int16_t>(negated.hit[p] ? ~negated.value[p] : 0);
       }
       c.settings.reduction = Reduction::Minimum;
-      check(sameBits(toReference<std::int16_t>(projected(volume, c)), negated),
+      check.same(toReference<std::int16_t>(projected(volume, c)), negated, 0.0,
         "the minimum is not the negative's maximum");
     });
   const Sightings& shades = differ[int(Reduction::DepthShaded)];
@@ -160,5 +156,5 @@ int TestReductions(int, char*[])
   testLarge<std::int32_t>(check);
   testLarge<float>(check);
   testRelations(check);
-  return check.result();
+  return check.exitCode();
 }

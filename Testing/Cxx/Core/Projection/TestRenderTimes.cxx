@@ -39,7 +39,7 @@ int frame(RenderTimes& times, int wanted, double allocated, const double (&secon
   return mode;
 }
 
-void testStepsDown(coretesting::Checks& check)
+void testStepsDown(reference::Checks& check)
 {
   const double seconds[] = { 0.02, 0.05, 0.2 };
   RenderTimes times = begun();
@@ -58,7 +58,7 @@ void testStepsDown(coretesting::Checks& check)
   check(frame(times, Standard, Still, seconds) == Standard, "standard was wanted");
 }
 
-void testDoesNotAlternate(coretesting::Checks& check)
+void testDoesNotAlternate(reference::Checks& check)
 {
   const double seconds[] = { 0.01, 0.04, 0.09 };
   RenderTimes times = begun();
@@ -71,7 +71,7 @@ void testDoesNotAlternate(coretesting::Checks& check)
 }
 
 /// Modes that are not in use keep up with those that are.
-void testFollowsTheLoad(coretesting::Checks& check)
+void testFollowsTheLoad(reference::Checks& check)
 {
   const double slow[] = { 0.04, 0.1, 0.4 }, fast[] = { 0.004, 0.01, 0.04 };
   RenderTimes times = begun();
@@ -86,7 +86,7 @@ void testFollowsTheLoad(coretesting::Checks& check)
   check(frame(times, High, 0.06, slow) == Preview, "all modes are slower again");
 }
 
-void testViews(coretesting::Checks& check)
+void testViews(reference::Checks& check)
 {
   RenderTimes times = begun();
   times.add(view, High, 1.0);
@@ -105,7 +105,7 @@ void testViews(coretesting::Checks& check)
   check(times.choose(view, High, 0.1) == High, "the oldest views are forgotten");
 }
 
-void testOddTimes(coretesting::Checks& check)
+void testOddTimes(reference::Checks& check)
 {
   RenderTimes times = begun();
   times.add(view, High, -1.0);
@@ -121,11 +121,11 @@ void testOddTimes(coretesting::Checks& check)
 //------------------------------------------------------------------------------
 int TestRenderTimes(int, char*[])
 {
-  coretesting::Checks check;
+  reference::Checks check;
   testStepsDown(check);
   testDoesNotAlternate(check);
   testFollowsTheLoad(check);
   testViews(check);
   testOddTimes(check);
-  return check.result();
+  return check.exitCode();
 }

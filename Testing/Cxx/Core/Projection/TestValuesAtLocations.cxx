@@ -38,20 +38,6 @@ Projected projectAndCarry(const reference::Volume<T>& volume, const reference::V
   return result;
 }
 
-splatting::Cropping anyCropping(const std::array<int, 3>& size, reference::Random& random)
-{
-  splatting::Cropping cropping;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double x = random.uniform(0.0, size[a] - 1.0), y = random.uniform(0.0, size[a] - 1.0);
-    cropping.planes[a] = { std::min(x, y), std::max(x, y) };
-  }
-  cropping.flags = random.uniform(0, 2)
-    ? splatting::Cropping::All
-    : static_cast<std::uint32_t>(random.bits()) & splatting::Cropping::All;
-  return cropping;
-}
-
 /// Each voxel's place, so that what is carried says where it comes from.
 reference::Volume<std::int32_t> places(const std::array<int, 3>& size)
 {
@@ -106,7 +92,7 @@ void testPreview(Checks& check)
     {
       const std::array<int, 3> size = randomSize(random, 12);
       // Few values: ties are common.
-      const auto volume = reference::uniformNoise<std::int32_t>(size, random.bits(), -3, 3);
+      const auto volume = reference::uniformNoise<std::int32_t>(size, random, -3, 3);
       const splatting::ShearWarp geometry(anyView(size, random));
       splatting::Cropping cropping = anyCropping(size, random);
       for (auto& planes : cropping.planes)
@@ -115,7 +101,7 @@ void testPreview(Checks& check)
       }
       splatting::ProjectionSettings settings;
       settings.quality = Quality::Preview;
-      settings.reduction = random.uniform(0, 1) ? Reduction::Maximum : Reduction::Minimum;
+      settings.reduction = random.oneIn(2) ? Reduction::Maximum : Reduction::Minimum;
       const Projected found = projectAndCarry(volume, places(size), geometry, settings, cropping);
       bool same = true;
       for (int v = 0; v < found.image.height && same; ++v)
@@ -140,10 +126,10 @@ void testItself(Checks& check)
   reference::forScenes(seriesOf<T>("itself"), 40,
     [&](int, reference::Random& random)
     {
-      const auto volume = wholeRangeNoise<T>(randomSize(random, 10), random);
+      const auto volume = reference::uniformNoise<T>(randomSize(random, 10), random);
       const splatting::ShearWarp geometry(anyView(volume.size, random));
       splatting::ProjectionSettings settings;
-      settings.quality = random.uniform(0, 1) ? Quality::Standard : Quality::High;
+      settings.quality = random.oneIn(2) ? Quality::Standard : Quality::High;
       settings.reduction = static_cast<Reduction>(random.uniform(0, 1));
       const Projected found =
         projectAndCarry(volume, volume, geometry, settings, anyCropping(volume.size, random));
@@ -173,5 +159,5 @@ int TestValuesAtLocations(int, char*[])
   Checks check;
   testPreview(check);
   forEachType([&](auto* null) { testItself<std::remove_pointer_t<decltype(null)>>(check); });
-  return check.result();
+  return check.exitCode();
 }

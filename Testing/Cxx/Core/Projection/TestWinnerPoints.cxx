@@ -96,7 +96,7 @@ void testPoints(Checks& check, bool perspective)
     [&](int n, reference::Random& random)
     {
       const std::array<int, 3> size = randomSize(random, 12);
-      const auto volume = reference::uniformNoise<std::uint8_t>(size, random.bits(), 0, 255);
+      const auto volume = reference::uniformNoise<std::uint8_t>(size, random, 0, 255);
       const Scene scene = anyScene(volume.size, perspective, random);
       splatting::ProjectionSettings settings;
       settings.quality = static_cast<Quality>(n % 3);
@@ -154,5 +154,5 @@ int TestWinnerPoints(int, char*[])
   Checks check;
   testPoints(check, false);
   testPoints(check, true);
-  return check.result();
+  return check.exitCode();
 }

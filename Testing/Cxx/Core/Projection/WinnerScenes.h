@@ -42,31 +42,15 @@ inline Scene anyScene(
     scene.view = magnified(perspective ? randomPerspective(size, random) : anyView(size, random));
     splatting::ShearWarp::factorise(scene.view, scene.images);
   }
-  if (mayBeCut && random.uniform(0, 2) == 0)
+  if (mayBeCut && random.oneIn(3))
   {
-    const glm::dvec3 normal = anyVector(random, -1.0, 1.0);
-    const glm::dvec3 middle = 0.5 * glm::dvec3(scene.view.dimensions - 1);
-    scene.view.halfSpaces.emplace_back(normal, -glm::dot(normal, middle) + 0.1);
+    scene.view.halfSpaces = anyHalfSpaces(size, random);
   }
-  if (mayBeCut && random.uniform(0, 2) == 0)
+  if (mayBeCut && random.oneIn(3))
   {
-    for (int a = 0; a < 3; ++a)
-    {
-      const double low = random.uniform(0.0, size[a] - 1.0);
-      scene.view.cropping.planes[a] = { low, low + 1.0 + random.uniform(0.0, 4.0) };
-    }
-    scene.view.cropping.flags =
-      static_cast<std::uint32_t>(random.bits()) & splatting::Cropping::All;
+    scene.view.cropping = anyCropping(size, random);
   }
-  for (const glm::dvec4& h : scene.view.halfSpaces)
-  {
-    scene.cuts.halfSpaces.push_back({ h.x, h.y, h.z, h.w });
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    scene.cuts.planes[a] = { scene.view.cropping.planes[a].x, scene.view.cropping.planes[a].y };
-  }
-  scene.cuts.regions = scene.view.cropping.flags;
+  scene.cuts = rayCutsOf(scene.view.halfSpaces, scene.view.cropping);
   return scene;
 }
 
@@ -97,8 +81,7 @@ std::vector<splatting::ShearImage> projectScene(
   std::vector<splatting::ShearImage> result;
   for (const splatting::ShearWarp& geometry : scene.images)
   {
-    result.push_back(project(
-      index, geometry, settings, cutsBy(geometry, scene.view.halfSpaces, scene.view.cropping)));
+    result.push_back(project(index, geometry, settings, cutsBy(geometry, scene.cuts)));
   }
   return result;
 }

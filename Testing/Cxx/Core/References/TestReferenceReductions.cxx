@@ -91,5 +91,5 @@ int TestReferenceReductions(int, char*[])
   testLocalByHand(check);
   testMeanByHand(check);
   testDepthByHand(check);
-  return check.result();
+  return check.exitCode();
 }

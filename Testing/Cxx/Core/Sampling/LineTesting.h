@@ -47,8 +47,9 @@ T level(int share)
 template <class T>
 reference::Volume<T> boxes(const std::array<int, 3>& size, int levels, reference::Random& random)
 {
-  const auto anyLevel = [&] { return level<T>(random.uniform(0, levels - 1) * 255 / levels); };
-  reference::Volume<T> volume(size, anyLevel());
+  const auto anyLevel = [&](reference::Random& from)
+  { return level<T>(from.uniform(0, levels - 1) * 255 / levels); };
+  reference::Volume<T> volume(size, anyLevel(random));
   for (int n = random.uniform(1, 8); n > 0; --n)
   {
     std::array<int, 3> first, last, p;
@@ -57,7 +58,7 @@ reference::Volume<T> boxes(const std::array<int, 3>& size, int levels, reference
       first[a] = random.uniform(0, size[a] - 1);
       last[a] = random.uniform(first[a], size[a] - 1);
     }
-    const T value = anyLevel();
+    const T value = anyLevel(random);
     for (p[2] = first[2]; p[2] <= last[2]; ++p[2])
     {
       for (p[1] = first[1]; p[1] <= last[1]; ++p[1])
@@ -70,18 +71,19 @@ reference::Volume<T> boxes(const std::array<int, 3>& size, int levels, reference
     }
   }
   const int noise = std::max(random.uniform(-30, 20), 0);
+  reference::Random many = random.fork();
   for (T& voxel : volume.voxels)
   {
-    voxel = random.uniform(0, 99) < noise ? anyLevel() : voxel;
+    voxel = many.chance(noise / 100.0) ? anyLevel(many) : voxel;
   }
   return volume;
 }
 
 /// Some volumes are long enough for runs of equal worksheets.
-inline std::array<int, 3> anySize(reference::Random& random)
+inline std::array<int, 3> anyLongSize(reference::Random& random)
 {
   std::array<int, 3> size = randomSize(random, 12);
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     const int axis = random.uniform(0, 2);
     size[axis] = random.uniform(40, 90);
@@ -92,9 +94,9 @@ inline std::array<int, 3> anySize(reference::Random& random)
 template <class T>
 reference::Volume<T> anyVolume(reference::Random& random)
 {
-  const std::array<int, 3> size = anySize(random);
-  return random.uniform(0, 4) == 0 ? wholeRangeNoise<T>(size, random)
-                                   : boxes<T>(size, random.uniform(1, 9), random);
+  const std::array<int, 3> size = anyLongSize(random);
+  return random.oneIn(5) ? reference::uniformNoise<T>(size, random)
+                         : boxes<T>(size, random.uniform(1, 9), random);
 }
 
 template <class T>

@@ -132,7 +132,7 @@ template <class T>
 void testPicture(
   Checks& check, const splatting::ShearWarp& geometry, splatting::ProjectionSettings settings)
 {
-  const auto noise = wholeRangeNoise<T>(size, 5);
+  const auto noise = reference::uniformNoise<T>(size, 5);
   settings.acceleration = Acceleration::Dense;
   const auto expected = project(noise, geometry, settings);
   for (Acceleration acceleration : { Acceleration::Dense, Acceleration::Bricks, Acceleration::Lines,
@@ -184,7 +184,7 @@ void testTime(Checks& check)
     return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   };
   const std::array<int, 3> thick{ 37, 26, 13 };
-  const auto volume = wholeRangeNoise<std::uint8_t>(thick, 5);
+  const auto volume = reference::uniformNoise<std::uint8_t>(thick, 5);
   const splatting::ShearWarp geometry(viewWithShear(thick, 2, 0.31, 0.17));
   splatting::ProjectionSettings settings;
   settings.quality = Quality::High;
@@ -208,5 +208,5 @@ int TestFootprintSettings(int, char*[])
   testPictures<std::int64_t>(check);
   testPictures<double>(check);
   testTime(check);
-  return check.result();
+  return check.exitCode();
 }

@@ -127,5 +127,5 @@ int TestLineEncoding(int, char*[])
   forEachType([&](auto* null) { testDecoded<std::remove_pointer_t<decltype(null)>>(check); });
   testChains(check);
   testSorting(check);
-  return check.result();
+  return check.exitCode();
 }

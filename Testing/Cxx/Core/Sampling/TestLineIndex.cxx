@@ -19,20 +19,6 @@ using splatting::Quality;
 
 namespace
 {
-std::vector<glm::dvec4> anyHalfSpaces(const std::array<int, 3>& size, reference::Random& random)
-{
-  std::vector<glm::dvec4> halfSpaces(random.uniform(1, 2));
-  for (glm::dvec4& plane : halfSpaces)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      plane[a] = random.uniform(-1.0, 1.0);
-      plane.w -= plane[a] * random.uniform(0.0, double(size[a]));
-    }
-  }
-  return halfSpaces;
-}
-
 splatting::ProjectionSettings settingsOf(Quality quality, Acceleration acceleration)
 {
   splatting::ProjectionSettings settings;
@@ -56,15 +42,15 @@ void compareWithDense(Checks& check, const reference::Volume<T>& volume,
   {
     settings.quality = quality;
     settings.acceleration = Acceleration::Dense;
-    const auto expected = project(volume, geometry, settings, halfSpaces);
+    const auto expected = project(volume, geometry, settings, cutsBy(geometry, halfSpaces));
     for (Acceleration acceleration : lineAccelerations)
     {
       settings.acceleration = acceleration;
-      check(sameImage(project(volume, geometry, settings, halfSpaces), expected), what, ": type ",
-        int(splatting::scalarTypeOf<T>()), ", mode ", int(quality), ", acceleration ",
-        int(acceleration), " differs from dense; axis ", geometry.principalAxis(), ", shear ",
-        geometry.shear().x, " ", geometry.shear().y, ", size ", volume.size[0], " ", volume.size[1],
-        " ", volume.size[2]);
+      check(sameImage(project(volume, geometry, settings, cutsBy(geometry, halfSpaces)), expected),
+        what, ": type ", int(splatting::scalarTypeOf<T>()), ", mode ", int(quality),
+        ", acceleration ", int(acceleration), " differs from dense; axis ",
+        geometry.principalAxis(), ", shear ", geometry.shear().x, " ", geometry.shear().y,
+        ", size ", volume.size[0], " ", volume.size[1], " ", volume.size[2]);
     }
   }
 }
@@ -83,7 +69,7 @@ void testExact(Checks& check)
       settings.kernel = kernels[random.uniform(0, 2)];
       settings.instructionSet = anyInstructionSet(random);
       std::vector<glm::dvec4> halfSpaces;
-      if (random.uniform(0, 2) == 0)
+      if (random.oneIn(3))
       {
         halfSpaces = anyHalfSpaces(volume.size, random);
       }
@@ -93,7 +79,7 @@ void testExact(Checks& check)
       {
         const auto found =
           toReference<T>(project(volume, geometry, settingsOf(Quality::Preview, acceleration)));
-        check(sameBits(expected, found), "type ", int(splatting::scalarTypeOf<T>()),
+        check.same(expected, found, 0.0, "type ", int(splatting::scalarTypeOf<T>()),
           ": the preview is not the traversal, acceleration ", int(acceleration));
       }
     });
@@ -148,11 +134,12 @@ void testOddValues(Checks& check)
     [&](int, reference::Random& random)
     {
       auto volume = boxes<T>(randomSize(random, 8), 4, random);
+      reference::Random many = random.fork();
       for (T& voxel : volume.voxels)
       {
         const T odd[] = { std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::infinity(),
           -std::numeric_limits<T>::infinity() };
-        voxel = random.uniform(0, 9) < 4 ? odd[random.uniform(0, 2)] : voxel;
+        voxel = many.chance(0.4) ? odd[many.uniform(0, 2)] : voxel;
       }
       volume.voxels[0] = std::numeric_limits<T>::quiet_NaN();
       splatting::ProjectionSettings settings;
@@ -198,9 +185,9 @@ void testTolerance(Checks& check, Savings& savings)
     [&](int, reference::Random& random)
     {
       int deviations = 0;
-      const std::array<int, 3> size = anySize(random);
+      const std::array<int, 3> size = anyLongSize(random);
       const auto volume =
-        random.uniform(0, 1) ? wholeRangeNoise<T>(size, random) : boxes<T>(size, 200, random);
+        random.oneIn(2) ? reference::uniformNoise<T>(size, random) : boxes<T>(size, 200, random);
       const T low = *std::min_element(volume.voxels.begin(), volume.voxels.end());
       const T high = *std::max_element(volume.voxels.begin(), volume.voxels.end());
       const splatting::ShearWarp geometry(anyView(size, random));
@@ -250,13 +237,13 @@ void testFloor(Checks& check)
       const auto volume = anyVolume<T>(random);
       const splatting::ShearWarp geometry(anyView(volume.size, random));
       std::vector<glm::dvec4> halfSpaces;
-      if (random.uniform(0, 1))
+      if (random.oneIn(2))
       {
         halfSpaces = anyHalfSpaces(volume.size, random);
       }
-      auto expected = toReference<T>(
-        project(volume, geometry, settingsOf(Quality::Preview, Acceleration::Dense), halfSpaces));
-      const T floor = random.uniform(0, 3) == 0
+      auto expected = toReference<T>(project(volume, geometry,
+        settingsOf(Quality::Preview, Acceleration::Dense), cutsBy(geometry, halfSpaces)));
+      const T floor = random.oneIn(4)
         ? volume.voxels[random.uniform<std::size_t>(0, volume.voxels.size() - 1)]
         : level<T>(random.uniform(0, 255));
       if (double(floor) != std::floor(double(floor)) || std::abs(double(floor)) < 0x1p52)
@@ -269,11 +256,13 @@ void testFloor(Checks& check)
         {
           splatting::ProjectionSettings settings = settingsOf(Quality::Preview, acceleration);
           settings.floor = double(floor);
-          if (std::numeric_limits<T>::is_integer && random.uniform(0, 1))
+          if (std::numeric_limits<T>::is_integer && random.oneIn(2))
           {
             settings.floor += 0.5; // rounded down
           }
-          check(sameBits(expected, toReference<T>(project(volume, geometry, settings, halfSpaces))),
+          check(
+            sameBits(expected,
+              toReference<T>(project(volume, geometry, settings, cutsBy(geometry, halfSpaces)))),
             "type ", int(splatting::scalarTypeOf<T>()), ", acceleration ", int(acceleration),
             ": not the larger of the picture and ", settings.floor);
         }
@@ -300,7 +289,7 @@ void testRenewal(Checks& check)
           const auto quality = static_cast<Quality>(random.uniform(0, 2));
           splatting::ProjectionSettings settings =
             settingsOf(quality, lineAccelerations[random.uniform(0, 2)]);
-          settings.lineTolerance = random.uniform(0, 1) ? 50.0 : 0.0;
+          settings.lineTolerance = random.oneIn(2) ? 50.0 : 0.0;
           splatting::ShearImage image;
           projector.project(index, geometry, settings, {}, image);
           check(sameImage(image, project(volume, geometry, settings)), "an index is out of date");
@@ -381,5 +370,5 @@ int TestLineIndex(int, char*[])
   testOddValues<double>(check);
   testRenewal(check);
   testThreads(check);
-  return check.result();
+  return check.exitCode();
 }

@@ -46,7 +46,7 @@ constexpr int ManyPixels = 200; // that are compared with the voxels near their 
 void compareWithDefinition(stage::Stage& stage, vtkImageData* image, Mapper* mapper,
   stage::Definition& definition, bool isNegative, const reference::Image<double>& picture,
   const reference::Image<double>& truth, reference::Random& random, const std::string& what,
-  stage::Checks& check)
+  reference::Checks& check)
 {
   check(definition.look(stage, image, mapper), what + ": one axis is the nearest to the rays.");
   for (int n = 0; n < SomePixels; ++n)
@@ -63,7 +63,7 @@ void compareWithDefinition(stage::Stage& stage, vtkImageData* image, Mapper* map
 
 /// What is dark in the volume is bright in the picture, which therefore is like a MIP of the
 /// negative. Previews show structures up to half a voxel off, at the voxels that rays cross.
-void testMinimumAgainstRayCaster(stage::Stage& stage, stage::Checks& check)
+void testMinimumAgainstRayCaster(stage::Stage& stage, reference::Checks& check)
 {
   reference::Random blobs(3);
   const Bytes positive = stage::blobsAndTubes({ 72, 80, 88 }, 60, blobs);
@@ -143,7 +143,7 @@ std::vector<double> shearImageOf(stage::Stage& stage, Mapper* mapper)
 /// min v = c - max (c - v), bit for bit: bytes are summed exactly, and rounding of floats does not
 /// know signs.
 template <class T>
-void testMinimumOfNegative(stage::Stage& stage, int type, double c, stage::Checks& check)
+void testMinimumOfNegative(stage::Stage& stage, int type, double c, reference::Checks& check)
 {
   const auto noise = reference::uniformNoise<T>({ 23, 19, 21 }, 6);
   std::vector<T> opposite;
@@ -252,7 +252,7 @@ struct ExpectedAverages
  * On average over the pixels that see something both round to a gray. Neighbours in the shear image
  * may cross a slice more or less.
  */
-void testAverageAgainstRayCaster(stage::Stage& stage, stage::Checks& check)
+void testAverageAgainstRayCaster(stage::Stage& stage, reference::Checks& check)
 {
   reference::Random blobs(3);
   const Bytes volume = stage::blobsAndTubes({ 72, 80, 88 }, 60, blobs);
@@ -303,7 +303,7 @@ void testAverageAgainstRayCaster(stage::Stage& stage, stage::Checks& check)
 }
 
 /// All kinds of projection with all their settings, seen from all sides, with props that mirror.
-void testDefinitions(stage::Stage& stage, stage::Checks& check)
+void testDefinitions(stage::Stage& stage, reference::Checks& check)
 {
   const Bytes volume = reference::uniformNoise<std::uint8_t>({ 13, 11, 16 }, 5, 20, 240);
   const auto image = stage::toImageData(volume);
@@ -316,7 +316,7 @@ void testDefinitions(stage::Stage& stage, stage::Checks& check)
       vtkNew<vtkTransform> prop;
       prop->RotateWXYZ(random.uniform(0.0, 360.0), 0.3, 1.0, -0.4);
       const double scale = random.uniform(0.8, 1.2);
-      prop->Scale(1.0, scale, random.uniform(0, 1) ? 1.0 : -1.0);
+      prop->Scale(1.0, scale, random.sign());
       stage.volume->SetUserTransform(prop);
       stage.look(directions[turn % 6], up);
       const double low = random.uniform(0.0, 120.0);
@@ -344,7 +344,7 @@ void testDefinitions(stage::Stage& stage, stage::Checks& check)
 
 /// A view from the opposite side has the same rays: only what depends on the side is projected
 /// anew. Blend modes come and go without a trace.
-void testReuse(stage::Stage& stage, stage::Checks& check)
+void testReuse(stage::Stage& stage, reference::Checks& check)
 {
   const auto image =
     stage::toImageData(reference::uniformNoise<std::uint8_t>({ 13, 11, 16 }, 7, 0, 255));
@@ -387,7 +387,7 @@ void testReuse(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Rays without a sample in the range are transparent, and black only if the background is.
-void testEmptyRange(stage::Stage& stage, stage::Checks& check)
+void testEmptyRange(stage::Stage& stage, reference::Checks& check)
 {
   const auto image = stage::toImageData(reference::constant<std::uint8_t>({ 20, 20, 20 }, 100));
   const auto mapper = stage::splatting(image);
@@ -422,7 +422,7 @@ void testEmptyRange(stage::Stage& stage, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestBlendModes(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(Width, Height);
   for (double viewAngle : { 0.0, 50.0 })
   {

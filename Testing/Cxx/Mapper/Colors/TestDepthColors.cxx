@@ -17,7 +17,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 void compare(Checks& check, const std::vector<glm::dvec3>& table, std::size_t n, const double* rgb)
@@ -84,5 +84,5 @@ int TestDepthColors(int, char*[])
       testFunction(check, random);
       testNothing(check, random);
     });
-  return check.result();
+  return check.exitCode();
 }

@@ -76,7 +76,7 @@ double difference(stage::Stage& stage, Mapper* mapper, double opacity, const Fin
 /// Ours rounds the colour, the opacity and the blended pixel to 1/255 each, so that it is wrong by
 /// up to 1.5. The ray casters keep more bits of the colour, but may cut off where we round, once in
 /// the colour and once in the pixel: 2.
-void testMeaning(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+void testMeaning(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
 {
   const auto mapper = stage::splatting(image);
   const auto fixedPoint = stage::fixedPointRayCaster(image, 1.0);
@@ -104,7 +104,7 @@ void testMeaning(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
     "Window and level apply where rays are cast, too.");
 }
 
-void testReuse(stage::Stage& stage, vtkVolumeProperty* property, stage::Checks& check)
+void testReuse(stage::Stage& stage, vtkVolumeProperty* property, reference::Checks& check)
 {
   const auto image = stage::toImageData(stage::blobsAndTubes({ 40, 36, 44 }, 9));
   const auto mapper = stage::splatting(image);
@@ -139,7 +139,7 @@ void testReuse(stage::Stage& stage, vtkVolumeProperty* property, stage::Checks& 
 //------------------------------------------------------------------------------
 int TestFinalColor(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(Size, Size);
   stage.renderer->SetBackground(Background.data());
   const auto image = stage::toImageData(reference::constant<std::uint8_t>({ 40, 40, 40 }, 100));

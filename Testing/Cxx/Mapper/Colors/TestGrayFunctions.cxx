@@ -79,7 +79,7 @@ stage::Pixels picture(
   return stage.pixels();
 }
 
-void testMapper(stage::Stage& stage, const MakeMapper& make, stage::Checks& check)
+void testMapper(stage::Stage& stage, const MakeMapper& make, reference::Checks& check)
 {
   const auto image = stage::toImageData(stage::blobsAndTubes({ 48, 40, 44 }, 25));
   vtkNew<vtkVolumeProperty> gray, colored;
@@ -136,7 +136,7 @@ void testMapper(stage::Stage& stage, const MakeMapper& make, stage::Checks& chec
 //------------------------------------------------------------------------------
 int TestGrayFunctions(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(120, 110);
   testMapper(
     stage, [](vtkImageData* image) { return stage::splatting(image); }, check);

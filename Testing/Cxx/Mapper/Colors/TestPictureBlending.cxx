@@ -148,7 +148,7 @@ struct Scene : stage::Stage
   }
 
   /// Four bytes a pixel. A second frame must be the same: the first one leaves no state.
-  stage::Pixels rgba(stage::Checks& check)
+  stage::Pixels rgba(reference::Checks& check)
   {
     stage::Pixels frames[2];
     for (stage::Pixels& frame : frames)
@@ -163,7 +163,7 @@ struct Scene : stage::Stage
   }
 
   /// The premultiplied picture of one volume.
-  stage::Pixels alone(int n, stage::Checks& check)
+  stage::Pixels alone(int n, reference::Checks& check)
   {
     this->order({ n });
     this->setBackground(0.0, 0.0, 0.0, 0.0);
@@ -200,7 +200,8 @@ double expected(const Parts& parts, const std::vector<int>& order, int blending,
 }
 
 /// Returns how many bytes the volumes change.
-int compare(Scene& scene, const Parts& parts, int blending, bool hidesAlpha, stage::Checks& check)
+int compare(
+  Scene& scene, const Parts& parts, int blending, bool hidesAlpha, reference::Checks& check)
 {
   int changed = 0;
   for (std::vector<int> numbers : { std::vector<int>{ 1, 2 }, { 0, 1, 2 } })
@@ -232,7 +233,7 @@ int compare(Scene& scene, const Parts& parts, int blending, bool hidesAlpha, sta
   return changed;
 }
 
-void testColors(stage::Checks& check, reference::Random& random)
+void testColors(reference::Checks& check, reference::Random& random)
 {
   Scene scene(random);
   int changed = 0;
@@ -241,7 +242,7 @@ void testColors(stage::Checks& check, reference::Random& random)
     const bool opaque = geometry > 0, translucent = geometry == 2;
     for (vtkRenderer* r : { scene.renderer.Get(), scene.second.Get() })
     {
-      r->SetUseDepthPeeling(translucent && random.uniform(0, 1) == 0);
+      r->SetUseDepthPeeling(translucent && random.oneIn(2));
     }
     Parts parts;
     scene.showActors(opaque, false, { 0.0, 0.0, 0.0 }); // black geometry cuts, and adds nothing
@@ -301,7 +302,7 @@ struct StateChecks
   }
 };
 
-void testState(stage::Checks& check, reference::Random& random)
+void testState(reference::Checks& check, reference::Random& random)
 {
   Scene scene(random);
   scene.window->Render();
@@ -346,7 +347,7 @@ std::vector<vtkProp*> found(Scene& scene)
   return props;
 }
 
-void testSelection(stage::Checks& check, reference::Random& random)
+void testSelection(reference::Checks& check, reference::Random& random)
 {
   Scene scene(random);
   scene.window->Render();
@@ -367,7 +368,7 @@ void testSelection(stage::Checks& check, reference::Random& random)
 //------------------------------------------------------------------------------
 int TestPictureBlending(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage keeper(10, 10); // X servers may restart when their last client leaves
   keeper.window->Render();
   reference::forScenes("blending", 2,

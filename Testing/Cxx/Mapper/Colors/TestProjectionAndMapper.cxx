@@ -147,7 +147,7 @@ double largestDifference(vtkImageData* a, vtkImageData* b)
 /// A depth-shaded maximum without shades is the maximum. Pictures are finite, also where cuts leave
 /// a ray nothing of what exact mode sees, and whatever shades would be.
 void testWithoutShades(
-  vtkSplattingMIPProjection* filter, const std::string& view, stage::Checks& check)
+  vtkSplattingMIPProjection* filter, const std::string& view, reference::Checks& check)
 {
   filter->SetMaximumType(vtkSplattingMIPProjection::GLOBAL);
   filter->Update();
@@ -182,10 +182,10 @@ void testWithoutShades(
 
 int TestProjectionAndMapper(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   reference::Random random(11);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 40, 36, 44 }, 12, random));
-  stage::placeAtRandom(image, random);
+  coretesting::placeAtRandom(image, random, false);
   const auto mapper = stage::splatting(image);
   mapper->AutoAdjustSampleDistancesOff();
   stage::Stage stage(Width, Height);
@@ -200,7 +200,7 @@ int TestProjectionAndMapper(int, char*[])
     {
       stage.viewAngle = n % 3 == 2 ? 35.0 : 0.0;
       vtkNew<vtkMatrix3x3> skew;
-      if (own.uniform(0, 1))
+      if (own.oneIn(2))
       {
         skew->SetElement(0, 2, own.uniform(-1.5, 1.5));
         skew->SetElement(1, 2, own.uniform(-0.5, 0.5));

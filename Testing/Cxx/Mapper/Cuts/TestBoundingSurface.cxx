@@ -86,7 +86,7 @@ void addPlanes(vtkVolumeMapper* mapper, const double bounds[6])
   }
 }
 
-void testBox(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stage::Checks& check)
+void testBox(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, reference::Checks& check)
 {
   const auto polygons = cube(box);
   const auto stripped = strips(polygons);
@@ -151,7 +151,7 @@ int brightestInside(const Bytes& volume, const reference::ShearView& view,
 
 /// Along each axis, where each ray crosses one voxel of a slice, the preview's shear image is
 /// known.
-void testSphere(stage::Stage& stage, stage::Checks& check)
+void testSphere(stage::Stage& stage, reference::Checks& check)
 {
   const Bytes noise = reference::uniformNoise<std::uint8_t>({ 24, 26, 28 }, 9);
   const auto image = stage::toImageData(noise);
@@ -199,7 +199,7 @@ void testSphere(stage::Stage& stage, stage::Checks& check)
   }
 }
 
-void testReuse(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stage::Checks& check)
+void testReuse(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, reference::Checks& check)
 {
   stage.look(directions[0], up);
   const auto surface = sphere({ 30.0, 30.0, 30.0 }, 15.0, 40);
@@ -237,7 +237,8 @@ struct Fault
   vtkSmartPointer<vtkPolyData> surface;
 };
 
-void testBadInput(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stage::Checks& check)
+void testBadInput(
+  stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, reference::Checks& check)
 {
   const auto points = vtkSmartPointer<vtkPolyData>::New();
   points->SetPoints(vtkNew<vtkPoints>());
@@ -301,7 +302,7 @@ void testBadInput(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stag
 //------------------------------------------------------------------------------
 int TestBoundingSurface(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(Width, Height);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
   const auto mapper = stage::splatting(image);

@@ -35,7 +35,7 @@ const stage::Vector directions[] = { { 0.3, 0.4, -0.8 }, { -0.8, 0.3, 0.4 }, { 0
 /// planes. A plane takes away whole slices' shares of a ray, so that pictures differ along the cut.
 /// Measured: 38.9 dB, 0.9916 and 0.14 pixel at worst.
 void compare(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
-  const std::string& what, stage::Checks& check)
+  const std::string& what, reference::Checks& check)
 {
   // An eye in the volume sees voxels many pixels wide, and what averages take from them: 36.0 dB
   // and 0.9855; VTK's ray casters have 44 dB and 0.995 to each other there.
@@ -54,13 +54,13 @@ void compare(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageD
 
 /// How far the cut picture is from the whole one, as PSNR: it must be visibly another.
 void checkThatSomethingIsCut(
-  const reference::Image<double>& whole, stage::Stage& stage, stage::Checks& check)
+  const reference::Image<double>& whole, stage::Stage& stage, reference::Checks& check)
 {
   check(reference::psnr(whole, stage.gray(), 255.0) < 34.0, "Something is cut away.");
 }
 
 void testClippingRange(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
-  vtkImageData* image, stage::Checks& check)
+  vtkImageData* image, reference::Checks& check)
 {
   for (const stage::Vector& direction : directions)
   {
@@ -81,7 +81,7 @@ void testClippingRange(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
 /// The camera in the middle of the volume sees what is before it. In perspective it is near a
 /// corner, where the volume is dark: what counts there is a matter of half a slice.
 void testCameraInside(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
-  stage::Checks& check)
+  reference::Checks& check)
 {
   for (const stage::Vector& direction : directions)
   {
@@ -104,7 +104,7 @@ void testCameraInside(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, 
 }
 
 void testClippingPlanes(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
-  vtkImageData* image, stage::Checks& check)
+  vtkImageData* image, reference::Checks& check)
 {
   // In the world, where the volume is turned and moved.
   stage.volume->SetOrientation(10.0, 20.0, 30.0);
@@ -207,7 +207,7 @@ std::vector<std::array<double, 4>> clipAtRandom(stage::Stage& stage, vtkImageDat
 
 /// Whatever planes there are, the camera's among them, shear images of previews have the samples
 /// that they leave, and no others.
-void testSamples(stage::Checks& check)
+void testSamples(reference::Checks& check)
 {
   coretesting::Sightings cut;
   reference::forScenes("samples", 100,
@@ -218,9 +218,9 @@ void testSamples(stage::Checks& check)
       {
         voxels = random.uniform(1, 20);
       }
-      const auto volume = reference::uniformNoise<std::uint8_t>(size, random.bits());
+      const auto volume = reference::uniformNoise<std::uint8_t>(size, random);
       const auto image = stage::toImageData(volume);
-      stage::placeAtRandom(image, random);
+      coretesting::placeAtRandom(image, random, false);
       const auto mapper = stage::splatting(image);
       mapper->SetQualityModeToPreview();
       mapper->SetMaximumType(random.uniform(0, 2));
@@ -269,7 +269,7 @@ int litPixels(stage::Stage& stage)
 /// The picture of a box of voxels ends at voxel centres, or is as wide as a voxel. Of a convex part
 /// of the plane with area A and perimeter P no more than A + P / 2 + 1 pixels have their centres
 /// in it, and no fewer than A - P / 2 (Nosarzewska).
-void testThinVolumes(stage::Checks& check)
+void testThinVolumes(reference::Checks& check)
 {
   reference::forScenes("thin volumes", 120,
     [&](int n, reference::Random& random)
@@ -286,10 +286,10 @@ void testThinVolumes(stage::Checks& check)
       stage::Stage stage(Width, Height);
       stage.show(mapper);
       stage::Vector direction = stage::anyDirection(random);
-      if (random.uniform(0, 1))
+      if (random.oneIn(2))
       {
         const int axis = random.uniform(0, 2);
-        const double side = random.uniform(0, 1) ? 1.0 : -1.0;
+        const double side = random.sign();
         direction = { 0.0, 0.0, 0.0 };
         direction[axis] = side;
       }
@@ -325,7 +325,7 @@ void testThinVolumes(stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestClipping(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(Width, Height);
   testSamples(check);
   testThinVolumes(check);

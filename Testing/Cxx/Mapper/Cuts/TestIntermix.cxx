@@ -164,7 +164,7 @@ Pictures pictures(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkA
 /// What does not meet the volume is before or behind it as a whole: every pixel is known. (The
 /// volume has no black: black is transparent.)
 void testBeforeAndBehind(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
-  vtkImageData* image, stage::Checks& check)
+  vtkImageData* image, reference::Checks& check)
 {
   const bool hasShearImage = mapper->GetQualityMode() != vtkSplattingMIPVolumeMapper::EXACT;
   for (const stage::Vector& direction : directions)
@@ -208,7 +208,7 @@ bool isNearRim(const stage::Pixels& picture, int pixel, int reach)
 /// differ, by up to a pixel of the shear image (1.8 of the screen): there the wall hides pixels of
 /// the screen, and the plane pixels of the shear image.
 void testWall(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
-  stage::Checks& check)
+  reference::Checks& check)
 {
   for (const stage::Vector& direction : directions)
   {
@@ -262,7 +262,7 @@ double psnrWhere(const stage::Pixels& truth, const stage::Pixels& picture, Count
 /// Edges are as soft as the shear image's pixels are large, 1.8 of the screen: off them pictures
 /// must agree as where a plane cuts (see TestClipping), since rays end a slice sooner or later.
 void testSpheres(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
-  stage::Checks& check)
+  reference::Checks& check)
 {
   const auto rayCaster = stage::fixedPointRayCaster(image, 0.25);
   for (const stage::Vector& direction : directions)
@@ -309,8 +309,8 @@ vtkSmartPointer<vtkRenderPass> sequencePass()
 
 /// Render passes draw what the renderer draws without: pixel by pixel, and within what
 /// testSpheres() allows as VTK's GPU ray caster does under the same passes.
-void testPasses(
-  double viewAngle, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
+void testPasses(double viewAngle, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
+  reference::Checks& check)
 {
   const auto rayCaster = stage::gpuRayCaster(image, 0.25);
   for (double distance : { -80.0, -20.0, 5.0 })
@@ -407,8 +407,8 @@ stage::Pixels pictureInTiles(vtkRenderWindow* window)
   return { bytes->GetPointer(0), bytes->GetPointer(0) + bytes->GetNumberOfValues() };
 }
 
-void testWindows(
-  double viewAngle, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
+void testWindows(double viewAngle, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
+  reference::Checks& check)
 {
   Crowd alone(Width, Height, viewAngle, mapper, image);
   const stage::Pixels expected = alone.stage.pixels();
@@ -462,8 +462,8 @@ void testWindows(
 
 /// With multisampling only pixels at the rims of geometry may differ, if it has the same depth at
 /// all samples.
-void testMultiSamples(
-  double viewAngle, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
+void testMultiSamples(double viewAngle, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
+  reference::Checks& check)
 {
   Crowd plain(Width, Height, viewAngle, mapper, image),
     samples(Width, Height, viewAngle, mapper, image);
@@ -492,7 +492,7 @@ void testMultiSamples(
 //------------------------------------------------------------------------------
 int TestIntermix(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(Width, Height);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
   const auto mapper = stage::splatting(image);

@@ -20,7 +20,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 struct Scene
@@ -198,5 +198,5 @@ int TestSceneCuts(int, char*[])
   reference::forScenes(
     "scenes", 200, [&](int, reference::Random& random) { testScene(check, seen, random); });
   check(seen.areEnough(0.3), "planes cut in only ", seen);
-  return check.result();
+  return check.exitCode();
 }

@@ -48,7 +48,7 @@ void addPlane(
   mapper->AddClippingPlane(plane);
 }
 
-void testPlanes(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stage::Checks& check)
+void testPlanes(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, reference::Checks& check)
 {
   // In the world, where the volume is turned, moved and stretched.
   stage.volume->SetOrientation(10.0, 20.0, 30.0);
@@ -87,7 +87,7 @@ void testPlanes(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stage:
   stage.volume->SetScale(1.0, 1.0, 1.0);
 }
 
-void testSliding(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stage::Checks& check)
+void testSliding(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, reference::Checks& check)
 {
   const stage::Vector& direction = directions[0];
   stage.look(direction, up);
@@ -119,7 +119,7 @@ void testSliding(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stage
 }
 
 /// Along an axis, where slices are flat: the shear image of a thin slab is the nearest slice.
-void testThinSlab(stage::Stage& stage, stage::Checks& check)
+void testThinSlab(stage::Stage& stage, reference::Checks& check)
 {
   const reference::Volume<std::uint8_t> noise =
     reference::uniformNoise<std::uint8_t>({ 12, 14, 16 }, 3);
@@ -154,7 +154,7 @@ void testThinSlab(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Where the volume is ray cast nothing is cut, and that is said.
-void testRayCasting(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+void testRayCasting(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
 {
   const auto mapper = stage::splatting(image);
   stage.show(mapper);
@@ -173,7 +173,7 @@ void testRayCasting(stage::Stage& stage, vtkImageData* image, stage::Checks& che
 /// However thin a slab is, it shows one slice, as one of half a slice does, and in exact mode the
 /// field on a plane: where the volume has nothing but bright voxels, none of the rays that meet it
 /// is dark.
-void testThinnerSlabs(stage::Stage& stage, int mode, stage::Checks& check)
+void testThinnerSlabs(stage::Stage& stage, int mode, reference::Checks& check)
 {
   reference::Volume<std::uint8_t> cube = reference::uniformNoise<std::uint8_t>({ 40, 42, 44 }, 5);
   std::for_each(cube.voxels.begin(), cube.voxels.end(),
@@ -223,7 +223,8 @@ struct Fault
   stage::Vector centre;
 };
 
-void testBadInput(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stage::Checks& check)
+void testBadInput(
+  stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, reference::Checks& check)
 {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -262,7 +263,7 @@ void testBadInput(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, stag
 //------------------------------------------------------------------------------
 int TestSlab(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(Width, Height);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 56, 60 }, 40));
   const auto mapper = stage::splatting(image);

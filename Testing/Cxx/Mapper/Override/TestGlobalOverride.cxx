@@ -66,7 +66,7 @@ protected:
 int CountingFactory::count = 0;
 vtkStandardNewMacro(CountingFactory);
 
-void testSwitch(stage::Checks& check)
+void testSwitch(reference::Checks& check)
 {
   check(!Override::GetGlobalOverride() && given() == VtksOwn, "Off by default.");
   const int factories = numberOfFactories();
@@ -85,7 +85,7 @@ void testSwitch(stage::Checks& check)
   Override::GlobalOverrideOff();
 }
 
-void testGlobalQualityMode(stage::Checks& check)
+void testGlobalQualityMode(reference::Checks& check)
 {
   const auto qualityOfNew = []()
   { return vtkSmartPointer<Override>::New()->GetSplattingMapper()->GetQualityMode(); };
@@ -102,7 +102,7 @@ void testGlobalQualityMode(stage::Checks& check)
     "Only of this class.");
 }
 
-void testOtherOverrides(vtkImageData* image, stage::Checks& check)
+void testOtherOverrides(vtkImageData* image, reference::Checks& check)
 {
   Override::GlobalOverrideOn();
   const auto mapper = stage::splatting(image);
@@ -163,7 +163,7 @@ constexpr int Minimum = vtkVolumeMapper::MINIMUM_INTENSITY_BLEND;
 constexpr int Average = vtkVolumeMapper::AVERAGE_INTENSITY_BLEND;
 constexpr int Composite = vtkVolumeMapper::COMPOSITE_BLEND;
 
-void testSmartMapper(vtkImageData* image, stage::Checks& check)
+void testSmartMapper(vtkImageData* image, reference::Checks& check)
 {
   Override::GlobalOverrideOff();
   vtkNew<vtkSmartVolumeMapper> before;
@@ -196,7 +196,7 @@ void testSmartMapper(vtkImageData* image, stage::Checks& check)
 }
 
 /// All that this class of VTK does with its input, in every frame, makes nothing anew.
-void testSmartMapperKeepsIndex(vtkImageData* image, stage::Checks& check)
+void testSmartMapperKeepsIndex(vtkImageData* image, reference::Checks& check)
 {
   Override::GlobalOverrideOn();
   vtkNew<SmartMapper> smart;
@@ -224,7 +224,7 @@ void testSmartMapperKeepsIndex(vtkImageData* image, stage::Checks& check)
 }
 
 /// The smart mapper computes magnitudes by itself.
-void testVectorModes(vtkImageData* image, stage::Checks& check)
+void testVectorModes(vtkImageData* image, reference::Checks& check)
 {
   vtkNew<vtkImageData> vectors;
   vectors->CopyStructure(image);
@@ -266,7 +266,7 @@ vtkSmartPointer<vtkImageData> part(vtkImageData* image, int first, int last)
 }
 
 /// Blocks are blended one over the other, from back to front, whatever the mapper.
-void testMultiBlockMapper(vtkImageData* image, stage::Checks& check)
+void testMultiBlockMapper(vtkImageData* image, reference::Checks& check)
 {
   const int middle = image->GetDimensions()[0] / 2;
   const auto right = part(image, middle, image->GetDimensions()[0] - 1);
@@ -307,7 +307,7 @@ vtkSmartPointer<vtkImageData> blobsAndHoles()
 //------------------------------------------------------------------------------
 int TestGlobalOverride(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   const auto image = blobsAndHoles();
   testSwitch(check);
   testGlobalQualityMode(check);

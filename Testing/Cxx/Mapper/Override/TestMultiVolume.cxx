@@ -58,7 +58,7 @@ struct Scene
     for (int n = 0; n < Count; ++n)
     {
       this->images[n] = stage::toImageData(stage::blobsAndTubes({ 32, 35, 33 }, 12, random));
-      stage::placeAtRandom(this->images[n], random);
+      coretesting::placeAtRandom(this->images[n], random, false);
       const double* const centre = this->images[n]->GetCenter();
       for (vtkVolume* volume : { this->parts[n].Get(), this->separate[n].Get() })
       {
@@ -107,7 +107,7 @@ struct Scene
     }
   }
 
-  void compare(const std::string& what, stage::Checks& check)
+  void compare(const std::string& what, reference::Checks& check)
   {
     const stage::Pixels expected = this->others.pixels(), pixels = this->stage.pixels();
     int differing = 0, shown = 0;
@@ -132,7 +132,7 @@ struct Scene
   stage::Stage stage{ Width, Height }, others{ Width, Height };
 };
 
-void testPictures(Scene& scene, reference::Random& random, stage::Checks& check)
+void testPictures(Scene& scene, reference::Random& random, reference::Checks& check)
 {
   scene.compare("Maxima", check);
   scene.mapper->SetBlendModeToMinimumIntensity();
@@ -179,7 +179,7 @@ void testPictures(Scene& scene, reference::Random& random, stage::Checks& check)
   scene.compare("Without an input", check);
 }
 
-void testRest(Scene& scene, stage::Checks& check)
+void testRest(Scene& scene, reference::Checks& check)
 {
   scene.stage.pixels();
   check(scene.mapper->GetSplattingMapper(1)->GetNumberOfProjections() == 1, "One projection.");
@@ -215,7 +215,7 @@ void testRest(Scene& scene, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestMultiVolume(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage keeper(10, 10); // X servers may restart when their last client leaves
   keeper.window->Render();
   reference::forScenes("several inputs", 4,

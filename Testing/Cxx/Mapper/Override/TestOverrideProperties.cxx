@@ -45,7 +45,7 @@ vtkSmartPointer<vtkImageData> manyScalars()
 {
   const auto image = bareImage(size);
   reference::Random random(4);
-  stage::placeAtRandom(image, random);
+  coretesting::placeAtRandom(image, random, false);
   image->SetDirectionMatrix(0, -1, 0, 0.8, 0, 0.6, -0.6, 0, 0.8);
   const auto add = [](vtkDataSetAttributes* to, const char* name, int type, vtkIdType count,
                      int components, int seed)
@@ -88,7 +88,7 @@ struct Pair
     return this->stage.pixels();
   }
   /// The picture, if both agree.
-  stage::Pixels same(const std::string& name, stage::Checks& check)
+  stage::Pixels same(const std::string& name, reference::Checks& check)
   {
     const stage::Pixels expected = this->of(this->splatting);
     check(!isBlack(expected), name + ": there is something to see.");
@@ -234,7 +234,7 @@ std::vector<Change> changesOf(vtkImageData* image)
   return changes;
 }
 
-void testChanges(stage::Checks& check)
+void testChanges(reference::Checks& check)
 {
   const auto image = manyScalars();
   Pair pair(image);
@@ -255,7 +255,7 @@ void testChanges(stage::Checks& check)
 }
 
 /// Properties of the volume and the scene reach the splatting mapper by themselves.
-void testInputs(stage::Checks& check)
+void testInputs(reference::Checks& check)
 {
   Pair pair(plainImage(size, noiseArray(VTK_UNSIGNED_CHAR, Voxels, 3, 5)));
   pair.same("Independent components", check);
@@ -347,7 +347,7 @@ std::vector<Exception> exceptions()
 }
 
 /// VTK's own mapper and the override, each with a volume of its own.
-void testExceptions(stage::Checks& check)
+void testExceptions(reference::Checks& check)
 {
   const auto image = plainImage(size, noiseArray(VTK_UNSIGNED_CHAR, Voxels, 1, 8));
   for (const Exception& exception : exceptions())
@@ -375,7 +375,7 @@ void testExceptions(stage::Checks& check)
 }
 
 /// A label map changes no projection by VTK, so it must not change ours.
-void testLabelMap(stage::Checks& check)
+void testLabelMap(reference::Checks& check)
 {
   Pair pair(plainImage(size, noiseArray(VTK_UNSIGNED_CHAR, Voxels, 1, 8)));
   vtkNew<vtkOpenGLGPUVolumeRayCastMapper> vtks;
@@ -395,7 +395,7 @@ void testLabelMap(stage::Checks& check)
   pair.same("Label map", check);
 }
 
-void testRenderToImage(stage::Checks& check)
+void testRenderToImage(reference::Checks& check)
 {
   Pair pair(plainImage(size, noiseArray(VTK_UNSIGNED_CHAR, Voxels, 1, 8)));
   pair.override->RenderToImageOn();
@@ -409,7 +409,7 @@ void testRenderToImage(stage::Checks& check)
 }
 
 /// Several inputs are VTK's to composite.
-void testMultiVolume(stage::Checks& check)
+void testMultiVolume(reference::Checks& check)
 {
   const auto image = plainImage(size, noiseArray(VTK_UNSIGNED_CHAR, Voxels, 1, 8));
   stage::Pixels pictures[2];
@@ -444,7 +444,7 @@ void testMultiVolume(stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestOverrideProperties(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   testChanges(check);
   testInputs(check);
   testExceptions(check);

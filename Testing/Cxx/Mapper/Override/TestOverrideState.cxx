@@ -54,7 +54,7 @@ struct Scene : stage::Stage
   }
 };
 
-void testReuse(stage::Checks& check)
+void testReuse(reference::Checks& check)
 {
   const auto image = blobs();
   const auto mapper = projecting(image);
@@ -86,7 +86,7 @@ void testReuse(stage::Checks& check)
 }
 
 /// How the quality adapts to the time for a frame is tested with the splatting mapper itself.
-void testAutoAdjust(stage::Checks& check)
+void testAutoAdjust(reference::Checks& check)
 {
   const auto mapper = projecting(blobs());
   Scene scene(mapper);
@@ -100,7 +100,7 @@ void testAutoAdjust(stage::Checks& check)
 }
 
 /// Data do not outlive all mappers that show them.
-void testFinalInputs(stage::Checks& check)
+void testFinalInputs(reference::Checks& check)
 {
   for (int mode : { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::COMPOSITE_BLEND })
   {
@@ -117,7 +117,7 @@ void testFinalInputs(stage::Checks& check)
 }
 
 /// Old data are let go of with the first frame of others, splatted or not.
-void testInputs(stage::Checks& check)
+void testInputs(reference::Checks& check)
 {
   for (int mode : { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::COMPOSITE_BLEND })
   {
@@ -168,7 +168,7 @@ struct Events
   }
 };
 
-void testEvents(stage::Checks& check)
+void testEvents(reference::Checks& check)
 {
   const auto mapper = projecting(blobs());
   Scene scene(mapper);
@@ -189,7 +189,7 @@ void testEvents(stage::Checks& check)
   check(events.progress.empty() && events.starts == 2, "No progress where none is wanted.");
 }
 
-void testMessages(stage::Checks& check)
+void testMessages(reference::Checks& check)
 {
   const auto image = blobs();
   const auto mapper = projecting(image);
@@ -215,7 +215,7 @@ void testMessages(stage::Checks& check)
 }
 
 /// What the log says to those who ask for it.
-void testLog(stage::Checks& check)
+void testLog(reference::Checks& check)
 {
   std::ostringstream log;
   vtkLogger::AddCallback(
@@ -241,7 +241,7 @@ void testLog(stage::Checks& check)
 }
 
 /// Where the picture is transparent nothing is picked, elsewhere the volume.
-void testSelection(stage::Checks& check)
+void testSelection(reference::Checks& check)
 {
   const auto mapper = projecting(blobs());
   Scene scene(mapper);
@@ -271,7 +271,7 @@ void testSelection(stage::Checks& check)
 
 /// One mapper for two volumes, in two windows, with changes of the blend mode and a release of the
 /// resources in between.
-void testWindows(stage::Checks& check)
+void testWindows(reference::Checks& check)
 {
   const auto image = blobs();
   const auto draw = [](vtkVolumeMapper* mapper, stage::Pixels pictures[4])
@@ -311,7 +311,7 @@ void testWindows(stage::Checks& check)
   check(expected[0] != expected[1] && found[3] == found[1], "Windows: as it was.");
 }
 
-void testPrint(stage::Checks& check)
+void testPrint(reference::Checks& check)
 {
   const auto mapper = projecting(blobs());
   std::ostringstream text;
@@ -326,7 +326,7 @@ void testPrint(stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestOverrideState(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   testReuse(check);
   testAutoAdjust(check);
   testFinalInputs(check);

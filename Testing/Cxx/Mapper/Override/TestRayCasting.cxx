@@ -50,7 +50,7 @@ bool isBlack(const stage::Pixels& pixels)
 
 /// Renders more than once: the warning must come once.
 stage::Pixels renderWithOneWarning(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
-  const std::string& name, stage::Checks& check)
+  const std::string& name, reference::Checks& check)
 {
   stage::Messages warnings(mapper, vtkCommand::WarningEvent);
   stage.pixels();
@@ -66,7 +66,7 @@ stage::Pixels renderWithOneWarning(stage::Stage& stage, vtkSplattingMIPVolumeMap
 }
 
 /// The ray caster ignores direction matrices, so the mapper must not leave them to it.
-void testDirection(stage::Stage& stage, bool perspective, stage::Checks& check)
+void testDirection(stage::Stage& stage, bool perspective, reference::Checks& check)
 {
   const auto image = blobs();
   image->SetDirectionMatrix(0.0, -0.8, 0.6, 1.0, 0.0, 0.0, 0.0, 0.6, 0.8);
@@ -93,7 +93,7 @@ void testDirection(stage::Stage& stage, bool perspective, stage::Checks& check)
 }
 
 /// The volume may move between frames.
-void testMovedVolume(stage::Stage& stage, stage::Checks& check)
+void testMovedVolume(stage::Stage& stage, reference::Checks& check)
 {
   const auto mapper = stage::splatting(blobs());
   mapper->SetBlendModeToComposite();
@@ -111,7 +111,7 @@ void testMovedVolume(stage::Stage& stage, stage::Checks& check)
   stage.volume->SetPosition(0.0, 0.0, 0.0);
 }
 
-void testComposite(stage::Stage& stage, bool perspective, stage::Checks& check)
+void testComposite(stage::Stage& stage, bool perspective, reference::Checks& check)
 {
   const auto image = blobs();
   const auto mapper = stage::splatting(image);
@@ -133,7 +133,7 @@ void testComposite(stage::Stage& stage, bool perspective, stage::Checks& check)
 }
 
 /// What vtkFixedPointVolumeRayCastMapper would show as something else.
-void testBlendModesOfGpu(stage::Stage& stage, stage::Checks& check)
+void testBlendModesOfGpu(stage::Stage& stage, reference::Checks& check)
 {
   const auto image = blobs();
   vtkNew<vtkPlane> slice;
@@ -165,7 +165,7 @@ void testBlendModesOfGpu(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Colours that change, and properties that are exchanged for older ones.
-void testColors(stage::Stage& stage, stage::Checks& check)
+void testColors(stage::Stage& stage, reference::Checks& check)
 {
   const auto image = blobs();
   const auto mapper = stage::splatting(image);
@@ -194,7 +194,7 @@ void testColors(stage::Stage& stage, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestRayCasting(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(180, 170);
   for (bool perspective : { false, true })
   {

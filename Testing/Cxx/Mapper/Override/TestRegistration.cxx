@@ -87,24 +87,11 @@ struct Summary
   }
 };
 
-stage::Vector randomDirection(reference::Random& random)
-{
-  stage::Vector direction;
-  do
-  {
-    for (double& component : direction)
-    {
-      component = random.uniform(-1.0, 1.0);
-    }
-  } while (vtkMath::Norm(direction.data()) > 1.0 || vtkMath::Norm(direction.data()) < 0.1);
-  return direction;
-}
-
 /// Rotation, scales that differ and every other time a reflection.
 void turnPropAtRandom(vtkVolume* volume, reference::Random& random)
 {
-  const stage::Vector axis = randomDirection(random);
-  const double mirror = random.uniform(0, 1) ? 1.0 : -1.0;
+  const stage::Vector axis = stage::anyDirection(random);
+  const double mirror = random.sign();
   stage::Vector scale;
   for (double& factor : scale)
   {
@@ -121,7 +108,7 @@ void turnPropAtRandom(vtkVolume* volume, reference::Random& random)
 /// A rotation and, if wanted, a reflection of the image's first axis.
 vtkSmartPointer<vtkMatrix4x4> randomTurn(reference::Random& random, bool mirrored)
 {
-  const stage::Vector axis = randomDirection(random);
+  const stage::Vector axis = stage::anyDirection(random);
   vtkNew<vtkTransform> turn;
   turn->RotateWXYZ(random.uniform(0.0, 360.0), axis.data());
   turn->Scale(mirrored ? -1.0 : 1.0, 1.0, 1.0);
@@ -154,8 +141,8 @@ void turnProp(vtkVolume* volume, const double origin[3], vtkMatrix4x4* turn)
 
 void lookAtRandom(stage::Stage& stage, reference::Random& random)
 {
-  const stage::Vector direction = randomDirection(random);
-  const stage::Vector up = randomDirection(random);
+  const stage::Vector direction = stage::anyDirection(random);
+  const stage::Vector up = stage::anyDirection(random);
   // No pixel is wider than a voxel: pixels show points, not areas.
   vtkImageData* const image =
     vtkImageData::SafeDownCast(stage.volume->GetMapper()->GetDataSetInput());
@@ -293,7 +280,7 @@ public:
   explicit Comparison(const std::string& truth) : Truth(truth) {}
 
   /// Of a picture that shows its structures where they are, with some allowance.
-  void judge(stage::Checks& check, int mode, const reference::Image<double>& truth,
+  void judge(reference::Checks& check, int mode, const reference::Image<double>& truth,
     const reference::Image<double>& picture, double unit = 1.0, double allowance = 0.0)
   {
     const stage::Likeness likeness(truth, picture);
@@ -323,7 +310,7 @@ private:
 /// A parallel view's pixels by definition. `truth` says where there is something to see.
 void compareWithDefinition(stage::Stage& stage, vtkImageData* image, Mapper* mapper,
   stage::Definition& definition, const Pictures& pictures, const reference::Image<double>& truth,
-  reference::Random& random, stage::Checks& check)
+  reference::Random& random, reference::Checks& check)
 {
   for (int mode = 0; mode < 3; ++mode)
   {
@@ -349,14 +336,14 @@ void compareWithDefinition(stage::Stage& stage, vtkImageData* image, Mapper* map
 /// where things are (previews show each structure at the voxels that a ray crosses, up to half a
 /// voxel off), the definition of what they are.
 void testPropMatrices(
-  stage::Stage& stage, const Bytes& volume, vtkImageData* image, stage::Checks& check)
+  stage::Stage& stage, const Bytes& volume, vtkImageData* image, reference::Checks& check)
 {
   Comparison comparison("the fixed-point ray caster");
   stage::Definition definition(volume);
   reference::forScenes("prop matrices", Cameras,
     [&](int, reference::Random& random)
     {
-      stage::placeAtRandom(image, random);
+      coretesting::placeAtRandom(image, random, false);
       const auto mapper = stage::splatting(image);
       stage.show(mapper);
       turnPropAtRandom(stage.volume, random);
@@ -383,7 +370,7 @@ double pixelsPerVoxel(stage::Stage& stage, vtkImageData* image)
 /// Some pixels between what the voxels near their rays allow.
 void compareWithVoxels(stage::Stage& stage, vtkImageData* image,
   const std::array<stage::Envelope, 3>& envelopes, const Pictures& pictures,
-  const reference::Image<double>& truth, reference::Random& random, stage::Checks& check)
+  const reference::Image<double>& truth, reference::Random& random, reference::Checks& check)
 {
   const stage::ScreenRays rays(stage, image);
   for (int n = 0; n < ManyPixels; ++n)
@@ -424,7 +411,7 @@ reference::Image<double> exactPreview(
 /// with nearest interpolation: edges of voxels near the eye are not where interpolated ones are.
 /// vtkFixedPointVolumeRayCastMapper is off it by itself, and may be as much off what is splatted.
 void testPerspective(
-  stage::Stage& stage, const Bytes& volume, vtkImageData* image, stage::Checks& check)
+  stage::Stage& stage, const Bytes& volume, vtkImageData* image, reference::Checks& check)
 {
   Comparison fixedPoint("the fixed-point ray caster in perspective"),
     gpu("the GPU ray caster in perspective"), exact("an exact traversal in perspective");
@@ -435,7 +422,7 @@ void testPerspective(
   reference::forScenes("perspective", Cameras,
     [&](int camera, reference::Random& random)
     {
-      stage::placeAtRandom(image, random);
+      coretesting::placeAtRandom(image, random, false);
       const auto mapper = stage::splatting(image);
       stage.show(mapper);
       turnPropAtRandom(stage.volume, random);
@@ -473,14 +460,14 @@ void testPerspective(
 /// nothing where they mirror (VTK 9.1), so the truth of every other view has the matrix in the
 /// prop.
 void testDirectionMatrices(
-  stage::Stage& stage, const Bytes& volume, vtkImageData* image, stage::Checks& check)
+  stage::Stage& stage, const Bytes& volume, vtkImageData* image, reference::Checks& check)
 {
   Comparison comparison("the GPU ray caster, with direction matrices");
   stage::Definition definition(volume);
   reference::forScenes("direction matrices", TurnedCameras,
     [&](int camera, reference::Random& random)
     {
-      stage::placeAtRandom(image, random);
+      coretesting::placeAtRandom(image, random, false);
       vtkNew<vtkImageData> turned;
       turned->ShallowCopy(image);
       const bool mirrored = camera % 2 == 1;
@@ -513,7 +500,7 @@ void testDirectionMatrices(
 //------------------------------------------------------------------------------
 int TestRegistration(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   reference::Random random(3);
   const auto volume = stage::blobsAndTubes({ 72, 80, 88 }, 60, random);
   const auto image = stage::toImageData(volume);

@@ -19,7 +19,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 vtkSmartPointer<vtkPiecewiseFunction> anyFunction(reference::Random& random)
@@ -109,5 +109,5 @@ int TestVolumeStandIn(int, char*[])
   Checks check;
   reference::forScenes(
     "properties", 200, [&](int, reference::Random& random) { testScene(check, random); });
-  return check.result();
+  return check.exitCode();
 }

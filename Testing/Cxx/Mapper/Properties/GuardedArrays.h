@@ -80,8 +80,8 @@ inline void freeGuarded(void* memory)
 inline void giveBuffer(vtkDataArray* array, vtkIdType tuples, reference::Random& random)
 {
   const vtkIdType values = tuples * array->GetNumberOfComponents();
-  void* const memory = guardedMemory(
-    static_cast<std::size_t>(values) * array->GetDataTypeSize(), random.uniform(0, 1) == 0);
+  void* const memory =
+    guardedMemory(static_cast<std::size_t>(values) * array->GetDataTypeSize(), random.oneIn(2));
   array->SetVoidArray(memory, values, 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
   array->SetArrayFreeFunction(&freeGuarded);
 }
@@ -106,7 +106,7 @@ vtkSmartPointer<vtkDataArray> separateGuardedArray(
   for (int c = 0; c < components; ++c)
   {
     void* const memory =
-      guardedMemory(static_cast<std::size_t>(tuples) * sizeof(T), random.uniform(0, 1) == 0);
+      guardedMemory(static_cast<std::size_t>(tuples) * sizeof(T), random.oneIn(2));
     array->SetArray(c, static_cast<T*>(memory), tuples, c == components - 1, false,
       vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
     array->SetArrayFreeFunction(c, &freeGuarded);

@@ -73,7 +73,7 @@ bool isBlack(const stage::Pixels& pixels)
 }
 
 /// The shares that a frame tells, and from which thread.
-std::vector<double> progressOf(Scene& scene, stage::Checks& check)
+std::vector<double> progressOf(Scene& scene, reference::Checks& check)
 {
   std::vector<double> shares;
   const std::thread::id thread = std::this_thread::get_id();
@@ -87,7 +87,7 @@ std::vector<double> progressOf(Scene& scene, stage::Checks& check)
   return shares;
 }
 
-void testProgress(Scene& scene, const std::string& what, stage::Checks& check)
+void testProgress(Scene& scene, const std::string& what, reference::Checks& check)
 {
   int starts = 0, ends = 0;
   const Observer start(
@@ -102,7 +102,7 @@ void testProgress(Scene& scene, const std::string& what, stage::Checks& check)
 }
 
 /// Aborts at the n-th request for progress. Returns whether there were so many.
-bool abortAt(Scene& scene, int n, const std::string& what, stage::Checks& check)
+bool abortAt(Scene& scene, int n, const std::string& what, reference::Checks& check)
 {
   const vtkIdType projections = scene.mapper->GetNumberOfProjections();
   int told = 0;
@@ -131,7 +131,7 @@ bool abortAt(Scene& scene, int n, const std::string& what, stage::Checks& check)
 }
 
 /// The direction alternates, so that every frame has to project.
-void testAborts(Scene& scene, const std::string& what, stage::Checks& check)
+void testAborts(Scene& scene, const std::string& what, reference::Checks& check)
 {
   scene.stage.look(Directions[1], Up);
   scene.stage.pixels();
@@ -155,7 +155,7 @@ void testAborts(Scene& scene, const std::string& what, stage::Checks& check)
 }
 
 /// Chains are given up, too, and made again.
-void testChains(Scene& scene, stage::Checks& check)
+void testChains(Scene& scene, reference::Checks& check)
 {
   for (int acceleration : { Mapper::LINES, Mapper::SORTED_LINES, Mapper::SORTED_VOLUME })
   {
@@ -186,7 +186,7 @@ void testChains(Scene& scene, stage::Checks& check)
 }
 
 /// The window asks its observers five times a second at most.
-void testAbortCheckEvent(Scene& scene, stage::Checks& check)
+void testAbortCheckEvent(Scene& scene, reference::Checks& check)
 {
   scene.mapper->SetQualityModeToStandard();
   const stage::Pixels expected = scene.stage.pixels();
@@ -216,7 +216,7 @@ void testAbortCheckEvent(Scene& scene, stage::Checks& check)
 }
 
 /// Where pixels are wider than voxels, a frame that does not project can be aborted, too.
-void testOverview(Scene& scene, stage::Checks& check)
+void testOverview(Scene& scene, reference::Checks& check)
 {
   for (int mode :
     { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::AVERAGE_INTENSITY_BLEND })
@@ -243,7 +243,7 @@ void testOverview(Scene& scene, stage::Checks& check)
 }
 
 /// What was aborted has not been used.
-void testQualityModeUsed(Scene& scene, stage::Checks& check)
+void testQualityModeUsed(Scene& scene, reference::Checks& check)
 {
   scene.mapper->SetQualityModeToPreview();
   scene.stage.pixels();
@@ -256,7 +256,7 @@ void testQualityModeUsed(Scene& scene, stage::Checks& check)
 }
 
 /// When memory runs out, the next render is a new attempt.
-void testExceptions(Scene& scene, stage::Checks& check)
+void testExceptions(Scene& scene, reference::Checks& check)
 {
   const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
   const stage::Pixels expected = scene.stage.pixels();
@@ -280,7 +280,7 @@ void testExceptions(Scene& scene, stage::Checks& check)
 }
 
 /// Rendering from within is refused with a sentence.
-void testRendersWithin(Scene& scene, stage::Checks& check)
+void testRendersWithin(Scene& scene, reference::Checks& check)
 {
   scene.stage.look(Directions[2], Up);
   const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
@@ -309,7 +309,7 @@ void testRendersWithin(Scene& scene, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestAbort(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   Scene scene;
   for (double viewAngle : { 80.0, 0.0 })
   {

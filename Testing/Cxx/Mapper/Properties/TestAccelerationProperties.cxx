@@ -35,7 +35,7 @@ int largestDifference(const stage::Pixels& a, const stage::Pixels& b)
 
 /// Every acceleration shows the plain walk's picture along every axis, and is the one that was
 /// used.
-void testForced(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+void testForced(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
 {
   const auto mapper = stage::splatting(image);
   stage.show(mapper);
@@ -66,7 +66,7 @@ void testForced(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
 }
 
 /// What does not fit is not made, with one warning; more room brings it back.
-void testBudget(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+void testBudget(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
 {
   const auto mapper = stage::splatting(image);
   mapper->SetQualityModeToHigh(); // which has chains
@@ -92,7 +92,7 @@ void testBudget(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
 }
 
 /// The index belongs to the data, and is made anew with them only.
-void testRenewal(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+void testRenewal(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
 {
   const auto mapper = stage::splatting(image);
   stage.show(mapper);
@@ -124,7 +124,7 @@ void testRenewal(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
 }
 
 /// Delta encoding stays within its bound, and saves memory.
-void testTolerance(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+void testTolerance(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
 {
   const auto mapper = stage::splatting(image);
   stage.show(mapper);
@@ -140,7 +140,7 @@ void testTolerance(stage::Stage& stage, vtkImageData* image, stage::Checks& chec
 }
 
 /// Culling shows the same pixels above the window's lower end, and those below as dark as before.
-void testCulling(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
+void testCulling(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
 {
   const auto mapper = stage::splatting(image);
   stage.show(mapper);
@@ -173,7 +173,7 @@ void testCulling(stage::Stage& stage, vtkImageData* image, stage::Checks& check)
 
 int TestAccelerationProperties(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(160, 150);
   const auto image = stage::toImageData(stage::blobsAndTubes({ 60, 56, 52 }, 12));
   for (double viewAngle : { 50.0, 0.0 })

@@ -19,7 +19,7 @@ namespace
 {
 using Mapper = vtkSplattingMIPVolumeMapper;
 
-void testFactory(stage::Checks& check)
+void testFactory(reference::Checks& check)
 {
   const auto made = vtkSmartPointer<Mapper>::New();
   check(vtkOpenGLSplattingMIPVolumeMapper::SafeDownCast(made) != nullptr,
@@ -31,7 +31,7 @@ void testFactory(stage::Checks& check)
   check(made->IsA("vtkVolumeMapper") == 1, "It is a volume mapper.");
 }
 
-void testDefaults(Mapper* mapper, stage::Checks& check)
+void testDefaults(Mapper* mapper, reference::Checks& check)
 {
   check(mapper->GetQualityMode() == Mapper::EXACT, "Default mode is exact.");
   check(mapper->GetKernel() == Mapper::TRILINEAR, "Default kernel is trilinear.");
@@ -69,7 +69,7 @@ bool sets(Mapper* mapper, Set set, Get get, Value value, Value expected)
   return (mapper->*get)() == expected && mapper->GetMTime() == time;
 }
 
-void testClamping(Mapper* mapper, stage::Checks& check)
+void testClamping(Mapper* mapper, reference::Checks& check)
 {
   for (const auto& [value, expected] :
     { std::pair(0, 0), { 1, 1 }, { 2, 2 }, { 3, 3 }, { -3, 0 }, { 7, 3 } })
@@ -102,7 +102,7 @@ void testClamping(Mapper* mapper, stage::Checks& check)
   }
 }
 
-void testClampingOfAcceleration(Mapper* mapper, stage::Checks& check)
+void testClampingOfAcceleration(Mapper* mapper, reference::Checks& check)
 {
   for (const auto& [value, expected] : { std::pair(5, 5), { 2, 2 }, { -1, 0 }, { 6, 5 }, { 0, 0 } })
   {
@@ -119,7 +119,7 @@ void testClampingOfAcceleration(Mapper* mapper, stage::Checks& check)
     "SetIndexMemoryBudget below zero");
 }
 
-void testRanges(Mapper* mapper, stage::Checks& check)
+void testRanges(Mapper* mapper, reference::Checks& check)
 {
   check(mapper->GetQualityModeMinValue() == Mapper::PREVIEW &&
       mapper->GetQualityModeMaxValue() == Mapper::EXACT,
@@ -131,7 +131,7 @@ void testRanges(Mapper* mapper, stage::Checks& check)
 }
 
 /// Vectors have several methods, which are about the same numbers.
-void testVectors(Mapper* mapper, stage::Checks& check)
+void testVectors(Mapper* mapper, reference::Checks& check)
 {
   const double center[3] = { 1.0, -2.0, 3.0 };
   const vtkMTimeType before = mapper->GetMTime();
@@ -148,7 +148,7 @@ void testVectors(Mapper* mapper, stage::Checks& check)
 }
 
 /// The values are vtkSmartVolumeMapper's.
-void testVectorMode(Mapper* mapper, stage::Checks& check)
+void testVectorMode(Mapper* mapper, reference::Checks& check)
 {
   static_assert(int(Mapper::DISABLED) == int(vtkSmartVolumeMapper::DISABLED) &&
     int(Mapper::MAGNITUDE) == int(vtkSmartVolumeMapper::MAGNITUDE) &&
@@ -171,7 +171,7 @@ void testVectorMode(Mapper* mapper, stage::Checks& check)
   check(std::string("disabled") == mapper->GetVectorModeAsString(), "SetVectorModeToDisabled");
 }
 
-void testNames(Mapper* mapper, stage::Checks& check)
+void testNames(Mapper* mapper, reference::Checks& check)
 {
   const auto modeIs = [&](int value, const char* name)
   {
@@ -209,7 +209,7 @@ void testNames(Mapper* mapper, stage::Checks& check)
   check(std::string("over") == mapper->GetPictureBlendingAsString(), "SetPictureBlendingToOver");
 }
 
-void testPrinting(Mapper* mapper, stage::Checks& check)
+void testPrinting(Mapper* mapper, reference::Checks& check)
 {
   std::ostringstream stream;
   mapper->Print(stream);
@@ -228,7 +228,7 @@ void testPrinting(Mapper* mapper, stage::Checks& check)
 
 /// Ranks compare what PrintPictureSettings() prints. What else the class prints cannot change a
 /// picture or is compared by itself.
-void testPictureSettings(Mapper* mapper, stage::Checks& check)
+void testPictureSettings(Mapper* mapper, reference::Checks& check)
 {
   std::ostringstream all, some;
   mapper->vtkAbstractSplattingMIPVolumeMapper::PrintSelf(all, vtkIndent());
@@ -254,7 +254,7 @@ void testPictureSettings(Mapper* mapper, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestMapperContract(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   testFactory(check);
   const auto mapper = vtkSmartPointer<Mapper>::New();
   testDefaults(mapper, check);

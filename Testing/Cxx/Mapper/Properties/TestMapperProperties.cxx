@@ -16,7 +16,7 @@
 #include <cmath>
 #include <string>
 
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 namespace
@@ -93,5 +93,5 @@ int TestMapperProperties(int, char*[])
   vtkNew<Mapper> mapper;
   testRefusals(mapper, check);
   testSettings(mapper, check);
-  return check.result();
+  return check.exitCode();
 }

@@ -69,7 +69,7 @@ struct Scene
   }
 };
 
-void testStepsDown(Scene& scene, stage::Checks& check)
+void testStepsDown(Scene& scene, reference::Checks& check)
 {
   check(scene.turn(Hasty) == Mapper::EXACT, "The first frame is in the wanted mode.");
   check(scene.turn(Hasty) == Mapper::EXACT, "First frames do not count.");
@@ -88,7 +88,7 @@ void testStepsDown(Scene& scene, stage::Checks& check)
   check(scene.mapper->GetTimeToDraw() > 0.0, "The time to draw is known.");
 }
 
-void testComesBack(Scene& scene, stage::Checks& check)
+void testComesBack(Scene& scene, reference::Checks& check)
 {
   const vtkIdType before = scene.mapper->GetNumberOfProjections();
   scene.stage.window->SetDesiredUpdateRate(Patient);
@@ -106,7 +106,7 @@ void testComesBack(Scene& scene, stage::Checks& check)
   check(scene.turn(Hasty) == Mapper::PREVIEW, "Frames that re-use a projection are not measured.");
 }
 
-void testWishes(Scene& scene, stage::Checks& check)
+void testWishes(Scene& scene, reference::Checks& check)
 {
   scene.stage.window->SetDesiredUpdateRate(Patient);
   scene.stage.window->Render();
@@ -122,7 +122,7 @@ void testWishes(Scene& scene, stage::Checks& check)
   check(scene.turn(Hasty) == Mapper::PREVIEW, "On again.");
 }
 
-void testOthers(Scene& scene, stage::Checks& check)
+void testOthers(Scene& scene, reference::Checks& check)
 {
   stage::Stage other(Size, Size);
   other.show(scene.mapper);
@@ -142,7 +142,7 @@ void testOthers(Scene& scene, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestRenderTime(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   for (double viewAngle : { 0.0, 70.0 })
   {
     Scene scene(viewAngle);

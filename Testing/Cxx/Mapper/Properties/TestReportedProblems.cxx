@@ -18,7 +18,7 @@
 
 namespace
 {
-using coretesting::Checks;
+using reference::Checks;
 using namespace splatting;
 
 void testScene(Checks& check, reference::Random& random)
@@ -30,7 +30,7 @@ void testScene(Checks& check, reference::Random& random)
   for (int step = 0; step < 60; ++step)
   {
     const int r = random.uniform(0, 1), v = random.uniform(0, 2);
-    if (!volumes[v] || random.uniform(0, 9) == 0)
+    if (!volumes[v] || random.oneIn(10))
     {
       volumes[v] = vtkSmartPointer<vtkVolume>::New(); // the old one is gone, with what it lacked
       lacks.erase({ 0, v });
@@ -55,5 +55,5 @@ int TestReportedProblems(int, char*[])
   Checks check;
   reference::forScenes(
     "problems", 200, [&](int, reference::Random& random) { testScene(check, random); });
-  return check.result();
+  return check.exitCode();
 }

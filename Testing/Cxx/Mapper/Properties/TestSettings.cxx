@@ -36,7 +36,7 @@ vtkSmartPointer<Mapper> noiseMapper(stage::Stage& stage)
 
 /// What has no meaning is told once in three frames that show nothing, and is forgotten once it is
 /// mended.
-void testMistake(stage::Stage& stage, const Change& change, stage::Checks& check)
+void testMistake(stage::Stage& stage, const Change& change, reference::Checks& check)
 {
   const auto mapper = noiseMapper(stage);
   stage::Messages errors(mapper, vtkCommand::ErrorEvent);
@@ -59,7 +59,7 @@ void testMistake(stage::Stage& stage, const Change& change, stage::Checks& check
     change.name + ": mended, the volume is shown.");
 }
 
-void testWithoutMeaning(stage::Stage& stage, stage::Checks& check)
+void testWithoutMeaning(stage::Stage& stage, reference::Checks& check)
 {
   const double planes[6] = { 1.0, NaN, 1.0, 2.0, 1.0, 2.0 };
   vtkNew<vtkPlane> flat, lost;
@@ -114,7 +114,7 @@ void testWithoutMeaning(stage::Stage& stage, stage::Checks& check)
   }
 }
 
-void testWithoutEffect(stage::Stage& stage, stage::Checks& check)
+void testWithoutEffect(stage::Stage& stage, reference::Checks& check)
 {
   const Change changes[] = {
     { "DepthShadingAmbient", [](Mapper* m) { m->SetDepthShadingAmbient(NaN); } },
@@ -136,7 +136,7 @@ void testWithoutEffect(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Shading that lifts samples above the data, or turns them round, shows in the colours.
-void testShading(stage::Stage& stage, stage::Checks& check)
+void testShading(stage::Stage& stage, reference::Checks& check)
 {
   const Size size{ 12, 11, 10 };
   const auto scalars = noiseArray(VTK_UNSIGNED_CHAR, size[0] * size[1] * size[2], 1, 9);
@@ -164,7 +164,7 @@ void testShading(stage::Stage& stage, stage::Checks& check)
 
 int TestSettings(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(120, 110);
   testWithoutMeaning(stage, check);
   testWithoutEffect(stage, check);

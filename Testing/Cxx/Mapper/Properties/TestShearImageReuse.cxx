@@ -52,7 +52,7 @@ int floatTypeFor(int type)
   return isSmall ? VTK_FLOAT : VTK_DOUBLE;
 }
 
-void testTypes(stage::Stage& stage, stage::Checks& check)
+void testTypes(stage::Stage& stage, reference::Checks& check)
 {
   for (int type : { VTK_CHAR, VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_UNSIGNED_SHORT,
          VTK_INT, VTK_UNSIGNED_INT, VTK_LONG, VTK_UNSIGNED_LONG, VTK_LONG_LONG,
@@ -102,7 +102,7 @@ double difference(vtkImageData* shear, const reference::Image<T>& oracle)
 }
 
 /// One view along each principal axis against the slow projections.
-void testValues(stage::Stage& stage, stage::Checks& check)
+void testValues(stage::Stage& stage, reference::Checks& check)
 {
   const Bytes volume = smallNoise();
   const auto image = stage::toImageData(volume);
@@ -151,7 +151,7 @@ bool projects(stage::Stage& stage, Mapper* mapper, int times, Step step)
   return mapper->GetNumberOfProjections() - before == times;
 }
 
-void testReuse(stage::Stage& stage, Mapper* mapper, stage::Checks& check)
+void testReuse(stage::Stage& stage, Mapper* mapper, reference::Checks& check)
 {
   vtkCamera* const camera = stage.renderer->GetActiveCamera();
   const auto keeps = [&](const char* what, auto step)
@@ -180,7 +180,7 @@ void testReuse(stage::Stage& stage, Mapper* mapper, stage::Checks& check)
   keeps("the window changes its size.", [&] { stage.window->SetSize(120, 150); });
 }
 
-void testModes(stage::Stage& stage, Mapper* mapper, stage::Checks& check)
+void testModes(stage::Stage& stage, Mapper* mapper, reference::Checks& check)
 {
   const auto again = [&](const char* what, auto step)
   { check(projects(stage, mapper, 1, step), std::string("One projection when ") + what); };
@@ -191,7 +191,8 @@ void testModes(stage::Stage& stage, Mapper* mapper, stage::Checks& check)
   again("the weights change.", [&] { mapper->SetFootprintSampling(8); });
 }
 
-void testProjection(stage::Stage& stage, Mapper* mapper, vtkImageData* image, stage::Checks& check)
+void testProjection(
+  stage::Stage& stage, Mapper* mapper, vtkImageData* image, reference::Checks& check)
 {
   vtkCamera* const camera = stage.renderer->GetActiveCamera();
   const std::string mode = mapper->GetQualityModeAsString();
@@ -235,7 +236,7 @@ void testProjection(stage::Stage& stage, Mapper* mapper, vtkImageData* image, st
 }
 
 /// What makes no difference to the scalars that are projected.
-void testIdleChoices(stage::Stage& stage, stage::Checks& check)
+void testIdleChoices(stage::Stage& stage, reference::Checks& check)
 {
   for (int components : { 1, 3 })
   {
@@ -280,7 +281,7 @@ void testIdleChoices(stage::Stage& stage, stage::Checks& check)
   }
 }
 
-void testNumberOfProjections(stage::Stage& stage, stage::Checks& check)
+void testNumberOfProjections(stage::Stage& stage, reference::Checks& check)
 {
   const auto image = stage::toImageData(smallNoise());
   const auto mapper = stage::splatting(image);
@@ -302,7 +303,7 @@ void testNumberOfProjections(stage::Stage& stage, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestShearImageReuse(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(150, 120);
   testTypes(stage, check);
   testValues(stage, check);

@@ -243,7 +243,7 @@ public:
   void begin(reference::Random& random) { this->Walk.begin(this->Live, this->Scene, random); }
 
   /// A setting or something in the scene is changed, then frames are compared.
-  void step(stage::Checks& check, const std::string& name, reference::Random& random)
+  void step(reference::Checks& check, const std::string& name, reference::Random& random)
   {
     if (once(12, random))
     {
@@ -317,7 +317,7 @@ private:
     this->Live.volume->SetVisibility(false);
   }
 
-  void compare(stage::Checks& check, const std::string& name)
+  void compare(reference::Checks& check, const std::string& name)
   {
     const Frame frame = frameOf(this->Scene, this->Live);
     Shown fresh(this->StandsIn);
@@ -386,7 +386,7 @@ void rememberScene() {}
 #endif
 
 void testMappers(
-  std::array<stage::Stage, 2>& stages, bool standsIn, int scenes, stage::Checks& check)
+  std::array<stage::Stage, 2>& stages, bool standsIn, int scenes, reference::Checks& check)
 {
   const std::string name = standsIn ? "stand-in" : "mapper";
   const Settings<Shown> settings = settingsOfMapper(standsIn);
@@ -408,7 +408,7 @@ void testMappers(
 }
 
 void compare(vtkSplattingMIPProjection* live, vtkSplattingMIPProjection* fresh,
-  stage::Checks& check, const std::string& name)
+  reference::Checks& check, const std::string& name)
 {
   live->Update();
   fresh->Update();
@@ -419,7 +419,7 @@ void compare(vtkSplattingMIPProjection* live, vtkSplattingMIPProjection* fresh,
 
 /// A filter that goes through a walk.
 void walkFilter(World& world, const Settings<vtkSplattingMIPProjection>& settings, Counts& counts,
-  stage::Checks& check, reference::Random& random)
+  reference::Checks& check, reference::Random& random)
 {
   Walker<vtkSplattingMIPProjection> walker(settings);
   vtkNew<vtkSplattingMIPProjection> live;
@@ -452,7 +452,7 @@ void walkFilter(World& world, const Settings<vtkSplattingMIPProjection>& setting
   }
 }
 
-void testFilters(std::array<stage::Stage, 2>& stages, int scenes, stage::Checks& check)
+void testFilters(std::array<stage::Stage, 2>& stages, int scenes, reference::Checks& check)
 {
   const Settings<vtkSplattingMIPProjection> settings = settingsOfFilter();
   Counts counts;
@@ -468,7 +468,7 @@ void testFilters(std::array<stage::Stage, 2>& stages, int scenes, stage::Checks&
 }
 
 /// No setting is left out.
-void testSettings(stage::Checks& check)
+void testSettings(reference::Checks& check)
 {
   vtkNew<vtkSplattingMIPVolumeMapper> mapper;
   vtkNew<vtkFixedPointVolumeRayCastMapper> other;
@@ -488,7 +488,7 @@ void testSettings(stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestWalk(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   testSettings(check);
   watchCrashes();
   std::array<stage::Stage, 2> stages{ { { 40, 30 }, { 40, 30 } } };

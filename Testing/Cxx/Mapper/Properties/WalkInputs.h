@@ -37,7 +37,7 @@ struct Input
 /// Whether something happens that does once in so many times.
 inline bool once(int times, reference::Random& random)
 {
-  return random.uniform(1, times) == 1;
+  return random.oneIn(times);
 }
 
 inline std::array<double, 3> anyPoint(reference::Random& random, double low, double high)
@@ -78,7 +78,7 @@ inline Distribution anyDistribution(int type, reference::Random& random)
   }
   if ((type == VTK_FLOAT || type == VTK_DOUBLE) && once(3, random))
   {
-    d.withoutOne = random.uniform(0, 1) ? 0.002 : 0.2;
+    d.withoutOne = random.oneIn(2) ? 0.002 : 0.2;
   }
   return d;
 }
@@ -87,19 +87,20 @@ inline Distribution anyDistribution(int type, reference::Random& random)
 inline void fill(vtkDataArray* array, const Distribution& d, vtkIdType first, vtkIdType last,
   reference::Random& random)
 {
+  reference::Random many = random.fork();
   for (int c = 0; c < array->GetNumberOfComponents(); ++c)
   {
     double value = d.low;
     for (vtkIdType n = first; n < last; ++n)
     {
-      if (random.uniform(0.0, 1.0) >= d.keeps)
+      if (many.chance(1.0 - d.keeps))
       {
-        value = d.low + (d.high - d.low) * std::pow(random.uniform(0.0, 1.0), d.exponent);
+        value = d.low + (d.high - d.low) * std::pow(many.uniform(0.0, 1.0), d.exponent);
       }
       double given = value;
-      if (d.withoutOne > 0.0 && random.uniform(0.0, 1.0) < d.withoutOne)
+      if (d.withoutOne > 0.0 && many.chance(d.withoutOne))
       {
-        given = once(4, random) ? std::numeric_limits<double>::infinity() : vtkMath::Nan();
+        given = once(4, many) ? std::numeric_limits<double>::infinity() : vtkMath::Nan();
       }
       array->SetComponent(n, c, given);
     }
@@ -136,9 +137,10 @@ inline vtkSmartPointer<vtkDataArray> anyArray(
 /// Flags one in so many points or cells.
 inline void flagSome(vtkDataArray* flags, int value, int times, reference::Random& random)
 {
+  reference::Random many = random.fork();
   for (vtkIdType n = 0; n < flags->GetNumberOfTuples(); ++n)
   {
-    flags->SetComponent(n, 0, once(times, random) ? value : 0);
+    flags->SetComponent(n, 0, once(times, many) ? value : 0);
   }
 }
 

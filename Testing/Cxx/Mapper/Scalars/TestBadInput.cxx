@@ -337,7 +337,7 @@ bool isSentence(std::string text)
 
 /// What the mapper has to say when it is asked more than once.
 std::vector<std::string> errorsOfRendering(
-  Scene& scene, const std::string& name, stage::Checks& check)
+  Scene& scene, const std::string& name, reference::Checks& check)
 {
   const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
   // VTK's pipeline has an opinion of its own about mappers without input.
@@ -349,7 +349,7 @@ std::vector<std::string> errorsOfRendering(
   return errors.texts;
 }
 
-void test(Scene& scene, const Fault& fault, stage::Checks& check)
+void test(Scene& scene, const Fault& fault, reference::Checks& check)
 {
   const std::string name = fault.name;
   const stage::Pixels before = scene.stage.pixels();
@@ -396,7 +396,7 @@ std::vector<Fault> settingFaults()
 }
 
 /// Such cameras hide the whole scene, so other props cannot tell.
-void testCameras(Scene& scene, stage::Checks& check)
+void testCameras(Scene& scene, reference::Checks& check)
 {
   const std::pair<const char*, std::function<void(vtkCamera*)>> faults[] = {
     { "without extent", [](vtkCamera* camera) { camera->SetParallelScale(0.0); } },
@@ -452,7 +452,7 @@ void testCameras(Scene& scene, stage::Checks& check)
 }
 
 /// A view that cannot be rendered beside one that can: told once, and again once mended in between.
-void testOneBadView(Scene& scene, stage::Checks& check)
+void testOneBadView(Scene& scene, reference::Checks& check)
 {
   scene.stage.renderer->SetViewport(0.0, 0.0, 0.5, 1.0);
   vtkNew<vtkRenderer> other;
@@ -501,7 +501,7 @@ double meanRed(const stage::Pixels& pixels)
 }
 
 /// What has no colours is not seen, as with VTK's ray casters; what has no property has VTK's.
-void testProperties(Scene& scene, stage::Checks& check)
+void testProperties(Scene& scene, reference::Checks& check)
 {
   const stage::Pixels before = scene.stage.pixels();
   const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
@@ -536,7 +536,7 @@ void testProperties(Scene& scene, stage::Checks& check)
 }
 
 /// VTK's class for several volumes in one mapper, which only the GPU ray caster knows.
-void testMultiVolume(Scene& scene, stage::Checks& check)
+void testMultiVolume(Scene& scene, reference::Checks& check)
 {
   const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
   vtkNew<vtkMultiVolume> several;
@@ -552,7 +552,7 @@ void testMultiVolume(Scene& scene, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestBadInput(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   Scene scene;
   check(showsSphere(scene.stage.pixels()), "The sphere is seen to begin with.");
   for (const auto& faults :

@@ -20,7 +20,7 @@ constexpr vtkIdType Voxels = 11 * 9 * 14;
 
 //------------------------------------------------------------------------------
 /// Cells are points half a voxel further on.
-void testCellsAsPoints(stage::Stage& stage, stage::Checks& check)
+void testCellsAsPoints(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
   const auto cells = cellImage(size, scalars);
@@ -47,7 +47,7 @@ void testCellsAsPoints(stage::Stage& stage, stage::Checks& check)
 
 /// Where both show something it is the same, and that is where points end: their outermost centres
 /// are half a voxel within.
-void testPictureOfCells(const Size& cells, stage::Stage& stage, stage::Checks& check)
+void testPictureOfCells(const Size& cells, stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_SHORT, vtkIdType(cells[0]) * cells[1] * cells[2], 1, 4);
   for (vtkIdType n = 0; n < scalars->GetNumberOfTuples(); ++n)
@@ -89,7 +89,7 @@ void testPictureOfCells(const Size& cells, stage::Stage& stage, stage::Checks& c
 
 /// Seen along an axis, the picture of cells fills the projection of the bounds: pixel centres
 /// within them and no others.
-void testBoundsOfCells(stage::Checks& check)
+void testBoundsOfCells(reference::Checks& check)
 {
   stage::Stage stage(120, 110);
   const auto scalars = noiseArray(VTK_UNSIGNED_CHAR, 5 * 4 * 3, 1, 4);
@@ -115,7 +115,7 @@ void testBoundsOfCells(stage::Checks& check)
 }
 
 /// Smooth contents against VTK's GPU ray caster.
-void testCellsAgainstGPU(stage::Checks& check)
+void testCellsAgainstGPU(reference::Checks& check)
 {
   stage::Stage stage(200, 190);
   const Size large = { 48, 40, 44 };
@@ -138,7 +138,7 @@ void testCellsAgainstGPU(stage::Checks& check)
 }
 
 /// One point along an axis is one layer of cells about it, as for points.
-void testFlatCells(stage::Stage& stage, stage::Checks& check)
+void testFlatCells(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_FLOAT, 12 * 10, 1, 4);
   const auto cells = bareImage({ 13, 11, 1 });
@@ -154,7 +154,7 @@ void testFlatCells(stage::Stage& stage, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestCellScalars(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   {
     stage::Stage stage(120, 110);
     stage.setGrayRamp(0.0, 110.0);

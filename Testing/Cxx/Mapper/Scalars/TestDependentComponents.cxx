@@ -82,16 +82,6 @@ bool carriesTuples(stage::Stage& stage, Mapper* mapper, vtkImageData* image)
   return same;
 }
 
-Size anySize(reference::Random& random)
-{
-  Size size;
-  for (int& voxels : size)
-  {
-    voxels = random.uniform(6, 24);
-  }
-  return size;
-}
-
 /// From anywhere.
 void lookAtRandom(stage::Stage& stage, double scale, reference::Random& random)
 {
@@ -100,19 +90,19 @@ void lookAtRandom(stage::Stage& stage, double scale, reference::Random& random)
   stage.look(direction, up, scale);
 }
 
-void testTuples(stage::Stage& stage, stage::Checks& check)
+void testTuples(stage::Stage& stage, reference::Checks& check)
 {
   stage.property->IndependentComponentsOff();
   reference::forScenes("tuples", 80,
     [&](int n, reference::Random& random)
     {
       const int components = n % 2 ? 4 : 2;
-      const Size size = anySize(random);
+      const Size size = coretesting::anySize(random, 6, 24);
       const auto image = noise(size, components, random.bits());
       const auto mapper = stage::splatting(image);
       mapper->SetQualityModeToPreview();
-      mapper->SetBlendMode(random.uniform(0, 1) ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
-                                                : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
+      mapper->SetBlendMode(random.oneIn(2) ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
+                                           : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
       stage.show(mapper);
       const stage::Vector direction = stage::anyDirection(random), up = stage::anyDirection(random);
       // From the opposite side other voxels of equal opacity win.
@@ -127,18 +117,18 @@ void testTuples(stage::Stage& stage, stage::Checks& check)
 }
 
 /// The mean of each component by itself, as if it were alone.
-void testMeans(stage::Stage& stage, stage::Checks& check)
+void testMeans(stage::Stage& stage, reference::Checks& check)
 {
   stage.property->IndependentComponentsOff();
   reference::forScenes("means", 24,
     [&](int n, reference::Random& random)
     {
-      const Size size = anySize(random);
+      const Size size = coretesting::anySize(random, 6, 24);
       const auto image = noise(size, n % 2 ? 4 : 2, random.bits());
       const auto mapper = stage::splatting(image);
       mapper->SetQualityMode(random.uniform(0, 3));
       mapper->SetBlendModeToAverageIntensity();
-      stage.viewAngle = random.uniform(0, 1) ? random.uniform(5.0, 90.0) : 0.0;
+      stage.viewAngle = random.oneIn(2) ? random.uniform(5.0, 90.0) : 0.0;
       stage.show(mapper);
       lookAtRandom(stage, 1.0, random);
       stage.window->Render();
@@ -253,7 +243,7 @@ struct Overview
 };
 
 /// Returns whether a pixel shows a voxel.
-bool testPixels(const Overview& overview, stage::Checks& check)
+bool testPixels(const Overview& overview, reference::Checks& check)
 {
   bool isShown = false;
   for (int y = 0; y < Overview::Height; ++y)
@@ -277,7 +267,7 @@ bool testPixels(const Overview& overview, stage::Checks& check)
 }
 
 /// Returns whether a voxel is wholly in a pixel.
-bool testVoxels(const Overview& overview, bool isMinimum, stage::Checks& check)
+bool testVoxels(const Overview& overview, bool isMinimum, reference::Checks& check)
 {
   bool isChosen = false;
   for (vtkIdType voxel = 0; voxel < overview.scalars->GetNumberOfTuples(); ++voxel)
@@ -308,7 +298,7 @@ bool testVoxels(const Overview& overview, bool isMinimum, stage::Checks& check)
 /// A sample is a voxel wide at most, and may be half of that beside the area (see PixelArea.h). Its
 /// ray crosses voxels whose middle is no more than one beside it. Conversely, the ray that passes
 /// nearest to a voxel's middle is no more than half a voxel beside it.
-void testOverviews(stage::Checks& check)
+void testOverviews(reference::Checks& check)
 {
   stage::Stage stage(Overview::Width, Overview::Height);
   stage.property->IndependentComponentsOff();
@@ -316,11 +306,11 @@ void testOverviews(stage::Checks& check)
   reference::forScenes("overviews", 120,
     [&](int n, reference::Random& random)
     {
-      const Size size = anySize(random);
+      const Size size = coretesting::anySize(random, 6, 24);
       const auto image = numberedVoxels(size, random);
       const auto mapper = stage::splatting(image);
       mapper->SetQualityModeToPreview();
-      const bool isMinimum = random.uniform(0, 2) == 0;
+      const bool isMinimum = random.oneIn(3);
       mapper->SetBlendMode(isMinimum ? vtkVolumeMapper::MINIMUM_INTENSITY_BLEND
                                      : vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND);
       stage.viewAngle = n % 2 ? random.uniform(5.0, 40.0) : 0.0;
@@ -380,7 +370,7 @@ std::array<reference::Image<double>, 3> channels(const stage::Pixels& pixels, in
 
 /// The ray casters differ much from each other (with two components, the GPU's colours lie
 /// elsewhere): ours must be nearer to one of them than they are.
-void testRayCasters(stage::Stage& stage, stage::Checks& check)
+void testRayCasters(stage::Stage& stage, reference::Checks& check)
 {
   constexpr int width = 180, height = 170;
   stage.property->IndependentComponentsOff();
@@ -423,16 +413,16 @@ void testRayCasters(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Other colours need no projection, other kinds of components do.
-void testChanges(stage::Stage& stage, stage::Checks& check)
+void testChanges(stage::Stage& stage, reference::Checks& check)
 {
   reference::forScenes("changes", 12,
     [&](int, reference::Random& random)
     {
-      const Size size = anySize(random);
+      const Size size = coretesting::anySize(random, 6, 24);
       const auto image = noise(size, 2, random.bits());
       const auto mapper = stage::splatting(image);
       stage.property->IndependentComponentsOff();
-      stage.viewAngle = random.uniform(0, 1) ? random.uniform(5.0, 90.0) : 0.0;
+      stage.viewAngle = random.oneIn(2) ? random.uniform(5.0, 90.0) : 0.0;
       stage.show(mapper);
       lookAtRandom(stage, 1.0, random);
       const stage::Pixels dependent = stage.pixels();
@@ -450,7 +440,7 @@ void testChanges(stage::Stage& stage, stage::Checks& check)
   stage.viewAngle = 0.0;
 }
 
-void testBadInput(stage::Stage& stage, stage::Checks& check)
+void testBadInput(stage::Stage& stage, reference::Checks& check)
 {
   stage.property->IndependentComponentsOff();
   const Size size{ 8, 7, 6 };
@@ -479,7 +469,7 @@ void testBadInput(stage::Stage& stage, stage::Checks& check)
 
 int TestDependentComponents(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(180, 170);
   testTuples(stage, check);
   testMeans(stage, check);

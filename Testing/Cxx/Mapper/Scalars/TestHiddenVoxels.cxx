@@ -21,7 +21,7 @@ constexpr unsigned char HiddenPoint = vtkDataSetAttributes::HIDDENPOINT;
 constexpr unsigned char HiddenCell = vtkDataSetAttributes::HIDDENCELL;
 
 //------------------------------------------------------------------------------
-void testHiddenPoints(stage::Stage& stage, stage::Checks& check)
+void testHiddenPoints(stage::Stage& stage, reference::Checks& check)
 {
   const auto ghosts = flags(Voxels, HiddenPoint, 0.4, 5);
   for (const auto& [type, copied] : { std::pair(VTK_UNSIGNED_CHAR, VTK_FLOAT),
@@ -42,7 +42,7 @@ void testHiddenPoints(stage::Stage& stage, stage::Checks& check)
 }
 
 /// A point goes with the last of its cells.
-void testCellsThatHidePoints(stage::Stage& stage, stage::Checks& check)
+void testCellsThatHidePoints(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
   const auto image = plainImage(size, scalars);
@@ -68,7 +68,7 @@ void testCellsThatHidePoints(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Cells are hidden as vtkImageData::IsCellVisible() tells: by themselves and by their points.
-void testHiddenCells(stage::Stage& stage, stage::Checks& check)
+void testHiddenCells(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
   const auto image = cellImage(size, scalars);
@@ -80,7 +80,7 @@ void testHiddenCells(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Duplicates belong to another process, too, but they are there.
-void testDuplicates(stage::Stage& stage, stage::Checks& check)
+void testDuplicates(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
   const auto image = plainImage(size, scalars);
@@ -92,7 +92,7 @@ void testDuplicates(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Blanked one after the other, and all at once; nothing is left then.
-void testBlankPoint(stage::Stage& stage, stage::Checks& check)
+void testBlankPoint(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
   vtkNew<vtkUniformGrid> image;
@@ -124,7 +124,7 @@ void testBlankPoint(stage::Stage& stage, stage::Checks& check)
 
 //------------------------------------------------------------------------------
 /// Holes of a resampled grid are as near to its hidden points as its points let it.
-void testHolesOfGrids(stage::Stage& stage, stage::Checks& check)
+void testHolesOfGrids(stage::Stage& stage, reference::Checks& check)
 {
   vtkNew<vtkRectilinearGrid> grid;
   grid->SetDimensions(5, 3, 2);
@@ -174,7 +174,7 @@ void testHolesOfGrids(stage::Stage& stage, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestHiddenVoxels(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(120, 110);
   stage.setGrayRamp(0.0, 110.0);
   for (double viewAngle : { 0.0, 50.0 })

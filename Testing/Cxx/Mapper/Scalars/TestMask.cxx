@@ -30,7 +30,7 @@ constexpr unsigned char HiddenPoint = vtkDataSetAttributes::HIDDENPOINT;
 
 //------------------------------------------------------------------------------
 /// Not 0 shows, as in the GPU ray caster's shader; the mask adds to what is hidden otherwise.
-void testMask(stage::Stage& stage, stage::Checks& check)
+void testMask(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_UNSIGNED_SHORT, Voxels, 1, 4);
   const auto inside = flags(Voxels, 1, 0.6, 10);
@@ -65,7 +65,7 @@ void testMask(stage::Stage& stage, stage::Checks& check)
 }
 
 /// The mask of cells has their number of points, or of cells.
-void testMaskOfCells(stage::Stage& stage, stage::Checks& check)
+void testMaskOfCells(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
   const auto inside = flags(Voxels, 255, 0.6, 12);
@@ -81,7 +81,7 @@ void testMaskOfCells(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Every component has the same holes.
-void testMaskOfComponents(stage::Stage& stage, stage::Checks& check)
+void testMaskOfComponents(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_SHORT, Voxels, 2, 4);
   const auto inside = flags(Voxels, 255, 0.6, 12);
@@ -99,7 +99,7 @@ void testMaskOfComponents(stage::Stage& stage, stage::Checks& check)
 }
 
 /// A mask that hides nothing costs nothing.
-void testMaskOfNothing(stage::Stage& stage, stage::Checks& check)
+void testMaskOfNothing(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_SHORT, Voxels, 1, 4);
   vtkNew<vtkUnsignedCharArray> inside;
@@ -117,7 +117,7 @@ void testMaskOfNothing(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Voxels of one slice have nothing to be interpolated with, and are shown all the same.
-void testThinMask(stage::Stage& stage, stage::Checks& check)
+void testThinMask(stage::Stage& stage, reference::Checks& check)
 {
   const auto inside = flags(Voxels, 0, 0.0, 1);
   const auto mapper =
@@ -180,7 +180,7 @@ vtkSmartPointer<vtkImageData> maskOfTwins()
 
 /// What is not splatted gets the same voxels: here a blend mode for
 /// vtkFixedPointVolumeRayCastMapper, which knows neither cells nor masks nor vectors.
-void testRayCasting(stage::Checks& check)
+void testRayCasting(reference::Checks& check)
 {
   stage::Stage stage(200, 190);
   vtkNew<vtkPiecewiseFunction> opacity;
@@ -225,7 +225,7 @@ void testRayCasting(stage::Checks& check)
 }
 
 /// Hidden voxels have the lowest value in what is ray cast, and so have those without a number.
-void testRayCastHoles(bool byMask, stage::Checks& check)
+void testRayCastHoles(bool byMask, reference::Checks& check)
 {
   stage::Stage stage(200, 190);
   vtkNew<vtkPiecewiseFunction> opacity;
@@ -262,7 +262,7 @@ void testRayCastHoles(bool byMask, stage::Checks& check)
 }
 
 /// A mask and blanked points against VTK's GPU ray caster.
-void testAgainstGPU(bool byMask, double viewAngle, stage::Checks& check)
+void testAgainstGPU(bool byMask, double viewAngle, reference::Checks& check)
 {
   stage::Stage stage(200, 190);
   stage.viewAngle = viewAngle;
@@ -296,7 +296,7 @@ void testAgainstGPU(bool byMask, double viewAngle, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestMask(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   {
     stage::Stage stage(120, 110);
     stage.setGrayRamp(0.0, 110.0);

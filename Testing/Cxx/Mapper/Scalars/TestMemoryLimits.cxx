@@ -77,7 +77,7 @@ bool isBlack(const stage::Pixels& pixels)
 }
 
 /// In views along the slowest and the fastest axis, the second of which need another copy.
-void testMapper(stage::Checks& check, stage::Stage& stage, const stage::Vector& direction)
+void testMapper(reference::Checks& check, stage::Stage& stage, const stage::Vector& direction)
 {
   const auto volume = image();
   const stage::Vector up = { 0.0, 1.0, 0.1 };
@@ -109,7 +109,7 @@ void testMapper(stage::Checks& check, stage::Stage& stage, const stage::Vector& 
   }
 }
 
-void testFilter(stage::Checks& check, const stage::Vector& direction, int mode)
+void testFilter(reference::Checks& check, const stage::Vector& direction, int mode)
 {
   const auto volume = image();
   int failed = 0;
@@ -162,7 +162,7 @@ void testFilter(stage::Checks& check, const stage::Vector& direction, int mode)
 //------------------------------------------------------------------------------
 int TestMemoryLimits(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
 #ifdef M_MMAP_THRESHOLD
   mallopt(M_MMAP_THRESHOLD, 1 << 20); // what is given back is the system's, then
 #endif

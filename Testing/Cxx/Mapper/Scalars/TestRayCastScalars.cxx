@@ -30,7 +30,7 @@ stage::Pixels seen(
 }
 
 /// Large enough for the ray caster to prepare it by several threads.
-void testSeparateComponents(stage::Stage& stage, int components, stage::Checks& check)
+void testSeparateComponents(stage::Stage& stage, int components, reference::Checks& check)
 {
   const Size size = { 128, 128, 128 };
   const vtkIdType voxels = voxelsOf(size);
@@ -46,7 +46,7 @@ void testSeparateComponents(stage::Stage& stage, int components, stage::Checks& 
 }
 
 /// Nothing is seen where all is hidden; after that the volume is there again.
-void testNothingShown(stage::Stage& stage, stage::Checks& check)
+void testNothingShown(stage::Stage& stage, reference::Checks& check)
 {
   const Size size = { 20, 16, 24 };
   const vtkIdType voxels = voxelsOf(size);
@@ -75,7 +75,7 @@ void testNothingShown(stage::Stage& stage, stage::Checks& check)
 }
 
 /// More components than in the frame before, though the property stays as it is.
-void testMoreComponents(stage::Stage& stage, stage::Checks& check)
+void testMoreComponents(stage::Stage& stage, reference::Checks& check)
 {
   const Size size = { 20, 16, 24 };
   for (int c = 1; c < 4; ++c)
@@ -99,7 +99,7 @@ void testMoreComponents(stage::Stage& stage, stage::Checks& check)
 }
 
 /// A volume that was ray cast does not stay in memory when there is another one, or none.
-void testRelease(stage::Stage& stage, stage::Checks& check)
+void testRelease(stage::Stage& stage, reference::Checks& check)
 {
   const Size size = { 20, 16, 24 };
   const vtkIdType voxels = voxelsOf(size);
@@ -150,7 +150,7 @@ void testRelease(stage::Stage& stage, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestRayCastScalars(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(120, 110);
   stage.setGrayRamp(0.0, 110.0);
   testSeparateComponents(stage, 1, check);

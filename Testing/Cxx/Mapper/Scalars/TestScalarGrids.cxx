@@ -62,7 +62,7 @@ Axes equalAxes(const Size& points)
 }
 
 /// Equal steps: the same as the image, in float and in double, without a copy.
-void testEqualSteps(stage::Stage& stage, stage::Checks& check)
+void testEqualSteps(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_UNSIGNED_SHORT, Voxels, 1, 4);
   for (int type : { VTK_FLOAT, VTK_DOUBLE, VTK_INT })
@@ -92,7 +92,7 @@ void testEqualSteps(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Descending coordinates are an image with negative spacing.
-void testDescending(stage::Stage& stage, stage::Checks& check)
+void testDescending(stage::Stage& stage, reference::Checks& check)
 {
   const auto scalars = noiseArray(VTK_UNSIGNED_CHAR, Voxels, 1, 4);
   Axes axes = equalAxes(size);
@@ -167,7 +167,7 @@ double valueAt(
 
 /// Resampled by hand at steps of 1. Scalars are whole and weights are products of thirds or halves:
 /// roundings in double vanish in float unless a sum lies on the edge; multiples of 27 have none.
-void testUnequalSteps(bool cells, stage::Stage& stage, stage::Checks& check)
+void testUnequalSteps(bool cells, stage::Stage& stage, reference::Checks& check)
 {
   const Axes axes = unequalAxes();
   const int less = cells ? 1 : 0;
@@ -224,7 +224,7 @@ void testUnequalSteps(bool cells, stage::Stage& stage, stage::Checks& check)
 }
 
 /// Coordinates that are modified in place are noticed.
-void testModifiedCoordinates(stage::Stage& stage, stage::Checks& check)
+void testModifiedCoordinates(stage::Stage& stage, reference::Checks& check)
 {
   const auto grid = gridOf(equalAxes(size), VTK_DOUBLE);
   grid->GetPointData()->SetScalars(noiseArray(VTK_SHORT, Voxels, 1, 4));
@@ -239,7 +239,7 @@ void testModifiedCoordinates(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Smooth contents on a grid whose steps grow and shrink, against VTK's GPU ray caster.
-void testUnequalStepsAgainstGPU(stage::Checks& check)
+void testUnequalStepsAgainstGPU(reference::Checks& check)
 {
   stage::Stage stage(200, 190);
   const Size large = { 48, 40, 44 };
@@ -296,7 +296,7 @@ void testUnequalStepsAgainstGPU(stage::Checks& check)
 }
 
 /// Steps that would ask for 10^18 voxels are enlarged to the limit; a byte each.
-void testLimit(stage::Stage& stage, stage::Checks& check)
+void testLimit(stage::Stage& stage, reference::Checks& check)
 {
   const std::vector<double> axis = { 0.0, 10.0, 10.00001, 20.0 };
   const auto grid = gridOf({ axis, axis, axis }, VTK_DOUBLE);
@@ -320,7 +320,7 @@ void testLimit(stage::Stage& stage, stage::Checks& check)
 }
 
 /// One axis that would ask for more voxels than there may be along an axis, or just as many.
-void testLimitOfAxis(stage::Stage& stage, stage::Checks& check)
+void testLimitOfAxis(stage::Stage& stage, reference::Checks& check)
 {
   for (bool isTooFine : { true, false })
   {
@@ -343,7 +343,7 @@ void testLimitOfAxis(stage::Stage& stage, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestScalarGrids(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   {
     stage::Stage stage(120, 110);
     stage.setGrayRamp(0.0, 110.0);

@@ -36,7 +36,7 @@ struct Choice
 };
 
 /// Point arrays of three types, of which one is active.
-void testArrays(stage::Stage& stage, stage::Checks& check)
+void testArrays(stage::Stage& stage, reference::Checks& check)
 {
   const auto image = bareImage(size);
   int types[] = { VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_FLOAT };
@@ -81,7 +81,7 @@ void testArrays(stage::Stage& stage, stage::Checks& check)
 
 //------------------------------------------------------------------------------
 /// Types of each size, so that strides are told apart.
-void testComponentsOfTypes(stage::Stage& stage, stage::Checks& check)
+void testComponentsOfTypes(stage::Stage& stage, reference::Checks& check)
 {
   for (int type : { VTK_SIGNED_CHAR, VTK_UNSIGNED_SHORT, VTK_INT, VTK_LONG_LONG, VTK_DOUBLE })
   {
@@ -103,7 +103,7 @@ void testComponentsOfTypes(stage::Stage& stage, stage::Checks& check)
 }
 
 //------------------------------------------------------------------------------
-void testMagnitude(stage::Stage& stage, stage::Checks& check)
+void testMagnitude(stage::Stage& stage, reference::Checks& check)
 {
   for (int type : { VTK_UNSIGNED_CHAR, VTK_FLOAT, VTK_INT })
   {
@@ -132,7 +132,7 @@ void testMagnitude(stage::Stage& stage, stage::Checks& check)
 /// VTK's filter sums in float: 3 products, 2 sums, a root, each off by 2^-24 at most. The weights
 /// are the same, so the shear images differ by no more than that share, and roundings of the
 /// worksheets, for which 2^-20 leaves room.
-void testMagnitudeOfVTK(stage::Stage& stage, stage::Checks& check)
+void testMagnitudeOfVTK(stage::Stage& stage, reference::Checks& check)
 {
   const auto image = plainImage(size, noiseArray(VTK_FLOAT, Voxels, 3, 8));
   vtkNew<vtkImageMagnitude> filter;
@@ -162,7 +162,7 @@ void testMagnitudeOfVTK(stage::Stage& stage, stage::Checks& check)
 
 //------------------------------------------------------------------------------
 /// Components one after the other are splatted from where they are.
-void testSeparateComponents(stage::Stage& stage, stage::Checks& check)
+void testSeparateComponents(stage::Stage& stage, reference::Checks& check)
 {
   const auto vectors = noiseArray(VTK_SHORT, Voxels, 3, 12);
   const auto interleaved = stage::splatting(plainImage(size, vectors));
@@ -184,7 +184,7 @@ void testSeparateComponents(stage::Stage& stage, stage::Checks& check)
 
 /// VTK 9.3 to 9.6 interleave what should be separate: when they allocate it by themselves, and when
 /// somebody asks for all of it.
-void testComponentsThatVTKMoves(stage::Stage& stage, stage::Checks& check)
+void testComponentsThatVTKMoves(stage::Stage& stage, reference::Checks& check)
 {
   const auto vectors = noiseArray(VTK_SHORT, Voxels, 3, 12);
   const auto interleaved = stage::splatting(plainImage(size, vectors));
@@ -235,7 +235,7 @@ constexpr double Weights[] = { 1.0, 0.5, 0.75, 0.25 };
 /// Each component rendered by itself, over black, and added. Both sides round every component to
 /// whole bytes; opacity times weight may be rounded to the other side: one byte per component.
 void testIndependentComponents(
-  int components, vtkDataArray* scalars, int mode, stage::Checks& check)
+  int components, vtkDataArray* scalars, int mode, reference::Checks& check)
 {
   stage::Stage together(120, 110);
   const auto mapper = stage::splatting(plainImage(size, scalars));
@@ -290,7 +290,7 @@ void testIndependentComponents(
 }
 
 /// A change of one component's functions or weight is no new projection.
-void testReuse(stage::Checks& check)
+void testReuse(reference::Checks& check)
 {
   stage::Stage stage(120, 110);
   const auto mapper = stage::splatting(plainImage(size, noiseArray(VTK_SHORT, Voxels, 2, 3)));
@@ -308,7 +308,7 @@ void testReuse(stage::Checks& check)
 }
 
 /// Against VTK's GPU ray caster: smooth contents, each component another.
-void testAgainstGPU(stage::Checks& check)
+void testAgainstGPU(reference::Checks& check)
 {
   stage::Stage stage(200, 190);
   const Size large = { 48, 40, 44 };
@@ -350,7 +350,7 @@ void testAgainstGPU(stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestScalars(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   {
     stage::Stage stage(120, 110);
     stage.setGrayRamp(0.0, 110.0);

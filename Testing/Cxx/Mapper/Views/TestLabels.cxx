@@ -64,7 +64,7 @@ struct Scene : stage::Stage
   explicit Scene(reference::Random& random) : Stage(::Width, ::Height)
   {
     this->image = stage::toImageData(stage::blobsAndTubes({ 36, 40, 34 }, 14, random));
-    stage::placeAtRandom(this->image, random);
+    coretesting::placeAtRandom(this->image, random, false);
     const int types[] = { VTK_SHORT, VTK_INT, VTK_SIGNED_CHAR, VTK_LONG_LONG };
     this->labels = boxes(this->image, types[random.uniform(0, 3)], random);
     this->mapper = stage::splatting(this->image);
@@ -124,7 +124,7 @@ bool isEdge(const std::vector<int>& labels, int x, int y)
 
 /// Compares each pixel with the definition. Returns the number of edge pixels.
 template <class ColorOf>
-int compare(Scene& scene, const std::string& what, ColorOf&& colorOf, stage::Checks& check)
+int compare(Scene& scene, const std::string& what, ColorOf&& colorOf, reference::Checks& check)
 {
   scene.mapper->SetLabelInput(nullptr);
   const stage::Pixels plain = scene.pixels();
@@ -147,7 +147,7 @@ int compare(Scene& scene, const std::string& what, ColorOf&& colorOf, stage::Che
   return edges;
 }
 
-void testEdges(stage::Checks& check, reference::Random& random)
+void testEdges(reference::Checks& check, reference::Random& random)
 {
   Scene scene(random);
   vtkNew<vtkColorTransferFunction> function;
@@ -229,7 +229,7 @@ std::vector<vtkProp*> found(Scene& scene)
   return props;
 }
 
-void testRest(stage::Checks& check, reference::Random& random)
+void testRest(reference::Checks& check, reference::Random& random)
 {
   Scene scene(random);
   scene.look(stage::anyDirection(random), { 0.1, 0.2, 0.9 }, 0.8);
@@ -279,7 +279,7 @@ void testRest(stage::Checks& check, reference::Random& random)
 //------------------------------------------------------------------------------
 int TestLabels(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage keeper(10, 10); // X servers may restart when their last client leaves
   keeper.window->Render();
   reference::forScenes("labels", 3,

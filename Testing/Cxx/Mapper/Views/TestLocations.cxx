@@ -137,7 +137,7 @@ Voxel firstLargest(
 }
 
 /// Pixels on voxels, rays along an axis: the search is one along a line of voxels, from the viewer.
-void testSearch(stage::Checks& check, int axis, bool backwards)
+void testSearch(reference::Checks& check, int axis, bool backwards)
 {
   const std::array<int, 3> size = { 24, 31, 27 };
   // Few values: ties are common.
@@ -299,11 +299,12 @@ bool agree(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, const Array
 }
 
 /// Bright voxels in noise, seen from anywhere: they are picked where they are seen.
-void testBrightVoxels(stage::Checks& check, int mode, double viewAngle, reference::Random& random)
+void testBrightVoxels(
+  reference::Checks& check, int mode, double viewAngle, reference::Random& random)
 {
   const auto image =
-    stage::toImageData(reference::uniformNoise<std::uint8_t>({ 40, 44, 48 }, random.bits(), 0, 20));
-  stage::placeAtRandom(image, random);
+    stage::toImageData(reference::uniformNoise<std::uint8_t>({ 40, 44, 48 }, random, 0, 20));
+  coretesting::placeAtRandom(image, random, false);
   const auto mapper = stage::splatting(image);
   mapper->SetQualityMode(mode);
   mapper->RecordLocationsOn();
@@ -339,7 +340,7 @@ void testBrightVoxels(stage::Checks& check, int mode, double viewAngle, referenc
 }
 
 /// Turned about, the nearest of equal voxels is another one, although the shear image is the same.
-void testOtherSide(stage::Checks& check)
+void testOtherSide(reference::Checks& check)
 {
   reference::Volume<std::uint8_t> volume({ 20, 20, 20 }, 0);
   volume.at(Voxel{ 10, 10, 3 }) = volume.at(Voxel{ 10, 10, 16 }) = 200;
@@ -363,7 +364,7 @@ void testOtherSide(stage::Checks& check)
 }
 
 /// Cuts, minima and what hides the volume.
-void testCuts(stage::Checks& check)
+void testCuts(reference::Checks& check)
 {
   auto volume = reference::uniformNoise<std::uint8_t>({ 30, 30, 30 }, 3, 50, 60);
   volume.at(Voxel{ 15, 15, 5 }) = 250;
@@ -416,7 +417,7 @@ void testCuts(stage::Checks& check)
     "Nor is it in the arrays.");
 }
 
-void testSentences(stage::Checks& check)
+void testSentences(reference::Checks& check)
 {
   const auto image = stage::toImageData(stage::blobsAndTubes({ 34, 34, 34 }, 3));
   const auto mapper = stage::splatting(image);
@@ -457,7 +458,7 @@ void testSentences(stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestLocations(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   for (int axis = 0; axis < 3; ++axis)
   {
     testSearch(check, axis, false);

@@ -112,7 +112,7 @@ struct Errors
 
 /// Along diagonals of the volume's faces and of the volume the images of two and three axes meet in
 /// the middle of the picture.
-void testSeams(stage::Stage& stage, stage::Checks& check)
+void testSeams(stage::Stage& stage, reference::Checks& check)
 {
   const auto image = blobs();
   const auto mapper = stage::splatting(image);
@@ -155,7 +155,7 @@ double rms(const Gray& a, const Gray& b)
 
 /// Small steps of a turn through 45 degrees change the picture by as much each.
 template <class Step>
-void testTurn(stage::Stage& stage, const std::string& name, Step step, stage::Checks& check)
+void testTurn(stage::Stage& stage, const std::string& name, Step step, reference::Checks& check)
 {
   const auto mapper = stage::splatting(blobs());
   stage.show(mapper);
@@ -199,7 +199,7 @@ bool showsAsNew(stage::Stage& stage, Mapper* mapper, const stage::Pixels& pixels
 
 /// What leaves the eye where it is and the whole volume in the window leaves the images as they
 /// are; what moves the eye does not.
-void testReuse(stage::Stage& stage, stage::Checks& check)
+void testReuse(stage::Stage& stage, reference::Checks& check)
 {
   const auto mapper = stage::splatting(blobs());
   vtkCamera* const camera = stage.renderer->GetActiveCamera();
@@ -237,7 +237,7 @@ void testReuse(stage::Stage& stage, stage::Checks& check)
 }
 
 /// A volume and its mirror image, seen from opposite sides.
-void testMirrored(stage::Stage& stage, stage::Checks& check)
+void testMirrored(stage::Stage& stage, reference::Checks& check)
 {
   const reference::Volume<std::uint8_t> volume = stage::blobsAndTubes({ 48, 52, 56 }, 30);
   reference::Volume<std::uint8_t> mirror = volume;
@@ -298,7 +298,7 @@ bool isBlack(const stage::Pixels& pixels)
 }
 
 /// Projections that programs give themselves.
-void testExplicitProjection(stage::Stage& stage, stage::Checks& check)
+void testExplicitProjection(stage::Stage& stage, reference::Checks& check)
 {
   const auto mapper = stage::splatting(blobs());
   vtkCamera* const camera = stage.renderer->GetActiveCamera();
@@ -321,7 +321,7 @@ void testExplicitProjection(stage::Stage& stage, stage::Checks& check)
 }
 
 /// Cameras that see nothing, and cameras that mean nothing.
-void testCameras(stage::Stage& stage, stage::Checks& check)
+void testCameras(stage::Stage& stage, reference::Checks& check)
 {
   const auto mapper = stage::splatting(blobs());
   vtkCamera* const camera = stage.renderer->GetActiveCamera();
@@ -373,7 +373,7 @@ void testCameras(stage::Stage& stage, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestPerspectiveViews(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage stage(Width, Height);
   testSeams(stage, check);
   testTurn(

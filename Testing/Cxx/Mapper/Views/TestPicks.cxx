@@ -82,14 +82,14 @@ void chooseAtRandom(
 {
   mapper->SetQualityMode(n % 4);
   mapper->SetKernel(random.uniform(0, 1));
-  mapper->SetBlendMode(random.uniform(0, 2) ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
-                                            : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
+  mapper->SetBlendMode(!random.oneIn(3) ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
+                                        : vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
   stage::chooseSamples(mapper, image, random);
   mapper->SetCullBelowWindow(random.uniform(0, 1));
-  mapper->SetFinalColorLevel(random.uniform(0, 1) ? 0.5 : 0.9);
+  mapper->SetFinalColorLevel(random.oneIn(2) ? 0.5 : 0.9);
   mapper->SetFinalColorWindow(0.2);
   mapper->RemoveAllClippingPlanes();
-  if (random.uniform(0, 1))
+  if (random.oneIn(2))
   {
     vtkNew<vtkPlane> plane;
     plane->SetOrigin(image->GetCenter());
@@ -136,14 +136,14 @@ bool areRecorded(
 }
 
 /// One mapper in two viewports of a window.
-void testViewports(stage::Checks& check)
+void testViewports(reference::Checks& check)
 {
   coretesting::Sightings picked;
   reference::forScenes("viewports", 40,
     [&](int n, reference::Random& random)
     {
       const auto image =
-        stage::toImageData(reference::uniformNoise<std::uint8_t>({ 30, 26, 34 }, random.bits()));
+        stage::toImageData(reference::uniformNoise<std::uint8_t>({ 30, 26, 34 }, random));
       const auto mapper = stage::splatting(image);
       stage::Stage stage(2 * Width, Height);
       stage.show(mapper);
@@ -156,9 +156,9 @@ void testViewports(stage::Checks& check)
       for (int side : { 1, 0 }) // as the first one's camera is set in between
       {
         // Some see the same projection, some an overview.
-        stage.viewAngle = random.uniform(0, 1) ? 40.0 : 0.0;
+        stage.viewAngle = random.oneIn(2) ? 40.0 : 0.0;
         const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
-        stage.look({ x, y, 1.0 }, { 0.1, 1.0, 0.2 }, random.uniform(0, 2) ? 0.8 : 2.5);
+        stage.look({ x, y, 1.0 }, { 0.1, 1.0, 0.2 }, !random.oneIn(3) ? 0.8 : 2.5);
         renderers[side]->SetViewport(0.5 * side, 0.0, 0.5 + 0.5 * side, 1.0);
         renderers[side]->GetActiveCamera()->DeepCopy(stage.renderer->GetActiveCamera());
         renderers[side]->ResetCameraClippingRange();
@@ -206,20 +206,20 @@ void testViewports(stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestPicks(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   testViewports(check);
   coretesting::Sightings picked;
   reference::forScenes("picks", 48,
     [&](int n, reference::Random& random)
     {
       // Few values: ties are common.
-      const auto image = stage::toImageData(
-        reference::uniformNoise<std::uint8_t>({ 30, 26, 34 }, random.bits(), 0, 60));
-      stage::placeAtRandom(image, random);
+      const auto image =
+        stage::toImageData(reference::uniformNoise<std::uint8_t>({ 30, 26, 34 }, random, 0, 60));
+      coretesting::placeAtRandom(image, random, false);
       const auto mapper = stage::splatting(image);
       stage::Stage stage(Width, Height);
       stage.show(mapper);
-      stage.viewAngle = random.uniform(0, 1) ? 40.0 : 0.0;
+      stage.viewAngle = random.oneIn(2) ? 40.0 : 0.0;
       chooseAtRandom(mapper, image, n, random);
       const stage::Vector direction{ random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
         random.uniform(-1.0, 1.0) };

@@ -216,7 +216,7 @@ const std::vector<Change>& changes()
   return all;
 }
 
-void testChange(const Change& change, int mode, bool records, stage::Checks& check)
+void testChange(const Change& change, int mode, bool records, reference::Checks& check)
 {
   Scene scene(mode, records);
   if (change.prepare)
@@ -244,7 +244,7 @@ void testChange(const Change& change, int mode, bool records, stage::Checks& che
 }
 
 /// What has been rendered goes before the mapper.
-void testDeletedScene(stage::Checks& check)
+void testDeletedScene(reference::Checks& check)
 {
   vtkSmartPointer<vtkSplattingMIPVolumeMapper> mapper;
   {
@@ -258,7 +258,7 @@ void testDeletedScene(stage::Checks& check)
 }
 
 /// The mapper goes before what it has been rendered by.
-void testDeletedMapper(stage::Checks& check)
+void testDeletedMapper(reference::Checks& check)
 {
   Scene scene(2, false);
   scene.stage.window->Render();
@@ -274,7 +274,7 @@ void testDeletedMapper(stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestPicksAfterChanges(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   for (const Change& change : changes())
   {
     for (int mode : { vtkSplattingMIPVolumeMapper::PREVIEW, vtkSplattingMIPVolumeMapper::EXACT })

@@ -75,7 +75,7 @@ struct Scene : stage::Stage
   explicit Scene(reference::Random& random) : Stage(::Width, ::Height)
   {
     this->image = stage::toImageData(stage::blobsAndTubes({ 36, 40, 34 }, 14, random));
-    stage::placeAtRandom(this->image, random);
+    coretesting::placeAtRandom(this->image, random, false);
     this->labels = innerBoxes(this->image, random);
     this->mapper = stage::splatting(this->image);
     this->mapper->AutoAdjustSampleDistancesOff();
@@ -401,7 +401,7 @@ std::vector<int> labelsOfEdges(
 
 /// Compares each pixel with the definition. Returns the share of pixels that have the label on
 /// their own ray.
-double compareProjected(Scene& scene, Walk walk, const std::string& what, stage::Checks& check)
+double compareProjected(Scene& scene, Walk walk, const std::string& what, reference::Checks& check)
 {
   std::vector<std::set<int>> possible;
   for (int n = 0; n < Width * Height; ++n)
@@ -420,7 +420,7 @@ double compareProjected(Scene& scene, Walk walk, const std::string& what, stage:
 }
 
 /// The same with cuts. Pixels next to the end of a ray may have the ray of a neighbour.
-void testCuts(Scene& scene, stage::Checks& check, reference::Random& random)
+void testCuts(Scene& scene, reference::Checks& check, reference::Random& random)
 {
   constexpr double radius = 11.0, thickness = 8.0;
   constexpr int margin = 9; // cropped voxels
@@ -503,7 +503,7 @@ void testCuts(Scene& scene, stage::Checks& check, reference::Random& random)
   }
 }
 
-void testUncut(stage::Checks& check, reference::Random& random)
+void testUncut(reference::Checks& check, reference::Random& random)
 {
   Scene scene(random);
   const stage::Messages warnings(scene.mapper, vtkCommand::WarningEvent);
@@ -551,7 +551,7 @@ void testUncut(stage::Checks& check, reference::Random& random)
 //------------------------------------------------------------------------------
 int TestProjectedLabels(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage keeper(10, 10); // X servers may restart when their last client leaves
   keeper.window->Render();
   reference::forScenes(

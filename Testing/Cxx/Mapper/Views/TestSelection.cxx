@@ -44,17 +44,6 @@ namespace
 constexpr int Width = 160;
 constexpr int Height = 130;
 
-vtkSmartPointer<vtkImageData> anyBlobs(reference::Random& random)
-{
-  std::array<int, 3> size;
-  for (int& voxels : size)
-  {
-    voxels = random.uniform(32, 52);
-  }
-  const int count = random.uniform(4, 16);
-  return stage::toImageData(stage::blobsAndTubes(size, count, random));
-}
-
 /// White where the volume is not transparent; a green sphere somewhere in it, beside it, before it
 /// or behind.
 struct Scene
@@ -66,7 +55,7 @@ struct Scene
   double radius;
 
   explicit Scene(reference::Random& random)
-    : image(anyBlobs(random)),
+    : image(stage::toImageData(stage::anyBlobs(random))),
       mapper(stage::splatting(image)),
       radius(random.uniform(5.0, 15.0))
   {
@@ -95,7 +84,7 @@ struct Scene
     this->actor->SetPosition(
       middle[0] + away * side[0], middle[1] + away * side[1], middle[2] + away * side[2]);
     this->stage.renderer->AddActor(this->actor);
-    this->stage.viewAngle = random.uniform(0, 1) ? random.uniform(10.0, 80.0) : 0.0;
+    this->stage.viewAngle = random.oneIn(2) ? random.uniform(10.0, 80.0) : 0.0;
     const stage::Vector direction = stage::anyDirection(random);
     const stage::Vector up = stage::anyDirection(random);
     this->stage.look(direction, up, random.uniform(0.8, 1.5));
@@ -159,7 +148,7 @@ bool isRim(const Scene& scene, const stage::Pixels& pixels, int x, int y)
 /// Every pixel of the window. VTK's display of ray cast pictures interpolates between pixels, so
 /// that these may differ at rims.
 void testPixels(
-  Scene& scene, const std::string& what, bool isRayCast, Seen& seen, stage::Checks& check)
+  Scene& scene, const std::string& what, bool isRayCast, Seen& seen, reference::Checks& check)
 {
   const stage::Pixels before = scene.stage.pixels();
   const vtkIdType projections = scene.mapper->GetNumberOfProjections();
@@ -204,7 +193,7 @@ int countPixels(Scene& scene, const stage::Pixels& pixels, vtkProp* prop)
   return count;
 }
 
-void testSelect(Scene& scene, int association, stage::Checks& check)
+void testSelect(Scene& scene, int association, reference::Checks& check)
 {
   const std::string what = "Selecting by association " + std::to_string(association);
   const stage::Pixels before = scene.stage.pixels();
@@ -251,7 +240,7 @@ bool findPlace(const Scene& scene, const stage::Pixels& pixels, vtkProp* prop, i
   return false;
 }
 
-void testPicking(Scene& scene, Seen& seen, stage::Checks& check)
+void testPicking(Scene& scene, Seen& seen, reference::Checks& check)
 {
   const stage::Pixels before = scene.stage.pixels();
   bool isVolume = false, isActor = false;
@@ -328,7 +317,7 @@ struct HidingScene : Scene
 };
 
 /// Two renderers show one volume, but only one the sphere before it.
-void testTwoRenderers(HidingScene& scene, stage::Checks& check)
+void testTwoRenderers(HidingScene& scene, reference::Checks& check)
 {
   vtkRenderer* const left = scene.stage.renderer;
   vtkNew<vtkRenderer> right;
@@ -347,7 +336,7 @@ void testTwoRenderers(HidingScene& scene, stage::Checks& check)
 }
 
 /// What the last frame has found does not matter to a view that it did not show.
-void testOtherView(HidingScene& scene, stage::Checks& check)
+void testOtherView(HidingScene& scene, reference::Checks& check)
 {
   vtkRenderer* const renderer = scene.stage.renderer;
   check(scene.picked(renderer) == scene.actor, "What hides the volume is picked.");
@@ -397,7 +386,7 @@ void cropAtRandom(vtkVolumeMapper* mapper, const double* bounds, reference::Rand
 
 /// The same places and positions as with VTK's ray caster. Returns how often the volume was hit.
 template <class Picker>
-int testRayPicker(Scene& scene, const std::string& what, stage::Checks& check)
+int testRayPicker(Scene& scene, const std::string& what, reference::Checks& check)
 {
   const auto caster = stage::fixedPointRayCaster(scene.image, 1.0);
   const double* const planes = scene.mapper->GetCroppingRegionPlanes();
@@ -426,7 +415,7 @@ int testRayPicker(Scene& scene, const std::string& what, stage::Checks& check)
   return hits;
 }
 
-void testRayPickers(stage::Checks& check)
+void testRayPickers(reference::Checks& check)
 {
   coretesting::Sightings hit, less;
   reference::forScenes("ray pickers", 24,
@@ -448,7 +437,7 @@ void testRayPickers(stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestSelection(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage keeper(10, 10); // X servers may restart when their last client leaves
   keeper.window->Render();
   Seen pixels;

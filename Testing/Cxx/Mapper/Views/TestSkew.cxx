@@ -44,7 +44,7 @@ bool skewImageOrProp(stage::Stage& stage, vtkImageData* image, reference::Random
   vtkNew<vtkMatrix4x4> matrix;
   skew(matrix, random);
   vtkNew<vtkMatrix3x3> direction;
-  const bool skewsImage = random.uniform(0, 2) == 0;
+  const bool skewsImage = random.oneIn(3);
   if (skewsImage)
   {
     for (int n = 0; n < 9; ++n)
@@ -65,7 +65,7 @@ std::string describe(double found, double low, double high, int x, int y)
 }
 
 /// Every pixel of exact mode is the largest value of the skewed field on its ray.
-void testExact(stage::Stage& stage, const std::string& series, stage::Checks& check)
+void testExact(stage::Stage& stage, const std::string& series, reference::Checks& check)
 {
   int pixels = 0, filtered = 0, uncertain = 0;
   reference::forScenes(series + ", exact", 16,
@@ -76,7 +76,7 @@ void testExact(stage::Stage& stage, const std::string& series, stage::Checks& ch
       const Bytes volume = reference::uniformNoise<std::uint8_t>(size, number + 1);
       const reference::Volume<double> field = reference::toDouble(volume);
       const auto image = stage::toImageData(volume);
-      stage::placeAtRandom(image, random);
+      coretesting::placeAtRandom(image, random, false);
       const bool isForFilter = skewImageOrProp(stage, image, random);
       const auto mapper = stage::splatting(image);
       stage.show(mapper);
@@ -116,7 +116,7 @@ void testExact(stage::Stage& stage, const std::string& series, stage::Checks& ch
 
 /// In the other modes pixels have their definition, in perspective what the voxels near their rays
 /// allow.
-void testOtherModes(stage::Stage& stage, const std::string& series, stage::Checks& check)
+void testOtherModes(stage::Stage& stage, const std::string& series, reference::Checks& check)
 {
   constexpr int somePixels = 12, manyPixels = 200;
   reference::forScenes(series + ", other modes", 12,
@@ -124,7 +124,7 @@ void testOtherModes(stage::Stage& stage, const std::string& series, stage::Check
     {
       const Bytes volume = stage::blobsAndTubes({ 40, 36, 34 }, 20, random);
       const auto image = stage::toImageData(volume);
-      stage::placeAtRandom(image, random);
+      coretesting::placeAtRandom(image, random, false);
       skewImageOrProp(stage, image, random);
       const auto mapper = stage::splatting(image);
       mapper->SetQualityMode(number % 3);
@@ -159,7 +159,7 @@ void testOtherModes(stage::Stage& stage, const std::string& series, stage::Check
 
 int TestSkew(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage small(Width, Height), large(130, 110);
   for (double angle : { 0.0, 40.0 })
   {

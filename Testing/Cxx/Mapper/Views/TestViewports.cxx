@@ -67,7 +67,7 @@ stage::Pixels alone(double viewAngle, vtkVolumeMapper* mapper, const stage::Vect
 }
 
 /// The lower left and the upper right quarter of a window.
-void testTwoViewports(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
+void testTwoViewports(double viewAngle, vtkVolumeMapper* mapper, reference::Checks& check)
 {
   const stage::Pixels left = alone(viewAngle, mapper, leftDirection);
   const stage::Pixels right = alone(viewAngle, mapper, rightDirection);
@@ -95,7 +95,7 @@ void testTwoViewports(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& 
   }
 }
 
-void testTwoWindows(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
+void testTwoWindows(double viewAngle, vtkVolumeMapper* mapper, reference::Checks& check)
 {
   const stage::Pixels expectedLeft = alone(viewAngle, mapper, leftDirection);
   const stage::Pixels expectedRight = alone(viewAngle, mapper, rightDirection);
@@ -119,7 +119,8 @@ void testTwoWindows(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& ch
 
 /// A window whose picture is copied in parts, between frames of one with multisampling, where none
 /// is.
-void testWindowWithMultisampling(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
+void testWindowWithMultisampling(
+  double viewAngle, vtkVolumeMapper* mapper, reference::Checks& check)
 {
   const auto look = [=](stage::Stage& stage, const stage::Vector& direction, int samples)
   {
@@ -137,7 +138,7 @@ void testWindowWithMultisampling(double viewAngle, vtkVolumeMapper* mapper, stag
   check(look(other, leftDirection, 4) == left, "The other shows the view of the first.");
 }
 
-void testReleasedWindow(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
+void testReleasedWindow(double viewAngle, vtkVolumeMapper* mapper, reference::Checks& check)
 {
   stage::Pixels first;
   {
@@ -194,7 +195,7 @@ Counts compare(
 }
 
 void testGeometryBehind(
-  double viewAngle, vtkVolumeMapper* mapper, vtkImageData* image, stage::Checks& check)
+  double viewAngle, vtkVolumeMapper* mapper, vtkImageData* image, reference::Checks& check)
 {
   stage::Stage stage(Width, Height);
   stage.viewAngle = viewAngle;
@@ -237,7 +238,7 @@ bool isMoved(const stage::Pixels& from, const stage::Pixels& to, int dx, int dy)
   return true;
 }
 
-void testPartlyOutside(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
+void testPartlyOutside(double viewAngle, vtkVolumeMapper* mapper, reference::Checks& check)
 {
   stage::Stage stage(Width, Height);
   stage.viewAngle = viewAngle;
@@ -254,7 +255,7 @@ void testPartlyOutside(double viewAngle, vtkVolumeMapper* mapper, stage::Checks&
   }
 }
 
-void testOutside(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check)
+void testOutside(double viewAngle, vtkVolumeMapper* mapper, reference::Checks& check)
 {
   stage::Stage stage(Width, Height);
   stage.viewAngle = viewAngle;
@@ -277,7 +278,7 @@ void testOutside(double viewAngle, vtkVolumeMapper* mapper, stage::Checks& check
 //------------------------------------------------------------------------------
 int TestViewports(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   const auto image = blobs();
   vtkNew<vtkSplattingMIPGPUVolumeRayCastMapper> override;
   override->SetInputData(image);

@@ -39,17 +39,6 @@ using Mapper = vtkSplattingMIPVolumeMapper;
 constexpr int Width = 130;
 constexpr int Height = 110;
 
-reference::Volume<std::uint8_t> anyBlobs(reference::Random& random)
-{
-  std::array<int, 3> size;
-  for (int& voxels : size)
-  {
-    voxels = random.uniform(32, 52);
-  }
-  const int count = random.uniform(6, 16);
-  return stage::blobsAndTubes(size, count, random);
-}
-
 /// A volume, a mapper of it, and how both are seen.
 struct Scene
 {
@@ -60,12 +49,12 @@ struct Scene
   double viewAngle;
 
   explicit Scene(reference::Random& random)
-    : volume(anyBlobs(random)),
+    : volume(stage::anyBlobs(random)),
       image(stage::toImageData(this->volume)),
       mapper(stage::splatting(this->image)),
       direction(stage::anyDirection(random)),
       up(stage::anyDirection(random)),
-      viewAngle(random.uniform(0, 1) ? random.uniform(5.0, 45.0) : 0.0)
+      viewAngle(random.oneIn(2) ? random.uniform(5.0, 45.0) : 0.0)
   {
     this->mapper->SetQualityMode(random.uniform(0, 2));
   }
@@ -110,7 +99,7 @@ bool isBlack(const stage::Pixels& pixels)
 
 /// A screenshot in tiles is that of a larger window: coordinates in the shear image are rounded in
 /// another way, which moves a grey level by no more than one. Nothing is projected again.
-void testScreenshot(const Scene& scene, int scale, stage::Checks& check)
+void testScreenshot(const Scene& scene, int scale, reference::Checks& check)
 {
   Mapper* const mapper = scene.mapper;
   stage::Stage large(scale * Width, scale * Height);
@@ -166,7 +155,7 @@ int countStrange(stage::Stage& stage, const Scene& scene, const stage::Pixels& p
 }
 
 /// Each eye sees what is near its rays. Returns whether the other eye sees something else.
-bool testStereo(const Scene& scene, stage::Checks& check)
+bool testStereo(const Scene& scene, reference::Checks& check)
 {
   stage::Stage stage(Width, Height);
   // No pixel is wider than a voxel: they show points, not areas.
@@ -234,7 +223,7 @@ vtkSmartPointer<vtkActor> greenSphere(const Scene& scene)
 }
 
 /// A volume in a transparent layer above is a volume behind which the other layer is.
-void testLayers(const Scene& scene, stage::Checks& check)
+void testLayers(const Scene& scene, reference::Checks& check)
 {
   stage::Stage stage(Width, Height);
   vtkNew<vtkPiecewiseFunction> opacity;
@@ -259,7 +248,7 @@ void testLayers(const Scene& scene, stage::Checks& check)
 }
 
 /// Two props with one mapper, side by side and with properties of their own.
-void testTwoProps(const Scene& scene, double turn, stage::Checks& check)
+void testTwoProps(const Scene& scene, double turn, reference::Checks& check)
 {
   Mapper* const mapper = scene.mapper;
   stage::Stage stage(Width, Height);
@@ -298,7 +287,7 @@ void testTwoProps(const Scene& scene, double turn, stage::Checks& check)
 
 /// Large opaque parts of a picture are copied, but for windows with multisampling, which must show
 /// the same, whether all of the picture is opaque, some, or nothing.
-void testMultisampling(const Scene& scene, stage::Checks& check)
+void testMultisampling(const Scene& scene, reference::Checks& check)
 {
   constexpr double opacities[][2] = { { 1.0, 1.0 }, { 0.4, 1.0 }, { 0.4, 0.6 } };
   stage::Pixels last;
@@ -337,7 +326,7 @@ stage::Pixels alone(const Scene& scene, vtkImageData* image)
   return stage.pixels();
 }
 
-void testReplacements(const Scene& scene, reference::Random& random, stage::Checks& check)
+void testReplacements(const Scene& scene, reference::Random& random, reference::Checks& check)
 {
   Mapper* const mapper = scene.mapper;
   stage::Stage stage(Width, Height);
@@ -371,7 +360,7 @@ void testReplacements(const Scene& scene, reference::Random& random, stage::Chec
 
 /// Where only it is seen, a volume beside ones by VTK's own mapper looks as it does alone, and they
 /// do, too.
-void testBesideSmartMapper(const Scene& scene, stage::Checks& check)
+void testBesideSmartMapper(const Scene& scene, reference::Checks& check)
 {
   stage::Stage stage(Width, Height);
   vtkNew<vtkSmartVolumeMapper> smart;
@@ -396,7 +385,7 @@ void testBesideSmartMapper(const Scene& scene, stage::Checks& check)
 }
 
 /// Windows without pixels draw nothing and say nothing.
-void testEmptyWindow(const Scene& scene, stage::Checks& check)
+void testEmptyWindow(const Scene& scene, reference::Checks& check)
 {
   stage::Stage stage(Width, Height);
   scene.look(stage);
@@ -417,7 +406,7 @@ void testEmptyWindow(const Scene& scene, stage::Checks& check)
 //------------------------------------------------------------------------------
 int TestWindows(int, char*[])
 {
-  stage::Checks check;
+  reference::Checks check;
   stage::Stage keeper(10, 10); // X servers may restart when their last client leaves
   keeper.window->Render();
   coretesting::Sightings eyes;
