@@ -115,67 +115,6 @@ void testMinimumAgainstRayCaster(stage::Stage& stage, reference::Checks& check)
   stage.setGrayRamp(0.0, 255.0);
 }
 
-template <class T>
-vtkSmartPointer<vtkImageData> toImage(
-  const std::array<int, 3>& size, int type, const std::vector<T>& voxels)
-{
-  auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(size[0], size[1], size[2]);
-  image->AllocateScalars(type, 1);
-  std::copy(voxels.begin(), voxels.end(), static_cast<T*>(image->GetScalarPointer()));
-  return image;
-}
-
-std::vector<double> shearImageOf(stage::Stage& stage, Mapper* mapper)
-{
-  stage.show(mapper);
-  stage.window->Render();
-  vtkImageData* const shear = mapper->GetShearImage();
-  std::vector<double> values;
-  for (vtkIdType pixel = 0; pixel < shear->GetNumberOfPoints(); ++pixel)
-  {
-    const bool hit = shear->GetPointGhostArray()->GetValue(pixel) == 0;
-    values.push_back(hit ? shear->GetPointData()->GetScalars()->GetComponent(pixel, 0) : HUGE_VAL);
-  }
-  return values;
-}
-
-/// min v = c - max (c - v), bit for bit: bytes are summed exactly, and rounding of floats does not
-/// know signs.
-template <class T>
-void testMinimumOfNegative(stage::Stage& stage, int type, double c, reference::Checks& check)
-{
-  const auto noise = reference::uniformNoise<T>({ 23, 19, 21 }, 6);
-  std::vector<T> opposite;
-  for (T voxel : noise.voxels)
-  {
-    opposite.push_back(static_cast<T>(c - voxel));
-  }
-  const auto minimum = stage::splatting(toImage<T>(noise.size, type, noise.voxels));
-  const auto maximum = stage::splatting(toImage<T>(noise.size, type, opposite));
-  minimum->SetBlendModeToMinimumIntensity();
-  for (const stage::Vector& direction : directions)
-  {
-    for (int mode = 0; mode < 3; ++mode)
-    {
-      minimum->SetQualityMode(mode);
-      maximum->SetQualityMode(mode);
-      stage.show(minimum);
-      stage.look(direction, up);
-      const std::vector<double> found = shearImageOf(stage, minimum);
-      const std::vector<double> expected = shearImageOf(stage, maximum);
-      // In perspective bytes have weights that are no multiples of 2^-16. Up to 3 parts with 75
-      // weights each are added up, in both projections.
-      const double rounding = stage.viewAngle > 0.0 ? 2.0 * 226.0 * 255.0 * 0x1p-24 : 0.0;
-      const auto isNegative = [=](double low, double high)
-      { return std::isinf(low) ? low == high : std::abs(low - (c - high)) <= rounding; };
-      check(std::equal(found.begin(), found.end(), expected.begin(), expected.end(), isNegative),
-        std::string("The minimum is the negative's maximum, mode ") +
-          minimum->GetQualityModeAsString() + ", type " + std::to_string(type) + ".");
-    }
-  }
-}
-
 /// How much of a ray lies between the outermost voxels' centres, in slices, and how many slices
 /// have voxels that it crosses.
 struct SlicesOfRay
@@ -428,8 +367,6 @@ int TestBlendModes(int, char*[])
   {
     stage.viewAngle = viewAngle;
     testMinimumAgainstRayCaster(stage, check);
-    testMinimumOfNegative<std::uint8_t>(stage, VTK_UNSIGNED_CHAR, 255.0, check);
-    testMinimumOfNegative<float>(stage, VTK_FLOAT, 0.0, check);
     testAverageAgainstRayCaster(stage, check);
   }
   testEmptyRange(stage, check);

@@ -75,34 +75,8 @@ void testTypes(stage::Stage& stage, reference::Checks& check)
   }
 }
 
-/// Largest difference to the oracle over pixels that both call samples; infinity if they disagree
-/// about which those are.
-template <class T>
-double difference(vtkImageData* shear, const reference::Image<T>& oracle)
-{
-  const int* size = shear->GetDimensions();
-  vtkUnsignedCharArray* const ghosts = shear->GetPointGhostArray();
-  if (size[0] != oracle.width || size[1] != oracle.height || !ghosts)
-  {
-    return HUGE_VAL;
-  }
-  double largest = 0.0;
-  for (int v = 0; v < size[1]; ++v)
-  {
-    for (int u = 0; u < size[0]; ++u)
-    {
-      const bool isHidden =
-        (ghosts->GetValue(v * size[0] + u) & vtkDataSetAttributes::HIDDENPOINT) != 0;
-      const double value = shear->GetScalarComponentAsDouble(u, v, 0, 0);
-      const double error = oracle.isHit(u, v) ? std::abs(value - oracle.at(u, v)) : 0.0;
-      largest = std::max(largest, isHidden == oracle.isHit(u, v) ? HUGE_VAL : error);
-    }
-  }
-  return largest;
-}
-
-/// One view along each principal axis against the slow projections.
-void testValues(stage::Stage& stage, reference::Checks& check)
+/// One view along each principal axis. What its pixels show is compared by other tests.
+void testGeometry(stage::Stage& stage, reference::Checks& check)
 {
   const Bytes volume = smallNoise();
   const auto image = stage::toImageData(volume);
@@ -115,7 +89,6 @@ void testValues(stage::Stage& stage, reference::Checks& check)
     reference::ShearView view;
     view.axis = axis;
     const std::string where = " along axis " + std::to_string(axis) + ".";
-
     mapper->SetQualityModeToPreview();
     stage.window->Render();
     mapper->GetShear(view.shear);
@@ -125,18 +98,6 @@ void testValues(stage::Stage& stage, reference::Checks& check)
     const double* origin = mapper->GetShearImage()->GetOrigin();
     check(mapper->GetShearImage()->GetSpacing()[0] == 1.0, "Shear spacing" + where);
     check(origin[0] == -grid.margin[0] && origin[1] == -grid.margin[1], "Shear origin" + where);
-    check(difference(mapper->GetShearImage(), reference::exactTraversal(volume, view)) == 0.0,
-      "The preview is an exact traversal" + where);
-
-    mapper->SetQualityModeToStandard();
-    stage.window->Render();
-    reference::Kernel nearest;
-    nearest.shape = reference::Kernel::Nearest;
-    // Nine weights: see the error bound in the mapper's header.
-    check(difference(mapper->GetShearImage(),
-            reference::slabAverage(reference::toDouble(volume), view, nearest)) <=
-        9.0 * 255.0 / 131072.0,
-      "Standard is the slab average" + where);
   }
 }
 
@@ -306,7 +267,7 @@ int TestShearImageReuse(int, char*[])
   reference::Checks check;
   stage::Stage stage(150, 120);
   testTypes(stage, check);
-  testValues(stage, check);
+  testGeometry(stage, check);
   testNumberOfProjections(stage, check);
   testIdleChoices(stage, check);
   return check.exitCode();
