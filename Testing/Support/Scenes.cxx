@@ -100,10 +100,6 @@ private:
     }
     this->Best =
       std::min(choices.size(), tape.choices.size()) == choices.size() ? choices : tape.choices;
-    while (!this->Best.empty() && this->Best.back() == 0)
-    {
-      this->Best.pop_back(); // zeros follow anyway
-    }
     return true;
   }
 

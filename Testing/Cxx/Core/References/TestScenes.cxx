@@ -158,6 +158,19 @@ void testSimplification(Checks& check)
   check(sum(box) == 70 && box.size[2] == 1, "the simplest box is ", box.text());
 }
 
+/// Two numbers that must stay equal, for a check that fails with them.
+void testPairs(Checks& check)
+{
+  const reference::Scene scene = [](Random& random)
+  {
+    const Box box(random);
+    Checks own;
+    own(box.size[0] != box.size[1] || !box.isCut, "injected");
+  };
+  const Choices simplest = simplestFailure(scene, { 40, 40, 7, 5, 1 }, 1000);
+  check(simplest == Choices{ 0, 0, 0, 0, 1 }, "equal numbers are not made zeros together");
+}
+
 /// Another check that fails, and a scene without end, are no simpler scenes of the same failure.
 void testOthers(Checks& check)
 {
@@ -181,6 +194,7 @@ int TestScenes(int, char*[])
   Checks check;
   testDraws(check);
   testSimplification(check);
+  testPairs(check);
   testOthers(check);
   return check.exitCode();
 }
