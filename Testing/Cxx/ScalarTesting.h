@@ -201,11 +201,11 @@ inline void expectSame(stage::Stage& stage, vtkVolumeMapper* expected, vtkVolume
       const stage::Pixels truth = stage.pixels();
       stage.show(right);
       const stage::Pixels picture = stage.pixels();
-      check(!right->GetLastRenderUsedRayCasting(), where + ": splatted.");
-      check(!isBlack(truth), where + ": there is something to see.");
-      check(!pictures || truth == picture, where + ": the same picture.");
-      check(sameShearImages(left->GetShearImage(), right->GetShearImage()),
-        where + ": the same shear image.");
+      check(!right->GetLastRenderUsedRayCasting(), where, ": splatted.");
+      check(!isBlack(truth), where, ": there is something to see.");
+      check(!pictures || truth == picture, where, ": the same picture.");
+      check(sameShearImages(left->GetShearImage(), right->GetShearImage()), where,
+        ": the same shear image.");
     }
   }
 }

@@ -113,8 +113,7 @@ void testColors(reference::Checks& check)
   const auto expect = [&](int n, const Rgb& color, const std::string& what)
   {
     const Rgb found = scene.colorAt(scene.stage.pixels(), scene.pixelOf(n));
-    check(isNear(found, color, 4),
-      what + ": box " + std::to_string(n) + " is " + text(found) + ", not " + text(color));
+    check(isNear(found, color, 4), what, ": box ", n, " is ", text(found), ", not ", text(color));
   };
   for (int n = 0; n < 3; ++n)
   {
@@ -195,7 +194,7 @@ void testSearch(reference::Checks& check)
       wrong += !isNear({ rgb[0], rgb[1], rgb[2] }, expected, 4);
     }
   }
-  check(wrong == 0, std::to_string(wrong) + " pixels have other colours than a search gives.");
+  check(wrong == 0, wrong, " pixels have other colours than a search gives.");
 }
 
 /// The buffer itself, beside the positions of samples.
@@ -219,14 +218,13 @@ void testBuffer(Scene& scene, const std::string& what, reference::Checks& check)
     scene.stage.renderer->WorldToDisplay();
     wrong += !(std::abs(scene.stage.renderer->GetDisplayPoint()[2] - buffer[n]) < 1e-5);
   }
-  check(written > 200 && wrong == 0,
-    std::to_string(wrong) + " of " + std::to_string(written) + " depths are wrong" + what);
+  check(written > 200 && wrong == 0, wrong, " of ", written, " depths are wrong", what);
   for (int n = 0; n < 3; ++n)
   {
     const auto pixel = scene.pixelOf(n);
-    check(buffer[pixel[1] * Size + pixel[0]] < 1.0f, "Boxes have depths" + what);
+    check(buffer[pixel[1] * Size + pixel[0]] < 1.0f, "Boxes have depths", what);
   }
-  check(buffer[20 * Size + Size / 2] == 1.0f, "The background has none" + what);
+  check(buffer[20 * Size + Size / 2] == 1.0f, "The background has none", what);
 }
 
 /// Later geometry: a green sphere in a layer above, which keeps depths.
@@ -287,14 +285,13 @@ void testDepthBuffer(reference::Checks& check, double viewAngle)
   const Rgb green = { 0, 255, 0 }, white = { 255, 255, 255 };
   for (int n = 0; n < 3; ++n)
   {
+    check(isNear(sphere.colorOfBox(n, scene.depths[n] - 5.0), green, 0), "Before it is seen", what);
     check(
-      isNear(sphere.colorOfBox(n, scene.depths[n] - 5.0), green, 0), "Before it is seen" + what);
-    check(
-      isNear(sphere.colorOfBox(n, scene.depths[n] + 5.0), white, 0), "Behind it is hidden" + what);
+      isNear(sphere.colorOfBox(n, scene.depths[n] + 5.0), white, 0), "Behind it is hidden", what);
   }
   sphere.actor->SetPosition(24.0, 40.0, 45.0);
   check(isNear(scene.colorAt(scene.stage.pixels(), scene.pixelOf(24.0, 40.0, 45.0)), green, 0),
-    "Beside vessels nothing is hidden" + what);
+    "Beside vessels nothing is hidden", what);
   scene.mapper->SetWriteDepthOpacity(1.0);
   scene.stage.property->SetScalarOpacity(0);
   opacity->RemoveAllPoints();
@@ -302,13 +299,13 @@ void testDepthBuffer(reference::Checks& check, double viewAngle)
   opacity->AddPoint(200.0, 0.6);
   scene.stage.property->SetScalarOpacity(opacity);
   check(isNear(sphere.colorOfBox(1, scene.depths[1] + 5.0), green, 0),
-    "What is not opaque enough hides nothing" + what);
+    "What is not opaque enough hides nothing", what);
   scene.mapper->SetWriteDepthOpacity(0.5);
   check(!isNear(sphere.colorOfBox(1, scene.depths[1] + 5.0), green, 0),
-    "What is opaque enough hides" + what);
+    "What is opaque enough hides", what);
   scene.mapper->WriteDepthOff();
   check(
-    isNear(sphere.colorOfBox(1, scene.depths[1] + 5.0), green, 0), "It can be turned off" + what);
+    isNear(sphere.colorOfBox(1, scene.depths[1] + 5.0), green, 0), "It can be turned off", what);
 }
 
 /// Geometry that is there before keeps its depth.

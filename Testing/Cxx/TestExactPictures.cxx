@@ -172,10 +172,8 @@ void compareWithOracle(const Truth& truth, const reference::Image<double>& pictu
       ++compared;
     }
   }
-  check(wrong == 0 && compared > Size / Step * Size / Step / 2,
-    what + ": " + std::to_string(wrong) + " of " + std::to_string(compared) +
-      " pixels are not the field's extremum; the worst is " + std::to_string(worst) +
-      " grays off.");
+  check(wrong == 0 && compared > Size / Step * Size / Step / 2, what, ": ", wrong, " of ", compared,
+    " pixels are not the field's extremum; the worst is ", worst, " grays off.");
 }
 
 void comparePictures(

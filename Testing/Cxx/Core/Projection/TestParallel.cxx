@@ -41,8 +41,7 @@ void testLoops(reference::Checks& check)
       {
         once += times == 1;
       }
-      check(once == count && sum == count,
-        std::to_string(count) + " numbers, grain " + std::to_string(grain));
+      check(once == count && sum == count, count, " numbers, grain ", grain);
     }
   }
 }

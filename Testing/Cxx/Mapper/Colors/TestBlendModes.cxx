@@ -48,16 +48,15 @@ void compareWithDefinition(stage::Stage& stage, vtkImageData* image, Mapper* map
   const reference::Image<double>& truth, reference::Random& random, const std::string& what,
   reference::Checks& check)
 {
-  check(definition.look(stage, image, mapper), what + ": one axis is the nearest to the rays.");
+  check(definition.look(stage, image, mapper), what, ": one axis is the nearest to the rays.");
   for (int n = 0; n < SomePixels; ++n)
   {
     const auto at = stage::somePixel(truth, n % 2 == 0, random);
     const stage::Definition::Pixel expected = definition.pixel(at[0], at[1]);
     const double gray = expected.isHit && isNegative ? 255.0 - expected.value : expected.value;
     const double found = picture.at(at[0], at[1]);
-    check(!expected.isCertain || std::abs(found - gray) <= stage::GrayTolerance,
-      what + ": pixel " + std::to_string(at[0]) + " " + std::to_string(at[1]) + " is " +
-        std::to_string(found) + ", not " + std::to_string(gray) + ".");
+    check(!expected.isCertain || std::abs(found - gray) <= stage::GrayTolerance, what, ": pixel ",
+      at[0], " ", at[1], " is ", found, ", not ", gray, ".");
   }
 }
 
@@ -94,8 +93,8 @@ void testMinimumAgainstRayCaster(stage::Stage& stage, reference::Checks& check)
         const stage::Likeness likeness(truth, picture);
         const std::string what = std::string("Minimum, ") + mapper->GetQualityModeAsString();
         std::cout << what << ": " << likeness.text() << std::endl;
-        check(!mapper->GetLastRenderUsedRayCasting(), what + ": is splatted.");
-        check(mode == Mapper::PREVIEW || likeness.largestShift() <= MostShift, what + ": shift.");
+        check(!mapper->GetLastRenderUsedRayCasting(), what, ": is splatted.");
+        check(mode == Mapper::PREVIEW || likeness.largestShift() <= MostShift, what, ": shift.");
         for (int n = 0; n < ManyPixels; ++n)
         {
           const auto at = stage::somePixel(truth, n % 2 == 0, random);
@@ -103,7 +102,7 @@ void testMinimumAgainstRayCaster(stage::Stage& stage, reference::Checks& check)
           const double found = picture.at(at[0], at[1]);
           check(found >= limits.low - stage::GrayTolerance &&
               found <= limits.high + stage::GrayTolerance,
-            what + ": what voxels near the ray allow.");
+            what, ": what voxels near the ray allow.");
         }
         if (stage.viewAngle <= 0.0)
         {
@@ -228,10 +227,10 @@ void testAverageAgainstRayCaster(stage::Stage& stage, reference::Checks& check)
         const double most = 1.0 + truth.slack / truth.seen.size();
         std::cout << what << ": " << likeness.text() << ", mean " << mean << ", off by "
                   << difference << " of at most " << most << std::endl;
-        check(!mapper->GetLastRenderUsedRayCasting(), what + ": is splatted.");
-        check(truth.seen.size() > 2000, what + ": there is something to see.");
-        check(std::abs(difference) < most, what + ": mean.");
-        check(likeness.largestShift() < MostShift, what + ": shift.");
+        check(!mapper->GetLastRenderUsedRayCasting(), what, ": is splatted.");
+        check(truth.seen.size() > 2000, what, ": there is something to see.");
+        check(std::abs(difference) < most, what, ": mean.");
+        check(likeness.largestShift() < MostShift, what, ": shift.");
         if (stage.viewAngle <= 0.0)
         {
           compareWithDefinition(
@@ -272,10 +271,8 @@ void testDefinitions(stage::Stage& stage, reference::Checks& check)
         mapper->SetMaximumType(std::max(0, kind - 2));
         stage.window->Render();
         const double error = stage::shearImageError(stage, mapper, image, volume);
-        check(error <= stage::allowedError(mapper),
-          "View " + std::to_string(turn) + ", kind " + std::to_string(kind) + ", axis " +
-            std::to_string(mapper->GetPrincipalAxis()) + " has an error of " +
-            std::to_string(error) + ".");
+        check(error <= stage::allowedError(mapper), "View ", turn, ", kind ", kind, ", axis ",
+          mapper->GetPrincipalAxis(), " has an error of ", error, ".");
       }
     });
   stage.volume->SetUserTransform(nullptr);

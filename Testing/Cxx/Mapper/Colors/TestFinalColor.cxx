@@ -89,7 +89,7 @@ void testMeaning(stage::Stage& stage, vtkImageData* image, reference::Checks& ch
       const std::string what = "window " + std::to_string(finalColor.window) + ", level " +
         std::to_string(finalColor.level) + ", opacity " + std::to_string(opacity);
       const auto isNear = [&](const char* who, double error, double most)
-      { check(error <= most, what + ": " + who + " is wrong by " + std::to_string(error)); };
+      { check(error <= most, what, ": ", who, " is wrong by ", error); };
       isNear("splatting", difference(stage, mapper.Get(), opacity, finalColor), 1.5);
       isNear("the fixed-point ray caster", difference(stage, fixedPoint.Get(), opacity, finalColor),
         2.0);
@@ -121,17 +121,17 @@ void testReuse(stage::Stage& stage, vtkVolumeProperty* property, reference::Chec
     const stage::Pixels windowed = stage.pixels();
     mapper->SetFinalColorLevel(0.6f);
     const stage::Pixels levelled = stage.pixels();
-    check(before != windowed && windowed != levelled, name + ": window and level change it.");
+    check(before != windowed && windowed != levelled, name, ": window and level change it.");
     mapper->SetFinalColorWindow(1.0f);
     mapper->SetFinalColorLevel(0.5f);
-    check(stage.pixels() == before, name + ": window and level can be taken back.");
+    check(stage.pixels() == before, name, ": window and level can be taken back.");
     for (int type :
       { VTK_NEAREST_INTERPOLATION, VTK_CUBIC_INTERPOLATION, VTK_LINEAR_INTERPOLATION })
     {
       property->SetInterpolationType(type);
-      check(stage.pixels() == before, name + ": the interpolation type has no meaning.");
+      check(stage.pixels() == before, name, ": the interpolation type has no meaning.");
     }
-    check(mapper->GetNumberOfProjections() == projections, name + ": nothing is projected again.");
+    check(mapper->GetNumberOfProjections() == projections, name, ": nothing is projected again.");
   }
 }
 }

@@ -103,14 +103,14 @@ void testMapper(stage::Stage& stage, const MakeMapper& make, reference::Checks& 
     const stage::Pixels shown = picture(stage, mapper, mode, gray);
     const vtkMTimeType time = gray->GetMTime();
     before.push_back(shown);
-    check(picture(stage, mapper, mode, gray) == shown, of + "the second frame is as the first.");
-    check(gray->GetMTime() == time, of + "the second frame changes nothing of the property.");
-    check(gray->GetColorChannels(0) == 1, of + "the property is still gray.");
-    check(picture(stage, mapper, vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, gray) == maxima,
-      of + "maxima are as before.");
+    check(picture(stage, mapper, mode, gray) == shown, of, "the second frame is as the first.");
+    check(gray->GetMTime() == time, of, "the second frame changes nothing of the property.");
+    check(gray->GetColorChannels(0) == 1, of, "the property is still gray.");
+    check(picture(stage, mapper, vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, gray) == maxima, of,
+      "maxima are as before.");
     stage.show(other);
-    check(picture(stage, other, mode, colored) == shown,
-      of + "the picture is that of the same values as RGB function.");
+    check(picture(stage, other, mode, colored) == shown, of,
+      "the picture is that of the same values as RGB function.");
     stage.show(mapper);
   }
   // Changes of the function are seen as those of the RGB function are.
@@ -123,11 +123,11 @@ void testMapper(stage::Stage& stage, const MakeMapper& make, reference::Checks& 
     const std::string of = name + ", blend mode " + std::to_string(modes[n]) + ": ";
     const stage::Pixels shown = picture(stage, mapper, modes[n], gray);
     stage.show(other);
-    check(picture(stage, other, modes[n], colored) == shown, of + "a change of grays is seen.");
+    check(picture(stage, other, modes[n], colored) == shown, of, "a change of grays is seen.");
     stage.show(mapper);
     changed += shown != before[n];
   }
-  check(changed >= 3, name + ": the change can be seen."); // not where VTK shows sums as gray
+  check(changed >= 3, name, ": the change can be seen."); // not where VTK shows sums as gray
   mapper->ReleaseGraphicsResources(stage.window);
   other->ReleaseGraphicsResources(stage.window);
 }

@@ -222,10 +222,8 @@ int compare(
         wrong += std::abs(pixels[at] - value) > tolerance;
         changed += pixels[at] != parts.background[at];
       }
-      check(wrong == 0,
-        std::to_string(wrong) + " bytes are wrong of " + std::to_string(numbers.size()) +
-          " volumes, blending " + std::to_string(blending) + ", first is " +
-          std::to_string(numbers[0]));
+      check(wrong == 0, wrong, " bytes are wrong of ", numbers.size(), " volumes, blending ",
+        blending, ", first is ", numbers[0]);
       first = first.empty() ? pixels : first;
       check(blending == Mapper::OVER || first == pixels, "The order changes the picture.");
     } while (std::next_permutation(numbers.begin(), numbers.end()));
@@ -266,7 +264,7 @@ void testColors(reference::Checks& check, reference::Random& random)
       }
     }
   }
-  check(changed > 100000, "The volumes are hardly visible: " + std::to_string(changed));
+  check(changed > 100000, "The volumes are hardly visible: ", changed);
 }
 
 /// The blend state of OpenGL.

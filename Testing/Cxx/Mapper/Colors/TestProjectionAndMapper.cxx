@@ -168,13 +168,13 @@ void testWithoutShades(
   const double bound = 255.0 * (2.0 * 0x1p-24 + (isExact ? 2e-6 : 0.0));
   check(maximum->GetNumberOfPoints() == result()->GetNumberOfPoints() &&
       largestDifference(maximum, result()) <= bound,
-    "without shades it is the maximum" + view);
-  check(largestDifference(picture, filter->GetOutput()) <= 255.0,
-    "what has no shades" + view + " is finite");
+    "without shades it is the maximum", view);
+  check(largestDifference(picture, filter->GetOutput()) <= 255.0, "what has no shades", view,
+    " is finite");
   shade(-1.0);
   // Bytes times -1 have the lowest one for their maximum, or less where rays see no such voxel.
   check(largestDifference(picture, filter->GetOutput()) <= 2.0 * 255.0,
-    "what makes bright samples dark" + view + " is finite");
+    "what makes bright samples dark", view, " is finite");
   filter->SetDepthShadingAmbient(0.3);
   filter->SetDepthShadingChangeRate(0.7);
 }
@@ -221,12 +221,12 @@ int TestProjectionAndMapper(int, char*[])
         std::to_string(mapper->GetMaximumType());
       // Half a level, 1/16 of one that the table has, and what places in the picture are rounded
       // by.
-      check(difference < 0.6, "pictures" + view + " differ by " + std::to_string(difference));
-      check(sameShearImages(filter->GetShearImage(), mapper->GetShearImage()),
-        "shear images" + view + " are the same");
+      check(difference < 0.6, "pictures", view, " differ by ", difference);
+      check(sameShearImages(filter->GetShearImage(), mapper->GetShearImage()), "shear images", view,
+        " are the same");
       check(
         !mapper->GetRecordLocations() || sameLocations(filter->GetOutput(), mapper->GetLocations()),
-        "locations" + view + " are the same");
+        "locations", view, " are the same");
       if (mapper->GetBlendMode() == vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND)
       {
         testWithoutShades(filter, view, check);

@@ -273,7 +273,7 @@ void testBadInput(
     stage.pixels();
     stage.pixels();
     check(errors.texts.size() == 1 && errors.texts[0].find(fault.word) != std::string::npos,
-      std::string("One sentence about what is wrong: ") + fault.word);
+      "One sentence about what is wrong: ", fault.word);
     mapper->SetBoundingSurface(good);
     check(stage.pixels() == expected, "Once mended, the picture is as before.");
   }

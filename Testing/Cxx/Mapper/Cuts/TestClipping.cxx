@@ -47,9 +47,9 @@ void compare(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageD
   stage.show(mapper);
   const stage::Likeness likeness(truth, stage.gray());
   std::cout << what << ": " << likeness.text() << std::endl;
-  check(likeness.psnr > (magnifies ? 35.0 : 37.0), what + ": PSNR.");
-  check(likeness.ssim > (magnifies ? 0.9835 : 0.99), what + ": SSIM.");
-  check(likeness.largestShift() < 0.2, what + ": shift.");
+  check(likeness.psnr > (magnifies ? 35.0 : 37.0), what, ": PSNR.");
+  check(likeness.ssim > (magnifies ? 0.9835 : 0.99), what, ": SSIM.");
+  check(likeness.largestShift() < 0.2, what, ": shift.");
 }
 
 /// How far the cut picture is from the whole one, as PSNR: it must be visibly another.
@@ -252,7 +252,7 @@ void testSamples(reference::Checks& check)
       stage.window->Render();
       const double error = stage::shearImageError(stage, mapper, image, volume, halfSpaces);
       check(error <= stage::allowedError(mapper),
-        "The shear image is that of the samples that are left: " + std::to_string(error));
+        "The shear image is that of the samples that are left: ", error);
       cut.add(stage::shearImageError(stage, mapper, image, volume) > 0.0);
     });
   check(cut.areEnough(0.3), "Something is cut away.");
@@ -315,9 +315,8 @@ void testThinVolumes(reference::Checks& check)
       }
       const int lit = litPixels(stage);
       check(lit >= area - 0.5 * perimeter - 1e-6 && lit <= area + 0.5 * perimeter + 1.0 + 1e-6,
-        std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
-          std::to_string(size[2]) + " voxels, " + mapper->GetQualityModeAsString() + ": " +
-          std::to_string(lit) + " pixels, not " + std::to_string(area));
+        size[0], " x ", size[1], " x ", size[2], " voxels, ", mapper->GetQualityModeAsString(),
+        ": ", lit, " pixels, not ", area);
     });
 }
 }

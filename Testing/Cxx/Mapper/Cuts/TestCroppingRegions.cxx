@@ -95,10 +95,8 @@ void compareWithVoxels(const stage::ScreenRays& rays, const stage::Envelope& env
     const auto at = stage::somePixel(other, n % 2 == 0, random);
     const stage::Envelope::Limits limits = envelope.at(rays, at[0], at[1]);
     const double found = picture.at(at[0], at[1]);
-    check(found >= limits.low - tolerance && found <= limits.high + tolerance,
-      what + ": pixel " + std::to_string(at[0]) + " " + std::to_string(at[1]) + " is " +
-        std::to_string(found) + ", not from " + std::to_string(limits.low) + " to " +
-        std::to_string(limits.high) + ".");
+    check(found >= limits.low - tolerance && found <= limits.high + tolerance, what, ": pixel ",
+      at[0], " ", at[1], " is ", found, ", not from ", limits.low, " to ", limits.high, ".");
   }
 }
 
@@ -114,9 +112,8 @@ void compareWithDefinition(stage::Stage& stage, vtkImageData* image, Mapper* map
     const auto at = stage::somePixel(other, n % 2 == 0, random);
     const stage::Definition::Pixel expected = definition.pixel(at[0], at[1]);
     const double found = picture.at(at[0], at[1]);
-    check(!expected.isCertain || std::abs(found - expected.value) <= stage::GrayTolerance,
-      what + ": pixel " + std::to_string(at[0]) + " " + std::to_string(at[1]) + " is " +
-        std::to_string(found) + ", not " + std::to_string(expected.value) + ".");
+    check(!expected.isCertain || std::abs(found - expected.value) <= stage::GrayTolerance, what,
+      ": pixel ", at[0], " ", at[1], " is ", found, ", not ", expected.value, ".");
   }
 }
 
@@ -135,9 +132,7 @@ void compareWithField(const stage::ScreenRays& rays, const reference::Volume<dou
     const double found = picture.at(at[0], at[1]);
     check(!maximum.isCertain ||
         (found >= low - stage::FieldTolerance && found <= high + stage::FieldTolerance),
-      what + ": pixel " + std::to_string(at[0]) + " " + std::to_string(at[1]) + " is " +
-        std::to_string(found) + ", not from " + std::to_string(low) + " to " +
-        std::to_string(high) + ".");
+      what, ": pixel ", at[0], " ", at[1], " is ", found, ", not from ", low, " to ", high, ".");
   }
 }
 
@@ -241,10 +236,8 @@ void testDefinition(stage::Stage& stage, reference::Checks& check)
       mapper->SetAcceleration(random.uniform<int>(Mapper::AUTO, Mapper::SORTED_VOLUME));
       stage.window->Render();
       const double error = stage::shearImageError(stage, mapper, image, volume);
-      check(error <= stage::allowedError(mapper),
-        "View " + std::to_string(turn) + ", kind " + std::to_string(kind) + ", axis " +
-          std::to_string(mapper->GetPrincipalAxis()) + " has an error of " + std::to_string(error) +
-          ".");
+      check(error <= stage::allowedError(mapper), "View ", turn, ", kind ", kind, ", axis ",
+        mapper->GetPrincipalAxis(), " has an error of ", error, ".");
     });
 }
 
@@ -298,8 +291,8 @@ void testChanges(stage::Stage& stage, reference::Checks& check)
   for (int plane = 0; plane < 6; ++plane)
   {
     planes[plane] += plane % 2 ? 5.0 : -5.0;
-    check(projections([&] { mapper->SetCroppingRegionPlanes(planes); }) == 1,
-      "Plane " + std::to_string(plane) + " was moved.");
+    check(projections([&] { mapper->SetCroppingRegionPlanes(planes); }) == 1, "Plane ", plane,
+      " was moved.");
     planes[plane] -= plane % 2 ? 5.0 : -5.0;
   }
   mapper->SetCroppingRegionPlanes(planes);

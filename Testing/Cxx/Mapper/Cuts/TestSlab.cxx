@@ -145,7 +145,7 @@ void testThinSlab(stage::Stage& stage, reference::Checks& check)
         wrong += shear->GetScalarComponentAsDouble(u, v, 0, 0) != noise.at(i, j, slice);
       }
     }
-    check(wrong == 0, "A thin slab at " + std::to_string(place) + " shows one slice.");
+    check(wrong == 0, "A thin slab at ", place, " shows one slice.");
   }
   mapper->SetSlabCenter(3.0, 2.0, 50.0);
   const stage::Pixels outside = stage.pixels();
@@ -208,9 +208,8 @@ void testThinnerSlabs(stage::Stage& stage, int mode, reference::Checks& check)
         }
         // A pixel or two of the outline may meet the thicker slab only.
         check(wrong <= (mode == vtkSplattingMIPVolumeMapper::EXACT ? 6 : 0),
-          "A slab with a thickness of " + std::to_string(std::log10(thickness)) +
-            " powers of ten shows one slice, or a plane; bytes that differ: " +
-            std::to_string(wrong));
+          "A slab with a thickness of ", std::log10(thickness),
+          " powers of ten shows one slice, or a plane; bytes that differ: ", wrong);
       }
     }
   }
@@ -248,7 +247,7 @@ void testBadInput(
     stage.pixels();
     stage.pixels();
     check(errors.texts.size() == 1 && errors.texts[0].find(fault.word) != std::string::npos,
-      std::string("One sentence about what is wrong: ") + fault.word);
+      "One sentence about what is wrong: ", fault.word);
     set(6.0, middle);
     check(stage.pixels() == expected, "Once mended, the picture is as before.");
   }

@@ -95,7 +95,7 @@ void testGlobalQualityMode(reference::Checks& check)
   {
     Override::SetGlobalQualityMode(mode);
     check(Override::GetGlobalQualityMode() == expected && qualityOfNew() == expected,
-      "Quality mode " + std::to_string(mode) + ".");
+      "Quality mode ", mode, ".");
   }
   check(vtkSmartPointer<vtkSplattingMIPVolumeMapper>::New()->GetQualityMode() ==
       vtkSplattingMIPVolumeMapper::EXACT,
@@ -182,10 +182,10 @@ void testSmartMapper(vtkImageData* image, reference::Checks& check)
     const stage::Pixels vtks = shown(stage, before, mode);
     const stage::Pixels picture = shown(stage, smart, mode);
     const stage::Pixels expected = isSplatted ? shown(stage, splatting, mode) : vtks;
-    check(picture == expected, name + ": the picture.");
-    check((vtks != picture) == isSplatted, name + ": VTK's own is another where it is splatted.");
-    check(smart->GetLastUsedRenderMode() == vtkSmartVolumeMapper::GPURenderMode,
-      name + ": the smart mapper takes its GPU mapper.");
+    check(picture == expected, name, ": the picture.");
+    check((vtks != picture) == isSplatted, name, ": VTK's own is another where it is splatted.");
+    check(smart->GetLastUsedRenderMode() == vtkSmartVolumeMapper::GPURenderMode, name,
+      ": the smart mapper takes its GPU mapper.");
   }
   smart->SetRequestedRenderModeToGPU();
   check(shown(stage, smart, Maximum) == shown(stage, splatting, Maximum), "GPU mode.");

@@ -116,10 +116,9 @@ struct Scene
       differing += pixels[at] != expected[at];
       shown += pixels[at] != pixels[at % 3];
     }
-    check(differing == 0 && shown > 1000,
-      what + ": " + std::to_string(differing) + " bytes differ, " + std::to_string(shown) +
-        " are shown.");
-    check(this->mapper->GetLastRenderUsedSplatting(), what + ": not splatted.");
+    check(differing == 0 && shown > 1000, what, ": ", differing, " bytes differ, ", shown,
+      " are shown.");
+    check(this->mapper->GetLastRenderUsedSplatting(), what, ": not splatted.");
   }
 
   std::array<vtkSmartPointer<vtkImageData>, Count> images;
@@ -200,7 +199,7 @@ void testRest(Scene& scene, reference::Checks& check)
     scene.mapper->GetSplattingMapper(1)->SetSlabThickness(-1.0);
     scene.stage.pixels();
     scene.stage.pixels();
-    check(errors.texts.size() == 1, std::to_string(errors.texts.size()) + " errors.");
+    check(errors.texts.size() == 1, errors.texts.size(), " errors.");
   }
   scene.mapper->GetSplattingMapper(1)->SlabOff();
   // Two-dimensional functions of one volume are the superclass's, which has errors here.

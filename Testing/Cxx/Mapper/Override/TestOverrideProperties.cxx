@@ -91,13 +91,13 @@ struct Pair
   stage::Pixels same(const std::string& name, reference::Checks& check)
   {
     const stage::Pixels expected = this->of(this->splatting);
-    check(!isBlack(expected), name + ": there is something to see.");
-    check(this->of(this->override) == expected, name + ": the same picture.");
-    check(this->override->GetLastRenderUsedSplatting(), name + ": splatted.");
+    check(!isBlack(expected), name, ": there is something to see.");
+    check(this->of(this->override) == expected, name, ": the same picture.");
+    check(this->override->GetLastRenderUsedSplatting(), name, ": splatted.");
     double here[6], there[6];
     this->splatting->GetBounds(here);
     this->override->GetBounds(there);
-    check(std::equal(here, here + 6, there), name + ": the same bounds.");
+    check(std::equal(here, here + 6, there), name, ": the same bounds.");
     return expected;
   }
 };
@@ -246,7 +246,7 @@ void testChanges(reference::Checks& check)
     change.make(pair.splatting, pair);
     change.make(pair.override, pair);
     const stage::Pixels changed = pair.same(name, check);
-    check(changed != before, name + ": it shows.");
+    check(changed != before, name, ": it shows.");
     change.undo(pair.splatting, pair);
     change.undo(pair.override, pair);
     before = pair.same(name + " undone", check);
@@ -369,8 +369,8 @@ void testExceptions(reference::Checks& check)
       pictures[n] = stage.pixels();
     }
     const std::string name = exception.name;
-    check(!override->GetLastRenderUsedSplatting(), name + ": not splatted.");
-    check(!isBlack(pictures[0]) && pictures[0] == pictures[1], name + ": VTK's own picture.");
+    check(!override->GetLastRenderUsedSplatting(), name, ": not splatted.");
+    check(!isBlack(pictures[0]) && pictures[0] == pictures[1], name, ": VTK's own picture.");
   }
 }
 

@@ -95,7 +95,7 @@ void testAutoAdjust(reference::Checks& check)
     mapper->SetAutoAdjustSampleDistances(on);
     scene.pixels();
     check(mapper->GetSplattingMapper()->GetAutoAdjustSampleDistances() == on,
-      "AutoAdjustSampleDistances " + std::to_string(on) + ".");
+      "AutoAdjustSampleDistances ", on, ".");
   }
 }
 
@@ -263,9 +263,8 @@ void testSelection(reference::Checks& check)
       wrong += isPicked != isShown;
     }
   }
-  check(hits > 10 && misses > 10 && wrong == 0,
-    "Picks what is seen: " + std::to_string(hits) + " hits, " + std::to_string(misses) +
-      " misses, " + std::to_string(wrong) + " wrong.");
+  check(hits > 10 && misses > 10 && wrong == 0, "Picks what is seen: ", hits, " hits, ", misses,
+    " misses, ", wrong, " wrong.");
   check(scene.pixels() == picture, "Picking leaves no trace.");
 }
 
@@ -306,7 +305,7 @@ void testWindows(reference::Checks& check)
   draw(mapper, found);
   for (int n = 0; n < 4; ++n)
   {
-    check(found[n] == expected[n], "Windows: picture " + std::to_string(n) + ".");
+    check(found[n] == expected[n], "Windows: picture ", n, ".");
   }
   check(expected[0] != expected[1] && found[3] == found[1], "Windows: as it was.");
 }

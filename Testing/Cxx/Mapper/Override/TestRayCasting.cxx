@@ -58,10 +58,10 @@ stage::Pixels renderWithOneWarning(stage::Stage& stage, vtkSplattingMIPVolumeMap
   stage.pixels();
   stage.renderer->GetActiveCamera()->Roll(-0.5);
   stage::Pixels pixels = stage.pixels();
-  check(mapper->GetLastRenderUsedRayCasting(), name + ": rays were cast.");
-  check(warnings.texts.size() == 1, name + ": one warning.");
-  check(!warnings.texts.empty() && warnings.texts[0].find("blend mode") != std::string::npos,
-    name + ": the warning says why.");
+  check(mapper->GetLastRenderUsedRayCasting(), name, ": rays were cast.");
+  check(warnings.texts.size() == 1, name, ": one warning.");
+  check(!warnings.texts.empty() && warnings.texts[0].find("blend mode") != std::string::npos, name,
+    ": the warning says why.");
   return pixels;
 }
 
@@ -158,9 +158,9 @@ void testBlendModesOfGpu(stage::Stage& stage, reference::Checks& check)
     look(stage, c.perspective);
     const std::string name = "Blend mode " + std::to_string(c.blendMode);
     const stage::Pixels picture = renderWithOneWarning(stage, mapper, name, check);
-    check(!isBlack(picture), name + ": the picture is not black.");
+    check(!isBlack(picture), name, ": the picture is not black.");
     stage.show(rayCaster);
-    check(stage.pixels() == picture, name + ": the picture is that of the GPU ray caster.");
+    check(stage.pixels() == picture, name, ": the picture is that of the GPU ray caster.");
   }
 }
 

@@ -288,7 +288,7 @@ public:
     const double most = (MostShift + allowance) * unit;
     check(most > MostMeasured ? isNearer(truth, picture, std::lround(2.0 * most))
                               : likeness.largestShift() <= most,
-      std::string(ModeNames[mode]) + " and " + this->Truth + ": " + likeness.text());
+      ModeNames[mode], " and ", this->Truth, ": ", likeness.text());
   }
 
   void print() const
@@ -325,9 +325,7 @@ void compareWithDefinition(stage::Stage& stage, vtkImageData* image, Mapper* map
       const stage::Definition::Pixel expected = definition.pixel(at[0], at[1]);
       const double found = pictures[mode].at(at[0], at[1]);
       check(!expected.isCertain || std::abs(found - expected.value) <= stage::GrayTolerance,
-        std::string(ModeNames[mode]) + ": pixel " + std::to_string(at[0]) + " " +
-          std::to_string(at[1]) + " is " + std::to_string(found) + ", not " +
-          std::to_string(expected.value));
+        ModeNames[mode], ": pixel ", at[0], " ", at[1], " is ", found, ", not ", expected.value);
     }
   }
 }
@@ -382,9 +380,8 @@ void compareWithVoxels(stage::Stage& stage, vtkImageData* image,
       const double found = pictures[mode].at(at[0], at[1]);
       check(
         found >= limits.low - stage::GrayTolerance && found <= limits.high + stage::GrayTolerance,
-        std::string(ModeNames[mode]) + " in perspective: pixel " + std::to_string(at[0]) + " " +
-          std::to_string(at[1]) + " is " + std::to_string(found) + ", not from " +
-          std::to_string(limits.low) + " to " + std::to_string(limits.high));
+        ModeNames[mode], " in perspective: pixel ", at[0], " ", at[1], " is ", found, ", not from ",
+        limits.low, " to ", limits.high);
     }
   }
 }

@@ -96,9 +96,9 @@ void testProgress(Scene& scene, const std::string& what, reference::Checks& chec
   const std::vector<double> shares = progressOf(scene, check);
   check(shares.size() >= 2 && shares.front() == 0.0 && shares.back() == 1.0 &&
       std::is_sorted(shares.begin(), shares.end()),
-    what + ": the progress goes from 0 to 1.");
-  check(progressOf(scene, check).empty(), what + ": a frame without projection has no progress.");
-  check(starts == 2 && ends == 2, what + ": frames start and end.");
+    what, ": the progress goes from 0 to 1.");
+  check(progressOf(scene, check).empty(), what, ": a frame without projection has no progress.");
+  check(starts == 2 && ends == 2, what, ": frames start and end.");
 }
 
 /// Aborts at the n-th request for progress. Returns whether there were so many.
@@ -122,11 +122,11 @@ bool abortAt(Scene& scene, int n, const std::string& what, reference::Checks& ch
   {
     return false;
   }
-  check(told == n, what + ": after the abort nothing is told.");
-  check(isBlack(pixels), what + ": an aborted render draws nothing.");
-  check(scene.mapper->GetNumberOfProjections() == projections, what + ": it is no projection.");
-  check(scene.mapper->GetShearImage() == nullptr, what + ": it leaves no shear image.");
-  check(scene.mapper->GetPrincipalAxis() == -1, what + ": it leaves no principal axis.");
+  check(told == n, what, ": after the abort nothing is told.");
+  check(isBlack(pixels), what, ": an aborted render draws nothing.");
+  check(scene.mapper->GetNumberOfProjections() == projections, what, ": it is no projection.");
+  check(scene.mapper->GetShearImage() == nullptr, what, ": it leaves no shear image.");
+  check(scene.mapper->GetPrincipalAxis() == -1, what, ": it leaves no principal axis.");
   return true;
 }
 
@@ -137,7 +137,7 @@ void testAborts(Scene& scene, const std::string& what, reference::Checks& check)
   scene.stage.pixels();
   scene.stage.look(Directions[0], Up);
   const stage::Pixels expected = scene.stage.pixels();
-  check(!isBlack(expected), what + ": there is something to see.");
+  check(!isBlack(expected), what, ": there is something to see.");
   int times = 0;
   for (int n = 1; n < 1000; ++n)
   {
@@ -149,9 +149,9 @@ void testAborts(Scene& scene, const std::string& what, reference::Checks& check)
       break;
     }
     ++times;
-    check(scene.stage.pixels() == expected, what + ": the next render is right.");
+    check(scene.stage.pixels() == expected, what, ": the next render is right.");
   }
-  check(times >= 2, what + ": the render could be aborted.");
+  check(times >= 2, what, ": the render could be aborted.");
 }
 
 /// Chains are given up, too, and made again.
@@ -176,11 +176,11 @@ void testChains(Scene& scene, reference::Checks& check)
             scene.stage.window->SetAbortRender(1);
           }
         });
-      check(isBlack(scene.stage.pixels()), what + ": aborted while chains are made.");
-      check(times == 1, what + ": the rest of the chains is not made.");
+      check(isBlack(scene.stage.pixels()), what, ": aborted while chains are made.");
+      check(times == 1, what, ": the rest of the chains is not made.");
     }
-    check(scene.stage.pixels() == expected, what + ": the next render is right.");
-    check(scene.mapper->GetAccelerationUsed() == acceleration, what + ": with all chains.");
+    check(scene.stage.pixels() == expected, what, ": the next render is right.");
+    check(scene.mapper->GetAccelerationUsed() == acceleration, what, ": with all chains.");
   }
   scene.mapper->SetAccelerationToAuto();
 }
@@ -225,18 +225,18 @@ void testOverview(Scene& scene, reference::Checks& check)
     scene.mapper->SetBlendMode(mode);
     scene.stage.look(Directions[0], Up, 10.0);
     const stage::Pixels expected = scene.stage.pixels();
-    check(!isBlack(expected), what + ": there is something to see.");
+    check(!isBlack(expected), what, ": there is something to see.");
     const vtkIdType projections = scene.mapper->GetNumberOfProjections();
     {
       const Observer abort(scene.mapper, vtkCommand::VolumeMapperRenderStartEvent,
         [&](void*) { scene.stage.window->SetAbortRender(1); });
-      check(isBlack(scene.stage.pixels()), what + ": an aborted render draws nothing.");
+      check(isBlack(scene.stage.pixels()), what, ": an aborted render draws nothing.");
     }
     double position[3];
-    check(!scene.mapper->PickWorldPosition(60, 55, position), what + ": nor is it picked.");
-    check(scene.stage.pixels() == expected, what + ": the next render is right.");
+    check(!scene.mapper->PickWorldPosition(60, 55, position), what, ": nor is it picked.");
+    check(scene.stage.pixels() == expected, what, ": the next render is right.");
     check(
-      scene.mapper->GetNumberOfProjections() == projections, what + ": all show one projection.");
+      scene.mapper->GetNumberOfProjections() == projections, what, ": all show one projection.");
   }
   scene.mapper->SetBlendModeToMaximumIntensity();
   scene.stage.look(Directions[0], Up);

@@ -52,14 +52,14 @@ void testForced(stage::Stage& stage, vtkImageData* image, reference::Checks& che
         mapper->SetAcceleration(acceleration);
         const std::string where = std::string(" ") + mapper->GetAccelerationAsString() + ", mode " +
           mapper->GetQualityModeAsString() + ".";
-        check(stage.pixels() == dense, "The plain walk's picture:" + where);
+        check(stage.pixels() == dense, "The plain walk's picture:", where);
         const int used = mapper->GetAccelerationUsed();
         // Perspective views have no chains.
         const int wanted =
           stage.viewAngle > 0.0 ? std::min<int>(acceleration, Mapper::BRICKS) : acceleration;
         check(acceleration == Mapper::AUTO ? used == Mapper::BRICKS || used == Mapper::DENSE
                                            : used == wanted,
-          "It was used:" + where);
+          "It was used:", where);
       }
     }
   }

@@ -75,30 +75,30 @@ void testClamping(Mapper* mapper, reference::Checks& check)
     { std::pair(0, 0), { 1, 1 }, { 2, 2 }, { 3, 3 }, { -3, 0 }, { 7, 3 } })
   {
     check(sets(mapper, &Mapper::SetQualityMode, &Mapper::GetQualityMode, value, expected),
-      "SetQualityMode " + std::to_string(value));
+      "SetQualityMode ", value);
   }
   for (const auto& [value, expected] : { std::pair(2, 2), { 1, 1 }, { -1, 0 }, { 5, 2 } })
   {
     check(sets(mapper, &Mapper::SetPictureBlending, &Mapper::GetPictureBlending, value, expected),
-      "SetPictureBlending " + std::to_string(value));
+      "SetPictureBlending ", value);
   }
   for (const auto& [value, expected] : { std::pair(0, 0), { 1, 1 }, { -1, 0 }, { 5, 1 } })
   {
-    check(sets(mapper, &Mapper::SetKernel, &Mapper::GetKernel, value, expected),
-      "SetKernel " + std::to_string(value));
+    check(
+      sets(mapper, &Mapper::SetKernel, &Mapper::GetKernel, value, expected), "SetKernel ", value);
   }
   for (const auto& [value, expected] :
     { std::pair(0.5, 0.5), { 1.25, 1.25 }, { 1.5, 1.5 }, { 0.1, 0.5 }, { 9.0, 1.5 } })
   {
     check(sets(mapper, &Mapper::SetKernelRadius, &Mapper::GetKernelRadius, value, expected),
-      "SetKernelRadius " + std::to_string(value));
+      "SetKernelRadius ", value);
   }
   for (const auto& [value, expected] :
     { std::pair(0, 0), { 16, 16 }, { 64, 64 }, { -1, 0 }, { 65, 64 } })
   {
     check(
       sets(mapper, &Mapper::SetFootprintSampling, &Mapper::GetFootprintSampling, value, expected),
-      "SetFootprintSampling " + std::to_string(value));
+      "SetFootprintSampling ", value);
   }
 }
 
@@ -107,12 +107,12 @@ void testClampingOfAcceleration(Mapper* mapper, reference::Checks& check)
   for (const auto& [value, expected] : { std::pair(5, 5), { 2, 2 }, { -1, 0 }, { 6, 5 }, { 0, 0 } })
   {
     check(sets(mapper, &Mapper::SetAcceleration, &Mapper::GetAcceleration, value, expected),
-      "SetAcceleration " + std::to_string(value));
+      "SetAcceleration ", value);
   }
   for (const auto& [value, expected] : { std::pair(8.0, 8.0), { 99.0, 64.0 }, { -1.0, 0.0 } })
   {
     check(sets(mapper, &Mapper::SetLineTolerance, &Mapper::GetLineTolerance, value, expected),
-      "SetLineTolerance " + std::to_string(value));
+      "SetLineTolerance ", value);
   }
   check(sets(mapper, &Mapper::SetIndexMemoryBudget, &Mapper::GetIndexMemoryBudget, vtkTypeInt64(-5),
           vtkTypeInt64(0)),
@@ -156,12 +156,12 @@ void testVectorMode(Mapper* mapper, reference::Checks& check)
   for (const auto& [value, expected] : { std::pair(0, 0), { 1, 1 }, { -7, -1 }, { 2, 1 } })
   {
     check(sets(mapper, &Mapper::SetVectorMode, &Mapper::GetVectorMode, value, expected),
-      "SetVectorMode " + std::to_string(value));
+      "SetVectorMode ", value);
   }
   for (const auto& [value, expected] : { std::pair(2, 2), { 3, 3 }, { -1, 0 }, { 4, 3 } })
   {
     check(sets(mapper, &Mapper::SetVectorComponent, &Mapper::GetVectorComponent, value, expected),
-      "SetVectorComponent " + std::to_string(value));
+      "SetVectorComponent ", value);
   }
   mapper->SetVectorModeToMagnitude();
   check(std::string("magnitude") == mapper->GetVectorModeAsString(), "SetVectorModeToMagnitude");
@@ -222,7 +222,7 @@ void testPrinting(Mapper* mapper, reference::Checks& check)
          "FinalColorLevel: 0.5", "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend",
          "VectorMode: disabled", "VectorComponent: ", "MaskInput: ", "Cropping" })
   {
-    check(text.find(variable) != std::string::npos, std::string("PrintSelf names ") + variable);
+    check(text.find(variable) != std::string::npos, "PrintSelf names ", variable);
   }
 }
 
@@ -245,8 +245,8 @@ void testPictureSettings(Mapper* mapper, reference::Checks& check)
     "DepthCodingColors", "LabelInput", "LabelColors" };
   for (std::string line; std::getline(rest, line);)
   {
-    check(others.count(line.substr(0, line.find(':'))) == 1,
-      "Ranks do not compare the setting " + line);
+    check(
+      others.count(line.substr(0, line.find(':'))) == 1, "Ranks do not compare the setting ", line);
   }
 }
 }

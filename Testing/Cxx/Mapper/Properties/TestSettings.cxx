@@ -46,8 +46,8 @@ void testMistake(stage::Stage& stage, const Change& change, reference::Checks& c
     stage.window->Render();
   }
   check(errors.texts.size() == 1 && errors.texts[0].find(change.name) != std::string::npos,
-    change.name + ": one sentence in three frames.");
-  check(mapper->GetNumberOfProjections() == 0, change.name + ": nothing is projected.");
+    change.name, ": one sentence in three frames.");
+  check(mapper->GetNumberOfProjections() == 0, change.name, ": nothing is projected.");
   mapper->SetKernelRadius(1.0);
   mapper->SetLineTolerance(0.0);
   mapper->CroppingOff();
@@ -55,8 +55,8 @@ void testMistake(stage::Stage& stage, const Change& change, reference::Checks& c
   mapper->SetBlendModeToMaximumIntensity();
   mapper->RemoveAllClippingPlanes();
   stage.window->Render();
-  check(errors.texts.size() == 1 && mapper->GetNumberOfProjections() == 1,
-    change.name + ": mended, the volume is shown.");
+  check(errors.texts.size() == 1 && mapper->GetNumberOfProjections() == 1, change.name,
+    ": mended, the volume is shown.");
 }
 
 void testWithoutMeaning(stage::Stage& stage, reference::Checks& check)
@@ -130,8 +130,8 @@ void testWithoutEffect(stage::Stage& stage, reference::Checks& check)
   for (const Change& change : changes)
   {
     change.set(mapper);
-    check(stage.pixels() == before && mapper->GetNumberOfProjections() == 1,
-      change.name + " projects nothing.");
+    check(stage.pixels() == before && mapper->GetNumberOfProjections() == 1, change.name,
+      " projects nothing.");
   }
 }
 

@@ -68,9 +68,9 @@ void testTypes(stage::Stage& stage, reference::Checks& check)
       stage.window->Render();
       vtkImageData* const shear = mapper->GetShearImage();
       const int expected = mode == Mapper::PREVIEW ? type : floatTypeFor(type);
-      check(shear && shear->GetScalarType() == expected,
-        std::string("The shear image of ") + vtkImageScalarTypeNameMacro(type) + " in mode " +
-          mapper->GetQualityModeAsString() + " is " + vtkImageScalarTypeNameMacro(expected) + ".");
+      check(shear && shear->GetScalarType() == expected, "The shear image of ",
+        vtkImageScalarTypeNameMacro(type), " in mode ", mapper->GetQualityModeAsString(), " is ",
+        vtkImageScalarTypeNameMacro(expected), ".");
     }
   }
 }
@@ -92,12 +92,12 @@ void testGeometry(stage::Stage& stage, reference::Checks& check)
     mapper->SetQualityModeToPreview();
     stage.window->Render();
     mapper->GetShear(view.shear);
-    check(mapper->GetPrincipalAxis() == axis, "The principal axis" + where);
-    check(std::abs(view.shear[0]) <= 1.0 && std::abs(view.shear[1]) <= 1.0, "Shears" + where);
+    check(mapper->GetPrincipalAxis() == axis, "The principal axis", where);
+    check(std::abs(view.shear[0]) <= 1.0 && std::abs(view.shear[1]) <= 1.0, "Shears", where);
     const reference::ShearGrid grid = reference::makeShearGrid(volume.size, view);
     const double* origin = mapper->GetShearImage()->GetOrigin();
-    check(mapper->GetShearImage()->GetSpacing()[0] == 1.0, "Shear spacing" + where);
-    check(origin[0] == -grid.margin[0] && origin[1] == -grid.margin[1], "Shear origin" + where);
+    check(mapper->GetShearImage()->GetSpacing()[0] == 1.0, "Shear spacing", where);
+    check(origin[0] == -grid.margin[0] && origin[1] == -grid.margin[1], "Shear origin", where);
   }
 }
 
@@ -116,7 +116,7 @@ void testReuse(stage::Stage& stage, Mapper* mapper, reference::Checks& check)
 {
   vtkCamera* const camera = stage.renderer->GetActiveCamera();
   const auto keeps = [&](const char* what, auto step)
-  { check(projects(stage, mapper, 0, step), std::string("No projection when ") + what); };
+  { check(projects(stage, mapper, 0, step), "No projection when ", what); };
   keeps("nothing changes.", [] {});
   keeps("colours change.", [&] { stage.setGrayRamp(20.0, 200.0); });
   keeps("the camera zooms.", [&] { camera->Zoom(1.7); });
@@ -144,7 +144,7 @@ void testReuse(stage::Stage& stage, Mapper* mapper, reference::Checks& check)
 void testModes(stage::Stage& stage, Mapper* mapper, reference::Checks& check)
 {
   const auto again = [&](const char* what, auto step)
-  { check(projects(stage, mapper, 1, step), std::string("One projection when ") + what); };
+  { check(projects(stage, mapper, 1, step), "One projection when ", what); };
   again("the mode changes.", [&] { mapper->SetQualityModeToStandard(); });
   again("the mode changes back.", [&] { mapper->SetQualityModeToHigh(); });
   again("the kernel changes.", [&] { mapper->SetKernelToCosineBell(); });
@@ -158,7 +158,7 @@ void testProjection(
   vtkCamera* const camera = stage.renderer->GetActiveCamera();
   const std::string mode = mapper->GetQualityModeAsString();
   const auto again = [&](const char* what, auto step)
-  { check(projects(stage, mapper, 1, step), "In mode " + mode + " one projection when " + what); };
+  { check(projects(stage, mapper, 1, step), "In mode ", mode, " one projection when ", what); };
   again("the view turns.",
     [&]
     {
@@ -217,8 +217,8 @@ void testIdleChoices(stage::Stage& stage, reference::Checks& check)
     const auto stays = [&](const std::string& when)
     {
       stage.window->Render();
-      check(mapper->GetNumberOfProjections() == 1 && mapper->GetIndexTime() == time,
-        std::to_string(components) + " components are not projected again when " + when);
+      check(mapper->GetNumberOfProjections() == 1 && mapper->GetIndexTime() == time, components,
+        " components are not projected again when ", when);
     };
     mapper->SetVectorComponent(2);
     stays("an idle VectorComponent changes.");

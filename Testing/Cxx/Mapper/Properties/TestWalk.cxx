@@ -55,7 +55,7 @@ public:
   {
     for (std::size_t n = 0; n < this->All.size(); ++n)
     {
-      if (once(3, random))
+      if (random.oneIn(3))
       {
         this->set(n, object, world, random);
       }
@@ -245,14 +245,14 @@ public:
   /// A setting or something in the scene is changed, then frames are compared.
   void step(reference::Checks& check, const std::string& name, reference::Random& random)
   {
-    if (once(12, random))
+    if (random.oneIn(12))
     {
       this->Scene.changeInput(random);
       this->Walk.setAll(this->Live, this->Scene); // the mask, too
       this->Live.mapper->SetInputDataObject(this->Scene.input.data);
       this->Walk.note("another input");
     }
-    else if (once(2, random))
+    else if (random.oneIn(2))
     {
       this->Walk.note(this->Scene.change(random));
     }
@@ -265,7 +265,7 @@ public:
       this->In->renderer->RemoveVolume(this->Live.volume);
       this->enter(this->Live);
     }
-    if (once(12, random))
+    if (random.oneIn(12))
     {
       this->disturb(random);
     }
@@ -330,18 +330,18 @@ private:
     vtkSplattingMIPVolumeMapper *const a = this->Live.splatting, *const b = fresh.splatting;
     // What is ray cast is not always the same, even if a walk is repeated.
     const bool isRayCast = a->GetLastRenderUsedRayCasting() && b->GetLastRenderUsedRayCasting();
-    check(isRayCast || frame.pixels == expected.pixels, name + " the picture differs");
-    check(frame.depths == expected.depths, name + " the depth buffer differs");
+    check(isRayCast || frame.pixels == expected.pixels, name, " the picture differs");
+    check(frame.depths == expected.depths, name, " the depth buffer differs");
     check(
       !wasRendered || !a->GetRecordLocations() || sameImages(a->GetLocations(), b->GetLocations()),
-      name + " locations differ");
+      name, " locations differ");
     if (b->GetShearImage()) // else nothing has been projected, and the live one's is an older one
     {
       check(
-        sameShearImages(a->GetShearImage(), b->GetShearImage()), name + " the shear image differs");
+        sameShearImages(a->GetShearImage(), b->GetShearImage()), name, " the shear image differs");
       check(a->GetPrincipalAxis() == b->GetPrincipalAxis() &&
           a->GetShear()[0] == b->GetShear()[0] && a->GetShear()[1] == b->GetShear()[1],
-        name + " the shear differs");
+        name, " the shear differs");
     }
     this->In->renderer->RemoveVolume(fresh.volume);
     this->Count.rayCast += isRayCast;
@@ -403,7 +403,7 @@ void testMappers(
         walk.step(check, name + ", step " + std::to_string(step), random);
       }
     });
-  check(counts.areEnough(), name + ": all pictures are plain");
+  check(counts.areEnough(), name, ": all pictures are plain");
   std::cout << name << ": " << counts << "; " << counts.rayCast << " were ray cast\n";
 }
 
@@ -412,9 +412,9 @@ void compare(vtkSplattingMIPProjection* live, vtkSplattingMIPProjection* fresh,
 {
   live->Update();
   fresh->Update();
-  check(sameImages(live->GetOutput(), fresh->GetOutput()), name + " the output differs");
-  check(sameShearImages(live->GetShearImage(), fresh->GetShearImage()),
-    name + " the shear image differs");
+  check(sameImages(live->GetOutput(), fresh->GetOutput()), name, " the output differs");
+  check(sameShearImages(live->GetShearImage(), fresh->GetShearImage()), name,
+    " the shear image differs");
 }
 
 /// A filter that goes through a walk.
@@ -427,12 +427,12 @@ void walkFilter(World& world, const Settings<vtkSplattingMIPProjection>& setting
   walker.begin(*live, world, random);
   for (int step = 0; step < StepsPerWalk; ++step)
   {
-    if (once(12, random))
+    if (random.oneIn(12))
     {
       world.changeInput(random);
       walker.note("another input");
     }
-    else if (once(3, random))
+    else if (random.oneIn(3))
     {
       walker.note(world.change(random));
     }
@@ -476,12 +476,12 @@ void testSettings(reference::Checks& check)
     { "QualityModeUsed", "AccelerationUsed", "LastRenderUsedRayCasting", "PrincipalAxis", "Shear",
       "IndexMemorySize", "IndexTime", "NumberOfProjections", "ProjectionTime", "InstructionSet",
       "Controller", "Texture" });
-  check(ofMapper.empty(), "settings of mappers that no walk changes:" + ofMapper);
+  check(ofMapper.empty(), "settings of mappers that no walk changes:", ofMapper);
   vtkNew<vtkSplattingMIPProjection> filter;
   vtkNew<vtkImageFlip> otherFilter;
   const std::string ofFilter = missingSettings(filter, otherFilter, settingsOfFilter(),
     { "IndexMemorySize", "NumberOfProjections", "InstructionSet" });
-  check(ofFilter.empty(), "settings of filters that no walk changes:" + ofFilter);
+  check(ofFilter.empty(), "settings of filters that no walk changes:", ofFilter);
 }
 }
 

@@ -34,12 +34,6 @@ struct Input
   vtkSmartPointer<vtkImageData> mask;
 };
 
-/// Whether something happens that does once in so many times.
-inline bool once(int times, reference::Random& random)
-{
-  return random.oneIn(times);
-}
-
 inline std::array<double, 3> anyPoint(reference::Random& random, double low, double high)
 {
   std::array<double, 3> point;
@@ -68,15 +62,15 @@ inline Distribution anyDistribution(int type, reference::Random& random)
   d.exponent = exponents[random.uniform(0, 2)];
   const bool isSigned = type != VTK_UNSIGNED_CHAR && type != VTK_UNSIGNED_SHORT &&
     type != VTK_UNSIGNED_INT && type != VTK_UNSIGNED_LONG;
-  if (isSigned && once(3, random))
+  if (isSigned && random.oneIn(3))
   {
     d.low = -60.0;
   }
-  if (once(4, random) && vtkDataArray::GetDataTypeSize(type) > 1)
+  if (random.oneIn(4) && vtkDataArray::GetDataTypeSize(type) > 1)
   {
     d.high = 1000.0;
   }
-  if ((type == VTK_FLOAT || type == VTK_DOUBLE) && once(3, random))
+  if ((type == VTK_FLOAT || type == VTK_DOUBLE) && random.oneIn(3))
   {
     d.withoutOne = random.oneIn(2) ? 0.002 : 0.2;
   }
@@ -100,7 +94,7 @@ inline void fill(vtkDataArray* array, const Distribution& d, vtkIdType first, vt
       double given = value;
       if (d.withoutOne > 0.0 && many.chance(d.withoutOne))
       {
-        given = once(4, many) ? std::numeric_limits<double>::infinity() : vtkMath::Nan();
+        given = many.oneIn(4) ? std::numeric_limits<double>::infinity() : vtkMath::Nan();
       }
       array->SetComponent(n, c, given);
     }
@@ -121,7 +115,7 @@ inline vtkSmartPointer<vtkDataArray> anyArray(
   constexpr int numbers[] = { 1, 1, 1, 1, 2, 3, 4 };
   const int components = numbers[random.uniform(0, 6)], type = anyType(random);
   vtkSmartPointer<vtkDataArray> array;
-  if (type == VTK_SHORT && once(3, random))
+  if (type == VTK_SHORT && random.oneIn(3))
   {
     array = separateGuardedArray<short>(tuples, components, random);
   }
@@ -140,7 +134,7 @@ inline void flagSome(vtkDataArray* flags, int value, int times, reference::Rando
   reference::Random many = random.fork();
   for (vtkIdType n = 0; n < flags->GetNumberOfTuples(); ++n)
   {
-    flags->SetComponent(n, 0, once(times, many) ? value : 0);
+    flags->SetComponent(n, 0, many.oneIn(times) ? value : 0);
   }
 }
 
@@ -158,8 +152,8 @@ inline std::array<int, 3> anySize(reference::Random& random)
   std::array<int, 3> size;
   for (int& length : size)
   {
-    length = once(8, random) ? random.uniform(1, 3)
-      : once(6, random)      ? random.uniform(20, 70)
+    length = random.oneIn(8) ? random.uniform(1, 3)
+      : random.oneIn(6)      ? random.uniform(20, 70)
                              : random.uniform(4, 19);
   }
   // Thousands of walks are to take minutes.
@@ -176,7 +170,7 @@ inline void placeAnywhere(vtkImageData* image, reference::Random& random)
   image->SetSpacing(spacing.data());
   image->SetOrigin(origin.data());
   vtkNew<vtkMatrix3x3> direction;
-  if (once(3, random))
+  if (random.oneIn(3))
   {
     vtkNew<vtkTransform> turn;
     const auto axis = anyPoint(random, 0.1, 1.0);
@@ -196,7 +190,7 @@ inline vtkSmartPointer<vtkDataSet> anyImage(
   int extent[6];
   for (int a = 0; a < 3; ++a)
   {
-    extent[2 * a] = once(2, random) ? 0 : random.uniform(-5, 5);
+    extent[2 * a] = random.oneIn(2) ? 0 : random.uniform(-5, 5);
     extent[2 * a + 1] = extent[2 * a] + size[a] - 1;
   }
   image->SetExtent(extent);
@@ -215,7 +209,7 @@ inline vtkSmartPointer<vtkDataSet> anyGrid(
     vtkNew<vtkDoubleArray> places;
     double place = random.uniform(-20.0, 20.0);
     const double step = random.uniform(0.5, 1.5);
-    const bool isEqual = once(2, random);
+    const bool isEqual = random.oneIn(2);
     for (int n = 0; n < size[a]; ++n)
     {
       places->InsertNextValue(place);
@@ -232,16 +226,16 @@ inline Input anyInput(bool gridsToo, reference::Random& random)
 {
   const std::array<int, 3> size = anySize(random);
   Input input;
-  input.data = gridsToo && once(6, random) ? anyGrid(size, random) : anyImage(size, random);
+  input.data = gridsToo && random.oneIn(6) ? anyGrid(size, random) : anyImage(size, random);
   const vtkIdType points = input.data->GetNumberOfPoints(), cells = input.data->GetNumberOfCells();
   input.data->GetPointData()->SetScalars(anyArray("first", points, random));
   input.data->GetPointData()->AddArray(anyArray("second", points, random));
   input.data->GetCellData()->SetScalars(anyArray("third", cells, random));
-  if (once(8, random))
+  if (random.oneIn(8))
   {
     addGhosts(input.data->GetPointData(), points, vtkDataSetAttributes::HIDDENPOINT, random);
   }
-  if (once(8, random))
+  if (random.oneIn(8))
   {
     addGhosts(input.data->GetCellData(), cells, vtkDataSetAttributes::HIDDENCELL, random);
   }

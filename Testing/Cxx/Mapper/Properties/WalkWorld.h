@@ -130,7 +130,7 @@ public:
         return "another view";
       case 4:
       case 5:
-        return changeInPlace(this->input, !this->ForFilter && once(2, random), random);
+        return changeInPlace(this->input, !this->ForFilter && random.oneIn(2), random);
       case 6:
         this->changePlane(this->planes[random.uniform(0, 2)], random);
         return "a plane";
@@ -162,13 +162,13 @@ private:
     const auto place = this->anyPlace(random), normal = anyPoint(random, -1.0, 1.0);
     plane->SetOrigin(place.data());
     plane->SetNormal(0.0, 0.0, 1.0);
-    if (!once(3, random))
+    if (!random.oneIn(3))
     {
       plane->SetNormal(normal[0], normal[1], normal[2]);
     }
     double middle[3];
     this->input.data->GetCenter(middle);
-    if (plane->EvaluateFunction(middle) < 0.0 && !once(4, random))
+    if (plane->EvaluateFunction(middle) < 0.0 && !random.oneIn(4))
     {
       plane->Push(2.0 * plane->EvaluateFunction(middle)); // leaves the middle
     }
@@ -192,7 +192,7 @@ private:
       x = random.uniform(-1, 1);
     }
     const bool isZero = direction == stage::Vector{};
-    const bool isSpecial = once(3, random);
+    const bool isSpecial = random.oneIn(3);
     const auto other = anyPoint(random, -1.0, 1.0);
     return isZero || !isSpecial ? other : direction;
   }
@@ -201,15 +201,15 @@ private:
   {
     const stage::Vector direction = anyDirection(random);
     const auto place = this->anyPlace(random);
-    const bool isFar = once(8, random);
+    const bool isFar = random.oneIn(8);
     const double distance = this->diagonal() *
       (isFar                ? std::pow(10.0, random.uniform(5.0, 11.0))
-          : once(6, random) ? random.uniform(0.0, 0.3)
+          : random.oneIn(6) ? random.uniform(0.0, 0.3)
                             : random.uniform(0.8, 3.0));
     const double norm = vtkMath::Norm(direction.data());
     double middle[3];
     this->input.data->GetCenter(middle);
-    const bool isOff = once(4, random);
+    const bool isOff = random.oneIn(4);
     stage::Vector focus, position;
     for (int a = 0; a < 3; ++a)
     {
@@ -224,7 +224,7 @@ private:
     const double share = random.uniform(0.5, 2.0); // of the window that the volume fills, from afar
     this->camera->SetViewAngle(isFar
         ? vtkMath::DegreesFromRadians(this->diagonal() / share / distance)
-        : once(4, random) ? random.uniform(2.0, 120.0)
+        : random.oneIn(4) ? random.uniform(2.0, 120.0)
                           : 30.0);
     this->camera->SetParallelScale(this->diagonal() * random.uniform(0.2, 0.7));
     this->camera->SetWindowCenter(0.0, 0.0);
@@ -244,14 +244,14 @@ private:
     {
       depth += (middle[a] - position[a]) * direction[a];
     }
-    const double reach = this->diagonal() * (once(5, random) ? random.uniform(0.1, 0.5) : 3.0);
+    const double reach = this->diagonal() * (random.oneIn(5) ? random.uniform(0.1, 0.5) : 3.0);
     const double far = std::max(depth + reach, 0.02 * this->diagonal());
     this->camera->SetClippingRange(std::max(depth - reach, 0.001 * far), far);
   }
 
   std::string changeView(reference::Random& random)
   {
-    const double angle = once(2, random) ? 180.0 : random.uniform(-40.0, 40.0);
+    const double angle = random.oneIn(2) ? 180.0 : random.uniform(-40.0, 40.0);
     const double factor = random.uniform(0.6, 1.6), x = random.uniform(-0.4, 0.4),
                  y = random.uniform(-0.4, 0.4);
     switch (random.uniform(0, 6))
@@ -285,12 +285,12 @@ private:
 
   std::string changeWindow(reference::Random& random)
   {
-    if (once(3, random))
+    if (random.oneIn(3))
     {
       this->Window = 1 - this->Window;
       return "the window";
     }
-    if (once(2, random))
+    if (random.oneIn(2))
     {
       const double x = random.uniform(0.0, 0.4), y = random.uniform(0.0, 0.4);
       const bool isPart = random.uniform(0, 1);
@@ -312,10 +312,10 @@ private:
     const auto low = anyPoint(random, 0.0, 0.5), high = anyPoint(random, 0.5, 1.0);
     color->AddRGBPoint(black, low[0], low[1], low[2]);
     color->AddRGBPoint(white, high[0], high[1], high[2]);
-    once(4, random) ? this->property->SetColor(component, gray)
+    random.oneIn(4) ? this->property->SetColor(component, gray)
                     : this->property->SetColor(component, color);
     vtkNew<vtkPiecewiseFunction> opacity;
-    const bool isTransparent = once(20, random), isRamp = once(2, random);
+    const bool isTransparent = random.oneIn(20), isRamp = random.oneIn(2);
     opacity->AddPoint(black, isTransparent || isRamp ? 0.0 : 1.0);
     opacity->AddPoint(white, isTransparent ? 0.0 : 1.0);
     this->property->SetScalarOpacity(component, opacity);

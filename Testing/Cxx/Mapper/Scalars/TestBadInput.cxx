@@ -343,7 +343,7 @@ std::vector<std::string> errorsOfRendering(
   // VTK's pipeline has an opinion of its own about mappers without input.
   const stage::Messages pipelineErrors(scene.mapper->GetExecutive(), vtkCommand::ErrorEvent);
   scene.stage.pixels();
-  check(showsSphere(scene.stage.pixels()), name + ": other props are rendered.");
+  check(showsSphere(scene.stage.pixels()), name, ": other props are rendered.");
   // Volumes without input or with bounds that are no numbers do not get so far as to the mapper.
   scene.mapper->Render(scene.stage.renderer, scene.stage.volume);
   return errors.texts;
@@ -355,15 +355,15 @@ void test(Scene& scene, const Fault& fault, reference::Checks& check)
   const stage::Pixels before = scene.stage.pixels();
   fault.make(scene);
   const std::vector<std::string> texts = errorsOfRendering(scene, name, check);
-  check(texts.size() == 1, name + ": one error, not " + std::to_string(texts.size()) + ".");
+  check(texts.size() == 1, name, ": one error, not ", texts.size(), ".");
   if (!texts.empty())
   {
-    check(isSentence(texts[0]), name + ": a sentence.");
-    check(texts[0].find(fault.word) != std::string::npos, name + ": the sentence is to the point.");
+    check(isSentence(texts[0]), name, ": a sentence.");
+    check(texts[0].find(fault.word) != std::string::npos, name, ": the sentence is to the point.");
   }
-  check(!scene.mapper->GetLastRenderUsedRayCasting(), name + ": nothing was passed on.");
+  check(!scene.mapper->GetLastRenderUsedRayCasting(), name, ": nothing was passed on.");
   scene.mend();
-  check(scene.stage.pixels() == before, name + ": once mended, the picture is as before.");
+  check(scene.stage.pixels() == before, name, ": once mended, the picture is as before.");
 }
 
 std::vector<Fault> settingFaults()
@@ -442,12 +442,10 @@ void testCameras(Scene& scene, reference::Checks& check)
     scene.mapper->Render(scene.stage.renderer, scene.stage.volume);
     check(errors.texts.size() == 1 && isSentence(errors.texts[0]) &&
         errors.texts[0].find("camera") != std::string::npos,
-      std::string("A camera ") + name + " gives one sentence, not " +
-        std::to_string(errors.texts.size()) + ".");
+      "A camera ", name, " gives one sentence, not ", errors.texts.size(), ".");
     camera->UseExplicitProjectionTransformMatrixOff();
     camera->DeepCopy(good);
-    check(scene.stage.pixels() == before,
-      std::string("After a camera ") + name + " the picture is as before.");
+    check(scene.stage.pixels() == before, "After a camera ", name, " the picture is as before.");
   }
 }
 
@@ -473,7 +471,7 @@ void testOneBadView(Scene& scene, reference::Checks& check)
       scene.mapper->Render(other, scene.stage.volume);
     }
     check(errors.texts.size() == 1 && errors.texts[0].find("camera") != std::string::npos,
-      "One bad view of two gives one sentence, not " + std::to_string(errors.texts.size()) + ".");
+      "One bad view of two gives one sentence, not ", errors.texts.size(), ".");
     camera->SetParallelScale(scale);
     scene.stage.window->Render();
   }
@@ -514,9 +512,8 @@ void testProperties(Scene& scene, reference::Checks& check)
     const stage::Pixels cast = scene.stage.pixels();
     scene.stage.volume->SetMapper(scene.mapper);
     const double ours = meanRed(pixels), theirs = meanRed(cast);
-    check(std::abs(ours - theirs) <= 0.5,
-      name + ": as bright as with VTK's ray caster, " + std::to_string(ours) + " and " +
-        std::to_string(theirs) + ".");
+    check(std::abs(ours - theirs) <= 0.5, name, ": as bright as with VTK's ray caster, ", ours,
+      " and ", theirs, ".");
   };
   vtkNew<vtkVolumeProperty> property;
   property->DeepCopy(scene.stage.property);

@@ -150,7 +150,7 @@ void testMeans(stage::Stage& stage, reference::Checks& check)
           const double b = all->GetPointData()->GetScalars()->GetComponent(p, c);
           same = a == b || (std::isnan(a) && std::isnan(b));
         }
-        check(same, "The mean of component " + std::to_string(c) + " is that of it alone.");
+        check(same, "The mean of component ", c, " is that of it alone.");
       }
     });
   stage.viewAngle = 0.0;
@@ -285,9 +285,8 @@ bool testVoxels(const Overview& overview, bool isMinimum, reference::Checks& che
     const vtkIdType winner = overview.voxelAt(x, y);
     const double own = overview.scalars->GetComponent(voxel, 3);
     const double best = winner < 0 ? NAN : overview.scalars->GetComponent(winner, 3);
-    check(isMinimum ? best <= own : best >= own,
-      "A voxel of " + std::to_string(own) + " is lost in a pixel that shows one of " +
-        std::to_string(best) + ".");
+    check(isMinimum ? best <= own : best >= own, "A voxel of ", own,
+      " is lost in a pixel that shows one of ", best, ".");
   }
   return isChosen;
 }
@@ -403,10 +402,10 @@ void testRayCasters(stage::Stage& stage, reference::Checks& check)
         std::to_string(components) + " components, colour " + std::to_string(c);
       std::cout << name << ": casters " << casters.text() << "; ours and GPU " << toGpu.text()
                 << "; ours and fixed point " << toFixedPoint.text() << std::endl;
-      check(std::max(toGpu.psnr, toFixedPoint.psnr) >= 39.0,
-        name + ": is as one of VTK's ray casters.");
-      check(std::max(toGpu.psnr, toFixedPoint.psnr) >= casters.psnr,
-        name + ": is nearer to it than the other one.");
+      check(
+        std::max(toGpu.psnr, toFixedPoint.psnr) >= 39.0, name, ": is as one of VTK's ray casters.");
+      check(std::max(toGpu.psnr, toFixedPoint.psnr) >= casters.psnr, name,
+        ": is nearer to it than the other one.");
     }
   }
   stage.setGrayRamp(0.0, 255.0);

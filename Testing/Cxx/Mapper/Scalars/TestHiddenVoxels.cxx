@@ -37,7 +37,7 @@ void testHiddenPoints(stage::Stage& stage, reference::Checks& check)
     expectSame(stage, plain, mapper, name, check);
     check(mapper->GetIndexMemorySize() ==
         plain->GetIndexMemorySize() + Voxels * vtkDataArray::GetDataTypeSize(copied),
-      name + ": the copy is counted.");
+      name, ": the copy is counted.");
   }
 }
 

@@ -135,8 +135,7 @@ void testThinMask(stage::Stage& stage, reference::Checks& check)
       const std::vector<double> pixels = stage.gray().value;
       const bool isShown =
         std::any_of(pixels.begin(), pixels.end(), [](double pixel) { return pixel > 0.0; });
-      check(isShown,
-        "A mask of " + std::to_string(slices) + " slices in mode " + std::to_string(mode) + ".");
+      check(isShown, "A mask of ", slices, " slices in mode ", mode, ".");
     }
   }
 }
@@ -257,8 +256,8 @@ void testRayCastHoles(bool byMask, reference::Checks& check)
   stage.show(mapper);
   const stage::Pixels picture = stage.pixels();
   const std::string name = byMask ? "Mask" : "NaN";
-  check(mapper->GetLastRenderUsedRayCasting(), name + ": ray cast.");
-  check(!isBlack(truth) && picture == truth, name + ": what is hidden has the lowest value.");
+  check(mapper->GetLastRenderUsedRayCasting(), name, ": ray cast.");
+  check(!isBlack(truth) && picture == truth, name, ": what is hidden has the lowest value.");
 }
 
 /// A mask and blanked points against VTK's GPU ray caster.
@@ -288,7 +287,7 @@ void testAgainstGPU(bool byMask, double viewAngle, reference::Checks& check)
   const stage::Likeness likeness(stage.gray(), picture);
   const std::string name = byMask ? "Mask" : "Blanked points";
   std::cout << name << ": " << likeness.text() << std::endl;
-  check(likeness.psnr > 35.0 && likeness.largestShift() < 0.1, name + ": the GPU ray caster's.");
+  check(likeness.psnr > 35.0 && likeness.largestShift() < 0.1, name, ": the GPU ray caster's.");
   rayCaster->ReleaseGraphicsResources(stage.window);
 }
 }

@@ -99,13 +99,13 @@ void testMapper(reference::Checks& check, stage::Stage& stage, const stage::Vect
       pixels = stage.pixels();
     }
     const bool fitted = errors.texts.empty();
-    check(fitted ? pixels == expected : isBlack(pixels), name + "all or nothing is drawn.");
-    check(fitted || isOneSentence(errors.texts), name + "one sentence.");
-    check(fitted || mapper->GetIndexMemorySize() == 0, name + "nothing is held.");
-    check(!fitted || more > 48, name + "two copies do not fit.");
-    check(stage.pixels() == expected, name + "the next frame draws.");
+    check(fitted ? pixels == expected : isBlack(pixels), name, "all or nothing is drawn.");
+    check(fitted || isOneSentence(errors.texts), name, "one sentence.");
+    check(fitted || mapper->GetIndexMemorySize() == 0, name, "nothing is held.");
+    check(!fitted || more > 48, name, "two copies do not fit.");
+    check(stage.pixels() == expected, name, "the next frame draws.");
     const MemoryLimit limit(std::size_t(16) << 20);
-    check(stage.pixels() == expected, name + "what is there can be drawn without more.");
+    check(stage.pixels() == expected, name, "what is there can be drawn without more.");
   }
 }
 
@@ -136,7 +136,7 @@ void testFilter(reference::Checks& check, const stage::Vector& direction, int mo
     {
       filter->Update();
       expected = bytesOf(filter);
-      check(!expected.empty(), name + "there is an output.");
+      check(!expected.empty(), name, "there is an output.");
       continue;
     }
     const stage::Messages errors(filter, vtkCommand::ErrorEvent);
@@ -148,11 +148,11 @@ void testFilter(reference::Checks& check, const stage::Vector& direction, int mo
     failed += !fitted;
     check(
       fitted || (errors.texts.size() == 1 && errors.texts[0].find("memory") != std::string::npos),
-      name + "one sentence.");
-    check(bytesOf(filter) == (fitted ? expected : stage::Pixels()), name + "all or nothing.");
+      name, "one sentence.");
+    check(bytesOf(filter) == (fitted ? expected : stage::Pixels()), name, "all or nothing.");
     filter->Modified();
     filter->Update();
-    check(bytesOf(filter) == expected, name + "the next update has the output.");
+    check(bytesOf(filter) == expected, name, "the next update has the output.");
   }
   std::cout << failed << " of 12 limits were too low" << std::endl;
   check(failed >= 7, "Two copies do not fit into 48 MB.");

@@ -39,10 +39,10 @@ void testSeparateComponents(stage::Stage& stage, int components, reference::Chec
   const stage::Pixels truth = seen(stage, stage::splatting(plainImage(size, together)));
   const auto mapper = stage::splatting(plainImage(size, separated<float>(together)));
   const stage::Pixels picture = seen(stage, mapper);
-  check(mapper->GetLastRenderUsedRayCasting(), name + "ray cast.");
-  check(!isBlack(truth) && picture == truth, name + "the picture of an ordinary array.");
+  check(mapper->GetLastRenderUsedRayCasting(), name, "ray cast.");
+  check(!isBlack(truth) && picture == truth, name, "the picture of an ordinary array.");
   const auto bytes = static_cast<vtkIdType>(voxels * components * sizeof(float));
-  check(mapper->GetIndexMemorySize() == bytes, name + "the copy is counted.");
+  check(mapper->GetIndexMemorySize() == bytes, name, "the copy is counted.");
 }
 
 /// Nothing is seen where all is hidden; after that the volume is there again.
@@ -65,8 +65,8 @@ void testNothingShown(stage::Stage& stage, reference::Checks& check)
       inside->Modified();
       const std::string name = std::string(mapper == masked ? "Mask" : "NaN") + ", blend mode " +
         std::to_string(blendMode) + ": ";
-      check(isBlack(seen(stage, mapper, blendMode)), name + "nothing is seen.");
-      check(isBlack(seen(stage, mapper, blendMode)), name + "nor in the next frame.");
+      check(isBlack(seen(stage, mapper, blendMode)), name, "nothing is seen.");
+      check(isBlack(seen(stage, mapper, blendMode)), name, "nor in the next frame.");
     }
     inside->FillValue(1);
     inside->Modified();
@@ -92,9 +92,9 @@ void testMoreComponents(stage::Stage& stage, reference::Checks& check)
     const stage::Pixels first = seen(stage, mapper, blendMode);
     mapper->SetInputData(four);
     const stage::Pixels second = seen(stage, mapper, blendMode);
-    check(second == seen(stage, fresh, blendMode), name + "four components in place of one.");
+    check(second == seen(stage, fresh, blendMode), name, "four components in place of one.");
     mapper->SetInputData(one);
-    check(first == seen(stage, mapper, blendMode), name + "one component in place of four.");
+    check(first == seen(stage, mapper, blendMode), name, "one component in place of four.");
   }
 }
 
@@ -113,14 +113,14 @@ void testRelease(stage::Stage& stage, reference::Checks& check)
         (splat ? ", splatted afterwards: " : ", ray cast afterwards: ");
       const auto mapper = stage::splatting(plainImage(size, first));
       seen(stage, mapper, blendMode);
-      check(mapper->GetLastRenderUsedRayCasting(), name + "ray cast.");
+      check(mapper->GetLastRenderUsedRayCasting(), name, "ray cast.");
       mapper->SetInputData(plainImage(size, second));
       const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
       mapper->SetBlendMode(splat ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND : blendMode);
-      check(!isBlack(stage.pixels()), name + "the new volume is seen.");
-      check(mapper->GetLastRenderUsedRayCasting() != splat, name + "as expected.");
-      check(first->GetReferenceCount() == 1, name + "the old scalars are ours alone.");
-      check(!isBlack(seen(stage, mapper, blendMode)), name + "the new volume is ray cast again.");
+      check(!isBlack(stage.pixels()), name, "the new volume is seen.");
+      check(mapper->GetLastRenderUsedRayCasting() != splat, name, "as expected.");
+      check(first->GetReferenceCount() == 1, name, "the old scalars are ours alone.");
+      check(!isBlack(seen(stage, mapper, blendMode)), name, "the new volume is ray cast again.");
     }
   }
   const auto mapper = stage::splatting(plainImage(size, first));

@@ -74,8 +74,8 @@ void testArrays(stage::Stage& stage, reference::Checks& check)
     const auto plain =
       stage::splatting(plainImage(size, image->GetPointData()->GetArray(choice.array)));
     expectSame(stage, plain, mapper, std::string("Array ") + choice.name, check);
-    check(mapper->GetIndexMemorySize() == plain->GetIndexMemorySize(),
-      std::string("Array ") + choice.name + ": no copy.");
+    check(mapper->GetIndexMemorySize() == plain->GetIndexMemorySize(), "Array ", choice.name,
+      ": no copy.");
   }
 }
 
@@ -97,7 +97,7 @@ void testComponentsOfTypes(stage::Stage& stage, reference::Checks& check)
       expectSame(stage, plain, mapper, name, check);
       check(mapper->GetIndexMemorySize() ==
           plain->GetIndexMemorySize() + Voxels * vectors->GetDataTypeSize(),
-        name + ": one copy, counted.");
+        name, ": one copy, counted.");
     }
   }
 }
@@ -272,8 +272,7 @@ void testIndependentComponents(
                                      mapper->GetShearImage()->GetDimensions()[1], 1 },
         componentOf(mapper->GetShearImage()->GetPointData()->GetScalars(), c));
       part->GetPointData()->AddArray(mapper->GetShearImage()->GetPointGhostArray());
-      check(sameShearImages(single->GetShearImage(), part),
-        name + "shear image " + std::to_string(c) + ".");
+      check(sameShearImages(single->GetShearImage(), part), name, "shear image ", c, ".");
     }
     int largest = 0, bright = 0;
     for (std::size_t n = 0; n < sum.size(); ++n)
@@ -281,12 +280,12 @@ void testIndependentComponents(
       largest = std::max(largest, std::abs(std::min(sum[n], 255) - picture[n]));
       bright = std::max(bright, sum[n]);
     }
-    check(largest <= components && bright > 100,
-      name + "the sum of the parts, but for " + std::to_string(largest) + " bytes.");
+    check(largest <= components && bright > 100, name, "the sum of the parts, but for ", largest,
+      " bytes.");
   }
   check(
     mode == Mapper::EXACT || mapper->GetShearImage()->GetNumberOfScalarComponents() == components,
-    name + "as many in the shear image.");
+    name, "as many in the shear image.");
 }
 
 /// A change of one component's functions or weight is no new projection.

@@ -143,7 +143,7 @@ int compare(Scene& scene, const std::string& what, ColorOf&& colorOf, reference:
       wrong += pixels[3 * n + c] != expected;
     }
   }
-  check(wrong == 0, what + ": " + std::to_string(wrong) + " bytes differ.");
+  check(wrong == 0, what, ": ", wrong, " bytes differ.");
   return edges;
 }
 
@@ -199,7 +199,7 @@ void testEdges(reference::Checks& check, reference::Random& random)
       compare(scene, what + ", default", byDefault, check);
     }
   }
-  check(edges > 500, "There are only " + std::to_string(edges) + " pixels of edges.");
+  check(edges > 500, "There are only ", edges, " pixels of edges.");
   // Locations are found without RecordLocations, and labels that change are shown.
   const stage::Pixels before = scene.pixels();
   scene.mapper->RecordLocationsOff();
@@ -269,7 +269,7 @@ void testRest(reference::Checks& check, reference::Random& random)
     scene.pixels();
     scene.pixels();
     check(errors.texts.size() == 1 && errors.texts[0].find("LabelInput must") != std::string::npos,
-      std::to_string(errors.texts.size()) + " errors for labels that do not fit.");
+      errors.texts.size(), " errors for labels that do not fit.");
     scene.mapper->SetLabelInput(scene.labels);
     check(scene.pixels() == labelled, "Labels that fit are shown again.");
   }

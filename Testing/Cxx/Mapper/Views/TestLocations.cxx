@@ -181,9 +181,8 @@ void testSearch(reference::Checks& check, int axis, bool backwards)
       }
     }
   }
-  check(same,
-    "Along axis " + std::to_string(axis) + (backwards ? ", backwards," : "") +
-      " picks are what a search finds.");
+  check(same, "Along axis ", axis, (backwards ? ", backwards," : ""),
+    " picks are what a search finds.");
   check(found > 500, "All voxels are searched.");
 }
 
@@ -322,21 +321,20 @@ void testBrightVoxels(
   stage.window->Render();
   const Arrays arrays(mapper->GetLocations());
   const std::string what = std::string(ModeNames[mode]) + " at " + std::to_string(viewAngle);
-  check(bright.size() >= 6, what + ": there is room for bright voxels.");
+  check(bright.size() >= 6, what, ": there is room for bright voxels.");
   for (const Voxel& voxel : bright)
   {
-    check(isPicked(stage, image, mapper, arrays, voxel),
-      what + ": bright voxel " + std::to_string(voxel[0]) + " " + std::to_string(voxel[1]) + " " +
-        std::to_string(voxel[2]) + " is picked.");
+    check(isPicked(stage, image, mapper, arrays, voxel), what, ": bright voxel ", voxel[0], " ",
+      voxel[1], " ", voxel[2], " is picked.");
   }
-  check(agree(stage, mapper, arrays), what + ": arrays and picks agree, on the pixels' rays.");
+  check(agree(stage, mapper, arrays), what, ": arrays and picks agree, on the pixels' rays.");
   const int* const extent = arrays.image->GetExtent();
-  check(extent[0] == 30 && extent[1] == 284 && extent[2] == 13 && extent[3] == 259,
-    what + ": the extent is the viewport.");
+  check(extent[0] == 30 && extent[1] == 284 && extent[2] == 13 && extent[3] == 259, what,
+    ": the extent is the viewport.");
   Point untouched = { 1.0, 2.0, 3.0 };
   check(!mapper->PickWorldPosition(2, 2, untouched.data()) &&
       !mapper->PickWorldPosition(-5, 9999, untouched.data()) && untouched[2] == 3.0,
-    what + ": there is nothing outside the viewport.");
+    what, ": there is nothing outside the viewport.");
 }
 
 /// Turned about, the nearest of equal voxels is another one, although the shear image is the same.

@@ -179,8 +179,8 @@ void testTurn(stage::Stage& stage, const std::string& name, Step step, reference
     const double median = sorted[sorted.size() / 2];
     std::cout << name << ", " << mapper->GetQualityModeAsString() << ": changes by "
               << sorted.front() << " to " << sorted.back() << ", median " << median << std::endl;
-    check(sorted.back() <= 1.5 * median, name + ": no step changes more than the others.");
-    check(sorted.front() > 0.0, name + ": each step changes something.");
+    check(sorted.back() <= 1.5 * median, name, ": no step changes more than the others.");
+    check(sorted.front() > 0.0, name, ": each step changes something.");
   }
 }
 
@@ -214,10 +214,10 @@ void testReuse(stage::Stage& stage, reference::Checks& check)
     step();
     stage.renderer->ResetCameraClippingRange();
     const stage::Pixels after = stage.pixels();
-    check(mapper->GetNumberOfProjections() - count == projections,
-      std::string(what) + ": projections, " + mapper->GetQualityModeAsString());
-    check(before != after, std::string(what) + ": the picture changes.");
-    check(showsAsNew(stage, mapper, after), std::string(what) + ": the picture is right.");
+    check(mapper->GetNumberOfProjections() - count == projections, what, ": projections, ",
+      mapper->GetQualityModeAsString());
+    check(before != after, what, ": the picture changes.");
+    check(showsAsNew(stage, mapper, after), what, ": the picture is right.");
   };
   for (int mode = 0; mode < 3; ++mode)
   {
@@ -284,9 +284,8 @@ void testMirrored(stage::Stage& stage, reference::Checks& check)
           }
         }
         const double likeness = reference::psnr(expected, turned, 255.0);
-        check(likeness > 45.0 && (brightest > 30.0 || kind == 3),
-          "Kind " + std::to_string(kind) + ", mode " + std::to_string(mode) +
-            ": the mirror image is seen, " + std::to_string(likeness) + " dB.");
+        check(likeness > 45.0 && (brightest > 30.0 || kind == 3), "Kind ", kind, ", mode ", mode,
+          ": the mirror image is seen, ", likeness, " dB.");
       }
     }
   }
@@ -336,11 +335,10 @@ void testCameras(stage::Stage& stage, reference::Checks& check)
     const std::size_t before = errors.texts.size();
     look();
     change();
-    check(
-      isBlack(stage.pixels()) && isBlack(stage.pixels()), std::string(what) + ": nothing is seen.");
-    check(errors.texts.size() - before == messages, std::string(what) + ": what is said.");
+    check(isBlack(stage.pixels()) && isBlack(stage.pixels()), what, ": nothing is seen.");
+    check(errors.texts.size() - before == messages, what, ": what is said.");
     look();
-    check(stage.pixels() == expected, std::string(what) + ": afterwards all is as before.");
+    check(stage.pixels() == expected, what, ": afterwards all is as before.");
   };
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   showsNothing(

@@ -181,9 +181,8 @@ void testViewports(reference::Checks& check)
         for (int side : { first, 1 - first })
         {
           check(!alone[side].empty() && pickAll(mapper, side * Width) == alone[side],
-            "Picks in viewport " + std::to_string(side) + " of scene " + std::to_string(n) +
-              ", mode " + std::to_string(mapper->GetQualityMode()) +
-              ", are the same beside another viewport.");
+            "Picks in viewport ", side, " of scene ", n, ", mode ", mapper->GetQualityMode(),
+            ", are the same beside another viewport.");
         }
       }
       stage.volume->VisibilityOff();
@@ -235,11 +234,11 @@ int TestPicks(int, char*[])
         " of scene " + std::to_string(n) + ", mode " + std::to_string(mapper->GetQualityMode());
       const auto differ =
         std::mismatch(alone.begin(), alone.end(), recorded.begin(), recorded.end());
-      check(!alone.empty() && alone == recorded,
-        "Picks" + scene + " are the same with recorded locations and without: " +
-          toText(differ.first == alone.end() ? Pick() : *differ.first) + ", " +
-          toText(differ.second == recorded.end() ? Pick() : *differ.second));
-      check(areRecorded(mapper, image, recorded), "Picks" + scene + " are what arrays say.");
+      check(!alone.empty() && alone == recorded, "Picks", scene,
+        " are the same with recorded locations and without: ",
+        toText(differ.first == alone.end() ? Pick() : *differ.first), ", ",
+        toText(differ.second == recorded.end() ? Pick() : *differ.second));
+      check(areRecorded(mapper, image, recorded), "Picks", scene, " are what arrays say.");
       picked.add(
         std::any_of(alone.begin(), alone.end(), [](const Pick& pick) { return pick.has; }));
     });

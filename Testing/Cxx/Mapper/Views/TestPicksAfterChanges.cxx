@@ -228,18 +228,18 @@ void testChange(const Change& change, int mode, bool records, reference::Checks&
   change.apply(scene);
   const std::string text = " after " + change.name + ", mode " + std::to_string(mode) +
     (records ? " with" : " without") + " recorded locations.";
-  check(before.found == 3, "A sample is picked before the change" + text);
+  check(before.found == 3, "A sample is picked before the change", text);
   const Pick after(scene.mapper);
   const bool isSame = after == before;
   const bool isNone = after.isNone();
   check(change.expected == Finds::TheSame ? isSame
       : change.expected == Finds::Nothing ? isNone
                                           : isSame || isNone,
-    "A pick finds what there is" + text);
+    "A pick finds what there is", text);
   if (records)
   {
     check((scene.mapper->GetLocations() != nullptr) == isSame,
-      "There are locations if there are picks" + text);
+      "There are locations if there are picks", text);
   }
 }
 

@@ -415,7 +415,7 @@ double compareProjected(Scene& scene, Walk walk, const std::string& what, refere
     wrong += possible[n].count(shown[n]) == 0;
     same += shown[n] == walk.own(n % Width, n / Width);
   }
-  check(wrong == 0, what + ": " + std::to_string(wrong) + " pixels have a wrong label.");
+  check(wrong == 0, what, ": ", wrong, " pixels have a wrong label.");
   return double(same) / (Width * Height);
 }
 
@@ -522,7 +522,7 @@ void testUncut(reference::Checks& check, reference::Random& random)
       compareProjected(scene, Walk(scene, 0.5, {}, {}), "view " + std::to_string(view), check);
     share += view < views ? same / views : 0.0;
   }
-  check(share > 0.95, "Only " + std::to_string(share) + " of the pixels show their own ray.");
+  check(share > 0.95, "Only ", share, " of the pixels show their own ray.");
   check(warnings.texts.empty(), "There is a warning.");
   // In the same view: the other side, other labels, none.
   scene.viewAngle = 0.0;

@@ -154,7 +154,7 @@ void testPixels(
   const vtkIdType projections = scene.mapper->GetNumberOfProjections();
   const auto selector = selectorFor(scene, vtkDataObject::FIELD_ASSOCIATION_CELLS);
   selector->SetProcessID(5);
-  check(selector->CaptureBuffers(), what + ": the selector captures its passes.");
+  check(selector->CaptureBuffers(), what, ": the selector captures its passes.");
   int wrong = 0, volume = 0, actor = 0;
   for (unsigned int y = 0; y < Height; ++y)
   {
@@ -175,9 +175,9 @@ void testPixels(
   }
   seen.volume.add(volume > 0);
   seen.actor.add(actor > 0);
-  check(wrong == 0, what + ": " + std::to_string(wrong) + " pixels are something else.");
-  check(scene.mapper->GetNumberOfProjections() == projections, what + ": nothing is projected.");
-  check(scene.stage.pixels() == before, what + ": the next picture is as before.");
+  check(wrong == 0, what, ": ", wrong, " pixels are something else.");
+  check(scene.mapper->GetNumberOfProjections() == projections, what, ": nothing is projected.");
+  check(scene.stage.pixels() == before, what, ": the next picture is as before.");
 }
 
 int countPixels(Scene& scene, const stage::Pixels& pixels, vtkProp* prop)
@@ -209,14 +209,14 @@ void testSelect(Scene& scene, int association, reference::Checks& check)
       ++nodes;
       check(properties->Get(vtkSelectionNode::PIXEL_COUNT()) ==
           countPixels(scene, before, scene.stage.volume),
-        what + ": all of the volume's pixels.");
+        what, ": all of the volume's pixels.");
       auto* const ids = vtkIdTypeArray::SafeDownCast(node->GetSelectionList());
-      check(ids && ids->GetNumberOfValues() == 1 && ids->GetValue(0) == 0, what + ": one thing.");
+      check(ids && ids->GetNumberOfValues() == 1 && ids->GetValue(0) == 0, what, ": one thing.");
     }
   }
   const bool isSeen = countPixels(scene, before, scene.stage.volume) > 0;
-  check(nodes == (isSeen ? 1 : 0), what + ": the volume is found once where it is seen.");
-  check(scene.stage.pixels() == before, what + ": the next picture is as before.");
+  check(nodes == (isSeen ? 1 : 0), what, ": the volume is found once where it is seen.");
+  check(scene.stage.pixels() == before, what, ": the next picture is as before.");
 }
 
 /// A pixel in whose neighbourhood only this is seen.
@@ -407,11 +407,11 @@ int testRayPicker(Scene& scene, const std::string& what, reference::Checks& chec
       {
         check(
           pick.position[a] >= planes[2 * a] - 1e-6 && pick.position[a] <= planes[2 * a + 1] + 1e-6,
-          what + ": picks lie in the cropping region.");
+          what, ": picks lie in the cropping region.");
       }
     }
   }
-  check(differences == 0, what + ": as with VTK's ray caster.");
+  check(differences == 0, what, ": as with VTK's ray caster.");
   return hits;
 }
 

@@ -96,12 +96,12 @@ void testExact(stage::Stage& stage, const std::string& series, reference::Checks
           const double low = maximum.isHit ? maximum.low - stage::FieldTolerance : 0.0;
           const double high = maximum.isHit ? maximum.high + stage::FieldTolerance : 0.0;
           const double found = picture.at(x, y);
-          check(!maximum.isCertain || (found >= low && found <= high),
-            series + ", exact: " + describe(found, low, high, x, y));
+          check(!maximum.isCertain || (found >= low && found <= high), series,
+            ", exact: ", describe(found, low, high, x, y));
           const double value = filter->GetOutput()->GetScalarComponentAsDouble(x, y, 0, 0);
           check(!maximum.isCertain || !isForFilter || !maximum.isHit ||
               (value >= maximum.low - FilterTolerance && value <= maximum.high + FilterTolerance),
-            series + ", filter: " + describe(value, maximum.low, maximum.high, x, y));
+            series, ", filter: ", describe(value, maximum.low, maximum.high, x, y));
           filtered += isForFilter && maximum.isHit;
           pixels += maximum.isHit;
           uncertain += !maximum.isCertain;
@@ -141,7 +141,7 @@ void testOtherModes(stage::Stage& stage, const std::string& series, reference::C
         const double found = picture.at(at[0], at[1]);
         check(
           found >= limits.low - stage::GrayTolerance && found <= limits.high + stage::GrayTolerance,
-          what + describe(found, limits.low, limits.high, at[0], at[1]));
+          what, describe(found, limits.low, limits.high, at[0], at[1]));
       }
       stage::Definition definition(volume);
       const bool isClear = stage.viewAngle <= 0.0 && definition.look(stage, image, mapper);
@@ -150,8 +150,8 @@ void testOtherModes(stage::Stage& stage, const std::string& series, reference::C
         const auto at = stage::somePixel(picture, n % 2 == 0, random);
         const auto expected = definition.pixel(at[0], at[1]);
         const double found = picture.at(at[0], at[1]);
-        check(!expected.isCertain || std::abs(found - expected.value) <= stage::GrayTolerance,
-          what + describe(found, expected.value, expected.value, at[0], at[1]));
+        check(!expected.isCertain || std::abs(found - expected.value) <= stage::GrayTolerance, what,
+          describe(found, expected.value, expected.value, at[0], at[1]));
       }
     });
 }

@@ -217,7 +217,7 @@ void testGeometryBehind(
   check(counts.through > 100, "Geometry shows through transparent values.");
   check(counts.covered > 100, "Opaque values cover geometry.");
   // The table of colours is fine, but not infinitely so.
-  check(counts.wrong <= 5, "Nothing else is seen: " + std::to_string(counts.wrong) + " pixels.");
+  check(counts.wrong <= 5, "Nothing else is seen: ", counts.wrong, " pixels.");
 }
 
 /// Whether the part of the picture that is still in view is the same, moved by whole pixels.
@@ -250,8 +250,8 @@ void testPartlyOutside(double viewAngle, vtkVolumeMapper* mapper, reference::Che
   {
     stage.renderer->GetActiveCamera()->SetWindowCenter(-2.0 * dx / Width, -2.0 * dy / Height);
     const stage::Pixels moved = stage.pixels();
-    check(!isBlack(moved) && isMoved(middle, moved, dx, dy),
-      "Partly outside by " + std::to_string(dx) + ", " + std::to_string(dy) + " pixels.");
+    check(!isBlack(moved) && isMoved(middle, moved, dx, dy), "Partly outside by ", dx, ", ", dy,
+      " pixels.");
   }
 }
 

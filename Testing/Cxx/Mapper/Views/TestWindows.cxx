@@ -122,11 +122,11 @@ void testScreenshot(const Scene& scene, int scale, reference::Checks& check)
   const std::string what = std::to_string(scale) + " x " + std::to_string(scale) +
     " tiles in mode " + mapper->GetQualityModeAsString();
   const int difference = largestDifference(tiled, expected);
-  check(!isBlack(expected) && difference <= 1, what + " differ by " + std::to_string(difference));
+  check(!isBlack(expected) && difference <= 1, what, " differ by ", difference);
   // In perspective each tile has images of what it shows.
-  check(scene.viewAngle > 0.0 || mapper->GetNumberOfProjections() == projections,
-    what + " share a shear image.");
-  check(stage.pixels() == before, what + ": the window is as before.");
+  check(scene.viewAngle > 0.0 || mapper->GetNumberOfProjections() == projections, what,
+    " share a shear image.");
+  check(stage.pixels() == before, what, ": the window is as before.");
 }
 
 stage::Pixels eye(stage::Stage& stage, int stereoType)
@@ -169,9 +169,8 @@ bool testStereo(const Scene& scene, reference::Checks& check)
   const int strangeRight = countStrange(stage, scene, right);
   const bool differs = countStrange(stage, scene, left) > 0;
   check(left != middle && right != middle && left != right, "Eyes see different pictures.");
-  check(strangeLeft == 0 && strangeRight == 0,
-    "Eyes see what they should but for " + std::to_string(strangeLeft) + " and " +
-      std::to_string(strangeRight) + " pixels.");
+  check(strangeLeft == 0 && strangeRight == 0, "Eyes see what they should but for ", strangeLeft,
+    " and ", strangeRight, " pixels.");
   check(stage.pixels() == middle, "Without stereo the picture is as before.");
 
   // Anaglyph: red from the left eye, the rest from the right one.
@@ -306,10 +305,8 @@ void testMultisampling(const Scene& scene, reference::Checks& check)
       scene.look(stage, 0.6);
       pixels[samples > 0] = stage.pixels();
     }
-    check(pixels[0] == pixels[1],
-      std::string("Multisampling changes nothing in mode ") +
-        scene.mapper->GetQualityModeAsString() + " with opacity " + std::to_string(opacity[0]) +
-        ".");
+    check(pixels[0] == pixels[1], "Multisampling changes nothing in mode ",
+      scene.mapper->GetQualityModeAsString(), " with opacity ", opacity[0], ".");
     check(pixels[0] != last, "Opacity matters.");
     last = pixels[0];
   }
