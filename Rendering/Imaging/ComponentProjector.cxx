@@ -72,7 +72,9 @@ void ComponentProjector::Clear()
   this->Plane = {};
   this->Splat = {};
   this->Next = {};
-  this->CellDepth.clear();
+  this->CellDepth = {};
+  this->Shown = {};
+  this->PixelOnScreen = {};
   this->ShearImageOutput = nullptr;
   this->Dependent = false;
   this->Version = 0;
@@ -456,7 +458,7 @@ bool ComponentProjector::ProjectCells(
   return true;
 }
 
-const CellScalars& ComponentProjector::ProjectPixelOnScreen(
+const CellScreen& ComponentProjector::ProjectPixelOnScreen(
   const View& view, ProjectionSettings settings, const RayEnds& ends, const glm::ivec2& pixel)
 {
   settings.floor = ProjectionSettings().floor; // samples below the window are located, too

@@ -102,7 +102,7 @@ public:
   const std::vector<Cuts>& CutsOfImages() const { return this->Splat.cuts; }
   /// Projects one pixel of the viewport by cells, with its depth. Not for pieces. The result is
   /// valid until the next call.
-  const CellScalars& ProjectPixelOnScreen(
+  const CellScreen& ProjectPixelOnScreen(
     const View& view, ProjectionSettings settings, const RayEnds& ends, const glm::ivec2& pixel);
 
   /// Makes the picture of a view. Returns false, without a picture, if the observer has stopped it.
@@ -162,7 +162,7 @@ private:
     ProjectionSettings Settings;
     std::vector<ShearImage> Images; // at least as many as the view has
     CellIndex Cells;
-    CellScalars Screen;       // of projections by cells
+    CellScreen Screen;        // of projections by cells
     VolumeIndex::Range Range; // of the projected volume
     Acceleration Used = Acceleration::Dense;
   };
@@ -214,7 +214,7 @@ private:
   splatting::Projector Projector;
   CellProjector Cells;
   PixelProjector Pixels;
-  CellScalars PixelOnScreen;
+  CellScreen PixelOnScreen;
   WarpedScalars Warped;
   Picture Layer; // picture of one component
   ShearPixelScalars Shown;

@@ -3,7 +3,7 @@
 #ifndef PieceExchange_h
 #define PieceExchange_h
 
-#include "Cells/CellScalars.h"
+#include "Cells/CellScreen.h"
 #include "Projection/Project.h"
 
 #include <glm/vec3.hpp>
@@ -32,7 +32,7 @@ public:
   virtual void Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction) = 0;
   /// Collective. Turns the values of a piece into those of the whole, with the least depth of the
   /// pieces that have a pixel's value. Minima of Reduction::Signed are reduced likewise.
-  virtual void Reduce(CellScalars& screen) = 0;
+  virtual void Reduce(CellScreen& screen) = 0;
 };
 }
 

@@ -331,8 +331,8 @@ public:
   vtkIdType GetIndexMemorySize();
 
   /**
-   * Get how often the last Update() projected the volume: NumberOfViews, or half of it if opposite
-   * views share projections.
+   * Get how often the last Update() projected the volume: NumberOfViews, or fewer if views share
+   * projections with opposite or equal ones, or with the last Update().
    */
   vtkGetMacro(NumberOfProjections, vtkIdType);
 

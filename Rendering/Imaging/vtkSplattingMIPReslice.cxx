@@ -109,7 +109,7 @@ private:
     VoxelArray voxels;
     VolumeIndex::Range range;
     CellIndex cells;
-    CellScalars screen;
+    CellScreen screen;
   };
 
   bool IsLoaded(vtkDataArray* scalars, int first, std::size_t count) const;
@@ -334,7 +334,7 @@ void vtkSplattingMIPReslice::Internals::WriteRow(const int extent[6], int y, int
     {
       row[x * components + c] = background;
     }
-    const CellScalars& screen = this->Components[c].screen;
+    const CellScreen& screen = this->Components[c].screen;
     const int line = y - this->Corner.y - screen.origin.y;
     if (line < 0 || line >= screen.size.y)
     {

@@ -459,9 +459,9 @@ void RankAgreement::ReduceWinners(ShearImage& image, const ShearWarp& geometry)
   std::replace(image.winners.begin(), image.winners.end(), behind, std::int32_t(-1));
 }
 
-void RankAgreement::Reduce(CellScalars& screen)
+void RankAgreement::Reduce(CellScreen& screen)
 {
-  for (CellScalars& minima : screen.minima)
+  for (CellScreen& minima : screen.minima)
   {
     this->Reduce(minima);
   }

@@ -100,7 +100,7 @@ public:
    * ranks that have the pixel of the whole.
    */
   void Reduce(ShearImage& image, const ShearWarp& geometry, Reduction reduction) override;
-  void Reduce(CellScalars& screen) override;
+  void Reduce(CellScreen& screen) override;
 
 private:
   std::vector<RankReport> Gather(const RankReport& own) const;
@@ -118,7 +118,7 @@ private:
   std::vector<unsigned char> Received;
   std::vector<std::int32_t> ReceivedSteps;
   std::vector<float> ReceivedDepths;
-  ShearImage Pixels; // of a CellScalars, for encode() and decode()
+  ShearImage Pixels; // of a CellScreen, for encode() and decode()
 };
 
 /**

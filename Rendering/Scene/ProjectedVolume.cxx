@@ -61,8 +61,8 @@ int ProjectedVolume::ChooseMode(
 bool ProjectedVolume::Project(vtkSplattingMIPVolumeMapper* mapper, const View& view,
   vtkRenderer* renderer, vtkVolume* volume, const SceneCuts::DepthReader& readDepth)
 {
-  const double start = vtkTimerLog::GetUniversalTime();
   const int mode = this->ChooseMode(mapper, renderer, volume);
+  const double start = vtkTimerLog::GetUniversalTime();
   const int usable = std::clamp(this->ModeUsed, mode, mapper->GetQualityMode());
   const vtkIdType before = this->NumberOfProjections();
   if (!this->Cuts.Find(

@@ -20,8 +20,7 @@ VTK_ABI_NAMESPACE_END
 namespace splatting
 {
 /**
- * A mapper's data and its last projection. Decides whether a frame reuses it, and in which quality
- * mode a frame projects.
+ * A mapper's data and its last projection. Decides in which quality mode a frame projects.
  */
 class ProjectedVolume
 {

@@ -292,7 +292,7 @@ bool SampleLocations::PickOnScreen(const Frame& frame, const glm::ivec2& pixel, 
   {
     return false;
   }
-  const CellScalars& screen = *located.screen;
+  const CellScreen& screen = *located.screen;
   const glm::ivec2 place = pixel - screen.origin;
   sample.position = locator.inWorld(found.point);
   sample.voxel = found.voxel;

@@ -103,14 +103,14 @@ private:
     Located located;
     int left = 0, bottom = 0;
     bool onScreen = false; // whether the last projection was by cells
-    RayEnds ends;          // of projections by cells
+    RayEnds ends;
     const std::vector<Cuts>* projectionCuts = nullptr;
     bool canProject = false;
     // Owners of the data above, after Copy().
     std::vector<ShearImage> images;
     std::vector<ShearWarp> geometries;
     std::vector<Cuts> cuts;
-    CellScalars screen;
+    CellScreen screen;
     ClosedSurface surface;
     SceneDepth depth;
 

@@ -15,18 +15,18 @@ namespace splatting
 bool SceneCuts::Find(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
   const DepthReader& readDepth)
 {
-  // A picture ends at the outer faces of voxels or within, but for rounding. In overviews the areas
-  // of more pixels may meet it.
+  // The volume is seen within the outer faces of its voxels, but for rounding. In overviews the
+  // areas of more pixels may meet it.
   View boxes = view;
   boxes.showsBoxes = true;
-  if (!CellProjector::place(boxes, this->Area))
-  {
-    return false;
-  }
   if (minifiesAnyAxis(view))
   {
     this->Area.origin = glm::ivec2(0);
     this->Area.size = view.viewport;
+  }
+  else if (!CellProjector::place(boxes, this->Area))
+  {
+    return false;
   }
   else if (this->Area.size.x > 0)
   {

@@ -73,7 +73,7 @@ private:
   std::vector<Scene> Scenes;
   Scene* Seen = nullptr; // of the current frame, or nullptr
   vtkTypeInt64 Frame = 0;
-  Picture Area; // rectangle of the viewport that contains every picture of the volume
+  Picture Area; // rectangle of the viewport that contains all pixels that may show the volume
 };
 }
 

@@ -118,28 +118,28 @@ bool CellProjector::place(const View& view, Picture& picture)
 }
 
 bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-  const RayEnds& ends, bool locate, CellScalars& screen)
+  const RayEnds& ends, bool locate, CellScreen& screen)
 {
   return this->project(
     index, view, settings, ends, locate, Wanted{ { 0, 0 }, view.viewport, true }, screen);
 }
 
 bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-  const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], CellScalars& screen)
+  const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], CellScreen& screen)
 {
   return this->project(
     index, view, settings, ends, locate, Wanted{ within[0], within[1], true }, screen);
 }
 
 bool CellProjector::projectPiece(CellIndex& index, const View& view,
-  const ProjectionSettings& settings, const RayEnds& ends, bool locate, CellScalars& screen)
+  const ProjectionSettings& settings, const RayEnds& ends, bool locate, CellScreen& screen)
 {
   return this->project(
     index, view, settings, ends, locate, Wanted{ { 0, 0 }, view.viewport, false }, screen);
 }
 
 void CellProjector::finish(
-  const CellIndex& index, const ProjectionSettings& settings, CellScalars& screen)
+  const CellIndex& index, const ProjectionSettings& settings, CellScreen& screen)
 {
   if (settings.reduction == Reduction::Signed)
   {
@@ -169,7 +169,7 @@ void CellProjector::finish(
 }
 
 bool CellProjector::project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-  const RayEnds& ends, bool locate, const Wanted& wanted, CellScalars& screen)
+  const RayEnds& ends, bool locate, const Wanted& wanted, CellScreen& screen)
 {
   this->Observer.start();
   screen.minima.resize(settings.reduction == Reduction::Signed ? 1 : 0);
@@ -199,7 +199,7 @@ bool CellProjector::project(CellIndex& index, const View& view, const Projection
 
 bool CellProjector::projectReduction(CellIndex& index, const View& view,
   const ProjectionSettings& settings, const RayEnds& ends, bool locate, const Wanted& within,
-  CellScalars& screen)
+  CellScreen& screen)
 {
   if (!screen.rays.find(view))
   {

@@ -11,7 +11,7 @@
 #define splattingCellProjector_h
 
 #include "Cells/CellIndex.h"
-#include "Cells/CellScalars.h"
+#include "Cells/CellScreen.h"
 #include "Clipping/RayEnds.h"
 #include "Common/ProgressObserver.h"
 #include "Geometry/View.h"
@@ -52,11 +52,11 @@ public:
    * @return  false if the view is invalid or the observer has stopped the projection
    */
   bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, bool locate, CellScalars& screen);
+    const RayEnds& ends, bool locate, CellScreen& screen);
   /// The same for a part of the viewport only.
   /// @param within  the part's origin and size
   bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], CellScalars& screen);
+    const RayEnds& ends, bool locate, const glm::ivec2 (&within)[2], CellScreen& screen);
 
   /**
    * Projects a piece of a volume, which may be empty. Each pixel gets a value, or NaN if it has no
@@ -65,9 +65,9 @@ public:
    * Reduction::Signed do so with the screen's minima, too. Not for Reduction::Local.
    */
   bool projectPiece(CellIndex& index, const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, bool locate, CellScalars& screen);
+    const RayEnds& ends, bool locate, CellScreen& screen);
   static void finish(
-    const CellIndex& index, const ProjectionSettings& settings, CellScalars& screen);
+    const CellIndex& index, const ProjectionSettings& settings, CellScreen& screen);
 
   ProgressObserver& observer() { return this->Observer; }
 
@@ -79,10 +79,10 @@ private:
     bool finished;
   };
   bool project(CellIndex& index, const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, bool locate, const Wanted& wanted, CellScalars& screen);
+    const RayEnds& ends, bool locate, const Wanted& wanted, CellScreen& screen);
 
   bool projectReduction(CellIndex& index, const View& view, const ProjectionSettings& settings,
-    const RayEnds& ends, bool locate, const Wanted& wanted, CellScalars& screen);
+    const RayEnds& ends, bool locate, const Wanted& wanted, CellScreen& screen);
 
   struct Scratch;
   std::unique_ptr<Scratch> Memory;

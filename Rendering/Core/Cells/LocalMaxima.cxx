@@ -286,7 +286,7 @@ bool findPeak(const CellFrame<T>& frame, const glm::dvec3& start, const glm::dve
 
 template <class T>
 void findLocalMaxima(
-  const CellFrame<T>& frame, const VolumeIndex::Range& range, double threshold, CellScalars& screen)
+  const CellFrame<T>& frame, const VolumeIndex::Range& range, double threshold, CellScreen& screen)
 {
   using A = Accumulator<T>;
   const double scale = std::abs(static_cast<double>(frame.values.scale.factor));
@@ -325,7 +325,7 @@ void findLocalMaxima(
 
 #define SPLATTING_INSTANTIATE(T)                                                                   \
   template void findLocalMaxima<T>(                                                                \
-    const CellFrame<T>&, const VolumeIndex::Range&, double, CellScalars&);
+    const CellFrame<T>&, const VolumeIndex::Range&, double, CellScreen&);
 SPLATTING_TYPES(SPLATTING_INSTANTIATE)
 #undef SPLATTING_INSTANTIATE
 }

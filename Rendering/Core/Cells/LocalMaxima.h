@@ -19,8 +19,8 @@ namespace splatting
  * @param screen  of the frame's global maxima, with depths
  */
 template <class T>
-void findLocalMaxima(const CellFrame<T>& frame, const VolumeIndex::Range& range, double threshold,
-  CellScalars& screen);
+void findLocalMaxima(
+  const CellFrame<T>& frame, const VolumeIndex::Range& range, double threshold, CellScreen& screen);
 }
 
 #endif

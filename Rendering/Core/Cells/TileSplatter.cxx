@@ -441,7 +441,7 @@ void TileSplatter<T>::findSeenCells(const glm::ivec3& cell)
 }
 
 template <class T>
-void TileSplatter<T>::finish(bool finished, CellScalars& screen) const
+void TileSplatter<T>::finish(bool finished, CellScreen& screen) const
 {
   const CellFrame<T>& f = this->Frame;
   constexpr A none = std::numeric_limits<A>::quiet_NaN();

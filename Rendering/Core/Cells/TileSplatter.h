@@ -24,7 +24,7 @@ public:
   /// Returns whether bricks with smaller voxels than these can raise a pixel.
   bool splat(const std::vector<std::uint32_t>& bricks);
   /// Writes the tile to the screen: scalars or, for CellProjector::finish(), values.
-  void finish(bool finished, CellScalars& screen) const;
+  void finish(bool finished, CellScreen& screen) const;
 
 private:
   void openRow(int y);

@@ -11,8 +11,9 @@ namespace splatting
 {
 /**
  * The scalars that the pixels of a viewport show, row by row. Both engines produce them:
- * CellScalars keeps the values of a finished projection, WarpedScalars warps a row of shear images
- * when it is asked for. Colours and arrays are made from them.
+ * CellScreen keeps the values of a finished projection, WarpedScalars warps a row of shear images
+ * when it is asked for, and ShearPixelScalars takes the values of chosen pixels of shear images.
+ * Colours and arrays are made from them.
  */
 class ScreenScalars
 {

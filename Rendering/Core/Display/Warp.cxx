@@ -203,17 +203,22 @@ void WarpedScalars::set(const std::vector<ShearImage>& images,
   {
     this->Observer.start();
   }
-  this->Images = nullptr;
+  this->Source = nullptr;
   if (geometries.empty())
   {
     return;
   }
   this->type = averageType(images.front().type);
+  if (this->size.x < 1 || this->size.y < 1)
+  {
+    this->size = glm::ivec2(0);
+    return;
+  }
   dispatch(images.front().type,
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
-      this->Images = std::make_unique<TypedRows<T>>(
+      this->Source = std::make_unique<TypedRows<T>>(
         images, geometries, reduction, kernelsFor(instructionSet), this->Copied);
     });
 }
@@ -223,7 +228,7 @@ const void* WarpedScalars::valuesOfRow(int y, void* space) const
   const glm::dvec3 start(this->origin.x, this->origin.y + static_cast<double>(y), 1.0);
   if (!this->IsObserved || this->Observer.ask())
   {
-    this->Images->warp(start, this->size.x, space);
+    this->Source->warp(start, this->size.x, space);
   }
   return space;
 }

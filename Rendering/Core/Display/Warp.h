@@ -66,7 +66,7 @@ public:
 private:
   mutable ProgressObserver Observer;
   bool IsObserved = false;
-  std::unique_ptr<Rows> Images;
+  std::unique_ptr<Rows> Source; // if there are pixels
   /// Images converted to the accumulator's type, if they have another type or holes.
   std::vector<std::vector<unsigned char>> Copied;
 };

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Projection/Locations.h"
 
-#include "Cells/CellScalars.h"
+#include "Cells/CellScreen.h"
 #include "Common/Parallel.h"
 #include "Display/Warp.h"
 #include "Sampling/ValuesAtLocations.h"
@@ -241,19 +241,24 @@ void findShown(const Located& located, const glm::ivec2& origin, const glm::ivec
     images, geometries, settings.reduction, located.view.viewport, settings.instructionSet);
   const auto choose = [&](auto null)
   {
-    std::vector<decltype(null)> space(warped.size.x);
+    using A = decltype(null);
     const glm::ivec2 first = glm::max(origin, warped.origin),
                      end = glm::min(origin + size, warped.origin + warped.size);
-    for (int y = first.y; y < end.y; ++y)
-    {
-      const auto* const values =
-        static_cast<const decltype(null)*>(warped.valuesOfRow(y - warped.origin.y, space.data()));
-      for (int x = first.x; x < end.x; ++x)
+    parallelFor(first.y, end.y, 16,
+      [&](std::ptrdiff_t from, std::ptrdiff_t to)
       {
-        const std::size_t n = std::size_t(y - origin.y) * size.x + x - origin.x;
-        out[n] = values[x - warped.origin.x] < settings.origin ? minima[n] : out[n];
-      }
-    }
+        std::vector<A> space(warped.size.x);
+        for (int y = static_cast<int>(from); y < to; ++y)
+        {
+          const A* const values =
+            static_cast<const A*>(warped.valuesOfRow(y - warped.origin.y, space.data()));
+          for (int x = first.x; x < end.x; ++x)
+          {
+            const std::size_t n = std::size_t(y - origin.y) * size.x + x - origin.x;
+            out[n] = values[x - warped.origin.x] < settings.origin ? minima[n] : out[n];
+          }
+        }
+      });
   };
   warped.type == ScalarType::Float32 ? choose(0.0f) : choose(0.0);
 }
@@ -320,7 +325,7 @@ glm::dvec3 Locator::point(const glm::dvec2& pixel, const ShearPixel& shown) cons
 
 Locator::Sample Locator::onScreen(const glm::ivec2& pixel) const
 {
-  const CellScalars& screen = *this->Source.screen;
+  const CellScreen& screen = *this->Source.screen;
   const glm::ivec2 p = pixel - screen.origin;
   Sample sample;
   if (p.x >= 0 && p.y >= 0 && p.x < screen.size.x && p.y < screen.size.y)

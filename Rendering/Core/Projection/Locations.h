@@ -29,7 +29,7 @@
 
 namespace splatting
 {
-class CellScalars;
+class CellScreen;
 
 /// A projection of a view with winners. The objects that its pointers refer to must exist while it
 /// is used.
@@ -40,7 +40,7 @@ struct Located
   VoxelArray volume; ///< the projected volume; without voxels if only a piece is available
   double low = 0.0, high = 0.0; ///< the range of its finite voxels
   /// The result of an exact projection, with depths. There are no images then.
-  const CellScalars* screen = nullptr;
+  const CellScreen* screen = nullptr;
   ProjectionSettings settings; ///< of the projection
   View view;
   glm::dmat4 indexToWorld{ 1.0 };

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Projection/SignedMaximum.h"
 
-#include "Cells/CellScalars.h"
+#include "Cells/CellScreen.h"
 
 #include <cstddef>
 #include <type_traits>
@@ -28,9 +28,9 @@ ShearImage shownValues(const ShearImage& image)
   return shown;
 }
 
-void takeMinima(CellScalars& screen, double origin)
+void takeMinima(CellScreen& screen, double origin)
 {
-  const CellScalars& minima = screen.minima.front();
+  const CellScreen& minima = screen.minima.front();
   const auto take = [&](auto* values)
   {
     using A = std::remove_pointer_t<decltype(values)>;

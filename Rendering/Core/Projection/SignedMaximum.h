@@ -13,7 +13,7 @@
 
 namespace splatting
 {
-class CellScalars;
+class CellScreen;
 
 /// Whether a pixel shows its minimum: whether this is farther from the origin than the maximum.
 /// Distances have double precision. Both values are NaN if there is no sample.
@@ -28,7 +28,7 @@ bool showsMinimum(T maximum, T minimum, double origin)
 ShearImage shownValues(const ShearImage& image);
 
 /// Replaces values, and depths if there are any, by those of the minima where these are shown.
-void takeMinima(CellScalars& screen, double origin);
+void takeMinima(CellScreen& screen, double origin);
 }
 
 #endif

@@ -47,7 +47,7 @@ public:
         }
       });
   }
-  void add(const splatting::CellScalars& screen)
+  void add(const splatting::CellScreen& screen)
   {
     splatting::dispatch(screen.type,
       [&](auto* null)
@@ -129,7 +129,7 @@ std::uint64_t checksumOfCells(const reference::Volume<T>& volume, const splattin
   whole.reset(voxels);
   splatting::CellIndex index;
   index.update({ voxels, glm::ivec3(0), toGlm(volume.size), view.showsBoxes }, whole.range());
-  splatting::CellScalars screen;
+  splatting::CellScreen screen;
   splatting::CellProjector().project(index, view, settings, {}, true, screen);
   Checksum sum;
   sum.add(screen);

@@ -34,7 +34,7 @@ namespace celltesting
 {
 using reference::Checks;
 using reference::Random;
-using splatting::CellScalars;
+using splatting::CellScreen;
 using splatting::ProjectionSettings;
 using splatting::Reduction;
 using splatting::View;
@@ -102,12 +102,12 @@ public:
   const splatting::VolumeIndex::Range& range() const { return this->Range; }
   const splatting::RayEnds& ends() const { return this->Ends; }
 
-  bool project(CellScalars& screen)
+  bool project(CellScreen& screen)
   {
     return this->Projector.project(this->Index, this->Source.view, this->Source.settings,
       this->Ends, this->Source.locate, screen);
   }
-  bool project(const glm::ivec2 (&within)[2], CellScalars& screen)
+  bool project(const glm::ivec2 (&within)[2], CellScreen& screen)
   {
     return this->Projector.project(this->Index, this->Source.view, this->Source.settings,
       this->Ends, this->Source.locate, within, screen);
@@ -125,14 +125,14 @@ private:
 
 /// A pixel of the viewport; NaN outside of the rectangle.
 template <class A>
-A valueAt(const CellScalars& screen, int x, int y)
+A valueAt(const CellScreen& screen, int x, int y)
 {
   const glm::ivec2 p = glm::ivec2(x, y) - screen.origin;
   const bool isIn = p.x >= 0 && p.y >= 0 && p.x < screen.size.x && p.y < screen.size.y;
   return isIn ? screen.row<A>(p.y)[p.x] : std::numeric_limits<A>::quiet_NaN();
 }
 
-inline float depthAt(const CellScalars& screen, int x, int y)
+inline float depthAt(const CellScreen& screen, int x, int y)
 {
   const glm::ivec2 p = glm::ivec2(x, y) - screen.origin;
   return screen.depths[std::size_t(p.y) * screen.size.x + p.x];
@@ -295,13 +295,13 @@ public:
   }
 
   /// Rays that cross the field over too little have no sample.
-  bool crosses(const reference::CellRay<R>& ray, int x, int y, const CellScalars& screen) const
+  bool crosses(const reference::CellRay<R>& ray, int x, int y, const CellScreen& screen) const
   {
     const R step = glm::length(screen.rays.direction(x, y));
     return ray.far - ray.near > splatting::CellProjector::ShortestRay * step;
   }
 
-  Counts compare(const CellScalars& screen) const
+  Counts compare(const CellScreen& screen) const
   {
     Counts counts;
     for (int y = 0; y < this->Source.view.viewport.y; ++y)
@@ -327,7 +327,7 @@ private:
   }
 
   Sample sampleOf(
-    const reference::CellRay<R>& ray, int x, int y, A value, const CellScalars& screen) const
+    const reference::CellRay<R>& ray, int x, int y, A value, const CellScreen& screen) const
   {
     return this->crosses(ray, x, y, screen) ? this->expected(this->Oracle, ray, value) : Sample();
   }
@@ -343,7 +343,7 @@ private:
     return !exists || R(value) == sample.value ? R(0) : std::fabs(R(value) - sample.value);
   }
 
-  void comparePixel(const CellScalars& screen, int x, int y, Counts& counts) const
+  void comparePixel(const CellScreen& screen, int x, int y, Counts& counts) const
   {
     const A value = valueAt<A>(screen, x, y);
     const reference::CellRay<R> ray = this->Oracle.ray(x, y);
@@ -386,7 +386,7 @@ private:
 
   /// Whether rays beside a pixel's own differ by more than a continuous field can, and the engine's
   /// value is in their range.
-  bool isAmbiguous(const CellScalars& screen, int x, int y, A value) const
+  bool isAmbiguous(const CellScreen& screen, int x, int y, A value) const
   {
     std::vector<Sample> samples;
     std::vector<reference::CellRay<R>> rays;
@@ -454,7 +454,7 @@ template <class T>
 Counts compareScene(const Scene<T>& scene, Checks& check)
 {
   Engine<T> engine(scene);
-  CellScalars screen;
+  CellScreen screen;
   if (!engine.project(screen))
   {
     check(false, "the view has no meaning: ", glm::to_string(scene.view.indexToClip));

@@ -17,7 +17,7 @@ void compareDepths(const Scene<T>& scene, Counts& counts, Checks& check)
   using A = splatting::Accumulator<T>;
   using R = Real<T>;
   Engine<T> engine(scene);
-  CellScalars screen;
+  CellScreen screen;
   engine.project(screen);
   const Comparison<T> comparison(scene, engine.range(), check);
   const reference::CellOracle<R>& oracle = comparison.oracle();

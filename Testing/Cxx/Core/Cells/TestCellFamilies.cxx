@@ -145,7 +145,7 @@ void testPlateAndLine(Checks& check)
     { 0.0, 0.0, 0.0, 1.0 });
   counts.add(compareScene(scene, check));
   Engine<std::uint16_t> engine(scene);
-  CellScalars screen;
+  CellScreen screen;
   engine.project(screen);
   float largest = 0.0f;
   int above = 0;

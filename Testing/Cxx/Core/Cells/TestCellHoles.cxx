@@ -105,7 +105,7 @@ void testSingleVoxels(Checks& check)
     scene.view =
       parallelView(scene.volume.size, 8.0, 100, glm::dvec3(0.0, 0.0, 1.0), glm::dmat3(1.0), random);
     Engine<float> engine(scene);
-    CellScalars screen;
+    CellScreen screen;
     engine.project(screen);
     int samples = 0;
     for (int y = 0; y < scene.view.viewport.y; ++y)

@@ -22,7 +22,7 @@ using Picture = std::vector<std::pair<splatting::Accumulator<T>, float>>;
 
 /// All pixels of the viewport.
 template <class T>
-Picture<T> pictureOf(const View& view, const CellScalars& screen)
+Picture<T> pictureOf(const View& view, const CellScreen& screen)
 {
   using A = splatting::Accumulator<T>;
   Picture<T> picture;
@@ -53,7 +53,7 @@ template <class T>
 Picture<T> withRectangle(
   Engine<T>& engine, const Scene<T>& scene, const Picture<T>& whole, const glm::ivec2 (&within)[2])
 {
-  CellScalars screen;
+  CellScreen screen;
   engine.project(within, screen);
   Picture<T> picture = whole;
   const Picture<T> part = pictureOf<T>(scene.view, screen);
@@ -70,7 +70,7 @@ Picture<T> withRectangle(
 
 /// The larger values of two pieces; of equal ones the nearer.
 template <class A>
-void reduce(const CellScalars& part, CellScalars& whole)
+void reduce(const CellScreen& part, CellScreen& whole)
 {
   const A* const from = part.row<A>(0);
   A* const to = whole.row<A>(0);
@@ -97,7 +97,7 @@ template <class T>
 Picture<T> fromPieces(const Scene<T>& scene, const splatting::VolumeIndex::Range& range,
   const splatting::RayEnds& ends, int axis, int layer)
 {
-  CellScalars result;
+  CellScreen result;
   const glm::ivec3 whole = scene.view.dimensions;
   for (int p = 0; p < 2; ++p)
   {
@@ -120,7 +120,7 @@ Picture<T> fromPieces(const Scene<T>& scene, const splatting::VolumeIndex::Range
                    first, whole, scene.view.showsBoxes),
       range);
     splatting::CellProjector projector;
-    CellScalars screen;
+    CellScreen screen;
     projector.projectPiece(index, scene.view, scene.settings, ends, true, screen);
     if (p == 0)
     {
@@ -164,7 +164,7 @@ void testInvariance(Checks& check)
       const std::array<int, 3> size = coretesting::randomSize(random, 22);
       Scene<T> scene = anyScene<T>(size, random);
       Engine<T> engine(scene);
-      CellScalars screen;
+      CellScreen screen;
       engine.project(screen);
       const Picture<T> whole = pictureOf<T>(scene.view, screen);
       for (const splatting::InstructionSet set : coretesting::instructionSets)
@@ -221,7 +221,7 @@ void testThreads(Checks& check)
         ? parallelView(scene.volume.size, 9.0, 520, direction, placement, random)
         : perspectiveView(scene.volume.size, 9.0, 520, 1.5, direction, placement, random);
       Engine<T> engine(scene);
-      CellScalars screen;
+      CellScreen screen;
       const std::string usual = vtkSMPTools::GetBackend();
       Picture<T> expected;
       for (const char* backend : { "Sequential", "STDThread", "TBB" })

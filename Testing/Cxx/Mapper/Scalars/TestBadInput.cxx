@@ -449,6 +449,26 @@ void testCameras(Scene& scene, reference::Checks& check)
   }
 }
 
+/// A turned volume that is much smaller than a pixel is no error.
+void testSmallVolume(Scene& scene, reference::Checks& check)
+{
+  vtkCamera* const camera = scene.stage.renderer->GetActiveCamera();
+  vtkNew<vtkCamera> before;
+  before->DeepCopy(camera);
+  camera->Azimuth(35.0);
+  camera->Elevation(25.0);
+  for (int mode = 0; mode <= vtkSplattingMIPVolumeMapper::EXACT; ++mode)
+  {
+    const stage::Messages errors(scene.mapper, vtkCommand::ErrorEvent);
+    scene.mapper->SetQualityMode(mode);
+    camera->SetParallelScale(1e7 * before->GetParallelScale());
+    scene.mapper->Render(scene.stage.renderer, scene.stage.volume);
+    check(errors.texts.empty() && scene.mapper->GetShearImage() != nullptr, "Mode ", mode,
+      ": a small volume gives ", errors.texts.size(), " errors, or no shear image.");
+  }
+  camera->DeepCopy(before);
+}
+
 /// A view that cannot be rendered beside one that can: told once, and again once mended in between.
 void testOneBadView(Scene& scene, reference::Checks& check)
 {
@@ -566,6 +586,7 @@ int TestBadInput(int, char*[])
     test(scene, fault, check);
   }
   testCameras(scene, check);
+  testSmallVolume(scene, check);
   testOneBadView(scene, check);
   testProperties(scene, check);
   return check.exitCode();

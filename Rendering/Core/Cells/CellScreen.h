@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef splattingCellScalars_h
-#define splattingCellScalars_h
+#ifndef splattingCellScreen_h
+#define splattingCellScreen_h
 
 #include "Cells/PixelRays.h"
 #include "Display/ScreenScalars.h"
@@ -14,7 +14,7 @@ namespace splatting
 /**
  * The result of a projection by cells: values, and on request where on their rays the samples lie.
  */
-class CellScalars : public ScreenScalars
+class CellScreen : public ScreenScalars
 {
 public:
   /// size.x * size.y values; NaN where there is no sample.
@@ -23,7 +23,7 @@ public:
   std::vector<float> depths;
   /// In Reduction::Signed the minima, which CellProjector::finish() combines with the maxima. Else
   /// empty.
-  std::vector<CellScalars> minima;
+  std::vector<CellScreen> minima;
   PixelRays rays;
 
   const void* valuesOfRow(int y, void*) const override
@@ -38,7 +38,7 @@ public:
   template <class A>
   const A* row(int y) const
   {
-    return const_cast<CellScalars*>(this)->row<A>(y);
+    return const_cast<CellScreen*>(this)->row<A>(y);
   }
 };
 }
