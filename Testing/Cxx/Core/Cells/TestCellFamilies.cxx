@@ -106,6 +106,22 @@ void testNoise(Checks& check)
     });
 }
 
+/// Tiles that see hundreds of bricks, most of which cannot raise a pixel at last. All voxels are
+/// bright but for one, so that early values are near the final ones.
+template <class T>
+void testManyBricks(Checks& check)
+{
+  forFamily<T>("many bricks", 12, Continuous, check,
+    [&](Random& random, Counts& counts)
+    {
+      const std::array<int, 3> size = { 49, 45, 42 };
+      auto volume = volumeOf<T>(size,
+        [&](const glm::dvec3& p)
+        { return p == glm::dvec3(24.0, 22.0, 21.0) ? 0.0 : random.uniform(0.6, 1.0); });
+      compareAlong<T>(std::move(volume), randomDirection(random), random, counts, check);
+    });
+}
+
 template <class T>
 void testCheckerboards(Checks& check)
 {
@@ -171,6 +187,7 @@ void testFamilies(Checks& check)
   testSingleVoxels<T>(check);
   testTubes<T>(check);
   testNoise<T>(check);
+  testManyBricks<T>(check);
   testCheckerboards<T>(check);
 }
 }
