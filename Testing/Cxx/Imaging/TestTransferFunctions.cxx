@@ -151,13 +151,18 @@ void testPrimaries(Checks& check)
 {
   for (int primary = 0; primary < 3; ++primary)
   {
-    const splatting::ColorTable table = tabulatePrimary(primary, {});
-    for (std::size_t e = 0; e < table.colors.size(); ++e)
+    for (const FinalColor& finalColor : { FinalColor{}, FinalColor{ 2.0f, 0.25f } })
     {
-      const double scalar = 255.0 * double(e) / (double(table.colors.size()) - 1.0);
-      glm::dvec4 expected(0.0, 0.0, 0.0, 255.0);
-      expected[primary] = scalar;
-      compare(check, reinterpret_cast<const unsigned char*>(&table.colors[e]), expected, scalar);
+      const splatting::ColorTable table = tabulatePrimary(primary, finalColor);
+      for (std::size_t e = 0; e < table.colors.size(); ++e)
+      {
+        const double share = double(e) / (double(table.colors.size()) - 1.0);
+        glm::dvec4 expected(0.0, 0.0, 0.0, 255.0);
+        expected[primary] =
+          255.0 * std::clamp((share - finalColor.level) / finalColor.window + 0.5, 0.0, 1.0);
+        compare(
+          check, reinterpret_cast<const unsigned char*>(&table.colors[e]), expected, 255.0 * share);
+      }
     }
   }
 }

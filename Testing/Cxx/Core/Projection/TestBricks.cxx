@@ -148,6 +148,18 @@ void testType(Checks& check)
       const bool hasRoom = random.uniform(0, 3) > 0;
       testRange(check, volumeWithOddValues<T>(size, random), hasRoom);
     });
+  if constexpr (!std::numeric_limits<T>::is_integer)
+  {
+    // One thread of several finds it.
+    reference::forScenes(seriesOf<T>("a single NaN"), 20,
+      [&](int, reference::Random& random)
+      {
+        reference::Volume<T> volume({ 256, 96, 96 });
+        volume.at(random.uniform(0, 255), random.uniform(0, 95), random.uniform(0, 95)) =
+          std::numeric_limits<T>::quiet_NaN();
+        testRange(check, volume, true);
+      });
+  }
 }
 }
 
