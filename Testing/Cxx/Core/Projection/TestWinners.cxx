@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace winnerscenes;
 using splatting::Acceleration;
@@ -39,6 +40,20 @@ template <class T>
 reference::Volume<T> volumeWithTies(reference::Random& random)
 {
   return withTies<T>(randomSize(random, random.oneIn(2) ? 40 : 12), random);
+}
+
+/// Hides some voxels or most of them, if the type has NaN.
+template <class T>
+void hideVoxels(reference::Volume<T>& volume, reference::Random& random)
+{
+  const double share = random.oneIn(2) ? random.uniform(0.0, 1.0) : 0.0;
+  for (T& voxel : volume.voxels)
+  {
+    if (std::numeric_limits<T>::has_quiet_NaN && random.chance(share))
+    {
+      voxel = std::numeric_limits<T>::quiet_NaN();
+    }
+  }
 }
 
 /// Of each pixel of a scene's images the voxel that brute force finds, -1 for none.
@@ -98,7 +113,8 @@ void testPreview(Checks& check, bool perspective)
   reference::forScenes(seriesOf<T>(nameOf("previews", perspective)), 40,
     [&](int, reference::Random& random)
     {
-      const auto volume = volumeWithTies<T>(random);
+      auto volume = volumeWithTies<T>(random);
+      hideVoxels(volume, random);
       const Scene scene = anyScene(volume.size, perspective, random);
       splatting::ProjectionSettings settings;
       settings.quality = Quality::Preview;
