@@ -14,6 +14,7 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <utility>
 
 using namespace coretesting;
 using splatting::Acceleration;
@@ -95,6 +96,11 @@ void testPreview(Checks& check)
         scene.cuts = {};
         scene.cuts = rayCutsOf({}, anyCropping(volume.size, random));
         scene.cuts.regions = flags;
+        if (random.oneIn(4)) // no place is between exchanged planes
+        {
+          std::array<double, 2>& planes = scene.cuts.planes[random.uniform(0, 2)];
+          std::swap(planes[0], planes[1]);
+        }
         if (random.oneIn(5))
         {
           scene.cuts.halfSpaces = { { 0.3, -0.2, 1.0,
