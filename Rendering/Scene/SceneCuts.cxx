@@ -15,8 +15,8 @@ namespace splatting
 bool SceneCuts::Find(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
   const DepthReader& readDepth)
 {
-  // The volume is seen within the outer faces of its voxels, but for rounding. In overviews the
-  // areas of more pixels may meet it.
+  // Pixels show the volume within the outer faces of its voxels. Rounding adds less than the
+  // margin. In overviews the areas of other pixels may meet the volume, too.
   View boxes = view;
   boxes.showsBoxes = true;
   if (minifiesAnyAxis(view))

@@ -49,11 +49,13 @@ configure_vtk() {
     -DVTK_ENABLE_WRAPPING=OFF -DVTK_ENABLE_REMOTE_MODULES=ON \
     -DVTK_MODULE_ENABLE_VTK_RenderingSplattingMIP=YES "$@"
 }
-if configure_vtk -DSPLATTINGMIP_GIT_REPOSITORY= >"$roots/$root/tmp/log" 2>&1; then
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+if configure_vtk -DSPLATTINGMIP_GIT_REPOSITORY= >"$log" 2>&1; then
   echo "VTK was configured with the module, but without a repository." >&2
   exit 1
 fi
-grep "There is no repository to fetch VTK::RenderingSplattingMIP from" "$roots/$root/tmp/log"
+grep "There is no repository to fetch VTK::RenderingSplattingMIP from" "$log"
 configure_vtk -DSPLATTINGMIP_GIT_REPOSITORY=/splattingmip/repository "-DSPLATTINGMIP_GIT_TAG=$commit"
 # 1500 files: ccache is not to run the preprocessor first.
 in_root "$root" env CCACHE_DEPEND=1 cmake --build "$build/vtk" -j "$(nproc)" \

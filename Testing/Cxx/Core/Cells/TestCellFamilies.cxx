@@ -106,8 +106,8 @@ void testNoise(Checks& check)
     });
 }
 
-/// Tiles that see hundreds of bricks, most of which cannot raise a pixel at last. All voxels are
-/// bright but for one, so that early values are near the final ones.
+/// Each tile sees hundreds of bricks, and the last ones cannot raise any pixel. One voxel is 0, all
+/// others are bright. Pixels are therefore near their final values early.
 template <class T>
 void testManyBricks(Checks& check)
 {

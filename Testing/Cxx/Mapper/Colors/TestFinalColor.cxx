@@ -129,7 +129,8 @@ void testReuse(stage::Stage& stage, vtkVolumeProperty* property, reference::Chec
       { VTK_NEAREST_INTERPOLATION, VTK_CUBIC_INTERPOLATION, VTK_LINEAR_INTERPOLATION })
     {
       property->SetInterpolationType(type);
-      check(stage.pixels() == before, name, ": the interpolation type has no meaning.");
+      check(
+        stage.pixels() == before, name, ": the interpolation type does not change the picture.");
     }
     check(mapper->GetNumberOfProjections() == projections, name, ": nothing is projected again.");
   }

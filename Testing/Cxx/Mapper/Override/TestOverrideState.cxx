@@ -263,9 +263,9 @@ void testSelection(reference::Checks& check)
       wrong += isPicked != isShown;
     }
   }
-  check(hits > 10 && misses > 10 && wrong == 0, "Picks what is seen: ", hits, " hits, ", misses,
-    " misses, ", wrong, " wrong.");
-  check(scene.pixels() == picture, "Picking leaves no trace.");
+  check(hits > 10 && misses > 10 && wrong == 0, "The volume is picked where pixels show it: ", hits,
+    " hits, ", misses, " misses, ", wrong, " wrong pixels.");
+  check(scene.pixels() == picture, "A pick does not change the picture.");
 }
 
 /// One mapper for two volumes, in two windows, with changes of the blend mode and a release of the

@@ -105,24 +105,24 @@ void testProgress(Scene& scene, const std::string& what, reference::Checks& chec
 bool abortAt(Scene& scene, int n, const std::string& what, reference::Checks& check)
 {
   const vtkIdType projections = scene.mapper->GetNumberOfProjections();
-  int told = 0;
+  int reports = 0;
   stage::Pixels pixels;
   {
     const Observer observer(scene.mapper, vtkCommand::VolumeMapperRenderProgressEvent,
       [&](void*)
       {
-        if (++told == n)
+        if (++reports == n)
         {
           scene.stage.window->SetAbortRender(1);
         }
       });
     pixels = scene.stage.pixels();
   }
-  if (told < n)
+  if (reports < n)
   {
     return false;
   }
-  check(told == n, what, ": after the abort nothing is told.");
+  check(reports == n, what, ": no progress is reported after the abort.");
   check(isBlack(pixels), what, ": an aborted render draws nothing.");
   check(scene.mapper->GetNumberOfProjections() == projections, what, ": it is no projection.");
   check(scene.mapper->GetShearImage() == nullptr, what, ": it leaves no shear image.");
@@ -193,25 +193,25 @@ void testAbortCheckEvent(Scene& scene, reference::Checks& check)
   scene.stage.look(Directions[1], Up);
   scene.stage.pixels();
   scene.stage.look(Directions[0], Up);
-  int asked = 0, told = 0;
+  int asked = 0, reports = 0;
   {
     const Observer slow(scene.mapper, vtkCommand::VolumeMapperRenderProgressEvent,
       [&](void*)
       {
-        ++told;
+        ++reports;
         std::this_thread::sleep_for(std::chrono::milliseconds(250));
       });
     const Observer abort(scene.stage.window, vtkCommand::AbortCheckEvent,
       [&](void*)
       {
-        if (++asked >= 2 && told > 0)
+        if (++asked >= 2 && reports > 0)
         {
           scene.stage.window->SetAbortRender(1);
         }
       });
     check(isBlack(scene.stage.pixels()), "An observer of AbortCheckEvent aborts.");
   }
-  check(asked >= 2 && told >= 1 && told <= 2, "The projection asks the window.");
+  check(asked >= 2 && reports >= 1 && reports <= 2, "The projection asks the window.");
   check(scene.stage.pixels() == expected, "The next render is right.");
 }
 

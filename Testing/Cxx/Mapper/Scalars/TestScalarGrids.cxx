@@ -216,7 +216,8 @@ void testUnequalSteps(bool cells, stage::Stage& stage, reference::Checks& check)
       largest = std::max(largest, std::abs(picture[n] - expected[n]));
     }
     // Roundings of the last bit of a double may turn the last bit of a colour.
-    check(largest <= (cells ? 0 : 1) && !isBlack(picture), name, ": as by hand.");
+    check(largest <= (cells ? 0 : 1) && !isBlack(picture), name,
+      ": the picture differs from the one of the resampled volume by ", largest, ".");
   }
   check(mapper->GetIndexMemorySize() ==
       plain->GetIndexMemorySize() + resampled->GetNumberOfValues() * resampled->GetDataTypeSize(),

@@ -280,8 +280,9 @@ void testIndependentComponents(
       largest = std::max(largest, std::abs(std::min(sum[n], 255) - picture[n]));
       bright = std::max(bright, sum[n]);
     }
-    check(largest <= components && bright > 100, name, "the sum of the parts, but for ", largest,
-      " bytes.");
+    check(largest <= components && bright > 100, name,
+      "the picture differs from the sum of its components by ", largest,
+      " at most, and the brightest sum is ", bright, ".");
   }
   check(
     mode == Mapper::EXACT || mapper->GetShearImage()->GetNumberOfScalarComponents() == components,

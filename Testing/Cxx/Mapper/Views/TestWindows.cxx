@@ -169,8 +169,8 @@ bool testStereo(const Scene& scene, reference::Checks& check)
   const int strangeRight = countStrange(stage, scene, right);
   const bool differs = countStrange(stage, scene, left) > 0;
   check(left != middle && right != middle && left != right, "Eyes see different pictures.");
-  check(strangeLeft == 0 && strangeRight == 0, "Eyes see what they should but for ", strangeLeft,
-    " and ", strangeRight, " pixels.");
+  check(strangeLeft == 0 && strangeRight == 0, "The pictures of the left and the right eye have ",
+    strangeLeft, " and ", strangeRight, " wrong pixels.");
   check(stage.pixels() == middle, "Without stereo the picture is as before.");
 
   // Anaglyph: red from the left eye, the rest from the right one.
