@@ -65,10 +65,10 @@ bool ProjectedVolume::Project(vtkSplattingMIPVolumeMapper* mapper, const View& v
   const double start = vtkTimerLog::GetUniversalTime();
   const int usable = std::clamp(this->ModeUsed, mode, mapper->GetQualityMode());
   const vtkIdType before = this->NumberOfProjections();
-  if (!this->Cuts.Find(
-        view, renderer, volume, mapper->GetIntermixIntersectingGeometry() != 0, readDepth) ||
-    !this->Components.Project(
-      view, settingsOf(mapper, usable, view), settingsOf(mapper, mode, view), this->Cuts.Get()))
+  this->Cuts.Find(
+    view, renderer, volume, mapper->GetIntermixIntersectingGeometry() != 0, readDepth);
+  if (!this->Components.Project(
+        view, settingsOf(mapper, usable, view), settingsOf(mapper, mode, view), this->Cuts.Get()))
   {
     return false;
   }

@@ -3,38 +3,47 @@
 #include "Scene/SceneCuts.h"
 
 #include "Cells/CellProjector.h"
-#include "Geometry/Magnification.h"
 
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 
 namespace splatting
 {
-bool SceneCuts::Find(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
-  const DepthReader& readDepth)
+namespace
 {
-  // Pixels show the volume within the outer faces of its voxels. Rounding adds less than the
-  // margin. In overviews the areas of other pixels may meet the volume, too.
-  View boxes = view;
-  boxes.showsBoxes = true;
-  if (minifiesAnyAxis(view))
+/// A rectangle of the viewport that contains all pixels that may show a volume.
+Picture areaOf(const View& view)
+{
+  // In overviews a pixel's area may be half a pixel of the screen and half a shear pixel, which is
+  // at most a voxel, outside the faces of voxels.
+  View larger = view;
+  larger.showsBoxes = true;
+  larger.dimensions += 2;
+  larger.indexToClip = glm::translate(view.indexToClip, glm::dvec3(-1.0));
+  Picture area;
+  if (!CellProjector::place(larger, area))
   {
-    this->Area.origin = glm::ivec2(0);
-    this->Area.size = view.viewport;
+    area.size = view.viewport; // the volume is too small for that, or the view is invalid
   }
-  else if (!CellProjector::place(boxes, this->Area))
-  {
-    return false;
-  }
-  else if (this->Area.size.x > 0)
+  else if (area.size.x > 0)
   {
     constexpr int margin = 2;
-    const glm::ivec2 end = glm::min(this->Area.origin + this->Area.size + margin, view.viewport);
-    this->Area.origin = glm::max(this->Area.origin - margin, glm::ivec2(0));
-    this->Area.size = end - this->Area.origin;
+    const glm::ivec2 end = glm::min(area.origin + area.size + margin, view.viewport);
+    area.origin = glm::max(area.origin - margin, glm::ivec2(0));
+    area.size = end - area.origin;
   }
+  return area;
+}
+}
+
+void SceneCuts::Find(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
+  const DepthReader& readDepth)
+{
+  this->Area = areaOf(view);
   this->Seen = renderer->GetSelector()
     ? this->FindLastScene(view, renderer, volume, intermixes)
     : this->ReadSceneDepth(renderer, volume, intermixes, readDepth);
@@ -43,7 +52,6 @@ bool SceneCuts::Find(const View& view, vtkRenderer* renderer, vtkVolume* volume,
     this->Seen->indexToClip = view.indexToClip;
     this->Seen->depth.place(view);
   }
-  return true;
 }
 
 RayEnds SceneCuts::Get()

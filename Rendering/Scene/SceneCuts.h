@@ -36,10 +36,10 @@ public:
   using DepthReader = std::function<bool(const int origin[2], const int size[2], float* depths)>;
 
   /**
-   * Finds the cuts of a view. Returns false if the view is invalid.
+   * Finds the cuts of a view.
    * @param intermixes  whether geometry in the scene hides the volume and ends rays in it
    */
-  bool Find(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
+  void Find(const View& view, vtkRenderer* renderer, vtkVolume* volume, bool intermixes,
     const DepthReader& readDepth);
 
   /// What the last Find() has found.
@@ -73,7 +73,7 @@ private:
   std::vector<Scene> Scenes;
   Scene* Seen = nullptr; // of the current frame, or nullptr
   vtkTypeInt64 Frame = 0;
-  Picture Area; // rectangle of the viewport that contains all pixels that may show the volume
+  Picture Area; // rectangle of the viewport whose depths are read
 };
 }
 
