@@ -487,6 +487,33 @@ void testMultiSamples(double viewAngle, vtkSplattingMIPVolumeMapper* mapper, vtk
             << std::endl;
   check(wrong == 0, "Multisampling changes nothing but rims.");
 }
+
+/// A volume that is much smaller than a pixel, and a wall that hides it.
+void testSmallVolume(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
+{
+  for (const stage::Vector& direction : directions)
+  {
+    stage.look(direction, up);
+    vtkCamera* const camera = stage.renderer->GetActiveCamera();
+    const double scale = 1e6 * camera->GetParallelScale();
+    const stage::Vector eye = along(image, direction, -scale);
+    camera->SetPosition(eye.data());
+    camera->SetParallelScale(scale);
+    camera->SetClippingRange(0.1 * scale, 2.0 * scale);
+    stage.volume->VisibilityOn();
+    const stage::Pixels shown = stage.pixels();
+    const auto before = wall(along(image, direction, -0.5 * scale), direction, 4.0 * scale);
+    stage.renderer->AddActor(before);
+    const stage::Pixels hidden = stage.pixels();
+    stage.volume->VisibilityOff();
+    const stage::Pixels alone = stage.pixels();
+    stage.volume->VisibilityOn();
+    stage.renderer->RemoveActor(before);
+    check(differing(shown, stage::Pixels(shown.size(), 0)) > 0 && differing(hidden, alone) == 0,
+      "A small volume is seen in ", differing(shown, stage::Pixels(shown.size(), 0)),
+      " pixels, behind a wall in ", differing(hidden, alone), ".");
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -504,6 +531,8 @@ int TestIntermix(int, char*[])
     testPasses(viewAngle, mapper, image, check);
   }
   stage.setGrayRamp(-40.0, 255.0);
+  stage.viewAngle = 0.0;
+  testSmallVolume(stage, image, check);
   for (double viewAngle : { 0.0, 50.0 })
   {
     stage.viewAngle = viewAngle;
