@@ -74,7 +74,6 @@ void ComponentProjector::Clear()
   this->Next = {};
   this->CellDepth = {};
   this->Shown = {};
-  this->PixelOnScreen = {};
   this->ShearImageOutput = nullptr;
   this->Dependent = false;
   this->Version = 0;
@@ -349,12 +348,21 @@ bool ComponentProjector::HasWinners() const
     this->LocatedChannel().Settings.recordLocations;
 }
 
-void ComponentProjector::Describe(Located& located) const
+void ComponentProjector::Describe(const RayEnds& ends, Located& located) const
 {
   const Channel& channel = this->LocatedChannel();
-  located.images = this->OnScreen ? nullptr : &channel.Images;
-  located.geometries = &this->Splat.geometries;
-  located.screen = this->OnScreen ? &channel.Screen : nullptr;
+  located.ends = ends;
+  if (this->OnScreen)
+  {
+    located.screen = channel.Settings.recordLocations ? &channel.Screen : nullptr;
+  }
+  else
+  {
+    located.ends.surface = nullptr; // is in the cuts
+    located.images = &channel.Images;
+    located.geometries = &this->Splat.geometries;
+    located.cuts = &this->Splat.cuts;
+  }
   located.volume = channel.Index.volume();
   if (this->Ranks)
   {
@@ -371,10 +379,10 @@ bool ComponentProjector::CanProjectPixels() const
     this->LocatedChannel().Settings.reduction != Reduction::Mean;
 }
 
-const PixelProjector::Pixel& ComponentProjector::ProjectPixel(const ProjectionSettings& settings,
-  const ShearPixel& pixel, const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts)
+Locator::Sample ComponentProjector::FindSample(const Located& located, const glm::ivec2& pixel)
 {
-  return this->Pixels.Project(this->LocatedChannel().Index, settings, pixel, geometries, cuts);
+  Channel& channel = this->LocatedChannel();
+  return this->Pixels.find(channel.Index, channel.Cells, located, pixel);
 }
 
 // Turns the images of pieces into those of the whole.
@@ -456,21 +464,6 @@ bool ComponentProjector::ProjectCells(
   this->CellSurface = ends.surfaceVersion;
   ends.depth ? void(this->CellDepth = *ends.depth) : this->CellDepth.clear();
   return true;
-}
-
-const CellScreen& ComponentProjector::ProjectPixelOnScreen(
-  const View& view, ProjectionSettings settings, const RayEnds& ends, const glm::ivec2& pixel)
-{
-  settings.floor = ProjectionSettings().floor; // samples below the window are located, too
-  Channel& channel = this->LocatedChannel();
-  this->UpdateCells(channel, view);
-  CellProjector projector; // without an observer
-  if (!projector.project(
-        channel.Cells, view, settings, ends, true, { pixel, glm::ivec2(1) }, this->PixelOnScreen))
-  {
-    this->PixelOnScreen.size = glm::ivec2(0);
-  }
-  return this->PixelOnScreen;
 }
 
 template <class F>

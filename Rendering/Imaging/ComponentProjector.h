@@ -96,15 +96,6 @@ public:
   /// How often Project() has projected.
   vtkIdType NumberOfProjections() const { return this->Projections; }
 
-  /// Whether the last projection was by cells. There are no shear images then.
-  bool IsOnScreen() const { return this->OnScreen; }
-  /// The shear images' cuts.
-  const std::vector<Cuts>& CutsOfImages() const { return this->Splat.cuts; }
-  /// Projects one pixel of the viewport by cells, with its depth. Not for pieces. The result is
-  /// valid until the next call.
-  const CellScreen& ProjectPixelOnScreen(
-    const View& view, ProjectionSettings settings, const RayEnds& ends, const glm::ivec2& pixel);
-
   /// Makes the picture of a view. Returns false, without a picture, if the observer has stopped it.
   bool MakePicture(const View& view, Picture& picture);
 
@@ -135,15 +126,14 @@ public:
   /// Whether there are sample positions of the located component: the last of dependent ones, else
   /// the first.
   bool HasWinners() const;
-  /// Sets images, volume, range and settings of the located component. It must have winners.
-  void Describe(Located& located) const;
+  /// Sets the located component's projection, volume, range and settings.
+  /// @param ends  of the last Project()
+  void Describe(const RayEnds& ends, Located& located) const;
 
-  /// See PixelProjector: not for pieces and averages.
+  /// Whether FindSample() works: not for pieces and averages.
   bool CanProjectPixels() const;
-  /// @param settings  of the located projection
-  const PixelProjector::Pixel& ProjectPixel(const ProjectionSettings& settings,
-    const ShearPixel& pixel, const std::vector<ShearWarp>& geometries,
-    const std::vector<Cuts>& cuts);
+  /// Projects a pixel of the viewport again and finds its sample; see PixelProjector.
+  Locator::Sample FindSample(const Located& located, const glm::ivec2& pixel);
 
   /// Settings and acceleration of the last projection.
   const ProjectionSettings& Settings() const { return this->Channels.front().Settings; }
@@ -214,7 +204,6 @@ private:
   splatting::Projector Projector;
   CellProjector Cells;
   PixelProjector Pixels;
-  CellScreen PixelOnScreen;
   WarpedScalars Warped;
   Picture Layer; // picture of one component
   ShearPixelScalars Shown;

@@ -3,39 +3,42 @@
 #ifndef PixelProjector_h
 #define PixelProjector_h
 
-#include "Display/ShearPixels.h"
+#include "Cells/CellProjector.h"
+#include "Projection/Locations.h"
 #include "Projection/Project.h"
+
+#include <glm/vec2.hpp>
 
 #include <vector>
 
 namespace splatting
 {
 /**
- * Projects single pixels of a view's images again, with their winners, for picks without recorded
- * locations.
+ * Finds the samples of single pixels of a projection without recorded locations: it projects the
+ * pixels again.
  */
 class PixelProjector
 {
 public:
-  /// The image of one pixel.
-  struct Pixel
-  {
-    std::vector<ShearWarp> Geometries = std::vector<ShearWarp>(1);
-    std::vector<ShearImage> Images = std::vector<ShearImage>(1);
-    splatting::Cuts Cuts;
-  };
-
   /**
-   * @param index       of the whole volume
-   * @param settings    of the images; not for averages
-   * @param geometries  of the images, and the cuts of each
+   * @param index    of the whole volume
+   * @param cells    of the whole volume, which are only updated for exact projections
+   * @param located  the projection, not of averages
+   * @param pixel    of the viewport
    */
-  const Pixel& Project(VolumeIndex& index, ProjectionSettings settings, const ShearPixel& pixel,
-    const std::vector<ShearWarp>& geometries, const std::vector<Cuts>& cuts);
+  Locator::Sample find(
+    VolumeIndex& index, CellIndex& cells, const Located& located, const glm::ivec2& pixel);
 
 private:
+  Locator::Sample findInImages(VolumeIndex& index, const Located& located, const glm::ivec2& pixel);
+  void project(VolumeIndex& index, const Located& located, const ShearPixel& pixel);
+
   splatting::Projector Projector;
-  Pixel Alone;
+  // An image of one pixel.
+  std::vector<ShearWarp> Geometries = std::vector<ShearWarp>(1);
+  std::vector<ShearImage> Images = std::vector<ShearImage>(1);
+  Cuts PixelCuts;
+  CellScreen Screen;
 };
 }
 

@@ -303,7 +303,7 @@ void vtkSplattingMIPProjection::Internals::Locate(const splatting::View& view, i
   splatting::Located located;
   located.view = view;
   located.indexToWorld = this->Source.Grid().indexToPhysical;
-  this->Components.Describe(located);
+  this->Components.Describe({}, located);
   vtkNew<vtkCamera> camera;
   this->Turn.SetCamera(n, camera);
   camera->GetPosition(&located.camera.x);

@@ -19,21 +19,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <type_traits>
-
-namespace
-{
-double valueOf(const splatting::ShearImage& image, int u, int v)
-{
-  return splatting::dispatch(image.type,
-    [&](auto* null)
-    {
-      using T = std::remove_pointer_t<decltype(null)>;
-      return static_cast<double>(image.row<T>(v)[u]);
-    });
-}
-}
 
 namespace splatting
 {
@@ -82,35 +67,26 @@ void SampleLocations::Forget()
 // Makes a frame independent of projector and cuts.
 void SampleLocations::Frame::Copy()
 {
+  const auto own = [](auto& pointer, auto& copy)
+  {
+    if (pointer)
+    {
+      copy = *pointer;
+      pointer = &copy;
+    }
+  };
   Located& from = this->located;
-  if (this->onScreen)
+  own(from.geometries, this->geometries);
+  if (from.images)
   {
-    if (from.screen)
-    {
-      this->screen = *from.screen;
-      from.screen = &this->screen;
-    }
-    if (this->ends.surface)
-    {
-      this->surface = *this->ends.surface;
-      this->ends.surface = &this->surface;
-    }
-  }
-  else
-  {
-    this->geometries = *from.geometries;
-    this->images.assign(
-      from.images->begin(), from.images->begin() + static_cast<std::ptrdiff_t>(geometries.size()));
-    this->cuts = *this->projectionCuts;
-    from.geometries = &this->geometries;
+    this->images.assign(from.images->begin(),
+      from.images->begin() + static_cast<std::ptrdiff_t>(this->geometries.size()));
     from.images = &this->images;
-    this->projectionCuts = &this->cuts;
   }
-  if (this->ends.depth)
-  {
-    this->depth = *this->ends.depth;
-    this->ends.depth = &this->depth;
-  }
+  own(from.cuts, this->cuts);
+  own(from.screen, this->screen);
+  own(from.ends.surface, this->surface);
+  own(from.ends.depth, this->depth);
 }
 
 void SampleLocations::BeginFrame(vtkRenderer* renderer)
@@ -154,28 +130,17 @@ void SampleLocations::Remember(
   frame.shown.Set(renderer, volume);
   frame.version = this->Source.Version();
   frame.canProject = this->Projector.CanProjectPixels();
+  frame.hasWinners = this->Projector.HasWinners();
   Located& located = frame.located;
   located = {};
   located.view = view;
   located.indexToWorld = indexToWorld(grid, volume);
-  this->Projector.Describe(located);
-  frame.onScreen = this->Projector.IsOnScreen();
-  frame.ends = this->SceneCuts.Get();
-  frame.projectionCuts = &this->Projector.CutsOfImages();
-  if (frame.onScreen && !this->Projector.HasWinners())
-  {
-    located.screen = nullptr;
-  }
+  this->Projector.Describe(this->SceneCuts.Get(), located);
   vtkCamera* const camera = renderer->GetActiveCamera();
   camera->GetPosition(&located.camera.x);
   camera->GetDirectionOfProjection(&located.direction.x);
   int width, height;
   renderer->GetTiledSizeAndOrigin(&width, &height, &frame.left, &frame.bottom);
-}
-
-bool SampleLocations::HasWinners() const
-{
-  return this->Last() && this->Projector.HasWinners();
 }
 
 // Whether a frame is still shown and its voxels exist.
@@ -201,7 +166,7 @@ bool SampleLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sam
 {
   const Located& located = frame.located;
   const glm::ivec2& viewport = located.view.viewport;
-  if ((!frame.onScreen && located.geometries->empty()) || pixel.x < 0 || pixel.y < 0 ||
+  if (!(frame.hasWinners || frame.canProject) || pixel.x < 0 || pixel.y < 0 ||
     pixel.x >= viewport.x || pixel.y >= viewport.y)
   {
     return false;
@@ -210,95 +175,19 @@ bool SampleLocations::PickFrame(const Frame& frame, const glm::ivec2& pixel, Sam
   place.origin = pixel;
   place.size = glm::ivec2(1);
   place.pixels = { 1u };
-  if (frame.ends.depth)
+  if (located.ends.depth)
   {
-    frame.ends.depth->hide(place);
+    located.ends.depth->hide(place);
   }
-  return place.pixels.front() &&
-    (frame.onScreen ? this->PickOnScreen(frame, pixel, sample)
-                    : this->PickRay(frame, pixel, sample));
-}
-
-// At the border of the image, rays without a sample may touch the volume by rounding.
-bool SampleLocations::HasSample(const Frame& frame, const ShearPixel& pixel)
-{
-  const Located& located = frame.located;
-  const ShearImage& image = pixel.of(*located.images);
-  const int u = pixel.u, v = pixel.v;
-  const bool isInside = image.meetsVolume(u - 1, v - 1) && image.meetsVolume(u + 1, v - 1) &&
-    image.meetsVolume(u - 1, v + 1) && image.meetsVolume(u + 1, v + 1);
-  const double value = valueOf(image, u, v);
-  return image.covers(u, v) && value == value &&
-    (isInside ||
-      this->Projector
-          .ProjectPixel(located.settings, pixel, *located.geometries, *frame.projectionCuts)
-          .Images.front()
-          .winners[0] >= 0);
-}
-
-// @param pixel  of the viewport
-bool SampleLocations::PickRay(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
-{
-  Located located = frame.located;
-  const bool hasWinners = located.settings.recordLocations;
-  if (!hasWinners && !frame.canProject)
+  if (!place.pixels.front())
   {
     return false;
-  }
-  const auto hasSample = [&](const ShearPixel& shear) { return this->HasSample(frame, shear); };
-  ShearPixel shown;
-  findShown(located, pixel, glm::ivec2(1), &shown,
-    hasWinners ? std::function<bool(const ShearPixel&)>() : hasSample);
-  if (shown.image < 0)
-  {
-    return false;
-  }
-  if (!hasWinners)
-  {
-    const PixelProjector::Pixel& alone = this->Projector.ProjectPixel(
-      located.settings, shown, *located.geometries, *frame.projectionCuts);
-    shown = { 0, 0, 0, shown.minimum };
-    if (shown.of(alone.Images).winners[0] < 0)
-    {
-      return false;
-    }
-    located.images = &alone.Images;
-    located.geometries = &alone.Geometries;
   }
   const Locator locator(located);
-  sample.position = locator.inWorld(locator.point(glm::dvec2(pixel), shown));
-  sample.voxel = findVoxel(located, shown);
-  sample.value = valueOf(shown.of(*located.images), shown.u, shown.v);
-  return true;
-}
-
-// Projects the pixel again if there are no depths.
-// @param pixel  of the viewport
-bool SampleLocations::PickOnScreen(const Frame& frame, const glm::ivec2& pixel, Sample& sample)
-{
-  Located located = frame.located;
-  if (!located.screen && !frame.canProject)
-  {
-    return false;
-  }
-  if (!located.screen)
-  {
-    located.screen =
-      &this->Projector.ProjectPixelOnScreen(located.view, located.settings, frame.ends, pixel);
-  }
-  const Locator locator(located);
-  const Locator::Sample found = locator.onScreen(pixel);
-  if (!found.exists)
-  {
-    return false;
-  }
-  const CellScreen& screen = *located.screen;
-  const glm::ivec2 place = pixel - screen.origin;
-  sample.position = locator.inWorld(found.point);
-  sample.voxel = found.voxel;
-  sample.value = screen.type == ScalarType::Float32 ? screen.row<float>(place.y)[place.x]
-                                                    : screen.row<double>(place.y)[place.x];
-  return true;
+  const Locator::Sample found =
+    frame.hasWinners ? locator.at(pixel) : this->Projector.FindSample(located, pixel);
+  sample = { locator.inWorld(found.point), found.voxel, found.value };
+  return found.exists;
 }
 
 vtkImageData* SampleLocations::Image()

@@ -6,7 +6,7 @@
 #ifndef SampleLocations_h
 #define SampleLocations_h
 
-#include "Cells/CellProjector.h"
+#include "Cells/CellScreen.h"
 #include "Clipping/ClosedSurface.h"
 #include "Clipping/SceneDepth.h"
 #include "Display/Picture.h"
@@ -102,9 +102,7 @@ private:
     vtkIdType version = 0; // of the source
     Located located;
     int left = 0, bottom = 0;
-    bool onScreen = false; // whether the last projection was by cells
-    RayEnds ends;
-    const std::vector<Cuts>* projectionCuts = nullptr;
+    bool hasWinners = false;
     bool canProject = false;
     // Owners of the data above, after Copy().
     std::vector<ShearImage> images;
@@ -119,12 +117,9 @@ private:
 
   Frame& FrameOf(vtkRenderer* renderer);
   const Frame* Last() const { return this->HasLast ? this->Frames.front().get() : nullptr; }
-  bool HasWinners() const;
+  bool HasWinners() const { return this->Last() && this->Last()->hasWinners; }
   bool IsIntact(const Frame& frame) const;
   bool PickFrame(const Frame& frame, const glm::ivec2& pixel, Sample& sample);
-  bool HasSample(const Frame& frame, const ShearPixel& pixel);
-  bool PickRay(const Frame& frame, const glm::ivec2& pixel, Sample& sample);
-  bool PickOnScreen(const Frame& frame, const glm::ivec2& pixel, Sample& sample);
 
   const ScalarSource& Source;
   ComponentProjector& Projector;

@@ -219,6 +219,31 @@ glm::ivec3 unpermuted(const ShearWarp& geometry, const glm::ivec3& voxel)
   }
   return result;
 }
+
+/// The voxel of a shear pixel with a winner.
+glm::ivec3 findVoxel(const Located& located, const ShearPixel& pixel)
+{
+  const ShearImage& projected = pixel.of(*located.images);
+  const ShearWarp& geometry = (*located.geometries)[pixel.image];
+  const int step = projected.winners[std::size_t(pixel.v) * projected.width + pixel.u];
+  ShearWarp alone;
+  geometry.takePixel({ pixel.u, pixel.v }, alone);
+  return dispatch(located.volume.type,
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      GeneralTable table;
+      return unpermuted(
+        alone, VoxelFinder<T>(located, alone, pixel.minimum, table).find(0, 0, step));
+    });
+}
+
+double valueOf(const CellScreen& screen, const glm::ivec2& pixel)
+{
+  const glm::ivec2 place = pixel - screen.origin;
+  return screen.type == ScalarType::Float32 ? screen.row<float>(place.y)[place.x]
+                                            : screen.row<double>(place.y)[place.x];
+}
 }
 
 void findShown(const Located& located, const glm::ivec2& origin, const glm::ivec2& size,
@@ -263,20 +288,14 @@ void findShown(const Located& located, const glm::ivec2& origin, const glm::ivec
   warped.type == ScalarType::Float32 ? choose(0.0f) : choose(0.0);
 }
 
-glm::ivec3 findVoxel(const Located& located, const ShearPixel& pixel)
+double valueOf(const std::vector<ShearImage>& images, const ShearPixel& pixel)
 {
-  const ShearImage& projected = pixel.of(*located.images);
-  const ShearWarp& geometry = (*located.geometries)[pixel.image];
-  const int step = projected.winners[std::size_t(pixel.v) * projected.width + pixel.u];
-  ShearWarp alone;
-  geometry.takePixel({ pixel.u, pixel.v }, alone);
-  return dispatch(located.volume.type,
+  const ShearImage& image = pixel.of(images);
+  return dispatch(image.type,
     [&](auto* null)
     {
       using T = std::remove_pointer_t<decltype(null)>;
-      GeneralTable table;
-      return unpermuted(
-        alone, VoxelFinder<T>(located, alone, pixel.minimum, table).find(0, 0, step));
+      return static_cast<double>(image.row<T>(pixel.v)[pixel.u]);
     });
 }
 
@@ -312,17 +331,41 @@ void findVoxels(
 
 Locator::Locator(const Located& located) : Source(located) {}
 
-double Locator::depthOf(const ShearPixel& shown) const
-{
-  const ShearImage& image = shown.of(*this->Source.images);
-  return image.winners[std::size_t(shown.v) * image.width + shown.u] / StepsPerSlice;
-}
-
+/// The point of the sample of a shear pixel with a winner.
 glm::dvec3 Locator::point(const glm::dvec2& pixel, const ShearPixel& shown) const
 {
-  return this->pointAt(pixel, shown, this->depthOf(shown));
+  const ShearImage& image = shown.of(*this->Source.images);
+  const int step = image.winners[std::size_t(shown.v) * image.width + shown.u];
+  return this->pointAt(pixel, shown, step / StepsPerSlice);
 }
 
+Locator::Sample Locator::at(const glm::ivec2& pixel) const
+{
+  if (this->Source.screen)
+  {
+    Sample sample = this->onScreen(pixel);
+    sample.value = sample.exists ? valueOf(*this->Source.screen, pixel) : sample.value;
+    return sample;
+  }
+  ShearPixel shown;
+  findShown(this->Source, pixel, glm::ivec2(1), &shown);
+  return this->at(pixel, shown);
+}
+
+Locator::Sample Locator::at(const glm::ivec2& pixel, const ShearPixel& shown) const
+{
+  Sample sample;
+  sample.exists = shown.image >= 0;
+  if (sample.exists)
+  {
+    sample.point = this->point(glm::dvec2(pixel), shown);
+    sample.voxel = findVoxel(this->Source, shown);
+    sample.value = valueOf(*this->Source.images, shown);
+  }
+  return sample;
+}
+
+/// The sample of a pixel in an exact projection, without its value.
 Locator::Sample Locator::onScreen(const glm::ivec2& pixel) const
 {
   const CellScreen& screen = *this->Source.screen;

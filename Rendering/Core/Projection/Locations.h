@@ -17,6 +17,7 @@
 #ifndef splattingLocations_h
 #define splattingLocations_h
 
+#include "Clipping/RayEnds.h"
 #include "Display/ShearPixels.h"
 #include "Projection/Project.h"
 
@@ -25,22 +26,24 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace splatting
 {
 class CellScreen;
 
-/// A projection of a view with winners. The objects that its pointers refer to must exist while it
-/// is used.
+/// A projection of a view. The objects that its pointers refer to must exist while it is used.
 struct Located
 {
   const std::vector<ShearImage>* images = nullptr;
   const std::vector<ShearWarp>* geometries = nullptr; ///< as many as the view has
+  const std::vector<Cuts>* cuts = nullptr;            ///< of each image
   VoxelArray volume; ///< the projected volume; without voxels if only a piece is available
   double low = 0.0, high = 0.0; ///< the range of its finite voxels
-  /// The result of an exact projection, with depths. There are no images then.
+  /// The result of an exact projection with recorded locations. There are no images then.
   const CellScreen* screen = nullptr;
+  RayEnds ends;                ///< of the view; of images without the surface
   ProjectionSettings settings; ///< of the projection
   View view;
   glm::dmat4 indexToWorld{ 1.0 };
@@ -50,17 +53,11 @@ struct Located
   glm::dvec3 direction{ 0.0, 0.0, -1.0 };
 };
 
+/// The samples of a projection with recorded locations.
 class Locator
 {
 public:
   explicit Locator(const Located& located);
-
-  /// The depth along the principal axis of the sample of a shear pixel.
-  double depthOf(const ShearPixel& shown) const;
-
-  /// The point of index space of the sample that a viewport pixel (centre at integers) shows.
-  /// @param shown  its shear pixel, not none
-  glm::dvec3 point(const glm::dvec2& pixel, const ShearPixel& shown) const;
 
   /// A sample, if there is one.
   struct Sample
@@ -68,9 +65,14 @@ public:
     bool exists = false;
     glm::dvec3 point{ 0.0 }; ///< in index space
     glm::ivec3 voxel{ -1 };
+    /// In units of the scalars; the extremum, voxel or average that the location belongs to.
+    double value = std::numeric_limits<double>::quiet_NaN();
   };
-  /// The sample of a viewport pixel in an exact projection.
-  Sample onScreen(const glm::ivec2& pixel) const;
+  /// The sample that a pixel of the viewport shows.
+  Sample at(const glm::ivec2& pixel) const;
+  /// The sample that a pixel of the viewport shows, if its shear pixel is known.
+  /// @param shown  may be none
+  Sample at(const glm::ivec2& pixel, const ShearPixel& shown) const;
   glm::dvec3 inWorld(const glm::dvec3& point) const;
   /// @param world  a point in world space
   double depth(const glm::dvec3& world) const;
@@ -89,6 +91,8 @@ public:
   void fill(const glm::ivec2& origin, const glm::ivec2& size, const Arrays& arrays) const;
 
 private:
+  Sample onScreen(const glm::ivec2& pixel) const;
+  glm::dvec3 point(const glm::dvec2& pixel, const ShearPixel& shown) const;
   glm::dvec3 pointAt(const glm::dvec2& pixel, const ShearPixel& shown, double z) const;
   template <class F>
   void fillFrom(
@@ -103,8 +107,8 @@ private:
 void findShown(const Located& located, const glm::ivec2& origin, const glm::ivec2& size,
   ShearPixel* out, const std::function<bool(const ShearPixel&)>& hasSample = {});
 
-/// The voxel of a shear pixel with a winner.
-glm::ivec3 findVoxel(const Located& located, const ShearPixel& pixel);
+/// The value of a shear pixel.
+double valueOf(const std::vector<ShearImage>& images, const ShearPixel& pixel);
 
 /// The voxel of each pixel of a shear image with winners, -1 for none.
 /// @param minima  in Reduction::Signed whether to find those of minima

@@ -256,6 +256,36 @@ void testRims(Checks& check)
     });
 }
 
+/// An eye inside the volume sees only some slices of its layer of bricks. The last of them reads
+/// voxels of the next layer.
+void testEyeInLayer(Checks& check)
+{
+  Sightings inside;
+  reference::forScenes("the eye's layer", 1500,
+    [&](int, reference::Random& random)
+    {
+      const std::array<int, 3> size{ random.uniform(8, 24), random.uniform(8, 24),
+        random.uniform(8, 24) };
+      const splatting::ShearWarp geometry = randomPerspectiveImage(size, random);
+      reference::Volume<std::int16_t> volume(size, 0);
+      for (int spot = random.uniform(1, 3); spot > 0; --spot)
+      {
+        const std::array<int, 3> at{ random.uniform(0, size[0] - 1), random.uniform(0, size[1] - 1),
+          random.uniform(0, size[2] - 1) };
+        volume.at(at) = 30000;
+      }
+      Case c;
+      c.settings.quality = Quality::High;
+      c.settings.kernel = { splatting::Reconstruction::CosineBell, random.uniform(1.0, 1.5) };
+      check(sameImages(projected(volume, geometry, c, Acceleration::Dense).image,
+              projected(volume, geometry, c, Acceleration::Bricks).image),
+        "bricks change the picture");
+      const splatting::Span& slices = geometry.slices();
+      inside.add(slices.end - slices.begin < geometry.size().z);
+    });
+  check(inside.areEnough(0.1), "the eye is inside in only ", inside);
+}
+
 /// Without memory for a copy, slices along the first axis are transposed some at a time.
 template <class T>
 void testBudget(Checks& check)
@@ -416,6 +446,7 @@ int TestAccelerations(int, char*[])
   testNaNAtLayers<double>(check);
   check(skipping.areEnough(0.01), "bricks leave half of the tiles out in only ", skipping);
   testRims(check);
+  testEyeInLayer(check);
   testBudget<std::uint8_t>(check);
   testBudget<std::int16_t>(check);
   testBudget<float>(check);

@@ -3,10 +3,13 @@
 //
 // Where the samples lie that pixels show: points of the screen lie on the rays of their pixels, in
 // their slices, and next to their voxels.
+#include "Display/Warp.h"
 #include "WinnerScenes.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 using namespace winnerscenes;
 using splatting::Quality;
@@ -114,13 +117,14 @@ void testPoints(Checks& check, bool perspective)
           const std::size_t at = std::size_t(y) * viewport.x + x;
           const glm::dvec3 point = arrays.point(at);
           const glm::ivec3 voxel = arrays.voxel(at);
-          glm::dvec3 picked(0.0);
           splatting::ShearPixel nearest;
           splatting::findShearPixels(
             images, scene.images, settings.reduction, { x, y }, glm::ivec2(1), &nearest);
           const bool has = nearest.image >= 0;
-          picked = has ? locator.point(glm::dvec2(x, y), nearest) : picked;
-          check(has == (voxel.x >= 0) && has == (point.x == point.x), "arrays differ");
+          const splatting::Locator::Sample picked = locator.at({ x, y });
+          check(has == (voxel.x >= 0) && has == (point.x == point.x) && has == picked.exists &&
+              picked.voxel == voxel,
+            "arrays and pick differ");
           if (!has)
           {
             continue;
@@ -130,7 +134,7 @@ void testPoints(Checks& check, bool perspective)
             (glm::dvec2(clip) / clip.w + 1.0) * 0.5 * glm::dvec2(viewport) - 0.5;
           const glm::dvec2 off = glm::abs(shown - glm::dvec2(x, y));
           const glm::dvec2 bound = rayBound(scene, point, clip.w, { x, y });
-          check(picked == point && off.x <= bound.x && off.y <= bound.y,
+          check(picked.point == point && off.x <= bound.x && off.y <= bound.y,
             "the point is not on the ray of pixel ", x, " ", y, ": ", off.x, " ", off.y,
             " beside it, not ", bound.x, " ", bound.y);
           check(besideSlice(images, scene, nearest, point) <= 1e-9, "the point of pixel ", x, " ",
@@ -147,6 +151,78 @@ void testPoints(Checks& check, bool perspective)
       }
     });
 }
+/// The weight of the missing samples around a viewport pixel, in any of the images that are next to
+/// it.
+std::vector<double> missingWeights(
+  const std::vector<splatting::ShearImage>& images, const Scene& scene, const glm::dvec2& pixel)
+{
+  std::vector<double> result;
+  for (std::size_t n = 0; n < images.size(); ++n)
+  {
+    const glm::dvec3 h = scene.images[n].screenToShear() * glm::dvec3(pixel, 1.0);
+    const glm::dvec2 place = glm::dvec2(h) / h.z;
+    const glm::ivec2 first(glm::floor(place));
+    const glm::dvec2 share = place - glm::dvec2(first);
+    double missing = 0.0;
+    for (int corner = 0; corner < 4; ++corner)
+    {
+      const glm::ivec2 beside(corner & 1, corner >> 1), at = first + beside;
+      const glm::dvec2 weights = glm::mix(1.0 - share, share, glm::dvec2(beside));
+      if (images[n].meetsVolume(at.x, at.y) &&
+        images[n].winners[std::size_t(at.y) * images[n].width + at.x] < 0)
+      {
+        missing += weights.x * weights.y;
+      }
+    }
+    result.push_back(missing);
+  }
+  return result;
+}
+
+/// A pixel has a location where the picture has a value, also beside hidden voxels.
+void testExistence(Checks& check, bool perspective)
+{
+  Sightings beside;
+  reference::forScenes(nameOf("holes", perspective), 120,
+    [&](int n, reference::Random& random)
+    {
+      const std::array<int, 3> size = randomSize(random, 8);
+      auto volume = reference::uniformNoise<float>(size, random);
+      const double hidden = random.uniform(0.5, 1.0);
+      for (float& voxel : volume.voxels)
+      {
+        voxel = random.chance(hidden) ? std::numeric_limits<float>::quiet_NaN() : voxel;
+      }
+      const Scene scene = anyScene(volume.size, perspective, random);
+      splatting::ProjectionSettings settings;
+      settings.quality = static_cast<Quality>(n % 3);
+      const auto images = projectScene(volume, scene, settings);
+      const splatting::Locator locator(located(volume, scene, images, settings));
+      const glm::ivec2& viewport = scene.view.viewport;
+      splatting::WarpedScalars warped;
+      warped.set(images, scene.images, settings.reduction, viewport, settings.instructionSet);
+      std::vector<float> space(warped.size.x);
+      bool isBeside = false;
+      for (int y = 0; y < warped.size.y; ++y)
+      {
+        const auto* const values = static_cast<const float*>(warped.valuesOfRow(y, space.data()));
+        for (int x = 0; x < warped.size.x; ++x)
+        {
+          const glm::ivec2 pixel = warped.origin + glm::ivec2(x, y);
+          const bool exists = locator.at(pixel).exists;
+          const std::vector<double> missing = missingWeights(images, scene, glm::dvec2(pixel));
+          // Rounding decides which side of the middle a pixel is on.
+          const bool isMiddle = std::any_of(missing.begin(), missing.end(),
+            [](double weight) { return std::abs(weight - 0.5) < 1e-6; });
+          check(isMiddle || exists == !std::isnan(values[x]), "pixel ", pixel.x, " ", pixel.y, ": ",
+            exists ? "a location without a value" : "a value without a location");
+          isBeside = isBeside || (exists && missing.front() > 0.1 && missing.front() < 0.4);
+        }
+      }
+      beside.add(isBeside);
+    });
+  check(beside.areEnough(0.1), "pixels beside holes are in only ", beside);
+}
 }
 
 int TestWinnerPoints(int, char*[])
@@ -154,5 +230,7 @@ int TestWinnerPoints(int, char*[])
   Checks check;
   testPoints(check, false);
   testPoints(check, true);
+  testExistence(check, false);
+  testExistence(check, true);
   return check.exitCode();
 }
