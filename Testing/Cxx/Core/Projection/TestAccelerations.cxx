@@ -270,8 +270,10 @@ void testEyeInLayer(Checks& check)
       reference::Volume<std::int16_t> volume(size, 0);
       for (int spot = random.uniform(1, 3); spot > 0; --spot)
       {
-        const std::array<int, 3> at{ random.uniform(0, size[0] - 1), random.uniform(0, size[1] - 1),
+        std::array<int, 3> at{ random.uniform(0, size[0] - 1), random.uniform(0, size[1] - 1),
           random.uniform(0, size[2] - 1) };
+        int& slice = at[geometry.principalAxis()];
+        slice -= slice % splatting::BrickDepth; // the first of a layer
         volume.at(at) = 30000;
       }
       Case c;
