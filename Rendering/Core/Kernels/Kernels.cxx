@@ -170,39 +170,6 @@ void exceeds(const P* bounds, const P* minima, unsigned char* __restrict flags, 
   }
 }
 
-template <class P>
-std::ptrdiff_t exceed(const P* samples, const P* limits, std::int32_t* found, std::ptrdiff_t n)
-{
-  constexpr std::ptrdiff_t w = width<P>;
-  constexpr std::ptrdiff_t word = w * sizeof(P) < 8 ? w : 8 / sizeof(P); // elements
-  std::int32_t* end = found;
-  const auto take = [&](std::ptrdiff_t x) // without an unpredictable branch
-  {
-    *end = static_cast<std::int32_t>(x);
-    end += samples[x] > limits[x];
-  };
-  std::ptrdiff_t x = 0;
-  for (; x + w <= n; x += w)
-  {
-    const auto above = load<P>(samples + x) > load<P>(limits + x);
-    for (std::ptrdiff_t first = 0; first < w && anyOf(above); first += word)
-    {
-      std::uint64_t any = 0;
-      std::memcpy(
-        &any, reinterpret_cast<const char*>(&above) + first * sizeof(P), word * sizeof(P));
-      for (std::ptrdiff_t e = 0; e < word && any != 0; ++e)
-      {
-        take(x + first + e);
-      }
-    }
-  }
-  for (; x < n; ++x)
-  {
-    take(x);
-  }
-  return end - found;
-}
-
 template <class A>
 void finish(A* image, A base, A low, A high, std::ptrdiff_t n)
 {
@@ -322,7 +289,7 @@ template <class T>
 constexpr VoxelLoops<T> voxelLoops{ width<T>, Picker<T>::group, &maximum<T>, &largest<T>, &sweep<T>,
   &cross<T>, &widen<T>, splatOwn<T>(), &survey<T>, &largestOfFour<T> };
 template <class P>
-constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P>, &exceed<P> };
+constexpr TileLoops<P> tileLoops{ &minima<P>, &exceeds<P> };
 template <class P>
 constexpr RayLoops<P> rayLoops{ &raise<P>, &lower<P>,
   static_cast<decltype(RayLoops<P>::climb)>(&climb<P>),

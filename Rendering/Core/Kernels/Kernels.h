@@ -166,10 +166,6 @@ struct TileLoops
   void (*minima)(const P* image, std::ptrdiff_t stride, int rows, std::ptrdiff_t tiles, P* minima);
   /// flags[t] = whether bounds[t] > minima[t].
   void (*exceeds)(const P* bounds, const P* minima, unsigned char* flags, std::ptrdiff_t n);
-  /// Writes the pixels x with samples[x] > limits[x] to `found`, which has room for n, and returns
-  /// their number.
-  std::ptrdiff_t (*exceed)(
-    const P* samples, const P* limits, std::int32_t* found, std::ptrdiff_t n);
 };
 
 /// Loops over the samples of a row of pixels in one slice. A NaN sample is none; a NaN pixel has no

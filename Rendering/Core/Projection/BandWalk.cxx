@@ -279,8 +279,7 @@ private:
 template <class T, class P>
 void walkBands(ProjectionContext& context, const SliceSampler<T, P>& sampler)
 {
-  const bool findsWinners = context.image.keepsWinners();
-  forSlices(context, sampler.traits().beyond, false, { 0.0, findsWinners ? 0.5 : 1.0 },
+  forSlices(context, sampler.traits().beyond, false,
     [&](const Span& slices, bool isFirst, bool isLast)
     {
       forBands(context.image.height, bandHeight(context.image.height), context.observer,
@@ -292,7 +291,7 @@ void walkBands(ProjectionContext& context, const SliceSampler<T, P>& sampler)
           }
           BandWalk<T, P> band(context, sampler, context.space.bands.Local(), slices, v0, v1);
           context.bricks ? band.walkBricks(*context.bricks) : band.walkDensely();
-          if (isLast && !findsWinners)
+          if (isLast)
           {
             if (context.range.nonFinite)
             {
@@ -310,10 +309,6 @@ void walkBands(ProjectionContext& context, const SliceSampler<T, P>& sampler)
       context.count.splatted += band.count.splatted;
       band.count = {};
     });
-  if (findsWinners)
-  {
-    findWinners(context, sampler);
-  }
 }
 
 #define VOXELS(T) template void walkBands(ProjectionContext&, const SliceSampler<T, T>&);

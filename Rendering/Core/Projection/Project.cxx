@@ -72,7 +72,7 @@ Acceleration choose(
 bool needsEverySample(const ProjectionSettings& settings, const VolumeIndex::Range& range)
 {
   return settings.reduction != Reduction::Maximum || range.hasInfinities() ||
-    (settings.recordLocations && range.nonFinite);
+    settings.recordLocations;
 }
 
 /// Allocates pixels: samples, or sums of worksheets.
@@ -159,8 +159,7 @@ Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
     return Acceleration::Dense;
   }
   if (wanted >= Acceleration::Lines && !index.range().nonFinite && cuts.none() &&
-    !geometry.isPerspective() && !settings.recordLocations && &geometry != &this->Memory->part &&
-    !this->stopped())
+    !geometry.isPerspective() && &geometry != &this->Memory->part && !this->stopped())
   {
     lines = index.lines(geometry.principalAxis(), encodingFor(settings, geometry.size()),
       [this](double share)

@@ -75,22 +75,6 @@ struct WalkSpace;
 void outlineImage(const ShearWarp& geometry, const std::vector<SliceGeometry>& slices,
   const CutMap& cuts, OutlineSpace& space, ShearImage& image);
 
-/// The number of the first voxel on a ray's path in a slice, from the viewer on, for which
-/// isWanted(di, dj); -1 if there is none.
-template <class F>
-int firstOnPath(const RayPath& path, bool reversed, F&& isWanted)
-{
-  for (int n = 0; n < path.count; ++n)
-  {
-    const int t = reversed ? path.count - 1 - n : n;
-    if (isWanted(path.di[t], path.dj[t]))
-    {
-      return t;
-    }
-  }
-  return -1;
-}
-
 /// Tiles in a walk, and those that it splatted.
 struct TileCount
 {

@@ -54,7 +54,7 @@ public:
         this->fill(v0, v1, leastValue<A>());
         break;
       case Reduction::Maximum:
-        this->fill(v0, v1, leastValue<P>());
+        this->fill(v0, v1, this->Sampler.floor());
         break;
       default:
         std::fill(this->State.ended.begin() + begin, this->State.ended.begin() + end,
@@ -313,7 +313,7 @@ void walkRays(ProjectionContext& context, const SliceSampler<T, P>& sampler)
   const Reduction reduction = context.settings.reduction;
   openState(context.image, reduction, context.space.rays);
   const RayWalk<T, P> walk(context, sampler);
-  forSlices(context, sampler.traits().beyond, walk.isReversed(), {},
+  forSlices(context, sampler.traits().beyond, walk.isReversed(),
     [&](const Span& slices, bool isFirst, bool isLast)
     {
       forBands(context.image.height, bandHeight(context.image.height), context.observer,

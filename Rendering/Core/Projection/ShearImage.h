@@ -31,7 +31,6 @@ struct ShearImage
   /// On request, for each pixel the step of the ray that has its value: StepsPerSlice * slice, in
   /// preview plus the voxel's number in RayPath; -1 without a sample. Else empty.
   std::vector<std::int32_t> winners;
-  bool keepsWinners() const { return !this->winners.empty(); }
   /// Whether NaN marks pixels without a sample, and infinities are possible.
   bool nonFinite = false;
   /// Of Reduction::Signed, whose maxima are in this image: one image with the minima. Else empty.

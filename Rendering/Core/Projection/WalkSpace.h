@@ -57,7 +57,6 @@ struct BandScratch
   TileShares shares;
   PixelCopies copies;
   std::vector<unsigned char> mask, counting;
-  std::vector<std::int32_t> found;
   std::vector<unsigned char> brickRow;
   std::vector<Span> tileWindows;
   TileCount count;
@@ -85,20 +84,13 @@ struct WalkSpace
   PerThread<RayScratch> rayBands;
   RayState rays;
   OutlineSpace outline;
-  std::vector<unsigned char> limits; ///< of all pixels, for LocationWalk
   std::vector<unsigned char> chunk;
-};
-
-/// A part of a projection's progress, from one share to another.
-struct Progress
-{
-  double from = 0.0, to = 1.0;
 };
 
 /// Calls body(slices, isFirst, isLast) with ProjectionContext::slices set: for all slices or, if
 /// there is no memory for a copy of them, for some at a time, from the last on if reversed.
 /// @param beyond  neighbouring slices that are also read
-void forSlices(ProjectionContext& context, int beyond, bool reversed, const Progress& progress,
+void forSlices(ProjectionContext& context, int beyond, bool reversed,
   const std::function<void(const Span& slices, bool isFirst, bool isLast)>& body);
 
 template <class P>

@@ -39,12 +39,11 @@ void forBands(
   observer.ask();
 }
 
-void forSlices(ProjectionContext& context, int beyond, bool reversed, const Progress& progress,
+void forSlices(ProjectionContext& context, int beyond, bool reversed,
   const std::function<void(const Span& slices, bool isFirst, bool isLast)>& body)
 {
   const int axis = context.geometry.principalAxis(), depth = context.geometry.size().z;
-  const double share = progress.to - progress.from;
-  context.observer.setPart(progress.from, progress.to);
+  context.observer.setPart(0.0, 1.0);
   if (context.lines) // chains contain the voxels
   {
     body(Span{ 0, depth }, true, true);
@@ -61,8 +60,7 @@ void forSlices(ProjectionContext& context, int beyond, bool reversed, const Prog
   {
     const int first = (reversed ? chunks - 1 - c : c) * ChunkDepth;
     const Span slices{ first, std::min(first + ChunkDepth, depth) };
-    context.observer.setPart(
-      progress.from + share * c / chunks, progress.from + share * (c + 1) / chunks);
+    context.observer.setPart(c / double(chunks), (c + 1) / double(chunks));
     context.slices = context.index.someSlices(std::max(slices.begin - beyond, 0),
       std::min(slices.end + beyond, depth), context.space.chunk);
     body(slices, c == 0, c == chunks - 1);

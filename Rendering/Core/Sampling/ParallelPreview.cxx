@@ -20,7 +20,7 @@ struct PreviewLayer
 {
   struct Tap
   {
-    int k, t, di, dj;
+    int k, di, dj;
   };
   /// See Rim.
   struct Ends
@@ -68,32 +68,6 @@ public:
     {
       this->splatSome({ k, k + step }, v0, v1, runs, pixels.slice(k - slices.begin), {});
     }
-  }
-
-  int firstAbove(int u, int v, const Span& slices, T limit) const override
-  {
-    const Layer& layer = this->Layers[slices.begin / BrickDepth];
-    const glm::ivec3& size = this->Context.geometry.size();
-    for (int n = 0; n < layer.tapCount; ++n)
-    {
-      const bool reversed = this->Context.geometry.reversed();
-      const Layer::Tap& tap = layer.taps[reversed ? layer.tapCount - 1 - n : n];
-      const int i = u + tap.di, j = v + tap.dj;
-      if (tap.k >= slices.begin && tap.k < slices.end && i >= 0 && i < size.x && j >= 0 &&
-        j<size.y&& this->Context.template voxelRow<T>(j, tap.k)[i]> limit)
-      {
-        return StepsPerSlice * tap.k + tap.t;
-      }
-    }
-    return -1;
-  }
-
-  int firstSample(int u, int v, int k) const override
-  {
-    const glm::ivec3& size = this->Context.geometry.size();
-    return firstOnPath(this->Context.sliceGeometry[k].path, this->Context.geometry.reversed(),
-      [&](int di, int dj)
-      { return u + di >= 0 && u + di < size.x && v + dj >= 0 && v + dj < size.y; });
   }
 
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
@@ -187,7 +161,7 @@ private:
       const RayPath& path = this->Context.sliceGeometry[k].path;
       for (int t = 0; t < path.count; ++t)
       {
-        layer.taps[layer.tapCount++] = { k, t, path.di[t], path.dj[t] };
+        layer.taps[layer.tapCount++] = { k, path.di[t], path.dj[t] };
         layer.window.add(path.di[t], path.dj[t]);
       }
     }

@@ -77,29 +77,6 @@ public:
     }
   }
 
-  int firstAbove(int u, int v, const Span& slices, T limit) const override
-  {
-    const Span some = common(slices, this->Context.geometry.slices());
-    for (int n = 0; n < some.end - some.begin; ++n)
-    {
-      const int k = this->Context.geometry.reversed() ? some.end - 1 - n : some.begin + n;
-      const SliceGeometry& slice = this->Context.sliceGeometry[k];
-      const Span pixels = v >= slice.vBegin && v < slice.vEnd ? slice.span(v) : Span{};
-      const int step = u >= pixels.begin && u < pixels.end
-        ? this->firstVoxel(u, v, k, [=](T voxel) { return voxel > limit; })
-        : -1;
-      if (step >= 0)
-      {
-        return StepsPerSlice * k + step;
-      }
-    }
-    return -1;
-  }
-  int firstSample(int u, int v, int k) const override
-  {
-    return this->firstVoxel(u, v, k, [](T) { return true; });
-  }
-
   void forSamples(const Span& slices, bool reversed, int v0, int v1, const Span& columns,
     LoadedVoxels& loaded, const Samples& f) const override
   {
@@ -131,18 +108,6 @@ private:
   Span slices(int z) const
   {
     return common(slicesOfLayer(z, this->Context.geometry.size()), this->Context.geometry.slices());
-  }
-
-  template <class Wanted>
-  int firstVoxel(int u, int v, int k, Wanted&& isWanted) const
-  {
-    const glm::ivec3& size = this->Context.geometry.size();
-    return firstOnPath(this->Context.steps.path(u, v, k), this->Context.geometry.reversed(),
-      [&](int i, int j)
-      {
-        return i >= 0 && i < size.x && j >= 0 && j < size.y &&
-          isWanted(this->Context.template voxelRow<T>(j, k)[i]);
-      });
   }
 
   /// Whole registers around pixels, within the image.

@@ -107,17 +107,6 @@ public:
   virtual void splatAll(const Span& layers, int v0, int v1, const std::vector<Span>& all,
     LoadedVoxels& loaded) const = 0;
 
-  /// The first step of the ray of pixel (u, v), from the viewer on, whose sample in some slices of
-  /// a layer is above the limit; there is one. Samplers that read beyond their slices are called
-  /// for one slice at a time.
-  virtual int firstAbove(int /*u*/, int /*v*/, const Span& slices, P /*limit*/) const
-  {
-    return StepsPerSlice * slices.begin;
-  }
-  /// The number of the first sample of pixel (u, v) in slice k, which its ray crosses, among the
-  /// steps of that slice; -1 if there is none.
-  virtual int firstSample(int /*u*/, int /*v*/, int /*k*/) const { return 0; }
-
   /// Samples of one step of the rays in a row of pixels, with steps as in ShearImage::winners, and
   /// a mask of the pixels that have the step, or nullptr if all do. A worksheet without a sample is
   /// NaN.
@@ -138,9 +127,6 @@ private:
 /// Projects with a sampler, according to the context: see BandWalk and RayWalk.
 template <class T, class P>
 void walkBands(ProjectionContext& context, const SliceSampler<T, P>& sampler);
-/// After walkBands(), before SliceSampler::finish(): see LocationWalk.
-template <class T, class P>
-void findWinners(ProjectionContext& context, const SliceSampler<T, P>& sampler);
 template <class T, class P>
 void walkRays(ProjectionContext& context, const SliceSampler<T, P>& sampler);
 template <class T, class P>

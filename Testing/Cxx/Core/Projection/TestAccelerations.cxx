@@ -145,7 +145,7 @@ void hideSome(reference::Volume<T>& volume, reference::Random& random)
 }
 
 /// Where voxels are NaN, most of the volume is walked as if there were none, and only what reads
-/// them is looked at closely. The walk that keeps winners looks at each sample by itself.
+/// them is looked at closely. The walk that keeps winners reads each sample alone.
 template <class T>
 void testNaN(Checks& check)
 {
@@ -319,7 +319,7 @@ void testBudget(Checks& check)
     });
 }
 
-/// The floor raises what lies below, and nothing else.
+/// The floor raises what lies below, and nothing else, also in walks that keep winners.
 template <class T>
 void testFloor(Checks& check)
 {
@@ -339,6 +339,7 @@ void testFloor(Checks& check)
         value = value & ~T(4095);
       }
       c.settings.floor = static_cast<double>(value);
+      c.settings.recordLocations = random.oneIn(2);
       const Result raised = projected(volume, geometry, c, Acceleration::Bricks);
       splatting::dispatch(plain.image.type,
         [&](auto* null)
