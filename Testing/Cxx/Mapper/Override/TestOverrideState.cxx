@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkSplattingMIPGPUVolumeRayCastMapper beside its pictures: what it keeps from frame to frame and
-// what it lets go of, its events and messages, selections, windows and several volumes.
+// vtkSplattingMIPGPUVolumeRayCastMapper beside its pictures: what it releases, its events, messages
+// and log.
 #include "Stage.h"
 
 #include "vtkSplattingMIPGPUVolumeRayCastMapper.h"
@@ -13,12 +13,7 @@
 #include "vtkCommand.h"
 #include "vtkImageData.h"
 #include "vtkLogger.h"
-#include "vtkPiecewiseFunction.h"
-#include "vtkPropPicker.h"
-#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
-#include "vtkVolume.h"
-#include "vtkVolumeProperty.h"
 #include "vtkWeakPointer.h"
 
 #include <sstream>
@@ -53,37 +48,6 @@ struct Scene : stage::Stage
     this->look(oblique, up);
   }
 };
-
-void testReuse(reference::Checks& check)
-{
-  const auto image = blobs();
-  const auto mapper = projecting(image);
-  vtkSplattingMIPVolumeMapper* const splatting = mapper->GetSplattingMapper();
-  Scene scene(mapper);
-  const stage::Pixels first = scene.pixels();
-  const double indexTime = splatting->GetIndexTime();
-  const auto projections = [&]() { return splatting->GetNumberOfProjections(); };
-  check(projections() == 1, "One projection.");
-  scene.pixels();
-  mapper->SetFinalColorWindow(0.7f);
-  scene.pixels();
-  mapper->SetFinalColorWindow(1.0f);
-  mapper->SetSampleDistance(0.3f);
-  mapper->SetImageSampleDistance(3.0f);
-  mapper->Modified();
-  check(scene.pixels() == first && projections() == 1, "Nothing that matters has changed.");
-  mapper->SetBlendModeToComposite();
-  check(scene.pixels() != first && projections() == 1, "Composite.");
-  mapper->SetBlendModeToMaximumIntensity();
-  check(scene.pixels() == first && projections() == 1, "The projection outlasts other modes.");
-  scene.renderer->GetActiveCamera()->Azimuth(2.0);
-  scene.pixels();
-  check(projections() == 2, "A turn projects.");
-  check(splatting->GetIndexTime() == indexTime, "All with one index.");
-  image->Modified();
-  scene.pixels();
-  check(projections() == 3 && splatting->GetIndexTime() != indexTime, "Changed data.");
-}
 
 /// How the quality adapts to the time for a frame is tested with the splatting mapper itself.
 void testAutoAdjust(reference::Checks& check)
@@ -240,101 +204,17 @@ void testLog(reference::Checks& check)
   vtkLogger::RemoveCallback("test");
 }
 
-/// Where the picture is transparent nothing is picked, elsewhere the volume.
-void testSelection(reference::Checks& check)
-{
-  const auto mapper = projecting(blobs());
-  Scene scene(mapper);
-  vtkNew<vtkPiecewiseFunction> opacity;
-  opacity->AddPoint(40.0, 0.0);
-  opacity->AddPoint(40.001, 1.0);
-  scene.property->SetScalarOpacity(opacity);
-  const stage::Pixels picture = scene.pixels();
-  vtkNew<vtkPropPicker> picker;
-  int hits = 0, misses = 0, wrong = 0;
-  for (int y = 5; y < Height; y += 6)
-  {
-    for (int x = 5; x < Width; x += 6)
-    {
-      const bool isShown = picture[3 * (std::size_t(y) * Width + x)] > 0;
-      const bool isPicked = picker->PickProp(x, y, scene.renderer) != 0;
-      hits += isPicked;
-      misses += !isPicked;
-      wrong += isPicked != isShown;
-    }
-  }
-  check(hits > 10 && misses > 10 && wrong == 0, "The volume is picked where pixels show it: ", hits,
-    " hits, ", misses, " misses, ", wrong, " wrong pixels.");
-  check(scene.pixels() == picture, "A pick does not change the picture.");
-}
-
-/// One mapper for two volumes, in two windows, with changes of the blend mode and a release of the
-/// resources in between.
-void testWindows(reference::Checks& check)
-{
-  const auto image = blobs();
-  const auto draw = [](vtkVolumeMapper* mapper, stage::Pixels pictures[4])
-  {
-    Scene left(mapper), right(mapper);
-    right.renderer->GetActiveCamera()->Azimuth(40.0);
-    vtkNew<vtkVolume> second;
-    second->SetMapper(mapper);
-    second->SetProperty(right.property);
-    second->SetPosition(20.0, 5.0, 3.0);
-    right.renderer->AddVolume(second);
-    pictures[0] = left.pixels();
-    pictures[1] = right.pixels();
-    mapper->SetBlendModeToComposite();
-    if (Override::SafeDownCast(mapper))
-    {
-      left.pixels();
-    }
-    mapper->SetBlendModeToMinimumIntensity();
-    left.setGrayRamp(255.0, 0.0);
-    pictures[2] = left.pixels();
-    mapper->SetBlendModeToMaximumIntensity();
-    left.volume->ReleaseGraphicsResources(left.window);
-    left.window->Finalize();
-    pictures[3] = right.pixels();
-  };
-  stage::Stage keeper(10, 10); // X servers may restart when their last client leaves
-  keeper.window->Render();
-  stage::Pixels expected[4], found[4];
-  draw(stage::splatting(image), expected);
-  const auto mapper = projecting(image);
-  draw(mapper, found);
-  for (int n = 0; n < 4; ++n)
-  {
-    check(found[n] == expected[n], "Windows: picture ", n, ".");
-  }
-  check(expected[0] != expected[1] && found[3] == found[1], "Windows: as it was.");
-}
-
-void testPrint(reference::Checks& check)
-{
-  const auto mapper = projecting(blobs());
-  std::ostringstream text;
-  mapper->Print(text);
-  check(text.str().find("LastRenderUsedSplatting: No") != std::string::npos &&
-      text.str().find("GlobalOverride: Off") != std::string::npos &&
-      text.str().find("QualityMode: exact") != std::string::npos,
-    "Print().");
-}
 }
 
 //------------------------------------------------------------------------------
 int TestOverrideState(int, char*[])
 {
   reference::Checks check;
-  testReuse(check);
   testAutoAdjust(check);
   testFinalInputs(check);
   testInputs(check);
   testEvents(check);
   testMessages(check);
   testLog(check);
-  testSelection(check);
-  testWindows(check);
-  testPrint(check);
   return check.exitCode();
 }

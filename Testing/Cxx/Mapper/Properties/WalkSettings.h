@@ -165,6 +165,7 @@ struct Shown
     if (standsIn)
     {
       this->standIn = vtkSmartPointer<vtkSplattingMIPGPUVolumeRayCastMapper>::New();
+      this->standIn->SetMaskTypeToBinary();
       this->splatting = this->standIn->GetSplattingMapper();
       this->mapper = this->standIn;
     }
