@@ -12,6 +12,8 @@
 #include "vtkRectilinearGrid.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
+
 namespace
 {
 using reference::Checks;
@@ -111,9 +113,15 @@ void testScene(Checks& check, reference::Random& random)
   int size[3];
   vtkImageData* const image = vtkImageData::SafeDownCast(data);
   image ? image->GetDimensions(size) : vtkRectilinearGrid::SafeDownCast(data)->GetDimensions(size);
+  // The mask of cells has their number of points, or of cells.
+  const bool onCells = cells && random.oneIn(2);
+  for (int a = 0; a < 3 && cells && !onCells; ++a)
+  {
+    size[a] = std::max(size[a] - 1, 1);
+  }
   mask->SetDimensions(size);
   const auto inside = anyFlags(count, 255, random);
-  (cells ? static_cast<vtkDataSetAttributes*>(mask->GetCellData()) : mask->GetPointData())
+  (onCells ? static_cast<vtkDataSetAttributes*>(mask->GetCellData()) : mask->GetPointData())
     ->SetScalars(inside);
   vtkImageData* const used = hasMask ? mask.Get() : nullptr;
   check(problemOfBlanking(data, cells, used).empty(), problemOfBlanking(data, cells, used));

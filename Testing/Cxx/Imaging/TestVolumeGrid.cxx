@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace
 {
@@ -166,6 +167,43 @@ void testGrid(Checks& check, reference::Random& random)
       "coordinates that stand still are accepted");
   }
 }
+
+vtkSmartPointer<vtkDoubleArray> coordinates(const std::vector<double>& values)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  for (double value : values)
+  {
+    array->InsertNextValue(value);
+  }
+  return array;
+}
+
+/// Steps that would ask for too many voxels, in all or along an axis, are enlarged to the limit.
+void testLimits(Checks& check)
+{
+  vtkNew<vtkRectilinearGrid> grid;
+  grid->SetDimensions(4, 4, 4);
+  const auto fine = coordinates({ 0.0, 10.0, 10.00001, 20.0 });
+  grid->SetXCoordinates(fine);
+  grid->SetYCoordinates(fine);
+  grid->SetZCoordinates(fine);
+  GridOfDataSet result;
+  check(describeGrid(grid, true, result).empty() && result.coarse, "tiny steps are no larger");
+  const glm::dvec3 size(result.grid.dimensions);
+  const double voxels = size.x * size.y * size.z;
+  check(voxels > 0.9 * GridOfDataSet::MostResampled && voxels <= GridOfDataSet::MostResampled,
+    "tiny steps make ", voxels, " voxels");
+  grid->SetDimensions(4, 2, 2);
+  grid->SetYCoordinates(coordinates({ 0.0, 20.0 }));
+  grid->SetZCoordinates(coordinates({ 0.0, 20.0 }));
+  for (const double count : { 16300.0, 16500.0 })
+  {
+    grid->SetXCoordinates(coordinates({ 0.0, 10.0, 10.0 + 20.0 / count, 20.0 }));
+    check(describeGrid(grid, false, result).empty() && result.coarse == (count > 16384.0) &&
+        result.grid.dimensions.x <= 16384,
+      count, " voxels along an axis become ", result.grid.dimensions.x);
+  }
+}
 }
 
 int TestVolumeGrid(int, char*[])
@@ -175,5 +213,6 @@ int TestVolumeGrid(int, char*[])
     "images", 200, [&](int, reference::Random& random) { testImage(check, random); });
   reference::forScenes(
     "rectilinear grids", 400, [&](int, reference::Random& random) { testGrid(check, random); });
+  testLimits(check);
   return check.exitCode();
 }

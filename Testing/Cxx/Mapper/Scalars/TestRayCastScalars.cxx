@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which scalars a ray caster gets where nothing is splatted: those of plain arrays, from any.
+// The scalars that a ray caster gets where nothing is splatted, from frame to frame.
+// TestScalarSource compares them with the input.
 #include "ScalarTesting.h"
 
 #include "vtkColorTransferFunction.h"
@@ -27,22 +28,6 @@ stage::Pixels seen(
   stage.look({ 0.45, -0.5, -0.74 }, { 0.1, 1.0, 0.0 });
   const stage::Messages warnings(mapper, vtkCommand::WarningEvent);
   return stage.pixels();
-}
-
-/// Large enough for the ray caster to prepare it by several threads.
-void testSeparateComponents(stage::Stage& stage, int components, reference::Checks& check)
-{
-  const Size size = { 128, 128, 128 };
-  const vtkIdType voxels = voxelsOf(size);
-  const auto together = noiseArray(VTK_FLOAT, voxels, components, 5);
-  const std::string name = std::to_string(components) + " components, one after the other: ";
-  const stage::Pixels truth = seen(stage, stage::splatting(plainImage(size, together)));
-  const auto mapper = stage::splatting(plainImage(size, separated<float>(together)));
-  const stage::Pixels picture = seen(stage, mapper);
-  check(mapper->GetLastRenderUsedRayCasting(), name, "ray cast.");
-  check(!isBlack(truth) && picture == truth, name, "the picture of an ordinary array.");
-  const auto bytes = static_cast<vtkIdType>(voxels * components * sizeof(float));
-  check(mapper->GetIndexMemorySize() == bytes, name, "the copy is counted.");
 }
 
 /// Nothing is seen where all is hidden; after that the volume is there again.
@@ -153,8 +138,6 @@ int TestRayCastScalars(int, char*[])
   reference::Checks check;
   stage::Stage stage(120, 110);
   stage.setGrayRamp(0.0, 110.0);
-  testSeparateComponents(stage, 1, check);
-  testSeparateComponents(stage, 3, check);
   testNothingShown(stage, check);
   testRelease(stage, check);
   testMoreComponents(stage, check);
