@@ -24,7 +24,7 @@ bool isRefused(const std::string& word, Change&& change)
   filter->SetSlabThickness(-1.0);
   filter->SetCroppingRegionPlanes(0.0, 1.0, 0.0, NAN, 0.0, 1.0);
   filter->SetLocalMaximumThreshold(NAN);
-  filter->SetDepthShadingAmbient(INFINITY);
+  filter->SetDepthShadingAmbient(2e6);
   filter->SetSignedOrigin(INFINITY);
   filter->SetAverageIPScalarRange(9.0, 8.0);
   change(filter.Get());
@@ -38,11 +38,21 @@ void testFaults(Checks& check)
   check(!validate(*filter), "defaults are refused");
   check(!isRefused("", [](Filter*) {}), "what has no effect is refused");
   check(isRefused("SlabThickness", [](Filter* f) { f->SlabOn(); }), "a thin slab");
+  check(isRefused("SlabCenter",
+          [](Filter* f)
+          {
+            f->SlabOn();
+            f->SetSlabThickness(1.0);
+            f->SetSlabCenter(0.0, NAN, 0.0);
+          }),
+    "a slab at no place");
+  check(isRefused("KernelRadius", [](Filter* f) { f->SetKernelRadius(NAN); }), "a NaN radius");
+  check(isRefused("LineTolerance", [](Filter* f) { f->SetLineTolerance(NAN); }), "a NaN tolerance");
   check(isRefused("CroppingRegionPlanes", [](Filter* f) { f->CroppingOn(); }), "NaN planes");
   check(isRefused("LocalMaximumThreshold", [](Filter* f) { f->SetMaximumTypeToLocal(); }),
     "a NaN threshold");
   check(isRefused("DepthShading", [](Filter* f) { f->SetMaximumTypeToDepthShaded(); }),
-    "endless shading");
+    "strong shading");
   check(isRefused("SignedOrigin", [](Filter* f) { f->SetMaximumTypeToSigned(); }),
     "an infinite origin");
   check(isRefused("AverageIPScalarRange", [](Filter* f) { f->SetBlendModeToAverageIntensity(); }),
@@ -112,6 +122,16 @@ void testEffects(Checks& check)
       test("range", n == 4, [](Filter* f) { f->SetAverageIPScalarRange(0.0, 7.0); });
       test("acceleration", (n == 0 || n == 5) && !isExact,
         [](Filter* f) { f->SetAcceleration(Filter::LINES); });
+      test("tolerance without chains", false, [](Filter* f) { f->SetLineTolerance(5.0); });
+      const auto lines = settings([](Filter* f) { f->SetAcceleration(Filter::LINES); });
+      const auto tolerant = settings(
+        [](Filter* f)
+        {
+          f->SetAcceleration(Filter::LINES);
+          f->SetLineTolerance(5.0);
+        });
+      check((lines == tolerant) == (lines == before), "tolerance of chains in mode ", mode,
+        ", reduction ", n);
       test("locations", n != 4, [](Filter* f) { f->RecordLocationsOn(); });
       test("kernel", isHigh, [](Filter* f) { f->SetKernel(Filter::COSINE_BELL); });
       test("radius", false, [](Filter* f) { f->SetKernelRadius(0.7); });

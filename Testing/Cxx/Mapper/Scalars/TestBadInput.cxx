@@ -23,6 +23,7 @@
 #include "vtkMatrix4x4.h"
 #include "vtkMultiVolume.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
@@ -39,6 +40,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 namespace
 {
@@ -92,6 +94,9 @@ struct Scene
     this->stage.volume->SetPosition(0.0, 0.0, 0.0);
     this->mapper->SetFinalColorWindow(1.0f);
     this->mapper->SetFinalColorLevel(0.5f);
+    this->mapper->SetKernelRadius(1.0);
+    this->mapper->RemoveAllClippingPlanes();
+    this->mapper->SetBlendModeToMaximumIntensity();
   }
 };
 
@@ -392,6 +397,20 @@ std::vector<Fault> settingFaults()
   }
   faults.push_back({ "position that is not a number", "singular",
     [](Scene& s) { s.stage.volume->SetPosition(0.0, vtkMath::Nan(), 0.0); } });
+  for (const auto& [x, length] : { std::pair(vtkMath::Nan(), 1.0), { 0.0, 0.0 } })
+  {
+    vtkNew<vtkPlane> plane;
+    plane->SetOrigin(x, 0.0, 0.0);
+    plane->SetNormal(0.0, 0.0, length);
+    const vtkSmartPointer<vtkPlane> kept = plane;
+    faults.push_back(
+      { "plane", "clipping plane", [kept](Scene& s) { s.mapper->AddClippingPlane(kept); } });
+  }
+  // TestProjectionProperties has the other settings.
+  faults.push_back({ "radius that is not a number", "KernelRadius",
+    [](Scene& s) { s.mapper->SetKernelRadius(vtkMath::Nan()); } });
+  faults.push_back(
+    { "no slice function", "SetSliceFunction", [](Scene& s) { s.mapper->SetBlendModeToSlice(); } });
   return faults;
 }
 
