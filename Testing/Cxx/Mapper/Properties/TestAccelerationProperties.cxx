@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Accelerations as a program meets them: forced and automatic, with a budget, delta encoding and
-// culling, told by progress, and made anew when the data change.
+// Accelerations as a program meets them: with a budget, with culling, told by progress, and made
+// anew when the data change. TestAccelerations compares their pictures.
 #include "Stage.h"
 
 #include "vtkCallbackCommand.h"
@@ -12,58 +12,12 @@
 #include "vtkPointData.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-
 namespace
 {
 using Mapper = vtkSplattingMIPVolumeMapper;
 const stage::Vector up = { 0.0, 1.0, 0.0 };
 const stage::Vector directions[] = { { -0.8, 0.3, 0.45 }, { 0.3, -0.8, 0.45 },
   { -0.3, 0.4, -0.8 } };
-
-int largestDifference(const stage::Pixels& a, const stage::Pixels& b)
-{
-  int largest = a.size() == b.size() ? 0 : 255;
-  for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n)
-  {
-    largest = std::max(largest, std::abs(int(a[n]) - int(b[n])));
-  }
-  return largest;
-}
-
-/// Every acceleration shows the plain walk's picture along every axis, and is the one that was
-/// used.
-void testForced(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
-{
-  const auto mapper = stage::splatting(image);
-  stage.show(mapper);
-  for (const stage::Vector& direction : directions)
-  {
-    stage.look(direction, up);
-    for (int mode : { Mapper::PREVIEW, Mapper::STANDARD, Mapper::HIGH })
-    {
-      mapper->SetQualityMode(mode);
-      mapper->SetAccelerationToDense();
-      const stage::Pixels dense = stage.pixels();
-      for (int acceleration = Mapper::AUTO; acceleration <= Mapper::SORTED_VOLUME; ++acceleration)
-      {
-        mapper->SetAcceleration(acceleration);
-        const std::string where = std::string(" ") + mapper->GetAccelerationAsString() + ", mode " +
-          mapper->GetQualityModeAsString() + ".";
-        check(stage.pixels() == dense, "The plain walk's picture:", where);
-        const int used = mapper->GetAccelerationUsed();
-        // Perspective views have no chains.
-        const int wanted =
-          stage.viewAngle > 0.0 ? std::min<int>(acceleration, Mapper::BRICKS) : acceleration;
-        check(acceleration == Mapper::AUTO ? used == Mapper::BRICKS || used == Mapper::DENSE
-                                           : used == wanted,
-          "It was used:", where);
-      }
-    }
-  }
-}
 
 /// What does not fit is not made, with one warning; more room brings it back.
 void testBudget(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
@@ -123,22 +77,6 @@ void testRenewal(stage::Stage& stage, vtkImageData* image, reference::Checks& ch
   check(stage.pixels() == before, "Changed back.");
 }
 
-/// Delta encoding stays within its bound, and saves memory.
-void testTolerance(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
-{
-  const auto mapper = stage::splatting(image);
-  stage.show(mapper);
-  stage.look(directions[2], up);
-  mapper->SetQualityModeToPreview();
-  mapper->SetAccelerationToSortedVolume();
-  const stage::Pixels exact = stage.pixels();
-  const vtkIdType memory = mapper->GetIndexMemorySize();
-  mapper->SetLineTolerance(8.0);
-  const int difference = largestDifference(exact, stage.pixels());
-  check(difference > 0 && difference <= 9, "8 grey levels, one more by rounding the colours.");
-  check(mapper->GetIndexMemorySize() < memory, "Longer chains take less memory.");
-}
-
 /// Culling shows the same pixels above the window's lower end, and those below as dark as before.
 void testCulling(stage::Stage& stage, vtkImageData* image, reference::Checks& check)
 {
@@ -179,11 +117,9 @@ int TestAccelerationProperties(int, char*[])
   for (double viewAngle : { 50.0, 0.0 })
   {
     stage.viewAngle = viewAngle;
-    testForced(stage, image, check);
     testRenewal(stage, image, check);
     testCulling(stage, image, check);
   }
   testBudget(stage, image, check);
-  testTolerance(stage, image, check);
   return check.exitCode();
 }

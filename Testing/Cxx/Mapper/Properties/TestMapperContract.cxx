@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the class promises without rendering: factory, defaults, clamping, PrintSelf.
+// What the class promises without rendering: factory, defaults, clamping, names.
 #include "Stage.h"
 
 #include "vtkOpenGLSplattingMIPVolumeMapper.h"
@@ -10,7 +10,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkSmartVolumeMapper.h"
 
-#include <algorithm>
 #include <set>
 #include <sstream>
 #include <string>
@@ -119,34 +118,6 @@ void testClampingOfAcceleration(Mapper* mapper, reference::Checks& check)
     "SetIndexMemoryBudget below zero");
 }
 
-void testRanges(Mapper* mapper, reference::Checks& check)
-{
-  check(mapper->GetQualityModeMinValue() == Mapper::PREVIEW &&
-      mapper->GetQualityModeMaxValue() == Mapper::EXACT,
-    "The range of QualityMode.");
-  check(mapper->GetKernelRadiusMinValue() == 0.5 && mapper->GetKernelRadiusMaxValue() == 1.5,
-    "The range of KernelRadius.");
-  check(mapper->GetIndexMemoryBudgetMaxValue() == VTK_TYPE_INT64_MAX, "The largest budget.");
-  check(mapper->GetAutoAdjustSampleDistancesMaxValue() == 1, "The range of a switch.");
-}
-
-/// Vectors have several methods, which are about the same numbers.
-void testVectors(Mapper* mapper, reference::Checks& check)
-{
-  const double center[3] = { 1.0, -2.0, 3.0 };
-  const vtkMTimeType before = mapper->GetMTime();
-  mapper->SetSlabCenter(1.0, -2.0, 3.0);
-  const vtkMTimeType changed = mapper->GetMTime();
-  mapper->SetSlabCenter(center);
-  check(changed > before && mapper->GetMTime() == changed, "SetSlabCenter is one change.");
-  double x = 0.0, y = 0.0, z = 0.0, all[3] = { 0.0, 0.0, 0.0 };
-  mapper->GetSlabCenter(x, y, z);
-  mapper->GetSlabCenter(all);
-  check(x == 1.0 && y == -2.0 && z == 3.0 && std::equal(center, center + 3, all) &&
-      std::equal(center, center + 3, mapper->GetSlabCenter()),
-    "GetSlabCenter");
-}
-
 /// The values are vtkSmartVolumeMapper's.
 void testVectorMode(Mapper* mapper, reference::Checks& check)
 {
@@ -209,23 +180,6 @@ void testNames(Mapper* mapper, reference::Checks& check)
   check(std::string("over") == mapper->GetPictureBlendingAsString(), "SetPictureBlendingToOver");
 }
 
-void testPrinting(Mapper* mapper, reference::Checks& check)
-{
-  std::ostringstream stream;
-  mapper->Print(stream);
-  const std::string text = stream.str();
-  for (const char* variable : { "QualityMode: exact", "Kernel: trilinear",
-         "KernelRadius: ", "FootprintSampling: ", "LastRenderUsedRayCasting: ", "PrincipalAxis: ",
-         "Shear: ", "IndexMemorySize: ", "NumberOfProjections: ", "ProjectionTime: ",
-         "InstructionSet: ", "Acceleration: auto", "AccelerationUsed: dense", "LineTolerance: ",
-         "QualityModeUsed: exact", "AutoAdjustSampleDistances: On", "FinalColorWindow: 1",
-         "FinalColorLevel: 0.5", "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend",
-         "VectorMode: disabled", "VectorComponent: ", "MaskInput: ", "Cropping" })
-  {
-    check(text.find(variable) != std::string::npos, "PrintSelf names ", variable);
-  }
-}
-
 /// Ranks compare what PrintPictureSettings() prints. What else the class prints cannot change a
 /// picture or is compared by itself.
 void testPictureSettings(Mapper* mapper, reference::Checks& check)
@@ -258,12 +212,9 @@ int TestMapperContract(int, char*[])
   testFactory(check);
   const auto mapper = vtkSmartPointer<Mapper>::New();
   testDefaults(mapper, check);
-  testPrinting(mapper, check);
   testPictureSettings(mapper, check);
   testClamping(mapper, check);
   testClampingOfAcceleration(mapper, check);
-  testRanges(mapper, check);
-  testVectors(mapper, check);
   testVectorMode(mapper, check);
   testNames(mapper, check);
   return check.exitCode();
