@@ -171,6 +171,19 @@ void testSlab(Checks& check, const Scene& scene, const glm::dvec3& point, refere
   const double* const d = scene.camera->GetDirectionOfProjection();
   const double away = glm::dot(glm::dvec3(d[0], d[1], d[2]), scene.inWorld(point) - centre);
   compare(check, view, point, 0.5 * thickness - std::abs(away), "slab");
+  // However thin a slab is, it shows its middle, and nothing a slice away. Steps of rays from slice
+  // to slice are no longer than the three edges of a voxel.
+  const double thin = std::pow(10.0, random.uniform(-300.0, -4.0));
+  view.halfSpaces.clear();
+  addSlab(view, scene.world(), &centre.x, thin);
+  const glm::dvec3 middle(glm::inverse(scene.world()) * glm::dvec4(centre, 1.0));
+  check(inside(view, middle) >= 0.0, "a slab of ", thin, " loses its middle");
+  const glm::dvec3 edges = glm::abs(scene.grid.spacing);
+  check(std::abs(away) < edges.x + edges.y + edges.z || inside(view, point) < 0.0, "a slab of ",
+    thin, " shows what is ", away, " away");
+  view.halfSpaces.clear();
+  addSlab(view, scene.world(), &centre.x, HUGE_VAL);
+  check(view.halfSpaces.empty(), "an endless slab cuts");
 }
 }
 
