@@ -8,7 +8,7 @@
 // vtkFixedPointVolumeRayCastMapper with trilinear interpolation, four samples per voxel. That is
 // the truth for all modes. (With nearest-neighbour interpolation, which would be closer to the
 // preview, that mapper moves the volume by half a voxel.) In perspective that mapper is up to 0.2
-// pixel off (TestRegistration), and the baselines are vtkOpenGLGPUVolumeRayCastMapper's.
+// pixel off, and the baselines are vtkOpenGLGPUVolumeRayCastMapper's.
 //
 // Pictures are judged twice. VTK's own comparison says whether they are alike anywhere, but
 // vtkImageDifference (VTK < 9.4) forgives shifts of a pixel. So the same baseline is also compared

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Skewed stacks, as light-sheet microscopes record them: a shear in the prop's matrix or in the
-// image's direction matrix shows them at their place, without resampling, in all modes.
+// Where volumes are seen, whatever spacing, origin, extent, direction and prop matrix: skewed
+// stacks, as light-sheet microscopes record them, mirrored and stretched, at their place, without
+// resampling, in all modes.
 #include "ScreenOracle.h"
 
 #include "vtkSplattingMIPProjection.h"
@@ -24,7 +25,7 @@ constexpr int Height = 64;
 constexpr double FilterTolerance = 2.0 * 255.0 / 1e6;
 const stage::Vector Up = { 0.1, 1.0, 0.05 };
 
-/// Slices that are displaced along x and y, as by a tilted sheet of light.
+/// Slices that are displaced along x and y, as by a tilted sheet of light; some are mirrored.
 void skew(vtkMatrix4x4* matrix, reference::Random& random)
 {
   vtkNew<vtkTransform> transform;
@@ -35,6 +36,8 @@ void skew(vtkMatrix4x4* matrix, reference::Random& random)
   shear->SetElement(0, 2, random.uniform(-1.5, 1.5));
   shear->SetElement(1, 2, random.uniform(-0.5, 0.5));
   transform->Concatenate(shear);
+  const double mirror = random.sign(), width = random.uniform(1.0, 1.3);
+  transform->Scale(mirror * width, 1.0, 1.0);
   matrix->DeepCopy(transform->GetMatrix());
 }
 
@@ -56,6 +59,15 @@ bool skewImageOrProp(stage::Stage& stage, vtkImageData* image, reference::Random
   image->SetDirectionMatrix(direction);
   stage.volume->SetUserMatrix(matrix);
   return skewsImage;
+}
+
+/// Off the middle, by other than whole pixels.
+void lookAtRandom(stage::Stage& stage, double scale, reference::Random& random)
+{
+  const stage::Vector direction = stage::anyDirection(random);
+  stage.look(direction, Up, scale);
+  const double x = random.uniform(-0.06, 0.06), y = random.uniform(-0.06, 0.06);
+  stage.renderer->GetActiveCamera()->SetWindowCenter(x, y);
 }
 
 std::string describe(double found, double low, double high, int x, int y)
@@ -80,7 +92,8 @@ void testExact(stage::Stage& stage, const std::string& series, reference::Checks
       const bool isForFilter = skewImageOrProp(stage, image, random);
       const auto mapper = stage::splatting(image);
       stage.show(mapper);
-      stage.look(stage::anyDirection(random), Up, random.uniform(0.2, 0.6));
+      const double scale = random.uniform(0.2, 0.6);
+      lookAtRandom(stage, scale, random);
       const reference::Image<double> picture = stage.gray();
       const stage::ScreenRays rays(stage, image);
       vtkNew<vtkSplattingMIPProjection> filter;
@@ -129,7 +142,7 @@ void testOtherModes(stage::Stage& stage, const std::string& series, reference::C
       const auto mapper = stage::splatting(image);
       mapper->SetQualityMode(number % 3);
       stage.show(mapper);
-      stage.look(stage::anyDirection(random), Up, 0.5);
+      lookAtRandom(stage, 0.35, random);
       const reference::Image<double> picture = stage.gray();
       const stage::ScreenRays rays(stage, image);
       const stage::Envelope envelope(volume, number % 3);
