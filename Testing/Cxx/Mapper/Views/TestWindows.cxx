@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Large screenshots, stereo, layers, multisampling, and mappers that are shared, hidden, replaced
-// and set beside others: the volume looks as it does alone.
+// Viewports, large screenshots, stereo, layers, multisampling, and mappers that are shared: the
+// volume looks as it does alone.
 #include "CoreTesting.h"
 #include "ScreenOracle.h"
 
@@ -12,8 +12,6 @@
 #include "vtkCamera.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
-#include "vtkExecutive.h"
-#include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkImageData.h"
 #include "vtkMath.h"
 #include "vtkPiecewiseFunction.h"
@@ -22,7 +20,6 @@
 #include "vtkProperty.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
-#include "vtkSmartVolumeMapper.h"
 #include "vtkSphereSource.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
@@ -95,6 +92,46 @@ int largestDifference(const stage::Pixels& a, const stage::Pixels& b)
 bool isBlack(const stage::Pixels& pixels)
 {
   return std::all_of(pixels.begin(), pixels.end(), [](unsigned char byte) { return byte == 0; });
+}
+
+/// A part of a window of twice the width and height.
+stage::Pixels quarter(const stage::Pixels& pixels, int left, int bottom)
+{
+  stage::Pixels result;
+  for (int y = 0; y < Height; ++y)
+  {
+    const auto row = pixels.begin() + 3 * (2 * Width * (bottom + y) + left);
+    result.insert(result.end(), row, row + 3 * Width);
+  }
+  return result;
+}
+
+/// Two viewports show what two windows show, and nothing is drawn beside them.
+void testViewports(const Scene& scene, reference::Random& random, reference::Checks& check)
+{
+  Scene other = scene;
+  other.direction = stage::anyDirection(random);
+  stage::Stage left(Width, Height), right(Width, Height), both(2 * Width, 2 * Height);
+  scene.look(left);
+  const stage::Pixels expectedLeft = left.pixels();
+  other.look(right);
+  const stage::Pixels expectedRight = right.pixels();
+  scene.look(both);
+  both.renderer->SetViewport(0.0, 0.0, 0.5, 0.5);
+  vtkNew<vtkRenderer> second;
+  second->SetViewport(0.5, 0.5, 1.0, 1.0);
+  second->AddVolume(both.volume);
+  second->SetActiveCamera(right.renderer->GetActiveCamera());
+  both.window->AddRenderer(second);
+  for (int time = 0; time < 2; ++time)
+  {
+    const stage::Pixels pixels = both.pixels();
+    check(quarter(pixels, 0, 0) == expectedLeft, "The left viewport shows what it does alone.");
+    check(quarter(pixels, Width, Height) == expectedRight,
+      "The right viewport shows what it does alone.");
+    check(isBlack(quarter(pixels, Width, 0)) && isBlack(quarter(pixels, 0, Height)),
+      "Nothing is drawn outside the viewports.");
+  }
 }
 
 /// A screenshot in tiles is that of a larger window: coordinates in the shear image are rounded in
@@ -312,75 +349,6 @@ void testMultisampling(const Scene& scene, reference::Checks& check)
   }
 }
 
-/// What a new mapper of another volume shows.
-stage::Pixels alone(const Scene& scene, vtkImageData* image)
-{
-  stage::Stage stage(Width, Height);
-  Scene other = scene;
-  other.mapper = stage::splatting(image);
-  other.mapper->SetQualityMode(scene.mapper->GetQualityMode());
-  other.look(stage);
-  return stage.pixels();
-}
-
-void testReplacements(const Scene& scene, reference::Random& random, reference::Checks& check)
-{
-  Mapper* const mapper = scene.mapper;
-  stage::Stage stage(Width, Height);
-  scene.look(stage);
-  const stage::Pixels before = stage.pixels();
-  for (int time = 0; time < 2; ++time)
-  {
-    stage.show(stage::fixedPointRayCaster(scene.image, 0.5));
-    const stage::Pixels cast = stage.pixels();
-    check(!isBlack(cast) && cast != before, "A ray caster takes the mapper's place.");
-    stage.show(mapper);
-    check(stage.pixels() == before, "The mapper comes back.");
-  }
-  mapper->SetInputDataObject(nullptr);
-  const stage::Messages pipelineErrors(mapper->GetExecutive(), vtkCommand::ErrorEvent);
-  check(isBlack(stage.pixels()), "Without input there is nothing to see.");
-  const auto& size = scene.volume.size;
-  const auto other = stage::toImageData(stage::blobsAndTubes(size, 4, random));
-  mapper->SetInputData(other);
-  const stage::Pixels replaced = stage.pixels();
-  check(replaced == alone(scene, other) && replaced != before, "Other data are shown.");
-  auto* const voxels = static_cast<unsigned char*>(other->GetScalarPointer());
-  const std::ptrdiff_t slice = std::ptrdiff_t(size[0]) * size[1];
-  std::fill(voxels + slice * 10, voxels + slice * 30, static_cast<unsigned char>(90));
-  other->GetPointData()->GetScalars()->Modified();
-  const stage::Pixels changed = stage.pixels();
-  check(changed == alone(scene, other) && changed != replaced, "Changed data are shown.");
-  mapper->SetInputData(scene.image);
-  check(stage.pixels() == before, "The first data are shown again.");
-}
-
-/// Where only it is seen, a volume beside ones by VTK's own mapper looks as it does alone, and they
-/// do, too.
-void testBesideSmartMapper(const Scene& scene, reference::Checks& check)
-{
-  stage::Stage stage(Width, Height);
-  vtkNew<vtkSmartVolumeMapper> smart;
-  smart->SetInputData(scene.image);
-  smart->SetBlendModeToMaximumIntensity();
-  smart->SetRequestedRenderModeToRayCast();
-  vtkNew<vtkVolume> second;
-  second->SetMapper(smart);
-  second->SetProperty(stage.property);
-  scene.lookAtBoth(stage, second);
-  const stage::Pixels both = stage.pixels();
-  second->VisibilityOff();
-  const stage::Pixels ours = stage.pixels();
-  second->VisibilityOn();
-  stage.volume->VisibilityOff();
-  const stage::Pixels theirs = stage.pixels();
-  stage::Pixels expected(both.size());
-  std::transform(ours.begin(), ours.end(), theirs.begin(), expected.begin(),
-    [](unsigned char a, unsigned char b) { return std::max(a, b); });
-  check(!isBlack(ours) && !isBlack(theirs), "Both mappers' volumes are seen.");
-  check(both == expected, "vtkSmartVolumeMapper and the mapper do not disturb each other.");
-}
-
 /// Windows without pixels draw nothing and say nothing.
 void testEmptyWindow(const Scene& scene, reference::Checks& check)
 {
@@ -411,13 +379,12 @@ int TestWindows(int, char*[])
     [&](int, reference::Random& random)
     {
       const Scene scene(random);
+      testViewports(scene, random, check);
       testScreenshot(scene, random.uniform(2, 4), check);
       eyes.add(testStereo(scene, check));
       testLayers(scene, check);
       testMultisampling(scene, check);
       testTwoProps(scene, random.uniform(0.0, 360.0), check);
-      testReplacements(scene, random, check);
-      testBesideSmartMapper(scene, check);
       testEmptyWindow(scene, check);
     });
   check(eyes.areEnough(0.5), "Eyes do not see what the others do.");
