@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Turns of vtkSplattingMIPProjection: each slice is the single view, bit for bit; geometry, shared
-// projections, progress, aborts, and what an update re-uses.
+// Turns of vtkSplattingMIPProjection: each slice is the single view, bit for bit; shared
+// projections, progress, aborts, and what an update re-uses. TestTurnOfViews has the geometry.
 #include "ProjectionTesting.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
-#include "vtkCellData.h"
 #include "vtkFloatArray.h"
 #include "vtkVersionMacros.h"
 
@@ -127,76 +126,6 @@ void testPerspective(Checks& check)
   }
   check(largest < 1e-6 * 4000.0, "spacing takes the view angle's place: ", largest);
   testSlices(check, turn, image, 4);
-}
-
-/// As vtkCamera turns, and as the output says it.
-void testGeometry(Checks& check)
-{
-  reference::Random random(7);
-  const auto image = projectiontesting::anyImage({ 23, 31, 27 }, random);
-  const auto turn = projectiontesting::projectionOf(image);
-  turn->SetOutputSize(50, 20);
-  turn->SetNumberOfViews(8);
-  turn->Update();
-  vtkImageData* const output = turn->GetOutput();
-  const double* const spacing = output->GetSpacing();
-  check(spacing[0] == spacing[1] && std::abs(spacing[0] * 20.0 - image->GetLength()) < 1e-9,
-    "the diagonal fits into the lesser size: ", spacing[0]);
-  double middle[3];
-  output->TransformContinuousIndexToPhysicalPoint(24.5, 9.5, 0.0, middle);
-  for (int a = 0; a < 3; ++a)
-  {
-    check(std::abs(middle[a] - image->GetCenter()[a]) < 1e-9 * image->GetLength(),
-      "the volume's middle is the picture's");
-  }
-  vtkNew<vtkCamera> camera, turned;
-  turn->GetViewCamera(0, camera);
-  check(camera->GetParallelProjection() && camera->GetDirectionOfProjection()[1] == 1.0 &&
-      camera->GetViewUp()[2] == 1.0,
-    "the first view is the patient's front");
-  for (int n = 0; n < 8; ++n)
-  {
-    turn->GetViewCamera(n, turned);
-    for (int a = 0; a < 3; ++a)
-    {
-      check(
-        std::abs(camera->GetPosition()[a] - turned->GetPosition()[a]) < 1e-9 * image->GetLength(),
-        "view ", n, " is turned as by Azimuth");
-    }
-    camera->Azimuth(45.0);
-  }
-  turn->GetViewCamera(0, camera);
-  camera->SetParallelScale(31.0);
-  turn->SetCamera(camera);
-  turn->Update();
-  check(turn->GetOutput()->GetSpacing()[1] == 3.1 && turn->GetOutput()->GetSpacing()[0] == 3.1,
-    "a camera's scale is half the height");
-}
-
-/// A lone voxel right of the middle wanders over the picture as its place says.
-void testLoneVoxel(Checks& check)
-{
-  const int size = 21;
-  reference::Volume<float> volume({ size, size, size });
-  volume.at(15, 10, 10) = 1.0f;
-  const auto dot = projectiontesting::imageOf(volume);
-  const auto around = projectiontesting::projectionOf(dot);
-  around->SetOutputSize(41, 41);
-  around->SetOutputSpacing(0.5, 0.5);
-  around->SetNumberOfViews(4);
-  around->Update();
-  const int places[] = { 30, 20, 10, 20 }; // right, behind, left, before
-  for (int n = 0; n < 4; ++n)
-  {
-    int brightest = 0;
-    for (int x = 0; x < 41; ++x)
-    {
-      const auto value = [&](int at)
-      { return around->GetOutput()->GetScalarComponentAsDouble(at, 20, n, 0); };
-      brightest = value(x) > value(brightest) ? x : brightest;
-    }
-    check(brightest == places[n], "view ", n, " shows the voxel at ", brightest);
-  }
 }
 
 /// A turn of 20 small pictures.
@@ -371,27 +300,6 @@ vtkSmartPointer<vtkImageData> withBoth(vtkImageData* one, vtkImageData* two)
   return both;
 }
 
-/// Cells are voxels about their centres: those of one less along each axis.
-void compareCells(Checks& check, vtkImageData* points)
-{
-  const auto cells = vtkSmartPointer<vtkImageData>::New();
-  cells->SetDimensions(14, 12, 13);
-  cells->SetOrigin(-0.5, -0.5, -0.5);
-  cells->GetCellData()->SetScalars(points->GetPointData()->GetScalars());
-  const auto ofCells = projectiontesting::projectionOf(cells);
-  const auto ofPoints = projectiontesting::projectionOf(points);
-  for (const auto& each : { ofCells, ofPoints })
-  {
-    each->SetQualityModeToHigh(); // the field of cells ends elsewhere
-    each->SetViewDirection(0.2, -0.3, 1.0);
-    each->SetOutputSize(9, 8);
-    each->SetOutputSpacing(1.0, 1.0);
-    each->Update();
-  }
-  check(projectiontesting::sameScalars(ofCells->GetOutput(), ofPoints->GetOutput()),
-    "cells are voxels");
-}
-
 /// Independent components are what each is by itself; magnitudes and names are kept.
 void testComponents(Checks& check)
 {
@@ -436,7 +344,6 @@ void testComponents(Checks& check)
   check(filter->GetOutput()->GetScalarComponentAsDouble(10, 11, 0, 0) == 3.5 &&
       filter->GetOutput()->GetNumberOfScalarComponents() == 1,
     "the array to process is projected");
-  compareCells(check, one);
 }
 }
 
@@ -445,8 +352,6 @@ int TestTurn(int, char*[])
   Checks check;
   testViews(check);
   testPerspective(check);
-  testGeometry(check);
-  testLoneVoxel(check);
   testProgress(check);
   testChangesInProgress(check);
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)

@@ -170,6 +170,9 @@ void testScene(Checks& check, reference::Random& random)
         spacingOf(turn).x == spacingOf(turn).y,
       "the diagonal does not fill the picture");
   }
+  check(!isAutomatic || !settings.camera || !camera->GetParallelProjection() ||
+      std::abs(spacingOf(turn).y * settings.size.y - 2.0 * camera->GetParallelScale()) < 1e-9,
+    "the parallel scale is not half the height");
   TurnSettings bad = settings;
   bad.angle = 0.0;
   check(turn.Set(bad) && turn.Views() == settings.views, "a turn of 0 degrees is taken");
