@@ -29,7 +29,7 @@ enum class Layout
 {
   Interleaved,
   Separate,
-  AsVTKWants ///< VTK 9.3 to 9.6 interleave separate components that they allocate by themselves
+  AllocatedByVTK ///< VTK 9.3 to 9.6 interleave components that are to be separate
 };
 
 template <class T>
@@ -93,7 +93,7 @@ struct Scene
     : voxels(coretesting::toGlm(coretesting::randomSize(random, 5))),
       cells(random.uniform(0, 1)),
       isGrid(random.uniform(0, 1)),
-      layout(random.among({ Layout::Interleaved, Layout::Separate, Layout::AsVTKWants }))
+      layout(random.among({ Layout::Interleaved, Layout::Separate, Layout::AllocatedByVTK }))
   {
     this->makeData(random);
     this->chooseArray(random);
@@ -102,18 +102,20 @@ struct Scene
       const int flag = this->cells ? int(vtkDataSetAttributes::HIDDENCELL)
                                    : int(vtkDataSetAttributes::HIDDENPOINT);
       this->ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+      reference::Random many = random.fork();
       for (vtkIdType n = 0; n < count(this->voxels); ++n)
       {
-        this->ghosts->InsertNextValue(static_cast<unsigned char>(random.oneIn(4) ? flag : 0));
+        this->ghosts->InsertNextValue(static_cast<unsigned char>(many.oneIn(4) ? flag : 0));
       }
       this->attributes(this->cells)->AddArray(this->ghosts);
     }
     if (random.oneIn(3))
     {
       this->mask->SetDimensions(&this->voxels.x);
+      reference::Random many = random.fork();
       for (vtkIdType n = 0; n < count(this->voxels); ++n)
       {
-        this->inside->InsertNextValue(static_cast<unsigned char>(random.oneIn(4) ? 0 : 200));
+        this->inside->InsertNextValue(static_cast<unsigned char>(many.oneIn(4) ? 0 : 200));
       }
       this->mask->GetPointData()->SetScalars(this->inside);
       this->choice.mask = this->mask;
@@ -361,8 +363,8 @@ void testMemory(Checks& check, const Scene& scene, const ScalarSource& source)
         : isResampled || isGathered ? size
                                     : 0);
   const auto found = static_cast<vtkIdType>(source.MemorySize());
-  check(scene.layout == Layout::AsVTKWants ? found <= bytes : found == bytes, "copies take ", found,
-    " bytes, not ", bytes);
+  check(scene.layout == Layout::AllocatedByVTK ? found <= bytes : found == bytes, "copies take ",
+    found, " bytes, not ", bytes);
 }
 
 /// What ray casters get: the same voxels, and the least where there is none.
@@ -473,7 +475,7 @@ void testChanges(Checks& check, Scene& scene, ScalarSource& source, reference::R
   }
   if (scene.layout != Layout::Interleaved)
   {
-    scene.layout = Layout::AsVTKWants;
+    scene.layout = Layout::AllocatedByVTK;
     vtkObject::GlobalWarningDisplayOff(); // of the copy that VTK makes
     scene.scalars->GetVoidPointer(0);     // VTK 9.3 to 9.6 interleave components
     vtkObject::GlobalWarningDisplayOn();

@@ -46,6 +46,7 @@ void testDefaults(Mapper* mapper, reference::Checks& check)
   check(mapper->GetVectorMode() == Mapper::DISABLED && mapper->GetVectorComponent() == 0,
     "Default is all components.");
   check(mapper->GetMaskInput() == nullptr, "Default is no mask.");
+  check(!mapper->GetSlab() && mapper->GetSlabThickness() == 10.0, "Default is no slab.");
   check(mapper->GetPictureBlending() == Mapper::OVER, "Default blends over.");
   check(mapper->GetAutoAdjustSampleDistances() == 1, "Default adjusts to the time, as VTK does.");
   check(mapper->GetQualityModeUsed() == Mapper::EXACT, "A new mapper has used no other mode.");

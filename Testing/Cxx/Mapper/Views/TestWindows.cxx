@@ -106,17 +106,18 @@ stage::Pixels quarter(const stage::Pixels& pixels, int left, int bottom)
   return result;
 }
 
-/// Two viewports show what two windows show, and nothing is drawn beside them.
+/// Two viewports show what two windows show, and nothing is drawn beside them. Volumes are larger
+/// than the viewports, so that parts of their pictures are copied.
 void testViewports(const Scene& scene, reference::Random& random, reference::Checks& check)
 {
   Scene other = scene;
   other.direction = stage::anyDirection(random);
   stage::Stage left(Width, Height), right(Width, Height), both(2 * Width, 2 * Height);
-  scene.look(left);
+  scene.look(left, 0.6);
   const stage::Pixels expectedLeft = left.pixels();
-  other.look(right);
+  other.look(right, 0.6);
   const stage::Pixels expectedRight = right.pixels();
-  scene.look(both);
+  scene.look(both, 0.6);
   both.renderer->SetViewport(0.0, 0.0, 0.5, 0.5);
   vtkNew<vtkRenderer> second;
   second->SetViewport(0.5, 0.5, 1.0, 1.0);
