@@ -246,6 +246,30 @@ void testBrightVoxels(
     what, ": there is nothing outside the viewport.");
 }
 
+/// Turned about, the nearest of equal voxels is another one, although the shear image is the same.
+void testOtherSide(reference::Checks& check)
+{
+  reference::Volume<std::uint8_t> volume({ 20, 20, 20 }, 0);
+  volume.at(Voxel{ 10, 10, 3 }) = volume.at(Voxel{ 10, 10, 16 }) = 200;
+  const auto image = stage::toImageData(volume);
+  const auto mapper = stage::splatting(image);
+  mapper->SetQualityModeToPreview();
+  mapper->RecordLocationsOn();
+  mapper->CullBelowWindowOn();
+  stage::Stage stage(101, 101);
+  stage.show(mapper);
+  for (int side = 0; side < 2; ++side)
+  {
+    stage.look({ 0.0, 0.0, side ? -1.0 : 1.0 }, { 0.0, 1.0, 0.0 });
+    stage.window->Render();
+    const Point shown = shownAt(stage, { 10.0, 10.0, 3.0 });
+    Point picked = { 0.0, 0.0, 0.0 };
+    mapper->PickWorldPosition(static_cast<int>(std::lround(shown[0])),
+      static_cast<int>(std::lround(shown[1])), picked.data());
+    check(std::abs(picked[2] - (side ? 16.0 : 3.0)) < 1e-6, "From each side the nearest one.");
+  }
+}
+
 /// What geometry hides is not located.
 void testHidden(reference::Checks& check)
 {
@@ -294,6 +318,10 @@ void testSentences(reference::Checks& check)
     check(
       mapper->PickWorldPosition(40, 40, position) && errors.texts.size() == 1, "Picks do without.");
   }
+  mapper->WriteDepthOn();
+  stage.window->Render();
+  check(stage.window->GetZbufferDataAtPoint(40, 40) < 1.0f, "So do depths that are written.");
+  mapper->WriteDepthOff();
   mapper->RecordLocationsOn();
   stage.window->Render();
   check(mapper->PickWorldPosition(40, 40, position), "It works once it is on.");
@@ -323,6 +351,7 @@ int TestLocations(int, char*[])
   reference::forScenes("bright voxels", 12,
     [&](int n, reference::Random& random)
     { testBrightVoxels(check, n % 4, n / 4 % 2 ? 40.0 : 0.0, random); });
+  testOtherSide(check);
   testHidden(check);
   testSentences(check);
   return check.exitCode();
