@@ -106,8 +106,9 @@ stage::Pixels quarter(const stage::Pixels& pixels, int left, int bottom)
   return result;
 }
 
-/// Two viewports show what two windows show, and nothing is drawn beside them. Volumes are larger
-/// than the viewports, so that parts of their pictures are copied.
+/// Two windows in turn show what they did at first, and two viewports what the windows show, with
+/// nothing beside them. Volumes are larger than the windows, so that parts of their pictures are
+/// copied.
 void testViewports(const Scene& scene, reference::Random& random, reference::Checks& check)
 {
   Scene other = scene;
@@ -117,6 +118,12 @@ void testViewports(const Scene& scene, reference::Random& random, reference::Che
   const stage::Pixels expectedLeft = left.pixels();
   other.look(right, 0.6);
   const stage::Pixels expectedRight = right.pixels();
+  for (int time = 0; time < 2; ++time)
+  {
+    check(left.pixels() == expectedLeft, "The first window shows what it did.");
+    check(right.pixels() == expectedRight, "The second window shows what it did.");
+    left.volume->ReleaseGraphicsResources(left.window);
+  }
   scene.look(both, 0.6);
   both.renderer->SetViewport(0.0, 0.0, 0.5, 0.5);
   vtkNew<vtkRenderer> second;
@@ -127,9 +134,9 @@ void testViewports(const Scene& scene, reference::Random& random, reference::Che
   for (int time = 0; time < 2; ++time)
   {
     const stage::Pixels pixels = both.pixels();
-    check(quarter(pixels, 0, 0) == expectedLeft, "The left viewport shows what it does alone.");
+    check(quarter(pixels, 0, 0) == expectedLeft, "The left viewport shows what a window does.");
     check(quarter(pixels, Width, Height) == expectedRight,
-      "The right viewport shows what it does alone.");
+      "The right viewport shows what a window does.");
     check(isBlack(quarter(pixels, Width, 0)) && isBlack(quarter(pixels, 0, Height)),
       "Nothing is drawn outside the viewports.");
   }
