@@ -204,6 +204,16 @@ void testLog(reference::Checks& check)
   vtkLogger::RemoveCallback("test");
 }
 
+void testPrint(reference::Checks& check)
+{
+  const auto mapper = projecting(blobs());
+  std::ostringstream text;
+  mapper->Print(text);
+  check(text.str().find("LastRenderUsedSplatting: No") != std::string::npos &&
+      text.str().find("GlobalOverride: Off") != std::string::npos &&
+      text.str().find("QualityMode: exact") != std::string::npos,
+    "Print().");
+}
 }
 
 //------------------------------------------------------------------------------
@@ -216,5 +226,6 @@ int TestOverrideState(int, char*[])
   testEvents(check);
   testMessages(check);
   testLog(check);
+  testPrint(check);
   return check.exitCode();
 }

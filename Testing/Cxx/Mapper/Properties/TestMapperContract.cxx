@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the class promises without rendering: factory, defaults, clamping, names.
+// What the class promises without rendering: factory, defaults, clamping, PrintSelf.
 #include "Stage.h"
 
 #include "vtkOpenGLSplattingMIPVolumeMapper.h"
@@ -181,6 +181,23 @@ void testNames(Mapper* mapper, reference::Checks& check)
   check(std::string("over") == mapper->GetPictureBlendingAsString(), "SetPictureBlendingToOver");
 }
 
+void testPrinting(Mapper* mapper, reference::Checks& check)
+{
+  std::ostringstream stream;
+  mapper->Print(stream);
+  const std::string text = stream.str();
+  for (const char* variable : { "QualityMode: exact", "Kernel: trilinear",
+         "KernelRadius: ", "FootprintSampling: ", "LastRenderUsedRayCasting: ", "PrincipalAxis: ",
+         "Shear: ", "IndexMemorySize: ", "NumberOfProjections: ", "ProjectionTime: ",
+         "InstructionSet: ", "Acceleration: auto", "AccelerationUsed: dense", "LineTolerance: ",
+         "QualityModeUsed: exact", "AutoAdjustSampleDistances: On", "FinalColorWindow: 1",
+         "FinalColorLevel: 0.5", "CullBelowWindow: ", "IndexMemoryBudget: ", "IndexTime: ", "Blend",
+         "VectorMode: disabled", "VectorComponent: ", "MaskInput: ", "Cropping" })
+  {
+    check(text.find(variable) != std::string::npos, "PrintSelf names ", variable);
+  }
+}
+
 /// Ranks compare what PrintPictureSettings() prints. What else the class prints cannot change a
 /// picture or is compared by itself.
 void testPictureSettings(Mapper* mapper, reference::Checks& check)
@@ -213,6 +230,7 @@ int TestMapperContract(int, char*[])
   testFactory(check);
   const auto mapper = vtkSmartPointer<Mapper>::New();
   testDefaults(mapper, check);
+  testPrinting(mapper, check);
   testPictureSettings(mapper, check);
   testClamping(mapper, check);
   testClampingOfAcceleration(mapper, check);
