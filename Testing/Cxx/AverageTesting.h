@@ -47,7 +47,7 @@ double errorBound(splatting::Quality quality, double low, double high)
  */
 template <class T>
 double perspectiveErrorBound(
-  const reference::PerspectiveRays& rays, const reference::Kernel& kernel, double low, double high)
+  const reference::ImageRays& rays, const reference::Kernel& kernel, double low, double high)
 {
   const bool isBell = kernel.shape == reference::Kernel::CosineBell;
   const double number = 8.0 * 6.0 * 0x1p-53 + (isBell ? 0x1p-44 : 0.0);
@@ -80,6 +80,29 @@ double perspectiveErrorBound(
   const double rounding = std::is_same_v<splatting::Accumulator<T>, float> ? 0x1p-24 : 0x1p-53;
   return (weights[0] + weights[1]) * (high - low) +
     (3 + 5 + 45) * rounding * std::max(std::abs(low), std::abs(high));
+}
+
+/// How far averages of voxels from low to high may be from slabSamples(), which itself is good to
+/// some rounding errors of double. Previews are exact.
+template <class T>
+double averageBound(const splatting::ShearWarp& geometry, const Mode& mode, double low, double high)
+{
+  if (mode.quality == splatting::Quality::Preview)
+  {
+    return 0.0;
+  }
+  const double bound = geometry.isPerspective()
+    ? perspectiveErrorBound<T>(referenceRays(geometry), mode.reference, low, high)
+    : errorBound<T>(mode.quality, low, high);
+  return bound + 2e-13 * std::max(std::abs(low), std::abs(high)) + 1e-300;
+}
+
+template <class T>
+double averageBound(
+  const reference::Volume<T>& volume, const splatting::ShearWarp& geometry, const Mode& mode)
+{
+  const auto ends = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
+  return averageBound<T>(geometry, mode, double(*ends.first), double(*ends.second));
 }
 
 /**

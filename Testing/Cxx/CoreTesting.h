@@ -9,12 +9,12 @@
 
 #include "Checks.h"
 #include "Geometry/ShearWarp.h"
-#include "PerspectiveProjection.h"
 #include "Projection.h"
 #include "Projection/Project.h"
 #include "RandomScene.h"
 #include "Reductions.h"
 #include "Scenes.h"
+#include "SlabAverages.h"
 #include "Volume.h"
 
 #include <algorithm>
@@ -24,6 +24,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -74,6 +75,20 @@ std::string seriesOf(const std::string& scenes)
   return scenes + ", type " + std::to_string(static_cast<int>(splatting::scalarTypeOf<T>()));
 }
 
+/// A series that there is for parallel and for perspective views.
+inline std::string nameOf(const std::string& series, bool perspective)
+{
+  return series + (perspective ? ", in perspective" : "");
+}
+
+/// An image of any view.
+inline splatting::ShearWarp anyGeometry(
+  const std::array<int, 3>& size, bool perspective, reference::Random& random)
+{
+  return perspective ? randomPerspectiveImage(size, random)
+                     : splatting::ShearWarp(anyView(size, random));
+}
+
 /// The view of a volume whose axes were permuted and reversed, so that it looks the same.
 inline splatting::View transformedView(
   const splatting::View& view, const reference::AxisSymmetry& symmetry)
@@ -99,12 +114,27 @@ inline reference::ShearView referenceView(const splatting::ShearWarp& geometry)
   return { geometry.principalAxis(), { geometry.shear().x, geometry.shear().y } };
 }
 
-/// The rays of a perspective image.
-inline reference::PerspectiveRays referenceRays(const splatting::ShearWarp& geometry)
+/// What an image is, for messages.
+inline std::string describe(const splatting::ShearWarp& image)
 {
-  reference::PerspectiveRays rays;
+  std::ostringstream text;
+  text << "axis " << image.principalAxis() << (image.reversed() ? " reversed" : "") << ", size "
+       << image.size().x << " " << image.size().y << " " << image.size().z << ", shear "
+       << image.shear().x << " " << image.shear().y << ", eye " << image.eye().x << " "
+       << image.eye().y << " " << image.eye().z;
+  return text.str();
+}
+
+/// The rays of an image: of parallel views as they must be, in perspective as they are rounded.
+inline reference::ImageRays referenceRays(const splatting::ShearWarp& geometry)
+{
+  reference::ImageRays rays;
   rays.axes = geometry.axes();
-  rays.size = { geometry.size().x, geometry.size().y, geometry.size().z };
+  rays.size = toArray(geometry.size());
+  if (!geometry.isPerspective())
+  {
+    return reference::raysOf(toArray(rays.volumeSize()), referenceView(geometry));
+  }
   rays.at = { { geometry.columns().at, geometry.rows().at } };
   rays.slope = { { geometry.columns().slope, geometry.rows().slope } };
   rays.start = geometry.reference();
@@ -210,16 +240,6 @@ splatting::ShearImage projected(const reference::Volume<T>& volume, const Case& 
   return project(index, c.geometry, c.settings, cutsBy(c.geometry, c.cuts));
 }
 
-inline reference::RayCutter cutterOf(const Case& c, const std::array<int, 3>& size)
-{
-  if (c.geometry.isPerspective())
-  {
-    return { referenceRays(c.geometry), c.cuts };
-  }
-  const reference::ShearView view = referenceView(c.geometry);
-  return { reference::makeShearGrid(size, view), view, c.cuts };
-}
-
 /// The pixels of an image of type P in the reference's form.
 template <class P>
 reference::Image<P> toReference(const splatting::ShearImage& image)
@@ -273,37 +293,47 @@ double largestDifference(const reference::Image<P>& a, const reference::Image<P>
   return largest;
 }
 
-/// Whether a ray of a perspective image passes the volume, grown by `margin` voxels.
-inline bool meets(const splatting::ShearWarp& image, int u, int v, double margin)
+/// The depths at which a ray is in a box, before the eye and in slices whose middle is.
+inline reference::Stretch<double> depthsInside(
+  const std::vector<glm::dvec4>& box, const reference::ImageRays& rays, int u, int v)
 {
-  double near = image.faces(image.slices().begin).x, far = image.faces(image.slices().end - 1).y;
-  for (int a = 0; a < 2; ++a)
+  int first = 0, last = rays.size[2] - 1;
+  while (first < last && !rays.sees(first))
   {
-    const splatting::AxisRays& rays = a == 0 ? image.columns() : image.rows();
-    const int n = a == 0 ? u : v;
-    const double low = -0.5 - margin - rays.at[n];
-    const double high = image.size()[a] - 0.5 + margin - rays.at[n];
-    const double first = low / rays.slope[n], second = high / rays.slope[n];
-    near = std::max(near, image.reference() + std::min(first, second));
-    far = std::min(far, image.reference() + std::max(first, second));
+    ++first;
   }
-  return near <= far;
+  while (first < last && !rays.sees(last))
+  {
+    --last;
+  }
+  const std::array<double, 2> faces = rays.faces(first, last);
+  auto depths = reference::inside(box, rays.point(u, v, 0.0), rays.direction(u, v));
+  depths.narrow({ faces[0], faces[1] });
+  return depths;
 }
 
 /// More than a few roundings of rays.
 constexpr double GrazeWidth = 1e-5;
+
+/// Whether a ray passes the volume, grown by `margin` voxels.
+inline bool meets(const reference::ImageRays& rays, int u, int v, double margin)
+{
+  return depthsInside(reference::boxOfVolume(rays.volumeSize(), true, margin), rays, u, v)
+           .length() >= 0.0;
+}
 
 /// Takes the pixels off an image that it may count to the volume although their rays pass beside an
 /// edge of it, see ShearImage::spans.
 template <class T, class IsHit>
 void forgetGrazes(const splatting::ShearWarp& image, IsHit&& isHit, reference::Image<T>& found)
 {
-  for (int v = 0; image.isPerspective() && v < image.rayCount().y; ++v)
+  const reference::ImageRays rays = referenceRays(image);
+  for (int v = 0; !rays.isParallel() && v < rays.height(); ++v)
   {
-    for (int u = 1; u + 1 < image.rayCount().x; ++u)
+    for (int u = 1; u + 1 < rays.width(); ++u)
     {
       if (found.isHit(u, v) && !isHit(u, v) && found.isHit(u - 1, v) &&
-        meets(image, u, v, GrazeWidth))
+        meets(rays, u, v, GrazeWidth))
       {
         found.at(u, v) = T();
         found.hit[found.index(u, v)] = 0;
@@ -340,6 +370,14 @@ inline std::vector<Mode> modes()
     { Quality::High, { Reconstruction::CosineBell, 0.6 }, { reference::Kernel::CosineBell, 0.6 } },
     { Quality::High, { Reconstruction::CosineBell, 1.5 },
       { reference::Kernel::CosineBell, 1.5 } } };
+}
+
+/// A mode with its usual kernel; of previews the kernel does not matter.
+inline Mode modeOf(splatting::Quality quality)
+{
+  Mode mode = modes()[quality == splatting::Quality::High ? 1 : 0];
+  mode.quality = quality;
+  return mode;
 }
 
 inline splatting::ProjectionSettings settingsOf(const Mode& mode)

@@ -26,10 +26,13 @@
 namespace cutscenes
 {
 using namespace coretesting;
+using reference::halfSpacesOfBox;
+using reference::inside;
 using reference::Random;
 using splatting::RayIntervals;
 using splatting::ShearWarp;
 using splatting::View;
+using Stretch = reference::Stretch<double>;
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
@@ -53,62 +56,11 @@ struct Scene
   Depths depths;
 };
 
-/// Where a line p(t) = from + t direction is inside.
-struct Stretch
-{
-  double begin = -Infinity, end = Infinity;
-
-  void narrow(const Stretch& other)
-  {
-    this->begin = std::max(this->begin, other.begin);
-    this->end = std::min(this->end, other.end);
-  }
-};
-
 /// Bounds that are nearer than this to what decides are not compared: rounding decides.
 constexpr double Doubt = 1e-6;
 /// Where rays and edges are nearer, as a share of the triangle; rays of perspective images are
 /// rounded.
 constexpr double MeshDoubt = 1e-5;
-
-inline std::vector<glm::dvec4> halfSpacesOfBox(const glm::dvec3& low, const glm::dvec3& high)
-{
-  std::vector<glm::dvec4> result;
-  for (int a = 0; a < 3; ++a)
-  {
-    glm::dvec4 h(0.0, 0.0, 0.0, -low[a]);
-    h[a] = 1.0;
-    result.push_back(h);
-    h = { 0.0, 0.0, 0.0, high[a] };
-    h[a] = -1.0;
-    result.push_back(h);
-  }
-  return result;
-}
-
-inline Stretch inside(
-  const std::vector<glm::dvec4>& halfSpaces, const glm::dvec3& from, const glm::dvec3& direction)
-{
-  Stretch stretch;
-  for (const glm::dvec4& h : halfSpaces)
-  {
-    const double at = glm::dot(h, glm::dvec4(from, 1.0));
-    const double speed = glm::dot(glm::dvec3(h), direction);
-    if (speed > 0.0)
-    {
-      stretch.begin = std::max(stretch.begin, -at / speed);
-    }
-    else if (speed < 0.0)
-    {
-      stretch.end = std::min(stretch.end, -at / speed);
-    }
-    else if (at < 0.0)
-    {
-      stretch.end = -Infinity;
-    }
-  }
-  return stretch;
-}
 
 /// The crossings of a line with a mesh (Moeller and Trumbore).
 struct Crossings
@@ -145,76 +97,25 @@ class Oracle
 public:
   Oracle(const Scene& scene, const ShearWarp& geometry)
     : Source(scene),
-      Geometry(geometry),
-      ClipToIndex(glm::inverse(scene.view.indexToClip))
+      Rays(referenceRays(geometry)),
+      ClipToIndex(glm::inverse(scene.view.indexToClip)),
+      Shown(reference::boxOfVolume(scene.view.dimensions, false)),
+      Voxels(reference::boxOfVolume(scene.view.dimensions, true))
   {
-    const glm::dvec3 last(scene.view.dimensions - 1);
-    glm::dvec3 low(0.0), high(last);
-    for (int a = 0; a < 3; ++a)
-    {
-      low[a] -= last[a] == 0.0 ? 0.5 : 0.0;
-      high[a] += last[a] == 0.0 ? 0.5 : 0.0;
-    }
-    this->Shown = halfSpacesOfBox(low, high);
-    this->Voxels = halfSpacesOfBox(glm::dvec3(-0.5), last + 0.5);
     for (auto* body : { &this->Shown, &this->Voxels })
     {
       body->insert(body->end(), scene.view.halfSpaces.begin(), scene.view.halfSpaces.end());
     }
   }
 
-  /// Where the ray of shear pixel (u, v) crosses the middle of slice z.
-  glm::dvec3 point(int u, int v, double z) const
-  {
-    const glm::dvec2 place = this->Geometry.onRay(u, v, z);
-    glm::dvec3 p;
-    p[this->Geometry.axes()[0]] = place.x;
-    p[this->Geometry.axes()[1]] = place.y;
-    p[this->Geometry.axes()[2]] = z;
-    return p;
-  }
-
-  /// The slices that a ray crosses voxels in.
-  std::vector<int> crossed(int u, int v) const
-  {
-    std::vector<int> slices;
-    const glm::ivec3& size = this->Geometry.size();
-    for (int k = this->Geometry.slices().begin; k < this->Geometry.slices().end; ++k)
-    {
-      const splatting::RayPath path = this->Geometry.voxelsOnRay(u, v, k);
-      bool any = false;
-      for (int n = 0; n < path.count; ++n)
-      {
-        any |= path.di[n] >= 0 && path.di[n] < size.x && path.dj[n] >= 0 && path.dj[n] < size.y;
-      }
-      if (any)
-      {
-        slices.push_back(k);
-      }
-    }
-    return slices;
-  }
-
-  /// Where rays are at all: before the eye.
-  Stretch wholeRay() const
-  {
-    const double eye = this->Geometry.eye().z;
-    return !this->Geometry.isPerspective() ? Stretch{}
-      : this->Geometry.reversed()          ? Stretch{ -Infinity, eye }
-                                           : Stretch{ eye, Infinity };
-  }
+  const reference::ImageRays& rays() const { return this->Rays; }
 
   /// Between which slices the ray is inside everything. False if rounding decides.
   bool find(int u, int v, Stretch& stretch) const
   {
-    // Depths are relative to the reference, where perspective rays start from.
-    const double reference = this->Geometry.reference();
-    const glm::dvec3 from = this->point(u, v, reference);
-    const glm::dvec3 step = this->point(u, v, reference + 1.0) - from;
+    const glm::dvec3 from = this->Rays.point(u, v, 0.0), step = this->Rays.direction(u, v);
     stretch = inside(this->Source.view.halfSpaces, from, step);
-    stretch.begin += reference;
-    stretch.end += reference;
-    stretch.narrow(this->wholeRay());
+    stretch.narrow(this->Rays.beforeEye());
     return (this->Source.mesh.triangles.empty() || this->endAtMesh(from, step, stretch)) &&
       (this->Source.depths.samples.empty() || this->endAtDepth(u, v, stretch));
   }
@@ -245,7 +146,7 @@ private:
   bool endAtMesh(const glm::dvec3& from, const glm::dvec3& step, Stretch& stretch) const
   {
     const Crossings crossings = crossMesh(this->Source.mesh, from, step);
-    const Stretch ray = this->wholeRay();
+    const Stretch ray = this->Rays.beforeEye();
     Stretch hull{ Infinity, -Infinity };
     const auto add = [&](double z)
     {
@@ -253,9 +154,8 @@ private:
       hull.end = std::max(hull.end, z);
     };
     bool doubtful = crossings.doubtful, isEyeInside = false;
-    for (double place : crossings.places)
+    for (double z : crossings.places)
     {
-      const double z = this->Geometry.reference() + place;
       const bool isBefore = z > ray.begin && z < ray.end;
       doubtful |= std::min(std::abs(z - ray.begin), std::abs(z - ray.end)) < 1e-3;
       isEyeInside ^= !isBefore;
@@ -266,7 +166,7 @@ private:
     }
     if (isEyeInside)
     {
-      add(this->Geometry.eye().z);
+      add(this->Rays.eye);
     }
     stretch.narrow(hull);
     return !doubtful;
@@ -282,7 +182,7 @@ private:
     const glm::dvec4 farthest = this->ClipToIndex * glm::dvec4(place, 1.0, 1.0);
     const glm::dvec3 from = glm::dvec3(nearest) / nearest.w;
     const glm::dvec3 direction = glm::dvec3(farthest) / farthest.w - from;
-    if (!this->Geometry.isPerspective())
+    if (this->Rays.isParallel())
     {
       // Rays enter and leave through the planes that they do not run along, beside the body, too.
       std::vector<glm::dvec4> crossed;
@@ -322,11 +222,10 @@ private:
   /// Where a ray is seen: in perspective, by its direction.
   glm::dvec4 clipPlaceOf(int u, int v) const
   {
-    const glm::dvec3 from = this->point(u, v, 0.0);
-    const glm::dvec3 step = this->point(u, v, 1.0) - from;
+    const glm::dvec3 step = this->Rays.direction(u, v);
     return this->Source.view.indexToClip *
-      (this->Geometry.isPerspective() ? glm::dvec4(this->Geometry.reversed() ? -step : step, 0.0)
-                                      : glm::dvec4(from, 1.0));
+      (this->Rays.isParallel() ? glm::dvec4(this->Rays.point(u, v, 0.0), 1.0)
+                               : glm::dvec4(this->Rays.reversed ? -step : step, 0.0));
   }
 
   bool endAtDepth(int u, int v, Stretch& stretch) const
@@ -340,7 +239,7 @@ private:
       0.5 * (glm::dvec2(clip) / clip.w + 1.0) * glm::dvec2(this->Source.view.viewport);
     const glm::dvec2 rest = glm::fract(seen);
     if (std::min({ rest.x, rest.y, 1.0 - rest.x, 1.0 - rest.y }) <
-      (this->Geometry.isPerspective() ? 1e-3 : Doubt))
+      (this->Rays.isParallel() ? Doubt : 1e-3))
     {
       return false;
     }
@@ -370,7 +269,7 @@ private:
       // The ray crosses that depth once, before the eye.
       const auto isDeeper = [&](double z)
       {
-        const glm::dvec4 p(this->point(u, v, z), 1.0);
+        const glm::dvec4 p(this->Rays.point(u, v, z), 1.0);
         return (this->Source.view.indexToClip * p).w > 0.0 && this->depthOf(p) > depth;
       };
       double low = -1e4, high = 1e4;
@@ -386,8 +285,8 @@ private:
   }
 
   const Scene& Source;
-  const ShearWarp& Geometry;
-  glm::dmat4 ClipToIndex;
+  const reference::ImageRays Rays;
+  const glm::dmat4 ClipToIndex;
   std::vector<glm::dvec4> Shown, Voxels;
 };
 
@@ -449,7 +348,7 @@ inline void compareRay(const Oracle& oracle, const RayIntervals& intervals, int 
 {
   Stretch stretch;
   ++counts.rays;
-  const Stretch ray = oracle.wholeRay();
+  const Stretch ray = oracle.rays().beforeEye();
   const auto isDoubtful = [&](double depth)
   {
     return std::isfinite(depth) && depth != ray.begin && depth != ray.end &&
@@ -486,8 +385,7 @@ inline void compareRay(const Oracle& oracle, const RayIntervals& intervals, int 
 inline bool meetsEdge(const Oracle& oracle, int u, int v, const std::vector<glm::dvec4>& wide,
   const std::vector<glm::dvec4>& narrow)
 {
-  const glm::dvec3 from = oracle.point(u, v, 0.0);
-  const glm::dvec3 step = oracle.point(u, v, 1.0) - from;
+  const glm::dvec3 from = oracle.rays().point(u, v, 0.0), step = oracle.rays().direction(u, v);
   const Stretch outer = inside(wide, from, step);
   for (std::size_t i = 0; i < narrow.size(); ++i)
   {
@@ -506,13 +404,13 @@ inline bool meetsEdge(const Oracle& oracle, int u, int v, const std::vector<glm:
 
 /// Calls f with each ray of an image that meets the volume, and the slices that it crosses.
 template <class F>
-void forEachRay(const Oracle& oracle, const ShearWarp& image, F&& f)
+void forEachRay(const Oracle& oracle, F&& f)
 {
-  for (int v = 0; v < image.height(); ++v)
+  for (int v = 0; v < oracle.rays().height(); ++v)
   {
-    for (int u = 0; u < image.width(); ++u)
+    for (int u = 0; u < oracle.rays().width(); ++u)
     {
-      const std::vector<int> crossed = oracle.crossed(u, v);
+      const std::vector<int> crossed = reference::crossedSlices(oracle.rays(), u, v);
       if (!crossed.empty())
       {
         f(u, v, crossed);
@@ -545,7 +443,7 @@ inline void compare(const Scene& scene, Counts& counts, Checks& check)
   for (std::size_t n = 0; n < found.images.size(); ++n)
   {
     const Oracle oracle(scene, found.images[n]);
-    forEachRay(oracle, found.images[n],
+    forEachRay(oracle,
       [&](int u, int v, const std::vector<int>& crossed)
       { compareRay(oracle, found.intervals[n], u, v, crossed, counts, check); });
     if (n == 0 && !scene.depths.samples.empty())

@@ -9,6 +9,7 @@
 #include "CutOracle.h"
 
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -111,6 +112,75 @@ Depths randomDepths(const glm::ivec2& origin, const glm::ivec2& size, Random& ra
     }
   }
   return depths;
+}
+
+/// Scenes of boxes: those in which they cut, hold the eye, and leave out few rays.
+struct BoxCounts
+{
+  coretesting::Sightings cut, holding, sure;
+};
+
+/// Where the rays of a perspective image come from, axes not permuted.
+inline glm::dvec3 eyeOf(const ShearWarp& image)
+{
+  glm::dvec3 eye;
+  for (int a = 0; a < 3; ++a)
+  {
+    eye[image.axes()[a]] = image.eye()[a];
+  }
+  return eye;
+}
+
+inline bool isWithin(const glm::dvec3& p, const glm::dvec3& low, const glm::dvec3& high)
+{
+  return glm::all(glm::lessThan(low, p)) && glm::all(glm::lessThan(p, high));
+}
+
+/// A box of triangles cuts what six planes cut.
+/// @param margin  more than rounding moves rays and the eye by
+inline void compareBox(Checks& check, const View& view, const glm::dvec3& low,
+  const glm::dvec3& high, double margin, Random& random, BoxCounts& counts)
+{
+  Scene planes, mesh, wide, narrow;
+  planes.view = mesh.view = wide.view = narrow.view = view;
+  planes.view.halfSpaces = halfSpacesOfBox(low, high);
+  wide.view.halfSpaces = halfSpacesOfBox(low - margin, high + margin);
+  narrow.view.halfSpaces = halfSpacesOfBox(low + margin, high - margin);
+  const int parts = random.uniform(1, 5);
+  mesh.mesh = boxOfTriangles(random, low, high, parts);
+  const Found a(planes), b(mesh), c(wide), d(narrow);
+  int rays = 0, doubtful = 0;
+  bool isHolding = false;
+  for (std::size_t n = 0; n < a.images.size(); ++n)
+  {
+    const ShearWarp& image = a.images[n];
+    const glm::dvec3 eye = eyeOf(image);
+    const bool isStraight = !image.isPerspective() && image.shear() == glm::dvec2(0.0);
+    isHolding |= image.isPerspective() && isWithin(eye, low, high);
+    // For an eye on a face rounding decides whether the box holds it.
+    const bool isOnFace = image.isPerspective() && isWithin(eye, low - margin, high + margin) &&
+      !isWithin(eye, low + margin, high - margin);
+    const Oracle oracle(planes, image);
+    forEachRay(oracle,
+      [&](int u, int v, const std::vector<int>& crossed)
+      {
+        const auto slicesOf = [&](const Found& found)
+        { return left(found.intervals[n], u, v, crossed); };
+        // Rays along a face are inside; those that meet an edge are for rounding to decide.
+        const bool isDoubtful = isOnFace ||
+          (!isStraight &&
+            (slicesOf(c) != slicesOf(d) ||
+              meetsEdge(oracle, u, v, wide.view.halfSpaces, narrow.view.halfSpaces)));
+        ++rays;
+        doubtful += isDoubtful;
+        check(isDoubtful || slicesOf(a) == slicesOf(b), "A surface cuts pixel ", u, ", ", v,
+          " as planes do. Eye ", eye.x, " ", eye.y, " ", eye.z, ", box ", low.x, " ", low.y, " ",
+          low.z, " to ", high.x, " ", high.y, " ", high.z);
+      });
+  }
+  counts.cut.add(!a.cutsNothing());
+  counts.holding.add(isHolding);
+  counts.sure.add(10 * doubtful <= rays);
 }
 
 enum Cutter

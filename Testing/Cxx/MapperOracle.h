@@ -116,26 +116,26 @@ inline double shearImageError(Stage& stage, vtkSplattingMIPVolumeMapper* mapper,
   const std::vector<std::array<double, 4>>& halfSpaces = {})
 {
   const reference::ShearView view = viewOf(mapper);
-  const reference::ShearGrid grid = reference::makeShearGrid(volume.size, view);
+  const reference::ImageRays rays = reference::raysOf(volume.size, view);
   reference::RayCuts cuts = croppingOf(mapper, image);
   cuts.halfSpaces = halfSpaces;
-  const reference::RayCutter cutter(grid, view, cuts);
-  const auto rays = reference::voxelSamples(volume, view);
+  const reference::RayCutter cutter(rays, cuts);
+  const auto samples = reference::voxelSamples(volume, rays);
   const double lowest = reference::lowestVoxel(volume);
   const bool reversed = looksBackwards(stage, image, view.axis);
   vtkImageData* const shear = mapper->GetShearImage();
   const int* size = shear->GetDimensions();
-  if (size[0] != grid.width || size[1] != grid.height)
+  if (size[0] != rays.width() || size[1] != rays.height())
   {
     return HUGE_VAL;
   }
   double largest = 0.0;
-  for (int v = 0; v < grid.height; ++v)
+  for (int v = 0; v < rays.height(); ++v)
   {
-    for (int u = 0; u < grid.width; ++u)
+    for (int u = 0; u < rays.width(); ++u)
     {
-      const vtkIdType pixel = vtkIdType(v) * grid.width + u;
-      const auto ray = reference::cutRay(rays[pixel], cutter, u, v, reversed);
+      const vtkIdType pixel = vtkIdType(v) * rays.width() + u;
+      const auto ray = reference::cutRay(samples[pixel], cutter, u, v, reversed);
       const auto expected = reduced(reference::toDouble(ray), lowest, mapper);
       const double found = shear->GetScalarComponentAsDouble(u, v, 0, 0);
       const bool hit = shear->GetPointGhostArray()->GetValue(pixel) == 0;

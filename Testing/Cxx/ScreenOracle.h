@@ -9,8 +9,9 @@
 #ifndef ScreenOracle_h
 #define ScreenOracle_h
 
-#include "FieldMaximum.h"
+#include "CellOracle.h"
 #include "MapperOracle.h"
+#include "ScreenPixels.h"
 #include "Traversal.h"
 
 #include "vtkRenderWindow.h"
@@ -86,27 +87,13 @@ private:
   bool BeginsAtEye;
 };
 
-/// The largest value of the field on a pixel's ray, from where that begins.
-inline reference::CutMaximum maximumOnRay(const reference::Volume<double>& field,
-  const ScreenRays& rays, double x, double y, const reference::RayCuts& cuts = {})
+/// The largest (or least) value of the field on a pixel's ray, from where that begins.
+inline reference::CellBounds extremumOnRay(const reference::CellScene<double>& field,
+  const ScreenRays& rays, double x, double y, bool isMinimum = false)
 {
   const ScreenRays::Point begin = rays.begin(x, y), end = rays.end(x, y);
-  int k = 0;
-  for (int a = 1; a < 3; ++a)
-  {
-    k = std::abs(end[a] - begin[a]) > std::abs(end[k] - begin[k]) ? a : k;
-  }
-  reference::FieldRay ray;
-  ray.axes = { k == 0 ? 1 : 0, k == 2 ? 1 : 2, k };
-  ray.start = begin[k];
-  for (int a = 0; a < 2; ++a)
-  {
-    const int axis = ray.axes[a];
-    ray.at[a] = begin[axis];
-    ray.slope[a] = (end[axis] - begin[axis]) / (end[k] - begin[k]);
-  }
-  return reference::cutMaximum(field, ray, reference::FieldDomain::Centres,
-    std::min(begin[k], end[k]), std::max(begin[k], end[k]), cuts);
+  return reference::boundsBetween(
+    field, { begin[0], begin[1], begin[2] }, { end[0], end[1], end[2] }, isMinimum, 0x1p-18);
 }
 
 /// How far a gray may be from the field's extremum in a picture with 255 grays for bytes from 0 to
@@ -161,6 +148,7 @@ class Definition
 {
 public:
   using Bytes = reference::Volume<std::uint8_t>;
+  using Pixel = reference::ExpectedPixel;
 
   explicit Definition(const Bytes& volume)
     : Volume(volume),
@@ -170,13 +158,6 @@ public:
       Lowest(reference::lowestVoxel(volume))
   {
   }
-
-  struct Pixel
-  {
-    bool isCertain = true; ///< neither the outline nor half of a cut is too near to tell
-    bool isHit = false;
-    double value = 0.0;
-  };
 
   /// Before pixel(): the view, of a mapper without planes other than those of cropping. False if
   /// two axes are so nearly as near to the rays that either may be the principal one.
@@ -191,87 +172,36 @@ public:
     {
       d[a] = end[a] - begin[a];
     }
-    this->Direction = d;
     int k = 0;
     for (int a = 1; a < 3; ++a)
     {
       k = std::abs(d[a]) > std::abs(d[k]) ? a : k;
     }
-    this->View.axis = k;
+    reference::ShearView view;
+    view.axis = k;
+    this->Reversed = d[k] < 0.0;
     const int across[2] = { k == 0 ? 1 : 0, k == 2 ? 1 : 2 };
     double largest = 0.0;
     for (int a = 0; a < 2; ++a)
     {
       const double shear = -d[across[a]] / d[k];
-      this->View.shear[a] = std::ldexp(std::round(std::ldexp(shear, 24)), -24);
+      view.shear[a] = std::ldexp(std::round(std::ldexp(shear, 24)), -24);
       largest = std::max(largest, std::abs(shear));
     }
-    this->Grid = reference::makeShearGrid(this->Volume.size, this->View);
-    this->Cutter.emplace(this->Grid, this->View, croppingOf(mapper, image));
+    this->Shear = reference::raysOf(this->Volume.size, view);
+    this->Cutter.emplace(this->Shear, croppingOf(mapper, image));
     return largest < 0.999;
   }
 
   Pixel pixel(int x, int y)
   {
     const auto point = this->Rays->begin(x, y);
-    Pixel result;
-    const double inside = this->lengthInside(point);
-    result.isCertain = std::abs(inside) > 1e-5;
-    if (inside < 0.0)
-    {
-      return result;
-    }
-    const double depth = point[this->Grid.axes[2]] - this->Grid.middle;
-    double p[2];
-    for (int a = 0; a < 2; ++a)
-    {
-      p[a] = point[this->Grid.axes[a]] + this->Grid.margin[a] + this->View.shear[a] * depth;
-    }
-    const int u = static_cast<int>(std::floor(p[0])), v = static_cast<int>(std::floor(p[1]));
-    double sum = 0.0, weight = 0.0, lost = 0.0;
-    for (int n = 0; n < 4; ++n)
-    {
-      const int i = u + n % 2, j = v + n / 2;
-      if (i < 0 || j < 0 || i >= this->Grid.width || j >= this->Grid.height)
-      {
-        continue;
-      }
-      const double w = std::abs(u + 1 - n % 2 - p[0]) * std::abs(v + 1 - n / 2 - p[1]);
-      const Ray& ray = this->ray(i, j);
-      if (ray.meets)
-      {
-        (ray.outcome.hit ? weight : lost) += w;
-        sum += ray.outcome.hit ? w * ray.outcome.value : 0.0;
-      }
-    }
-    result.isCertain = result.isCertain && std::abs(lost - 0.5) > 1e-5 && weight > 1e-5;
-    result.isHit = weight > 1e-5 && lost <= 0.5;
-    result.value = result.isHit ? sum / weight : 0.0;
-    return result;
+    return reference::betweenRays(
+      this->Shear, { point[0], point[1], point[2] }, [&](int u, int v) { return this->ray(u, v); });
   }
 
 private:
   static constexpr int Reach = 3; ///< of a worksheet about the voxels that its ray crosses
-
-  struct Ray
-  {
-    bool meets;
-    reference::Outcome<double> outcome;
-  };
-
-  /// How much of a ray lies in the box of the outermost voxel centres, the picture's outline.
-  double lengthInside(const ScreenRays::Point& at) const
-  {
-    double begin = -HUGE_VAL, end = HUGE_VAL;
-    for (int a = 0; a < 3; ++a)
-    {
-      const double low = -at[a] / this->Direction[a],
-                   high = (this->Volume.size[a] - 1 - at[a]) / this->Direction[a];
-      begin = std::max(begin, std::min(low, high));
-      end = std::min(end, std::max(low, high));
-    }
-    return end - begin;
-  }
 
   reference::Kernel kernel() const
   {
@@ -290,10 +220,10 @@ private:
     {
       return { slice, double(low), 1.0 };
     }
-    return reference::slabSample(this->Exact, this->View, this->kernel(), u, v, slice);
+    return reference::slabSample(this->Exact, this->Shear, this->kernel(), u, v, slice);
   }
 
-  const Ray& ray(int u, int v)
+  const reference::ReducedRay& ray(int u, int v)
   {
     const auto found = this->Known.find({ u, v });
     if (found != this->Known.end())
@@ -301,8 +231,8 @@ private:
       return found->second;
     }
     std::vector<reference::Sample<double>> samples;
-    const auto crossed = reference::crossedVoxels(this->Volume.size, this->View, u, v);
-    const int k = this->View.axis;
+    const auto crossed = reference::crossedVoxels(this->Shear, u, v);
+    const int k = this->Shear.axes[2];
     for (std::size_t n = 0; n < crossed.size();)
     {
       const int slice = crossed[n][k];
@@ -321,11 +251,9 @@ private:
         samples.push_back(this->sampleAt(u, v, slice, low, high));
       }
     }
-    const auto cut = reference::cutRay(samples, *this->Cutter, u, v, this->Direction[k] < 0.0);
-    return this->Known
-      .emplace(
-        std::make_pair(u, v), Ray{ !crossed.empty(), reduced(cut, this->Lowest, this->Mapper) })
-      .first->second;
+    const auto cut = reference::cutRay(samples, *this->Cutter, u, v, this->Reversed);
+    const auto outcome = reduced(cut, this->Lowest, this->Mapper);
+    return this->Known[{ u, v }] = { !crossed.empty(), outcome.hit, outcome.value };
   }
 
   const Bytes& Volume;
@@ -335,10 +263,9 @@ private:
   vtkSplattingMIPVolumeMapper* Mapper = nullptr;
   std::optional<ScreenRays> Rays;
   std::optional<reference::RayCutter> Cutter;
-  std::array<double, 3> Direction;
-  reference::ShearView View;
-  reference::ShearGrid Grid;
-  std::map<std::pair<int, int>, Ray> Known;
+  bool Reversed = false;
+  reference::ImageRays Shear;
+  std::map<std::pair<int, int>, reference::ReducedRay> Known;
 };
 
 /**

@@ -5,7 +5,6 @@
 //
 // Mode EXACT in a window: each pixel is the largest or the least value of the field along its ray.
 // Also when the mode projects, and what it does where there are no exact extrema.
-#include "FieldMaximum.h"
 #include "ImageComparison.h"
 #include "Stage.h"
 
@@ -52,53 +51,6 @@ reference::Volume<double> voxelsOf(vtkImageData* image)
   return volume;
 }
 
-/// The rays of a window's pixels in index space, from the camera's matrices.
-class ScreenRays
-{
-public:
-  ScreenRays(stage::Stage& stage, vtkImageData* image)
-  {
-    vtkMatrix4x4::Multiply4x4(
-      stage.volume->GetMatrix(), image->GetIndexToPhysicalMatrix(), this->ToIndex);
-    vtkMatrix4x4::Multiply4x4(
-      stage.renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
-        stage.renderer->GetTiledAspectRatio(), -1.0, 1.0),
-      this->ToIndex, this->ToIndex);
-    this->ToIndex->Invert();
-  }
-
-  reference::FieldRay at(int x, int y) const
-  {
-    const auto begin = this->point(x, y, -1.0), end = this->point(x, y, 1.0);
-    std::array<double, 3> way;
-    int k = 0;
-    for (int a = 0; a < 3; ++a)
-    {
-      way[a] = end[a] - begin[a];
-      k = std::abs(way[a]) > std::abs(way[k]) ? a : k;
-    }
-    reference::FieldRay ray;
-    ray.axes = { k == 0 ? 1 : 0, k == 2 ? 1 : 2, k };
-    ray.start = begin[k];
-    for (int a = 0; a < 2; ++a)
-    {
-      ray.at[a] = begin[ray.axes[a]];
-      ray.slope[a] = way[ray.axes[a]] / way[k];
-    }
-    return ray;
-  }
-
-private:
-  std::array<double, 3> point(int x, int y, double depth) const
-  {
-    double p[4] = { (2.0 * x + 1.0) / Size - 1.0, (2.0 * y + 1.0) / Size - 1.0, depth, 1.0 };
-    this->ToIndex->MultiplyPoint(p, p);
-    return { p[0] / p[3], p[1] / p[3], p[2] / p[3] };
-  }
-
-  vtkNew<vtkMatrix4x4> ToIndex;
-};
-
 /// Where the oracle knows a pixel, its gray value; pixels without a sample are black.
 struct Truth
 {
@@ -109,11 +61,8 @@ struct Truth
 /// The picture by the oracle, at every Step-th pixel.
 Truth oracle(stage::Stage& stage, vtkImageData* image, const double range[2], bool isMinimum)
 {
-  reference::Volume<double> volume = voxelsOf(image);
-  const double sign = isMinimum ? -1.0 : 1.0;
-  std::transform(volume.voxels.begin(), volume.voxels.end(), volume.voxels.begin(),
-    [sign](double voxel) { return sign * voxel; });
-  const ScreenRays rays(stage, image);
+  const reference::CellScene<double> field = reference::cellScene(voxelsOf(image));
+  const stage::ScreenRays rays(stage, image);
   Truth truth;
   vtkSMPTools::For(0, truth.grays.height, 4,
     [&](vtkIdType begin, vtkIdType end)
@@ -122,16 +71,13 @@ Truth oracle(stage::Stage& stage, vtkImageData* image, const double range[2], bo
       {
         for (int x = 0; x < truth.grays.width; ++x)
         {
-          const reference::FieldRay ray = rays.at(x * Step, y * Step);
-          const auto maximum = reference::cutMaximum(
-            volume, ray, reference::FieldDomain::Centres, -1.0, volume.size[ray.axes[2]], {});
-          const auto grayOf = [&](double value) {
-            return 255.0 * std::clamp((sign * value - range[0]) / (range[1] - range[0]), 0.0, 1.0);
-          };
-          const double gray = maximum.isHit ? grayOf(maximum.low) : 0.0;
+          const auto extremum = stage::extremumOnRay(field, rays, x * Step, y * Step, isMinimum);
+          const auto grayOf = [&](double value)
+          { return 255.0 * std::clamp((value - range[0]) / (range[1] - range[0]), 0.0, 1.0); };
+          const double gray = extremum.isHit ? grayOf(extremum.low) : 0.0;
           truth.grays.at(x, y) = gray;
-          truth.isCertain[truth.grays.index(x, y)] =
-            maximum.isCertain && (!maximum.isHit || std::abs(grayOf(maximum.high) - gray) < 0.01);
+          truth.isCertain[truth.grays.index(x, y)] = extremum.isCertain &&
+            (!extremum.isHit || std::abs(grayOf(extremum.high) - gray) < 0.01);
         }
       }
     });

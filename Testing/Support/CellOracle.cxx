@@ -33,18 +33,10 @@ R dot(const R (&a)[3], const R (&b)[3])
 template <class R>
 void cut(CellRay<R>& ray, R value, R speed)
 {
-  if (speed > 0)
-  {
-    ray.near = std::max(ray.near, -value / speed);
-  }
-  else if (speed < 0)
-  {
-    ray.far = std::min(ray.far, -value / speed);
-  }
-  else if (value < 0)
-  {
-    ray.far = -Infinity<R>;
-  }
+  Stretch<R> stretch{ ray.near, ray.far };
+  stretch.cut(value, speed);
+  ray.near = stretch.begin;
+  ray.far = stretch.end;
 }
 
 /// Between `from` and `to` the places where a coordinate is a multiple of `step`.
@@ -144,16 +136,7 @@ CellRay<R> CellOracle<R>::ray(double x, double y, const glm::dvec3& shift) const
     ray.near = -w / dot(rows[3], ray.direction);
   }
   const R begin = ray.near;
-  for (int a = 0; a < 3; ++a)
-  {
-    cut(ray, ray.start[a] - this->Low[a], ray.direction[a]);
-    cut(ray, this->High[a] - ray.start[a], -ray.direction[a]);
-  }
-  for (const glm::dvec4& h : this->Scene.halfSpaces)
-  {
-    const R normal[3] = { R(h.x), R(h.y), R(h.z) };
-    cut(ray, dot(normal, ray.start) + R(h.w), dot(normal, ray.direction));
-  }
+  this->cutByPlanes(ray);
   if (!this->Scene.depths.empty())
   {
     const std::size_t pixel = std::size_t(y) * this->Scene.viewport.x + std::size_t(x);
@@ -172,6 +155,36 @@ CellRay<R> CellOracle<R>::ray(double x, double y, const glm::dvec3& shift) const
     this->cutBySurface(ray, begin);
   }
   return ray;
+}
+
+template <class R>
+CellRay<R> CellOracle<R>::between(const glm::dvec3& begin, const glm::dvec3& end) const
+{
+  CellRay<R> ray;
+  ray.near = 0;
+  ray.far = glm::length(end - begin);
+  for (int a = 0; a < 3; ++a)
+  {
+    ray.start[a] = begin[a];
+    ray.direction[a] = (R(end[a]) - R(begin[a])) / ray.far;
+  }
+  this->cutByPlanes(ray);
+  return ray;
+}
+
+template <class R>
+void CellOracle<R>::cutByPlanes(CellRay<R>& ray) const
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    cut(ray, ray.start[a] - this->Low[a], ray.direction[a]);
+    cut(ray, this->High[a] - ray.start[a], -ray.direction[a]);
+  }
+  for (const glm::dvec4& h : this->Scene.halfSpaces)
+  {
+    const R normal[3] = { R(h.x), R(h.y), R(h.z) };
+    cut(ray, dot(normal, ray.start) + R(h.w), dot(normal, ray.direction));
+  }
 }
 
 // To the hull of the crossings from `begin` on, or from there if it is inside.
@@ -569,4 +582,46 @@ bool CellOracle<R>::firstPlateau(const CellRay<R>& ray, R value, R& t) const
 
 template class CellOracle<double>;
 template class CellOracle<long double>;
+
+CellScene<double> cellScene(const Volume<double>& field, const RayCuts& cuts)
+{
+  CellScene<double> scene;
+  scene.size = { field.size[0], field.size[1], field.size[2] };
+  scene.voxels = field.voxels;
+  for (const std::array<double, 4>& h : cuts.halfSpaces)
+  {
+    scene.halfSpaces.emplace_back(h[0], h[1], h[2], h[3]);
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    scene.planes[a] = { cuts.planes[a][0], cuts.planes[a][1] };
+  }
+  scene.flags = cuts.regions;
+  return scene;
+}
+
+CellBounds boundsBetween(const CellScene<double>& scene, const glm::dvec3& begin,
+  const glm::dvec3& end, bool minima, double beside)
+{
+  const CellOracle<double> oracle(scene), coarse(scene, 8.0 * beside);
+  const CellRay<double> ray = oracle.between(begin, end);
+  std::vector<CellSample<double>> samples{ coarse.largest(ray, minima) };
+  // Around the ray, on both sides of any plane.
+  for (const glm::dvec3& side : { glm::dvec3(0.0), { 1.0, 1.0, 1.0 }, { 1.0, -1.0, -1.0 },
+         { -1.0, 1.0, -1.0 }, { -1.0, -1.0, 1.0 } })
+  {
+    samples.push_back(
+      oracle.largest(oracle.between(begin + beside * side, end + beside * side), minima));
+  }
+  // Rays that cross the field over too little have no sample.
+  CellBounds bounds{ std::abs(ray.far - ray.near) > 1e-5, samples.front().exists, Infinity<double>,
+    -Infinity<double> };
+  for (const CellSample<double>& sample : samples)
+  {
+    bounds.isCertain = bounds.isCertain && sample.exists == bounds.isHit;
+    bounds.low = sample.exists ? std::min(bounds.low, sample.value) : bounds.low;
+    bounds.high = sample.exists ? std::max(bounds.high, sample.value) : bounds.high;
+  }
+  return bounds;
+}
 }

@@ -15,6 +15,8 @@
 #ifndef reference_CellOracle_h
 #define reference_CellOracle_h
 
+#include "Reductions.h"
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -98,6 +100,8 @@ public:
    * @param shift  of the ray, in voxels
    */
   CellRay<R> ray(double x, double y, const glm::dvec3& shift = glm::dvec3(0.0)) const;
+  /// The ray from one point to another.
+  CellRay<R> between(const glm::dvec3& begin, const glm::dvec3& end) const;
 
   /// The parts of a ray that are shown, from the viewer on.
   std::vector<CellSegment<R>> segments(const CellRay<R>& ray) const;
@@ -129,6 +133,7 @@ private:
   };
 
   void findBox();
+  void cutByPlanes(CellRay<R>& ray) const;
   R voxel(const glm::ivec3& p) const;
   bool isInterpolated(const glm::ivec3& cell) const;
   R interpolate(const CellSegment<R>& segment, const CellRay<R>& ray, R t) const;
@@ -145,6 +150,21 @@ private:
 
 extern template class CellOracle<double>;
 extern template class CellOracle<long double>;
+
+/// A field without a view.
+CellScene<double> cellScene(const Volume<double>& field, const RayCuts& cuts = {});
+
+/// An extremum of a ray that is known up to rounding: a value from `low` to `high`, if it has one.
+struct CellBounds
+{
+  bool isCertain = true; ///< whether it has one is no matter of rounding
+  bool isHit = false;
+  double low = 0.0, high = 0.0;
+};
+
+/// Of the ray from one point to another and rays `beside` it, in voxels.
+CellBounds boundsBetween(const CellScene<double>& scene, const glm::dvec3& begin,
+  const glm::dvec3& end, bool minima, double beside);
 }
 
 #endif

@@ -84,6 +84,18 @@ IndexRange reachingIndices(const Kernel& kernel, double low, double high)
 }
 
 //------------------------------------------------------------------------------
+AxisWeights kernelAt(const Kernel& kernel, double place)
+{
+  const IndexRange range = reachingIndices(kernel, place, place);
+  AxisWeights result{ range.first, {} };
+  for (int n = 0; n < range.count; ++n)
+  {
+    result.weights.push_back(kernel(place - (range.first + n)));
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
 std::vector<double> fieldKinks(const Kernel& kernel, double low, double high)
 {
   const IndexRange range = reachingIndices(kernel, low, high);

@@ -77,6 +77,73 @@ struct WeightedSum
 };
 
 /**
+ * Weights of voxels along one axis.
+ */
+struct AxisWeights
+{
+  int first = 0;
+  std::vector<double> weights;
+
+  void divideBySum()
+  {
+    double sum = 0.0;
+    for (double weight : this->weights)
+    {
+      sum += weight;
+    }
+    for (double& weight : this->weights)
+    {
+      weight /= sum;
+    }
+  }
+};
+
+/**
+ * The kernel of each voxel that reaches a place.
+ */
+AxisWeights kernelAt(const Kernel& kernel, double place);
+
+/**
+ * The volume seen along the rays, continued by its outermost voxels.
+ */
+struct SeenVolume
+{
+  const Volume<double>& volume;
+  const ImageRays& rays;
+
+  double voxel(int i, int j, int k) const
+  {
+    const int indices[3] = { i, j, k };
+    std::array<int, 3> position;
+    for (int a = 0; a < 3; ++a)
+    {
+      position[this->rays.axes[a]] = std::clamp(indices[a], 0, this->rays.size[a] - 1);
+    }
+    return this->volume.at(position);
+  }
+
+  /**
+   * The sum of products of weights times voxels.
+   */
+  WeightedSum sum(const AxisWeights& x, const AxisWeights& y, const AxisWeights& z) const
+  {
+    WeightedSum result;
+    for (std::size_t k = 0; k < z.weights.size(); ++k)
+    {
+      for (std::size_t j = 0; j < y.weights.size(); ++j)
+      {
+        for (std::size_t i = 0; i < x.weights.size(); ++i)
+        {
+          result.addVoxel(x.weights[i] * y.weights[j] * z.weights[k],
+            this->voxel(x.first + int(i), y.first + int(j), z.first + int(k)));
+        }
+      }
+    }
+    return result;
+  }
+};
+
+/**
  * Without weight it is 0 / 0, a NaN, no sample.
  */
 inline Sample<double> sampleOf(int slice, const WeightedSum& slab)

@@ -20,9 +20,14 @@
 #ifndef reference_Projection_h
 #define reference_Projection_h
 
+#include "Stretch.h"
 #include "Volume.h"
 
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -98,34 +103,101 @@ struct ShearGrid
 ShearGrid makeShearGrid(const std::array<int, 3>& volumeSize, const ShearView& view);
 
 /**
- * The voxels that the ray of pixel (u,v) crosses, in the order of ascending depth, as positions in
- * the volume, by traverse() in Traversal.h. No ray lies within a face: the
- * position along an axis with shear 0 is u - m, an integer, and faces are half-way between
- * integers.
+ * The rays of an image, from an eye or parallel. The volume is seen with its axes permuted: i, j
+ * and, along the rays, k. In voxels, the ray of pixel p = (u, v) passes
+ *   i = at[0][u] + slope[0][u] (z - start),  j = at[1][v] + slope[1][v] (z - start)
+ * at depth k = z. For exact traversals the numbers at, slope (depth - start) must be multiples of
+ * 2^-34.
  */
-std::vector<std::array<int, 3>> crossedVoxels(
-  const std::array<int, 3>& volumeSize, const ShearView& view, int u, int v);
+struct ImageRays
+{
+  std::array<int, 3> axes = { 0, 1, 2 }; // the volume's axes i, j and k
+  std::array<int, 3> size = { 0, 0, 0 }; // voxels along i, j and k
+  std::array<std::vector<double>, 2> at, slope;
+  double start = 0.0;
+  double pitch = 1.0;    // from one ray to the next at the start
+  double eye = -1.0;     // its depth; infinite where rays are parallel
+  bool reversed = false; // the eye looks along falling k
+
+  int width() const { return static_cast<int>(this->at[0].size()); }
+  int height() const { return static_cast<int>(this->at[1].size()); }
+  bool isParallel() const { return std::isinf(this->eye); }
+  /// Voxels along the volume's axes.
+  glm::ivec3 volumeSize() const
+  {
+    glm::ivec3 voxels;
+    for (int a = 0; a < 3; ++a)
+    {
+      voxels[this->axes[a]] = this->size[a];
+    }
+    return voxels;
+  }
+  double position(int a, int pixel, double z) const
+  {
+    return this->at[a][pixel] + this->slope[a][pixel] * (z - this->start);
+  }
+  /// Where a ray is at a depth, axes not permuted.
+  glm::dvec3 point(int u, int v, double z) const
+  {
+    glm::dvec3 point;
+    point[this->axes[0]] = this->position(0, u, z);
+    point[this->axes[1]] = this->position(1, v, z);
+    point[this->axes[2]] = z;
+    return point;
+  }
+  /// From there to where it is a slice higher.
+  glm::dvec3 direction(int u, int v) const
+  {
+    glm::dvec3 direction;
+    direction[this->axes[0]] = this->slope[0][u];
+    direction[this->axes[1]] = this->slope[1][v];
+    direction[this->axes[2]] = 1.0;
+    return direction;
+  }
+  /// Where a point lies between the columns and rows of a parallel view.
+  glm::dvec2 pixelOf(const glm::dvec3& point) const
+  {
+    const double z = point[this->axes[2]];
+    return { point[this->axes[0]] - this->position(0, 0, z),
+      point[this->axes[1]] - this->position(1, 0, z) };
+  }
+  /// The depths before the eye.
+  Stretch<double> beforeEye() const
+  {
+    Stretch<double> depths;
+    (this->reversed ? depths.end : depths.begin) = this->eye;
+    return depths;
+  }
+  /// From one ray to the next at some depth.
+  double spacing(double z) const
+  {
+    return this->isParallel()
+      ? this->pitch
+      : this->pitch * std::abs(z - this->eye) / std::abs(this->start - this->eye);
+  }
+  /// The slices whose middle lies before the eye.
+  bool sees(int slice) const { return this->reversed ? slice < this->eye : slice > this->eye; }
+  /// The depths between which a slice, or the volume (in slices 0 to n_k - 1), is before the eye.
+  std::array<double, 2> faces(int first, int last) const;
+};
 
 /**
- * Mode preview: the maximum of the voxels that each pixel's ray crosses. NaN voxels do not count.
+ * The rays of a parallel view, seen from the side of the lowest slices.
  */
-template <class T>
-Image<T> exactTraversal(const Volume<T>& volume, const ShearView& view)
-{
-  const ShearGrid grid = makeShearGrid(volume.size, view);
-  Image<T> image(grid.width, grid.height);
-  for (int v = 0; v < grid.height; ++v)
-  {
-    for (int u = 0; u < grid.width; ++u)
-    {
-      for (const std::array<int, 3>& position : crossedVoxels(volume.size, view, u, v))
-      {
-        image.raise(u, v, volume.at(position));
-      }
-    }
-  }
-  return image;
-}
+ImageRays raysOf(const std::array<int, 3>& volumeSize, const ShearView& view);
+
+/**
+ * The voxels that the ray of pixel (u, v) crosses, of slices that the eye sees, by ascending depth,
+ * as positions in the volume, by traverse() in Traversal.h. No ray of a parallel view lies within a
+ * face: the position along an axis with shear 0 is u - m, an integer, and faces are half-way
+ * between integers.
+ */
+std::vector<std::array<int, 3>> crossedVoxels(const ImageRays& rays, int u, int v);
+
+/**
+ * The slices that these are in, ascending.
+ */
+std::vector<int> crossedSlices(const ImageRays& rays, int u, int v);
 
 /**
  * What a ray meets in a slice. The weight is what remains of the slice's average where NaN voxels
@@ -146,25 +218,53 @@ template <class T>
 using RaySamples = std::vector<std::vector<Sample<T>>>;
 
 /**
- * Mode preview: the voxels that rays cross, NaN or not.
+ * Mode preview: the voxels that rays cross, NaN or not, by ascending depth.
  */
 template <class T>
-RaySamples<T> voxelSamples(const Volume<T>& volume, const ShearView& view)
+RaySamples<T> voxelSamples(const Volume<T>& volume, const ImageRays& rays)
 {
-  const ShearGrid grid = makeShearGrid(volume.size, view);
-  RaySamples<T> rays;
-  for (int v = 0; v < grid.height; ++v)
+  RaySamples<T> samples;
+  for (int v = 0; v < rays.height(); ++v)
   {
-    for (int u = 0; u < grid.width; ++u)
+    for (int u = 0; u < rays.width(); ++u)
     {
-      rays.emplace_back();
-      for (const std::array<int, 3>& position : crossedVoxels(volume.size, view, u, v))
+      samples.emplace_back();
+      for (const std::array<int, 3>& position : crossedVoxels(rays, u, v))
       {
-        rays.back().push_back({ position[view.axis], volume.at(position), 1.0 });
+        samples.back().push_back({ position[rays.axes[2]], volume.at(position), 1.0 });
       }
     }
   }
-  return rays;
+  return samples;
+}
+
+/**
+ * The maximum of each pixel's samples. NaN does not count.
+ */
+template <class T>
+Image<T> maximumOf(const RaySamples<T>& samples, const ImageRays& rays)
+{
+  Image<T> image(rays.width(), rays.height());
+  for (int v = 0; v < image.height; ++v)
+  {
+    for (int u = 0; u < image.width; ++u)
+    {
+      for (const Sample<T>& sample : samples[image.index(u, v)])
+      {
+        image.raise(u, v, sample.value);
+      }
+    }
+  }
+  return image;
+}
+
+/**
+ * Mode preview: the maximum of the voxels that each pixel's ray crosses.
+ */
+template <class T>
+Image<T> exactTraversal(const Volume<T>& volume, const ImageRays& rays)
+{
+  return maximumOf(voxelSamples(volume, rays), rays);
 }
 
 /**
@@ -186,37 +286,6 @@ struct Kernel
   double support() const;            // h(t) = 0 for |t| >= support
   double operator()(double t) const; // h(t)
 };
-
-/**
- * Modes standard (Kernel::Nearest) and high (the other kernels): the maximum over slices of the
- * slice's average over the pixel's area and the slice's thickness.
- *
- * The average of slice k is the integral, over all points that a ray through the pixel's area, with
- * u' in [u-1/2, u+1/2] and v' in [v-1/2, v+1/2], passes at z in [k-1/2, k+1/2], of the sum of
- * weights times voxels, divided by the integral of the weights. Only slices take part in which the
- * pixel's own ray crosses a voxel (as in crossedVoxels). Outside the volume the outermost voxels
- * are repeated. NaN voxels are left out of both integrals; a slice where no weight remains gives no
- * sample.
- *
- * The integrals are Gauss-Legendre sums of the field itself, between its kinks: exact but for
- * rounding for the nearest and the trilinear kernel, error below 1e-13 of the largest voxel for
- * cosine bells.
- */
-Image<double> slabAverage(
-  const Volume<double>& volume, const ShearView& view, const Kernel& kernel);
-
-/**
- * The averages of all slices that rays cross, of which slabAverage takes the maximum. Those that
- * have no weight are NaN.
- */
-RaySamples<double> slabSamples(
-  const Volume<double>& volume, const ShearView& view, const Kernel& kernel);
-
-/**
- * One of them, of pixel (u, v) and a slice that its ray crosses.
- */
-Sample<double> slabSample(const Volume<double>& volume, const ShearView& view, const Kernel& kernel,
-  int u, int v, int slice);
 
 /**
  * Conventional ray casting: the maximum of the trilinearly interpolated volume at the depths z that
@@ -249,37 +318,6 @@ enum class SliceSampling
  */
 Image<double> projectiveShearWarp(
   const Volume<double>& volume, const ShearView& view, SliceSampling sampling);
-
-/**
- * The view of transformed(volume, symmetry) along the same rays.
- */
-ShearView transformed(const ShearView& view, const AxisSymmetry& symmetry);
-
-/**
- * The picture of transformed(volume, symmetry) in the view transformed(view, symmetry), from the
- * picture of the volume in the view: transposed or mirrored.
- */
-template <class T>
-Image<T> transformed(const Image<T>& source, const ShearView& view, const AxisSymmetry& symmetry)
-{
-  const ShearGrid from = makeShearGrid({ 1, 1, 1 }, view);
-  const ShearGrid to = makeShearGrid({ 1, 1, 1 }, transformed(view, symmetry));
-  const bool transposed = symmetry.axis[to.axes[0]] != from.axes[0];
-  Image<T> result(
-    transposed ? source.height : source.width, transposed ? source.width : source.height);
-  for (int v = 0; v < result.height; ++v)
-  {
-    for (int u = 0; u < result.width; ++u)
-    {
-      const int x = symmetry.sign[to.axes[0]] > 0 ? u : result.width - 1 - u;
-      const int y = symmetry.sign[to.axes[1]] > 0 ? v : result.height - 1 - v;
-      const std::size_t pixel = transposed ? source.index(y, x) : source.index(x, y);
-      result.value[result.index(u, v)] = source.value[pixel];
-      result.hit[result.index(u, v)] = source.hit[pixel];
-    }
-  }
-  return result;
-}
 
 /**
  * The same picture as double.

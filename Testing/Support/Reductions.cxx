@@ -27,83 +27,21 @@ struct Integers
   {
   }
 };
-
-/**
- * The rays of a parallel view as if they came from an eye.
- */
-PerspectiveRays raysOf(const ShearGrid& grid, const ShearView& view)
-{
-  PerspectiveRays rays;
-  rays.axes = grid.axes;
-  rays.size = grid.size;
-  rays.start = grid.middle;
-  rays.eye = -std::numeric_limits<double>::infinity();
-  const int pixels[2] = { grid.width, grid.height };
-  for (int a = 0; a < 2; ++a)
-  {
-    for (int pixel = 0; pixel < pixels[a]; ++pixel)
-    {
-      rays.at[a].push_back(static_cast<double>(pixel) - grid.margin[a]);
-      rays.slope[a].push_back(-view.shear[a]);
-    }
-  }
-  return rays;
-}
 } // namespace
-
-//------------------------------------------------------------------------------
-RayCutter::RayCutter(const ShearGrid& grid, const ShearView& view, const RayCuts& cuts)
-  : RayCutter(raysOf(grid, view), cuts)
-{
-}
-
-//------------------------------------------------------------------------------
-RayCutter::RayCutter(const PerspectiveRays& rays, const RayCuts& cuts) : Rays(rays), Cuts(cuts) {}
-
-//------------------------------------------------------------------------------
-std::array<double, 3> RayCutter::pointOfRay(int u, int v, double z) const
-{
-  std::array<double, 3> point;
-  point[this->Rays.axes[0]] = this->Rays.position(0, u, z);
-  point[this->Rays.axes[1]] = this->Rays.position(1, v, z);
-  point[this->Rays.axes[2]] = z;
-  return point;
-}
-
-//------------------------------------------------------------------------------
-RayCutter::Line RayCutter::alongRay(const std::array<double, 4>& halfSpace, int u, int v) const
-{
-  const auto at = [&](double z)
-  {
-    const std::array<double, 3> p = this->pointOfRay(u, v, z);
-    return halfSpace[0] * p[0] + halfSpace[1] * p[1] + halfSpace[2] * p[2] + halfSpace[3];
-  };
-  const double slope = halfSpace[this->Rays.axes[2]] +
-    halfSpace[this->Rays.axes[0]] * this->Rays.slope[0][u] +
-    halfSpace[this->Rays.axes[1]] * this->Rays.slope[1][v];
-  return { at(0.0), slope };
-}
 
 //------------------------------------------------------------------------------
 bool RayCutter::inHalfSpaces(int u, int v, int slice) const
 {
-  const double infinity = std::numeric_limits<double>::infinity();
-  double near = this->Rays.reversed ? -infinity : this->Rays.eye;
-  double far = this->Rays.reversed ? this->Rays.eye : infinity;
-  for (const std::array<double, 4>& halfSpace : this->Cuts.halfSpaces)
+  Stretch<double> ray = this->Rays.beforeEye();
+  const glm::dvec3 from = this->Rays.point(u, v, 0.0), direction = this->Rays.direction(u, v);
+  for (const std::array<double, 4>& h : this->Cuts.halfSpaces)
   {
-    const Line line = this->alongRay(halfSpace, u, v);
-    const double z = -line.offset / line.slope;
-    if (line.slope == 0.0 && line.offset < 0.0)
-    {
-      return false;
-    }
-    near = line.slope > 0.0 ? std::max(near, z) : near;
-    far = line.slope < 0.0 ? std::min(far, z) : far;
+    const glm::dvec3 normal(h[0], h[1], h[2]);
+    ray.cut(glm::dot(normal, from) + h[3], glm::dot(normal, direction));
   }
-  const double low = near - Rounding * (1.0 + std::abs(near));
-  const double high = far + Rounding * (1.0 + std::abs(far));
-  if (near >= far || Integers(low, high).any)
+  const double low = ray.begin - Rounding * (1.0 + std::abs(ray.begin));
+  const double high = ray.end + Rounding * (1.0 + std::abs(ray.end));
+  if (ray.length() <= 0.0 || Integers(low, high).any)
   {
     return slice >= low && slice <= high;
   }
@@ -126,7 +64,7 @@ int RayCutter::region(int axis, double position) const
 //------------------------------------------------------------------------------
 bool RayCutter::inRegions(int u, int v, int slice) const
 {
-  const std::array<double, 3> point = this->pointOfRay(u, v, slice);
+  const glm::dvec3 point = this->Rays.point(u, v, slice);
   const int number =
     this->region(0, point[0]) + 3 * this->region(1, point[1]) + 9 * this->region(2, point[2]);
   return (this->Cuts.regions >> number & 1u) != 0;

@@ -13,7 +13,6 @@
 #ifndef reference_Reductions_h
 #define reference_Reductions_h
 
-#include "PerspectiveProjection.h"
 #include "Projection.h"
 
 #include <array>
@@ -48,24 +47,15 @@ struct RayCuts
 class RayCutter
 {
 public:
-  RayCutter(const ShearGrid& grid, const ShearView& view, const RayCuts& cuts);
-  RayCutter(const PerspectiveRays& rays, const RayCuts& cuts);
+  RayCutter(const ImageRays& rays, const RayCuts& cuts) : Rays(rays), Cuts(cuts) {}
 
   bool inHalfSpaces(int u, int v, int slice) const;
   bool inRegions(int u, int v, int slice) const;
 
 private:
-  /// h(z) = offset + slope z along the ray of a pixel.
-  struct Line
-  {
-    double offset;
-    double slope;
-  };
-  Line alongRay(const std::array<double, 4>& halfSpace, int u, int v) const;
-  std::array<double, 3> pointOfRay(int u, int v, double z) const;
   int region(int axis, double position) const;
 
-  const PerspectiveRays Rays; // or the like for parallel views
+  const ImageRays Rays;
   const RayCuts Cuts;
 };
 
@@ -150,6 +140,27 @@ Outcomes<T> smallest(const CutRay<T>& ray)
     result.hit = true;
   }
   return { result };
+}
+
+/**
+ * The maximum of each pixel's samples that count.
+ */
+template <class T>
+Image<T> maximumOf(const RaySamples<T>& samples, const ImageRays& rays, const RayCuts& cuts)
+{
+  const RayCutter cutter(rays, cuts);
+  Image<T> image(rays.width(), rays.height());
+  for (int v = 0; v < image.height; ++v)
+  {
+    for (int u = 0; u < image.width; ++u)
+    {
+      for (const auto& part : cutRay(samples[image.index(u, v)], cutter, u, v, false).samples)
+      {
+        image.raise(u, v, part.value);
+      }
+    }
+  }
+  return image;
 }
 
 /**

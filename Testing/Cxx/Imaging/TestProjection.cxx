@@ -8,7 +8,7 @@
 #include "AverageTesting.h"
 #include "PixelOracle.h"
 
-#include "FieldMaximum.h"
+#include "CellOracle.h"
 
 #include "vtkMatrix4x4.h"
 
@@ -159,54 +159,37 @@ template <class T>
 Oracle oracleOf(
   const reference::Volume<T>& volume, Filter* filter, vtkImageData* image, const Rays& rays)
 {
-  Oracle oracle;
-  findView(rays, oracle.view);
-  oracle.grid = reference::makeShearGrid(volume.size, oracle.view);
+  reference::ShearView view;
+  findView(rays, view);
+  Oracle oracle{ reference::raysOf(volume.size, view), {} };
   const reference::Volume<double> exact = reference::toDouble(volume);
   const auto samples = showsVoxels(filter)
-    ? reference::voxelSamples(exact, oracle.view)
-    : reference::slabSamples(exact, oracle.view, kernelOf(filter));
-  const reference::RayCutter cutter(oracle.grid, oracle.view, cutsOf(filter, image));
+    ? reference::voxelSamples(exact, oracle.rays)
+    : reference::slabSamples(exact, oracle.rays, kernelOf(filter));
+  const reference::RayCutter cutter(oracle.rays, cutsOf(filter, image));
   const double lowest = reference::lowestVoxel(volume);
-  const bool reversed = rays.direction[oracle.view.axis] < 0.0;
-  for (int v = 0; v < oracle.grid.height; ++v)
+  const bool reversed = rays.direction[view.axis] < 0.0;
+  for (std::size_t n = 0; n < samples.size(); ++n)
   {
-    for (int u = 0; u < oracle.grid.width; ++u)
-    {
-      const auto& own = samples[std::size_t(v) * oracle.grid.width + u];
-      const reference::Outcome<double> outcome =
-        reduced(reference::cutRay(own, cutter, u, v, reversed), lowest, filter);
-      oracle.meets.push_back(!own.empty());
-      oracle.hit.push_back(outcome.hit);
-      oracle.values.push_back(outcome.value);
-    }
+    const int u = int(n) % oracle.rays.width(), v = int(n) / oracle.rays.width();
+    const reference::Outcome<double> outcome =
+      reduced(reference::cutRay(samples[n], cutter, u, v, reversed), lowest, filter);
+    oracle.reduced.push_back({ !samples[n].empty(), outcome.hit, outcome.value });
   }
   return oracle;
 }
 
 /// In exact mode: the largest value of the field on the pixel's own ray, or the least.
-Expected expectedOnRay(const reference::Volume<double>& field, Filter* filter, vtkImageData* image,
+reference::ExpectedPixel expectedOnRay(const reference::CellScene<double>& field, Filter* filter,
   const Rays& rays, const glm::dvec3& point)
 {
-  const glm::dvec3 d = glm::abs(rays.direction);
-  const int k = d.z >= d.x && d.z >= d.y ? 2 : d.y >= d.x ? 1 : 0;
-  reference::FieldRay ray;
-  ray.axes = { k == 0 ? 1 : 0, k == 2 ? 1 : 2, k };
-  ray.start = point[k];
-  for (int a = 0; a < 2; ++a)
-  {
-    ray.at[a] = point[ray.axes[a]];
-    ray.slope[a] = rays.direction[ray.axes[a]] / rays.direction[k];
-  }
+  const glm::dvec3 reach = glm::normalize(rays.direction) * 1000.0;
   const bool isMinimum = filter->GetBlendMode() == Filter::MINIMUM_INTENSITY_BLEND;
-  reference::Volume<double> volume = field;
-  std::transform(field.voxels.begin(), field.voxels.end(), volume.voxels.begin(),
-    [isMinimum](double voxel) { return isMinimum ? -voxel : voxel; });
-  const auto maximum = reference::cutMaximum(
-    volume, ray, reference::FieldDomain::Centres, -0.5, field.size[k] - 0.5, cutsOf(filter, image));
-  const double middle = 0.5 * (maximum.low + maximum.high);
-  return { maximum.isCertain, maximum.isHit, isMinimum ? -middle : middle,
-    0.5 * (maximum.high - maximum.low) };
+  const double beside = filter->GetOutput()->GetScalarType() == VTK_FLOAT ? 0x1p-20 : 1e-12;
+  const auto bounds =
+    reference::boundsBetween(field, point - reach, point + reach, isMinimum, beside);
+  return { bounds.isCertain, bounds.isHit, 0.5 * (bounds.low + bounds.high),
+    0.5 * (bounds.high - bounds.low) };
 }
 
 struct Count
@@ -232,7 +215,7 @@ void compare(Checks& check, const reference::Volume<T>& volume, Filter* filter, 
   const bool isOverview = voxelsPerPixel(rays) > 1.0;
   const bool isExact = filter->GetQualityMode() == Filter::EXACT && !isOverview;
   const Oracle oracle = isExact ? Oracle() : oracleOf(volume, filter, image, rays);
-  const reference::Volume<double> field = reference::toDouble(volume);
+  const auto field = reference::cellScene(reference::toDouble(volume), cutsOf(filter, image));
   const double low = double(*std::min_element(volume.voxels.begin(), volume.voxels.end()));
   const double high = double(*std::max_element(volume.voxels.begin(), volume.voxels.end()));
   // Weights as the class documentation has them, shading and means, then rounded places in the
@@ -250,18 +233,20 @@ void compare(Checks& check, const reference::Volume<T>& volume, Filter* filter, 
     for (int x = 0; x < size[0]; ++x)
     {
       const glm::dvec3 point = rays.corner + double(x) * rays.across + double(y) * rays.up;
-      const Expected expected = isOverview ? Area(oracle, volume.size, rays, point).expected(filter)
-        : isExact                          ? expectedOnRay(field, filter, image, rays, point)
-                                           : expectedPixel(oracle, volume.size, rays, point);
-      if (!expected.certain)
+      const reference::ExpectedPixel expected = isOverview
+        ? ofArea(OverviewSource(oracle, rays), x, y, filter)
+        : isExact
+        ? expectedOnRay(field, filter, rays, point)
+        : reference::betweenRays(oracle.rays, point, [&](int u, int v) { return oracle.at(u, v); });
+      if (!expected.isCertain)
       {
         continue;
       }
       const double found = output->GetScalarComponentAsDouble(x, y, 0, 0);
-      check(std::isnan(found) != expected.hit, "pixel ", x, " ", y, " is ", found, ", expected ",
-        expected.hit ? "a sample" : "none");
+      check(std::isnan(found) != expected.isHit, "pixel ", x, " ", y, " is ", found, ", expected ",
+        expected.isHit ? "a sample" : "none");
       ++count.pixels;
-      if (expected.hit && !std::isnan(found))
+      if (expected.isHit && !std::isnan(found))
       {
         const double error = std::abs(found - expected.value) / (bound + expected.slack);
         check(error <= 1.0, "mode ", filter->GetQualityMode(), " blend ", filter->GetBlendMode(),

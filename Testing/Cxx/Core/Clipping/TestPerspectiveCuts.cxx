@@ -3,12 +3,8 @@
 //
 // Where the rays of perspective views begin and end, in all images of a view, against their
 // definition in index space: from afar, from nearby and from inside the volume and what cuts it.
-// And previews of what a plane leaves, against a search of all voxels that rays cross.
 #include "CutScenes.h"
 
-#include "Reductions.h"
-
-#include <cstdint>
 #include <iostream>
 
 using namespace cutscenes;
@@ -94,121 +90,33 @@ Scene randomScene(Random& random, int cutters)
   return scene;
 }
 
-bool isWithin(const glm::dvec3& p, const glm::dvec3& low, const glm::dvec3& high)
-{
-  return glm::all(glm::lessThan(low, p)) && glm::all(glm::lessThan(p, high));
-}
-
-/// Where the rays of an image come from, axes not permuted.
-glm::dvec3 eyeOf(const ShearWarp& image)
-{
-  glm::dvec3 eye;
-  for (int a = 0; a < 3; ++a)
-  {
-    eye[image.axes()[a]] = image.eye()[a];
-  }
-  return eye;
-}
-
-/// More than rounding moves rays and the eye by.
-constexpr double BoxMargin = 1e-4;
-
-/// A view that a box cuts: as planes and as a surface, and a wider and a narrower one as planes.
-struct BoxScenes
-{
-  glm::dvec3 low, high;
-  Scene planes, mesh, wide, narrow;
-};
-
 /// Half of the boxes have their corners at voxels' corners; some hold the eye, which is at such
 /// places, too.
-BoxScenes anyBox(int n, Random& random)
-{
-  BoxScenes box;
-  View& view = box.planes.view;
-  view = coretesting::randomPerspective(coretesting::randomSize(random, 20), random);
-  box.mesh.view = box.wide.view = box.narrow.view = view;
-  box.low = anyPoint(toArray(view.dimensions), random);
-  if (n % 3 == 0)
-  {
-    const glm::dvec4 eye = glm::inverse(view.indexToClip)[2];
-    box.low = glm::dvec3(eye) / eye.w - random.uniform(0.1, 5.0);
-  }
-  box.high = box.low + glm::abs(anyVector(random, 1.0, -1.0)) * 20.0;
-  if (n % 2)
-  {
-    box.low = glm::floor(box.low) + 0.5;
-    box.high = glm::floor(box.high) + 1.5;
-  }
-  view.halfSpaces = halfSpacesOfBox(box.low, box.high);
-  box.wide.view.halfSpaces = halfSpacesOfBox(box.low - BoxMargin, box.high + BoxMargin);
-  box.narrow.view.halfSpaces = halfSpacesOfBox(box.low + BoxMargin, box.high - BoxMargin);
-  box.mesh.mesh = boxOfTriangles(random, box.low, box.high, random.uniform(1, 5));
-  return box;
-}
-
-/// What the core makes of the scenes of a box.
-struct FoundBox
-{
-  Found planes, mesh, wide, narrow;
-
-  explicit FoundBox(const BoxScenes& box)
-    : planes(box.planes),
-      mesh(box.mesh),
-      wide(box.wide),
-      narrow(box.narrow)
-  {
-  }
-};
-
-/// Compares all rays of one image, but for those that rounding decides on.
-void compareBox(
-  Checks& check, const BoxScenes& box, const FoundBox& found, std::size_t number, Counts& counts)
-{
-  const ShearWarp& image = found.planes.images[number];
-  const glm::dvec3 eye = eyeOf(image), low = box.low, high = box.high;
-  // For an eye on a face rounding decides whether the box holds it.
-  const bool isOnFace = isWithin(eye, low - BoxMargin, high + BoxMargin) &&
-    !isWithin(eye, low + BoxMargin, high - BoxMargin);
-  const Oracle oracle(box.planes, image);
-  forEachRay(oracle, image,
-    [&](int u, int v, const std::vector<int>& crossed)
-    {
-      const auto slicesOf = [&](const Found& one)
-      { return left(one.intervals[number], u, v, crossed); };
-      // Rays that meet an edge are for rounding to decide.
-      const bool isDoubtful = isOnFace || slicesOf(found.wide) != slicesOf(found.narrow) ||
-        meetsEdge(oracle, u, v, box.wide.view.halfSpaces, box.narrow.view.halfSpaces);
-      ++counts.rays;
-      counts.doubtful += isDoubtful;
-      check(isDoubtful || slicesOf(found.planes) == slicesOf(found.mesh), "A surface cuts pixel ",
-        u, ", ", v, " as planes do. Eye ", eye.x, " ", eye.y, " ", eye.z, ", box ", low.x, " ",
-        low.y, " ", low.z, " to ", high.x, " ", high.y, " ", high.z);
-    });
-}
-
 void testBoxes(Checks& check)
 {
-  coretesting::Sightings cut, holding, sure;
+  BoxCounts counts;
   reference::forScenes("boxes", 400,
     [&](int n, Random& random)
     {
-      const BoxScenes box = anyBox(n, random);
-      const FoundBox found(box);
-      cut.add(!found.planes.cutsNothing());
-      bool isHolding = false;
-      Counts counts;
-      for (std::size_t image = 0; image < found.planes.images.size(); ++image)
+      const auto size = coretesting::randomSize(random, 20);
+      const View view = coretesting::randomPerspective(size, random);
+      glm::dvec3 low = anyPoint(size, random);
+      if (n % 3 == 0)
       {
-        isHolding |= isWithin(eyeOf(found.planes.images[image]), box.low, box.high);
-        compareBox(check, box, found, image, counts);
+        const glm::dvec4 eye = glm::inverse(view.indexToClip)[2];
+        low = glm::dvec3(eye) / eye.w - random.uniform(0.1, 5.0);
       }
-      holding.add(isHolding);
-      sure.add(10 * counts.doubtful <= counts.rays);
+      glm::dvec3 high = low + glm::abs(anyVector(random, 1.0, -1.0)) * 20.0;
+      if (n % 2)
+      {
+        low = glm::floor(low) + 0.5;
+        high = glm::floor(high) + 1.5;
+      }
+      compareBox(check, view, low, high, 1e-4, random, counts);
     });
-  std::cout << "boxes: " << cut << " are cut, " << holding << " have the eye inside, " << sure
-            << " leave few rays out" << std::endl;
-  check(cut.areEnough(0.4) && holding.areEnough(0.05) && sure.areEnough(0.6),
+  std::cout << "boxes: " << counts.cut << " are cut, " << counts.holding << " have the eye inside, "
+            << counts.sure << " leave few rays out" << std::endl;
+  check(counts.cut.areEnough(0.4) && counts.holding.areEnough(0.05) && counts.sure.areEnough(0.6),
     "Boxes cut, some hold the eye, and few rays are left out.");
 }
 
@@ -234,51 +142,6 @@ void testNothingCut(Checks& check)
         static_cast<float>(range.depthOf(0.999 * range.far)));
       check(Found(scene).cutsNothing(), "What lies behind cuts nothing.");
     });
-}
-
-/// Previews show the largest of the voxels whose slices count.
-void testPictures(Checks& check)
-{
-  coretesting::Sightings cut;
-  reference::forScenes("pictures", 80,
-    [&](int n, Random& random)
-    {
-      const std::array<int, 3> size = coretesting::randomSize(random, 30);
-      const auto volume = reference::uniformNoise<std::uint8_t>(size, random, 0, 255);
-      const View view = coretesting::randomPerspective(volume.size, random);
-      const glm::dvec3 point = anyPoint(toArray(view.dimensions), random);
-      const glm::dvec4 plane = halfSpaceThrough(point, anyVector(random, -1.0, 1.0));
-      reference::RayCuts cuts;
-      cuts.halfSpaces.push_back({ plane.x, plane.y, plane.z, plane.w });
-      splatting::ProjectionSettings settings;
-      settings.quality = splatting::Quality::Preview;
-      settings.acceleration =
-        n % 2 ? splatting::Acceleration::Bricks : splatting::Acceleration::Dense;
-      std::vector<ShearWarp> images;
-      ShearWarp::factorise(view, images);
-      for (const ShearWarp& geometry : images)
-      {
-        const auto image = coretesting::project(volume, geometry, settings,
-          coretesting::cutsBy(geometry, std::vector<glm::dvec4>{ plane }));
-        const reference::PerspectiveRays rays = coretesting::referenceRays(geometry);
-        const reference::RayCutter cutter(rays, cuts);
-        const auto samples = reference::voxelSamples(volume, rays);
-        cut.add(!image.mask.empty());
-        for (int v = 0; v < geometry.rayCount().y; ++v)
-        {
-          for (int u = 0; u < geometry.rayCount().x; ++u)
-          {
-            const auto& ray = samples[std::size_t(v) * rays.width() + u];
-            const auto expected =
-              reference::largest(reference::cutRay(ray, cutter, u, v, geometry.reversed())).front();
-            check(!expected.hit ||
-                (image.covers(u, v) && image.row<std::uint8_t>(v)[u] == expected.value),
-              "Pixel ", u, ", ", v, " shows another voxel than the largest that counts.");
-          }
-        }
-      }
-    });
-  check(cut.areEnough(0.3), "Planes cut.");
 }
 
 /// Octahedra around the eye, or beside it, whose corners are where the lines along the axes meet
@@ -369,6 +232,5 @@ int TestPerspectiveCuts(int, char*[])
   testNothingCut(check);
   testEyeAndCorners(check);
   testReuse(check);
-  testPictures(check);
   return check.exitCode();
 }

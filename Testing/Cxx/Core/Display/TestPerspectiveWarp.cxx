@@ -50,57 +50,28 @@ struct Camera
   }
 };
 
-struct Box
+/// Whether a ray meets the box of what pictures show, grown by `margin` voxels.
+bool meets(
+  const splatting::View& view, const glm::dvec3& eye, const glm::dvec3& direction, double margin)
 {
-  glm::dvec3 low, high;
-};
-
-/// Whether a ray meets a box, grown by `margin` voxels.
-bool meets(const Box& box, const glm::dvec3& eye, const glm::dvec3& direction, double margin)
-{
-  double enter = 0.0, leave = 1e30;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double low = box.low[a] - margin - eye[a], high = box.high[a] + margin - eye[a];
-    const double d = direction[a];
-    if (d == 0.0)
-    {
-      leave = low > 0.0 || high < 0.0 ? -1.0 : leave;
-      continue;
-    }
-    enter = std::max(enter, std::min(low / d, high / d));
-    leave = std::min(leave, std::max(low / d, high / d));
-  }
-  return enter <= leave;
+  reference::Stretch<double> ray{ 0.0 };
+  ray.narrow(reference::inside(
+    reference::boxOfVolume(view.dimensions, view.showsBoxes, margin), eye, direction));
+  return ray.length() >= 0.0;
 }
 
-/// What pictures show.
-Box shownBox(const splatting::View& view)
+/// Whether a ray meets slices along an axis, smaller by a margin, whose middle lies before the eye.
+bool meetsSlices(const splatting::View& view, const glm::dvec3& eye, int axis, bool reversed,
+  const glm::dvec3& direction, double margin)
 {
-  Box box;
-  for (int a = 0; a < 3; ++a)
-  {
-    const int n = view.dimensions[a];
-    const double rim = n > 1 && !view.showsBoxes ? 0.0 : 0.5;
-    box.low[a] = -rim;
-    box.high[a] = n - 1.0 + rim;
-  }
-  return box;
-}
-
-/// The slices along an axis whose middle lies before the eye.
-Box slicesSeen(const splatting::View& view, const glm::dvec3& eye, int axis, bool reversed)
-{
-  Box box{ glm::dvec3(-0.5), glm::dvec3(view.dimensions) - 0.5 };
-  if (reversed)
-  {
-    box.high[axis] = std::min(box.high[axis], std::ceil(eye[axis]) - 0.5);
-  }
-  else
-  {
-    box.low[axis] = std::max(box.low[axis], std::floor(eye[axis]) + 0.5);
-  }
-  return box;
+  glm::dvec3 low(-0.5), high = glm::dvec3(view.dimensions) - 0.5;
+  double& end = reversed ? high[axis] : low[axis];
+  end = reversed ? std::min(end, std::ceil(eye[axis]) - 0.5)
+                 : std::max(end, std::floor(eye[axis]) + 0.5);
+  reference::Stretch<double> ray{ 0.0 };
+  ray.narrow(
+    reference::inside(reference::halfSpacesOfBox(low + margin, high - margin), eye, direction));
+  return ray.length() >= 0.0;
 }
 
 /// The direction that an image's rays follow, axes permuted.
@@ -204,7 +175,6 @@ void checkPerspectivePicture(Checks& check, const splatting::View& view,
     }
   }
   check(glm::length(eye - camera.eye) <= 0x1p-10 + 1e-9 * glm::length(eye), "the eye has moved");
-  const Box shown = shownBox(view);
   for (int y = 0; y < view.viewport.y; ++y)
   {
     for (int x = 0; x < view.viewport.x; ++x)
@@ -213,7 +183,7 @@ void checkPerspectivePicture(Checks& check, const splatting::View& view,
       const glm::dvec3 ray = camera.direction(x, y);
       constexpr double margin = 1e-6;
       counts.shown += color != 0;
-      if (!meets(shown, eye, ray, margin))
+      if (!meets(view, eye, ray, margin))
       {
         counts.beside += check(color == 0, "a pixel outside the volume has a colour");
         continue;
@@ -227,12 +197,12 @@ void checkPerspectivePicture(Checks& check, const splatting::View& view,
         {
           // From within half a voxel of the rim a ray may leave before it comes to a slice.
           ++axes;
-          crosses = crosses &&
-            meets(slicesSeen(view, eye, image.principalAxis(), image.reversed()), eye, ray, -1e-5);
+          crosses =
+            crosses && meetsSlices(view, eye, image.principalAxis(), image.reversed(), ray, 1e-5);
           matches = matches || mayBe(images[n], placeIn(image, ray), (double(color) - 1.0) / 65535);
         }
       }
-      check(color != 0 || axes < axesFollowed(ray) || !crosses || !meets(shown, eye, ray, -margin),
+      check(color != 0 || axes < axesFollowed(ray) || !crosses || !meets(view, eye, ray, -margin),
         "a pixel inside the volume is transparent, ", x, ", ", y);
       check(color == 0 || matches, "a pixel has another colour than its ray, ", x, ", ", y);
     }
@@ -374,7 +344,7 @@ struct ShownOnOutline
 };
 
 ShownOnOutline lookAround(
-  const Camera& camera, const Box& shown, const SmoothFunction& f, int x, int y)
+  const Camera& camera, const splatting::View& view, const SmoothFunction& f, int x, int y)
 {
   const double middle = f.at(camera.direction(x, y));
   ShownOnOutline outline{ middle, middle, true };
@@ -386,7 +356,7 @@ ShownOnOutline lookAround(
     const glm::dvec3 d = camera.direction(x + border[side / 16].x, y + border[side / 16].y);
     outline.least = std::min(outline.least, f.at(d));
     outline.largest = std::max(outline.largest, f.at(d));
-    outline.isWhole = outline.isWhole && meets(shown, camera.eye, d, -0.01);
+    outline.isWhole = outline.isWhole && meets(view, camera.eye, d, -0.01);
   }
   return outline;
 }
@@ -396,7 +366,6 @@ bool compareWithFunction(Checks& check, const splatting::View& view,
   const splatting::Picture& picture, const SmoothFunction& f, double bound)
 {
   const Camera camera(view);
-  const Box shown = shownBox(view);
   bool isShown = false;
   for (int y = 0; y < view.viewport.y; ++y)
   {
@@ -405,7 +374,7 @@ bool compareWithFunction(Checks& check, const splatting::View& view,
       const std::uint32_t color = colorAt(picture, x, y);
       const glm::dvec3 ray = camera.direction(x, y);
       isShown |= color != 0;
-      check(color != 0 || !meets(shown, camera.eye, ray, -0.01), "a gap at ", x, ", ", y);
+      check(color != 0 || !meets(view, camera.eye, ray, -0.01), "a gap at ", x, ", ", y);
       const double value = (double(color) - 1.0) / 65535;
       if (!splatting::minifiesAnyAxis(view))
       {
@@ -415,7 +384,7 @@ bool compareWithFunction(Checks& check, const splatting::View& view,
         continue;
       }
       // The function has its extrema on the outline, but where it is flat.
-      const auto [least, largest, isWhole] = lookAround(camera, shown, f, x, y);
+      const auto [least, largest, isWhole] = lookAround(camera, view, f, x, y);
       check(!isWhole || (value >= least - bound - 1e-3 && value <= largest + bound + 1e-3),
         "a seam: ", value, " at ", x, ", ", y, ", not between ", least, " and ", largest,
         " within ", bound);

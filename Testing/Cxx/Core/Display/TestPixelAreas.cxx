@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Views whose pixels are wider than voxels: extrema and averages of areas of shear images.
-#include "CoreTesting.h"
+#include "ScreenPixels.h"
+#include "WarpTesting.h"
 #include "WideViews.h"
 
-#include "Display/ScreenColors.h"
 #include "Display/ShearPixels.h"
-#include "Display/Warp.h"
 
 #include <glm/common.hpp>
 
@@ -26,37 +25,14 @@ using Geometries = std::vector<splatting::ShearWarp>;
 
 constexpr float Background = -100.0f; // below all values
 
-/// A float image of a function of the pixel, as wide as a preview's; some have holes.
-template <class F>
-splatting::ShearImage imageOf(
-  const splatting::ShearWarp& geometry, bool hasHoles, reference::Random& random, F&& f)
+/// Hides some samples.
+void makeHoles(splatting::ShearImage& image, reference::Random& random)
 {
-  const auto size = geometry.size();
-  std::array<int, 3> dimensions;
-  for (int a = 0; a < 3; ++a)
+  image.mask.resize(std::size_t(image.width) * image.height);
+  for (unsigned char& sample : image.mask)
   {
-    dimensions[geometry.axes()[a]] = size[a];
+    sample = random.uniform(0, 9) > 0;
   }
-  splatting::ProjectionSettings settings;
-  settings.quality = splatting::Quality::Preview;
-  splatting::ShearImage image =
-    project(reference::constant<float>(dimensions, 0.0f), geometry, settings);
-  for (int v = 0; v < image.height; ++v)
-  {
-    for (int u = 0; u < image.width; ++u)
-    {
-      image.row<float>(v)[u] = static_cast<float>(f(u, v));
-    }
-  }
-  if (hasHoles)
-  {
-    image.mask.resize(std::size_t(image.width) * image.height);
-    for (unsigned char& sample : image.mask)
-    {
-      sample = random.uniform(0, 9) > 0;
-    }
-  }
-  return image;
 }
 
 Images noise(const Geometries& geometries, bool hasHoles, reference::Random& random)
@@ -64,9 +40,12 @@ Images noise(const Geometries& geometries, bool hasHoles, reference::Random& ran
   Images images;
   for (const splatting::ShearWarp& geometry : geometries)
   {
-    images.push_back(
-      imageOf(geometry, hasHoles, random, [&](int, int) { return random.uniform(0.0, 1.0); }));
+    images.push_back(imageOf(geometry, [&](int, int) { return random.uniform(0.0, 1.0); }));
     splatting::ShearImage& image = images.back();
+    if (hasHoles)
+    {
+      makeHoles(image, random);
+    }
     image.winners.assign(std::size_t(image.width) * image.height, 0);
     for (std::size_t n = 0; n < image.mask.size(); ++n)
     {
@@ -84,28 +63,6 @@ std::vector<float> picture(const Images& images, const Geometries& geometries,
   warped.set(images, geometries, reduction, viewport, anyInstructionSet(random));
   splatting::copyScreen(warped, viewport, pixels.data());
   return pixels;
-}
-
-/// Whether a ray passes between the outermost voxels' centres, where the picture does not end:
-/// the outermost half slices are beyond.
-bool isShown(const splatting::ShearWarp& geometry, int u, int v)
-{
-  if (u >= geometry.rayCount().x || !meets(geometry, u, v, -0.5 - 1e-6))
-  {
-    return false;
-  }
-  const glm::dvec3 last = glm::dvec3(geometry.size()) - 1.0;
-  double near = last.z > 0.0 ? 0.0 : -0.5, far = last.z > 0.0 ? last.z : 0.5;
-  for (int a = 0; a < 2; ++a)
-  {
-    const splatting::AxisRays& rays = a == 0 ? geometry.columns() : geometry.rows();
-    const int n = a == 0 ? u : v;
-    const double first = (1e-6 - rays.at[n]) / rays.slope[n];
-    const double second = (last[a] - 1e-6 - rays.at[n]) / rays.slope[n];
-    near = std::max(near, geometry.reference() + std::min(first, second));
-    far = std::min(far, geometry.reference() + std::max(first, second));
-  }
-  return near <= far;
 }
 
 splatting::View someView(int n, reference::Random& random)
@@ -137,210 +94,112 @@ Sightings forOverviews(const char* series, int count, F&& f)
   return overviews;
 }
 
-/// An interval of numbers x with a x + b >= 0 for some a and b.
-struct Interval
+/// An image as pixels read it.
+struct Source
 {
-  double low, high;
+  const splatting::ShearImage& image;
+  reference::ImageRays rays;
+  int width, height;
+  glm::dmat3 toScreen, toShear;
+  std::vector<glm::dvec4> box; ///< between whose sides pictures do not end
 
-  void cut(double a, double b)
+  Source(const splatting::ShearImage& shear, const splatting::ShearWarp& geometry)
+    : image(shear),
+      rays(referenceRays(geometry)),
+      width(shear.width),
+      height(shear.height),
+      toScreen(geometry.shearToScreen()),
+      toShear(geometry.screenToShear()),
+      box(reference::boxOfVolume(this->rays.volumeSize(), false, -1e-6))
   {
-    if (a > 0.0)
-    {
-      this->low = std::max(this->low, -b / a);
-    }
-    else if (a < 0.0 || b < 0.0)
-    {
-      this->high = a < 0.0 ? std::min(this->high, -b / a) : this->low - 1.0;
-    }
   }
-  double length() const { return this->high - this->low; }
-  double middle() const { return 0.5 * (this->low + this->high); }
+  bool covers(int u, int v) const { return this->image.covers(u, v); }
+  double value(int u, int v) const { return this->image.row<float>(v)[u]; }
+  bool isShown(int u, int v) const
+  {
+    return depthsInside(this->box, this->rays, u, v).length() >= 0.0;
+  }
 };
 
 /// What a pixel reads of all images of a view, by the definition.
-struct Reading
+struct Readings
 {
-  bool isCertain = true;  ///< by more than rounding
-  bool hasSample = false; ///< whether a visible sample is in the area
-  std::vector<double> values;
+  reference::Reading all;
   std::vector<splatting::ShearPixel> nearest; ///< of each value
 };
 
 class Reader
 {
 public:
-  Reader(const Images& images, const Geometries& geometries) : All(images), Geometry(geometries) {}
-
-  Reading at(int x, int y) const
+  Reader(const Images& images, const Geometries& geometries)
   {
-    Reading all;
-    for (std::size_t n = 0; n < this->Geometry.size(); ++n)
+    for (std::size_t n = 0; n < images.size(); ++n)
     {
-      Reading reading;
-      this->readRows(static_cast<int>(n), { x, y }, reading);
-      // An image is not read beside its part of the picture, which the other images show.
-      all.isCertain &= reading.isCertain &&
-        (reading.hasSample || reading.values.empty() || this->Geometry.size() == 1);
-      all.hasSample |= reading.hasSample;
-      all.values.insert(all.values.end(), reading.values.begin(), reading.values.end());
-      all.nearest.insert(all.nearest.end(), reading.nearest.begin(), reading.nearest.end());
+      this->Sources.emplace_back(images[n], geometries[n]);
     }
-    return all;
+  }
+
+  const std::vector<Source>& sources() const { return this->Sources; }
+
+  Readings at(int x, int y) const
+  {
+    Readings result;
+    reference::Reading& all = result.all;
+    for (std::size_t n = 0; n < this->Sources.size(); ++n)
+    {
+      reference::Reading one;
+      reference::AreaReader<Source>(this->Sources[n], 1e-7).read({ x, y }, one);
+      // An image is not read beside its part of the picture, which the other images show.
+      all.isCertain &=
+        one.isCertain && (one.hasSample || one.values.empty() || this->Sources.size() == 1);
+      all.hasSample |= one.hasSample;
+      all.values.insert(all.values.end(), one.values.begin(), one.values.end());
+      for (const glm::ivec2& p : one.nearest)
+      {
+        result.nearest.push_back({ static_cast<int>(n), p.x, p.y });
+      }
+    }
+    return result;
   }
 
   /// The largest sample less than two samples beside the area of a pixel.
   double largestBeside(const glm::dvec2& pixel) const
   {
     double largest = Background;
-    for (std::size_t n = 0; n < this->Geometry.size(); ++n)
+    for (const Source& source : this->Sources)
     {
       glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
-      for (const glm::dvec2& corner :
-        { glm::dvec2(-0.5, -0.5), { 0.5, -0.5 }, { 0.5, 0.5 }, { -0.5, 0.5 } })
+      for (const glm::dvec2& corner : reference::AreaReader<Source>::corners())
       {
-        const glm::dvec3 h = this->Geometry[n].screenToShear() * glm::dvec3(pixel + corner, 1.0);
+        const glm::dvec3 h = source.toShear * glm::dvec3(pixel + corner, 1.0);
         const double far = std::numeric_limits<double>::infinity();
         const glm::dvec2 p = h.z > 0.0 ? glm::dvec2(h) / h.z : glm::dvec2(far);
         low = h.z > 0.0 ? glm::min(low, p) : glm::dvec2(-far);
         high = glm::max(high, p);
       }
-      for (int v = 0; v < this->All[n].height; ++v)
+      for (int v = 0; v < source.height; ++v)
       {
-        for (int u = 0; u < this->All[n].width; ++u)
+        for (int u = 0; u < source.width; ++u)
         {
           const bool isBeside =
             u > low.x - 2.0 && u < high.x + 2.0 && v > low.y - 2.0 && v < high.y + 2.0;
-          const bool isLarger =
-            isBeside && this->All[n].covers(u, v) && this->All[n].row<float>(v)[u] > largest;
-          largest = isLarger ? this->All[n].row<float>(v)[u] : largest;
+          if (isBeside && source.covers(u, v))
+          {
+            largest = std::max(largest, source.value(u, v));
+          }
         }
       }
     }
     return largest;
   }
 
-  float sample(const splatting::ShearPixel& p) const
+  double sample(const splatting::ShearPixel& p) const
   {
-    return this->All[p.image].row<float>(p.v)[p.u];
+    return this->Sources[p.image].value(p.u, p.v);
   }
 
 private:
-  static constexpr double Rounding = 1e-7;
-
-  /// The part of a row (or, of 1, of a column) of an image that lies in a pixel's area, and no more
-  /// than a sample beside the image.
-  Interval part(int n, const glm::dvec2& pixel, int along, double line) const
-  {
-    Interval part{ -1.0, double(along == 0 ? this->All[n].width : this->All[n].height) };
-    const glm::dmat3& m = this->Geometry[n].shearToScreen();
-    const glm::dvec3 step = m[along], start = line * m[1 - along] + m[2];
-    for (int a = 0; a < 2; ++a)
-    {
-      for (const double side : { -1.0, 1.0 })
-      {
-        const double border = pixel[a] + 0.5 * side;
-        part.cut(side * (border * step.z - step[a]), side * (border * start.z - start[a]));
-      }
-    }
-    part.cut(step.z, start.z);
-    return part;
-  }
-
-  void readRows(int n, const glm::dvec2& pixel, Reading& reading) const
-  {
-    bool meetsRows = false;
-    // A row along a side of the area is in it, or not, by rounding.
-    for (const glm::dvec2& corner :
-      { glm::dvec2(-0.5, -0.5), { 0.5, -0.5 }, { 0.5, 0.5 }, { -0.5, 0.5 } })
-    {
-      const glm::dvec3 h = this->Geometry[n].screenToShear() * glm::dvec3(pixel + corner, 1.0);
-      const double v = h.y / h.z;
-      reading.isCertain &= !(h.z > 0.0) || std::abs(v - std::round(v)) > Rounding;
-    }
-    for (int v = -1; v <= this->All[n].height; ++v)
-    {
-      const Interval row = this->part(n, pixel, 0, v);
-      reading.isCertain &= std::abs(row.length()) > Rounding;
-      meetsRows |= row.length() > 0.0;
-      this->readRow(n, row, v, reading);
-    }
-    if (!meetsRows)
-    {
-      this->readBetweenRows(n, pixel, reading);
-    }
-  }
-
-  /// An area between two rows is read in the middle of its height.
-  void readBetweenRows(int n, const glm::dvec2& pixel, Reading& reading) const
-  {
-    Interval rows{ std::numeric_limits<double>::infinity(), 0.0 };
-    rows.high = -rows.low;
-    for (const glm::dvec2& corner :
-      { glm::dvec2(-0.5, -0.5), { 0.5, -0.5 }, { 0.5, 0.5 }, { -0.5, 0.5 } })
-    {
-      const glm::dvec3 h = this->Geometry[n].screenToShear() * glm::dvec3(pixel + corner, 1.0);
-      const glm::dvec2 p = glm::dvec2(h) / h.z;
-      const bool isInside = h.z > 0.0 && p.x > -1.0 && p.x < this->All[n].width;
-      reading.isCertain &= isInside;
-      rows = { std::min(rows.low, p.y), std::max(rows.high, p.y) };
-    }
-    if (rows.low > -1.0 && rows.high < this->All[n].height && reading.isCertain)
-    {
-      const double v = rows.middle();
-      this->readRow(n, this->part(n, pixel, 0, v), v, reading);
-    }
-  }
-
-  void readRow(int n, const Interval& row, double v, Reading& reading) const
-  {
-    if (row.length() < 0.0)
-    {
-      return;
-    }
-    for (const double end : { row.low, row.high })
-    {
-      reading.isCertain &= std::abs(end - std::round(end)) > Rounding;
-    }
-    bool isRead = false;
-    for (double u = std::ceil(row.low); u <= row.high; ++u)
-    {
-      this->readPoint(n, u, v, reading);
-      isRead = true;
-    }
-    if (!isRead)
-    {
-      this->readPoint(n, row.middle(), v, reading);
-    }
-  }
-
-  void readPoint(int n, double u, double v, Reading& reading) const
-  {
-    const splatting::ShearImage& image = this->All[n];
-    const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
-    double sum = 0.0;
-    for (int corner = 0; corner < 4; ++corner)
-    {
-      const int column = i + corner % 2, row = j + corner / 2;
-      const double weight = (1.0 - std::abs(u - column)) * (1.0 - std::abs(v - row));
-      if (weight > 0.0 && !image.covers(column, row))
-      {
-        return;
-      }
-      sum += weight > 0.0 ? weight * image.row<float>(row)[column] : 0.0;
-    }
-    for (const double place : { u, v })
-    {
-      reading.isCertain &= std::abs(place - std::floor(place) - 0.5) > Rounding;
-    }
-    const splatting::ShearPixel nearest{ n, int(std::lround(u)), int(std::lround(v)) };
-    reading.hasSample |=
-      nearest.u == u && nearest.v == v && isShown(this->Geometry[n], nearest.u, nearest.v);
-    reading.values.push_back(sum);
-    reading.nearest.push_back(nearest);
-  }
-
-  const Images& All;
-  const Geometries& Geometry;
+  std::vector<Source> Sources;
 };
 
 /// Calls f(pixel, reading) for the pixels of a view where rounding decides nothing.
@@ -353,8 +212,8 @@ void forReadings(
   {
     for (int x = 0; x < view.viewport.x; ++x)
     {
-      const Reading reading = reader.at(x, y);
-      if (reading.isCertain)
+      const Readings reading = reader.at(x, y);
+      if (reading.all.isCertain)
       {
         f(std::size_t(y) * view.viewport.x + x, reading);
       }
@@ -380,12 +239,12 @@ void testDefinition(Checks& check)
       bool hasRead = false;
       const Reader reader(images, geometries);
       forReadings(view, images, geometries,
-        [&](std::size_t p, const Reading& reading)
+        [&](std::size_t p, const Readings& reading)
         {
-          const std::vector<double>& values = reading.values;
+          const std::vector<double>& values = reading.all.values;
           hasRead = hasRead || !values.empty();
-          check(!reading.hasSample || largest[p] != Background, "a sample in the area of pixel ", p,
-            " is not shown");
+          check(!reading.all.hasSample || largest[p] != Background,
+            "a sample in the area of pixel ", p, " is not shown");
           if (values.empty() || largest[p] == Background)
           {
             check(largest[p] == Background ||
@@ -427,17 +286,18 @@ void testEverySample(Checks& check)
       const auto found =
         picture(images, geometries, splatting::Reduction::Maximum, view.viewport, random);
       bool isSeen = false;
-      for (std::size_t i = 0; i < images.size(); ++i)
+      const Reader reader(images, geometries);
+      for (const Source& source : reader.sources())
       {
-        for (int v = 0; v < images[i].height; ++v)
+        for (int v = 0; v < source.height; ++v)
         {
-          for (int u = 0; u < images[i].width; ++u)
+          for (int u = 0; u < source.width; ++u)
           {
-            const glm::dvec3 h = geometries[i].shearToScreen() * glm::dvec3(u, v, 1.0);
+            const glm::dvec3 h = source.toScreen * glm::dvec3(u, v, 1.0);
             const glm::dvec2 p = glm::dvec2(h) / h.z + 0.5;
             // On the line between two areas it may be in either.
             float shown = -1.0f;
-            bool isInside = images[i].covers(u, v) && isShown(geometries[i], u, v);
+            bool isInside = source.covers(u, v) && source.isShown(u, v);
             for (int side = 0; side < 4 && isInside; ++side)
             {
               const glm::ivec2 pixel(glm::floor(p + 1e-9 * (glm::dvec2(side % 2, side / 2) - 0.5)));
@@ -448,8 +308,8 @@ void testEverySample(Checks& check)
                 : shown;
             }
             isSeen = isSeen || isInside;
-            check(!isInside || shown >= images[i].row<float>(v)[u], "a sample of ",
-              images[i].row<float>(v)[u], " is lost in ", shown);
+            check(!isInside || shown >= source.value(u, v), "a sample of ", source.value(u, v),
+              " is lost in ", shown);
           }
         }
       }
@@ -486,15 +346,15 @@ void testLocations(Checks& check)
       bool isLocated = false;
       const Reader reader(images, geometries);
       forReadings(view, images, geometries,
-        [&](std::size_t p, const Reading& reading)
+        [&](std::size_t p, const Readings& reading)
         {
           const splatting::ShearPixel& location = shown[p];
-          if (reading.values.empty() || location.image < 0)
+          if (reading.all.values.empty() || location.image < 0)
           {
             return;
           }
           isLocated = true;
-          float best = -1.0f;
+          double best = -1.0;
           bool isRead = false;
           for (const splatting::ShearPixel& nearest : reading.nearest)
           {
@@ -534,7 +394,7 @@ void testWidePixels(Checks& check)
       Images images;
       for (const splatting::ShearWarp& geometry : geometries)
       {
-        images.push_back(imageOf(geometry, false, random, [](int, int) { return 7.0; }));
+        images.push_back(imageOf(geometry, [](int, int) { return 7.0; }));
       }
       const auto means =
         picture(images, geometries, splatting::Reduction::Mean, view.viewport, random);

@@ -15,51 +15,22 @@
 
 namespace coretesting
 {
-/// Whether the ray of a pixel crosses a voxel.
-inline bool meetsVolume(const splatting::ShearWarp& geometry, int u, int v)
-{
-  for (int k = geometry.slices().begin; k < geometry.slices().end; ++k)
-  {
-    const splatting::RayPath path = geometry.voxelsOnRay(u, v, k);
-    for (int n = 0; n < path.count; ++n)
-    {
-      if (path.di[n] >= 0 && path.di[n] < geometry.size().x && path.dj[n] >= 0 &&
-        path.dj[n] < geometry.size().y)
-      {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
 /// A shear image of a float function of the pixel.
 template <class F>
 splatting::ShearImage imageOf(const splatting::ShearWarp& geometry, F&& f)
 {
-  splatting::ShearImage image;
-  image.type = splatting::ScalarType::Float32;
-  image.width = geometry.width();
-  image.height = geometry.height();
-  image.bytes.resize(sizeof(float) * image.width * image.height);
-  image.spans.assign(image.height, { image.width, 0 });
+  // As wide as a preview's.
+  splatting::ProjectionSettings settings;
+  settings.quality = splatting::Quality::Preview;
+  const auto size = toArray(referenceRays(geometry).volumeSize());
+  splatting::ShearImage image = project(reference::Volume<float>(size, 0.0f), geometry, settings);
   for (int v = 0; v < image.height; ++v)
   {
-    // Rays that graze the volume may or may not meet it; an image's rows are whole all the same.
-    splatting::Span& span = image.spans[v];
-    for (int u = 0; u < image.width; ++u)
-    {
-      if (meetsVolume(geometry, u, v))
-      {
-        span = { std::min(span.begin, u), u + 1 };
-      }
-    }
     for (int u = 0; u < image.width; ++u)
     {
       // What lies outside has no meaning and must not be read.
-      const bool meets = u >= span.begin && u < span.end;
       image.row<float>(v)[u] =
-        meets ? static_cast<float>(f(u, v)) : std::numeric_limits<float>::quiet_NaN();
+        image.covers(u, v) ? static_cast<float>(f(u, v)) : std::numeric_limits<float>::quiet_NaN();
     }
   }
   return image;

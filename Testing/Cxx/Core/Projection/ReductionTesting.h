@@ -62,30 +62,20 @@ reference::Volume<T> randomVolume(reference::Random& random, int largest, Qualit
   return volume;
 }
 
-inline reference::Kernel kernelOf(Quality quality)
-{
-  return { quality == Quality::Standard ? reference::Kernel::Nearest : reference::Kernel::Trilinear,
-    1.0 };
-}
-
 /// The samples of all rays in the type in which a mode has them.
 template <class S>
 reference::RaySamples<S> samplesOf(
   const reference::Volume<S>& volume, const splatting::ShearWarp& geometry, Quality quality)
 {
-  const auto samples = [&](const auto& rays)
+  const reference::ImageRays rays = referenceRays(geometry);
+  if constexpr (std::is_same_v<S, double>)
   {
-    if constexpr (std::is_same_v<S, double>)
+    if (quality != Quality::Preview)
     {
-      if (quality != Quality::Preview)
-      {
-        return reference::slabSamples(volume, rays, kernelOf(quality));
-      }
+      return reference::slabSamples(volume, rays, modeOf(quality).reference);
     }
-    return reference::voxelSamples(volume, rays);
-  };
-  return geometry.isPerspective() ? samples(referenceRays(geometry))
-                                  : samples(referenceView(geometry));
+  }
+  return reference::voxelSamples(volume, rays);
 }
 
 /// How far samples and results may be off.
@@ -140,14 +130,7 @@ Bounds boundsOf(
     bounds.low = bounds.high = 0.0;
   }
   bounds.rounding = std::is_same_v<splatting::Accumulator<T>, float> ? 0x1p-24 : 0x1p-53;
-  if (quality != Quality::Preview)
-  {
-    // The reference itself is good to some rounding errors of double.
-    bounds.sample = geometry.isPerspective() ? perspectiveErrorBound<T>(referenceRays(geometry),
-                                                 kernelOf(quality), bounds.low, bounds.high)
-                                             : errorBound<T>(quality, bounds.low, bounds.high);
-    bounds.sample += 2e-13 * bounds.magnitude() + 1e-300;
-  }
+  bounds.sample = averageBound<T>(geometry, modeOf(quality), bounds.low, bounds.high);
   return bounds;
 }
 
@@ -371,8 +354,8 @@ void testReductions(Checks& check, const reference::Volume<T>& volume,
         : splatting::scalarTypeOf<T>();
       check(image.type == type, "reduction ", int(reduction), " has pixels of another type");
       Count count;
-      const int wrong = wrongPixels(
-        image, rays, cutterOf(c, volume.size), c, bounds, reference::lowestVoxel(volume), count);
+      const int wrong = wrongPixels(image, rays, { referenceRays(c.geometry), c.cuts }, c, bounds,
+        reference::lowestVoxel(volume), count);
       if (quality == Quality::Preview)
       {
         check(count.open + count.skipped == 0, "the preview is not exact");
@@ -408,7 +391,8 @@ void testLargeVolume(
     Count count;
     const splatting::ShearImage image = projected(volume, c);
     const double base = reference::lowestVoxel(volume);
-    check(wrongPixels(image, rays, cutterOf(c, volume.size), c, bounds, base, count) == 0,
+    check(
+      wrongPixels(image, rays, { referenceRays(c.geometry), c.cuts }, c, bounds, base, count) == 0,
       "large volume, axis ", c.geometry.principalAxis(), ", reduction ", int(reduction));
     for (Quality quality : { Quality::Preview, Quality::Standard, Quality::High })
     {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What becomes of the samples along rays equals its definition, sample by sample: five reductions,
-// three modes, every scalar type, views from both sides, half-spaces, cropping and NaN. Memory,
+// three modes, every scalar type, views of both projections, half-spaces, cropping and NaN. Memory,
 // accelerations, instruction sets and threads do not change a bit.
 #include "ReductionTesting.h"
 
@@ -45,8 +45,16 @@ Case caseOf(const splatting::View& view)
 }
 
 /// Of a view from any side.
-Case randomCase(Checks& check, const std::array<int, 3>& size, reference::Random& random)
+Case randomCase(
+  Checks& check, const std::array<int, 3>& size, bool perspective, reference::Random& random)
 {
+  if (perspective)
+  {
+    Case c;
+    c.geometry = randomPerspectiveImage(size, random);
+    c.reversed = c.geometry.reversed();
+    return c;
+  }
   const splatting::View view = viewFromAnySide(size, random);
   const Case c = caseOf(view);
   check(c.geometry.reversed() == c.reversed, "the viewer is on another side");
@@ -54,39 +62,47 @@ Case randomCase(Checks& check, const std::array<int, 3>& size, reference::Random
 }
 
 template <class T>
-void testType(Checks& check, Comparisons& comparisons)
+void testType(Checks& check, bool perspective, Comparisons& comparisons)
 {
-  reference::forScenes(seriesOf<T>("previews"), 80,
+  reference::forScenes(seriesOf<T>(nameOf("previews", perspective)), 80,
     [&](int, reference::Random& random)
     {
       const auto volume = randomVolume<T>(random, 12, Quality::Preview);
-      testReductions(check, volume, volume, randomCase(check, volume.size, random),
+      testReductions(check, volume, volume, randomCase(check, volume.size, perspective, random),
         Quality::Preview, random, comparisons);
     });
-  reference::forScenes(seriesOf<T>("averages"), 24,
+  reference::forScenes(seriesOf<T>(nameOf("averages", perspective)), perspective ? 40 : 24,
     [&](int n, reference::Random& random)
     {
       const Quality quality = n % 2 ? Quality::Standard : Quality::High;
       const auto volume = randomVolume<T>(random, 6, quality);
       testReductions(check, volume, reference::toDouble(volume),
-        randomCase(check, volume.size, random), quality, random, comparisons);
+        randomCase(check, volume.size, perspective, random), quality, random, comparisons);
     });
 }
 
 /// Volumes of several bands, blocks of registers and bricks; threads.
 template <class T>
-void testLarge(Checks& check)
+void testLarge(Checks& check, bool perspective)
 {
-  reference::forScenes(seriesOf<T>("large volumes"), 4,
+  reference::forScenes(seriesOf<T>(nameOf("large volumes", perspective)), 4,
     [&](int, reference::Random& random)
     {
       const auto volume = reference::uniformNoise<T>({ 75, 50, 41 }, random);
-      // From both sides along the first axis, too, where slices may be transposed.
-      const int axis = random.uniform(0, 2);
-      const double shearX = random.uniform(-1.0, 1.0), shearY = random.uniform(-1.0, 1.0);
-      splatting::View view = viewWithShear(volume.size, axis, shearX, shearY);
-      view.indexToClip[axis][2] *= random.sign();
-      Case c = caseOf(view);
+      Case c;
+      if (perspective)
+      {
+        c = randomCase(check, volume.size, true, random);
+      }
+      else
+      {
+        // From both sides along the first axis, too, where slices may be transposed.
+        const int axis = random.uniform(0, 2);
+        const double shearX = random.uniform(-1.0, 1.0), shearY = random.uniform(-1.0, 1.0);
+        splatting::View view = viewWithShear(volume.size, axis, shearX, shearY);
+        view.indexToClip[axis][2] *= random.sign();
+        c = caseOf(view);
+      }
       c.cuts = anyCuts(volume.size, random);
       testLargeVolume(check, volume, c, random);
     });
@@ -148,13 +164,16 @@ void testRelations(Checks& check)
 int TestReductions(int, char*[])
 {
   Checks check;
-  Comparisons comparisons;
-  forEachType(
-    [&](auto* null) { testType<std::remove_pointer_t<decltype(null)>>(check, comparisons); });
-  comparisons.judge(check);
-  testLarge<std::uint8_t>(check);
-  testLarge<std::int32_t>(check);
-  testLarge<float>(check);
+  for (bool perspective : { false, true })
+  {
+    Comparisons comparisons;
+    forEachType([&](auto* null)
+      { testType<std::remove_pointer_t<decltype(null)>>(check, perspective, comparisons); });
+    comparisons.judge(check);
+    testLarge<std::uint8_t>(check, perspective);
+    testLarge<std::int32_t>(check, perspective);
+    testLarge<float>(check, perspective);
+  }
   testRelations(check);
   return check.exitCode();
 }

@@ -5,7 +5,7 @@
 // first of those that win, in the other modes the average over the footprint of the slice that
 // wins.
 #include "AverageTesting.h"
-#include "CoreTesting.h"
+#include "Winners.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,42 +49,6 @@ reference::Volume<std::int32_t> places(const std::array<int, 3>& size)
   return volume;
 }
 
-/// The voxel that wins, of those that a ray crosses, from the viewer; nullptr without one.
-const std::int32_t* winnerOf(const reference::Volume<std::int32_t>& volume,
-  const splatting::ShearWarp& geometry, const splatting::Cropping& cropping, Reduction reduction,
-  int u, int v)
-{
-  const reference::ShearView view = referenceView(geometry);
-  const auto grid = reference::makeShearGrid(volume.size, view);
-  auto path = reference::crossedVoxels(volume.size, view, u, v);
-  if (geometry.reversed())
-  {
-    std::reverse(path.begin(), path.end());
-  }
-  const std::int32_t* winner = nullptr;
-  for (const auto& voxel : path)
-  {
-    const int k = voxel[grid.axes[2]];
-    const double middle[3] = { u - grid.margin[0] - view.shear[0] * (k - grid.middle),
-      v - grid.margin[1] - view.shear[1] * (k - grid.middle), double(k) };
-    int bit = 0;
-    const int strides[3] = { 1, 3, 9 };
-    for (int a = 0; a < 3; ++a)
-    {
-      const glm::dvec2& planes = cropping.planes[grid.axes[a]];
-      bit += strides[grid.axes[a]] * (middle[a] < planes[0] ? 0 : middle[a] <= planes[1] ? 1 : 2);
-    }
-    if (cropping.flags >> bit & 1u)
-    {
-      const std::int32_t& value = volume.at(voxel);
-      const bool wins =
-        !winner || (reduction == Reduction::Minimum ? value < *winner : value > *winner);
-      winner = wins ? &value : winner;
-    }
-  }
-  return winner;
-}
-
 void testPreview(Checks& check)
 {
   reference::forScenes("previews", 300,
@@ -94,24 +58,25 @@ void testPreview(Checks& check)
       // Few values: ties are common.
       const auto volume = reference::uniformNoise<std::int32_t>(size, random, -3, 3);
       const splatting::ShearWarp geometry(anyView(size, random));
-      splatting::Cropping cropping = anyCropping(size, random);
-      for (auto& planes : cropping.planes)
-      {
-        planes[1] = std::max(planes[1], planes[0] + 1.0); // not thinner than a slice
-      }
+      const splatting::Cropping cropping = anyCropping(size, random);
       splatting::ProjectionSettings settings;
       settings.quality = Quality::Preview;
       settings.reduction = random.oneIn(2) ? Reduction::Maximum : Reduction::Minimum;
       const Projected found = projectAndCarry(volume, places(size), geometry, settings, cropping);
+      const reference::ImageRays rays = referenceRays(geometry);
+      const auto samples = reference::voxelSamples(volume, rays);
+      const auto carried = reference::voxelSamples(places(size), rays);
+      const reference::RayCutter cutter(rays, rayCutsOf({}, cropping));
       bool same = true;
       for (int v = 0; v < found.image.height && same; ++v)
       {
         for (int u = 0; u < found.image.width && same; ++u)
         {
-          const std::int32_t* const winner =
-            winnerOf(volume, geometry, cropping, settings.reduction, u, v);
-          same = found.image.covers(u, v) == (winner != nullptr) &&
-            (!winner || found.carried.row<std::int32_t>(v)[u] == winner - volume.voxels.data());
+          const std::size_t pixel = std::size_t(v) * rays.width() + u;
+          const int winner = reference::winnerOf(samples[pixel], cutter, u, v, geometry.reversed(),
+            settings.reduction == Reduction::Minimum);
+          same = found.image.covers(u, v) == (winner >= 0) &&
+            (winner < 0 || found.carried.row<std::int32_t>(v)[u] == carried[pixel][winner].value);
         }
       }
       check(same, "another voxel is carried");
@@ -133,9 +98,7 @@ void testItself(Checks& check)
       settings.reduction = static_cast<Reduction>(random.uniform(0, 1));
       const Projected found =
         projectAndCarry(volume, volume, geometry, settings, anyCropping(volume.size, random));
-      const auto range = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
-      const double bound = errorBound<T>(
-        settings.quality, static_cast<double>(*range.first), static_cast<double>(*range.second));
+      const double bound = averageBound(volume, geometry, modeOf(settings.quality));
       double worst = 0.0;
       for (int v = 0; v < found.image.height; ++v)
       {

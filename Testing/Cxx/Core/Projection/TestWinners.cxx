@@ -65,19 +65,20 @@ Voxels winningVoxels(const reference::Volume<T>& volume, const Scene& scene, boo
   Voxels result;
   for (const splatting::ShearWarp& geometry : scene.images)
   {
-    const auto rays = voxelsOf(volume, geometry);
-    const reference::RayCutter cutter = cutterOf(geometry, volume.size, scene);
-    std::vector<glm::ivec3>& voxels = result.emplace_back(rays.size(), glm::ivec3(-1));
+    const reference::ImageRays rays = referenceRays(geometry);
+    const auto samples = reference::voxelSamples(volume, rays);
+    const reference::RayCutter cutter(rays, scene.cuts);
+    std::vector<glm::ivec3>& voxels = result.emplace_back(samples.size(), glm::ivec3(-1));
     for (int v = 0; v < geometry.rayCount().y; ++v)
     {
       for (int u = 0; u < geometry.rayCount().x; ++u)
       {
         const std::size_t at = std::size_t(v) * geometry.width() + u;
         const int winner =
-          reference::winnerOf(rays[at], cutter, u, v, geometry.reversed(), minimum);
+          reference::winnerOf(samples[at], cutter, u, v, geometry.reversed(), minimum);
         if (winner >= 0)
         {
-          voxels[at] = toGlm(pathOf(volume.size, geometry, u, v)[winner]);
+          voxels[at] = toGlm(reference::crossedVoxels(rays, u, v)[winner]);
         }
       }
     }
@@ -178,9 +179,7 @@ double shareOf(const std::array<int, 3>& size, const splatting::ShearWarp& geome
 {
   reference::Volume<double> single(size, 0.0);
   single.at(std::array<int, 3>{ voxel.x, voxel.y, voxel.z }) = 1.0;
-  return geometry.isPerspective()
-    ? reference::slabSample(single, referenceRays(geometry), kernel, u, v, k).value
-    : reference::slabSample(single, referenceView(geometry), kernel, u, v, k).value;
+  return reference::slabSample(single, referenceRays(geometry), kernel, u, v, k).value;
 }
 
 /// Of one pixel, the voxel that adds most to its average: none adds more, but for what weights are
@@ -254,19 +253,9 @@ template <class T>
 ExactAverages exactAverages(const AverageScene<T>& averages, std::size_t m)
 {
   const splatting::ShearWarp& geometry = averages.scene.images[m];
-  const Mode& mode = averages.mode;
-  const auto& voxels = averages.volume.voxels;
-  const auto range = std::minmax_element(voxels.begin(), voxels.end());
-  const double low = static_cast<double>(*range.first), high = static_cast<double>(*range.second);
-  const auto exact = reference::toDouble(averages.volume);
-  if (geometry.isPerspective())
-  {
-    const reference::PerspectiveRays rays = referenceRays(geometry);
-    return { reference::slabSamples(exact, rays, mode.reference),
-      perspectiveErrorBound<T>(rays, mode.reference, low, high) };
-  }
-  return { reference::slabSamples(exact, referenceView(geometry), mode.reference),
-    errorBound<T>(mode.quality, low, high) };
+  return { reference::slabSamples(reference::toDouble(averages.volume), referenceRays(geometry),
+             averages.mode.reference),
+    averageBound(averages.volume, geometry, averages.mode) };
 }
 
 /// Whether the slices that win in an image have the extrema. Returns false if a ray has a sample
@@ -276,7 +265,8 @@ bool compareSlices(
   Checks& check, const AverageScene<T>& averages, const ExactAverages& exact, std::size_t m)
 {
   const splatting::ShearWarp& geometry = averages.scene.images[m];
-  const reference::RayCutter cutter = cutterOf(geometry, averages.volume.size, averages.scene);
+  const reference::ImageRays rays = referenceRays(geometry);
+  const reference::RayCutter cutter(rays, averages.scene.cuts);
   const bool smallest = averages.settings.reduction == Reduction::Minimum;
   for (int v = 0; v < geometry.rayCount().y; ++v)
   {
@@ -284,7 +274,7 @@ bool compareSlices(
     {
       const std::size_t at = std::size_t(v) * geometry.width() + u;
       const auto& ray = exact.rays[at];
-      if (geometry.isPerspective() && ray.empty() && meets(geometry, u, v, GrazeWidth))
+      if (!rays.isParallel() && ray.empty() && meets(rays, u, v, GrazeWidth))
       {
         continue; // it may be counted to the volume or not, see ShearImage::spans
       }

@@ -13,17 +13,11 @@
 
 #include <algorithm>
 #include <array>
-#include <string>
 #include <vector>
 
 namespace winnerscenes
 {
 using namespace coretesting;
-
-inline std::string nameOf(const char* series, bool perspective)
-{
-  return std::string(series) + (perspective ? ", in perspective" : "");
-}
 
 /// A view with one or more shear images, and what cuts it.
 struct Scene
@@ -52,17 +46,6 @@ inline Scene anyScene(
   }
   scene.cuts = rayCutsOf(scene.view.halfSpaces, scene.view.cropping);
   return scene;
-}
-
-inline reference::RayCutter cutterOf(
-  const splatting::ShearWarp& geometry, const std::array<int, 3>& size, const Scene& scene)
-{
-  if (geometry.isPerspective())
-  {
-    return { referenceRays(geometry), scene.cuts };
-  }
-  const reference::ShearView view = referenceView(geometry);
-  return { reference::makeShearGrid(size, view), view, scene.cuts };
 }
 
 template <class T>
@@ -100,21 +83,6 @@ splatting::Located located(const reference::Volume<T>& volume, const Scene& scen
   located.settings = settings;
   located.view = scene.view;
   return located;
-}
-
-template <class T>
-reference::RaySamples<T> voxelsOf(
-  const reference::Volume<T>& volume, const splatting::ShearWarp& geometry)
-{
-  return geometry.isPerspective() ? reference::voxelSamples(volume, referenceRays(geometry))
-                                  : reference::voxelSamples(volume, referenceView(geometry));
-}
-
-inline std::vector<std::array<int, 3>> pathOf(
-  const std::array<int, 3>& size, const splatting::ShearWarp& geometry, int u, int v)
-{
-  return geometry.isPerspective() ? reference::crossedVoxels(referenceRays(geometry), u, v)
-                                  : reference::crossedVoxels(size, referenceView(geometry), u, v);
 }
 }
 

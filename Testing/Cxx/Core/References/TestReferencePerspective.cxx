@@ -12,8 +12,8 @@
 #include <limits>
 
 using namespace coretesting;
+using reference::ImageRays;
 using reference::Kernel;
-using reference::PerspectiveRays;
 
 namespace
 {
@@ -34,9 +34,9 @@ struct Pencil
 };
 
 /// An eye at infinity where rays do not turn.
-PerspectiveRays raysOf(const std::array<int, 3>& size, const Pencil& pencil)
+ImageRays raysOf(const std::array<int, 3>& size, const Pencil& pencil)
 {
-  PerspectiveRays rays;
+  ImageRays rays;
   rays.size = size;
   rays.start = size[2] - 0.5;
   rays.eye = pencil.turn > 0.0 ? pencil.depth - 1.0 / pencil.turn : -1e12;
@@ -56,7 +56,7 @@ void testTraversalByHand(Checks& check)
 {
   using Voxels = std::vector<std::array<int, 3>>;
   // An eye in the middle of voxel (0, 0) of the slice before the first, looking along k.
-  PerspectiveRays rays;
+  ImageRays rays;
   rays.size = { 3, 3, 2 };
   rays.start = 1.5;
   rays.eye = -1.0;
@@ -108,7 +108,7 @@ void testAveragesOfProducts(Checks& check)
   pencil.depth = 2.0;
   pencil.margin = { -6, -6 };
   pencil.pixels = { 2, 2 };
-  const PerspectiveRays rays = raysOf(size, pencil);
+  const ImageRays rays = raysOf(size, pencil);
   const int parts = reference::partsPerSlice(rays, Hat);
   check(parts == 2, "slices are cut into ", parts, " parts"); // 0.47 * 0.56 <= 0.48
   for (int u = 0; u < 2; ++u)
@@ -150,7 +150,7 @@ void testBoxByHand(Checks& check)
   // One ray of slope 1/2 through x = 1 at z = 0 in the middle slice of three; the eye is 2 from it,
   // so windows are 1/2 wide at z = 0: x = 1 + a / 2 + b / 2 has a triangular density on
   // [1/2, 3/2], all of it in voxel 1.
-  PerspectiveRays rays;
+  ImageRays rays;
   rays.size = { 4, 1, 1 };
   rays.start = 0.5;
   rays.eye = -2.0;
@@ -192,7 +192,7 @@ void testParts(Checks& check)
       double largest = 0.0, share = 0.0;
       for (const splatting::ShearWarp& image : images)
       {
-        const PerspectiveRays rays = referenceRays(image);
+        const ImageRays rays = referenceRays(image);
         const auto exact = reference::frustumSamples(volume, rays, kernel);
         const auto parts = reference::slabSamples(volume, rays, kernel);
         for (std::size_t pixel = 0; pixel < exact.size(); ++pixel)

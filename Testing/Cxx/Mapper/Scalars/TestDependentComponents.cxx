@@ -59,10 +59,11 @@ bool carriesTuples(stage::Stage& stage, Mapper* mapper, vtkImageData* image)
   vtkImageData* const shear = mapper->GetShearImage();
   bool same = shear->GetNumberOfScalarComponents() == components;
   const int* const size = shear->GetDimensions();
+  const reference::ImageRays rays = reference::raysOf({ n[0], n[1], n[2] }, view);
   for (vtkIdType pixel = 0; same && pixel < shear->GetNumberOfPoints(); ++pixel)
   {
-    auto path = reference::crossedVoxels({ n[0], n[1], n[2] }, view,
-      static_cast<int>(pixel % size[0]), static_cast<int>(pixel / size[0]));
+    auto path = reference::crossedVoxels(
+      rays, static_cast<int>(pixel % size[0]), static_cast<int>(pixel / size[0]));
     if (reversed)
     {
       std::reverse(path.begin(), path.end());

@@ -86,7 +86,7 @@ void testExact(stage::Stage& stage, const std::string& series, reference::Checks
       const std::array<int, 3> size = { random.uniform(8, 16), random.uniform(8, 16),
         random.uniform(2, 12) };
       const Bytes volume = reference::uniformNoise<std::uint8_t>(size, number + 1);
-      const reference::Volume<double> field = reference::toDouble(volume);
+      const auto field = reference::cellScene(reference::toDouble(volume));
       const auto image = stage::toImageData(volume);
       coretesting::placeAtRandom(image, random, false);
       const bool isForFilter = skewImageOrProp(stage, image, random);
@@ -105,7 +105,7 @@ void testExact(stage::Stage& stage, const std::string& series, reference::Checks
       {
         for (int x = 0; x < Width; ++x)
         {
-          const auto maximum = stage::maximumOnRay(field, rays, x, y);
+          const auto maximum = stage::extremumOnRay(field, rays, x, y);
           const double low = maximum.isHit ? maximum.low - stage::FieldTolerance : 0.0;
           const double high = maximum.isHit ? maximum.high + stage::FieldTolerance : 0.0;
           const double found = picture.at(x, y);

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "PerspectiveProjection.h"
+#include "SlabAverages.h"
 
 #include "Integration.h"
-#include "Traversal.h"
 
 #include <cmath>
 #include <limits>
@@ -13,28 +12,6 @@ namespace reference
 
 namespace
 {
-
-/**
- * Weights of voxels along one axis.
- */
-struct AxisWeights
-{
-  int first = 0;
-  std::vector<double> weights;
-
-  void divideBySum()
-  {
-    double sum = 0.0;
-    for (double weight : this->weights)
-    {
-      sum += weight;
-    }
-    for (double& weight : this->weights)
-    {
-      weight /= sum;
-    }
-  }
-};
 
 /**
  * The mean of h(x - i) for each voxel i, where x lies in [low, high] with some density.
@@ -90,72 +67,16 @@ AxisWeights meanOverPart(
     h, centre - outer, centre + outer, { centre - inner, centre + inner }, rule, density);
 }
 
-/**
- * The volume seen along the rays, continued by its outermost voxels.
- */
-struct SeenVolume
-{
-  const Volume<double>& volume;
-  const PerspectiveRays& rays;
-
-  double voxel(int i, int j, int k) const
-  {
-    const int indices[3] = { i, j, k };
-    std::array<int, 3> position;
-    for (int a = 0; a < 3; ++a)
-    {
-      position[this->rays.axes[a]] = std::clamp(indices[a], 0, this->rays.size[a] - 1);
-    }
-    return this->volume.at(position);
-  }
-
-  /**
-   * The sum of products of weights times voxels.
-   */
-  WeightedSum sum(const AxisWeights& x, const AxisWeights& y, const AxisWeights& z) const
-  {
-    WeightedSum result;
-    for (std::size_t k = 0; k < z.weights.size(); ++k)
-    {
-      for (std::size_t j = 0; j < y.weights.size(); ++j)
-      {
-        for (std::size_t i = 0; i < x.weights.size(); ++i)
-        {
-          result.addVoxel(x.weights[i] * y.weights[j] * z.weights[k],
-            this->voxel(x.first + int(i), y.first + int(j), z.first + int(k)));
-        }
-      }
-    }
-    return result;
-  }
-};
-
 std::vector<Node> ruleFor(const Kernel& kernel)
 {
   return gaussLegendre(kernel.shape == Kernel::CosineBell ? 14 : 4);
 }
 
 /**
- * The slices in which the pixel's ray crosses a voxel, ascending.
- */
-std::vector<int> crossedSlices(const PerspectiveRays& rays, int u, int v)
-{
-  std::vector<int> slices;
-  for (const std::array<int, 3>& position : crossedVoxels(rays, u, v))
-  {
-    if (slices.empty() || slices.back() != position[rays.axes[2]])
-    {
-      slices.push_back(position[rays.axes[2]]);
-    }
-  }
-  return slices;
-}
-
-/**
  * average(u, v, slice) of each slice that rays cross.
  */
 template <class Average>
-RaySamples<double> averages(const PerspectiveRays& rays, const Average& average)
+RaySamples<double> averages(const ImageRays& rays, const Average& average)
 {
   RaySamples<double> samples;
   for (int v = 0; v < rays.height(); ++v)
@@ -186,8 +107,8 @@ double largestSlope(const std::vector<double>& slopes)
  * Between these depths within a slice, what a pixel's window adds to each voxel is smooth: where
  * neither edge passes a kink of the field.
  */
-std::vector<double> frustumKinks(const PerspectiveRays& rays, const Kernel& kernel, int u, int v,
-  const std::array<double, 2>& faces)
+std::vector<double> frustumKinks(
+  const ImageRays& rays, const Kernel& kernel, int u, int v, const std::array<double, 2>& faces)
 {
   std::vector<double> kinks = fieldKinks(kernel, faces[0], faces[1]);
   const int pixel[2] = { u, v };
@@ -212,6 +133,45 @@ std::vector<double> frustumKinks(const PerspectiveRays& rays, const Kernel& kern
 }
 
 /**
+ * The integral over all that a pixel sees of a slice.
+ */
+class FrustumAverage
+{
+public:
+  FrustumAverage(const SeenVolume& source, const Kernel& kernel)
+    : Source(source),
+      H(kernel),
+      Rule(ruleFor(kernel)),
+      // Of parallel rays only bells are no polynomials of the depth.
+      DepthRule(
+        gaussLegendre(source.rays.isParallel() && kernel.shape != Kernel::CosineBell ? 4 : 16))
+  {
+  }
+
+  WeightedSum operator()(int u, int v, int slice) const
+  {
+    const ImageRays& rays = this->Source.rays;
+    const std::array<double, 2> faces = rays.faces(slice, slice);
+    const std::vector<double> kinks = frustumKinks(rays, this->H, u, v, faces);
+    WeightedSum slab;
+    for (const Node& node : compositeRule(this->DepthRule, faces[0], faces[1], kinks))
+    {
+      const double z = node.position, half = 0.5 * rays.spacing(z);
+      const double x = rays.position(0, u, z), y = rays.position(1, v, z);
+      slab.add(node.weight / (faces[1] - faces[0]),
+        this->Source.sum(meanOverInterval(this->H, x - half, x + half, this->Rule),
+          meanOverInterval(this->H, y - half, y + half, this->Rule), kernelAt(this->H, z)));
+    }
+    return slab;
+  }
+
+private:
+  const SeenVolume& Source;
+  const Kernel& H;
+  const std::vector<Node> Rule, DepthRule;
+};
+
+/**
  * A slice cut into parts, in each of which weights are products of means.
  */
 class SlabAverage
@@ -227,7 +187,7 @@ public:
 
   WeightedSum operator()(int u, int v, int slice) const
   {
-    const PerspectiveRays& rays = this->Source.rays;
+    const ImageRays& rays = this->Source.rays;
     const std::array<double, 2> faces = rays.faces(slice, slice);
     const double thickness = (faces[1] - faces[0]) / this->Parts;
     WeightedSum slab;
@@ -257,41 +217,7 @@ private:
 } // namespace
 
 //------------------------------------------------------------------------------
-std::array<double, 2> PerspectiveRays::faces(int first, int last) const
-{
-  const double low = first - 0.5, high = last + 0.5;
-  return this->reversed ? std::array<double, 2>{ low, std::min(high, this->eye) }
-                        : std::array<double, 2>{ std::max(low, this->eye), high };
-}
-
-//------------------------------------------------------------------------------
-std::vector<std::array<int, 3>> crossedVoxels(const PerspectiveRays& rays, int u, int v)
-{
-  // Time is depth in units of 2^-10: slopes, multiples of 2^-24, are then multiples of 2^-34 per
-  // unit.
-  const std::array<double, 2> faces = rays.faces(0, rays.size[2] - 1);
-  const std::int64_t end = inUnits(faces[1] - faces[0]) >> 24;
-  const std::array<AxisMotion, 3> ray = { AxisMotion{ inUnits(rays.position(0, u, faces[0])),
-                                            inUnits(rays.slope[0][u]) >> 10 },
-    AxisMotion{ inUnits(rays.position(1, v, faces[0])), inUnits(rays.slope[1][v]) >> 10 },
-    AxisMotion{ inUnits(faces[0]), WholeVoxel >> 10 } };
-  std::vector<std::array<int, 3>> crossed;
-  for (const std::array<int, 3>& ijk : traverse(ray, end, rays.size))
-  {
-    if (rays.sees(ijk[2]))
-    {
-      std::array<int, 3>& position = crossed.emplace_back();
-      for (int a = 0; a < 3; ++a)
-      {
-        position[rays.axes[a]] = ijk[a];
-      }
-    }
-  }
-  return crossed;
-}
-
-//------------------------------------------------------------------------------
-int partsPerSlice(const PerspectiveRays& rays, const Kernel& kernel)
+int partsPerSlice(const ImageRays& rays, const Kernel& kernel)
 {
   const double product = largestSlope(rays.slope[0]) * largestSlope(rays.slope[1]);
   int parts = kernel.shape == Kernel::Nearest ? 1 : 2;
@@ -304,54 +230,36 @@ int partsPerSlice(const PerspectiveRays& rays, const Kernel& kernel)
 
 //------------------------------------------------------------------------------
 RaySamples<double> slabSamples(
-  const Volume<double>& volume, const PerspectiveRays& rays, const Kernel& kernel)
+  const Volume<double>& volume, const ImageRays& rays, const Kernel& kernel)
 {
+  if (rays.isParallel())
+  {
+    return frustumSamples(volume, rays, kernel);
+  }
   const SeenVolume source = { volume, rays };
-  const SlabAverage average(source, kernel);
-  return averages(rays, average);
+  return averages(rays, SlabAverage(source, kernel));
 }
 
 //------------------------------------------------------------------------------
-Sample<double> slabSample(const Volume<double>& volume, const PerspectiveRays& rays,
-  const Kernel& kernel, int u, int v, int slice)
+Sample<double> slabSample(const Volume<double>& volume, const ImageRays& rays, const Kernel& kernel,
+  int u, int v, int slice)
 {
   const SeenVolume source = { volume, rays };
-  return sampleOf(slice, SlabAverage(source, kernel)(u, v, slice));
+  return sampleOf(slice,
+    rays.isParallel() ? FrustumAverage(source, kernel)(u, v, slice)
+                      : SlabAverage(source, kernel)(u, v, slice));
 }
 
 //------------------------------------------------------------------------------
 RaySamples<double> frustumSamples(
-  const Volume<double>& volume, const PerspectiveRays& rays, const Kernel& kernel)
+  const Volume<double>& volume, const ImageRays& rays, const Kernel& kernel)
 {
   const SeenVolume source = { volume, rays };
-  const std::vector<Node> rule = ruleFor(kernel), depthRule = gaussLegendre(14);
-  return averages(rays,
-    [&](int u, int v, int slice)
-    {
-      const std::array<double, 2> faces = rays.faces(slice, slice);
-      const std::vector<double> kinks = frustumKinks(rays, kernel, u, v, faces);
-      WeightedSum slab;
-      for (const Node& node : compositeRule(depthRule, faces[0], faces[1], kinks))
-      {
-        const double z = node.position, half = 0.5 * rays.spacing(z);
-        const double x = rays.position(0, u, z), y = rays.position(1, v, z);
-        AxisWeights depth;
-        const IndexRange range = reachingIndices(kernel, z, z);
-        depth.first = range.first;
-        for (int n = 0; n < range.count; ++n)
-        {
-          depth.weights.push_back(kernel(z - (range.first + n)));
-        }
-        slab.add(node.weight / (faces[1] - faces[0]),
-          source.sum(meanOverInterval(kernel, x - half, x + half, rule),
-            meanOverInterval(kernel, y - half, y + half, rule), depth));
-      }
-      return slab;
-    });
+  return averages(rays, FrustumAverage(source, kernel));
 }
 
 //------------------------------------------------------------------------------
-double lostByParts(const PerspectiveRays& rays, const Kernel& kernel, int u, int v, int slice)
+double lostByParts(const ImageRays& rays, const Kernel& kernel, int u, int v, int slice)
 {
   const int parts = partsPerSlice(rays, kernel);
   const std::array<double, 2> faces = rays.faces(slice, slice);
