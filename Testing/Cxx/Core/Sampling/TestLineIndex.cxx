@@ -6,8 +6,6 @@
 #include "AverageTesting.h"
 #include "LineTesting.h"
 
-#include <vtkSMPTools.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -67,6 +65,7 @@ void testExact(Checks& check)
       const splatting::ShearWarp geometry(anyView(volume.size, random));
       splatting::ProjectionSettings settings;
       settings.kernel = kernels[random.uniform(0, 2)];
+      settings.footprintSampling = std::max(random.uniform(-2, 2), 0);
       settings.instructionSet = anyInstructionSet(random);
       std::vector<glm::dvec4> halfSpaces;
       if (random.oneIn(3))
@@ -74,14 +73,6 @@ void testExact(Checks& check)
         halfSpaces = anyHalfSpaces(volume.size, random);
       }
       compareWithDense(check, volume, geometry, settings, halfSpaces, "any volume");
-      const auto expected = reference::exactTraversal(volume, referenceView(geometry));
-      for (Acceleration acceleration : lineAccelerations)
-      {
-        const auto found =
-          toReference<T>(project(volume, geometry, settingsOf(Quality::Preview, acceleration)));
-        check.same(expected, found, 0.0, "type ", int(splatting::scalarTypeOf<T>()),
-          ": the preview is not the traversal, acceleration ", int(acceleration));
-      }
     });
 }
 
@@ -228,48 +219,6 @@ void testTolerance(Checks& check, Savings& savings)
     });
 }
 
-template <class T>
-void testFloor(Checks& check)
-{
-  reference::forScenes(seriesOf<T>("floors"), 20,
-    [&](int, reference::Random& random)
-    {
-      const auto volume = anyVolume<T>(random);
-      const splatting::ShearWarp geometry(anyView(volume.size, random));
-      std::vector<glm::dvec4> halfSpaces;
-      if (random.oneIn(2))
-      {
-        halfSpaces = anyHalfSpaces(volume.size, random);
-      }
-      auto expected = toReference<T>(project(volume, geometry,
-        settingsOf(Quality::Preview, Acceleration::Dense), cutsBy(geometry, halfSpaces)));
-      const T floor = random.oneIn(4)
-        ? volume.voxels[random.uniform<std::size_t>(0, volume.voxels.size() - 1)]
-        : level<T>(random.uniform(0, 255));
-      if (double(floor) != std::floor(double(floor)) || std::abs(double(floor)) < 0x1p52)
-      {
-        for (std::size_t p = 0; p < expected.value.size(); ++p)
-        {
-          expected.value[p] = expected.hit[p] ? std::max(expected.value[p], floor) : T();
-        }
-        for (Acceleration acceleration : lineAccelerations)
-        {
-          splatting::ProjectionSettings settings = settingsOf(Quality::Preview, acceleration);
-          settings.floor = double(floor);
-          if (std::numeric_limits<T>::is_integer && random.oneIn(2))
-          {
-            settings.floor += 0.5; // rounded down
-          }
-          check(
-            sameBits(expected,
-              toReference<T>(project(volume, geometry, settings, cutsBy(geometry, halfSpaces)))),
-            "type ", int(splatting::scalarTypeOf<T>()), ", acceleration ", int(acceleration),
-            ": not the larger of the picture and ", settings.floor);
-        }
-      }
-    });
-}
-
 /// Other voxels, other encodings; what is held is counted and given back.
 void testRenewal(Checks& check)
 {
@@ -309,27 +258,9 @@ void testRenewal(Checks& check)
     });
 }
 
-/// The same bits from one thread and from five, and progress that ends at 1.
-void testThreads(Checks& check)
+/// The progress of making chains ends at 1.
+void testProgress(Checks& check)
 {
-  const std::string usual = vtkSMPTools::GetBackend();
-  reference::forScenes("threads", 4,
-    [&](int, reference::Random& random)
-    {
-      if (!vtkSMPTools::SetBackend("STDThread"))
-      {
-        return; // this VTK was built without it
-      }
-      const auto volume = boxes<float>({ 70, 60, 50 }, 9, random);
-      const splatting::ShearWarp geometry(anyView(volume.size, random));
-      splatting::ProjectionSettings settings;
-      for (int threads : { 1, 5 })
-      {
-        vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
-          [&] { compareWithDense(check, volume, geometry, settings, {}, "threads"); });
-      }
-    });
-  vtkSMPTools::SetBackend(usual.c_str());
   reference::forScenes("progress", 1,
     [&](int, reference::Random& random)
     {
@@ -361,7 +292,6 @@ int TestLineIndex(int, char*[])
       testExact<T>(check);
       testFlat<T>(check);
       testTolerance<T>(check, savings);
-      testFloor<T>(check);
     });
   check(savings.bytes.areEnough(0.2), "a tolerance saves memory in only ", savings.bytes);
   check(savings.pixels.areEnough(0.2), "a tolerance changes pixels in only ", savings.pixels);
@@ -369,6 +299,6 @@ int TestLineIndex(int, char*[])
   testOddValues<float>(check);
   testOddValues<double>(check);
   testRenewal(check);
-  testThreads(check);
+  testProgress(check);
   return check.exitCode();
 }
