@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The factorisation: shear followed by warp is the view, rays cross the voxels they should, and
-// pixels are as wide as they are.
+// The factorisation: shear followed by warp is the view, and pixels are as wide as they are.
 #include "CoreTesting.h"
 #include "Geometry/Magnification.h"
 #include "WideViews.h"
@@ -158,100 +157,6 @@ void testPerspectiveShearThenWarpIsTheView(Checks& check)
     ", a point of the volume in ", seen);
 }
 
-void testRayPaths(Checks& check)
-{
-  reference::forScenes("paths", 1000,
-    [&](int, reference::Random& random)
-    {
-      const auto size = randomSize(random, 9);
-      const splatting::View view = anyView(size, random);
-      const splatting::ShearWarp geometry(view);
-      const auto grid = reference::makeShearGrid(size, referenceView(geometry));
-      check(
-        grid.width == geometry.width() && grid.height == geometry.height(), "image size differs");
-      const int u = random.uniform(0, grid.width - 1), v = random.uniform(0, grid.height - 1);
-      auto expected = reference::crossedVoxels(size, referenceView(geometry), u, v);
-      std::vector<std::array<int, 3>> found;
-      for (int k = 0; k < geometry.size().z; ++k)
-      {
-        const splatting::RayPath path = geometry.rayPath(k);
-        const splatting::Span span = geometry.coverage(path, v);
-        int inside = 0;
-        for (int t = 0; t < path.count; ++t)
-        {
-          const std::array<int, 3> ijk{ u + path.di[t], v + path.dj[t], k };
-          if (ijk[0] >= 0 && ijk[0] < geometry.size().x && ijk[1] >= 0 &&
-            ijk[1] < geometry.size().y)
-          {
-            std::array<int, 3> voxel;
-            for (int a = 0; a < 3; ++a)
-            {
-              voxel[geometry.axes()[a]] = ijk[a];
-            }
-            found.push_back(voxel);
-            ++inside;
-          }
-        }
-        check((inside > 0) == (u >= span.begin && u < span.end), "coverage differs from the path");
-      }
-      std::sort(expected.begin(), expected.end());
-      std::sort(found.begin(), found.end());
-      check(expected == found, "ray path differs from the traversal: ", found.size(),
-        " voxels, not ", expected.size(), "; shear ", geometry.shear().x, " ", geometry.shear().y);
-    });
-}
-
-/// Rays cross the voxels that they should, of the slices before the eye.
-void testPerspectiveRayPaths(Checks& check)
-{
-  Sightings crossing;
-  reference::forScenes("paths in perspective", 2000,
-    [&](int, reference::Random& random)
-    {
-      std::vector<splatting::ShearWarp> images;
-      std::size_t crossed = 0;
-      const auto size = randomSize(random, 20);
-      splatting::ShearWarp::factorise(randomPerspective(size, random), images);
-      for (const splatting::ShearWarp& image : images)
-      {
-        const reference::PerspectiveRays rays = referenceRays(image);
-        const int u = random.uniform(0, image.rayCount().x - 1);
-        const int v = random.uniform(0, image.rayCount().y - 1);
-        std::vector<glm::ivec3> found, expected;
-        for (int k = 0; k < image.size().z; ++k)
-        {
-          const bool seen = k >= image.slices().begin && k < image.slices().end;
-          check(seen == rays.sees(k), "slice ", k, " is not before the eye, or is");
-          if (seen)
-          {
-            const auto faces = rays.faces(k, k);
-            check(image.faces(k) == glm::dvec2(faces[0], faces[1]), "other faces of slice ", k);
-            const splatting::RayPath path = image.voxelsOnRay(u, v, k);
-            for (int t = 0; t < path.count; ++t)
-            {
-              const glm::ivec3 voxel(path.di[t], path.dj[t], k);
-              if (glm::clamp(voxel, glm::ivec3(0), image.size() - 1) == voxel)
-              {
-                found.push_back(voxel);
-              }
-            }
-          }
-        }
-        for (const std::array<int, 3>& p : reference::crossedVoxels(rays, u, v))
-        {
-          expected.emplace_back(p[rays.axes[0]], p[rays.axes[1]], p[rays.axes[2]]);
-        }
-        crossed += expected.size();
-        check(expected == found, "pixel ", u, " ", v, ", axis ", image.principalAxis(),
-          image.reversed() ? " reversed" : "",
-          ": the path differs from the traversal: ", found.size(), " voxels, not ",
-          expected.size());
-      }
-      crossing.add(crossed > 0);
-    });
-  check(crossing.areEnough(0.2), "rays cross voxels in only ", crossing);
-}
-
 void testSymmetricViewsAreExact(Checks& check)
 {
   // A camera on a symmetry plane: rounding errors in its matrix must not leave traces.
@@ -350,8 +255,6 @@ int TestShearWarp(int, char*[])
   Checks check;
   testShearThenWarpIsTheView(check);
   testPerspectiveShearThenWarpIsTheView(check);
-  testRayPaths(check);
-  testPerspectiveRayPaths(check);
   testSymmetricViewsAreExact(check);
   testDegenerateViews(check);
   testWidths(check);
