@@ -12,6 +12,7 @@
 #include "CellOracle.h"
 #include "MapperOracle.h"
 #include "ScreenPixels.h"
+#include "SlabAverages.h"
 #include "Traversal.h"
 
 #include "vtkRenderWindow.h"

@@ -6,7 +6,7 @@
 // Mode EXACT in a window: each pixel is the largest or the least value of the field along its ray.
 // Also when the mode projects, and what it does where there are no exact extrema.
 #include "ImageComparison.h"
-#include "Stage.h"
+#include "ScreenOracle.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
 

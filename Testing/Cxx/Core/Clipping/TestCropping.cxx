@@ -6,6 +6,7 @@
 // at any angle besides.
 #include "AverageTesting.h"
 
+#include <algorithm>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -217,6 +218,29 @@ void testLongAverages(Checks& check)
       }
     });
 }
+
+/// Slices behind the eye have no region.
+void testBehindTheEye(Checks& check)
+{
+  Sightings behind;
+  reference::forScenes("slices behind the eye", 60,
+    [&](int, reference::Random& random)
+    {
+      const std::array<int, 3> size = randomSize(random, 17);
+      const splatting::ShearWarp image = randomPerspectiveImage(size, random);
+      const reference::ImageRays rays = referenceRays(image);
+      int slices = 0;
+      for (int k = 0; k < image.size().z; ++k)
+      {
+        const auto rows = splatting::regionsOf({}, image, k).rows;
+        slices += !rays.sees(k);
+        check(rays.sees(k) || std::all_of(rows.begin(), rows.end(), [](auto r) { return r == 0; }),
+          "slice ", k, " has a region");
+      }
+      behind.add(slices > 0);
+    });
+  check(behind.areEnough(0.02), "slices are behind the eye in only ", behind);
+}
 }
 
 int TestCropping(int, char*[])
@@ -231,5 +255,6 @@ int TestCropping(int, char*[])
       testLongRows<T>(check);
       testLongAverages<T>(check);
     });
+  testBehindTheEye(check);
   return check.exitCode();
 }
