@@ -290,7 +290,7 @@ struct Kernel
 /**
  * Conventional ray casting: the maximum of the trilinearly interpolated volume at the depths z that
  * are multiples of the distance (in slices, so that 1/n samples every slice centre), wherever the
- * ray is inside the volume's box [-1/2, n-1/2]^3. Borders and NaN as in slabAverage.
+ * ray is inside the volume's box [-1/2, n-1/2]^3. Borders and NaN as in SlabAverages.h.
  */
 Image<double> pointSampledTrilinear(
   const Volume<double>& volume, const ShearView& view, double distance);
@@ -314,7 +314,7 @@ enum class SliceSampling
  *
  * The paper's times are for one voxel per sample ("the projection area of one voxel is exactly
  * equal to one"); its Fig. 11 compares in high quality, which wants the bilinear samples of
- * Lacroute and Levoy. Borders and NaN as in slabAverage.
+ * Lacroute and Levoy. Borders and NaN as in SlabAverages.h.
  */
 Image<double> projectiveShearWarp(
   const Volume<double>& volume, const ShearView& view, SliceSampling sampling);
