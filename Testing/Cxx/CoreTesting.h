@@ -330,7 +330,7 @@ void forgetGrazes(const splatting::ShearWarp& image, IsHit&& isHit, reference::I
   const reference::ImageRays rays = referenceRays(image);
   for (int v = 0; !rays.isParallel() && v < rays.height(); ++v)
   {
-    for (int u = 1; u + 1 < rays.width(); ++u)
+    for (int u = rays.width() - 1; u > 0; --u) // of several in a row, too
     {
       if (found.isHit(u, v) && !isHit(u, v) && found.isHit(u - 1, v) &&
         meets(rays, u, v, GrazeWidth))
