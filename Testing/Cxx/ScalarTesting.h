@@ -17,7 +17,6 @@
 #include "vtkMath.h"
 #include "vtkPointData.h"
 #include "vtkRenderWindow.h"
-#include "vtkSOADataArrayTemplate.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <array>
@@ -50,26 +49,6 @@ inline vtkSmartPointer<vtkDataArray> noiseArray(
     array->SetComponent(n / components, static_cast<int>(n % components), random.uniform(0, 100));
   }
   return array;
-}
-
-/// The same, one component after the other.
-template <class T>
-vtkSmartPointer<vtkDataArray> separated(vtkDataArray* array)
-{
-  const vtkIdType tuples = array->GetNumberOfTuples();
-  auto result = vtkSmartPointer<vtkSOADataArrayTemplate<T>>::New();
-  result->SetNumberOfComponents(array->GetNumberOfComponents());
-  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
-  {
-    T* const values = new T[tuples];
-    for (vtkIdType n = 0; n < tuples; ++n)
-    {
-      values[n] = static_cast<T>(array->GetComponent(n, c));
-    }
-    // VTK 9.3 to 9.6 would interleave what they allocate by themselves.
-    result->SetArray(c, values, tuples, true, false, vtkAbstractArray::VTK_DATA_ARRAY_DELETE);
-  }
-  return result;
 }
 
 /// The component as an array by itself, of another type if wanted.

@@ -97,27 +97,6 @@ Volume<T> constant(const std::array<int, 3>& size, T value)
 }
 
 /**
- * The voxel with index n along the axis (0, 1 or 2) is start + n * step.
- */
-template <class T>
-Volume<T> axisRamp(const std::array<int, 3>& size, int axis, T start, T step)
-{
-  Volume<T> volume(size);
-  for (int k = 0; k < size[2]; ++k)
-  {
-    for (int j = 0; j < size[1]; ++j)
-    {
-      for (int i = 0; i < size[0]; ++i)
-      {
-        const std::array<int, 3> position = { i, j, k };
-        volume.at(position) = static_cast<T>(start + static_cast<T>(position[axis]) * step);
-      }
-    }
-  }
-  return volume;
-}
-
-/**
  * Draw the straight line between two voxels, one voxel thick: one voxel per step along its longest
  * axis, nearest to the line (3-D DDA). Ties go up, decided in integers. Both ends are drawn; what
  * is outside the volume is not. Indices must not be negative.
