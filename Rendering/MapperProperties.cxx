@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MapperProperties.h"
 
-#include "ProjectionProperties.h"
-#include "TransferFunctions.h"
+#include "Components/TransferFunctions.h"
+#include "Input/ProjectionProperties.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 
 #include "vtkMath.h"

@@ -3,7 +3,7 @@
 #ifndef MapperProperties_h
 #define MapperProperties_h
 
-#include "Projection/Project.h"
+#include "Splat/Projection/Project.h"
 
 #include "vtkSplattingMIPNamespace.h"
 

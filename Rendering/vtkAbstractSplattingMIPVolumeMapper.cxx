@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAbstractSplattingMIPVolumeMapper.h"
 
-#include "ProjectionProperties.h"
+#include "Input/ProjectionProperties.h"
 
 #include "vtkImageData.h"
 #include "vtkPolyData.h"

@@ -3,7 +3,7 @@
 #ifndef LocationArrays_h
 #define LocationArrays_h
 
-#include "Projection/Locations.h"
+#include "Display/Locations.h"
 
 #include "vtkSplattingMIPNamespace.h"
 

@@ -3,11 +3,11 @@
 #include "vtkSplattingMIPProjection.h"
 
 #include "AbortCheck.h"
-#include "ComponentProjector.h"
+#include "Components/ComponentProjector.h"
+#include "Input/ProjectionProperties.h"
 #include "Input/ScalarSource.h"
 #include "Input/WorldView.h"
 #include "LocationArrays.h"
-#include "ProjectionProperties.h"
 #include "TurnOfViews.h"
 
 #include "vtkAbstractMapper.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Ranks/RankAgreement.h"
 
-#include "ComponentProjector.h"
+#include "Components/ComponentProjector.h"
 #include "Input/ScalarSource.h"
 #include "vtkSplattingMIPVolumeMapper.h"
 

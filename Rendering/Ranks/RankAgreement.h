@@ -3,9 +3,9 @@
 #ifndef RankAgreement_h
 #define RankAgreement_h
 
+#include "Components/PieceExchange.h"
 #include "Input/VolumeGrid.h"
-#include "PieceExchange.h"
-#include "Projection/Piece.h"
+#include "Splat/Projection/Piece.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkSplattingMIPNamespace.h"

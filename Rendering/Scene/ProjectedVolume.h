@@ -4,7 +4,7 @@
 #define ProjectedVolume_h
 
 #include "Common/RenderTimes.h"
-#include "ComponentProjector.h"
+#include "Components/ComponentProjector.h"
 #include "Input/ScalarSource.h"
 #include "Ranks/RankAgreement.h"
 #include "Scene/SceneCuts.h"

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scene/Validation.h"
 
+#include "Locations/LabelEdges.h"
 #include "MapperProperties.h"
-#include "Scene/LabelEdges.h"
 #include "Scene/ProjectedVolume.h"
 #include "Scene/ViewOfVolume.h"
 #include "vtkSplattingMIPVolumeMapper.h"

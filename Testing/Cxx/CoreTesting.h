@@ -10,11 +10,11 @@
 #include "Checks.h"
 #include "Geometry/ShearWarp.h"
 #include "Projection.h"
-#include "Projection/Project.h"
 #include "RandomScene.h"
 #include "Reductions.h"
 #include "Scenes.h"
 #include "SlabAverages.h"
+#include "Splat/Projection/Project.h"
 #include "Volume.h"
 
 #include <algorithm>

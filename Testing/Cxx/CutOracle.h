@@ -10,8 +10,8 @@
 #include "CoreTesting.h"
 
 #include "Clipping/ClosedSurface.h"
-#include "Clipping/RayIntervals.h"
 #include "Clipping/SceneDepth.h"
+#include "Splat/Projection/RayIntervals.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

@@ -11,8 +11,8 @@
 #define RandomScene_h
 
 #include "Geometry/ShearWarp.h"
-#include "Projection/Project.h"
 #include "Random.h"
+#include "Splat/Projection/Project.h"
 #include "Volume.h"
 
 #include <glm/geometric.hpp>

@@ -6,7 +6,7 @@
 #ifndef splattingBoxProjection_h
 #define splattingBoxProjection_h
 
-#include "Cells/PixelRays.h"
+#include "Geometry/PixelRays.h"
 #include "Geometry/View.h"
 
 #include <glm/common.hpp>

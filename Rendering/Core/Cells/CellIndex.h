@@ -3,8 +3,8 @@
 #ifndef splattingCellIndex_h
 #define splattingCellIndex_h
 
-#include "Kernels/CellLoops.h"
-#include "Projection/Project.h"
+#include "Cells/Kernels/CellLoops.h"
+#include "Splat/Projection/Project.h"
 #include "Volume/VolumeIndex.h"
 
 #include <glm/vec2.hpp>

@@ -6,7 +6,7 @@
 #include "Cells/TileSplatter.h"
 #include "Common/Parallel.h"
 #include "Display/Picture.h"
-#include "Projection/SignedMaximum.h"
+#include "Display/SignedMaximum.h"
 
 #include <algorithm>
 #include <mutex>

@@ -15,7 +15,7 @@
 #include "Clipping/RayEnds.h"
 #include "Common/ProgressObserver.h"
 #include "Geometry/View.h"
-#include "Projection/Project.h"
+#include "Splat/Projection/Project.h"
 
 #include <memory>
 

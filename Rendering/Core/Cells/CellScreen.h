@@ -3,8 +3,8 @@
 #ifndef splattingCellScreen_h
 #define splattingCellScreen_h
 
-#include "Cells/PixelRays.h"
 #include "Display/ScreenScalars.h"
+#include "Geometry/PixelRays.h"
 
 #include <cstddef>
 #include <vector>

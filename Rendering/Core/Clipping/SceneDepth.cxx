@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Clipping/SceneDepth.h"
 
-#include "Cells/PixelRays.h"
 #include "Common/Parallel.h"
+#include "Geometry/PixelRays.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

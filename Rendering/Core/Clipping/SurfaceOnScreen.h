@@ -3,7 +3,7 @@
 #ifndef splattingSurfaceOnScreen_h
 #define splattingSurfaceOnScreen_h
 
-#include "Cells/PixelRays.h"
+#include "Geometry/PixelRays.h"
 
 #include <glm/vec2.hpp>
 

@@ -3,7 +3,7 @@
 #include "Display/Picture.h"
 
 #include "Common/Parallel.h"
-#include "Display/Outline.h"
+#include "Splat/Warp/Outline.h"
 
 #include <glm/common.hpp>
 

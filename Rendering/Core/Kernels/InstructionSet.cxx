@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernels/CellLoops.h"
+#include "Cells/Kernels/CellLoops.h"
 #include "Kernels/Kernels.h"
 
 #include <algorithm>

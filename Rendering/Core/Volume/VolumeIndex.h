@@ -6,8 +6,8 @@
 #ifndef splattingVolumeIndex_h
 #define splattingVolumeIndex_h
 
-#include "Chains/LineIndex.h"
 #include "Common/ScalarType.h"
+#include "Splat/Chains/LineIndex.h"
 
 #include <glm/vec3.hpp>
 

@@ -8,10 +8,10 @@
 #define PaperRenderer_h
 
 #include "Display/ScreenColors.h"
-#include "Display/Warp.h"
 #include "Paper/PaperScene.h"
 #include "Projection.h"
-#include "Projection/ShearImage.h"
+#include "Splat/Projection/ShearImage.h"
+#include "Splat/Warp/Warp.h"
 #include "Volume/VolumeIndex.h"
 
 #include <cstdint>

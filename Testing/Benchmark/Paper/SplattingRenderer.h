@@ -4,7 +4,7 @@
 #define SplattingRenderer_h
 
 #include "Paper/PaperRenderer.h"
-#include "Projection/Project.h"
+#include "Splat/Projection/Project.h"
 
 /**
  * How the volume is held for splatting.

@@ -7,7 +7,7 @@
 #include "Cells/CellProjector.h"
 #include "CoreTesting.h"
 #include "Display/ScreenColors.h"
-#include "Display/Warp.h"
+#include "Splat/Warp/Warp.h"
 
 #include <cstring>
 #include <iomanip>

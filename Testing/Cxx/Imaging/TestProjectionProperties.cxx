@@ -3,7 +3,7 @@
 //
 // What settings mean to a projection: those that have no effect change nothing, and those without
 // meaning are refused where they have an effect only.
-#include "ProjectionProperties.h"
+#include "Input/ProjectionProperties.h"
 #include "ProjectionTesting.h"
 #include "WideViews.h"
 

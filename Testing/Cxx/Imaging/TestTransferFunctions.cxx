@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Tables of colours against VTK's functions, entry by entry: premultiplied, with window and level.
+#include "Components/TransferFunctions.h"
 #include "ProjectionTesting.h"
-#include "TransferFunctions.h"
 
 #include "vtkColorTransferFunction.h"
 #include "vtkPiecewiseFunction.h"

@@ -6,7 +6,7 @@
 #include "WarpTesting.h"
 #include "WideViews.h"
 
-#include "Display/ShearPixels.h"
+#include "Splat/Warp/ShearPixels.h"
 
 #include <glm/common.hpp>
 

@@ -8,7 +8,7 @@
 
 #include "CoreTesting.h"
 #include "Display/ScreenColors.h"
-#include "Display/Warp.h"
+#include "Splat/Warp/Warp.h"
 
 #include <limits>
 #include <vector>

@@ -8,9 +8,9 @@
 #define ReductionTesting_h
 
 #include "AverageTesting.h"
-#include "Clipping/Cuts.h"
 #include "CoreTesting.h"
 #include "Reductions.h"
+#include "Splat/Walks/Cuts.h"
 
 #include <vtkSMPTools.h>
 

@@ -4,7 +4,7 @@
 // The maximum (or minimum) of the images of a volume's pieces is the image of the whole, bit for
 // bit.
 #include "CoreTesting.h"
-#include "Projection/Piece.h"
+#include "Splat/Projection/Piece.h"
 
 #include <algorithm>
 #include <cstring>

@@ -3,7 +3,7 @@
 //
 // Where the samples lie that pixels show: points of the screen lie on the rays of their pixels, in
 // their slices, and next to their voxels.
-#include "Display/Warp.h"
+#include "Splat/Warp/Warp.h"
 #include "WinnerScenes.h"
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 #define WinnerScenes_h
 
 #include "CoreTesting.h"
-#include "Projection/Locations.h"
+#include "Display/Locations.h"
 #include "Reductions.h"
 #include "WideViews.h"
 

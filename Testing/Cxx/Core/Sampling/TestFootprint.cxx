@@ -4,7 +4,7 @@
 // Footprint weights: against direct numerical integration, digitised against closed form, and the
 // promises that all of them make. A frame with general tables makes its table once.
 #include "CoreTesting.h"
-#include "Sampling/Footprint.h"
+#include "Splat/Sampling/Footprint.h"
 
 #include <cmath>
 #include <ctime>

@@ -5,7 +5,7 @@
 // pixels read no voxels beside those that their tables name.
 #include "CoreTesting.h"
 
-#include "Sampling/PerspectiveFootprints.h"
+#include "Splat/Sampling/PerspectiveFootprints.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 //
 // The colours that depths are shown in, and the image of locations where there are none.
 #include "CoreTesting.h"
-#include "Scene/SampleLocations.h"
+#include "Locations/SampleLocations.h"
 
 #include "vtkColorTransferFunction.h"
 #include "vtkDataArray.h"

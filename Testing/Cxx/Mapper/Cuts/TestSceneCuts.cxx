@@ -4,9 +4,9 @@
 // What things in a scene leave of a volume: with a plane across the view, what is before it; and
 // whether that is what it was.
 #include "CoreTesting.h"
-#include "Display/Outline.h"
-#include "Projection/SplatView.h"
 #include "Scene/SceneCuts.h"
+#include "Splat/Projection/SplatView.h"
+#include "Splat/Warp/Outline.h"
 
 #include "vtkNew.h"
 #include "vtkRenderer.h"
