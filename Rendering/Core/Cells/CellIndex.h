@@ -4,7 +4,7 @@
 #define splattingCellIndex_h
 
 #include "Cells/Kernels/CellLoops.h"
-#include "Splat/Projection/Project.h"
+#include "Common/ProjectionSettings.h"
 #include "Volume/VolumeIndex.h"
 
 #include <glm/vec2.hpp>

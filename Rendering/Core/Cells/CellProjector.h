@@ -14,8 +14,8 @@
 #include "Cells/CellScreen.h"
 #include "Clipping/RayEnds.h"
 #include "Common/ProgressObserver.h"
+#include "Common/ProjectionSettings.h"
 #include "Geometry/View.h"
-#include "Splat/Projection/Project.h"
 
 #include <memory>
 

@@ -3,8 +3,6 @@
 #ifndef splattingPicture_h
 #define splattingPicture_h
 
-#include "Geometry/ShearWarp.h"
-
 #include <glm/vec2.hpp>
 
 #include <cstdint>
@@ -21,13 +19,6 @@ struct Picture
   glm::ivec2 size{ 0 };
   std::vector<std::uint32_t> pixels;
 };
-
-/**
- * Sets the picture's origin and size.
- * @param images  as ShearWarp::factorise() gives them; without any the picture is empty
- */
-void placePicture(
-  const std::vector<ShearWarp>& images, const glm::ivec2& viewport, Picture& picture);
 
 /**
  * Adds a picture of the same size and position, byte by byte, clamped to 255.

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Splat/Warp/Outline.h"
 
+#include "Display/Picture.h"
+
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
@@ -175,5 +178,57 @@ Outline withinSamples(const ShearWarp& geometry)
     inside.add({ 0.0, -1.0, geometry.rayCount().y - 1.0 }, rounding);
   }
   return inside;
+}
+
+namespace
+{
+/// Corners of a rectangle of viewport pixels.
+struct Rectangle
+{
+  glm::dvec2 low, high;
+};
+
+/// Contains all pixels that show an image, and perhaps some beside them.
+Rectangle boundsOf(const ShearWarp& geometry, const glm::dvec2& viewport)
+{
+  if (!geometry.isPerspective() && !geometry.minifiesAnyAxis())
+  {
+    // The box is symmetric about the centre of the volume.
+    const Cuboid box = shownBox(geometry);
+    const glm::dvec3 size = box.high - box.low;
+    const glm::dvec2 s = glm::abs(geometry.shear());
+    const glm::dvec2 half = 0.5 * (glm::dvec2(size) + s * size.z) / geometry.pitch();
+    const glm::dvec3 centre = 0.5 * glm::dvec3(geometry.size() - 1);
+    const glm::dmat3& m = geometry.shearToScreen();
+    const glm::dvec2 middle(m * geometry.pixelOf(centre));
+    const glm::dvec2 reach = glm::dvec2(glm::abs(m[0]) * half.x + glm::abs(m[1]) * half.y);
+    return { middle - reach, middle + reach };
+  }
+  const glm::dvec2 last = viewport - 1.0;
+  Rectangle bounds{ viewport, glm::dvec2(-2.0) };
+  const Outline shown = geometry.minifiesAnyAxis() ? metByAreas(geometry) : shownBy(geometry);
+  for (const glm::dvec3& corner :
+    shown.cut({ { 0.0, 0.0, 1.0 }, { last.x, 0.0, 1.0 }, { last, 1.0 }, { 0.0, last.y, 1.0 } }))
+  {
+    bounds.low = glm::min(bounds.low, glm::dvec2(corner));
+    bounds.high = glm::max(bounds.high, glm::dvec2(corner));
+  }
+  return bounds;
+}
+}
+
+void placePicture(
+  const std::vector<ShearWarp>& images, const glm::ivec2& viewport, Picture& picture)
+{
+  const glm::dvec2 limit(viewport);
+  glm::dvec2 low = limit, high(0.0);
+  for (const ShearWarp& image : images)
+  {
+    const Rectangle bounds = boundsOf(image, limit);
+    low = glm::min(low, glm::clamp(glm::floor(bounds.low), glm::dvec2(0.0), limit));
+    high = glm::max(high, glm::clamp(glm::ceil(bounds.high) + 1.0, glm::dvec2(0.0), limit));
+  }
+  picture.origin = glm::ivec2(low);
+  picture.size = glm::max(glm::ivec2(high) - picture.origin, glm::ivec2(0));
 }
 }

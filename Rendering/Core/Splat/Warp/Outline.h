@@ -17,6 +17,8 @@
 
 namespace splatting
 {
+struct Picture;
+
 /// A box of a volume with its axes permuted.
 struct Cuboid
 {
@@ -68,6 +70,13 @@ Outline metByAreas(const ShearWarp& geometry);
 
 /// The pixels of the screen whose four neighbours in the image are samples, if it has no holes.
 Outline withinSamples(const ShearWarp& geometry);
+
+/**
+ * Sets the picture's origin and size.
+ * @param images  as ShearWarp::factorise() gives them; without any the picture is empty
+ */
+void placePicture(
+  const std::vector<ShearWarp>& images, const glm::ivec2& viewport, Picture& picture);
 
 /// Of a view: one for each direction of each axis.
 inline constexpr std::size_t MostImages = 6;

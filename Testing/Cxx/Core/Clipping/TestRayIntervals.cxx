@@ -5,6 +5,7 @@
 // by slice: half-spaces, closed surfaces, depth buffers, and all of them together. Surfaces are
 // watertight in any view.
 #include "CutScenes.h"
+#include "Splat/Warp/Outline.h"
 
 #include <iostream>
 
