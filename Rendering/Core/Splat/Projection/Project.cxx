@@ -142,6 +142,7 @@ void Projector::takeAtLocations(const VoxelArray& other, const ShearWarp& geomet
   image.height = projected.height;
   image.spans = projected.spans;
   image.mask = projected.mask;
+  image.minima.clear();
   image.type = projected.type;
   image.bytes.resize(projected.bytes.size());
   image.nonFinite = other.type == ScalarType::Float32 || other.type == ScalarType::Float64;

@@ -31,6 +31,7 @@ Projected projectAndCarry(const reference::Volume<T>& volume, const reference::V
   index.reset({ volume.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(volume.size) });
   splatting::Projector projector;
   Projected result;
+  result.carried.minima.resize(1); // of an earlier signed projection
   projector.project(index, geometry, settings, cutsBy(geometry, {}, cropping), result.image);
   projector.takeAtLocations(
     { other.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(other.size) }, geometry, settings,
@@ -98,6 +99,7 @@ void testItself(Checks& check)
       settings.reduction = static_cast<Reduction>(random.uniform(0, 1));
       const Projected found =
         projectAndCarry(volume, volume, geometry, settings, anyCropping(volume.size, random));
+      check(found.carried.minima.empty(), "earlier minima remain");
       const double bound = averageBound(volume, geometry, modeOf(settings.quality));
       double worst = 0.0;
       for (int v = 0; v < found.image.height; ++v)
