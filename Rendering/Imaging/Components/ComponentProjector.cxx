@@ -199,7 +199,7 @@ ProjectionSettings ComponentProjector::SettingsOf(
     (settings.recordLocations && &channel == &this->LocatedChannel());
   if (this->TakesAtLocations(settings) && settings.quality == Quality::Exact)
   {
-    settings.quality = Quality::High; // takeAtLocations() takes averages
+    settings.quality = Quality::High; // other components are averages
   }
   // Other components and locations need samples below the window, too.
   if (this->Cull && !settings.recordLocations && settings.reduction == Reduction::Maximum)
@@ -217,9 +217,11 @@ bool ComponentProjector::IsUpToDate(const ProjectionSettings& settings) const
       { return this->SettingsOf(channel, settings) == channel.Settings; });
 }
 
-bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
-  const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts)
+bool ComponentProjector::ProjectChannel(Channel& channel, std::size_t n,
+  const ProjectionSettings& settings, const std::vector<AtSamples>& others)
 {
+  ShearImage& image = channel.Images[n];
+  const ShearWarp& geometry = this->Splat.geometries[n];
   channel.Settings = this->SettingsOf(channel, settings);
   if (this->Ranks && !channel.Index.volume().voxels)
   {
@@ -228,8 +230,8 @@ bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
     ++this->Done;
     return true;
   }
-  const Acceleration used = this->Projector.project(channel.Index, geometry, channel.Settings, cuts,
-    image, this->Ranks ? this->Ranks->First() : glm::ivec3(0));
+  const Acceleration used = this->Projector.project(channel.Index, geometry, channel.Settings,
+    this->Splat.cuts[n], image, this->Ranks ? this->Ranks->First() : glm::ivec3(0), others);
   if (this->Projector.stopped())
   {
     return false;
@@ -240,35 +242,27 @@ bool ComponentProjector::ProjectChannel(Channel& channel, ShearImage& image,
   return true;
 }
 
-// Projects one image of all components. takeAtLocations() must follow the projection directly,
-// because it uses the projector's state.
+// Projects one image of all components. Of dependent ones the last is projected.
 bool ComponentProjector::ProjectImage(std::size_t n, const ProjectionSettings& settings)
 {
-  const ShearWarp& geometry = this->Splat.geometries[n];
-  const Cuts& cuts = this->Splat.cuts[n];
   if (!this->TakesAtLocations(settings))
   {
     return std::all_of(this->Channels.begin(), this->Channels.end(),
-      [&](Channel& channel)
-      { return this->ProjectChannel(channel, channel.Images[n], geometry, settings, cuts); });
+      [&](Channel& channel) { return this->ProjectChannel(channel, n, settings, {}); });
   }
   Channel& last = this->Channels.back();
-  const ShearImage& winners = last.Images[n];
-  if (!this->ProjectChannel(last, last.Images[n], geometry, settings, cuts))
+  std::vector<AtSamples> others;
+  for (std::size_t c = 0; c + 1 < this->Channels.size(); ++c)
   {
-    return false;
+    others.push_back({ this->Channels[c].Index.volume(), this->Channels[c].Images[n] });
   }
+  const bool done = this->ProjectChannel(last, n, settings, others);
   for (Channel& channel : this->Channels)
   {
-    if (&channel != &last)
-    {
-      channel.Settings = last.Settings;
-      channel.Used = last.Used;
-      this->Projector.takeAtLocations(
-        channel.Index.volume(), geometry, last.Settings, winners, channel.Images[n]);
-    }
+    channel.Settings = last.Settings;
+    channel.Used = last.Used;
   }
-  return true;
+  return done;
 }
 
 // Projects all components into all images. Returns false if it was stopped.

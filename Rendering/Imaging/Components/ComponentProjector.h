@@ -181,8 +181,8 @@ private:
   bool ProjectImage(std::size_t n, const ProjectionSettings& settings);
   void Exchange(const ProjectionSettings& settings);
   void UpdateCells(Channel& channel, const View& view);
-  bool ProjectChannel(Channel& channel, ShearImage& image, const ShearWarp& geometry,
-    const ProjectionSettings& settings, const Cuts& cuts);
+  bool ProjectChannel(Channel& channel, std::size_t n, const ProjectionSettings& settings,
+    const std::vector<AtSamples>& others);
 
   std::vector<Channel> Channels = std::vector<Channel>(1);
   bool Dependent = false;

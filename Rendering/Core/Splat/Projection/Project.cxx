@@ -135,21 +135,6 @@ ProjectionMode& Projector::mode(Quality quality, bool perspective)
   return *mode;
 }
 
-void Projector::takeAtLocations(const VoxelArray& other, const ShearWarp& geometry,
-  const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image)
-{
-  image.width = projected.width;
-  image.height = projected.height;
-  image.spans = projected.spans;
-  image.mask = projected.mask;
-  image.minima.clear();
-  image.type = projected.type;
-  image.bytes.resize(projected.bytes.size());
-  image.nonFinite = other.type == ScalarType::Float32 || other.type == ScalarType::Float64;
-  this->mode(settings.quality, geometry.isPerspective())
-    .takeAtLocations({ other, geometry, this->Memory->slices, projected, image });
-}
-
 /// The acceleration that is possible instead of the wanted one.
 Acceleration Projector::possible(Acceleration wanted, VolumeIndex& index,
   const ProjectionSettings& settings, const ShearWarp& geometry, const Cuts& cuts,
@@ -234,14 +219,38 @@ void Projector::countSteps(const ShearWarp& whole, const ShearWarp& geometry,
   }
 }
 
+/// After a projection, with the slices and the work space that it has left.
+void Projector::takeAtLocations(const AtSamples& other, const ShearWarp& geometry,
+  const ProjectionSettings& settings, const ShearImage& projected)
+{
+  ShearImage& image = other.image;
+  const ScalarType type = other.volume.type;
+  image.width = projected.width;
+  image.height = projected.height;
+  image.spans = projected.spans;
+  image.mask = projected.mask;
+  image.minima.clear();
+  image.type = projected.type;
+  image.bytes.resize(projected.bytes.size());
+  image.nonFinite = type == ScalarType::Float32 || type == ScalarType::Float64;
+  this->mode(settings.quality, geometry.isPerspective())
+    .takeAtLocations({ other.volume, geometry, this->Memory->slices, projected, image });
+}
+
 Acceleration Projector::project(VolumeIndex& index, const ShearWarp& geometry,
-  const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image, const glm::ivec3& first)
+  const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image, const glm::ivec3& first,
+  const std::vector<AtSamples>& others)
 {
   this->Observer.start();
   image.minima.resize(settings.reduction == Reduction::Signed ? 1 : 0);
   if (image.minima.empty())
   {
-    return this->projectReduction(index, geometry, settings, cuts, image, first);
+    const Acceleration used = this->projectReduction(index, geometry, settings, cuts, image, first);
+    for (std::size_t n = 0; n < others.size() && !this->stopped(); ++n)
+    {
+      this->takeAtLocations(others[n], geometry, settings, image);
+    }
+    return used;
   }
   image.origin = settings.origin;
   ProjectionSettings part = settings;

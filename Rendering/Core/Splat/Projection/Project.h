@@ -15,10 +15,18 @@
 #include "Volume/VolumeIndex.h"
 
 #include <memory>
+#include <vector>
 
 namespace splatting
 {
 class ProjectionMode;
+
+/// A volume whose values are taken at the samples of another one, and their image.
+struct AtSamples
+{
+  VoxelArray volume;
+  ShearImage& image;
+};
 
 /**
  * Projects volumes into shear images. Holds the threads' work space between frames.
@@ -36,29 +44,23 @@ public:
    * For all modes except Quality::Exact, which CellProjector projects. For Reduction::Signed it
    * projects maxima and minima, see ShearImage::minima.
    *
-   * @param first  the first voxel of the index in the volume of geometry and cuts, along the
-   *               volume's axes. If the index has a piece of the volume, the image has the samples
-   *               that can be computed from the piece alone, see Piece.h, and chains are not used.
+   * @param first   the first voxel of the index in the volume of geometry and cuts, along the
+   *                volume's axes. If the index has a piece of the volume, the image has the samples
+   *                that can be computed from the piece alone, see Piece.h, and chains are not used.
+   * @param others  volumes of the same type and size, whose values are taken at the image's
+   *                samples: in preview voxels, else averages with the same footprints. For whole
+   *                volumes and settings with recordLocations; not for Reduction::Signed.
    * @return the acceleration that was used: never Auto, and Dense if there is no memory for another
    *         one. If stopped(), the image is invalid.
    */
   Acceleration project(VolumeIndex& index, const ShearWarp& geometry,
     const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image,
-    const glm::ivec3& first = glm::ivec3(0));
+    const glm::ivec3& first = glm::ivec3(0), const std::vector<AtSamples>& others = {});
 
   /// Sets the spans and the mask of an image of the whole volume, whose pixels were reduced from
   /// pieces.
   void outline(const ShearWarp& geometry, const ProjectionSettings& settings, const Cuts& cuts,
     ShearImage& image);
-
-  /**
-   * Takes the values of another volume at the winners of the last projected image: in preview
-   * voxels, else averages with the same footprints. Not for Reduction::Signed.
-   *
-   * @param other  of the same type and size as the projected volume
-   */
-  void takeAtLocations(const VoxelArray& other, const ShearWarp& geometry,
-    const ProjectionSettings& settings, const ShearImage& projected, ShearImage& image);
 
   /// Sets a function that gets the completed share, 0 to 1, while chains are made.
   void setProgress(const std::function<void(double)>& progress) { this->Progress = progress; }
@@ -75,6 +77,8 @@ private:
   Acceleration projectReduction(VolumeIndex& index, const ShearWarp& geometry,
     const ProjectionSettings& settings, const Cuts& cuts, ShearImage& image,
     const glm::ivec3& first);
+  void takeAtLocations(const AtSamples& other, const ShearWarp& geometry,
+    const ProjectionSettings& settings, const ShearImage& projected);
   void findWhole(const ShearWarp& geometry, const ProjectionSettings& settings);
   const ShearWarp& findPart(const ShearWarp& whole, const glm::ivec3& first,
     const glm::ivec3& dimensions, const Cuts& cuts);

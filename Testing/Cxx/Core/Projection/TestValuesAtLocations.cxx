@@ -32,10 +32,10 @@ Projected projectAndCarry(const reference::Volume<T>& volume, const reference::V
   splatting::Projector projector;
   Projected result;
   result.carried.minima.resize(1); // of an earlier signed projection
-  projector.project(index, geometry, settings, cutsBy(geometry, {}, cropping), result.image);
-  projector.takeAtLocations(
-    { other.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(other.size) }, geometry, settings,
-    result.image, result.carried);
+  projector.project(index, geometry, settings, cutsBy(geometry, {}, cropping), result.image,
+    glm::ivec3(0),
+    { { { other.voxels.data(), splatting::scalarTypeOf<T>(), toGlm(other.size) },
+      result.carried } });
   return result;
 }
 
