@@ -376,7 +376,7 @@ bool ComponentProjector::CanProjectPixels() const
 Locator::Sample ComponentProjector::FindSample(const Located& located, const glm::ivec2& pixel)
 {
   Channel& channel = this->LocatedChannel();
-  return this->Pixels.find(channel.Index, channel.Cells, located, pixel);
+  return this->Pixels.Find(channel.Index, channel.Cells, located, pixel);
 }
 
 // Turns the images of pieces into those of the whole.

@@ -6,12 +6,12 @@
 
 namespace splatting
 {
-Locator::Sample PixelProjector::find(
+Locator::Sample PixelProjector::Find(
   VolumeIndex& index, CellIndex& cells, const Located& located, const glm::ivec2& pixel)
 {
   if (located.images)
   {
-    return this->findInImages(index, located, pixel);
+    return this->FindInImages(index, located, pixel);
   }
   const View& view = located.view;
   ProjectionSettings settings = located.settings;
@@ -27,7 +27,7 @@ Locator::Sample PixelProjector::find(
     : Locator::Sample();
 }
 
-Locator::Sample PixelProjector::findInImages(
+Locator::Sample PixelProjector::FindInImages(
   VolumeIndex& index, const Located& located, const glm::ivec2& pixel)
 {
   // At the border of the image, rays without a sample may touch the volume by rounding.
@@ -43,7 +43,7 @@ Locator::Sample PixelProjector::findInImages(
     }
     if (!isInside)
     {
-      this->project(index, located, shear);
+      this->Project(index, located, shear);
     }
     return isInside || this->Images.front().winners[0] >= 0;
   };
@@ -56,7 +56,7 @@ Locator::Sample PixelProjector::findInImages(
   {
     return {};
   }
-  this->project(index, located, shown);
+  this->Project(index, located, shown);
   shown = { 0, 0, 0, shown.minimum };
   Located alone = located;
   alone.images = &this->Images;
@@ -65,8 +65,8 @@ Locator::Sample PixelProjector::findInImages(
                                                 : Locator::Sample();
 }
 
-/// Projects a pixel of a shear image, with its winner.
-void PixelProjector::project(VolumeIndex& index, const Located& located, const ShearPixel& pixel)
+// Projects a pixel of a shear image, with its winner.
+void PixelProjector::Project(VolumeIndex& index, const Located& located, const ShearPixel& pixel)
 {
   const Cuts& cuts = (*located.cuts)[pixel.image];
   const glm::ivec2 place(pixel.u, pixel.v);
@@ -81,12 +81,6 @@ void PixelProjector::project(VolumeIndex& index, const Located& located, const S
   ProjectionSettings settings = located.settings;
   settings.recordLocations = true;
   settings.floor = ProjectionSettings().floor;
-  settings.acceleration = Acceleration::Dense;
-  // Single pixels must not change the statistics of frames.
-  SkipStatistics& statistics = index.statistics(
-    geometry.principalAxis(), static_cast<int>(settings.quality), !this->PixelCuts.none());
-  const SkipStatistics kept = statistics;
   this->Projector.project(index, geometry, settings, this->PixelCuts, this->Images.front());
-  statistics = kept;
 }
 }

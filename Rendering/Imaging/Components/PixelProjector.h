@@ -26,12 +26,12 @@ public:
    * @param located  the projection, not of averages
    * @param pixel    of the viewport
    */
-  Locator::Sample find(
+  Locator::Sample Find(
     VolumeIndex& index, CellIndex& cells, const Located& located, const glm::ivec2& pixel);
 
 private:
-  Locator::Sample findInImages(VolumeIndex& index, const Located& located, const glm::ivec2& pixel);
-  void project(VolumeIndex& index, const Located& located, const ShearPixel& pixel);
+  Locator::Sample FindInImages(VolumeIndex& index, const Located& located, const glm::ivec2& pixel);
+  void Project(VolumeIndex& index, const Located& located, const ShearPixel& pixel);
 
   splatting::Projector Projector;
   // An image of one pixel.
