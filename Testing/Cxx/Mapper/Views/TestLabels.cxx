@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Edges of labels: each pixel of the picture against the definition, by the voxels of
-// GetLocations(), in all modes and views, with geometry and cuts; and labels that do not fit.
+// GetLocations(), in both label modes, all quality modes and views, with geometry and cuts; and
+// labels that do not fit.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
@@ -17,6 +18,7 @@
 #include "vtkLookupTable.h"
 #include "vtkMath.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
@@ -68,8 +70,13 @@ struct Scene : stage::Stage
     const int types[] = { VTK_SHORT, VTK_INT, VTK_SIGNED_CHAR, VTK_LONG_LONG };
     this->labels = boxes(this->image, types[random.uniform(0, 3)], random);
     this->mapper = stage::splatting(this->image);
-    this->mapper->RecordLocationsOn();
-    this->mapper->AutoAdjustSampleDistancesOff();
+    this->first = stage::splatting(nullptr);
+    for (Mapper* each : { this->mapper.Get(), this->first.Get() })
+    {
+      each->RecordLocationsOn();
+      each->AutoAdjustSampleDistancesOff();
+    }
+    this->first->SetQualityModeToPreview();
     this->show(this->mapper);
     this->renderer->SetBackground(0.3, 0.5, 0.2);
     vtkNew<vtkPiecewiseFunction> opacity;
@@ -86,10 +93,61 @@ struct Scene : stage::Stage
     this->sphere->VisibilityOff();
   }
 
-  /// The label at each pixel, row by row from the bottom.
+  /// What both mappers show of the volume.
+  void chooseCuts(reference::Random& random)
+  {
+    stage::chooseSamples(this->mapper, this->image, random);
+    this->sphere->SetVisibility(random.oneIn(2));
+    vtkNew<vtkPlane> plane;
+    const auto normal = stage::anyDirection(random);
+    plane->SetOrigin(this->image->GetCenter());
+    plane->SetNormal(normal.data());
+    this->mapper->RemoveAllClippingPlanes();
+    if (random.oneIn(3))
+    {
+      this->mapper->AddClippingPlane(plane);
+    }
+    vtkNew<vtkSphereSource> source;
+    source->SetCenter(
+      this->image->GetBounds()[0], this->image->GetCenter()[1], this->image->GetCenter()[2]);
+    source->SetRadius(30.0);
+    source->Update();
+    this->mapper->SetBoundingSurface(random.oneIn(3) ? source->GetOutput() : nullptr);
+    this->first->SetSlab(this->mapper->GetSlab());
+    this->first->SetSlabCenter(this->mapper->GetSlabCenter());
+    this->first->SetSlabThickness(this->mapper->GetSlabThickness());
+    this->first->SetCropping(this->mapper->GetCropping());
+    this->first->SetCroppingRegionFlags(this->mapper->GetCroppingRegionFlags());
+    this->first->SetCroppingRegionPlanes(this->mapper->GetCroppingRegionPlanes());
+    this->first->SetClippingPlanes(this->mapper->GetClippingPlanes());
+    this->first->SetBoundingSurface(this->mapper->GetBoundingSurface());
+  }
+
+  /**
+   * The label at each pixel, row by row from the bottom: that of the voxel that the last frame
+   * shows. In LabelMode PROJECTED, of the first voxel with a label on its ray: the nearest of the
+   * largest in a preview of bytes that are 1 where there is a label.
+   */
   std::vector<int> shownLabels()
   {
-    vtkDataArray* const voxels = this->mapper->GetLocations()->GetPointData()->GetArray("Voxel");
+    const bool isProjected = this->mapper->GetLabelMode() == Mapper::PROJECTED;
+    if (isProjected)
+    {
+      vtkNew<vtkImageData> hasLabel;
+      hasLabel->CopyStructure(this->image);
+      hasLabel->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+      vtkDataArray* const from = this->labels->GetPointData()->GetScalars();
+      for (vtkIdType n = 0; n < from->GetNumberOfTuples(); ++n)
+      {
+        hasLabel->GetPointData()->GetScalars()->SetComponent(n, 0, from->GetComponent(n, 0) != 0.0);
+      }
+      this->first->SetInputData(hasLabel);
+      this->show(this->first);
+      this->window->Render();
+      this->show(this->mapper);
+    }
+    Mapper* const shown = isProjected ? this->first : this->mapper;
+    vtkDataArray* const voxels = shown->GetLocations()->GetPointData()->GetArray("Voxel");
     std::vector<int> result(std::size_t(::Width) * ::Height, 0);
     for (std::size_t n = 0; n < result.size(); ++n)
     {
@@ -104,7 +162,7 @@ struct Scene : stage::Stage
   }
 
   vtkSmartPointer<vtkImageData> image, labels;
-  vtkSmartPointer<Mapper> mapper;
+  vtkSmartPointer<Mapper> mapper, first;
   vtkNew<vtkActor> sphere;
 };
 
@@ -126,11 +184,13 @@ bool isEdge(const std::vector<int>& labels, int x, int y)
 template <class ColorOf>
 int compare(Scene& scene, const std::string& what, ColorOf&& colorOf, reference::Checks& check)
 {
+  scene.mapper->SetLabelInput(scene.labels);
+  const stage::Pixels pixels = scene.pixels(); // what the last comparison has projected is kept
   scene.mapper->SetLabelInput(nullptr);
   const stage::Pixels plain = scene.pixels();
   const std::vector<int> labels = scene.shownLabels();
   scene.mapper->SetLabelInput(scene.labels);
-  const stage::Pixels pixels = scene.pixels();
+  check(scene.pixels() == pixels, what, ": labels that are removed and set again look different.");
   int wrong = 0, edges = 0;
   for (int n = 0; n < Width * Height; ++n)
   {
@@ -147,9 +207,12 @@ int compare(Scene& scene, const std::string& what, ColorOf&& colorOf, reference:
   return edges;
 }
 
-void testEdges(reference::Checks& check, reference::Random& random)
+void testEdges(int labelMode, reference::Checks& check, reference::Random& random)
 {
   Scene scene(random);
+  scene.mapper->SetLabelMode(labelMode);
+  scene.mapper->SetRecordLocations(labelMode == Mapper::SAMPLE); // averages have none
+  const stage::Messages warnings(scene.mapper, vtkCommand::WarningEvent);
   vtkNew<vtkColorTransferFunction> function;
   function->AddRGBPoint(-1.0, 0.1, 0.9, 0.3);
   function->AddRGBPoint(7.0, 0.8, 0.2, 1.0);
@@ -184,31 +247,44 @@ void testEdges(reference::Checks& check, reference::Random& random)
     scene.mapper->SetQualityMode(mode);
     for (double scale : { 0.15, 0.5, 0.9, 3.0 }) // the last is an overview
     {
-      const std::string what = "mode " + std::to_string(mode) + ", scale " + std::to_string(scale);
+      const std::string what = "label mode " + std::to_string(labelMode) + ", mode " +
+        std::to_string(mode) + ", scale " + std::to_string(scale);
       scene.viewAngle = random.uniform(0, 1) * 40.0;
       const auto direction = stage::anyDirection(random);
       scene.look(direction, { direction[1], direction[2], -direction[0] }, scale);
-      scene.sphere->SetVisibility(random.uniform(0, 1));
-      scene.mapper->SetBlendMode(random.uniform(1, 2));
-      stage::chooseSamples(scene.mapper, scene.image, random);
+      // Only PROJECTED has labels of averages.
+      scene.mapper->SetBlendMode(random.uniform(1, labelMode == Mapper::PROJECTED ? 3 : 2));
+      scene.chooseCuts(random);
       scene.mapper->SetLabelColors(function);
       edges += compare(scene, what + ", function", ofFunction, check);
       scene.mapper->SetLabelColors(table);
       compare(scene, what + ", table", ofTable, check);
+      scene.chooseCuts(random); // in the same view
       scene.mapper->SetLabelColors(nullptr);
       compare(scene, what + ", default", byDefault, check);
+      scene.look({ -direction[0], -direction[1], -direction[2] },
+        { direction[1], direction[2], -direction[0] }, scale);
+      compare(scene, what + ", other side", byDefault, check);
     }
   }
   check(edges > 500, "There are only ", edges, " pixels of edges.");
+  check(warnings.texts.empty(), "There is a warning.");
   // Locations are found without RecordLocations, and labels that change are shown.
   const stage::Pixels before = scene.pixels();
   scene.mapper->RecordLocationsOff();
   check(scene.pixels() == before, "Labels without RecordLocations.");
+  scene.mapper->SetRecordLocations(labelMode == Mapper::SAMPLE);
+  scene.labels->DeepCopy(boxes(scene.image, VTK_SHORT, random));
+  compare(scene, "other labels", byDefault, check);
   scene.labels->GetPointData()->GetScalars()->Fill(0.0);
   scene.labels->Modified();
   const stage::Pixels after = scene.pixels();
+  const vtkIdType memory = scene.mapper->GetIndexMemorySize();
   scene.mapper->SetLabelInput(nullptr);
   check(scene.pixels() == after, "Labels of 0 have no edges.");
+  check(labelMode == Mapper::SAMPLE ||
+      memory - scene.mapper->GetIndexMemorySize() >= scene.labels->GetNumberOfPoints(),
+    "The copy of the labels is not counted, or is kept without labels.");
 }
 
 /// What a selector finds at each pixel.
@@ -285,7 +361,8 @@ int TestLabels(int, char*[])
   reference::forScenes("labels", 3,
     [&](int, reference::Random& random)
     {
-      testEdges(check, random);
+      testEdges(Mapper::SAMPLE, check, random);
+      testEdges(Mapper::PROJECTED, check, random);
       testRest(check, random);
     });
   return check.exitCode();
