@@ -4,19 +4,17 @@
 // TestExactPictures [--demo-data DIR] [--test-data DIR]
 //
 // Mode EXACT in a window: each pixel is the largest or the least value of the field along its ray.
-// Also when the mode projects, and what it does where there are no exact extrema.
+// Also what the mode does where there are no exact extrema. TestRenderTime has when it projects.
 #include "ImageComparison.h"
 #include "ScreenOracle.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
 
-#include "vtkCamera.h"
 #include "vtkDataArray.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 #include "vtkRenderWindow.h"
-#include "vtkRenderer.h"
 #include "vtkSMPTools.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
@@ -188,33 +186,6 @@ void testMeans(stage::Stage& stage, reference::Checks& check)
   check(mapper->GetQualityModeUsed() == Mapper::HIGH, "And says so.");
 }
 
-/// Each pixel has its own ray, so views with other rays are projected anew.
-void testReuse(stage::Stage& stage, reference::Checks& check)
-{
-  const auto image = stage::toImageData(stage::blobsAndTubes({ 40, 40, 40 }, 5));
-  const auto mapper = stage::splatting(image);
-  mapper->AutoAdjustSampleDistancesOff();
-  stage.show(mapper);
-  stage.look(oblique, up, 0.7);
-  stage.window->Render();
-  const auto projections = [&](auto&& change)
-  {
-    const vtkIdType before = mapper->GetNumberOfProjections();
-    change();
-    stage.window->Render();
-    return mapper->GetNumberOfProjections() - before;
-  };
-  check(projections([] {}) == 0, "The same view is not projected again.");
-  check(projections([&] { stage.setGrayRamp(20.0, 200.0); }) == 0, "Nor are new colours.");
-  vtkCamera* const camera = stage.renderer->GetActiveCamera();
-  check(projections([&] { camera->Zoom(1.1); }) == 1, "Another zoom is.");
-  check(projections([&] { camera->SetWindowCenter(0.1, 0.0); }) == 1, "A panned view is.");
-  camera->SetWindowCenter(0.0, 0.0);
-  mapper->SetQualityModeToHigh();
-  stage.window->Render();
-  check(mapper->GetShearImage() && mapper->GetPrincipalAxis() >= 0, "HIGH has a shear image.");
-}
-
 /// Where pixels are wider than voxels EXACT shows previews of their areas.
 void testOverviews(stage::Stage& stage, reference::Checks& check)
 {
@@ -230,31 +201,6 @@ void testOverviews(stage::Stage& stage, reference::Checks& check)
   check(mapper->GetQualityModeUsed() == Mapper::EXACT && !mapper->GetShearImage(),
     "Other views are exact.");
 }
-
-/// As other better images, one in EXACT is kept while a faster mode is wanted.
-void testKept(stage::Stage& stage, reference::Checks& check)
-{
-  const auto image = stage::toImageData(stage::blobsAndTubes({ 64, 64, 64 }, 9));
-  const auto mapper = stage::splatting(image);
-  mapper->SetQualityModeToExact();
-  stage.show(mapper);
-  stage.look(oblique, up);
-  stage.window->Render();
-  stage.window->SetDesiredUpdateRate(1e5);
-  stage.renderer->GetActiveCamera()->Azimuth(1.0); // a first frame does not count
-  stage.window->Render();
-  const vtkIdType before = mapper->GetNumberOfProjections();
-  stage.setGrayRamp(0.0, 200.0);
-  stage.window->Render();
-  check(mapper->GetNumberOfProjections() == before && mapper->GetQualityModeUsed() == Mapper::EXACT,
-    "New colours use the exact image.");
-  stage.renderer->GetActiveCamera()->Azimuth(1.0);
-  stage.window->Render();
-  check(mapper->GetQualityModeUsed() == Mapper::HIGH, "A new view is projected in a faster mode.");
-  stage.window->SetDesiredUpdateRate(1e-4);
-  stage.window->Render();
-  check(mapper->GetQualityModeUsed() == Mapper::EXACT, "A still frame is exact again.");
-}
 }
 
 //------------------------------------------------------------------------------
@@ -263,9 +209,7 @@ int TestExactPictures(int argc, char* argv[])
   reference::Checks check;
   stage::Stage stage(Size, Size);
   testMeans(stage, check);
-  testReuse(stage, check);
   testOverviews(stage, check);
-  testKept(stage, check);
   reference::forScenes("pictures", 3,
     [&](int number, reference::Random&)
     {
