@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is made of the depths of samples: the colours of depth coding, beside those that follow from
-// a brute-force search, and the depth buffer, which hides what is rendered later behind what is
-// seen.
+// What is made of the depths of samples: the colours of depth coding, and the depth buffer, which
+// hides what is rendered later behind what is seen. TestLocations and TestPicks have the samples.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
@@ -120,7 +119,20 @@ void testColors(reference::Checks& check)
     // The volume is 48 deep.
     expect(n, hueOf(scene.depths[n] / 48.0, 1.0), "hues");
   }
-  const Rgb background = scene.colorAt(scene.stage.pixels(), { { Size / 2, 20 } });
+  scene.mapper->RecordLocationsOn();
+  const stage::Pixels pixels = scene.stage.pixels();
+  vtkDataArray* const positions =
+    scene.mapper->GetLocations()->GetPointData()->GetArray("Position");
+  int wrong = 0;
+  for (int n = 0; n < Size * Size; ++n)
+  {
+    const Rgb found = scene.colorAt(pixels, { { n % Size, n / Size } });
+    const double z = positions->GetComponent(n, 2);
+    const int brightness = *std::max_element(found.begin(), found.end());
+    wrong += brightness > 0 && !isNear(found, hueOf(z / 48.0, brightness / 255.0), 4);
+  }
+  check(wrong == 0, wrong, " pixels have other hues than the depths of their samples.");
+  const Rgb background = scene.colorAt(pixels, { { Size / 2, 20 } });
   check(isNear(background, { 0, 0, 0 }, 0), "What is black stays black.");
   scene.stage.setGrayRamp(0.0, 400.0);
   expect(0, hueOf(scene.depths[0] / 48.0, 0.5), "half as bright");
@@ -156,45 +168,6 @@ void testColors(reference::Checks& check)
 
   scene.mapper->DepthCodingOff();
   expect(2, { 255, 255, 255 }, "turned off");
-}
-
-/// Every pixel, of a volume of which no two voxels of a line are alike, by a search along lines.
-void testSearch(reference::Checks& check)
-{
-  const std::array<int, 3> size = { 40, 40, 40 };
-  auto volume = stage::blobsAndTubes(size, 6);
-  const auto image = stage::toImageData(volume);
-  const auto mapper = stage::splatting(image);
-  mapper->SetQualityModeToPreview();
-  mapper->DepthCodingOn();
-  stage::Stage stage(48, 48);
-  stage.show(mapper);
-  stage.look({ 0.0, 0.0, 1.0 }, { 0.0, 1.0, 0.0 });
-  vtkCamera* const camera = stage.renderer->GetActiveCamera();
-  camera->SetParallelScale(24.0); // a voxel is a pixel
-  camera->SetFocalPoint(20.0 - 0.5, 20.0 - 0.5, 20.0);
-  camera->SetPosition(20.0 - 0.5, 20.0 - 0.5, -100.0);
-  stage.renderer->ResetCameraClippingRange();
-  const stage::Pixels pixels = stage.pixels();
-  int wrong = 0;
-  for (int j = 0; j < size[1]; ++j)
-  {
-    for (int i = 0; i < size[0]; ++i)
-    {
-      int best = 0;
-      for (int k = 0; k < size[2]; ++k)
-      {
-        const bool larger =
-          volume.at(std::array<int, 3>{ i, j, k }) > volume.at(std::array<int, 3>{ i, j, best });
-        best = larger ? k : best;
-      }
-      const Rgb expected = hueOf(best / 39.0, volume.at(std::array<int, 3>{ i, j, best }) / 255.0);
-      // Voxel (0, 0) is at pixel (43, 4): x goes to the left.
-      const unsigned char* const rgb = &pixels[3 * ((j + 4) * 48 + 43 - i)];
-      wrong += !isNear({ rgb[0], rgb[1], rgb[2] }, expected, 4);
-    }
-  }
-  check(wrong == 0, wrong, " pixels have other colours than a search gives.");
 }
 
 /// The buffer itself, beside the positions of samples.
@@ -342,7 +315,6 @@ int TestDepths(int argc, char* argv[])
 {
   reference::Checks check;
   testColors(check);
-  testSearch(check);
   testDepthBuffer(check, 0.0);
   testDepthBuffer(check, 40.0);
   testOpaqueBefore(check);
