@@ -19,7 +19,6 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
-#include <tuple>
 
 namespace
 {
@@ -111,48 +110,6 @@ void testRays(Checks& check, bool parallel, reference::Random& random)
   }
   check(seen > 9, "some of the volume is seen: ", seen);
   check(worst < 1e-9 * image->GetLength(), parallel, ": samples are off their rays by ", worst);
-}
-
-/// A bright voxel is seen where the output's geometry has it: the tent about it ends a voxel away,
-/// and the warp adds a pixel.
-void testVoxel(Checks& check, bool parallel, reference::Random& random)
-{
-  reference::Volume<float> volume({ 17, 21, 19 });
-  const int voxel[3] = { random.uniform(4, 12), random.uniform(4, 16), random.uniform(4, 14) };
-  volume.at(voxel[0], voxel[1], voxel[2]) = 100.0f;
-  const auto image = projectiontesting::imageOf(volume);
-  coretesting::placeAtRandom(image, random, true);
-  const auto filter = someView(image, parallel, random);
-  filter->GetCamera()->SetWindowCenter(0.0, 0.0);
-  filter->GetCamera()->SetViewAngle(40.0);
-  filter->SetOutputSpacing(0.0, 0.0);
-  filter->SetQualityModeToExact();
-  filter->Update();
-  vtkImageData* const output = filter->GetOutput();
-  int brightest[2] = { 0, 0 };
-  const auto value = [&](int x, int y) { return output->GetScalarComponentAsDouble(x, y, 0, 0); };
-  for (int y = 0; y < Size[1]; ++y)
-  {
-    for (int x = 0; x < Size[0]; ++x)
-    {
-      if (value(x, y) > value(brightest[0], brightest[1]))
-      {
-        std::tie(brightest[0], brightest[1]) = { x, y };
-      }
-    }
-  }
-  double place[3];
-  int extent[6];
-  image->GetExtent(extent);
-  image->TransformIndexToPhysicalPoint(
-    extent[0] + voxel[0], extent[2] + voxel[1], extent[4] + voxel[2], place);
-  const double miss =
-    missOf(filter->GetCamera(), placeOf(output, brightest[0], brightest[1]), vector(place));
-  const double* const spacing = image->GetSpacing();
-  const double bound = std::hypot(spacing[0], spacing[1], spacing[2]) +
-    std::hypot(output->GetSpacing()[0], output->GetSpacing()[1]);
-  check(value(brightest[0], brightest[1]) > 0.0, "the voxel is seen");
-  check(miss < bound, parallel, ": the voxel is seen ", miss, " off");
 }
 
 /// Axes are right-handed and of length 1, the third to the viewer; the slab's middle is the plane.
@@ -316,7 +273,6 @@ int TestPlacement(int, char*[])
     for (const bool parallel : { true, false })
     {
       testRays(check, parallel, random);
-      testVoxel(check, parallel, random);
       testAxes(check, parallel, random);
       testDownstream(check, parallel, random);
       const auto image = projectiontesting::anyImage({ 17, 21, 19 }, random);
