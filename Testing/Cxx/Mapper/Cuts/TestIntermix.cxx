@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Opaque geometry before, inside, behind and beside the volume, against pictures of the parts, a
-// clipping plane and VTK's ray caster; in viewports, layers, tiles and with multisampling.
+// Opaque geometry before, inside, behind and beside the volume, against pictures of the parts and
+// VTK's ray caster; in viewports, layers, tiles and with multisampling. TestSceneCuts has the ends
+// of rays at geometry.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
@@ -16,7 +17,6 @@
 #include "vtkMath.h"
 #include "vtkOpaquePass.h"
 #include "vtkOverlayPass.h"
-#include "vtkPlane.h"
 #include "vtkPlaneSource.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
@@ -201,42 +201,6 @@ bool isNearRim(const stage::Pixels& picture, int pixel, int reach)
     }
   }
   return false;
-}
-
-/// A wall across the view cuts as a clipping plane does. Only where it comes out of the volume they
-/// differ, by up to a pixel of the shear image (1.8 of the screen): there the wall hides pixels of
-/// the screen, and the plane pixels of the shear image.
-void testWall(stage::Stage& stage, vtkSplattingMIPVolumeMapper* mapper, vtkImageData* image,
-  reference::Checks& check)
-{
-  for (const stage::Vector& direction : directions)
-  {
-    stage.look(direction, up);
-    for (double distance : { -9.3, 4.6 })
-    {
-      const stage::Vector place = along(image, direction, distance);
-      const Pictures walled = pictures(stage, mapper, wall(place, direction, 400.0));
-      check(walled.projections == 1, "A wall inside the volume ends rays.");
-      vtkNew<vtkPlane> plane;
-      plane->SetOrigin(place.data());
-      plane->SetNormal(-direction[0], -direction[1], -direction[2]);
-      mapper->AddClippingPlane(plane);
-      const stage::Pixels part = stage.pixels();
-      mapper->RemoveAllClippingPlanes();
-      const stage::Pixels expected = over(part, walled.actor);
-      int wrong = 0, compared = 0;
-      for (int pixel = 0; pixel < Width * Height; ++pixel)
-      {
-        const bool isSure = !isNearRim(part, pixel, 2);
-        compared += isSure && !isBlack(part, pixel);
-        wrong += isSure && !isNearly(expected, walled.both, pixel, 1);
-      }
-      std::cout << "wall: " << wrong << " of " << compared << " pixels differ" << std::endl;
-      check(differing(expected, walled.volume) > 1000, "A wall hides much.");
-      // Depths are rounded: a ray may end a little sooner or later.
-      check(compared > 5000 && 1000 * wrong <= compared, "A wall ends rays where a plane does.");
-    }
-  }
 }
 
 /// PSNR of the red components where `counts` holds.
@@ -505,7 +469,6 @@ int TestIntermix(int, char*[])
     {
       mapper->SetQualityMode(mode);
       testBeforeAndBehind(stage, mapper, image, check);
-      testWall(stage, mapper, image, check);
     }
     testWindows(viewAngle, mapper, image, check);
     testMultiSamples(viewAngle, mapper, image, check);
