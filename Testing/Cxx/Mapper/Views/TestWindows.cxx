@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Viewports, large screenshots, stereo, layers, multisampling, and mappers that are shared: the
-// volume looks as it does alone.
+// Viewports, large screenshots, stereo, multisampling, and mappers that are shared: the volume
+// looks as it does alone. TestIntermix has layers.
 #include "CoreTesting.h"
 #include "ScreenOracle.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
 
-#include "vtkActor.h"
 #include "vtkCamera.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
@@ -16,11 +15,8 @@
 #include "vtkMath.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
-#include "vtkPolyDataMapper.h"
-#include "vtkProperty.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
-#include "vtkSphereSource.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
@@ -247,50 +243,6 @@ bool testStereo(const Scene& scene, reference::Checks& check)
   return differs;
 }
 
-/// Behind the volume.
-vtkSmartPointer<vtkActor> greenSphere(const Scene& scene)
-{
-  const double radius = 0.2 * scene.image->GetLength();
-  const double away =
-    (0.55 * scene.image->GetLength() + radius) / vtkMath::Norm(scene.direction.data());
-  const double* const middle = scene.image->GetCenter();
-  vtkNew<vtkSphereSource> source;
-  source->SetCenter(middle[0] + away * scene.direction[0], middle[1] + away * scene.direction[1],
-    middle[2] + away * scene.direction[2]);
-  source->SetRadius(radius);
-  vtkNew<vtkPolyDataMapper> polyMapper;
-  polyMapper->SetInputConnection(source->GetOutputPort());
-  auto actor = vtkSmartPointer<vtkActor>::New();
-  actor->SetMapper(polyMapper);
-  actor->GetProperty()->SetColor(0.1, 0.8, 0.3);
-  return actor;
-}
-
-/// A volume in a transparent layer above is a volume behind which the other layer is.
-void testLayers(const Scene& scene, reference::Checks& check)
-{
-  stage::Stage stage(Width, Height);
-  vtkNew<vtkPiecewiseFunction> opacity;
-  opacity->AddPoint(50.0, 0.0);
-  opacity->AddPoint(200.0, 0.8);
-  stage.property->SetScalarOpacity(opacity);
-  stage.renderer->AddActor(greenSphere(scene));
-  stage.renderer->SetBackground(0.1, 0.2, 0.4);
-  scene.look(stage);
-  stage.renderer->ResetCameraClippingRange();
-  const stage::Pixels expected = stage.pixels();
-  vtkNew<vtkRenderer> top;
-  top->SetActiveCamera(stage.renderer->GetActiveCamera());
-  top->SetLayer(1);
-  stage.renderer->RemoveVolume(stage.volume);
-  check(stage.pixels() != expected, "Without the volume the picture differs.");
-  top->AddVolume(stage.volume);
-  stage.window->SetNumberOfLayers(2);
-  stage.window->AddRenderer(top);
-  check(stage.pixels() == expected, "A volume in the upper layer is blended over the lower one.");
-  stage.window->RemoveRenderer(top);
-}
-
 /// Two props with one mapper, side by side and with properties of their own.
 void testTwoProps(const Scene& scene, double turn, reference::Checks& check)
 {
@@ -390,7 +342,6 @@ int TestWindows(int, char*[])
       testViewports(scene, random, check);
       testScreenshot(scene, random.uniform(2, 4), check);
       eyes.add(testStereo(scene, check));
-      testLayers(scene, check);
       testMultisampling(scene, check);
       testTwoProps(scene, random.uniform(0.0, 360.0), check);
       testEmptyWindow(scene, check);
