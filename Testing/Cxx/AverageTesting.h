@@ -82,8 +82,8 @@ double perspectiveErrorBound(
     (3 + 5 + 45) * rounding * std::max(std::abs(low), std::abs(high));
 }
 
-/// How far averages of voxels from low to high may be from slabSamples(), which itself is good to
-/// some rounding errors of double. Previews are exact.
+/// The largest difference between averages of voxels, which are from low to high, and
+/// slabSamples(), including the rounding errors of slabSamples(). Previews are exact.
 template <class T>
 double averageBound(const splatting::ShearWarp& geometry, const Mode& mode, double low, double high)
 {

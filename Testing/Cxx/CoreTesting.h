@@ -75,13 +75,13 @@ std::string seriesOf(const std::string& scenes)
   return scenes + ", type " + std::to_string(static_cast<int>(splatting::scalarTypeOf<T>()));
 }
 
-/// A series that there is for parallel and for perspective views.
+/// The name of a series of parallel or of perspective views.
 inline std::string nameOf(const std::string& series, bool perspective)
 {
   return series + (perspective ? ", in perspective" : "");
 }
 
-/// An image of any view.
+/// A random image.
 inline splatting::ShearWarp anyGeometry(
   const std::array<int, 3>& size, bool perspective, reference::Random& random)
 {
@@ -114,7 +114,7 @@ inline reference::ShearView referenceView(const splatting::ShearWarp& geometry)
   return { geometry.principalAxis(), { geometry.shear().x, geometry.shear().y } };
 }
 
-/// What an image is, for messages.
+/// Describes an image, for messages.
 inline std::string describe(const splatting::ShearWarp& image)
 {
   std::ostringstream text;
@@ -125,7 +125,7 @@ inline std::string describe(const splatting::ShearWarp& image)
   return text.str();
 }
 
-/// The rays of an image: of parallel views as they must be, in perspective as they are rounded.
+/// The rays of an image: exact ones in parallel views, those of the image in perspective.
 inline reference::ImageRays referenceRays(const splatting::ShearWarp& geometry)
 {
   reference::ImageRays rays;
@@ -293,7 +293,7 @@ double largestDifference(const reference::Image<P>& a, const reference::Image<P>
   return largest;
 }
 
-/// The depths at which a ray is in a box, before the eye and in slices whose middle is.
+/// The depths at which a ray is in a box. Only slices whose centre is in front of the eye are used.
 inline reference::Stretch<double> depthsInside(
   const std::vector<glm::dvec4>& box, const reference::ImageRays& rays, int u, int v)
 {
@@ -315,7 +315,7 @@ inline reference::Stretch<double> depthsInside(
 /// More than a few roundings of rays.
 constexpr double GrazeWidth = 1e-5;
 
-/// Whether a ray passes the volume, grown by `margin` voxels.
+/// Whether a ray crosses the volume, enlarged by `margin` voxels.
 inline bool meets(const reference::ImageRays& rays, int u, int v, double margin)
 {
   return depthsInside(reference::boxOfVolume(rays.volumeSize(), true, margin), rays, u, v)
@@ -330,7 +330,8 @@ void forgetGrazes(const splatting::ShearWarp& image, IsHit&& isHit, reference::I
   const reference::ImageRays rays = referenceRays(image);
   for (int v = 0; !rays.isParallel() && v < rays.height(); ++v)
   {
-    for (int u = rays.width() - 1; u > 0; --u) // of several in a row, too
+    // From the right, because a removed pixel must not keep the next one.
+    for (int u = rays.width() - 1; u > 0; --u)
     {
       if (found.isHit(u, v) && !isHit(u, v) && found.isHit(u - 1, v) &&
         meets(rays, u, v, GrazeWidth))
@@ -372,7 +373,7 @@ inline std::vector<Mode> modes()
       { reference::Kernel::CosineBell, 1.5 } } };
 }
 
-/// A mode with its usual kernel; of previews the kernel does not matter.
+/// A mode with its usual kernel. Previews ignore the kernel.
 inline Mode modeOf(splatting::Quality quality)
 {
   Mode mode = modes()[quality == splatting::Quality::High ? 1 : 0];

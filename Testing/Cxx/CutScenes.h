@@ -114,13 +114,14 @@ Depths randomDepths(const glm::ivec2& origin, const glm::ivec2& size, Random& ra
   return depths;
 }
 
-/// Scenes of boxes: those in which they cut, hold the eye, and leave out few rays.
+/// Counts scenes in which a box cuts rays, contains the eye, and has few rays that are not
+/// compared.
 struct BoxCounts
 {
   coretesting::Sightings cut, holding, sure;
 };
 
-/// Where the rays of a perspective image come from, axes not permuted.
+/// The eye of a perspective image in index space.
 inline glm::dvec3 eyeOf(const ShearWarp& image)
 {
   glm::dvec3 eye;
@@ -136,8 +137,8 @@ inline bool isWithin(const glm::dvec3& p, const glm::dvec3& low, const glm::dvec
   return glm::all(glm::lessThan(low, p)) && glm::all(glm::lessThan(p, high));
 }
 
-/// A box of triangles cuts what six planes cut.
-/// @param margin  more than rounding moves rays and the eye by
+/// Compares the cuts of a box of triangles with those of six planes.
+/// @param margin  larger than the rounding errors of rays and eye
 inline void compareBox(Checks& check, const View& view, const glm::dvec3& low,
   const glm::dvec3& high, double margin, Random& random, BoxCounts& counts)
 {
@@ -157,7 +158,7 @@ inline void compareBox(Checks& check, const View& view, const glm::dvec3& low,
     const glm::dvec3 eye = eyeOf(image);
     const bool isStraight = !image.isPerspective() && image.shear() == glm::dvec2(0.0);
     isHolding |= image.isPerspective() && isWithin(eye, low, high);
-    // For an eye on a face rounding decides whether the box holds it.
+    // Rounding decides whether a box contains an eye on its face.
     const bool isOnFace = image.isPerspective() && isWithin(eye, low - margin, high + margin) &&
       !isWithin(eye, low + margin, high - margin);
     const Oracle oracle(planes, image);
@@ -166,7 +167,7 @@ inline void compareBox(Checks& check, const View& view, const glm::dvec3& low,
       {
         const auto slicesOf = [&](const Found& found)
         { return left(found.intervals[n], u, v, crossed); };
-        // Rays along a face are inside; those that meet an edge are for rounding to decide.
+        // Rays along a face are inside. For rays that meet an edge rounding decides.
         const bool isDoubtful = isOnFace ||
           (!isStraight &&
             (slicesOf(c) != slicesOf(d) ||

@@ -9,7 +9,7 @@
 #ifndef ScreenOracle_h
 #define ScreenOracle_h
 
-#include "CellOracle.h"
+#include "CellBounds.h"
 #include "MapperOracle.h"
 #include "ScreenPixels.h"
 #include "SlabAverages.h"
@@ -88,7 +88,7 @@ private:
   bool BeginsAtEye;
 };
 
-/// The largest (or least) value of the field on a pixel's ray, from where that begins.
+/// The largest (or smallest) value of the field on the ray of a pixel.
 inline reference::CellBounds extremumOnRay(const reference::CellScene<double>& field,
   const ScreenRays& rays, double x, double y, bool isMinimum = false)
 {

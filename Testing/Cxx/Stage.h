@@ -62,6 +62,15 @@ private:
 };
 
 /**
+ * Whether a message is a sentence, without the line feeds that vtkErrorMacro adds.
+ */
+inline bool isSentence(std::string text)
+{
+  text.erase(text.find_last_not_of(" \n") + 1);
+  return !text.empty() && text.back() == '.';
+}
+
+/**
  * An off-screen window, a renderer with a black background that fills it and a volume whose colours
  * are a gray ramp without transparency.
  */

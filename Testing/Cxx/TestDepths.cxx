@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is made of the depths of samples: the colours of depth coding, and the depth buffer, which
-// hides what is rendered later behind what is seen. TestLocations and TestPicks have the samples.
+// Depth coding and the depth buffer, which hides props behind the samples of the volume.
+// TestLocations and TestPicks test the positions of samples.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"

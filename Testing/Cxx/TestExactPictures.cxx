@@ -4,7 +4,7 @@
 // TestExactPictures [--demo-data DIR] [--test-data DIR]
 //
 // Mode EXACT in a window: each pixel is the largest or the least value of the field along its ray.
-// Also what the mode does where there are no exact extrema. TestRenderTime has when it projects.
+// Averages and dependent components of exact mode, too. TestRenderTime tests when it projects.
 #include "ScreenOracle.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"

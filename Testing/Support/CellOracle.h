@@ -15,8 +15,6 @@
 #ifndef reference_CellOracle_h
 #define reference_CellOracle_h
 
-#include "Reductions.h"
-
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -150,21 +148,6 @@ private:
 
 extern template class CellOracle<double>;
 extern template class CellOracle<long double>;
-
-/// A field without a view.
-CellScene<double> cellScene(const Volume<double>& field, const RayCuts& cuts = {});
-
-/// An extremum of a ray that is known up to rounding: a value from `low` to `high`, if it has one.
-struct CellBounds
-{
-  bool isCertain = true; ///< whether it has one is no matter of rounding
-  bool isHit = false;
-  double low = 0.0, high = 0.0;
-};
-
-/// Of the ray from one point to another and rays `beside` it, in voxels.
-CellBounds boundsBetween(const CellScene<double>& scene, const glm::dvec3& begin,
-  const glm::dvec3& end, bool minima, double beside);
 }
 
 #endif

@@ -99,7 +99,7 @@ struct AxisWeights
 };
 
 /**
- * The kernel of each voxel that reaches a place.
+ * The weights of all voxels whose kernel includes a position.
  */
 AxisWeights kernelAt(const Kernel& kernel, double place);
 

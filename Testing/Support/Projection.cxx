@@ -19,7 +19,7 @@ namespace
 constexpr double Pi = 3.14159265358979323846;
 
 /**
- * The trilinear field at the place of a ray at some depth.
+ * The trilinear field on a ray at a depth.
  */
 double fieldOnRay(const SeenVolume& source, int u, int v, double z)
 {
@@ -30,7 +30,7 @@ double fieldOnRay(const SeenVolume& source, int u, int v, double z)
 }
 
 /**
- * Whether a ray is in the box of the volume's voxels at some depth in it.
+ * Whether a ray is in the box of the voxels at a depth of the volume.
  */
 bool isInside(const ImageRays& rays, int u, int v, double z)
 {

@@ -136,7 +136,7 @@ struct ImageRays
   {
     return this->at[a][pixel] + this->slope[a][pixel] * (z - this->start);
   }
-  /// Where a ray is at a depth, axes not permuted.
+  /// The point of a ray at a depth, in index space.
   glm::dvec3 point(int u, int v, double z) const
   {
     glm::dvec3 point;
@@ -145,7 +145,7 @@ struct ImageRays
     point[this->axes[2]] = z;
     return point;
   }
-  /// From there to where it is a slice higher.
+  /// The step of a ray to the next slice, in index space.
   glm::dvec3 direction(int u, int v) const
   {
     glm::dvec3 direction;
@@ -154,14 +154,14 @@ struct ImageRays
     direction[this->axes[2]] = 1.0;
     return direction;
   }
-  /// Where a point lies between the columns and rows of a parallel view.
+  /// The pixel coordinates of a point, in a parallel view.
   glm::dvec2 pixelOf(const glm::dvec3& point) const
   {
     const double z = point[this->axes[2]];
     return { point[this->axes[0]] - this->position(0, 0, z),
       point[this->axes[1]] - this->position(1, 0, z) };
   }
-  /// The depths before the eye.
+  /// The depths in front of the eye.
   Stretch<double> beforeEye() const
   {
     Stretch<double> depths;
@@ -182,7 +182,7 @@ struct ImageRays
 };
 
 /**
- * The rays of a parallel view, seen from the side of the lowest slices.
+ * The rays of a parallel view from the side of the lowest slices.
  */
 ImageRays raysOf(const std::array<int, 3>& volumeSize, const ShearView& view);
 

@@ -143,7 +143,7 @@ Outcomes<T> smallest(const CutRay<T>& ray)
 }
 
 /**
- * The maximum of each pixel's samples that count.
+ * The maximum of the visible samples of each pixel.
  */
 template <class T>
 Image<T> maximumOf(const RaySamples<T>& samples, const ImageRays& rays, const RayCuts& cuts)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file    ScreenPixels.h
- * @brief   what pixels of the screen show of shear images, from the definition
+ * @brief   the values of the pixels of the screen from those of shear images, by definition
  *
  * Pixels show the shear image where their rays meet it or, in overviews, what it has in their
  * areas.
@@ -23,24 +23,24 @@ namespace reference
 {
 
 /**
- * What has become of the samples of a ray.
+ * A ray whose samples were reduced to one value.
  */
 struct ReducedRay
 {
-  bool meets = false; ///< the volume
-  bool hit = false;   ///< there are samples that count
+  bool meets = false; ///< whether it crosses the volume
+  bool hit = false;   ///< whether it has visible samples
   double value = 0.0;
 };
 
 /**
- * What a pixel must be: nothing if it must have the background.
+ * The expected value of a pixel, if it shows the volume.
  */
 struct ExpectedPixel
 {
-  bool isCertain = true; ///< neither the outline nor half of a cut is too near to tell
+  bool isCertain = true; ///< whether rounding decides neither the outline nor a cut
   bool isHit = false;
   double value = 0.0;
-  double slack = 0.0; ///< what it may differ by, beside rounding
+  double slack = 0.0; ///< the tolerance in addition to rounding errors
 };
 
 /**
@@ -91,11 +91,11 @@ ExpectedPixel betweenRays(const ImageRays& rays, const glm::dvec3& point, RayAt&
 }
 
 /**
- * What a pixel of an overview reads.
+ * The values that a pixel of an overview reads.
  */
 struct Reading
 {
-  bool isCertain = true;  ///< by more than rounding
+  bool isCertain = true;  ///< whether rounding does not decide what is read
   bool hasSample = false; ///< whether a visible sample is in the area
   std::vector<double> values;
   std::vector<glm::ivec2> nearest; ///< pixel of the shear image to each value
@@ -115,7 +115,7 @@ public:
   /// @param rounding  of places, in pixels of the shear image
   AreaReader(const Source& image, double rounding) : Image(image), Rounding(rounding) {}
 
-  /// Adds what a pixel reads.
+  /// Adds the values that a pixel reads.
   void read(const glm::dvec2& pixel, Reading& reading) const
   {
     bool meetsRows = false;
@@ -146,7 +146,7 @@ public:
 private:
   bool isWhole(double place) const { return std::abs(place - std::round(place)) <= this->Rounding; }
 
-  /// The part of a row that lies in a pixel's area, and no more than a sample beside the image.
+  /// The part of a row in the area of a pixel. It ends one sample beside the image.
   Stretch<double> rowIn(const glm::dvec2& pixel, double v) const
   {
     Stretch<double> row{ -1.0, double(this->Image.width) };

@@ -133,7 +133,7 @@ std::vector<double> frustumKinks(
 }
 
 /**
- * The integral over all that a pixel sees of a slice.
+ * The average over the part of a slice in the frustum of a pixel.
  */
 class FrustumAverage
 {
@@ -142,7 +142,7 @@ public:
     : Source(source),
       H(kernel),
       Rule(ruleFor(kernel)),
-      // Of parallel rays only bells are no polynomials of the depth.
+      // Along parallel rays all kernels except bells are polynomials of the depth.
       DepthRule(
         gaussLegendre(source.rays.isParallel() && kernel.shape != Kernel::CosineBell ? 4 : 16))
   {

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file    SlabAverages.h
- * @brief   slow and obvious samples of modes standard (Kernel::Nearest) and high (the other
- *          kernels): averages over what a pixel sees of a slice
+ * @brief   slow and obvious samples of standard mode (Kernel::Nearest) and high mode (the other
+ *          kernels): averages over the part of a slice in the frustum of a pixel
  *
- * Only slices take part of which the pixel's own ray crosses a voxel (as in crossedVoxels). Outside
- * the volume the outermost voxels are repeated. NaN voxels are left out of sums of weighted voxels
- * and of weights; a slice where no weight remains has the sample NaN.
+ * Only slices in which the ray of the pixel crosses a voxel (see crossedVoxels) have a sample.
+ * Outside the volume the outermost voxels are repeated. NaN voxels are left out of the sums of
+ * weighted voxels and of weights. If no weight remains, the sample is NaN.
  */
 #ifndef reference_SlabAverages_h
 #define reference_SlabAverages_h
@@ -26,7 +26,7 @@ int partsPerSlice(const ImageRays& rays, const Kernel& kernel);
 /**
  * The averages of all slices that rays cross, by ascending depth.
  *
- * Of parallel rays they are those of frustumSamples. In perspective the slice is cut into parts of
+ * For parallel rays they are those of frustumSamples. In perspective the slice is cut into parts of
  * equal thickness t. In each, with middle z, points of the pixel have
  * i = position(0, u, z) + slope t a + spacing(z) b, a and b independent and uniform in
  * [-1/2, 1/2], and j likewise and independently of i. Voxel (i', j', k') weighs the mean of
@@ -49,8 +49,8 @@ Sample<double> slabSample(const Volume<double>& volume, const ImageRays& rays, c
  * voxels divided by that of the weights.
  *
  * The integrals are Gauss-Legendre sums of the field itself, between its kinks: of parallel rays
- * exact but for rounding for the nearest and the trilinear kernel, error below 1e-13 of the largest
- * voxel for cosine bells.
+ * the only error for the nearest and the trilinear kernel is rounding. For cosine bells the error
+ * is below 1e-13 of the largest voxel.
  */
 RaySamples<double> frustumSamples(
   const Volume<double>& volume, const ImageRays& rays, const Kernel& kernel);

@@ -29,7 +29,7 @@ struct Stretch
 
   R length() const { return this->end - this->begin; }
 
-  /// To where value + t speed >= 0.
+  /// Keeps the part with value + t speed >= 0.
   void cut(R value, R speed)
   {
     if (speed > 0)

@@ -251,15 +251,14 @@ bool ComponentProjector::ProjectImage(std::size_t n, const ProjectionSettings& s
       [&](Channel& channel) { return this->ProjectChannel(channel, n, settings, {}); });
   }
   Channel& last = this->Channels.back();
-  std::vector<AtSamples> others;
+  this->Others.clear();
   for (std::size_t c = 0; c + 1 < this->Channels.size(); ++c)
   {
-    others.push_back({ this->Channels[c].Index.volume(), this->Channels[c].Images[n] });
+    this->Others.push_back({ this->Channels[c].Index.volume(), this->Channels[c].Images[n] });
   }
-  const bool done = this->ProjectChannel(last, n, settings, others);
+  const bool done = this->ProjectChannel(last, n, settings, this->Others);
   for (Channel& channel : this->Channels)
   {
-    channel.Settings = last.Settings;
     channel.Used = last.Used;
   }
   return done;

@@ -207,6 +207,7 @@ private:
   WarpedScalars Warped;
   Picture Layer; // picture of one component
   ShearPixelScalars Shown;
+  std::vector<AtSamples> Others;    // dependent components except the last; reused by frames
   std::vector<unsigned char> Plane; // scalars of one component
   vtkSmartPointer<vtkImageData> ShearImageOutput;
 };

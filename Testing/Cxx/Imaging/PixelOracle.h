@@ -19,7 +19,7 @@
 
 namespace projectiontesting
 {
-/// What rays of the shear image are, by brute force.
+/// The rays of a shear image, each reduced sample by sample.
 struct Oracle
 {
   reference::ImageRays rays;
@@ -50,7 +50,7 @@ inline double voxelsPerPixel(const Rays& rays)
     0.5 * (squares + std::sqrt(std::max(squares * squares - 4.0 * area * area, 0.0))));
 }
 
-/// The shear image as the pixels of an overview read it.
+/// A shear image as the source of an AreaReader.
 struct OverviewSource
 {
   const Oracle& oracle;
@@ -79,8 +79,8 @@ struct OverviewSource
   }
 };
 
-/// A pixel of an overview: of the samples in its area the extremum or the mean. Open if the
-/// volume's outline may hide them.
+/// A pixel of an overview: the extremum or the mean of the samples in its area. It is uncertain if
+/// the outline of the volume may hide the samples.
 inline reference::ExpectedPixel ofArea(
   const OverviewSource& source, int x, int y, vtkSplattingMIPProjection* filter)
 {

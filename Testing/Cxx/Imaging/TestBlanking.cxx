@@ -113,7 +113,7 @@ void testScene(Checks& check, reference::Random& random)
   int size[3];
   vtkImageData* const image = vtkImageData::SafeDownCast(data);
   image ? image->GetDimensions(size) : vtkRectilinearGrid::SafeDownCast(data)->GetDimensions(size);
-  // The mask of cells has their number of points, or of cells.
+  // A mask of cells has the dimensions of their points or of the cells.
   const bool onCells = cells && random.oneIn(2);
   for (int a = 0; a < 3 && cells && !onCells; ++a)
   {

@@ -8,7 +8,7 @@
 #include "AverageTesting.h"
 #include "PixelOracle.h"
 
-#include "CellOracle.h"
+#include "CellBounds.h"
 
 #include "vtkMatrix4x4.h"
 

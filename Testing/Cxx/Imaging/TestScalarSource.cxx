@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The volumes that are projected against the arrays that they come from, voxel by voxel: any type
-// and layout, chosen by any ScalarMode, with hidden voxels, from images and rectilinear grids. When
-// they are made anew, and how much memory copies take.
+// Compares the volumes that are projected with the input arrays, voxel by voxel: all types, layouts
+// and scalar modes, hidden voxels, images and rectilinear grids. Tests when volumes are updated,
+// and the memory of copies.
 #include "Input/ScalarSource.h"
 #include "ProjectionTesting.h"
 
@@ -29,7 +29,7 @@ enum class Layout
 {
   Interleaved,
   Separate,
-  AllocatedByVTK ///< VTK 9.3 to 9.6 interleave components that are to be separate
+  AllocatedByVTK ///< VTK 9.3 to 9.6 interleave separate components
 };
 
 template <class T>
@@ -44,7 +44,7 @@ vtkSmartPointer<vtkDataArray> separateArray(int components, vtkIdType count, Lay
   return array;
 }
 
-/// Of any type, with values that fit all of them.
+/// A random type, with values that all types can represent.
 vtkSmartPointer<vtkDataArray> anyArray(
   const char* name, int components, vtkIdType count, Layout layout, reference::Random& random)
 {
@@ -76,7 +76,7 @@ vtkIdType count(const glm::ivec3& size)
   return vtkIdType(size.x) * size.y * size.z;
 }
 
-/// An image, or a rectilinear grid with equal steps or others.
+/// An image, or a rectilinear grid with equal or unequal steps.
 struct Scene
 {
   glm::ivec3 voxels;
@@ -206,7 +206,7 @@ private:
     this->data = grid;
   }
 
-  /// By default, as active scalars, by name or by number; the other arrays are not to be taken.
+  /// Selects an array by default, as active scalars, by name or by number. There are other arrays.
   void chooseArray(reference::Random& random)
   {
     vtkDataSetAttributes* const own = this->attributes(this->cells);
@@ -236,7 +236,7 @@ private:
   }
 };
 
-/// The points, or the cell, beside a voxel of a resampled grid, along one axis.
+/// The points or the cell around a voxel of a resampled grid, along one axis.
 struct Between
 {
   int below = 0;
@@ -265,7 +265,7 @@ struct Expected
   bool isCertain = true;
 };
 
-/// The trilinear interpolation of the points that have a number, unless the nearest one has none.
+/// Interpolates points trilinearly. Points with NaN are left out; NaN if the nearest one is NaN.
 Expected interpolated(const Scene& scene, const Between (&axes)[3], int c)
 {
   double sum = 0.0, weight = 0.0, best = 0.0, second = 0.0, nearest = std::nan("");
@@ -348,8 +348,7 @@ void testVolumes(Checks& check, const Scene& scene, const ScalarSource& source)
   }
 }
 
-/// Of the copies that components need: averages are float, or double for types of four bytes or
-/// more.
+/// The memory of copied components. Averages are float, or double for types of four bytes or more.
 void testMemory(Checks& check, const Scene& scene, const ScalarSource& source)
 {
   vtkDataArray* const scalars = scene.scalars;
@@ -407,7 +406,7 @@ void testAll(Checks& check, const Scene& scene, ScalarSource& source)
   {
     source.Update();
     testVolumes(check, scene, source);
-    if (!source.HasImage()) // which may have a copy, too
+    if (!source.HasImage()) // an image may have a copy
     {
       testMemory(check, scene, source);
     }
@@ -415,7 +414,7 @@ void testAll(Checks& check, const Scene& scene, ScalarSource& source)
   }
 }
 
-/// Choices without effect.
+/// Settings without effect do not update volumes.
 void testIdle(Checks& check, const Scene& scene, ScalarSource& source)
 {
   const vtkIdType version = source.Version();
@@ -446,7 +445,7 @@ void testIdle(Checks& check, const Scene& scene, ScalarSource& source)
   }
 }
 
-/// What changes in place.
+/// Arrays that are modified in place update volumes.
 void testChanges(Checks& check, Scene& scene, ScalarSource& source, reference::Random& random)
 {
   const auto test = [&](const std::string& what)
@@ -476,7 +475,7 @@ void testChanges(Checks& check, Scene& scene, ScalarSource& source, reference::R
   if (scene.layout != Layout::Interleaved)
   {
     scene.layout = Layout::AllocatedByVTK;
-    vtkObject::GlobalWarningDisplayOff(); // of the copy that VTK makes
+    vtkObject::GlobalWarningDisplayOff(); // VTK warns that it copies
     scene.scalars->GetVoidPointer(0);     // VTK 9.3 to 9.6 interleave components
     vtkObject::GlobalWarningDisplayOn();
     testAll(check, scene, source);

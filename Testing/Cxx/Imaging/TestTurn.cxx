@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Turns of vtkSplattingMIPProjection: each slice is the single view, bit for bit; shared
-// projections, progress, aborts, and what an update re-uses. TestTurnOfViews has the geometry.
+// projections, progress, aborts, and reuse in updates. TestTurnOfViews tests the geometry.
 #include "ProjectionTesting.h"
 
 #include "vtkCallbackCommand.h"
@@ -245,7 +245,7 @@ void testAbortUpstream(Checks& check)
 }
 #endif
 
-/// TestWalk has what is projected again.
+/// TestWalk tests changes that project again.
 void testReuse(Checks& check)
 {
   reference::Random random(9);

@@ -178,7 +178,7 @@ vtkSmartPointer<vtkDoubleArray> coordinates(const std::vector<double>& values)
   return array;
 }
 
-/// Steps that would ask for too many voxels, in all or along an axis, are enlarged to the limit.
+/// If a step gives too many voxels, in total or along an axis, it is increased to the limit.
 void testLimits(Checks& check)
 {
   vtkNew<vtkRectilinearGrid> grid;

@@ -171,7 +171,7 @@ void testSlab(Checks& check, const Scene& scene, const glm::dvec3& point, refere
   const double* const d = scene.camera->GetDirectionOfProjection();
   const double away = glm::dot(glm::dvec3(d[0], d[1], d[2]), scene.inWorld(point) - centre);
   compare(check, view, point, 0.5 * thickness - std::abs(away), "slab");
-  // However thin a slab is, it shows its middle, and nothing a slice away. Steps of rays from slice
+  // A thin slab shows its centre, and nothing one slice away. Steps of rays from slice
   // to slice are no longer than the three edges of a voxel.
   const double thin = std::pow(10.0, random.uniform(-300.0, -4.0));
   view.halfSpaces.clear();

@@ -173,8 +173,8 @@ void testLongRows(Checks& check)
     });
 }
 
-/// Likewise averages. Standard mode weighs rows of voxels without a copy where all of a footprint
-/// lies in the volume.
+/// The same for averages. If a footprint lies in the volume, standard mode weights rows of voxels
+/// without copying them.
 template <class T>
 void testLongAverages(Checks& check)
 {
@@ -219,7 +219,7 @@ void testLongAverages(Checks& check)
     });
 }
 
-/// Slices behind the eye have no region.
+/// Slices behind the eye are in no region.
 void testBehindTheEye(Checks& check)
 {
   Sightings behind;

@@ -65,7 +65,7 @@ Scene randomScene(Random& random, int cutters)
   return scene;
 }
 
-/// A box anywhere. Corners may be rounded to where rays pass when there is no shear.
+/// A random box. If its corners are rounded, rays without shear pass through them.
 void compareAnyBox(
   Checks& check, const View& view, bool isRounded, Random& random, BoxCounts& counts)
 {

@@ -50,7 +50,7 @@ struct Camera
   }
 };
 
-/// Whether a ray meets the box of what pictures show, grown by `margin` voxels.
+/// Whether a ray meets the box that pictures show, enlarged by `margin` voxels.
 bool meets(
   const splatting::View& view, const glm::dvec3& eye, const glm::dvec3& direction, double margin)
 {
@@ -60,7 +60,8 @@ bool meets(
   return ray.length() >= 0.0;
 }
 
-/// Whether a ray meets slices along an axis, smaller by a margin, whose middle lies before the eye.
+/// Whether a ray meets slices along an axis whose centre is in front of the eye. The slices are
+/// reduced by a margin.
 bool meetsSlices(const splatting::View& view, const glm::dvec3& eye, int axis, bool reversed,
   const glm::dvec3& direction, double margin)
 {

@@ -94,14 +94,14 @@ Sightings forOverviews(const char* series, int count, F&& f)
   return overviews;
 }
 
-/// An image as pixels read it.
+/// A shear image as the source of an AreaReader.
 struct Source
 {
   const splatting::ShearImage& image;
   reference::ImageRays rays;
   int width, height;
   glm::dmat3 toScreen, toShear;
-  std::vector<glm::dvec4> box; ///< between whose sides pictures do not end
+  std::vector<glm::dvec4> box; ///< the picture covers this box
 
   Source(const splatting::ShearImage& shear, const splatting::ShearWarp& geometry)
     : image(shear),

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The factorisation: shear followed by warp is the view, and pixels are as wide as they are.
+// The factorisation: shear and warp together are the view. Magnifications are those of the view.
 #include "CoreTesting.h"
 #include "Geometry/Magnification.h"
 #include "WideViews.h"

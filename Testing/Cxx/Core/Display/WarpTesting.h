@@ -19,7 +19,7 @@ namespace coretesting
 template <class F>
 splatting::ShearImage imageOf(const splatting::ShearWarp& geometry, F&& f)
 {
-  // As wide as a preview's.
+  // The image has the size of a preview.
   splatting::ProjectionSettings settings;
   settings.quality = splatting::Quality::Preview;
   const auto size = toArray(referenceRays(geometry).volumeSize());

@@ -143,7 +143,7 @@ void hideSome(reference::Volume<T>& volume, reference::Random& random)
 }
 
 /// Where voxels are NaN, most of the volume is walked as if there were none, and only what reads
-/// them is looked at closely. The walk that keeps winners reads each sample alone.
+/// them is looked at closely. With recorded locations every sample is read.
 template <class T>
 void testNaN(Checks& check)
 {
@@ -314,7 +314,7 @@ void testBudget(Checks& check)
     });
 }
 
-/// The floor raises what lies below, and nothing else, also in walks that keep winners.
+/// The floor raises all lower pixels and no others, also with recorded locations.
 template <class T>
 void testFloor(Checks& check)
 {
@@ -354,12 +354,14 @@ void testFloor(Checks& check)
               expected.value[p] = std::max(expected.value[p], static_cast<P>(value));
             }
           }
-          // The first one is replaced by the walk that keeps winners.
+          // With recorded locations no acceleration is used.
           for (Acceleration acceleration :
             { Acceleration::Auto, Acceleration::Bricks, linesLike(0), linesLike(1), linesLike(2) })
           {
             c.settings.recordLocations = acceleration == Acceleration::Auto;
             const Result raised = projected(volume, geometry, c, acceleration);
+            check(!c.settings.recordLocations || raised.used == Acceleration::Dense,
+              "an acceleration with recorded locations: ", int(raised.used));
             check.same(expected, toReference<P>(raised.image), 0.0, "type ",
               int(splatting::scalarTypeOf<T>()), ", mode ", int(c.settings.quality), ", axis ",
               geometry.principalAxis(), geometry.isPerspective() ? " in perspective" : "",

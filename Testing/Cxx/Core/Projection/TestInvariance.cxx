@@ -31,8 +31,8 @@ void testThreadsAndInstructionSets(Checks& check, bool perspective)
       const auto volume = reference::uniformNoise<T>({ 83, 61, 47 }, random);
       const splatting::ShearWarp geometry = anyGeometry(volume.size, perspective, random);
       splatting::ProjectionSettings settings;
-      settings.quality = qualities[(n + type) % 3]; // few scenes of all types have all modes, too
-      settings.acceleration = accelerations[(n + type / 3) % 4]; // and all of these
+      settings.quality = qualities[(n + type) % 3]; // a few scenes of all types have all modes
+      settings.acceleration = accelerations[(n + type / 3) % 4]; // and all accelerations
       const splatting::ShearImage expected = project(volume, geometry, settings);
       for (const char* backend : { "Sequential", "STDThread", "TBB" })
       {

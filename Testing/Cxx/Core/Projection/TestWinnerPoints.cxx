@@ -151,8 +151,7 @@ void testPoints(Checks& check, bool perspective)
       }
     });
 }
-/// The weight of the missing samples around a viewport pixel, in any of the images that are next to
-/// it.
+/// For each image the weight of the missing samples around a viewport pixel.
 std::vector<double> missingWeights(
   const std::vector<splatting::ShearImage>& images, const Scene& scene, const glm::dvec2& pixel)
 {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The oracle of perspective projections itself: how far averages of parts are from what a pixel
-// sees. The core's tests compare both with projections.
+// Tests the oracle of perspective projections: the difference between averages of parts and the
+// average over the frustum of a pixel. Core tests compare both with projections.
 #include "CoreTesting.h"
 
 #include <algorithm>

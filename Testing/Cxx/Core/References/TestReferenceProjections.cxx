@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The projections that splatting is compared with: projective shear-warp by hand, and the fast
-// versions beside the slow ones.
+// Tests the projections that benchmarks compare with splatting. Projective shear-warp is compared
+// with values computed by hand, fast versions with slow ones.
 #include "CoreTesting.h"
 
 #include "TimedProjection.h"

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Footprint weights: against direct numerical integration, digitised against closed form, and the
-// promises that all of them make. A frame with general tables makes its table once.
+// Compares footprint weights with numerical integration, and digitised weights with those in closed
+// form. Tests properties of all weights, and that a frame computes a general table once.
 #include "CoreTesting.h"
 #include "Splat/Sampling/Footprint.h"
 
@@ -165,7 +165,7 @@ void testPromises(Checks& check)
     });
 }
 
-/// Where tables may have next to no weight.
+/// Kernels for which tables may have very small weights.
 const double radii[] = { 0.5, std::nextafter(0.5, 1.0), 0.5 + 1e-12, 0.5 + 1e-9, 0.5 + 1e-7,
   0.5 + 1e-5, std::nextafter(0.501, 0.0), 0.501, 0.51, 1.0, 1.5 };
 const double shears[] = { 0.0, 0x1p-24, -0x1p-24, 1e-12, 0.5, -1.0 };

@@ -258,7 +258,7 @@ void testRenewal(Checks& check)
     });
 }
 
-/// The progress of making chains ends at 1.
+/// The reported progress of making chains ends at 1.
 void testProgress(Checks& check)
 {
   reference::forScenes("progress", 1,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Projections along the rays of an eye: where the images of two axes meet they show the same, and
-// pixels read no voxels beside those that their tables name.
+// Perspective projections: two images have the same values at their common border, and pixels read
+// only the voxels in their tables.
 #include "CoreTesting.h"
 
 #include "Splat/Sampling/PerspectiveFootprints.h"

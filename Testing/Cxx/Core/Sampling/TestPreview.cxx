@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Preview mode equals an exact voxel traversal along the same rays, bit for bit: every scalar type,
-// parallel views, half of them through edges and corners of voxels, and views from an eye.
+// parallel views, half of them through edges and corners of voxels, and perspective views.
 #include "CoreTesting.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ using namespace coretesting;
 
 namespace
 {
-/// Compares all images of a view; returns whether they show the volume.
+/// Compares all images of a view. Returns whether they show the volume.
 template <class T>
 bool comparePreviews(
   Checks& check, const reference::Volume<T>& volume, bool perspective, reference::Random& random)

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Standard and high mode equal the average over pixel area and slice thickness (in perspective that
-// of parts), integrated numerically, within the documented error bound.
+// Compares standard and high mode with the average over pixel area and slice thickness (in
+// perspective with the average of parts), which is integrated numerically. The tolerance is the
+// documented error bound.
 #include "AverageTesting.h"
 
 #include <algorithm>
@@ -73,7 +74,7 @@ void testNaN(Checks& check, bool perspective)
     });
 }
 
-/// Infinities are values.
+/// Volumes with infinities.
 void testInfinities(Checks& check)
 {
   reference::Volume<float> volume({ 7, 7, 3 }, 1.0f);
@@ -90,7 +91,7 @@ void testInfinities(Checks& check)
   }
 }
 
-/// Also with footprints from tables.
+/// Footprints from tables.
 template <class T>
 void testConstant(Checks& check, bool perspective)
 {

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// MIP's relatives as the mapper offers them: which of them depend on the side of the view; averages
-// of ranges, and colours beyond the data. TestProjectionAndMapper has the pictures of all of them.
+// Other blend modes and maximum types of the mapper: dependence on the side of the view, averages
+// of ranges, and colours beyond the range of the data. TestProjectionAndMapper compares their
+// pictures.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"

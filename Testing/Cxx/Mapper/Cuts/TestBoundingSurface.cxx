@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Surfaces that a volume is shown in: a box against clipping planes, and what is said of surfaces
-// that are none. TestSurfaceTriangles has spheres, and all that is refused.
+// Bounding surfaces: compares a box with clipping planes, and tests messages about invalid
+// surfaces. TestSurfaceTriangles tests spheres and all refused surfaces.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Planes through the volume, the camera's and the mapper's: pictures beside VTK's ray caster.
-// TestWorldView and TestRayIntervals have the samples that they leave.
+// Compares pictures with clipping planes of camera and mapper with VTK's ray caster. TestWorldView
+// and TestRayIntervals test which samples are visible.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"

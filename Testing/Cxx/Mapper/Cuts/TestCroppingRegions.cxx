@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// VTK's cropping regions in the mapper: the sets that have names and others mean what they mean to
-// VTK's GPU ray caster, and what is ray cast has them, too. TestCropping, TestCellCuts and
-// TestProjection have the samples that they leave.
+// Compares VTK's cropping regions, named and other sets, with VTK's GPU ray caster. Frames that are
+// ray cast are cropped, too. TestCropping, TestCellCuts and TestProjection test which samples are
+// visible.
 #include "ScreenOracle.h"
 
 #include "vtkCommand.h"
@@ -45,7 +45,7 @@ int randomFlags(reference::Random& random)
   return static_cast<int>(random.bits() & All);
 }
 
-/// The picture of the GPU's ray caster with the mapper's cropping.
+/// The picture of VTK's GPU ray caster with the cropping of the mapper.
 reference::Image<double> truthOf(stage::Stage& stage, Mapper* mapper, vtkImageData* image)
 {
   const double* const spacing = image->GetSpacing();

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Opaque geometry before, inside, behind and beside the volume, against pictures of the parts and
-// VTK's ray caster; in viewports, layers, tiles and with multisampling. TestSceneCuts has the ends
-// of rays at geometry.
+// Compares opaque geometry in front of, inside, behind and beside the volume with pictures of the
+// parts and with VTK's ray caster, also in viewports, layers and tiles and with multisampling.
+// TestSceneCuts tests the ends of rays at geometry.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"

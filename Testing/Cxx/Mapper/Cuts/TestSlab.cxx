@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Slabs across the view against clipping planes in the same places. TestWorldView has thin and
-// endless ones, TestProjectionProperties those that are refused.
+// Compares slabs with clipping planes in the same places. TestWorldView tests thin and infinite
+// slabs, TestProjectionProperties refused ones.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"

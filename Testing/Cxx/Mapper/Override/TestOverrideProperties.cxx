@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What vtkSplattingMIPGPUVolumeRayCastMapper does not splat is VTK's own picture, bit for bit.
-// TestWalk compares what it splats with vtkSplattingMIPVolumeMapper.
+// If vtkSplattingMIPGPUVolumeRayCastMapper does not splat, it renders VTK's own picture, bit for
+// bit. TestWalk compares splatted pictures with those of vtkSplattingMIPVolumeMapper.
 #include "ScalarTesting.h"
 
 #include "vtkSplattingMIPGPUVolumeRayCastMapper.h"
@@ -53,7 +53,7 @@ struct Pair
     this->stage.show(mapper);
     return this->stage.pixels();
   }
-  /// Checks that both agree.
+  /// Checks that both pictures are equal.
   void same(const std::string& name, reference::Checks& check)
   {
     const stage::Pixels expected = this->of(this->splatting);

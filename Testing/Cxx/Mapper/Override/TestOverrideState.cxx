@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkSplattingMIPGPUVolumeRayCastMapper beside its pictures: what it releases, its events, messages
-// and log.
+// Resources, events, messages and log of vtkSplattingMIPGPUVolumeRayCastMapper.
 #include "Stage.h"
 
 #include "vtkSplattingMIPGPUVolumeRayCastMapper.h"

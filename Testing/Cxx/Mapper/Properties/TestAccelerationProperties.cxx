@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Accelerations as a program meets them: with a budget, with culling, told by progress, and made
-// anew when the data change. TestAccelerations compares their pictures.
+// Accelerations with a memory budget and with culling; their progress, and their update after the
+// data have changed. TestAccelerations compares their pictures.
 #include "Stage.h"
 
 #include "vtkCallbackCommand.h"

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Type and place of the shear image that the mapper returns, and which changes of a view project
-// nothing. TestWalk has the changes that do.
+// Type and position of the shear image that the mapper returns, and changes of a view that do not
+// project again. TestWalk tests changes that do.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Random walks over all settings, inputs, cameras and windows: after each step mapper and filter
-// show what a fresh one shows in the same state, and the mapper that stands in for VTK's what a
-// fresh splatting mapper shows, bit for bit.
+// Random walks over all settings, inputs, cameras and windows. After each step the pictures of
+// mapper and filter are equal, bit for bit, to those of a new one in the same state. The
+// replacement of VTK's mapper is compared with a new splatting mapper.
 #include "WalkSettings.h"
 
 #include "vtkCallbackCommand.h"
@@ -329,7 +329,7 @@ private:
   void compare(reference::Checks& check, const std::string& name)
   {
     const Frame frame = this->frameOfLive();
-    // VTK's GPU mapper refuses some inputs that can be splatted.
+    // VTK's GPU mapper refuses some valid inputs of the splatting mapper.
     Shown fresh(this->StandsIn && !this->LiveIsRendered);
     const Silence said(fresh.mapper);
     const stage::Messages renders(fresh.splatting, vtkCommand::VolumeMapperRenderStartEvent);

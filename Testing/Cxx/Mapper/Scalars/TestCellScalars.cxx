@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cells are voxels half a voxel from the points, and the picture ends with them. TestVolumeGrid has
-// the place of each voxel.
+// Cell scalars: voxels are the cells, half a voxel from the points, and the picture covers the
+// cells. TestVolumeGrid tests the position of each voxel.
 #include "ScalarTesting.h"
 
 #include "vtkCamera.h"

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Masks and hidden points are what VTK's GPU ray caster makes of them. TestBlanking has all that is
-// hidden voxel by voxel, TestScalarSource what is shown then.
+// Compares pictures with masks and hidden points with VTK's GPU ray caster. TestBlanking tests
+// which voxels are hidden, TestScalarSource the values of the others.
 #include "ScalarTesting.h"
 
 #include "vtkGPUVolumeRayCastMapper.h"

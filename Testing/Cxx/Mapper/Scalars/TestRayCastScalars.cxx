@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The scalars that a ray caster gets where nothing is splatted, from frame to frame.
-// TestScalarSource compares them with the input.
+// The scalars that are passed to a ray caster in frames without splatting. TestScalarSource
+// compares them with the input.
 #include "ScalarTesting.h"
 
 #include "vtkColorTransferFunction.h"

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Rectilinear grids with equal steps are the same as images; what is said of those that cannot be
-// resampled with their least step. TestVolumeGrid and TestScalarSource have the others.
+// Compares rectilinear grids with equal steps with images, and tests the messages about grids that
+// cannot be resampled with their smallest step. TestVolumeGrid and TestScalarSource test other
+// grids.
 #include "ScalarTesting.h"
 
 #include "vtkCommand.h"

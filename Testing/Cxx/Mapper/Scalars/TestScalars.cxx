@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which array is projected, and the colours of its components. TestScalarSource has all arrays and
-// components voxel by voxel.
+// Tests which array is projected, and the colours of its components. TestScalarSource compares all
+// arrays and components voxel by voxel.
 #include "ScalarTesting.h"
 
 #include "vtkColorTransferFunction.h"

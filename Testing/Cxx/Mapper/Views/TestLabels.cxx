@@ -93,7 +93,7 @@ struct Scene : stage::Stage
     this->sphere->VisibilityOff();
   }
 
-  /// What both mappers show of the volume.
+  /// Cuts of the volume, for both mappers.
   void chooseCuts(reference::Random& random)
   {
     stage::chooseSamples(this->mapper, this->image, random);
@@ -185,7 +185,7 @@ template <class ColorOf>
 int compare(Scene& scene, const std::string& what, ColorOf&& colorOf, reference::Checks& check)
 {
   scene.mapper->SetLabelInput(scene.labels);
-  const stage::Pixels pixels = scene.pixels(); // what the last comparison has projected is kept
+  const stage::Pixels pixels = scene.pixels(); // reuses the last projection
   scene.mapper->SetLabelInput(nullptr);
   const stage::Pixels plain = scene.pixels();
   const std::vector<int> labels = scene.shownLabels();
@@ -211,7 +211,7 @@ void testEdges(int labelMode, reference::Checks& check, reference::Random& rando
 {
   Scene scene(random);
   scene.mapper->SetLabelMode(labelMode);
-  scene.mapper->SetRecordLocations(labelMode == Mapper::SAMPLE); // averages have none
+  scene.mapper->SetRecordLocations(labelMode == Mapper::SAMPLE); // averages have no locations
   const stage::Messages warnings(scene.mapper, vtkCommand::WarningEvent);
   vtkNew<vtkColorTransferFunction> function;
   function->AddRGBPoint(-1.0, 0.1, 0.9, 0.3);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Picks find bright voxels where they are seen, in world coordinates; the arrays of all pixels say
-// the same; and what cannot be located is said in one sentence.
+// Picks return the world positions of bright voxels. GetLocations() returns the same. If there are
+// no locations, one message says why.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"
@@ -270,7 +270,7 @@ void testOtherSide(reference::Checks& check)
   }
 }
 
-/// What geometry hides is not located.
+/// Pixels that geometry hides have no location.
 void testHidden(reference::Checks& check)
 {
   reference::Volume<std::uint8_t> volume({ 30, 30, 30 }, 50);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Perspective views: what leaves the eye where it is projects nothing, and programs may give
-// projections of their own. TestPerspectiveWarp has the seams between images of several axes.
+// Perspective views: changes that keep the eye do not project again, and programs may set explicit
+// projection matrices. TestPerspectiveWarp tests the seams between images of several axes.
 #include "Stage.h"
 
 #include "vtkSplattingMIPVolumeMapper.h"

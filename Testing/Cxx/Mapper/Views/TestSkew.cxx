@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where volumes are seen, whatever spacing, origin, extent, direction and prop matrix: skewed
-// stacks, as light-sheet microscopes record them, mirrored and stretched, at their place, without
-// resampling, in all modes.
+// Positions of volumes with any spacing, origin, extent, direction and prop matrix, in all modes:
+// skewed stacks, as light-sheet microscopes record them, mirrored and stretched, without
+// resampling.
 #include "ScreenOracle.h"
 
 #include "vtkSplattingMIPProjection.h"
@@ -25,7 +25,7 @@ constexpr int Height = 64;
 constexpr double FilterTolerance = 2.0 * 255.0 / 1e6;
 const stage::Vector Up = { 0.1, 1.0, 0.05 };
 
-/// Slices that are displaced along x and y, as by a tilted sheet of light; some are mirrored.
+/// A matrix that displaces slices along x and y, as a tilted light sheet does. Some are mirrored.
 void skew(vtkMatrix4x4* matrix, reference::Random& random)
 {
   vtkNew<vtkTransform> transform;
@@ -61,7 +61,7 @@ bool skewImageOrProp(stage::Stage& stage, vtkImageData* image, reference::Random
   return skewsImage;
 }
 
-/// Off the middle, by other than whole pixels.
+/// A view whose centre is moved by a fraction of a pixel.
 void lookAtRandom(stage::Stage& stage, double scale, reference::Random& random)
 {
   const stage::Vector direction = stage::anyDirection(random);

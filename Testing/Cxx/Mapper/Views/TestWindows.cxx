@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the SplattingMIP authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Viewports, large screenshots, stereo, multisampling, and mappers that are shared: the volume
-// looks as it does alone. TestIntermix has layers.
+// Viewports, large screenshots, stereo, multisampling and shared mappers do not change the picture
+// of the volume. TestIntermix tests layers.
 #include "CoreTesting.h"
 #include "ScreenOracle.h"
 
@@ -102,9 +102,9 @@ stage::Pixels quarter(const stage::Pixels& pixels, int left, int bottom)
   return result;
 }
 
-/// Two windows in turn show what they did at first, and two viewports what the windows show, with
-/// nothing beside them. Volumes are larger than the windows, so that parts of their pictures are
-/// copied.
+/// Two windows that are rendered in turn keep their pictures. Two viewports show the pictures of
+/// the windows, and nothing else. Volumes are larger than the windows, so that pictures are
+/// cropped.
 void testViewports(const Scene& scene, reference::Random& random, reference::Checks& check)
 {
   Scene other = scene;
